@@ -1,0 +1,1 @@
+//! Ropewalk: constraints.

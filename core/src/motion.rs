@@ -1,0 +1,43 @@
+//! Prescribed functions of time: what ships, vehicles and winches do.
+
+use crate::lane::V3;
+use std::fmt::Debug;
+
+/// A displacement and its first two time derivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moving {
+    /// Displacement from where the driven marker starts [m].
+    pub x: V3<f64>,
+    /// Velocity [m/s].
+    pub v: V3<f64>,
+    /// Acceleration [m/s²].
+    pub a: V3<f64>,
+}
+
+/// A frame that moves steadily: it translates with `velocity` and turns at `omega` about `centre`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SteadyFrame {
+    /// Velocity of the centre [m/s].
+    pub velocity: V3<f64>,
+    /// Angular velocity [rad/s].
+    pub omega: V3<f64>,
+    /// A point on the axis of rotation, relative to where the driven marker starts [m].
+    pub centre: V3<f64>,
+}
+
+/// A prescribed displacement with two continuous derivatives. Drives constraints and winches.
+///
+/// It is relative to where the driven marker starts, so that a motion fits any scene. Discontinuous motions make
+/// accelerations and reactions infinite: ramp them.
+pub trait Motion: Send + Sync + Debug {
+    /// Displacement, velocity and acceleration at time `t`.
+    fn at(&self, t: f64) -> Moving;
+    /// First and last time for which it is defined; a run beyond is refused.
+    fn range(&self) -> (f64, f64) {
+        (f64::NEG_INFINITY, f64::INFINITY)
+    }
+    /// The frame in which the motion is at rest from `t` on, if it is steady then: a straight run, a steady turn.
+    fn steady(&self, _t: f64) -> Option<SteadyFrame> {
+        None
+    }
+}

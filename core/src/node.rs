@@ -1,0 +1,139 @@
+//! Nodes own coordinates and know how to move along them.
+//!
+//! Integrators and Newton's method work with velocities and increments, which are plain vectors; only a node
+//! knows that an orientation isn't one. `q ⊕ Δ` is [`NodeKind::retract`].
+
+use serde::{Deserialize, Serialize};
+
+/// What a node carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum NodeKind {
+    /// A position `r` (3 coordinates).
+    Point,
+    /// A position and a slope, `r` and `r' = dr/dx` (6 coordinates): the node of an ANCF cable.
+    Slope,
+    /// A position and a unit quaternion `(w, x, y, z)` (7 coordinates), with the velocity `(ṙ, ω)`: `ω` in the
+    /// body's own axes (6 velocities). The node of a rigid body.
+    Frame,
+    /// Plain numbers: a line's material coordinate at its end, the angle of a drum.
+    Scalars(usize),
+}
+
+impl NodeKind {
+    /// Number of coordinates.
+    pub fn coordinates(self) -> usize {
+        match self {
+            NodeKind::Point => 3,
+            NodeKind::Slope => 6,
+            NodeKind::Frame => 7,
+            NodeKind::Scalars(n) => n,
+        }
+    }
+
+    /// Number of velocities, increments and equations.
+    pub fn velocities(self) -> usize {
+        match self {
+            NodeKind::Frame => 6,
+            other => other.coordinates(),
+        }
+    }
+
+    /// `out = q ⊕ d`: moves along the increment `d`. For a frame the last three entries of `d` are a rotation
+    /// vector in the body's own axes, applied by the exponential map, and the quaternion keeps its unit norm.
+    pub fn retract(self, q: &[f64], d: &[f64], out: &mut [f64]) {
+        if self == NodeKind::Frame {
+            for i in 0..3 {
+                out[i] = q[i] + d[i];
+            }
+            let p = quaternion_product([q[3], q[4], q[5], q[6]], quaternion_exp([d[3], d[4], d[5]]));
+            let norm = p.iter().map(|x| x * x).sum::<f64>().sqrt();
+            for i in 0..4 {
+                out[3 + i] = p[i] / norm;
+            }
+        } else {
+            for i in 0..q.len() {
+                out[i] = q[i] + d[i];
+            }
+        }
+    }
+}
+
+/// Index of a node in its model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct NodeId(pub u32);
+
+/// A node in a model: its kind, and where its numbers stand in the vectors of the whole model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Node {
+    /// What it carries.
+    pub kind: NodeKind,
+    /// Index of its first coordinate in `q`.
+    pub q: usize,
+    /// Index of its first velocity in `v` (and increment, and equation).
+    pub v: usize,
+    /// Shared by many elements (a drum, the end coordinate of a line): eliminated last.
+    pub shared: bool,
+}
+
+impl Node {
+    /// The indices of its velocities.
+    pub fn dofs(&self) -> std::ops::Range<usize> {
+        self.v..self.v + self.kind.velocities()
+    }
+    /// The indices of its coordinates.
+    pub fn coords(&self) -> std::ops::Range<usize> {
+        self.q..self.q + self.kind.coordinates()
+    }
+}
+
+/// Moves every node: `out = q ⊕ d`.
+pub fn retract(nodes: &[Node], q: &[f64], d: &[f64], out: &mut [f64]) {
+    for n in nodes {
+        n.kind.retract(&q[n.coords()], &d[n.dofs()], &mut out[n.coords()]);
+    }
+}
+
+fn quaternion_exp(theta: [f64; 3]) -> [f64; 4] {
+    let angle = theta.iter().map(|x| x * x).sum::<f64>().sqrt();
+    // sin(x/2)/x, by its series where the quotient would be 0/0
+    let s = if angle < 1e-4 { 0.5 - angle * angle / 48.0 } else { (0.5 * angle).sin() / angle };
+    [(0.5 * angle).cos(), s * theta[0], s * theta[1], s * theta[2]]
+}
+
+fn quaternion_product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frame_turns_about_a_fixed_axis_and_keeps_its_norm() {
+        let mut q = vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+        let steps = 100_000;
+        let d = [1e-5, 0.0, 0.0, 0.0, 0.0, std::f64::consts::PI / steps as f64];
+        for _ in 0..steps {
+            let mut next = vec![0.0; 7];
+            NodeKind::Frame.retract(&q, &d, &mut next);
+            q = next;
+        }
+        approx::assert_relative_eq!(q[0], 1.0, max_relative = 1e-9);
+        approx::assert_abs_diff_eq!(q[3], 0.0, epsilon = 1e-9);
+        approx::assert_relative_eq!(q[6], 1.0, max_relative = 1e-12);
+        let norm: f64 = q[3..].iter().map(|x| x * x).sum();
+        approx::assert_relative_eq!(norm, 1.0, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn vectors_move_by_addition() {
+        let mut out = [0.0; 6];
+        NodeKind::Slope.retract(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], &[0.5; 6], &mut out);
+        assert_eq!(out, [1.5, 2.5, 3.5, 4.5, 5.5, 6.5]);
+    }
+}

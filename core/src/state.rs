@@ -1,0 +1,73 @@
+//! Everything that changes during a run, as plain data.
+
+use serde::{Deserialize, Serialize};
+
+/// Time, configuration, velocities, multipliers and the memory of the integrator: what a checkpoint holds.
+///
+/// A `State` belongs to the [`Model`](crate::Model) that made it with [`Model::state`](crate::Model::state).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Time [s].
+    pub t: f64,
+    /// Configuration, node by node.
+    pub q: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+    /// True accelerations v̇, those that equilibrium is written in.
+    pub a: Vec<f64>,
+    /// The auxiliary accelerations of the generalized-α family, which lag or lead [`State::a`].
+    pub aux: Vec<f64>,
+    /// Multipliers of the constraints, in the order of their rows.
+    pub lambda: Vec<f64>,
+    /// Modes of parts that latch, break or stick; one number per mode, named by the model.
+    pub modes: Vec<f64>,
+    /// What the step-size controller remembers between steps.
+    pub control: Control,
+}
+
+/// Memory of the integrator and its step-size controller.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Control {
+    /// Size of the last accepted step [s]; 0 before the first.
+    pub h_last: f64,
+    /// Size proposed for the next step [s]; 0 if none.
+    pub h_next: f64,
+    /// No larger step until it has grown back after a failure of Newton's method [s]; 0 if free.
+    pub h_cap: f64,
+    /// Convergence rate that Newton's method last showed.
+    pub eta: f64,
+    /// True accelerations one and two steps back, for the predictor.
+    pub a_back: [Vec<f64>; 2],
+    /// How many entries of `a_back` hold.
+    pub backs: usize,
+}
+
+/// Where terms and constraints are evaluated: slices into a state, or into a trial of an integrator.
+#[derive(Clone, Copy, Debug)]
+pub struct At<'a> {
+    /// Time [s].
+    pub t: f64,
+    /// Configuration.
+    pub q: &'a [f64],
+    /// Velocities.
+    pub v: &'a [f64],
+    /// True accelerations.
+    pub a: &'a [f64],
+    /// Modes of parts that latch, break or stick.
+    pub modes: &'a [f64],
+    /// The last increment of a static Newton iteration, from which elements may take a smoother stress for
+    /// their geometric stiffness. `None` in dynamics.
+    pub last: Option<&'a [f64]>,
+}
+
+impl State {
+    /// The state as a place of evaluation.
+    pub fn at(&self) -> At<'_> {
+        At { t: self.t, q: &self.q, v: &self.v, a: &self.a, modes: &self.modes, last: None }
+    }
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        self.t.is_finite()
+            && [&self.q, &self.v, &self.a, &self.lambda].iter().all(|x| x.iter().all(|x| x.is_finite()))
+    }
+}

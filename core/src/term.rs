@@ -1,0 +1,134 @@
+//! A term is one share of the equations of motion; a model is a flat list of them.
+
+use crate::lane::Width;
+use crate::pattern::Pattern;
+use crate::state::At;
+use std::ops::AddAssign;
+
+/// Kinetic and potential energy [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Energy {
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Potential energy: strain, weight, springs [J].
+    pub potential: f64,
+}
+
+impl AddAssign for Energy {
+    fn add_assign(&mut self, e: Self) {
+        self.kinetic += e.kinetic;
+        self.potential += e.potential;
+    }
+}
+
+/// Rates of the energy balance `d/dt (kinetic + potential) = supplied + carried - dissipated` [W].
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Power {
+    /// Turned into heat or left in the water.
+    pub dissipated: f64,
+    /// Done by loads from outside.
+    pub supplied: f64,
+    /// Carried over the ends by material that flows in or out.
+    pub carried: f64,
+}
+
+impl AddAssign for Power {
+    fn add_assign(&mut self, p: Self) {
+        self.dissipated += p.dissipated;
+        self.supplied += p.supplied;
+        self.carried += p.carried;
+    }
+}
+
+/// Which combination of derivatives the iteration matrix needs:
+/// `q ∂r/∂q + v ∂r/∂v + a ∂r/∂v̇`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Weights {
+    /// Weight of the stiffness `∂r/∂q`.
+    pub q: f64,
+    /// Weight of the damping `∂r/∂v`.
+    pub v: f64,
+    /// Weight of the mass `∂r/∂v̇`.
+    pub a: f64,
+}
+
+/// One share of the residual `r(q, v, v̇, t) = M v̇ + f_int - f_ext`, its derivatives, its energy and its power.
+///
+/// Most terms are a [`Pool`](crate::Pool) of elements, a field on stations, or a few lines like the spring in
+/// `ropewalk-forces`. What a scene doesn't name is not in the list of terms and costs nothing.
+pub trait Term: Send + Sync {
+    /// A name for manifests, profiles and messages, such as `hose: drag`.
+    fn label(&self) -> String;
+    /// Declares which unknowns it couples: one [`Pattern::clique`] for each block of its tangent, in a fixed order.
+    fn pattern(&self, p: &mut Pattern);
+    /// Whether its tangent is symmetric for every choice of [`Weights`]. One term that isn't makes the solver
+    /// take the unsymmetric path.
+    fn symmetric(&self) -> bool {
+        true
+    }
+    /// Adds its share of the residual and, if wanted, of the tangent.
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>);
+    /// Its kinetic and potential energy.
+    fn energy(&self, _at: &At<'_>) -> Energy {
+        Energy::default()
+    }
+    /// The power that it takes out or brings in. Part of the contract: the audit adds these up.
+    fn power(&self, _at: &At<'_>) -> Power {
+        Power::default()
+    }
+}
+
+/// Where the terms add: the residual and, if wanted, the entries of the iteration matrix.
+pub struct Assembly<'a> {
+    pub(crate) residual: &'a mut [f64],
+    pub(crate) values: Option<&'a mut [f64]>,
+    pub(crate) weights: Weights,
+    pub(crate) width: Width,
+    pub(crate) symmetric: bool,
+    /// Start of each clique of the current term in `slots`.
+    pub(crate) cliques: &'a [usize],
+    pub(crate) slots: &'a [u32],
+}
+
+impl Assembly<'_> {
+    /// Whether the tangent is wanted too.
+    #[inline(always)]
+    pub fn wants_tangent(&self) -> bool {
+        self.values.is_some()
+    }
+    /// The weights of the tangent; all zero where none is wanted.
+    #[inline(always)]
+    pub fn weights(&self) -> Weights {
+        self.weights
+    }
+    /// The number of lanes to work with.
+    pub fn width(&self) -> Width {
+        self.width
+    }
+    /// Adds to one equation of the residual.
+    #[inline(always)]
+    pub fn add(&mut self, dof: usize, r: f64) {
+        self.residual[dof] += r;
+    }
+    /// Adds the block of the term's clique number `clique`, which has `n` unknowns: `k(i, j)` for row `i` and
+    /// column `j`. Does nothing where no tangent is wanted.
+    #[inline(always)]
+    pub fn add_block(&mut self, clique: usize, n: usize, k: impl Fn(usize, usize) -> f64) {
+        let Some(values) = self.values.as_deref_mut() else { return };
+        let start = self.cliques[clique];
+        let slots = &self.slots[start..start + n * n];
+        if self.symmetric {
+            for i in 0..n {
+                for j in 0..=i {
+                    values[slots[i * n + j] as usize] += k(i, j);
+                }
+            }
+        } else {
+            for i in 0..n {
+                for j in 0..n {
+                    values[slots[i * n + j] as usize] += k(i, j);
+                }
+            }
+        }
+    }
+}
