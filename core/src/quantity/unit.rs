@@ -150,13 +150,13 @@ fn unknown(symbol: &str) -> String {
     if let Some((good, _)) =
         OTHER_SPELLINGS.iter().find(|(_, bad)| bad.contains(&symbol.to_lowercase().as_str()))
     {
-        return format!("has the unknown unit `{symbol}`, did you mean `{good}`?");
+        return format!("has the unknown unit `{symbol}` (did you mean `{good}`?)");
     }
     // `Nm`, `kNm`: two units that want a space
     for (i, _) in symbol.char_indices().skip(1) {
         let (a, b) = symbol.split_at(i);
         if lookup(a).is_some() && lookup(b).is_some() {
-            return format!("has the unknown unit `{symbol}`, did you mean `{a} {b}`?");
+            return format!("has the unknown unit `{symbol}` (did you mean `{a} {b}`?)");
         }
     }
     let plain = SYMBOLS.iter().map(|(s, ..)| (*s).to_string());
@@ -165,7 +165,7 @@ fn unknown(symbol: &str) -> String {
     let close: Vec<String> = plain.chain(prefixed).filter(|s| s.eq_ignore_ascii_case(symbol)).collect();
     match close.as_slice() {
         [] => format!("has the unknown unit `{symbol}`"),
-        some => format!("has the unknown unit `{symbol}`, did you mean `{}`?", some.join("` or `")),
+        some => format!("has the unknown unit `{symbol}` (did you mean `{}`?)", some.join("` or `")),
     }
 }
 
