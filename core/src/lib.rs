@@ -13,6 +13,7 @@ mod pool;
 mod state;
 mod station;
 mod term;
+pub mod testing;
 
 pub use constraint::{Constraint, Joint, Relation, RowKind, lift};
 pub use lane::{LaneTask, Pack, Real, V3, Width, dot, run};
