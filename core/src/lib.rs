@@ -25,6 +25,7 @@ mod state;
 pub mod statics;
 mod station;
 mod term;
+pub mod testing;
 
 pub use build::{BuildError, Builder};
 pub use constraint::{Constraint, Joint, Relation, RowKind, lift};

@@ -1,0 +1,59 @@
+//! To and fro.
+
+use super::smooth::{step, step_second};
+use crate::refused::{Refused, finite, positive};
+use ropewalk_core::{Motion, Moving, V3};
+use std::f64::consts::TAU;
+
+/// `X = S(u) A sin(2π f (t - start) + phase)`, faded in by the quintic smooth step `S` of `u = (t - start) / ramp`.
+///
+/// Use it for: heave and surge of a ship, shaking tests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Harmonic {
+    amplitude: V3<f64>,
+    frequency: f64,
+    phase: f64,
+    start: f64,
+    ramp: f64,
+}
+
+impl Harmonic {
+    /// An oscillation of `amplitude` [m] and `frequency` [Hz] with `phase` [rad] at `start` [s], in full from
+    /// `start + ramp` on.
+    ///
+    /// # Errors
+    /// A frequency or ramp that isn't above zero, numbers that aren't finite.
+    pub fn new(
+        amplitude: V3<f64>,
+        frequency: f64,
+        phase: f64,
+        start: f64,
+        ramp: f64,
+    ) -> Result<Self, Refused> {
+        finite("harmonic motion: amplitude", &amplitude)?;
+        finite("harmonic motion: phase and start", &[phase, start])?;
+        positive("harmonic motion: frequency", frequency)?;
+        positive("harmonic motion: duration of the ramp", ramp)?;
+        Ok(Harmonic { amplitude, frequency, phase, start, ramp })
+    }
+}
+
+impl Motion for Harmonic {
+    fn at(&self, t: f64) -> Moving {
+        let dt = t - self.start;
+        if dt <= 0.0 {
+            return Moving::default();
+        }
+        let u = dt / self.ramp;
+        let [_, s, s1] = step(u);
+        let (s1, s2) = (s1 / self.ramp, step_second(u) / (self.ramp * self.ramp));
+        let w = TAU * self.frequency;
+        let (sin, cos) = (w * dt + self.phase).sin_cos();
+        let along = |f: f64| self.amplitude.map(|a| f * a);
+        Moving {
+            x: along(s * sin),
+            v: along(s1 * sin + s * w * cos),
+            a: along(s2 * sin + 2.0 * s1 * w * cos - s * w * w * sin),
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Courses in the horizontal plane.
+
+use crate::refused::{Refused, need, unit};
+use ropewalk_core::V3;
+
+/// To which side a vehicle turns, as seen from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// To port: against the clock, seen from above.
+    Left,
+    /// To starboard.
+    Right,
+}
+
+/// A heading and its surroundings; `z` is up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Course {
+    /// Ahead.
+    pub ahead: V3<f64>,
+    /// Towards the centre of the turn.
+    pub inward: V3<f64>,
+    /// Sign of the yaw about `z`.
+    pub sign: f64,
+}
+
+impl Course {
+    /// The course of this horizontal heading, of any length.
+    pub fn new(name: &str, heading: V3<f64>, side: Side) -> Result<Self, Refused> {
+        let ahead = unit(&format!("{name}: heading"), heading)?;
+        need(ahead[2] == 0.0, || format!("{name}: heading must be horizontal (no z), not {heading:?}"))?;
+        let sign = if side == Side::Left { 1.0 } else { -1.0 };
+        Ok(Course { ahead, inward: [-sign * ahead[1], sign * ahead[0], 0.0], sign })
+    }
+    /// `a` ahead and `b` inward.
+    pub fn vector(&self, a: f64, b: f64) -> V3<f64> {
+        std::array::from_fn(|i| a * self.ahead[i] + b * self.inward[i])
+    }
+}

@@ -1,0 +1,245 @@
+//! What the author of a term, law or constraint tests it with: dense matrices, and central differences of what was
+//! written by hand.
+//!
+//! The checks return the worst error relative to the largest number in the same column, so a test reads
+//! `assert!(check_tangent(&term, &nodes, &at, Width::One) < 1e-8)`.
+
+use crate::constraint::Constraint;
+use crate::lane::{LaneTask, Pack, Real, V3, Width, run};
+use crate::node::{Node, retract};
+use crate::pattern::Pattern;
+use crate::state::At;
+use crate::station::{Law, Load, Station};
+use crate::term::{Assembly, Term, Weights};
+
+/// Residual and weighted tangent of one term as plain vectors over all unknowns of `nodes`, rows first.
+/// The whole tangent is formed, also where the term says that it is symmetric.
+pub fn dense(
+    term: &dyn Term,
+    nodes: &[Node],
+    at: &At<'_>,
+    w: Weights,
+    width: Width,
+) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let n = nodes.iter().map(|n| n.kind.velocities()).sum::<usize>();
+    let mut pattern = Pattern::default();
+    term.pattern(&mut pattern);
+    let (mut cliques, mut slots) = (Vec::new(), Vec::new());
+    for k in 0..pattern.len() {
+        cliques.push(slots.len());
+        let clique = pattern.get(k);
+        slots.extend(clique.iter().flat_map(|&i| clique.iter().map(move |&j| i * n as u32 + j)));
+    }
+    let (mut residual, mut values) = (vec![0.0; n], vec![0.0; n * n]);
+    term.add(
+        at,
+        &mut Assembly {
+            residual: &mut residual,
+            values: Some(&mut values),
+            weights: w,
+            width,
+            symmetric: false,
+            cliques: &cliques,
+            slots: &slots,
+        },
+    );
+    (residual, values.chunks(n.max(1)).map(<[f64]>::to_vec).collect())
+}
+
+/// The worst relative error of a term's stiffness, damping and mass against differences of its residual, and of
+/// its symmetry if it claims that.
+///
+/// Orientations are moved by increments in the body's own axes, as Newton's method does. Choose a state away from
+/// the term's kinks: differences reach about 2e-4 to either side.
+pub fn check_tangent(term: &dyn Term, nodes: &[Node], at: &At<'_>, width: Width) -> f64 {
+    let n = nodes.iter().map(|n| n.kind.velocities()).sum::<usize>();
+    let pick = |q, v, a| Weights { q, v, a };
+    let residual = |at: &At<'_>| dense(term, nodes, at, Weights::default(), width).0;
+    let size = largest(&residual(at));
+    let mut worst = 0.0_f64;
+    for (kind, w) in [pick(1.0, 0.0, 0.0), pick(0.0, 1.0, 0.0), pick(0.0, 0.0, 1.0)].into_iter().enumerate() {
+        let exact = dense(term, nodes, at, w, width).1;
+        let moved = |j: usize, h: f64| {
+            let add =
+                |x: &[f64]| x.iter().enumerate().map(|(i, x)| x + if i == j { h } else { 0.0 }).collect();
+            let (mut q, v, a): (_, Vec<f64>, Vec<f64>) = (at.q.to_vec(), add(at.v), add(at.a));
+            retract(nodes, at.q, &add(&vec![0.0; n]), &mut q);
+            residual(&match kind {
+                0 => At { q: &q, ..*at },
+                1 => At { v: &v, ..*at },
+                _ => At { a: &a, ..*at },
+            })
+        };
+        let columns: Vec<Vec<f64>> = (0..n).map(|j| exact.iter().map(|row| row[j]).collect()).collect();
+        let numeric: Vec<Vec<f64>> = (0..n).map(|j| difference(|h| moved(j, h))).collect();
+        worst = worst.max(column_error(&columns, &numeric, size));
+        if term.symmetric() {
+            worst = worst.max(column_error(&columns, &exact, size));
+        }
+    }
+    worst
+}
+
+/// The worst relative error of a law's derivatives against differences of its load, and of its load and derivatives
+/// at the other widths against those at width one.
+pub fn check_law(law: &impl Law, t: f64, at: &Station<f64>) -> f64 {
+    let mut load = Load::zero();
+    law.load::<f64, true>(t, at, &mut load);
+    let mut plain = Load::zero();
+    law.load::<f64, false>(t, at, &mut plain);
+    let force = |at: &Station<f64>| {
+        let mut load = Load::zero();
+        law.load::<f64, false>(t, at, &mut load);
+        load.f.to_vec()
+    };
+    let size = largest(&load.f);
+    let mut worst = column_error(&[load.f.to_vec()], &[plain.f.to_vec()], size);
+    type Field = fn(&mut Station<f64>) -> &mut V3<f64>;
+    let fields: [(Field, [V3<f64>; 3]); 4] = [
+        (|s| &mut s.x, load.d_x),
+        (|s| &mut s.slope, load.d_slope),
+        (|s| &mut s.v, load.d_v),
+        (|s| &mut s.a, load.d_a),
+    ];
+    for (field, exact) in fields {
+        let columns: Vec<Vec<f64>> = (0..3).map(|j| exact.iter().map(|row| row[j]).collect()).collect();
+        let numeric: Vec<Vec<f64>> = (0..3)
+            .map(|j| {
+                difference(|h| {
+                    let mut moved = *at;
+                    field(&mut moved)[j] += h;
+                    force(&moved)
+                })
+            })
+            .collect();
+        worst = worst.max(column_error(&columns, &numeric, size));
+    }
+    for width in [Width::One, Width::Four, Width::Eight] {
+        let mut wide = Vec::new();
+        run(width, OneLaw { law, t, at, out: &mut wide });
+        for lane in wide {
+            worst = worst.max(column_error(&[numbers(&load, 0)], &[lane], size));
+        }
+    }
+    let mut pack = Load::zero();
+    law.load::<Pack<2, false>, true>(t, &spread(at), &mut pack);
+    worst.max(column_error(&[numbers(&load, 0)], &[numbers(&pack, 1)], size))
+}
+
+/// The worst relative error of a constraint's Jacobian, geometric stiffness (with multipliers 1, 1/2, 1/3, …), rate
+/// and bias against differences of its equations.
+pub fn check_constraint(constraint: &dyn Constraint, nodes: &[Node], at: &At<'_>) -> f64 {
+    let dofs: Vec<usize> = constraint.nodes().iter().flat_map(|k| nodes[k.0 as usize].dofs()).collect();
+    let (rows, n) = (constraint.rows().len(), dofs.len());
+    let all = nodes.iter().map(|n| n.kind.velocities()).sum::<usize>();
+    // equations after the increment d and the time dt
+    let moved = |dt: f64, d: &[f64]| {
+        let mut step = vec![0.0; all];
+        dofs.iter().zip(d).for_each(|(&i, &d)| step[i] += d);
+        let mut q = at.q.to_vec();
+        retract(nodes, at.q, &step, &mut q);
+        let (mut g, mut jac) = (vec![0.0; rows], vec![0.0; rows * n]);
+        constraint.jacobian(nodes, &At { t: at.t + dt, q: &q, ..*at }, &mut g, &mut jac);
+        g
+    };
+    let unit = |j: usize, h: f64| -> Vec<f64> { (0..n).map(|i| if i == j { h } else { 0.0 }).collect() };
+    let lambda: Vec<f64> = (0..rows).map(|r| 1.0 / (r + 1) as f64).collect();
+    let (mut g, mut jac, mut h) = (vec![0.0; rows], vec![0.0; rows * n], vec![0.0; n * n]);
+    let (mut rate, mut bias) = (vec![0.0; rows], vec![0.0; rows]);
+    constraint.jacobian(nodes, at, &mut g, &mut jac);
+    constraint.geometric(nodes, at, &lambda, &mut h);
+    constraint.rates(nodes, at, &mut rate, &mut bias);
+
+    let columns: Vec<Vec<f64>> = (0..n).map(|j| (0..rows).map(|r| jac[r * n + j]).collect()).collect();
+    let numeric: Vec<Vec<f64>> = (0..n).map(|j| difference(|h| moved(0.0, &unit(j, h)))).collect();
+    let mut worst = column_error(&columns, &numeric, 1.0);
+
+    let sum = |g: Vec<f64>| g.iter().zip(&lambda).map(|(g, l)| g * l).sum::<f64>();
+    let along =
+        |d: Vec<f64>| second(|x| vec![sum(moved(0.0, &d.iter().map(|d| d * x).collect::<Vec<_>>()))])[0];
+    let pair = |j: usize, k: usize, s: f64| unit(j, 1.0).iter().zip(unit(k, s)).map(|(a, b)| a + b).collect();
+    let numeric: Vec<Vec<f64>> = (0..n)
+        .map(|j| (0..n).map(|k| 0.25 * (along(pair(j, k, 1.0)) - along(pair(j, k, -1.0)))).collect())
+        .collect();
+    let columns: Vec<Vec<f64>> = h.chunks(n.max(1)).map(<[f64]>::to_vec).collect();
+    // second differences carry more noise than first ones
+    worst = worst.max(column_error(&columns, &numeric, 1e3 * largest(&g).max(0.1)));
+    if constraint.linear() {
+        worst = worst.max(largest(&h));
+    }
+    worst = worst.max(column_error(&[rate], &[difference(|dt| moved(dt, &[]))], 1.0));
+    let path = |dt: f64| moved(dt, &dofs.iter().map(|&i| at.v[i] * dt).collect::<Vec<_>>());
+    worst.max(column_error(&[bias], &[second(path)], 1e3 * largest(&g).max(0.1)))
+}
+
+/// First derivative at 0, by central differences of fourth order.
+pub fn difference(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
+    let h = 1e-4;
+    let [a, b, c, d] = [f(-2.0 * h), f(-h), f(h), f(2.0 * h)];
+    (0..a.len()).map(|i| (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * h)).collect()
+}
+
+/// Second derivative at 0, by central differences of fourth order.
+pub fn second(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
+    let h = 1e-3;
+    let [a, b, o, c, d] = [f(-2.0 * h), f(-h), f(0.0), f(h), f(2.0 * h)];
+    (0..a.len()).map(|i| (16.0 * (b[i] + c[i]) - a[i] - d[i] - 30.0 * o[i]) / (12.0 * h * h)).collect()
+}
+
+/// Largest difference in each column, relative to the largest number of that column; numbers below a thousandth of
+/// the largest of all, or 1e-4 of `size`, count as that: differences of something of that size can't see them.
+fn column_error(exact: &[Vec<f64>], numeric: &[Vec<f64>], size: f64) -> f64 {
+    let all = exact.iter().chain(numeric).map(|c| largest(c)).fold(0.0, f64::max);
+    let floor = (1e-3 * all).max(1e-4 * size).max(f64::MIN_POSITIVE);
+    let mut worst = 0.0_f64;
+    for (e, n) in exact.iter().zip(numeric) {
+        let scale = largest(e).max(largest(n)).max(floor);
+        for (e, n) in e.iter().zip(n) {
+            let error = (e - n).abs() / scale;
+            worst = if error.is_finite() { worst.max(error) } else { f64::INFINITY };
+        }
+    }
+    worst
+}
+
+fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m, x| m.max(x.abs()))
+}
+
+/// All numbers of one lane of a load.
+fn numbers<R: Real>(load: &Load<R>, lane: usize) -> Vec<f64> {
+    let matrices = [&load.d_x, &load.d_slope, &load.d_v, &load.d_a];
+    let all = load.f.iter().chain(matrices.into_iter().flatten().flatten());
+    all.map(|x| x.lane(lane)).collect()
+}
+
+/// The same station in every lane.
+fn spread<R: Real>(at: &Station<f64>) -> Station<R> {
+    Station {
+        x: at.x.map(R::of),
+        v: at.v.map(R::of),
+        a: at.a.map(R::of),
+        slope: at.slope.map(R::of),
+        curve_v: at.curve_v.map(R::of),
+        s: R::of(at.s),
+        weight: R::of(at.weight),
+        diameter: R::of(at.diameter),
+        area: R::of(at.area),
+    }
+}
+
+struct OneLaw<'a, L> {
+    law: &'a L,
+    t: f64,
+    at: &'a Station<f64>,
+    out: &'a mut Vec<Vec<f64>>,
+}
+
+impl<L: Law> LaneTask for OneLaw<'_, L> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        let mut load = Load::zero();
+        self.law.load::<R, true>(self.t, &spread(self.at), &mut load);
+        self.out.extend((0..R::LANES).map(|lane| numbers(&load, lane)));
+    }
+}

@@ -1,0 +1,59 @@
+//! Added mass: the water that a slender body pushes aside.
+
+use crate::refused::{Refused, not_negative};
+use ropewalk_core::{Law, Load, Real, Station, V3, dot};
+use std::f64::consts::PI;
+
+/// Added mass of a slender body in still water, `f = -m_a (I - t tᵀ) a` per unstretched length, with
+/// `m_a = Ca ρ π d²/4` and `t = r'/|r'|` (Morison's inertia term; `Ca` = 1 for a circular cylinder).
+///
+/// Use it beside [`Drag`](crate::Drag) for cables and hoses in water. `d` is the hydrodynamic diameter of the station,
+/// so a hollow or flooded section is counted by its outside. Its power is `f·v`, given by the water to the body: the
+/// kinetic energy of the water is not part of the energy balance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AddedMass {
+    /// Density of the fluid `ρ` [kg/m³].
+    pub density: f64,
+    /// Added mass coefficient `Ca`.
+    pub coefficient: f64,
+}
+
+impl AddedMass {
+    /// Added mass in a fluid of the given density.
+    ///
+    /// # Errors
+    /// Negative or infinite numbers.
+    pub fn new(density: f64, coefficient: f64) -> Result<Self, Refused> {
+        not_negative("density of the fluid", density)?;
+        not_negative("added mass coefficient", coefficient)?;
+        Ok(AddedMass { density, coefficient })
+    }
+}
+
+impl Law for AddedMass {
+    fn label(&self) -> String {
+        "added mass".into()
+    }
+
+    #[inline(always)]
+    fn load<R: Real, const TANGENT: bool>(&self, _t: f64, at: &Station<R>, out: &mut Load<R>) {
+        let mass = R::of(self.coefficient * self.density * PI / 4.0) * at.diameter * at.diameter;
+        let stretch = dot(&at.slope, &at.slope).sqrt();
+        let t: V3<R> = at.slope.map(|p| p / stretch);
+        let axial = dot(&at.a, &t);
+        let normal: V3<R> = std::array::from_fn(|i| at.a[i] - axial * t[i]);
+        for i in 0..3 {
+            out.f[i] -= mass * normal[i];
+        }
+        if TANGENT {
+            let turn = mass / stretch;
+            for i in 0..3 {
+                for j in 0..3 {
+                    let p = R::of(if i == j { 1.0 } else { 0.0 }) - t[i] * t[j];
+                    out.d_a[i][j] -= mass * p;
+                    out.d_slope[i][j] += turn * (axial * p + t[i] * normal[j]);
+                }
+            }
+        }
+    }
+}

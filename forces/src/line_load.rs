@@ -1,0 +1,57 @@
+//! A load spread evenly along a body.
+
+use crate::drag::PerLength;
+use crate::refused::{Refused, finite};
+use crate::time::TimeFunction;
+use ropewalk_core::{Law, Load, Real, Station, V3, dot};
+
+/// A force per length that keeps its direction in space, times a function of time.
+///
+/// Use it for: weight of ice, wind in tests, the loads of textbook cables and beams.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineLoad {
+    /// Force per length [N/m].
+    pub force: V3<f64>,
+    /// Which length it is per.
+    pub per: PerLength,
+    /// Factor that changes with time.
+    pub time: TimeFunction,
+}
+
+impl LineLoad {
+    /// A load per length.
+    ///
+    /// # Errors
+    /// A force that isn't finite, a bad function of time.
+    pub fn new(force: V3<f64>, per: PerLength, time: TimeFunction) -> Result<Self, Refused> {
+        finite("force per length", &force)?;
+        time.check()?;
+        Ok(LineLoad { force, per, time })
+    }
+}
+
+impl Law for LineLoad {
+    fn label(&self) -> String {
+        "line load".into()
+    }
+
+    #[inline(always)]
+    fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
+        let factor = self.time.at(t);
+        let f: V3<R> = self.force.map(|f| R::of(factor * f));
+        match self.per {
+            PerLength::Unstretched => (0..3).for_each(|i| out.f[i] += f[i]),
+            PerLength::Stretched => {
+                let stretch = dot(&at.slope, &at.slope).sqrt();
+                for i in 0..3 {
+                    out.f[i] += stretch * f[i];
+                    if TANGENT {
+                        for j in 0..3 {
+                            out.d_slope[i][j] += f[i] * at.slope[j] / stretch;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

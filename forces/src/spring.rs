@@ -1,0 +1,147 @@
+//! A spring and damper between two points.
+
+use crate::held::{Held, delta};
+use crate::refused::{Refused, need, not_negative};
+use ropewalk_core::{Assembly, At, Energy, Marker, Node, Pattern, Power, Term, V3, dot};
+
+/// A spring with a damper along the line between two markers: `F = k (l - l0) + c dl/dt`, a pull if positive.
+///
+/// Use it for: moorings, fenders, soft attachments. With `tension_only` it goes slack below its rest length and never
+/// pushes, as a rope does. Markers may be on cable nodes, points, the own point of a rigid body, and the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// A name, such as `mooring`.
+    pub label: String,
+    /// Stiffness `k` [N/m].
+    pub stiffness: f64,
+    /// Damping `c` [N s/m].
+    pub damping: f64,
+    /// Rest length `l0` [m].
+    pub rest_length: f64,
+    /// Whether it only pulls.
+    pub tension_only: bool,
+    ends: [Held; 2],
+}
+
+/// What a spring does at a state.
+struct Pull {
+    /// Unit vector from the first end to the second, and the relative velocity.
+    e: V3<f64>,
+    w: V3<f64>,
+    length: f64,
+    /// Rate of the length, force, and its elastic part.
+    rate: f64,
+    force: f64,
+    elastic: f64,
+    /// Whether it resists at all.
+    taut: bool,
+}
+
+impl Spring {
+    /// An undamped spring between two markers; set the other fields afterwards.
+    ///
+    /// # Errors
+    /// Both ends on the ground or on the same node; a marker beside the point of a rigid body; negative or infinite
+    /// numbers.
+    pub fn new(
+        label: impl Into<String>,
+        nodes: &[Node],
+        between: [Marker; 2],
+        stiffness: f64,
+        rest_length: f64,
+    ) -> Result<Self, Refused> {
+        let label = label.into();
+        not_negative(&format!("{label}: stiffness"), stiffness)?;
+        not_negative(&format!("{label}: rest length"), rest_length)?;
+        let [a, b] = &between;
+        need(a.on() != b.on(), || {
+            format!("{label}: its ends must be on two different nodes, or one on the ground")
+        })?;
+        let ends = [Held::new(nodes, a, &label)?, Held::new(nodes, b, &label)?];
+        Ok(Spring { label, stiffness, damping: 0.0, rest_length, tension_only: false, ends })
+    }
+
+    /// The force now [N], positive if it pulls.
+    pub fn force(&self, at: &At<'_>) -> f64 {
+        self.pull(at).force
+    }
+
+    fn pull(&self, at: &At<'_>) -> Pull {
+        let [a, b] = &self.ends;
+        let between = |x: V3<f64>, y: V3<f64>| -> V3<f64> { std::array::from_fn(|i| y[i] - x[i]) };
+        let (d, w) = (between(a.x(at), b.x(at)), between(a.velocity(at), b.velocity(at)));
+        let length = dot(&d, &d).sqrt();
+        // without length there is no direction, and no force
+        let e = if length > 0.0 { d.map(|d| d / length) } else { [0.0; 3] };
+        let rate = dot(&e, &w);
+        let elastic = self.stiffness * (length - self.rest_length);
+        let force = elastic + self.damping * rate;
+        if self.tension_only && (length <= self.rest_length || force <= 0.0) {
+            return Pull { e, w, length, rate, force: 0.0, elastic: elastic.max(0.0), taut: false };
+        }
+        Pull { e, w, length, rate, force, elastic, taut: true }
+    }
+
+    /// The equations of both ends with their signs, ground left out.
+    fn dofs(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.ends
+            .iter()
+            .zip([-1.0, 1.0])
+            .filter_map(|(end, sign)| end.dof().map(|v| (v, sign)))
+            .flat_map(|(v, sign)| (v..v + 3).map(move |v| (v, sign)))
+    }
+}
+
+impl Term for Spring {
+    fn label(&self) -> String {
+        self.label.clone()
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        p.clique(self.dofs().map(|(v, _)| v));
+    }
+    fn symmetric(&self) -> bool {
+        self.damping == 0.0
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        let p = self.pull(at);
+        let component = |k: usize| k % 3;
+        for (k, (v, sign)) in self.dofs().enumerate() {
+            out.add(v, sign * p.force * p.e[component(k)]);
+        }
+        if out.wants_tangent() && p.taut {
+            let w = out.weights();
+            // F/l, which has a limit where both go to zero together
+            let turn = match (p.length > 0.0, self.rest_length == 0.0) {
+                (true, _) => p.force / p.length,
+                (false, true) => self.stiffness,
+                (false, false) => 0.0,
+            };
+            let inverse = if p.length > 0.0 { 1.0 / p.length } else { 0.0 };
+            let block: [[f64; 3]; 3] = std::array::from_fn(|i| {
+                std::array::from_fn(|j| {
+                    let ee = p.e[i] * p.e[j];
+                    let sway = self.damping * p.e[i] * (p.w[j] - p.rate * p.e[j]) * inverse;
+                    w.q * (self.stiffness * ee + turn * (delta(i, j) - ee) + sway) + w.v * self.damping * ee
+                })
+            });
+            let mut signs = [0.0; 6];
+            let mut n = 0;
+            for (_, sign) in self.dofs() {
+                signs[n] = sign;
+                n += 1;
+            }
+            out.add_block(0, n, |i, j| signs[i] * signs[j] * block[component(i)][component(j)]);
+        }
+    }
+    fn energy(&self, at: &At<'_>) -> Energy {
+        let p = self.pull(at);
+        let stretch = p.length - self.rest_length;
+        let slack = self.tension_only && stretch <= 0.0;
+        let potential = if slack { 0.0 } else { 0.5 * self.stiffness * stretch * stretch };
+        Energy { potential, ..Energy::default() }
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        let p = self.pull(at);
+        Power { dissipated: (p.force - p.elastic) * p.rate, ..Power::default() }
+    }
+}
