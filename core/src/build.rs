@@ -21,8 +21,9 @@ use std::sync::Arc;
 pub struct BuildError {
     /// What is wrong and what to do.
     pub message: String,
-    /// The field of the spec that is to blame, so that a message can point at its line.
-    pub field: Option<&'static str>,
+    /// The field of the spec that is to blame, so that a message can point at its line; a name that is no field of
+    /// the spec points at the spec as a whole.
+    pub field: Option<String>,
 }
 
 impl BuildError {
@@ -31,13 +32,13 @@ impl BuildError {
         BuildError { message: message.into(), field: None }
     }
     /// An error of one field.
-    pub fn at(field: &'static str, message: impl Into<String>) -> Self {
-        BuildError { message: message.into(), field: Some(field) }
+    pub fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
+        BuildError { message: message.into(), field: Some(field.into()) }
     }
 }
 
 /// Checks that a number is positive and finite.
-pub fn positive(field: &'static str, x: f64) -> Result<f64, BuildError> {
+pub fn positive(field: &str, x: f64) -> Result<f64, BuildError> {
     if x > 0.0 && x.is_finite() {
         Ok(x)
     } else {
@@ -46,7 +47,7 @@ pub fn positive(field: &'static str, x: f64) -> Result<f64, BuildError> {
 }
 
 /// Checks that a number is finite and not negative.
-pub fn not_negative(field: &'static str, x: f64) -> Result<f64, BuildError> {
+pub fn not_negative(field: &str, x: f64) -> Result<f64, BuildError> {
     if x >= 0.0 && x.is_finite() {
         Ok(x)
     } else {
@@ -55,11 +56,16 @@ pub fn not_negative(field: &'static str, x: f64) -> Result<f64, BuildError> {
 }
 
 /// Checks that every number is finite.
-pub fn finite(field: &'static str, x: &[f64]) -> Result<(), BuildError> {
+pub fn finite(field: &str, x: &[f64]) -> Result<(), BuildError> {
     match x.iter().find(|x| !x.is_finite()) {
         None => Ok(()),
         Some(x) => Err(BuildError::at(field, format!("`{field}` holds {x}, which is not a finite number"))),
     }
+}
+
+/// `Ok` if `holds`, else an error with this message.
+pub fn need(holds: bool, message: impl FnOnce() -> String) -> Result<(), BuildError> {
+    if holds { Ok(()) } else { Err(BuildError::new(message())) }
 }
 
 trait AnyPool: Term {

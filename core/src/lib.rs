@@ -5,7 +5,10 @@
 
 pub mod build;
 mod constraint;
+mod current;
+mod dead;
 mod dense;
+pub mod held;
 pub mod integrator;
 mod lane;
 mod marker;
@@ -29,6 +32,8 @@ pub mod testing;
 
 pub use build::{BuildError, Builder};
 pub use constraint::{Constraint, Joint, Relation, RowKind, lift};
+pub use current::Current;
+pub use dead::{DeadEntry, DeadLoad};
 pub use lane::{LaneTask, Pack, Real, V3, Width, dot, run};
 pub use marker::{Jet, Marker, Place};
 pub use model::{Model, Start, System};

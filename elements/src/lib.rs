@@ -1,1 +1,4 @@
 //! Ropewalk: elements.
+
+mod point_mass;
+pub use point_mass::PointMass;
