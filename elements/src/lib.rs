@@ -1,1 +1,3 @@
-//! Ropewalk: elements.
+//! Elements of Ropewalk.
+
+pub mod cable;
