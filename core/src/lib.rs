@@ -49,7 +49,7 @@ pub use solver::{Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, S
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
 };
-pub use state::{At, Control, State};
+pub use state::{At, Control, Relaxation, Relaxed, State};
 pub use station::{FieldTerm, Law, Laws, Load, Station, StationElement, StationPool, Stations};
 pub use term::{Assembly, Energy, Power, Term, Weights};
 

@@ -19,6 +19,8 @@ pub struct Model {
     pub(crate) parts: Vec<Arc<dyn Part>>,
     pub(crate) start: Start,
     structure: Structure,
+    pattern: Pattern,
+    touched: Vec<Rows>,
     velocities: usize,
     /// First multiplier of each constraint, and one past the last.
     rows: Vec<usize>,
@@ -90,6 +92,8 @@ impl Model {
             parts,
             start,
             structure,
+            pattern,
+            touched,
             velocities,
             rows,
             cliques,
@@ -167,11 +171,28 @@ impl Model {
     /// Evaluates the residual `[r + Gᵀλ; g]` into `sys` and, with weights, the iteration matrix
     /// `[w.q (∂r/∂q + ∂(Gᵀλ)/∂q) + w.v ∂r/∂v + w.a ∂r/∂v̇, Gᵀ; G, 0]`.
     pub fn assemble(&self, at: &At<'_>, lambda: &[f64], weights: Option<Weights>, sys: &mut System) {
+        self.assemble_in(&self.structure, at, lambda, weights, sys);
+    }
+
+    /// The structure with both triangles stored, for analyses whose matrix is unsymmetric though no term is.
+    pub fn unsymmetric_structure(&self) -> Structure {
+        Structure::new(&self.nodes, &self.touched, &self.pattern, false)
+    }
+
+    /// As [`Model::assemble`], into a matrix of another structure of this model.
+    pub fn assemble_in(
+        &self,
+        structure: &Structure,
+        at: &At<'_>,
+        lambda: &[f64],
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
         let nv = self.velocities;
         sys.residual.resize(self.structure.n, 0.0);
         sys.residual.fill(0.0);
         if weights.is_some() {
-            sys.values.resize(self.structure.entries(), 0.0);
+            sys.values.resize(structure.entries(), 0.0);
             sys.values.fill(0.0);
         }
         if let Some(p) = &mut sys.profile {
@@ -184,9 +205,9 @@ impl Model {
                 values: weights.map(|_| sys.values.as_mut_slice()),
                 weights: weights.unwrap_or_default(),
                 width: self.width,
-                symmetric: self.structure.symmetric,
-                cliques: &self.structure.cliques[self.cliques[k].clone()],
-                slots: &self.structure.slots,
+                symmetric: structure.symmetric,
+                cliques: &structure.cliques[self.cliques[k].clone()],
+                slots: &structure.slots,
             };
             term.add(at, &mut out);
             if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
@@ -196,7 +217,7 @@ impl Model {
         }
         let begin = sys.profile.as_ref().map(|_| Instant::now());
         for c in 0..self.constraints.len() {
-            self.add_constraint(c, at, lambda, weights, sys);
+            self.add_constraint(structure, c, at, lambda, weights, sys);
         }
         if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
             p[self.terms.len()].0 += 1;
@@ -206,6 +227,7 @@ impl Model {
 
     fn add_constraint(
         &self,
+        structure: &Structure,
         c: usize,
         at: &At<'_>,
         lambda: &[f64],
@@ -230,17 +252,47 @@ impl Model {
         } else {
             constraint.geometric(&self.nodes, at, multipliers, &mut sys.hessian);
         }
-        let clique = self.structure.cliques[self.cliques[self.terms.len() + c].start];
+        let clique = structure.cliques[self.cliques[self.terms.len() + c].start];
         let size = n + m;
         for i in 0..size {
-            for j in 0..if self.structure.symmetric { i + 1 } else { size } {
+            for j in 0..if structure.symmetric { i + 1 } else { size } {
                 let v = match (i < n, j < n) {
                     (true, true) => w.q * sys.hessian[i * n + j],
                     (false, true) => sys.jacobian[(i - n) * n + j],
                     (true, false) => sys.jacobian[(j - n) * n + i],
                     (false, false) => 0.0,
                 };
-                sys.values[self.structure.slots[clique + i * size + j] as usize] += v;
+                sys.values[structure.slots[clique + i * size + j] as usize] += v;
+            }
+        }
+    }
+
+    /// Adds `ρ GᵀG` to an assembled matrix and `ρ Gᵀg` to its residual. For each row `ρ = scale / |G row|²`.
+    pub(crate) fn add_brace(&self, structure: &Structure, scale: f64, sys: &mut System) {
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            let rows = self.rows_of(c);
+            let (m, dofs): (usize, Vec<usize>) =
+                (rows.len(), constraint.nodes().iter().flat_map(|&k| self.node(k).dofs()).collect());
+            let n = dofs.len();
+            let clique = structure.cliques[self.cliques[self.terms.len() + c].start];
+            let size = n + m;
+            // the Jacobian stands in the matrix already
+            let slot = |i: usize, j: usize| structure.slots[clique + i * size + j] as usize;
+            let jac: Vec<f64> = (0..m * n).map(|k| sys.values[slot(n + k / n, k % n)]).collect();
+            for (r, row) in rows.enumerate() {
+                let g = &jac[r * n..(r + 1) * n];
+                let square: f64 = g.iter().map(|x| x * x).sum();
+                if square == 0.0 {
+                    continue;
+                }
+                let rho = scale / square;
+                let value = sys.residual[self.velocities + row];
+                for i in 0..n {
+                    sys.residual[dofs[i]] += rho * g[i] * value;
+                    for j in 0..if structure.symmetric { i + 1 } else { n } {
+                        sys.values[slot(i, j)] += rho * g[i] * g[j];
+                    }
+                }
             }
         }
     }

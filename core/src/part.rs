@@ -67,6 +67,10 @@ pub trait Part: Send + Sync {
     fn point(&self, _s: f64, _at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         None
     }
+    /// Interpolates coordinates (or velocities) `x` of its nodes at arc length `s`: position and slope, for remeshing.
+    fn slope(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {
+        None
+    }
     /// Points of its centre line, for pictures.
     fn line(&self, _at: &At<'_>) -> Vec<V3<f64>> {
         Vec::new()
@@ -79,6 +83,9 @@ pub trait Part: Send + Sync {
     fn mesh(&self) -> &[f64] {
         &[]
     }
+    /// Lays its nodes evenly along the straight line between its ends, as the start of another search for
+    /// equilibrium. Parts that can't be laid wrong do nothing.
+    fn straighten(&self, _q: &mut [f64]) {}
     /// Its state carried over to this part of another model, where the mesh may differ: sets the coordinates and
     /// velocities of this part's nodes by interpolation of `old`.
     fn carry(&self, _nodes: &[Node], _old: &dyn Part, _at: &At<'_>, _q: &mut [f64], _v: &mut [f64]) {}

@@ -3,7 +3,7 @@
 use crate::lane::{LaneTask, Real, run};
 use crate::node::{Node, NodeId};
 use crate::pattern::Pattern;
-use crate::state::At;
+use crate::state::{At, Relaxation, Relaxed};
 use crate::term::{Assembly, Energy, Power, Term, Weights};
 
 /// What an element sees of the state: its own coordinates, velocities and accelerations.
@@ -15,10 +15,10 @@ pub struct Local<R, const Q: usize, const N: usize> {
     pub v: [R; N],
     /// True accelerations.
     pub a: [R; N],
-    /// The last increment of a static Newton iteration; zero in dynamics. See [`At::last`].
+    /// The last increment of a search for equilibrium; zero in dynamics.
     pub last: [R; N],
-    /// Whether `last` is to be used.
-    pub smooth: bool,
+    /// How a search for equilibrium wants stiffness to be relaxed; see [`Relaxed`](crate::Relaxed).
+    pub relaxed: Option<Relaxation>,
 }
 
 /// What an element gives back: its residual and, if wanted, its weighted tangent. Both start at zero.
@@ -137,8 +137,11 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
             q: std::array::from_fn(|i| R::each(|l| at.q[seats[l.min(last)].q[i] as usize])),
             v: std::array::from_fn(|i| pick(at.v, i)),
             a: std::array::from_fn(|i| pick(at.a, i)),
-            last: std::array::from_fn(|i| at.last.map_or(R::zero(), |d| pick(d, i))),
-            smooth: at.last.is_some(),
+            last: match at.relaxed {
+                Some(Relaxed { last: Some(d), .. }) => std::array::from_fn(|i| pick(d, i)),
+                _ => [R::zero(); N],
+            },
+            relaxed: at.relaxed.map(|r| r.how),
         }
     }
     /// Scatters what a batch computed; `first` is the clique of its first element.

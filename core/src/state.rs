@@ -55,15 +55,41 @@ pub struct At<'a> {
     pub a: &'a [f64],
     /// Modes of parts that latch, break or stick.
     pub modes: &'a [f64],
-    /// The last increment of a static Newton iteration, from which elements may take a smoother stress for
-    /// their geometric stiffness. `None` in dynamics.
+    /// How a search for equilibrium wants stiffness to be relaxed. `None` in dynamics and once it has been found.
+    pub relaxed: Option<Relaxed<'a>>,
+}
+
+/// What a search for equilibrium asks of elements that are stiff in one way and soft in another, such as cables.
+/// It changes the way to the equilibrium, not the equilibrium; an element may ignore it.
+#[derive(Clone, Copy, Debug)]
+pub struct Relaxed<'a> {
+    /// The last increment of the iteration: geometric stiffness is to take its stress from the strain linearised
+    /// there, which is already close to the final one where that of the present shape is far off.
     pub last: Option<&'a [f64]>,
+    /// Numbers for the element.
+    pub how: Relaxation,
+}
+
+/// The numbers of [`Relaxed`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Relaxation {
+    /// Whether an iterate before is given, to linearise the strain at.
+    pub smooth: bool,
+    /// Cap on the stiff modulus as a multiple of what the load can use: it rises from iteration to iteration until
+    /// it doesn't bind. Infinite without cap.
+    pub ramp: f64,
+    /// The same at the iteration before, which the stress for the geometric stiffness is taken with.
+    pub ramp_before: f64,
+    /// Size of the load [N].
+    pub load: f64,
+    /// Least tension for the geometric stiffness [N]: makes it positive where the shape is slack. Not set: as it is.
+    pub floor: Option<f64>,
 }
 
 impl State {
     /// The state as a place of evaluation.
     pub fn at(&self) -> At<'_> {
-        At { t: self.t, q: &self.q, v: &self.v, a: &self.a, modes: &self.modes, last: None }
+        At { t: self.t, q: &self.q, v: &self.v, a: &self.a, modes: &self.modes, relaxed: None }
     }
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {

@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use ropewalk_core::{Element, LaneTask, Local, Real, Share, Weights, Width, run};
+use ropewalk_core::{Relaxation, Element, LaneTask, Local, Real, Share, Weights, Width, run};
 use ropewalk_elements::cable::longitudinal::Longitudinal;
 use ropewalk_elements::cable::quadrature::{Gauss2, Gauss3, Gauss5, Lobatto3, Quadrature, Rule};
 use ropewalk_elements::cable::transverse::Transverse;
@@ -158,7 +158,7 @@ impl<E: Kernel> LaneTask for Row<'_, E> {
                 v: pick(&|s, i| s.v[i]),
                 a: pick(&|s, i| s.a[i]),
                 last: pick(&|s, i| s.last[i]),
-                smooth: s[0].smooth,
+                relaxed: s[0].relaxed,
             };
             let mut out = Share::zero();
             E::add(self.p, &x, &Weights { q: 1.0, v: 0.5, a: 3.0 }, &mut out);
@@ -328,7 +328,8 @@ impl WithModels for Mixed<'_> {
             assert_eq!(mixed.r, exact.r);
             (0..12).map(|i| apart(&mixed.k[i], &exact.k[i])).fold(0.0, f64::max) / scale
         };
-        x.smooth = true;
+        let free = f64::INFINITY;
+        x.relaxed = Some(Relaxation { smooth: true, ramp: free, ramp_before: free, load: 0.0, floor: None });
         let none = distance(&x);
         x.last = noise(9, 1e-3);
         [none, distance(&x)]

@@ -63,7 +63,7 @@ impl Newton<'_> {
             v: &work.trial.v,
             a: &work.trial.a,
             modes: &self.state.modes,
-            last: None,
+            relaxed: None,
         };
         self.model.assemble(&at, &work.trial.lambda, matrix.then_some(weights), &mut work.system);
         if matrix { work.factor(self.model, weights) } else { Ok(()) }
@@ -160,7 +160,7 @@ impl Newton<'_> {
             v: &work.trial.v,
             a: &work.trial.a,
             modes: &self.state.modes,
-            last: None,
+            relaxed: None,
         };
         self.model.violations(&at, &mut work.system, &mut g);
         let scale = self.model.row_scale();

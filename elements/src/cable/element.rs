@@ -3,6 +3,7 @@
 use super::longitudinal::{Longitudinal, add_axial, axial_energy};
 use super::quadrature::Rule;
 use super::reduced::Reduced;
+use super::relaxed::add_relaxed;
 use super::shape::natural;
 use super::transverse::{Transverse, bending_energy};
 use ropewalk_core::{Batch, Element, Energy, Local, Real, Share, Weights};
@@ -89,15 +90,14 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
     ) {
         let il = R::of(1.0) / p.l;
         let q = natural(&x.q, il);
-        let ea_l = p.ea * p.l;
         let mut local = Reduced::zero();
-        if TANGENT && x.smooth {
+        if let Some(how) = &x.relaxed {
             let last = natural(&x.last, il);
-            add_axial::<L, Q::Axial, R, TANGENT, true>(ea_l, &q, &last, &mut local);
+            add_relaxed::<L, T, Q, R, TANGENT>(p, how, il, &q, &last, &mut local);
         } else {
-            add_axial::<L, Q::Axial, R, TANGENT, false>(ea_l, &q, &q, &mut local);
+            add_axial::<L, Q::Axial, R, TANGENT>(p.ea * p.l, &q, &mut local);
+            T::add::<Q::Bending, R, TANGENT>(p.ei, p.l, il, &q, &mut local);
         }
-        T::add::<Q::Bending, R, TANGENT>(p.ei, p.l, il, &q, &mut local);
         local.spread_force(il, out);
         if TANGENT {
             if L::SYMMETRIC {

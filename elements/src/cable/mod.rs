@@ -14,6 +14,7 @@ pub mod longitudinal;
 mod model;
 pub mod quadrature;
 pub mod reduced;
+mod relaxed;
 pub mod shape;
 mod t1;
 mod t2;

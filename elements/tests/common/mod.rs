@@ -20,7 +20,7 @@ pub fn configurations(o: &Value) -> Vec<(String, [f64; 12])> {
 }
 
 pub fn at(q: [f64; 12], v: [f64; 12], a: [f64; 12]) -> Local<f64, 12, 12> {
-    Local { q, v, a, last: [0.0; 12], smooth: false }
+    Local { q, v, a, last: [0.0; 12], relaxed: None }
 }
 
 /// Residual and weighted tangent of one element.

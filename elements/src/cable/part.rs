@@ -1,0 +1,222 @@
+//! A cable as a part of a model: its markers, its stations, what can be observed along it.
+
+use super::shape::{hermite, hermite_slope};
+use super::spec::Section;
+use ropewalk_core::build::BuildError;
+use ropewalk_core::{
+    At, DeadEntry, DeadLoad, Marker, Node, NodeId, Part, Per, Quantity, Spot, Stations, Term, V3,
+};
+use std::sync::Arc;
+
+/// What can be observed inside an element: `(element dofs, element length, xi) -> value`.
+pub(crate) type Observe = Box<dyn Fn(Quantity, &[f64; 12], f64, f64) -> f64 + Send + Sync>;
+
+/// A cable of a model.
+pub struct CablePart {
+    pub(crate) name: String,
+    pub(crate) nodes: Vec<NodeId>,
+    /// First coordinate and first velocity of each node.
+    pub(crate) seats: Vec<(usize, usize)>,
+    /// Unstretched arc length of each node [m].
+    pub(crate) mesh: Vec<f64>,
+    pub(crate) section: Section,
+    pub(crate) stations: Arc<dyn Stations>,
+    pub(crate) observe: Observe,
+}
+
+impl CablePart {
+    /// The element that holds arc length `s`, and the place inside it.
+    fn locate(&self, s: f64) -> Option<(usize, f64, f64)> {
+        let end = self.length();
+        // records at the ends shouldn't fail for rounding
+        if !(s >= -1e-9 * end && s <= end * (1.0 + 1e-9)) {
+            return None;
+        }
+        let k = self.mesh.partition_point(|&x| x <= s).clamp(1, self.mesh.len() - 1) - 1;
+        let l = self.mesh[k + 1] - self.mesh[k];
+        Some((k, l, ((s - self.mesh[k]) / l).clamp(0.0, 1.0)))
+    }
+
+    fn dofs(&self, k: usize, q: &[f64]) -> [f64; 12] {
+        let (a, b) = (self.seats[k].0, self.seats[k + 1].0);
+        std::array::from_fn(|i| if i < 6 { q[a + i] } else { q[b + i - 6] })
+    }
+
+    fn velocities(&self, k: usize, v: &[f64]) -> [f64; 12] {
+        let (a, b) = (self.seats[k].1, self.seats[k + 1].1);
+        std::array::from_fn(|i| if i < 6 { v[a + i] } else { v[b + i - 6] })
+    }
+
+    fn places(&self) -> String {
+        format!("`{0}.start`, `{0}.end`, or `{0}@s` with s from 0 to {1} m", self.name, self.length())
+    }
+}
+
+fn interpolate(c: [f64; 4], e: &[f64; 12]) -> V3<f64> {
+    std::array::from_fn(|i| (0..4).map(|n| c[n] * e[3 * n + i]).sum())
+}
+
+impl Part for CablePart {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn kind(&self) -> &'static str {
+        "cable"
+    }
+    fn length(&self) -> f64 {
+        self.mesh[self.mesh.len() - 1]
+    }
+    fn mesh(&self) -> &[f64] {
+        &self.mesh
+    }
+
+    fn marker(&self, spot: &Spot) -> Result<Marker, String> {
+        let end = self.nodes.len() - 1;
+        match spot {
+            Spot::Named(n) if n == "start" => Ok(Marker::node(self.nodes[0])),
+            Spot::Named(n) if n == "end" => Ok(Marker::node(self.nodes[end])),
+            Spot::Named(n) if n.is_empty() => Err(format!("say where on the cable: {}", self.places())),
+            Spot::Named(n) => Err(format!("a cable has no place `{n}`; it has {}", self.places())),
+            Spot::Along(s) => {
+                let k = self.mesh.iter().position(|x| (x - s).abs() <= 1e-9 * self.length());
+                match k {
+                    Some(k) => Ok(Marker::node(self.nodes[k])),
+                    None if *s >= 0.0 && *s <= self.length() => {
+                        Err(format!("no node of the cable is at {s} m: its mesh was given without one there"))
+                    }
+                    None => Err(format!("{s} m is not on the cable; it has {}", self.places())),
+                }
+            }
+        }
+    }
+
+    fn stations(&self) -> Option<Arc<dyn Stations>> {
+        Some(self.stations.clone())
+    }
+
+    fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
+        let (what, density) = match per {
+            Per::Mass => ("weight", self.section.mass),
+            Per::Volume => ("buoyancy", self.section.displaced_area()),
+        };
+        if density == 0.0 {
+            return None;
+        }
+        let mut entries = Vec::new();
+        for k in 0..self.mesh.len() - 1 {
+            let l = self.mesh[k + 1] - self.mesh[k];
+            let share = [0.5 * l, l * l / 12.0, 0.5 * l, -l * l / 12.0];
+            for (n, share) in share.iter().enumerate() {
+                let (q, v) = self.seats[k + n / 2];
+                for i in (0..3).filter(|&i| load[i] != 0.0) {
+                    let at = 3 * (n % 2) + i;
+                    entries.push(DeadEntry { dof: v + at, coordinate: q + at, value: density * load[i] * share });
+                }
+            }
+        }
+        let load = DeadLoad::new(format!("{}: {what}", self.name), entries).ok()?;
+        Some(Box::new(load))
+    }
+
+    fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {
+        let (k, l, xi) = self.locate(s)?;
+        Some((self.observe)(what, &self.dofs(k, at.q), l, xi))
+    }
+
+    fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
+        let (k, l, xi) = self.locate(s)?;
+        let c = hermite::<f64>(xi, l);
+        Some((interpolate(c, &self.dofs(k, at.q)), interpolate(c, &self.velocities(k, at.v))))
+    }
+
+    fn line(&self, at: &At<'_>) -> Vec<V3<f64>> {
+        let elements = self.mesh.len() - 1;
+        let per = (200 / elements).clamp(1, 8);
+        let mut points = Vec::with_capacity(elements * per + 1);
+        for k in 0..elements {
+            let l = self.mesh[k + 1] - self.mesh[k];
+            let e = self.dofs(k, at.q);
+            let last = if k + 1 == elements { per } else { per - 1 };
+            points.extend((0..=last).map(|i| interpolate(hermite::<f64>(i as f64 / per as f64, l), &e)));
+        }
+        points
+    }
+
+    fn place_of(&self, node: NodeId) -> Option<String> {
+        let k = self.nodes.iter().position(|&n| n == node)?;
+        Some(format!("at {:.4} m", self.mesh[k]))
+    }
+
+    fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
+        for (k, &id) in self.nodes.iter().enumerate() {
+            let node = &nodes[id.0 as usize];
+            if let Some((x, dx)) = old.slope(self.mesh[k], at.q, true) {
+                q[node.q..node.q + 3].copy_from_slice(&x);
+                q[node.q + 3..node.q + 6].copy_from_slice(&dx);
+            }
+            if let Some((x, dx)) = old.slope(self.mesh[k], at.v, false) {
+                v[node.v..node.v + 3].copy_from_slice(&x);
+                v[node.v + 3..node.v + 6].copy_from_slice(&dx);
+            }
+        }
+    }
+
+    fn straighten(&self, q: &mut [f64]) {
+        let (first, last) = (self.seats[0].0, self.seats[self.seats.len() - 1].0);
+        let from: V3<f64> = std::array::from_fn(|i| q[first + i]);
+        let mut way: V3<f64> = std::array::from_fn(|i| q[last + i] - from[i]);
+        if way.iter().all(|x| x.abs() < 1e-3 * self.length()) {
+            // ends that coincide give no direction; any will do
+            way = [1e-3 * self.length(), 0.0, 0.0];
+        }
+        for (k, &(at, _)) in self.seats.iter().enumerate() {
+            for i in 0..3 {
+                q[at + i] = from[i] + way[i] * self.mesh[k] / self.length();
+                q[at + 3 + i] = way[i] / self.length();
+            }
+        }
+    }
+
+    fn slope(&self, s: f64, x: &[f64], coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {
+        let (k, l, xi) = self.locate(s)?;
+        let e = if coordinates { self.dofs(k, x) } else { self.velocities(k, x) };
+        Some((interpolate(hermite::<f64>(xi, l), &e), interpolate(hermite_slope::<f64>(xi, 1.0 / l), &e)))
+    }
+}
+
+/// Arc lengths of the nodes of a cable: about `elements` of equal length, with a node at each pin.
+pub(crate) fn mesh(length: f64, elements: usize, pins: &[f64], name: &str) -> Result<Vec<f64>, BuildError> {
+    let mut stops = vec![0.0];
+    for &p in pins {
+        if !(p >= 0.0 && p <= length) {
+            return Err(BuildError::new(format!(
+                "a marker is at {p} m, which is not on `{name}`: its length is {length} m"
+            )));
+        }
+        // a marker on top of another, or of an end, needs no node of its own
+        if p - stops[stops.len() - 1] > 1e-9 * length && length - p > 1e-9 * length {
+            stops.push(p);
+        }
+    }
+    stops.push(length);
+    let mut mesh = vec![0.0];
+    for w in stops.windows(2) {
+        let n = ((w[1] - w[0]) / length * elements as f64).round().max(1.0) as usize;
+        mesh.extend((1..=n).map(|i| if i == n { w[1] } else { w[0] + (w[1] - w[0]) * i as f64 / n as f64 }));
+    }
+    Ok(mesh)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mesh;
+
+    #[test]
+    fn meshes_are_even_and_hold_their_pins() {
+        assert_eq!(mesh(10.0, 5, &[], "c").unwrap(), vec![0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
+        let m = mesh(10.0, 4, &[3.0, 3.0, 10.0], "c").unwrap();
+        assert_eq!(m, vec![0.0, 3.0, 3.0 + 7.0 / 3.0, 3.0 + 14.0 / 3.0, 10.0]);
+        assert!(mesh(10.0, 4, &[11.0], "c").is_err());
+        assert!(mesh(10.0, 4, &[f64::NAN], "c").is_err());
+    }
+}

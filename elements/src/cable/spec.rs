@@ -1,0 +1,266 @@
+//! `type = "cable"`: what a scene says about a cable.
+
+use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
+use super::part::{CablePart, mesh};
+use super::path::Path;
+use super::{CableParams, output, stations};
+use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
+use ropewalk_core::{Element, ElementSpec, NodeId, NodeKind, V3, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// What a cable is made of. Every number stands for itself: nothing is derived from a diameter unless it is left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Section {
+    /// Mass of the structure per unstretched length [kg/m]; what gravity pulls at.
+    #[serde(deserialize_with = "quantity::mass_per_length")]
+    pub mass: f64,
+    /// Axial stiffness EA [N].
+    #[serde(deserialize_with = "quantity::axial_stiffness")]
+    pub ea: f64,
+    /// Bending stiffness EI [N m²].
+    #[serde(default, deserialize_with = "quantity::bending_stiffness")]
+    pub ei: f64,
+    /// Mass of water inside that moves along but has no weight in water [kg/m].
+    #[serde(default, deserialize_with = "quantity::mass_per_length")]
+    pub flooded: f64,
+    /// Hydrodynamic diameter, for drag and added mass [m].
+    #[serde(default, deserialize_with = "quantity::length")]
+    pub diameter: f64,
+    /// Displaced volume per length, for buoyancy [m²]; left out, that of the full diameter.
+    #[serde(default, deserialize_with = "quantity::optional::area")]
+    pub displaced: Option<f64>,
+    /// Kelvin–Voigt damping of stretching: stress grows by this time times the rate of strain [s].
+    #[serde(default, deserialize_with = "quantity::time")]
+    pub axial_damping: f64,
+    /// Kelvin–Voigt damping of bending [s].
+    #[serde(default, deserialize_with = "quantity::time")]
+    pub bending_damping: f64,
+}
+
+impl Section {
+    /// A section with mass and stiffness only.
+    pub fn new(mass: f64, ea: f64, ei: f64) -> Self {
+        Section {
+            mass,
+            ea,
+            ei,
+            flooded: 0.0,
+            diameter: 0.0,
+            displaced: None,
+            axial_damping: 0.0,
+            bending_damping: 0.0,
+        }
+    }
+    /// Displaced volume per length [m²].
+    pub fn displaced_area(&self) -> f64 {
+        self.displaced.unwrap_or(std::f64::consts::PI * self.diameter * self.diameter / 4.0)
+    }
+    fn check(&self) -> Result<(), BuildError> {
+        positive("mass", self.mass)?;
+        positive("ea", self.ea)?;
+        for (name, x) in [
+            ("ei", self.ei),
+            ("flooded", self.flooded),
+            ("diameter", self.diameter),
+            ("displaced", self.displaced.unwrap_or(0.0)),
+            ("axial_damping", self.axial_damping),
+            ("bending_damping", self.bending_damping),
+        ] {
+            not_negative(name, x)?;
+        }
+        Ok(())
+    }
+}
+
+/// The shape in which a cable is free of stress.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum StressFree {
+    /// Straight and unstretched.
+    #[default]
+    Straight,
+    /// As it is laid: the initial stretch and curvature cost nothing.
+    AsLaid,
+}
+
+/// A cable, hose or tether: stretches and bends however far it likes, doesn't twist.
+///
+/// It is a chain of ANCF elements with 6 coordinates per node. Markers: `name.start`, `name.end`, `name@12.5m`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CableSpec {
+    /// Name by which the rest of the scene refers to it.
+    pub name: String,
+    /// Points along which it is laid, from start to end [m]: straight lines between them.
+    #[serde(default, deserialize_with = "points")]
+    pub points: Vec<V3<f64>>,
+    /// Points of a smooth curve along which it is laid [m], instead of `points`.
+    #[serde(default, deserialize_with = "points")]
+    pub curve: Vec<V3<f64>>,
+    /// Unstretched length [m]; left out, that of the path. A different length is spread evenly over the path.
+    #[serde(default, deserialize_with = "quantity::optional::length")]
+    pub length: Option<f64>,
+    /// Number of elements.
+    pub elements: usize,
+    /// What it is made of.
+    pub section: Section,
+    /// Longitudinal stiffness model: L1, L1n, L2, L3 or L4.
+    #[serde(default)]
+    pub longitudinal: LongitudinalModel,
+    /// Transverse stiffness model: T1, T2 or T3; T2 and T3 go with L3 and L4 only.
+    #[serde(default)]
+    pub transverse: TransverseModel,
+    /// Quadrature of the pointwise models.
+    #[serde(default)]
+    pub integration: Integration,
+    /// Velocity of the whole cable at the start [m/s].
+    #[serde(default, deserialize_with = "quantity::vec3::speed")]
+    pub velocity: V3<f64>,
+    /// The shape in which it is free of stress.
+    #[serde(default)]
+    pub stress_free: StressFree,
+    /// Strain at which it is free of stress, on top of `stress_free` [1].
+    #[serde(default, deserialize_with = "quantity::number")]
+    pub strain: f64,
+    /// Curvature at which it is free of stress, on top of `stress_free` [1/m]. A scalar without direction: a cable
+    /// that doesn't know twist can't know which way it is bent.
+    #[serde(default, deserialize_with = "quantity::curvature")]
+    pub curvature: f64,
+}
+
+register_spec!(Element, "cable", CableSpec);
+
+fn points<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Vec<V3<f64>>, D::Error> {
+    #[derive(Deserialize)]
+    struct One(#[serde(deserialize_with = "quantity::vec3::length")] V3<f64>);
+    Ok(Vec::<One>::deserialize(d)?.into_iter().map(|p| p.0).collect())
+}
+
+impl CableSpec {
+    /// A cable laid straight between two points, with the default models.
+    pub fn straight(name: &str, from: V3<f64>, to: V3<f64>, elements: usize, section: Section) -> Self {
+        CableSpec {
+            name: name.into(),
+            points: vec![from, to],
+            curve: Vec::new(),
+            length: None,
+            elements,
+            section,
+            longitudinal: LongitudinalModel::default(),
+            transverse: TransverseModel::default(),
+            integration: Integration::default(),
+            velocity: [0.0; 3],
+            stress_free: StressFree::default(),
+            strain: 0.0,
+            curvature: 0.0,
+        }
+    }
+    /// With other stiffness models.
+    #[must_use]
+    pub fn models(mut self, l: LongitudinalModel, t: TransverseModel, integration: Integration) -> Self {
+        (self.longitudinal, self.transverse, self.integration) = (l, t, integration);
+        self
+    }
+    /// With another unstretched length [m].
+    #[must_use]
+    pub fn unstretched(mut self, length: f64) -> Self {
+        self.length = Some(length);
+        self
+    }
+
+    fn path(&self) -> Result<(Path, &'static str), BuildError> {
+        match (self.points.is_empty(), self.curve.is_empty()) {
+            (false, true) => {
+                Path::polyline(&self.points).map(|p| (p, "points")).map_err(|e| BuildError::at("points", e))
+            }
+            (true, false) => {
+                Path::spline(&self.curve).map(|p| (p, "curve")).map_err(|e| BuildError::at("curve", e))
+            }
+            (true, true) => Err(BuildError::new("a cable needs `points` or `curve`: where is it laid?")),
+            (false, false) => Err(BuildError::at("curve", "give `points` or `curve`, not both")),
+        }
+    }
+}
+
+struct Pools<'a> {
+    builder: &'a mut Builder,
+    result: Result<(), BuildError>,
+}
+impl Sink for Pools<'_> {
+    fn push<E: Element<12, 12>>(&mut self, element: E, nodes: &[NodeId]) {
+        if self.result.is_ok() {
+            self.result = self.builder.element(element, nodes);
+        }
+    }
+}
+
+#[typetag::serde(name = "cable")]
+impl ElementSpec for CableSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let s = &self.section;
+        s.check()?;
+        finite("velocity", &self.velocity)?;
+        finite("strain", &[self.strain])?;
+        finite("curvature", &[self.curvature])?;
+        if self.elements == 0 || self.elements > 1_000_000 {
+            let message = format!("`elements` must be between 1 and 1000000, not {}", self.elements);
+            return Err(BuildError::at("elements", message));
+        }
+        legal(self.longitudinal, self.transverse).map_err(|e| BuildError::at("transverse", e))?;
+        let (path, _) = self.path()?;
+        let length = positive("length", self.length.unwrap_or(path.length()))?;
+        let stretch = path.length() / length;
+        let mut pins = b.pins(&self.name);
+        pins.extend(path.corners().iter().map(|c| c / stretch));
+        pins.sort_by(f64::total_cmp);
+        let mesh = match b.mesh(&self.name) {
+            Some(m) => m.to_vec(),
+            None => mesh(length, self.elements, &pins, &self.name)?,
+        };
+        if mesh.len() < 2 || mesh[0] != 0.0 || mesh.windows(2).any(|w| !(w[1] > w[0])) {
+            return Err(BuildError::new("a mesh must start at 0 and ascend"));
+        }
+
+        let mut nodes = Vec::with_capacity(mesh.len());
+        let mut seats = Vec::with_capacity(mesh.len());
+        for &at in &mesh {
+            let (x, t) = path.at(at * stretch);
+            let q = [x[0], x[1], x[2], t[0] * stretch, t[1] * stretch, t[2] * stretch];
+            let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0];
+            let node = b.node(NodeKind::Slope, &q, &v)?;
+            nodes.push(node);
+            let n = &b.nodes()[node.0 as usize];
+            seats.push((n.q, n.v));
+        }
+        let model = CableModel {
+            longitudinal: self.longitudinal,
+            transverse: self.transverse,
+            integration: self.integration,
+        };
+        let mut pools = Pools { builder: b, result: Ok(()) };
+        for k in 0..mesh.len() - 1 {
+            let on = [nodes[k], nodes[k + 1]];
+            let params = CableParams { l: mesh[k + 1] - mesh[k], ea: s.ea, ei: s.ei, rho_a: s.mass + s.flooded };
+            push_cable(&mut pools, model, params, &on).map_err(BuildError::new)?;
+        }
+        pools.result?;
+        self.build_extras(b, model, &mesh, &nodes)?;
+        let stations = stations::pool(b.nodes(), &mesh, &nodes, s);
+        b.part(Arc::new(CablePart {
+            name: self.name.clone(),
+            nodes,
+            seats,
+            mesh,
+            section: s.clone(),
+            stations: Arc::new(stations),
+            observe: output::observer(model, s.ea, s.ei),
+        }))
+    }
+}
