@@ -91,12 +91,8 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
         let q = natural(&x.q, il);
         let ea_l = p.ea * p.l;
         let mut local = Reduced::zero();
-        if TANGENT && x.smooth {
-            let last = natural(&x.last, il);
-            add_axial::<L, Q::Axial, R, TANGENT, true>(ea_l, &q, &last, &mut local);
-        } else {
-            add_axial::<L, Q::Axial, R, TANGENT, false>(ea_l, &q, &q, &mut local);
-        }
+        let last = if TANGENT && x.smooth { Some(natural(&x.last, il)) } else { None };
+        add_axial::<L, Q::Axial, R, TANGENT>(ea_l, &q, last.as_ref(), &mut local);
         T::add::<Q::Bending, R, TANGENT>(p.ei, p.l, il, &q, &mut local);
         local.spread_force(il, out);
         if TANGENT {

@@ -197,32 +197,29 @@ impl<R: Real> Strain<R> for MeanGreen<R> {
 
 /// Adds the axial force, and with `TANGENT` its derivative. `ea_l = EA L`.
 ///
-/// With `SMOOTH` the geometric part of the tangent takes its stress not from the strain at `q` but from the strain
-/// linearised at the iterate before, `ε(q - d) + ∂ε(q - d)·d`, `d = last`: in static Newton iterations of
-/// cables, which are stiff in stretching and soft in bending, that stress is already near the final one (Magisano,
-/// Leonetti & Garcea, Comput. Methods Appl. Mech. Eng. 313, 2017).
+/// With the last increment `d` of a static Newton iteration given, the geometric part of the tangent takes its
+/// stress not from the strain at `q` but from the strain linearised at the iterate before,
+/// `ε(q - d) + ∂ε(q - d)·d`: in cables, stiff in stretching and soft in bending, that stress is already near the
+/// final one (Magisano, Leonetti & Garcea, Comput. Methods Appl. Mech. Eng. 313, 2017).
 #[inline(always)]
-pub fn add_axial<L: Longitudinal, Q: Quadrature, R: Real, const TANGENT: bool, const SMOOTH: bool>(
+pub fn add_axial<L: Longitudinal, Q: Quadrature, R: Real, const TANGENT: bool>(
     ea_l: R,
     q: &Natural<R>,
-    last: &Natural<R>,
+    last: Option<&Natural<R>>,
     out: &mut Reduced<R>,
 ) {
     for at in L::points::<Q>() {
         let strain = L::strain(q, at);
         let c = ea_l * R::of(at.w);
-        let stress = c * strain.eps();
+        let mut stress = c * strain.eps();
         out.add_force(stress, &strain.gradient());
         if TANGENT {
-            let mixed = if SMOOTH {
-                let before: Natural<R> =
-                    std::array::from_fn(|i| std::array::from_fn(|k| q[i][k] - last[i][k]));
+            if let Some(d) = last {
+                let before = std::array::from_fn(|i| std::array::from_fn(|k| q[i][k] - d[i][k]));
                 let strain = L::strain(&before, at);
-                c * (strain.eps() + strain.rate(last))
-            } else {
-                stress
-            };
-            strain.add_stiffness(c, mixed, out);
+                stress = c * (strain.eps() + strain.rate(d));
+            }
+            strain.add_stiffness(c, stress, out);
         }
     }
 }
