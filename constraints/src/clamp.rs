@@ -1,6 +1,7 @@
 //! The direction of a cable's end held fast.
 
-use crate::refused::{Refused, need, unit};
+use crate::check::unit;
+use ropewalk_core::build::{BuildError, need};
 use ropewalk_core::{Jet, Joint, Marker, Node, NodeId, NodeKind, Place, Relation, RowKind, V3};
 
 /// The slope `r'` of a cable node stays along a direction fixed in space: `n_1·r' = 0`, `n_2·r' = 0`.
@@ -23,7 +24,7 @@ impl Clamp {
         nodes: &[Node],
         node: NodeId,
         direction: V3<f64>,
-    ) -> Result<Joint<Self>, Refused> {
+    ) -> Result<Joint<Self>, BuildError> {
         let name = name.into();
         has_slope(&name, nodes, node)?;
         let normals = normals(unit(&format!("{name}: direction of the clamp"), direction)?);
@@ -61,7 +62,7 @@ impl BodyClamp {
         node: NodeId,
         body: NodeId,
         direction: V3<f64>,
-    ) -> Result<Joint<Self>, Refused> {
+    ) -> Result<Joint<Self>, BuildError> {
         let name = name.into();
         has_slope(&name, nodes, node)?;
         let is_body = nodes.get(body.0 as usize).is_some_and(|n| n.kind == NodeKind::Frame);
@@ -85,7 +86,7 @@ impl Relation for BodyClamp {
     }
 }
 
-fn has_slope(name: &str, nodes: &[Node], node: NodeId) -> Result<(), Refused> {
+fn has_slope(name: &str, nodes: &[Node], node: NodeId) -> Result<(), BuildError> {
     let kind = nodes.get(node.0 as usize).map(|n| n.kind);
     need(kind == Some(NodeKind::Slope), || {
         format!("{name}: a clamp holds the slope of a cable node, which node {} doesn't have", node.0)

@@ -1,6 +1,7 @@
 //! One coordinate of a point, held or driven.
 
-use crate::refused::{Refused, finite, markers, moves_linearly, unit};
+use crate::check::{markers, moves_linearly, unit};
+use ropewalk_core::build::{BuildError, finite};
 use ropewalk_core::{Jet, Joint, Marker, Motion, Node, Place, Relation, RowKind, V3, lift};
 use std::sync::Arc;
 
@@ -31,7 +32,7 @@ impl Coordinate {
         direction: V3<f64>,
         start: V3<f64>,
         motion: Option<Arc<dyn Motion>>,
-    ) -> Result<Joint<Self>, Refused> {
+    ) -> Result<Joint<Self>, BuildError> {
         let name = name.into();
         let direction = unit(&format!("{name}: direction"), direction)?;
         finite(&format!("{name}: start"), &start)?;

@@ -1,6 +1,7 @@
 //! Two points at a fixed distance.
 
-use crate::refused::{Refused, markers, positive};
+use crate::check::markers;
+use ropewalk_core::build::{BuildError, positive};
 use ropewalk_core::{Jet, Joint, Marker, Node, Place, Relation, RowKind};
 
 /// Two markers stay at a distance: `|x_1 - x_0| - L = 0`, one equation; a massless rod with a ball at each end.
@@ -23,7 +24,7 @@ impl Distance {
         nodes: &[Node],
         between: [Marker; 2],
         length: f64,
-    ) -> Result<Joint<Self>, Refused> {
+    ) -> Result<Joint<Self>, BuildError> {
         let name = name.into();
         positive(&format!("{name}: length of the rod"), length)?;
         markers(&name, nodes, &between)?;

@@ -1,6 +1,7 @@
 //! A point that follows a prescribed motion.
 
-use crate::refused::{Refused, finite, markers, moves_linearly};
+use crate::check::{markers, moves_linearly};
+use ropewalk_core::build::{BuildError, finite};
 use ropewalk_core::{Jet, Joint, Marker, Motion, Node, Place, Relation, RowKind, V3, lift};
 use std::sync::Arc;
 
@@ -28,7 +29,7 @@ impl Driving {
         marker: Marker,
         start: V3<f64>,
         motion: Arc<dyn Motion>,
-    ) -> Result<Joint<Self>, Refused> {
+    ) -> Result<Joint<Self>, BuildError> {
         let name = name.into();
         finite(&format!("{name}: start"), &start)?;
         markers(&name, nodes, &[marker])?;

@@ -1,6 +1,7 @@
 //! Two points held together.
 
-use crate::refused::{Refused, markers, moves_linearly};
+use crate::check::{markers, moves_linearly};
+use ropewalk_core::build::BuildError;
 use ropewalk_core::{Jet, Joint, Marker, Node, Place, Relation, RowKind};
 
 /// Two markers are at the same point: `x_1 - x_0 = 0`, three equations. Directions stay free.
@@ -21,7 +22,7 @@ impl Spherical {
         name: impl Into<String>,
         nodes: &[Node],
         between: [Marker; 2],
-    ) -> Result<Joint<Self>, Refused> {
+    ) -> Result<Joint<Self>, BuildError> {
         let name = name.into();
         markers(&name, nodes, &between)?;
         let linear = between.iter().all(|m| moves_linearly(nodes, m));

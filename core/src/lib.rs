@@ -3,25 +3,57 @@
 //! Nodes own coordinates; terms (pools of elements, fields on stations) add to a residual and its tangent;
 //! constraints hold markers together; integrators and analyses move a [`State`] of an immutable [`Model`].
 
+pub mod build;
 mod constraint;
+mod current;
+mod dead;
+mod dense;
+pub mod held;
+pub mod integrator;
 mod lane;
 mod marker;
+mod model;
 mod motion;
 mod node;
+mod part;
 mod pattern;
 mod pool;
+pub mod quantity;
+mod record;
+mod scene;
+mod simulation;
+mod solver;
+mod spec;
 mod state;
+pub mod statics;
 mod station;
 mod term;
 pub mod testing;
 
+pub use build::{BuildError, Builder};
 pub use constraint::{Constraint, Joint, Relation, RowKind, lift};
+pub use current::Current;
+pub use dead::{DeadEntry, DeadLoad};
 pub use lane::{LaneTask, Pack, Real, V3, Width, dot, run};
 pub use marker::{Jet, Marker, Place};
+pub use model::{Model, Start, System};
 pub use motion::{Motion, Moving, SteadyFrame};
-pub use node::{Node, NodeId, NodeKind, retract};
+pub use node::{Node, NodeId, NodeKind, difference, retract};
+pub use part::{Part, Per, Quantity, Spot, split_marker};
 pub use pattern::{Pattern, Structure};
 pub use pool::{Batch, Element, Local, Pool, Share};
+pub use record::{Audit, Column, Record, Sample};
+pub use scene::{Analysis, Level, Plan, Run, Scene, SceneError, Water};
+pub use simulation::{Action, End, Event, Observer, Simulation};
+pub use solver::{Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, SolveError};
+pub use spec::{
+    ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
+};
 pub use state::{At, Control, State};
 pub use station::{FieldTerm, Law, Laws, Load, Station, StationElement, StationPool, Stations};
 pub use term::{Assembly, Energy, Power, Term, Weights};
+
+#[doc(hidden)]
+pub use inventory;
+#[doc(hidden)]
+pub use schemars;

@@ -56,6 +56,25 @@ impl NodeKind {
             }
         }
     }
+
+    /// The increment `d` that leads from `from` to `to`: `to = from ⊕ d`.
+    pub fn difference(self, from: &[f64], to: &[f64], d: &mut [f64]) {
+        let plain = if self == NodeKind::Frame { 3 } else { from.len() };
+        for i in 0..plain {
+            d[i] = to[i] - from[i];
+        }
+        if self == NodeKind::Frame {
+            let back = [from[3], -from[4], -from[5], -from[6]];
+            let p = quaternion_product(back, [to[3], to[4], to[5], to[6]]);
+            // the shorter way round
+            let sign = if p[0] < 0.0 { -1.0 } else { 1.0 };
+            let sine = (p[1] * p[1] + p[2] * p[2] + p[3] * p[3]).sqrt();
+            let scale = if sine < 1e-8 { 2.0 } else { 2.0 * sine.atan2(sign * p[0]) / sine };
+            for i in 0..3 {
+                d[3 + i] = sign * scale * p[1 + i];
+            }
+        }
+    }
 }
 
 /// Index of a node in its model.
@@ -90,6 +109,13 @@ impl Node {
 pub fn retract(nodes: &[Node], q: &[f64], d: &[f64], out: &mut [f64]) {
     for n in nodes {
         n.kind.retract(&q[n.coords()], &d[n.dofs()], &mut out[n.coords()]);
+    }
+}
+
+/// The increments of every node: `to = from ⊕ d`.
+pub fn difference(nodes: &[Node], from: &[f64], to: &[f64], d: &mut [f64]) {
+    for n in nodes {
+        n.kind.difference(&from[n.coords()], &to[n.coords()], &mut d[n.dofs()]);
     }
 }
 
@@ -128,6 +154,18 @@ mod tests {
         approx::assert_relative_eq!(q[6], 1.0, max_relative = 1e-12);
         let norm: f64 = q[3..].iter().map(|x| x * x).sum();
         approx::assert_relative_eq!(norm, 1.0, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn difference_undoes_retract() {
+        let q = [1.0, 2.0, 3.0, 0.5, -0.5, 0.5, 0.5];
+        let d = [0.3, -0.2, 0.1, 1.2, -0.4, 0.9];
+        let (mut to, mut back) = ([0.0; 7], [0.0; 6]);
+        NodeKind::Frame.retract(&q, &d, &mut to);
+        NodeKind::Frame.difference(&q, &to, &mut back);
+        for i in 0..6 {
+            approx::assert_relative_eq!(back[i], d[i], max_relative = 1e-12);
+        }
     }
 
     #[test]

@@ -1,1 +1,7 @@
-//! Ropewalk: elements.
+//! Elements of Ropewalk.
+
+pub mod cable;
+mod point_mass;
+
+pub use cable::{CableSpec, Section};
+pub use point_mass::PointMass;

@@ -1,6 +1,6 @@
 //! Added mass: the water that a slender body pushes aside.
 
-use crate::refused::{Refused, not_negative};
+use ropewalk_core::build::{BuildError, not_negative};
 use ropewalk_core::{Law, Load, Real, Station, V3, dot};
 use std::f64::consts::PI;
 
@@ -23,7 +23,7 @@ impl AddedMass {
     ///
     /// # Errors
     /// Negative or infinite numbers.
-    pub fn new(density: f64, coefficient: f64) -> Result<Self, Refused> {
+    pub fn new(density: f64, coefficient: f64) -> Result<Self, BuildError> {
         not_negative("density of the fluid", density)?;
         not_negative("added mass coefficient", coefficient)?;
         Ok(AddedMass { density, coefficient })

@@ -4,8 +4,8 @@
 //! the cross-flow principle gives the normal force from `v_n` alone. Reynolds numbers are those of the normal flow,
 //! `Re = ρ d |v_n| / μ`.
 
-use crate::current::Current;
-use crate::refused::{Refused, need, not_negative};
+use ropewalk_core::Current;
+use ropewalk_core::build::{BuildError, need, not_negative};
 use ropewalk_core::{Law, Load, Power, Real, Station, V3, dot};
 use std::f64::consts::PI;
 
@@ -70,7 +70,7 @@ impl Drag {
         viscosity: f64,
         normal: NormalLaw,
         tangential: TangentialLaw,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, BuildError> {
         let drag = Drag {
             density,
             viscosity,
@@ -87,7 +87,7 @@ impl Drag {
     ///
     /// # Errors
     /// As [`Drag::new`]; a bad current; a blend outside (0, 0.5].
-    pub fn check(&self) -> Result<(), Refused> {
+    pub fn check(&self) -> Result<(), BuildError> {
         not_negative("density of the fluid", self.density)?;
         not_negative("viscosity of the fluid", self.viscosity)?;
         if let NormalLaw::Constant(c) = self.normal {

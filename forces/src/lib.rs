@@ -4,24 +4,15 @@
 //! is a term (dead loads, point forces and moments, point masses, springs).
 
 mod added_mass;
-mod current;
-mod dead;
 mod drag;
-mod held;
 mod line_load;
 mod point;
-mod point_mass;
-mod refused;
 mod spring;
 mod time;
 
 pub use added_mass::AddedMass;
-pub use current::Current;
-pub use dead::{DeadEntry, DeadLoad};
 pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
 pub use line_load::LineLoad;
 pub use point::{PointForce, PointMoment};
-pub use point_mass::PointMass;
-pub use refused::Refused;
 pub use spring::Spring;
 pub use time::TimeFunction;

@@ -1,8 +1,8 @@
 //! A load spread evenly along a body.
 
 use crate::drag::PerLength;
-use crate::refused::{Refused, finite};
 use crate::time::TimeFunction;
+use ropewalk_core::build::{BuildError, finite};
 use ropewalk_core::{Law, Load, Real, Station, V3, dot};
 
 /// A force per length that keeps its direction in space, times a function of time.
@@ -23,7 +23,7 @@ impl LineLoad {
     ///
     /// # Errors
     /// A force that isn't finite, a bad function of time.
-    pub fn new(force: V3<f64>, per: PerLength, time: TimeFunction) -> Result<Self, Refused> {
+    pub fn new(force: V3<f64>, per: PerLength, time: TimeFunction) -> Result<Self, BuildError> {
         finite("force per length", &force)?;
         time.check()?;
         Ok(LineLoad { force, per, time })

@@ -1,8 +1,8 @@
 //! Forces and moments at a point.
 
-use crate::held::{Held, cross, delta, find, three};
-use crate::refused::{Refused, finite, need};
 use crate::time::TimeFunction;
+use ropewalk_core::build::{BuildError, finite, need};
+use ropewalk_core::held::{Held, cross, delta, find, three};
 use ropewalk_core::{Assembly, At, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot};
 
 /// How a point force is directed.
@@ -41,12 +41,12 @@ impl PointForce {
         marker: &Marker,
         force: V3<f64>,
         time: TimeFunction,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, BuildError> {
         let label = label.into();
         finite(&label, &force)?;
         time.check()?;
         match Held::new(nodes, marker, &label)? {
-            Held::Ground(_) => Err(Refused(format!("{label}: a force on the ground moves nothing"))),
+            Held::Ground(_) => Err(BuildError::new(format!("{label}: a force on the ground moves nothing"))),
             Held::Moves { q, v } => Ok(PointForce { label, time, aim: Aim::Dead(force), q, v }),
         }
     }
@@ -61,7 +61,7 @@ impl PointForce {
         node: NodeId,
         magnitude: f64,
         time: TimeFunction,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, BuildError> {
         let label = label.into();
         finite(&label, &[magnitude])?;
         time.check()?;
@@ -83,7 +83,7 @@ impl PointForce {
     }
 }
 
-fn slope_node<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Node, Refused> {
+fn slope_node<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Node, BuildError> {
     let n = find(nodes, node, what)?;
     need(n.kind == NodeKind::Slope, || {
         format!("{what}: needs a cable node (position and slope), but node {} is {:?}", node.0, n.kind)
@@ -153,7 +153,7 @@ impl PointMoment {
         node: NodeId,
         moment: V3<f64>,
         time: TimeFunction,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, BuildError> {
         let label = label.into();
         finite(&label, &moment)?;
         time.check()?;

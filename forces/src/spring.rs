@@ -1,7 +1,7 @@
 //! A spring and damper between two points.
 
-use crate::held::{Held, delta};
-use crate::refused::{Refused, need, not_negative};
+use ropewalk_core::build::{BuildError, need, not_negative};
+use ropewalk_core::held::{Held, delta};
 use ropewalk_core::{Assembly, At, Energy, Marker, Node, Pattern, Power, Term, V3, dot};
 
 /// A spring with a damper along the line between two markers: `F = k (l - l0) + c dl/dt`, a pull if positive.
@@ -49,7 +49,7 @@ impl Spring {
         between: [Marker; 2],
         stiffness: f64,
         rest_length: f64,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, BuildError> {
         let label = label.into();
         not_negative(&format!("{label}: stiffness"), stiffness)?;
         not_negative(&format!("{label}: rest length"), rest_length)?;

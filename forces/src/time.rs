@@ -1,6 +1,6 @@
 //! Factors that change with time.
 
-use crate::refused::{Refused, finite, need};
+use ropewalk_core::build::{BuildError, finite, need};
 use std::f64::consts::TAU;
 
 /// A factor of a load as a function of time.
@@ -54,7 +54,7 @@ impl TimeFunction {
     ///
     /// # Errors
     /// Times that don't ascend, lists of different length, no entry, numbers that aren't finite.
-    pub fn check(&self) -> Result<(), Refused> {
+    pub fn check(&self) -> Result<(), BuildError> {
         match self {
             TimeFunction::Constant => Ok(()),
             TimeFunction::Ramp { from, to, t0, t1 } => {

@@ -2,7 +2,7 @@
 
 use super::plane::{Course, Side};
 use super::smooth::Rise;
-use crate::refused::{Refused, positive};
+use ropewalk_core::build::{BuildError, positive};
 use ropewalk_core::{Motion, Moving, SteadyFrame, V3};
 
 /// From rest to a steady speed on a circle: `R sin φ` ahead and `R (1 - cos φ)` to the side, with `dφ/dt = U(t)/R` and
@@ -31,7 +31,7 @@ impl Circle {
         speed: f64,
         start: f64,
         ramp: f64,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, BuildError> {
         let course = Course::new("circle", heading, side)?;
         positive("circle: radius", radius)?;
         Ok(Circle { course, radius, rise: Rise::new("circle", speed, start, ramp)? })

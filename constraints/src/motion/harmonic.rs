@@ -1,7 +1,7 @@
 //! To and fro.
 
 use super::smooth::{step, step_second};
-use crate::refused::{Refused, finite, positive};
+use ropewalk_core::build::{BuildError, finite, positive};
 use ropewalk_core::{Motion, Moving, V3};
 use std::f64::consts::TAU;
 
@@ -29,7 +29,7 @@ impl Harmonic {
         phase: f64,
         start: f64,
         ramp: f64,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, BuildError> {
         finite("harmonic motion: amplitude", &amplitude)?;
         finite("harmonic motion: phase and start", &[phase, start])?;
         positive("harmonic motion: frequency", frequency)?;

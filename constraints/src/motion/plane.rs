@@ -1,7 +1,8 @@
 //! Courses in the horizontal plane.
 
-use crate::refused::{Refused, need, unit};
+use crate::check::unit;
 use ropewalk_core::V3;
+use ropewalk_core::build::{BuildError, need};
 
 /// To which side a vehicle turns, as seen from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +26,7 @@ pub(crate) struct Course {
 
 impl Course {
     /// The course of this horizontal heading, of any length.
-    pub fn new(name: &str, heading: V3<f64>, side: Side) -> Result<Self, Refused> {
+    pub fn new(name: &str, heading: V3<f64>, side: Side) -> Result<Self, BuildError> {
         let ahead = unit(&format!("{name}: heading"), heading)?;
         need(ahead[2] == 0.0, || format!("{name}: heading must be horizontal (no z), not {heading:?}"))?;
         let sign = if side == Side::Left { 1.0 } else { -1.0 };

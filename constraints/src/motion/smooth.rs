@@ -1,6 +1,6 @@
 //! Speeds that rise smoothly.
 
-use crate::refused::{Refused, finite, need, positive};
+use ropewalk_core::build::{BuildError, finite, need, positive};
 
 /// The quintic smooth step `S = 10u³ - 15u⁴ + 6u⁵` with its integral and its derivative: `[∫S, S, S']`. It has two
 /// continuous derivatives; before 0 it is 0, after 1 it is 1.
@@ -34,7 +34,7 @@ pub(crate) struct Rise {
 
 impl Rise {
     /// Refuses a step, which no finite force can follow.
-    pub fn new(name: &str, top: f64, start: f64, ramp: f64) -> Result<Self, Refused> {
+    pub fn new(name: &str, top: f64, start: f64, ramp: f64) -> Result<Self, BuildError> {
         finite(&format!("{name}: speed and start"), &[top, start])?;
         need(ramp != 0.0, || {
             format!("{name}: a ramp of 0 s would be a jump of velocity, with infinite forces; try 1 s")

@@ -1,7 +1,8 @@
 //! A straight run.
 
 use super::smooth::Rise;
-use crate::refused::{Refused, unit};
+use crate::check::unit;
+use ropewalk_core::build::BuildError;
 use ropewalk_core::{Motion, Moving, SteadyFrame, V3};
 
 /// From rest to a steady speed on a straight line.
@@ -19,7 +20,7 @@ impl Straight {
     ///
     /// # Errors
     /// A direction without length, a ramp that isn't above zero, numbers that aren't finite.
-    pub fn new(direction: V3<f64>, speed: f64, start: f64, ramp: f64) -> Result<Self, Refused> {
+    pub fn new(direction: V3<f64>, speed: f64, start: f64, ramp: f64) -> Result<Self, BuildError> {
         let direction = unit("straight run: direction", direction)?;
         Ok(Straight { direction, rise: Rise::new("straight run", speed, start, ramp)? })
     }

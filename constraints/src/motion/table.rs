@@ -1,6 +1,6 @@
 //! A measured or computed motion.
 
-use crate::refused::{Refused, finite, need};
+use ropewalk_core::build::{BuildError, finite, need};
 use ropewalk_core::{Motion, Moving, V3};
 
 /// What a [`Table`] does at its ends.
@@ -32,7 +32,7 @@ impl Table {
     ///
     /// # Errors
     /// Fewer than two rows, times that don't ascend, numbers that aren't finite.
-    pub fn new(rows: &[[f64; 4]], ends: Ends) -> Result<Self, Refused> {
+    pub fn new(rows: &[[f64; 4]], ends: Ends) -> Result<Self, BuildError> {
         need(rows.len() >= 2, || format!("motion table: needs two rows or more, not {}", rows.len()))?;
         for (k, row) in rows.iter().enumerate() {
             finite(&format!("motion table: row {}", k + 1), row)?;

@@ -2,7 +2,7 @@
 
 use super::plane::{Course, Side};
 use super::smooth::Rise;
-use crate::refused::{Refused, need, positive};
+use ropewalk_core::build::{BuildError, need, positive};
 use ropewalk_core::{Motion, Moving, SteadyFrame, V3};
 
 /// The numbers of a [`Turn`].
@@ -51,7 +51,7 @@ impl Turn {
     /// # Errors
     /// A heading that isn't horizontal or has no length; a radius, speed or duration that isn't above zero; a turn that
     /// begins before the run; numbers that aren't finite.
-    pub fn new(m: Manoeuvre) -> Result<Self, Refused> {
+    pub fn new(m: Manoeuvre) -> Result<Self, BuildError> {
         let course = Course::new("turn", m.heading, m.side)?;
         positive("turn: radius", m.radius)?;
         positive("turn: speed", m.speed)?;

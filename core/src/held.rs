@@ -1,20 +1,28 @@
 //! The points that terms act on, with what they need of them.
 
-use crate::refused::{Refused, need};
-use ropewalk_core::{At, Marker, Node, NodeId, NodeKind, V3};
+use crate::build::{BuildError, need};
+use crate::lane::V3;
+use crate::marker::Marker;
+use crate::node::{Node, NodeId, NodeKind};
+use crate::state::At;
 
 /// A marker whose position is three coordinates of its node, or fixed in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Held {
+pub enum Held {
     /// Fixed in space at this point.
     Ground(V3<f64>),
     /// Position at coordinate `q` and following, velocity at `v` and following.
-    Moves { q: usize, v: usize },
+    Moves {
+        /// Index of its first coordinate.
+        q: usize,
+        /// Index of its first velocity.
+        v: usize,
+    },
 }
 
 impl Held {
     /// Finds a marker's coordinates; `what` names the force in messages.
-    pub fn new(nodes: &[Node], marker: &Marker, what: &str) -> Result<Self, Refused> {
+    pub fn new(nodes: &[Node], marker: &Marker, what: &str) -> Result<Self, BuildError> {
         match *marker {
             Marker::Ground { point, .. } => Ok(Held::Ground(point)),
             Marker::Node { node, point, .. } => {
@@ -27,7 +35,7 @@ impl Held {
                         )
                     })?,
                     NodeKind::Scalars(_) => {
-                        return Err(Refused(format!("{what}: node {} has no position", node.0)));
+                        return Err(BuildError::new(format!("{what}: node {} has no position", node.0)));
                     }
                 }
                 Ok(Held::Moves { q: n.q, v: n.v })
@@ -55,21 +63,21 @@ impl Held {
 }
 
 /// The node of that index.
-pub(crate) fn find<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Node, Refused> {
-    nodes.get(node.0 as usize).ok_or_else(|| Refused(format!("{what}: there is no node {}", node.0)))
+pub fn find<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Node, BuildError> {
+    nodes.get(node.0 as usize).ok_or_else(|| BuildError::new(format!("{what}: there is no node {}", node.0)))
 }
 
 /// Three numbers from an index on.
-pub(crate) fn three(x: &[f64], from: usize) -> V3<f64> {
+pub fn three(x: &[f64], from: usize) -> V3<f64> {
     [x[from], x[from + 1], x[from + 2]]
 }
 
 /// Vector product.
-pub(crate) fn cross(a: &V3<f64>, b: &V3<f64>) -> V3<f64> {
+pub fn cross(a: &V3<f64>, b: &V3<f64>) -> V3<f64> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// 1 on the diagonal, else 0.
-pub(crate) fn delta(i: usize, j: usize) -> f64 {
+pub fn delta(i: usize, j: usize) -> f64 {
     if i == j { 1.0 } else { 0.0 }
 }

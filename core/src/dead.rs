@@ -1,8 +1,13 @@
 //! Dead loads: forces that never change.
 
+use crate::build::{BuildError, need};
 use crate::held::Held;
-use crate::refused::{Refused, need};
-use ropewalk_core::{Assembly, At, Energy, Marker, Node, Pattern, Term, V3};
+use crate::lane::V3;
+use crate::marker::Marker;
+use crate::node::Node;
+use crate::pattern::Pattern;
+use crate::state::At;
+use crate::term::{Assembly, Energy, Term};
 
 /// One component of a dead load.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +37,7 @@ impl DeadLoad {
     ///
     /// # Errors
     /// A component that isn't finite.
-    pub fn new(label: impl Into<String>, entries: Vec<DeadEntry>) -> Result<Self, Refused> {
+    pub fn new(label: impl Into<String>, entries: Vec<DeadEntry>) -> Result<Self, BuildError> {
         let label = label.into();
         for e in &entries {
             need(e.value.is_finite(), || format!("{label}: force on unknown {} isn't finite", e.dof))?;
@@ -44,7 +49,7 @@ impl DeadLoad {
     ///
     /// # Errors
     /// A marker beside the point of a rigid body, or on a node without position.
-    pub fn at_marker(nodes: &[Node], marker: &Marker, force: V3<f64>) -> Result<Vec<DeadEntry>, Refused> {
+    pub fn at_marker(nodes: &[Node], marker: &Marker, force: V3<f64>) -> Result<Vec<DeadEntry>, BuildError> {
         match Held::new(nodes, marker, "dead load")? {
             Held::Ground(_) => Ok(Vec::new()),
             Held::Moves { q, v } => Ok((0..3)

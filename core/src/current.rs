@@ -1,7 +1,7 @@
 //! Current: the velocity of the water, as a function of height.
 
-use crate::refused::{Refused, finite, need};
-use ropewalk_core::{Real, V3};
+use crate::build::{BuildError, finite, need};
+use crate::lane::{Real, V3};
 
 /// Velocity of the water [m/s] at height `z` [m, up]; it does not change with time.
 ///
@@ -36,7 +36,7 @@ impl Current {
     ///
     /// # Errors
     /// Heights that don't ascend, lists of different length, no entry, numbers that aren't finite.
-    pub fn profile(z: Vec<f64>, velocity: Vec<V3<f64>>) -> Result<Self, Refused> {
+    pub fn profile(z: Vec<f64>, velocity: Vec<V3<f64>>) -> Result<Self, BuildError> {
         let current = Current::Profile { z, velocity };
         current.check().map(|()| current)
     }
@@ -45,7 +45,7 @@ impl Current {
     ///
     /// # Errors
     /// As [`Current::profile`]; numbers that aren't finite in the other kinds.
-    pub fn check(&self) -> Result<(), Refused> {
+    pub fn check(&self) -> Result<(), BuildError> {
         match self {
             Current::Still => Ok(()),
             Current::Uniform(u) => finite("current", u),

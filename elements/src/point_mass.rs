@@ -1,16 +1,17 @@
 //! A compact body at the end of a line.
 
-use crate::current::Current;
-use crate::dead::{DeadEntry, DeadLoad};
-use crate::held::{delta, find, three};
-use crate::refused::{Refused, need, not_negative};
-use ropewalk_core::{Assembly, At, Energy, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot};
+use ropewalk_core::build::{BuildError, need, not_negative};
+use ropewalk_core::held::{delta, find, three};
+use ropewalk_core::{
+    Assembly, At, Current, DeadEntry, DeadLoad, Energy, Marker, Node, NodeId, NodeKind, Pattern, Power, Term,
+    V3, dot,
+};
 
 /// A point mass on a node, with added mass and drag that are the same in all directions.
 ///
 /// Use it for: sinkers, buoys, tow bodies, clump weights. Inertia is `(m + m_a) a`, drag
 /// `-½ ρ CdA |v - u| (v - u)`. Weight and buoyancy are dead loads, see [`PointMass::weight`]. As with
-/// [`AddedMass`](crate::AddedMass) the water's kinetic energy isn't counted: added mass takes and gives power.
+/// added mass along a cable the water's kinetic energy isn't counted: added mass takes and gives power.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointMass {
     /// A name, such as `tow body`.
@@ -36,7 +37,12 @@ impl PointMass {
     ///
     /// # Errors
     /// A node without position; a negative or infinite mass.
-    pub fn new(label: impl Into<String>, nodes: &[Node], node: NodeId, mass: f64) -> Result<Self, Refused> {
+    pub fn new(
+        label: impl Into<String>,
+        nodes: &[Node],
+        node: NodeId,
+        mass: f64,
+    ) -> Result<Self, BuildError> {
         let label = label.into();
         not_negative(&format!("{label}: mass"), mass)?;
         let n = find(nodes, node, &label)?;
@@ -58,7 +64,7 @@ impl PointMass {
         added_mass: f64,
         drag_area: f64,
         current: Current,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, BuildError> {
         not_negative(&format!("{}: density of the fluid", self.label), density)?;
         not_negative(&format!("{}: added mass", self.label), added_mass)?;
         not_negative(&format!("{}: drag area", self.label), drag_area)?;
@@ -73,9 +79,14 @@ impl PointMass {
     ///
     /// # Errors
     /// A negative or infinite volume, a gravity that isn't finite.
-    pub fn weight(&self, nodes: &[Node], volume: f64, gravity: V3<f64>) -> Result<Vec<DeadEntry>, Refused> {
+    pub fn weight(
+        &self,
+        nodes: &[Node],
+        volume: f64,
+        gravity: V3<f64>,
+    ) -> Result<Vec<DeadEntry>, BuildError> {
         not_negative(&format!("{}: volume", self.label), volume)?;
-        crate::refused::finite("gravity", &gravity)?;
+        ropewalk_core::build::finite("gravity", &gravity)?;
         let heavy = self.mass - self.density * volume;
         DeadLoad::at_marker(nodes, &Marker::node(self.node), gravity.map(|g| heavy * g))
     }

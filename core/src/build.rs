@@ -1,0 +1,417 @@
+//! The builder: turns specs into a model and owns the names.
+
+use crate::constraint::Constraint;
+use crate::marker::Marker;
+use crate::model::{Model, Start};
+use crate::motion::Motion;
+use crate::node::{Node, NodeId, NodeKind};
+use crate::part::{Part, Spot, split_marker};
+use crate::pool::{Element, Pool};
+use crate::scene::Water;
+use crate::spec::MarkerRef;
+use crate::station::{FieldTerm, Law, Laws};
+use crate::term::Term;
+use std::any::{Any, TypeId};
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+/// Why a model could not be built, said so that the author of the scene knows what to change.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct BuildError {
+    /// What is wrong and what to do.
+    pub message: String,
+    /// The field of the spec that is to blame, so that a message can point at its line; a name that is no field of
+    /// the spec points at the spec as a whole.
+    pub field: Option<String>,
+}
+
+impl BuildError {
+    /// An error of the part as a whole.
+    pub fn new(message: impl Into<String>) -> Self {
+        BuildError { message: message.into(), field: None }
+    }
+    /// An error of one field.
+    pub fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
+        BuildError { message: message.into(), field: Some(field.into()) }
+    }
+}
+
+/// Checks that a number is positive and finite.
+pub fn positive(field: &str, x: f64) -> Result<f64, BuildError> {
+    if x > 0.0 && x.is_finite() {
+        Ok(x)
+    } else {
+        Err(BuildError::at(field, format!("`{field}` must be positive, but is {x}")))
+    }
+}
+
+/// Checks that a number is finite and not negative.
+pub fn not_negative(field: &str, x: f64) -> Result<f64, BuildError> {
+    if x >= 0.0 && x.is_finite() {
+        Ok(x)
+    } else {
+        Err(BuildError::at(field, format!("`{field}` must not be negative, but is {x}")))
+    }
+}
+
+/// Checks that every number is finite.
+pub fn finite(field: &str, x: &[f64]) -> Result<(), BuildError> {
+    match x.iter().find(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(x) => Err(BuildError::at(field, format!("`{field}` holds {x}, which is not a finite number"))),
+    }
+}
+
+/// `Ok` if `holds`, else an error with this message.
+pub fn need(holds: bool, message: impl FnOnce() -> String) -> Result<(), BuildError> {
+    if holds { Ok(()) } else { Err(BuildError::new(message())) }
+}
+
+trait AnyPool: Term {
+    fn as_any(&mut self) -> &mut dyn Any;
+    fn into_term(self: Box<Self>) -> Box<dyn Term>;
+}
+impl<E: Element<Q, N>, const Q: usize, const N: usize> AnyPool for Pool<E, Q, N> {
+    fn as_any(&mut self) -> &mut dyn Any {
+        self
+    }
+    fn into_term(self: Box<Self>) -> Box<dyn Term> {
+        self
+    }
+}
+
+/// Collects nodes, terms, constraints and parts, and makes a [`Model`] of them.
+#[derive(Default)]
+pub struct Builder {
+    nodes: Vec<Node>,
+    start: Start,
+    pools: Vec<(TypeId, Box<dyn AnyPool>)>,
+    terms: Vec<Box<dyn Term>>,
+    constraints: Vec<Box<dyn Constraint>>,
+    parts: Vec<Arc<dyn Part>>,
+    laws: BTreeMap<usize, Laws>,
+    motions: HashMap<String, Arc<dyn Motion>>,
+    /// Arc lengths at which a cable needs a node, by part.
+    pins: HashMap<String, Vec<f64>>,
+    /// Meshes that replace those of the specs, by part.
+    meshes: HashMap<String, Vec<f64>>,
+    water: Option<Water>,
+    length: f64,
+}
+
+impl Builder {
+    /// An empty builder.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a node that starts at `q` and moves with `v`.
+    pub fn node(&mut self, kind: NodeKind, q: &[f64], v: &[f64]) -> Result<NodeId, BuildError> {
+        if q.len() != kind.coordinates() || v.len() != kind.velocities() {
+            return Err(BuildError::new(format!(
+                "a {kind:?} node has {} coordinates and {} velocities, not {} and {}",
+                kind.coordinates(),
+                kind.velocities(),
+                q.len(),
+                v.len()
+            )));
+        }
+        if q.iter().chain(v).any(|x| !x.is_finite()) {
+            return Err(BuildError::new("a node has a coordinate or velocity that is not a finite number"));
+        }
+        let id = NodeId(self.nodes.len() as u32);
+        self.nodes.push(Node { kind, q: self.start.q.len(), v: self.start.v.len(), shared: false });
+        self.start.q.extend_from_slice(q);
+        self.start.v.extend_from_slice(v);
+        Ok(id)
+    }
+
+    /// The nodes so far.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Marks a node as shared by many elements, so that it is eliminated last.
+    pub fn share(&mut self, node: NodeId) {
+        self.nodes[node.0 as usize].shared = true;
+    }
+
+    /// Adds an element to the pool of its type.
+    pub fn element<E: Element<Q, N>, const Q: usize, const N: usize>(
+        &mut self,
+        element: E,
+        on: &[NodeId],
+    ) -> Result<(), BuildError> {
+        let id = TypeId::of::<Pool<E, Q, N>>();
+        let at = match self.pools.iter().position(|(t, _)| *t == id) {
+            Some(at) => at,
+            None => {
+                self.pools.push((id, Box::new(Pool::<E, Q, N>::new())));
+                self.pools.len() - 1
+            }
+        };
+        let fits = match self.pools[at].1.as_any().downcast_mut::<Pool<E, Q, N>>() {
+            Some(pool) => pool.push(&self.nodes, element, on),
+            None => false,
+        };
+        if fits {
+            Ok(())
+        } else {
+            Err(BuildError::new(format!("element `{}` doesn't fit its nodes", E::label())))
+        }
+    }
+
+    /// Adds a term.
+    pub fn term(&mut self, term: Box<dyn Term>) {
+        self.terms.push(term);
+    }
+
+    /// Adds a constraint.
+    pub fn constraint(&mut self, constraint: impl Constraint + 'static) -> Result<(), BuildError> {
+        if constraint.nodes().is_empty() {
+            return Err(BuildError::new(format!(
+                "constraint `{}` holds only points fixed in space: there is nothing to constrain",
+                constraint.name()
+            )));
+        }
+        if self.constraints.iter().any(|c| c.name() == constraint.name()) {
+            return Err(BuildError::at(
+                "name",
+                format!("there are two constraints named `{}`", constraint.name()),
+            ));
+        }
+        self.constraints.push(Box::new(constraint));
+        Ok(())
+    }
+
+    /// Adds a named part.
+    pub fn part(&mut self, part: Arc<dyn Part>) -> Result<(), BuildError> {
+        let name = part.name();
+        if name.is_empty() || name.contains(['.', '@']) {
+            return Err(BuildError::at(
+                "name",
+                format!("`{name}` can't be a name: it is empty or holds `.` or `@`"),
+            ));
+        }
+        if self.parts.iter().any(|p| p.name() == name) {
+            return Err(BuildError::at("name", format!("there are two parts named `{name}`")));
+        }
+        self.length = self.length.max(part.length());
+        self.parts.push(part);
+        Ok(())
+    }
+
+    /// The parts so far, or those of these names.
+    pub fn parts(&self, names: &[String]) -> Result<Vec<(usize, Arc<dyn Part>)>, BuildError> {
+        if names.is_empty() {
+            return Ok(self.parts.iter().cloned().enumerate().collect());
+        }
+        names.iter().map(|n| self.find(n, "on")).collect()
+    }
+
+    fn find(&self, name: &str, field: &'static str) -> Result<(usize, Arc<dyn Part>), BuildError> {
+        match self.parts.iter().position(|p| p.name() == name) {
+            Some(k) => Ok((k, self.parts[k].clone())),
+            None => Err(BuildError::at(
+                field,
+                format!("there is no part `{name}`; the parts are {}", self.part_names()),
+            )),
+        }
+    }
+
+    fn part_names(&self) -> String {
+        let names: Vec<String> = self.parts.iter().map(|p| format!("`{}`", p.name())).collect();
+        if names.is_empty() { "none".into() } else { names.join(", ") }
+    }
+
+    /// Finds a marker.
+    pub fn marker(&self, field: &'static str, marker: &MarkerRef) -> Result<Marker, BuildError> {
+        let name = match marker {
+            MarkerRef::Point(p) => {
+                finite(field, p)?;
+                return Ok(Marker::ground(*p));
+            }
+            MarkerRef::Name(name) => name,
+        };
+        let (part, spot) =
+            split_marker(name).map_err(|e| BuildError::at(field, format!("marker `{name}`: {e}")))?;
+        let (_, part) = self.find(part, field)?;
+        part.marker(&spot).map_err(|e| BuildError::at(field, format!("marker `{name}`: {e}")))
+    }
+
+    /// Where a marker starts.
+    pub fn place(&self, marker: &Marker) -> crate::marker::Place<f64> {
+        marker.place(&self.nodes, &self.start.q, |_| 0.0)
+    }
+
+    /// Notes the markers that constraints and forces hold, so that cables put nodes there.
+    pub(crate) fn pin(&mut self, markers: &[&MarkerRef]) {
+        for m in markers {
+            if let MarkerRef::Name(name) = m
+                && let Ok((part, Spot::Along(s))) = split_marker(name)
+            {
+                self.pins.entry(part.to_string()).or_default().push(s);
+            }
+        }
+    }
+
+    /// Arc lengths at which a part needs nodes, ascending.
+    pub fn pins(&self, part: &str) -> Vec<f64> {
+        let mut pins = self.pins.get(part).cloned().unwrap_or_default();
+        pins.sort_by(f64::total_cmp);
+        pins.dedup();
+        pins
+    }
+
+    /// Replaces the mesh of a part.
+    pub(crate) fn remesh(&mut self, part: &str, mesh: Vec<f64>) {
+        self.meshes.insert(part.to_string(), mesh);
+    }
+
+    /// The mesh that replaces that of a part's spec, if there is one.
+    pub fn mesh(&self, part: &str) -> Option<&[f64]> {
+        self.meshes.get(part).map(Vec::as_slice)
+    }
+
+    /// Makes a law act on the stations of parts; all parts that have stations if none is named.
+    pub fn load(&mut self, on: &[String], law: impl Law + Clone) -> Result<(), BuildError> {
+        let mut any = false;
+        for (k, part) in self.parts(on)? {
+            if part.stations().is_some_and(|s| !s.is_empty()) {
+                self.laws.entry(k).or_default().push(law.clone());
+                any = true;
+            } else if !on.is_empty() {
+                return Err(BuildError::at("on", format!("`{}` carries no distributed load", part.name())));
+            }
+        }
+        if any {
+            Ok(())
+        } else {
+            Err(BuildError::new("there is nothing in the scene that carries this load"))
+        }
+    }
+
+    /// The water, which the scene must have for what acts in it.
+    pub fn water(&self) -> Result<&Water, BuildError> {
+        self.water.as_ref().ok_or_else(|| {
+            BuildError::new("this needs water: add a [water] section, such as `density = \"1025 kg/m^3\"`")
+        })
+    }
+
+    pub(crate) fn set_water(&mut self, water: Option<Water>) {
+        self.water = water;
+    }
+
+    /// Registers a motion under a name.
+    pub(crate) fn add_motion(&mut self, name: &str, motion: Arc<dyn Motion>) -> Result<(), BuildError> {
+        match self.motions.insert(name.to_string(), motion) {
+            None => Ok(()),
+            Some(_) => Err(BuildError::at("name", format!("there are two motions named `{name}`"))),
+        }
+    }
+
+    /// The motion of this name.
+    pub fn motion(&self, name: &str) -> Result<Arc<dyn Motion>, BuildError> {
+        self.motions.get(name).cloned().ok_or_else(|| {
+            let mut names: Vec<String> = self.motions.keys().map(|n| format!("`{n}`")).collect();
+            names.sort();
+            let names = if names.is_empty() { "none".into() } else { names.join(", ") };
+            BuildError::at("motion", format!("there is no motion `{name}`; the motions are {names}"))
+        })
+    }
+
+    /// Makes the model.
+    pub fn finish(mut self) -> Result<Model, BuildError> {
+        if self.nodes.is_empty() {
+            return Err(BuildError::new("the scene is empty: add at least one element"));
+        }
+        let mut terms: Vec<Box<dyn Term>> = self.pools.into_iter().map(|(_, p)| p.into_term()).collect();
+        terms.append(&mut self.terms);
+        for (k, laws) in self.laws {
+            let part = &self.parts[k];
+            if let Some(stations) = part.stations() {
+                terms.push(Box::new(FieldTerm { part: part.name().to_string(), stations, laws }));
+            }
+        }
+        let length = if self.length > 0.0 { self.length } else { 1.0 };
+        let model = Model::new(self.nodes, terms, self.constraints, self.parts, self.start, length);
+        redundancy(&model)?;
+        Ok(model)
+    }
+}
+
+/// Names constraints that say what others have already said, by orthogonalising the rows of their Jacobian.
+fn redundancy(model: &Model) -> Result<(), BuildError> {
+    let state = model.state();
+    // rows as (velocity, entry), orthonormal, with the constraints that they come from
+    let mut basis: Vec<(BTreeMap<usize, f64>, usize)> = Vec::new();
+    let mut by_dof: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (c, constraint) in model.constraints().iter().enumerate() {
+        let dofs: Vec<usize> = constraint.nodes().iter().flat_map(|&k| model.node(k).dofs()).collect();
+        let (m, n) = (constraint.rows().len(), dofs.len());
+        let (mut g, mut jac) = (vec![0.0; m], vec![0.0; m * n]);
+        constraint.jacobian(model.nodes(), &state.at(), &mut g, &mut jac);
+        if jac.iter().chain(&g).any(|x| !x.is_finite()) {
+            return Err(BuildError::new(format!(
+                "constraint `{}` is not defined where the scene starts (two of its points coincide?)",
+                constraint.name()
+            )));
+        }
+        for r in 0..m {
+            let mut row: BTreeMap<usize, f64> =
+                dofs.iter().enumerate().map(|(j, &d)| (d, jac[r * n + j])).filter(|e| e.1 != 0.0).collect();
+            let size = row.values().map(|x| x * x).sum::<f64>().sqrt();
+            if size == 0.0 {
+                return Err(BuildError::new(format!(
+                    "equation {} of constraint `{}` holds nothing where the scene starts: it is singular there",
+                    r + 1,
+                    constraint.name()
+                )));
+            }
+            let mut blamed: Vec<usize> = Vec::new();
+            let mut seen = vec![false; basis.len()];
+            // twice, against rounding
+            for _ in 0..2 {
+                let mut queue: Vec<usize> =
+                    row.keys().filter_map(|d| by_dof.get(d)).flatten().copied().collect();
+                queue.sort_unstable();
+                queue.dedup();
+                while let Some(b) = queue.pop() {
+                    let (other, owner) = &basis[b];
+                    let dot: f64 = other.iter().filter_map(|(d, x)| row.get(d).map(|y| x * y)).sum();
+                    if dot.abs() > 1e-9 * size && !seen[b] {
+                        seen[b] = true;
+                        blamed.push(*owner);
+                    }
+                    for (d, x) in other {
+                        *row.entry(*d).or_default() -= dot * x;
+                    }
+                }
+            }
+            let left = row.values().map(|x| x * x).sum::<f64>().sqrt();
+            if left < 1e-8 * size {
+                blamed.retain(|&b| b != c);
+                blamed.sort_unstable();
+                blamed.dedup();
+                let others: Vec<String> =
+                    blamed.iter().map(|&b| format!("`{}`", model.constraints()[b].name())).collect();
+                let others = if others.is_empty() { "its own equations".into() } else { others.join(", ") };
+                return Err(BuildError::new(format!(
+                    "constraint `{}` is redundant: its equation {} already follows from {others}. Remove one of them",
+                    constraint.name(),
+                    r + 1
+                )));
+            }
+            for x in row.values_mut() {
+                *x /= left;
+            }
+            let id = basis.len();
+            for d in row.keys() {
+                by_dof.entry(*d).or_default().push(id);
+            }
+            basis.push((row, c));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,88 @@
+//! The motion inside a step: quintic Hermite interpolation of positions, velocities and accelerations.
+
+use crate::model::Model;
+use crate::node::{difference, retract};
+use crate::state::State;
+
+/// Two states at the ends of a step, and the motion between them.
+pub struct Dense<'a> {
+    model: &'a Model,
+    from: &'a State,
+    to: &'a State,
+    d: Vec<f64>,
+}
+
+impl<'a> Dense<'a> {
+    /// Interpolates from one state to a later one.
+    pub fn new(model: &'a Model, from: &'a State, to: &'a State) -> Self {
+        let mut d = vec![0.0; model.velocities()];
+        difference(model.nodes(), &from.q, &to.q, &mut d);
+        Dense { model, from, to, d }
+    }
+
+    /// Sets time, positions, velocities, accelerations and multipliers of `out` to those at time `t` of the step.
+    pub fn at(&self, t: f64, out: &mut State) {
+        let (a, b) = (self.from, self.to);
+        let h = b.t - a.t;
+        let x = if h > 0.0 { ((t - a.t) / h).clamp(0.0, 1.0) } else { 1.0 };
+        let (x2, x3) = (x * x, x * x * x);
+        // blends of: displacement, v0, v1, a0, a1; and their derivatives
+        let p = x3 * (10.0 - 15.0 * x + 6.0 * x2);
+        let v0 = x - x3 * (6.0 - 8.0 * x + 3.0 * x2);
+        let v1 = x3 * (-4.0 + 7.0 * x - 3.0 * x2);
+        let a0 = 0.5 * x2 - x3 * (1.5 - 1.5 * x + 0.5 * x2);
+        let a1 = x3 * (0.5 - x + 0.5 * x2);
+        let dp = 30.0 * x2 * (1.0 - x) * (1.0 - x);
+        let dv0 = 1.0 - x2 * (18.0 - 32.0 * x + 15.0 * x2);
+        let dv1 = x2 * (-12.0 + 28.0 * x - 15.0 * x2);
+        let da0 = x - x2 * (4.5 - 6.0 * x + 2.5 * x2);
+        let da1 = x2 * (1.5 - 4.0 * x + 2.5 * x2);
+        let mut d = vec![0.0; self.d.len()];
+        for i in 0..d.len() {
+            d[i] = p * self.d[i] + h * (v0 * a.v[i] + v1 * b.v[i]) + h * h * (a0 * a.a[i] + a1 * b.a[i]);
+            out.v[i] = if h > 0.0 { dp * self.d[i] / h } else { 0.0 }
+                + dv0 * a.v[i]
+                + dv1 * b.v[i]
+                + h * (da0 * a.a[i] + da1 * b.a[i]);
+            out.a[i] = a.a[i] + x * (b.a[i] - a.a[i]);
+        }
+        for i in 0..out.lambda.len() {
+            out.lambda[i] = a.lambda[i] + x * (b.lambda[i] - a.lambda[i]);
+        }
+        retract(self.model.nodes(), &a.q, &d, &mut out.q);
+        out.t = t;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Start;
+    use crate::node::{Node, NodeKind};
+
+    #[test]
+    fn a_quintic_is_met_exactly() {
+        let nodes = vec![Node { kind: NodeKind::Scalars(1), q: 0, v: 0, shared: false }];
+        let start = Start { q: vec![0.0], v: vec![0.0], modes: vec![] };
+        let model = Model::new(nodes, vec![], vec![], vec![], start, 1.0);
+        let f = |t: f64| {
+            [
+                1.0 + t - 2.0 * t.powi(2) + 0.5 * t.powi(3) + 3.0 * t.powi(4) - t.powi(5),
+                1.0 - 4.0 * t + 1.5 * t.powi(2) + 12.0 * t.powi(3) - 5.0 * t.powi(4),
+                -4.0 + 3.0 * t + 36.0 * t.powi(2) - 20.0 * t.powi(3),
+            ]
+        };
+        let state = |t: f64| {
+            let [q, v, a] = f(t);
+            State { t, q: vec![q], v: vec![v], a: vec![a], ..model.state() }
+        };
+        let (from, to) = (state(0.3), state(1.1));
+        let dense = Dense::new(&model, &from, &to);
+        let mut out = model.state();
+        for t in [0.3, 0.5, 0.77, 1.1] {
+            dense.at(t, &mut out);
+            approx::assert_relative_eq!(out.q[0], f(t)[0], max_relative = 1e-13);
+            approx::assert_relative_eq!(out.v[0], f(t)[1], max_relative = 1e-12);
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! The generalized-α family with fixed or error-controlled steps.
+
+use super::newton::{Newton, Outcome};
+use super::workspace::Which;
+use super::{Coefficients, Integrator, Options, StepError, StepReport, Stepping, Workspace};
+use crate::model::Model;
+use crate::state::State;
+
+/// Integrator of the Newmark, HHT-α and generalized-α family on index-3 equations.
+pub struct Alpha {
+    options: Options,
+    scheme: Coefficients,
+    horizon: f64,
+    /// What the user should know although the run goes on.
+    pub warning: Option<String>,
+}
+
+/// Safety factor of the step-size controller.
+const SAFETY: f64 = 0.85;
+
+impl Alpha {
+    /// Checks the options against the model. `duration` is the length of the run, over which errors add up unless
+    /// the options say otherwise.
+    pub fn new(options: &Options, model: &Model, duration: f64) -> Result<Self, StepError> {
+        options.check().map_err(StepError::Scheme)?;
+        let scheme = options.scheme.coefficients().map_err(StepError::Scheme)?;
+        let mut warning = None;
+        if model.multipliers() > 0
+            && let Some(why) = options.scheme.unstable_with_constraints().map_err(StepError::Scheme)?
+        {
+            if !options.allow_unstable || scheme.beta == 0.0 {
+                return Err(StepError::Scheme(format!(
+                    "this scheme is unstable with constraints: {why}. Take generalized-alpha with rho_inf below 1, \
+                     HHT with a negative alpha{}",
+                    if scheme.beta == 0.0 { "" } else { ", or set `allow_unstable = true`" }
+                )));
+            }
+            warning = Some(format!("unstable scheme allowed: {why}"));
+        }
+        let horizon = if options.horizon > 0.0 { options.horizon } else { duration.max(f64::MIN_POSITIVE) };
+        Ok(Alpha { options: options.clone(), scheme, horizon, warning })
+    }
+
+    /// The options that it was made with.
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// Its numbers.
+    pub fn scheme(&self) -> &Coefficients {
+        &self.scheme
+    }
+
+    fn newton_tolerance(&self, model: &Model, h: f64) -> f64 {
+        let length = model.length();
+        self.options.newton_tolerance
+            * match self.options.stepping {
+                Stepping::Fixed { .. } => (1e-3 * h * h * length).min(1e-6 * length),
+                Stepping::Controlled { tolerance } => 1e-3 * tolerance.min(1e-3) * length,
+            }
+    }
+
+    /// Rescales the auxiliary acceleration to a new step size: it stands `Δ h` away from the true one.
+    fn rescale(&self, state: &State, h: f64, aux: &mut Vec<f64>) {
+        let ratio = if state.control.h_last > 0.0 { h / state.control.h_last } else { 1.0 };
+        aux.clear();
+        aux.extend(state.aux.iter().zip(&state.a).map(|(aux, a)| a + ratio * (aux - a)));
+    }
+
+    /// Predicts the auxiliary acceleration: the true one is continued as the predictor says that was best last time.
+    fn predict(&self, state: &State, h: f64, work: &mut Workspace) {
+        let c = &self.scheme;
+        let control = &state.control;
+        // linear where two old accelerations hold, constant else
+        let slope = if control.backs >= 1 && control.h_last > 0.0 { h / control.h_last } else { 0.0 };
+        let t = &mut work.trial;
+        for i in 0..t.aux.len() {
+            let a =
+                state.a[i] + slope * (state.a[i] - control.a_back[0].get(i).copied().unwrap_or(state.a[i]));
+            t.aux[i] = ((1.0 - c.alpha_f) * a + c.alpha_f * state.a[i] - c.alpha_m * t.aux_old[i])
+                / (1.0 - c.alpha_m);
+        }
+        t.lambda.copy_from_slice(&state.lambda);
+    }
+
+    /// Estimated error of the trial over the tolerance: `|Cq h² (a₊ - a)|`, without what the constraints and the
+    /// numerical damping take away, per unit step.
+    fn error(&self, model: &Model, work: &mut Workspace, h: f64, tolerance: f64) -> Result<f64, StepError> {
+        let factor = self.scheme.error_constant() * h * h;
+        let t = &work.trial;
+        let e: Vec<f64> = t.aux.iter().zip(&t.aux_old).map(|(new, old)| factor * (new - old)).collect();
+        let mut rhs = vec![0.0; model.structure().n];
+        work.times_mass(model, &e, &mut rhs[..model.velocities()]);
+        for r in &mut rhs {
+            *r *= self.scheme.mass();
+        }
+        work.solve(model, Which::Iteration, &mut rhs).map_err(|source| linear(model, 0.0, source))?;
+        let size = work.norm(model, &rhs[..model.velocities()]);
+        Ok(size * (self.horizon / h) / (tolerance.min(1e-3) * model.length()))
+    }
+
+    fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, eta: f64) {
+        let c = &mut state.control;
+        let [one, two] = &mut c.a_back;
+        std::mem::swap(one, two);
+        one.clear();
+        one.extend_from_slice(&state.a);
+        c.backs = (c.backs + 1).min(2);
+        c.h_last = h;
+        c.eta = eta;
+        c.h_cap = if c.h_cap > 0.0 { c.h_cap * 1.1 } else { 0.0 };
+        let t = &mut work.trial;
+        std::mem::swap(&mut state.q, &mut t.q);
+        std::mem::swap(&mut state.v, &mut t.v);
+        std::mem::swap(&mut state.a, &mut t.a);
+        std::mem::swap(&mut state.aux, &mut t.aux);
+        std::mem::swap(&mut state.lambda, &mut t.lambda);
+        state.t += h;
+        work.counts.steps += 1;
+    }
+}
+
+fn linear(model: &Model, t: f64, source: crate::solver::SolveError) -> StepError {
+    let unknown = match source {
+        crate::solver::SolveError::Singular(p) => model
+            .structure()
+            .position
+            .iter()
+            .position(|&q| q == p)
+            .map_or_else(|| "the mass matrix".to_string(), |i| model.unknown_name(i)),
+        _ => "the solution".to_string(),
+    };
+    StepError::Linear { t, source, unknown }
+}
+
+impl Integrator for Alpha {
+    fn step(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        work: &mut Workspace,
+        h_max: f64,
+    ) -> Result<StepReport, StepError> {
+        work.ensure_mass(model, &state.at(), &state.lambda)
+            .map_err(|source| linear(model, state.t, source))?;
+        let linear_constraints = model.constraints().iter().all(|c| c.linear());
+        let controlled = match self.options.stepping {
+            Stepping::Controlled { tolerance } => Some(tolerance),
+            Stepping::Fixed { .. } => None,
+        };
+        let limit = h_max.min(self.options.h_max);
+        let mut h = match self.options.stepping {
+            Stepping::Fixed { h } => {
+                let cap = if state.control.h_cap > 0.0 { state.control.h_cap } else { f64::INFINITY };
+                h.min(h_max).min(cap)
+            }
+            Stepping::Controlled { .. } => {
+                let wish =
+                    if state.control.h_next > 0.0 { state.control.h_next } else { self.options.h_start };
+                let cap = if state.control.h_cap > 0.0 { state.control.h_cap } else { f64::INFINITY };
+                wish.min(cap).min(limit)
+            }
+        };
+        // a step that only fills the rest of an interval says nothing about the next
+        let cut = h >= limit && state.control.h_next > limit;
+        let mut report = StepReport::default();
+        let mut failures = 0;
+        loop {
+            let mut aux = std::mem::take(&mut work.trial.aux_old);
+            self.rescale(state, h, &mut aux);
+            work.trial.aux_old = aux;
+            self.predict(state, h, work);
+            let newton = Newton {
+                model,
+                state,
+                scheme: self.scheme,
+                h,
+                policy: self.options.newton,
+                max_iterations: self.options.max_iterations,
+                tolerance: self.newton_tolerance(model, h),
+                linear_constraints,
+            };
+            if state.control.eta > 0.1 {
+                work.factored = None;
+            }
+            let why = match newton.solve(work, state.control.eta.max(0.05)) {
+                Outcome::Converged { iterations, eta } => {
+                    report.h = h;
+                    report.iterations = iterations;
+                    let Some(tolerance) = controlled else {
+                        self.accept(state, work, h, eta);
+                        return Ok(report);
+                    };
+                    let error = self.error(model, work, h, tolerance)?;
+                    let grow = (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5);
+                    if error <= 1.0 {
+                        report.error = error;
+                        self.accept(state, work, h, eta);
+                        // small changes aren't worth a new factorisation
+                        let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
+                        state.control.h_next = if cut { next.max(state.control.h_next) } else { next };
+                        return Ok(report);
+                    }
+                    if error.is_nan() {
+                        "the error estimate is not a number".to_string()
+                    } else {
+                        report.rejected += 1;
+                        work.counts.rejected += 1;
+                        h *= grow.min(0.9);
+                        if h < self.options.h_min {
+                            return Err(StepError::NoConvergence {
+                                t: state.t,
+                                h,
+                                why: "the tolerance asks for a smaller step than `h_min`".into(),
+                                equation: newton.worst_equation(work),
+                            });
+                        }
+                        continue;
+                    }
+                }
+                Outcome::Linear(source) if h <= self.options.h_min => {
+                    return Err(linear(model, state.t, source));
+                }
+                Outcome::Linear(source) => source.to_string(),
+                Outcome::Failed { why } => why,
+            };
+            let equation = newton.worst_equation(work);
+            report.rejected += 1;
+            work.counts.rejected += 1;
+            work.factored = None;
+            failures += 1;
+            let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
+            if smaller < self.options.h_min {
+                return Err(StepError::NoConvergence { t: state.t, h, why, equation });
+            }
+            state.control.h_cap = 0.7 * h;
+            h = smaller;
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Time integration: schemes, Newton's method, step-size control, consistent starts.
+
+mod alpha;
+mod newton;
+mod options;
+mod scheme;
+mod start;
+mod workspace;
+
+pub use alpha::Alpha;
+pub use options::{NewtonPolicy, Options, Stepping};
+pub use scheme::{Coefficients, Scheme};
+pub use start::{Correction, consistent, prepare};
+pub use workspace::{Counts, Workspace};
+
+use crate::model::Model;
+use crate::solver::SolveError;
+use crate::state::State;
+
+/// What an accepted step cost and how good it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Its size [s].
+    pub h: f64,
+    /// Newton iterations of the accepted try.
+    pub iterations: u32,
+    /// Tries that were rejected before it, for their error or because Newton's method failed.
+    pub rejected: u32,
+    /// Estimated error over tolerance; 0 without error control.
+    pub error: f64,
+}
+
+/// Why a step could not be taken. The state is as it was before.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// Newton's method didn't converge, even with the smallest step.
+    #[error(
+        "at t = {t:.6} s the step did not converge, even with h = {h:.1e} s: {why}; largest residual in {equation}. \
+         Try a smaller `h` or `h_min`, a looser `tolerance`, more elements, or damping"
+    )]
+    NoConvergence {
+        /// Time at which the step started [s].
+        t: f64,
+        /// Smallest step tried [s].
+        h: f64,
+        /// What went wrong.
+        why: String,
+        /// The equation with the largest residual.
+        equation: String,
+    },
+    /// The linear system could not be solved.
+    #[error(
+        "at t = {t:.6} s: {source}, in {unknown}. Is a part left without mass or free to move without stiffness?"
+    )]
+    Linear {
+        /// Time [s].
+        t: f64,
+        /// What the solver said.
+        source: SolveError,
+        /// The unknown at the pivot.
+        unknown: String,
+    },
+    /// The start is not on the constraints and is too far away to be corrected without asking.
+    #[error("{0}")]
+    Inconsistent(String),
+    /// The scheme is refused, or its parameters are wrong.
+    #[error("{0}")]
+    Scheme(String),
+}
+
+/// One step of any implicit scheme. On error the state is left as it was.
+pub trait Integrator {
+    /// Takes one step of at most `h_max` [s], fewer where error control or convergence ask for it.
+    fn step(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        work: &mut Workspace,
+        h_max: f64,
+    ) -> Result<StepReport, StepError>;
+}

@@ -1,0 +1,185 @@
+//! Newton's method of one trial step.
+//!
+//! The unknowns are the new auxiliary acceleration and the multipliers: with `δq = β h² δa`, `δv = γ h δa`,
+//! `δv̇ = (1-αm)/(1-αf) δa` the matrix is `[(1-αm)/(1-αf) M + γ h C + β h² K, Gᵀ; G, 0]`, whose condition doesn't
+//! grow as the step shrinks (Bottasso, Bauchau & Cardona 2007), and β = 0 is no special case.
+
+use super::workspace::Which;
+use super::{Coefficients, NewtonPolicy, Workspace};
+use crate::model::Model;
+use crate::node::retract;
+use crate::solver::SolveError;
+use crate::state::{At, State};
+use crate::term::Weights;
+
+/// Unit round-off.
+const U: f64 = f64::EPSILON / 2.0;
+
+/// What Newton's method of a trial came to.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Outcome {
+    Converged { iterations: u32, eta: f64 },
+    Failed { why: String },
+    Linear(SolveError),
+}
+
+pub(crate) struct Newton<'a> {
+    pub model: &'a Model,
+    pub state: &'a State,
+    pub scheme: Coefficients,
+    pub h: f64,
+    pub policy: NewtonPolicy,
+    pub max_iterations: u32,
+    /// Tolerance of displacements [m].
+    pub tolerance: f64,
+    /// Whether every constraint is linear, so that one iteration meets it.
+    pub linear_constraints: bool,
+}
+
+impl Newton<'_> {
+    pub fn weights(&self) -> Weights {
+        let c = &self.scheme;
+        Weights { q: c.beta * self.h * self.h, v: c.gamma * self.h, a: c.mass() }
+    }
+
+    /// Sets positions, velocities and true accelerations of the trial from its auxiliary acceleration.
+    pub fn kinematics(&self, work: &mut Workspace) {
+        let (c, h, s, t) = (&self.scheme, self.h, self.state, &mut work.trial);
+        for i in 0..t.aux.len() {
+            let (old, new) = (t.aux_old[i], t.aux[i]);
+            t.d[i] = h * s.v[i] + h * h * ((0.5 - c.beta) * old + c.beta * new);
+            t.v[i] = s.v[i] + h * ((1.0 - c.gamma) * old + c.gamma * new);
+            t.a[i] = ((1.0 - c.alpha_m) * new + c.alpha_m * old - c.alpha_f * s.a[i]) / (1.0 - c.alpha_f);
+        }
+        retract(self.model.nodes(), &s.q, &t.d, &mut t.q);
+    }
+
+    /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.
+    fn evaluate(&self, work: &mut Workspace, matrix: bool) -> Result<(), SolveError> {
+        let weights = self.weights();
+        let at = At {
+            t: self.state.t + self.h,
+            q: &work.trial.q,
+            v: &work.trial.v,
+            a: &work.trial.a,
+            modes: &self.state.modes,
+            last: None,
+        };
+        self.model.assemble(&at, &work.trial.lambda, matrix.then_some(weights), &mut work.system);
+        if matrix { work.factor(self.model, weights) } else { Ok(()) }
+    }
+
+    /// Iterates from the prediction in `work.trial.aux` and `work.trial.lambda`.
+    pub fn solve(&self, work: &mut Workspace, mut eta: f64) -> Outcome {
+        let nv = self.model.velocities();
+        let beta_h2 = self.scheme.beta.max(1.0 / 12.0) * self.h * self.h;
+        let floor = 4.0 * U * self.model.length();
+        let stop = self.tolerance.max(floor);
+        let mut fresh = false;
+        let (mut last, mut theta) = (0.0, 0.0);
+        let mut rhs = std::mem::take(&mut work.y);
+        let mut outcome =
+            Outcome::Failed { why: format!("{} Newton iterations were not enough", self.max_iterations) };
+        self.kinematics(work);
+        for k in 0..self.max_iterations {
+            let stale = work.factored != Some(self.weights());
+            // a slow iteration with an old matrix gets a new one
+            let refresh = stale || self.policy == NewtonPolicy::Full || (theta > 0.5 && !fresh);
+            if let Err(e) = self.evaluate(work, refresh) {
+                outcome = Outcome::Linear(e);
+                break;
+            }
+            fresh = refresh || (fresh && k > 0);
+            work.counts.newton_iterations += 1;
+            rhs.clear();
+            rhs.extend(work.system.residual.iter().map(|r| -r));
+            for g in &mut rhs[nv..] {
+                *g /= self.scheme.beta * self.h * self.h;
+            }
+            if rhs.iter().any(|r| !r.is_finite()) {
+                outcome = Outcome::Failed { why: "the residual is not finite".into() };
+                break;
+            }
+            if let Err(e) = work.solve(self.model, Which::Iteration, &mut rhs) {
+                outcome = Outcome::Linear(e);
+                break;
+            }
+            for i in 0..nv {
+                work.trial.aux[i] += rhs[i];
+            }
+            for i in nv..rhs.len() {
+                work.trial.lambda[i - nv] += rhs[i];
+            }
+            self.kinematics(work);
+            // norm() needs work.y, which rhs took
+            work.y.resize(rhs.len(), 0.0);
+            let size = beta_h2 * work.norm(self.model, &rhs[..nv]);
+            if !size.is_finite() {
+                outcome = Outcome::Failed { why: "the iteration left the finite numbers".into() };
+                break;
+            }
+            if k > 0 {
+                theta = size / last;
+                eta = theta / (1.0 - theta).max(1e-3);
+            } else {
+                eta = eta.max(1e-16).powf(0.8);
+            }
+            last = size;
+            let done = size * eta.min(1e3) <= stop || size <= floor;
+            if done && self.constraints_hold(work) {
+                outcome = Outcome::Converged { iterations: k + 1, eta };
+                break;
+            }
+            if theta >= 1.0 && k > 0 {
+                // at the floor of rounding the iteration wanders; far from it, it diverges
+                if size <= 30.0 * stop && fresh {
+                    outcome = Outcome::Converged { iterations: k + 1, eta: 1.0 };
+                    break;
+                }
+                if fresh && (theta >= 2.0 || k > 4) {
+                    outcome = Outcome::Failed { why: "Newton's method diverges".into() };
+                    break;
+                }
+            }
+        }
+        work.y = rhs;
+        work.y.resize(self.model.structure().n, 0.0);
+        outcome
+    }
+
+    fn constraints_hold(&self, work: &mut Workspace) -> bool {
+        if self.linear_constraints {
+            return true;
+        }
+        let length = self.model.length();
+        let limit = (1e-10 * length).max(8.0 * U * length);
+        let mut g = std::mem::take(&mut work.trial.g);
+        let at = At {
+            t: self.state.t + self.h,
+            q: &work.trial.q,
+            v: &work.trial.v,
+            a: &work.trial.a,
+            modes: &self.state.modes,
+            last: None,
+        };
+        self.model.violations(&at, &mut work.system, &mut g);
+        let scale = self.model.row_scale();
+        let fine = g.iter().zip(&scale).all(|(g, s)| g.abs() <= limit * s);
+        work.trial.g = g;
+        fine
+    }
+
+    /// The equation with the largest residual of the last evaluation.
+    pub fn worst_equation(&self, work: &Workspace) -> String {
+        let mut worst = (0, 0.0);
+        for (i, r) in work.system.residual.iter().enumerate() {
+            if !r.is_finite() {
+                return self.model.unknown_name(i);
+            }
+            if r.abs() > worst.1 {
+                worst = (i, r.abs());
+            }
+        }
+        self.model.unknown_name(worst.0)
+    }
+}

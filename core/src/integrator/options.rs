@@ -1,0 +1,116 @@
+//! What a user may choose about time integration.
+
+use super::Scheme;
+use serde::{Deserialize, Serialize};
+
+/// How the step size is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Stepping {
+    /// Always the same step.
+    Fixed {
+        /// Step size [s].
+        #[serde(deserialize_with = "crate::quantity::time")]
+        h: f64,
+    },
+    /// As large as the tolerance allows.
+    Controlled {
+        /// Error of positions at the end of the horizon, relative to the reference length (the longest cable).
+        tolerance: f64,
+    },
+}
+
+/// When the iteration matrix is computed anew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum NewtonPolicy {
+    /// Kept as long as the iteration converges quickly.
+    #[default]
+    Modified,
+    /// At every iteration.
+    Full,
+}
+
+/// Options of time integration. The defaults suit cables from 8 to 8192 elements.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// How the step size is chosen.
+    pub stepping: Stepping,
+    /// When the iteration matrix is computed anew.
+    pub newton: NewtonPolicy,
+    /// Accept a scheme that is unstable on constrained systems, with a warning.
+    pub allow_unstable: bool,
+    /// Largest step [s].
+    #[serde(deserialize_with = "crate::quantity::time")]
+    pub h_max: f64,
+    /// Smallest step before the run gives up [s].
+    #[serde(deserialize_with = "crate::quantity::time")]
+    pub h_min: f64,
+    /// First step of error control [s].
+    #[serde(deserialize_with = "crate::quantity::time")]
+    pub h_start: f64,
+    /// Time over which errors add up [s]; 0 takes the length of the run.
+    #[serde(deserialize_with = "crate::quantity::time")]
+    pub horizon: f64,
+    /// Move an inconsistent start onto the constraints however far away it is.
+    pub project: bool,
+    /// Filter the accelerations of the start by the stiffness, as fine meshes need; only a textbook comparison of
+    /// the bare scheme wants them raw.
+    pub filter_start: bool,
+    /// Most Newton iterations of a step before it is repeated smaller.
+    pub max_iterations: u32,
+    /// Newton tolerance as a fraction of the default; smaller is tighter.
+    pub newton_tolerance: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            scheme: Scheme::default(),
+            stepping: Stepping::Controlled { tolerance: 1e-4 },
+            newton: NewtonPolicy::default(),
+            allow_unstable: false,
+            h_max: 1.0,
+            h_min: 1e-10,
+            h_start: 1e-3,
+            horizon: 0.0,
+            project: false,
+            filter_start: true,
+            max_iterations: 20,
+            newton_tolerance: 1.0,
+        }
+    }
+}
+
+impl Options {
+    /// What is wrong with the numbers, if anything.
+    pub fn check(&self) -> Result<(), String> {
+        self.scheme.coefficients()?;
+        let positive = |name: &str, x: f64| {
+            if x > 0.0 && x.is_finite() { Ok(()) } else { Err(format!("`{name}` must be positive, not {x}")) }
+        };
+        positive("h_max", self.h_max)?;
+        positive("h_min", self.h_min)?;
+        positive("h_start", self.h_start)?;
+        positive("newton_tolerance", self.newton_tolerance)?;
+        if !(self.horizon >= 0.0 && self.horizon.is_finite()) {
+            return Err(format!("`horizon` must not be negative, but is {}", self.horizon));
+        }
+        if self.max_iterations < 2 {
+            return Err("`max_iterations` must be at least 2".into());
+        }
+        match self.stepping {
+            Stepping::Fixed { h } => positive("h", h),
+            Stepping::Controlled { tolerance } => {
+                positive("tolerance", tolerance)?;
+                if self.scheme.coefficients()?.error_constant().abs() < 1e-6 {
+                    return Err("this scheme has no error estimate: choose a fixed step".into());
+                }
+                Ok(())
+            }
+        }
+    }
+}

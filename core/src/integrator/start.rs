@@ -1,0 +1,266 @@
+//! Consistent starts: positions and velocities on the constraints, accelerations and multipliers that fit.
+
+use super::workspace::Which;
+use super::{Alpha, Coefficients, StepError, Stepping, Workspace};
+use crate::model::Model;
+use crate::node::retract;
+use crate::solver::SolveError;
+use crate::state::{At, State};
+
+/// How far a start had to be moved, as root mean squares over the mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Correction {
+    /// Of positions [m].
+    pub position: f64,
+    /// Of velocities [m/s].
+    pub velocity: f64,
+}
+
+/// Relative displacement of a start onto the constraints that is taken as meant.
+const SMALL: f64 = 1e-3;
+/// Relative change of velocities that is taken as meant.
+const SMALL_VELOCITY: f64 = 0.05;
+
+/// Makes a state consistent and ready for the integrator: positions and velocities are moved to the nearest point
+/// on the constraints (in the norm of the mass), accelerations and multipliers are those of the equations of
+/// motion, and the memory of the integrator is set so that neither order nor multipliers suffer from the start.
+///
+/// # Errors
+/// The start is too far from the constraints and the options don't say `project`; or a linear system can't be
+/// solved (a part without mass, redundant constraints).
+pub fn prepare(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+    integrator: &Alpha,
+) -> Result<Correction, StepError> {
+    let options = integrator.options();
+    let linear =
+        |t: f64, source: SolveError, what: &str| StepError::Linear { t, source, unknown: what.into() };
+    work.forget();
+    state.control = Default::default();
+    state.lambda.fill(0.0);
+    state.a.fill(0.0);
+    let t = state.t;
+    work.ensure_mass(model, &state.at(), &state.lambda)
+        .map_err(|e| linear(t, e, "the mass matrix: every part needs a positive mass"))?;
+
+    let position = project_positions(model, state, work)
+        .map_err(|e| linear(t, e, "the constraints: are some redundant or impossible to meet?"))?;
+    let length = model.length();
+    if position > SMALL * length && !options.project {
+        return Err(StepError::Inconsistent(inconsistent(model, "positions", position, "m", state, work)));
+    }
+    let velocity = project_velocities(model, state, work)
+        .map_err(|e| linear(t, e, "the constraints: are some redundant?"))?;
+
+    let h = match options.stepping {
+        Stepping::Fixed { h } => h,
+        Stepping::Controlled { .. } => options.h_start,
+    };
+    let c = integrator.scheme();
+    let stiff = if options.filter_start { c.beta * h * h } else { 0.0 };
+    let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
+    accelerations(model, &state.at(), work, stiff, &mut a, &mut lambda)
+        .map_err(|e| linear(t, e, "the initial accelerations"))?;
+
+    let own = state.v.clone();
+    let scale = work.norm(model, &own) + (work.norm(model, &a) * length).sqrt();
+    if velocity > SMALL_VELOCITY * scale && !options.project {
+        return Err(StepError::Inconsistent(inconsistent(model, "velocities", velocity, "m/s", state, work)));
+    }
+    state.a.copy_from_slice(&a);
+    state.lambda.copy_from_slice(&lambda);
+    settle(model, state, work, c, h, stiff).map_err(|e| linear(t, e, "the initial accelerations"))?;
+    // norms need the plain mass matrix again
+    work.has_mass = false;
+    work.ensure_mass(model, &state.at(), &state.lambda).map_err(|e| linear(t, e, "the mass matrix"))?;
+    if state.is_finite() {
+        Ok(Correction { position, velocity })
+    } else {
+        Err(linear(t, SolveError::NotFinite, "the initial accelerations"))
+    }
+}
+
+/// Accelerations and multipliers for output: those of the index-1 system at the positions of `state` and at its
+/// velocities projected onto the constraints, which are returned with them. The integrator's own are noisier.
+pub fn consistent(
+    model: &Model,
+    state: &State,
+    work: &mut Workspace,
+) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>), SolveError> {
+    let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
+    let mut v = state.v.clone();
+    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+    if model.multipliers() > 0 {
+        let mut rhs = velocity_rhs(model, state, work);
+        work.solve(model, Which::Mass, &mut rhs)?;
+        for (v, d) in v.iter_mut().zip(&rhs) {
+            *v += d;
+        }
+    }
+    let zero = vec![0.0; model.velocities()];
+    let at = At { v: &v, a: &zero, ..state.at() };
+    solve_accelerations(model, &at, work, &mut a, &mut lambda)?;
+    Ok((v, a, lambda))
+}
+
+fn inconsistent(
+    model: &Model,
+    what: &str,
+    size: f64,
+    unit: &str,
+    state: &State,
+    work: &mut Workspace,
+) -> String {
+    let before = model.state();
+    let mut g = vec![0.0; model.multipliers()];
+    model.violations(&At { t: state.t, ..before.at() }, &mut work.system, &mut g);
+    let worst = (0..model.constraints().len())
+        .map(|c| (c, model.rows_of(c).map(|r| g[r].abs()).fold(0.0, f64::max)))
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    let name =
+        worst.map_or(String::new(), |(c, _)| format!(" (most in `{}`)", model.constraints()[c].name()));
+    format!(
+        "the initial {what} don't meet the constraints: meeting them moves the model by {size:.3e} {unit} \
+         (root mean square over the mass){name}. Correct the start, or set `project = true` to accept it"
+    )
+}
+
+/// Moves positions to the point on the constraints that is nearest in the norm of the mass.
+fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> Result<f64, SolveError> {
+    let (nv, m) = (model.velocities(), model.multipliers());
+    if m == 0 {
+        return Ok(0.0);
+    }
+    let start = state.q.clone();
+    let scale = model.row_scale();
+    let (mut d, mut md) = (vec![0.0; nv], vec![0.0; nv]);
+    let limit = 1e-14 * model.length();
+    for _ in 0..50 {
+        work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+        let g = &work.mass.residual[nv..];
+        let fine = g.iter().zip(&scale).all(|(g, s)| g.abs() <= limit * s);
+        let mut rhs: Vec<f64> = vec![0.0; nv];
+        rhs.extend(g.iter().map(|g| -g));
+        work.times_mass(model, &d, &mut md);
+        for (r, md) in rhs.iter_mut().zip(&md) {
+            *r = -md;
+        }
+        work.solve(model, Which::Mass, &mut rhs)?;
+        let step = work.norm(model, &rhs[..nv]);
+        for (d, r) in d.iter_mut().zip(&rhs) {
+            *d += r;
+        }
+        retract(model.nodes(), &start, &d, &mut state.q);
+        if !step.is_finite() {
+            return Err(SolveError::NotFinite);
+        }
+        if fine && step <= 10.0 * limit || step <= limit {
+            return Ok(work.norm(model, &d));
+        }
+    }
+    Err(SolveError::NotFinite)
+}
+
+/// Right-hand side that removes `G v + ∂g/∂t`.
+fn velocity_rhs(model: &Model, state: &State, work: &mut Workspace) -> Vec<f64> {
+    let (nv, m) = (model.velocities(), model.multipliers());
+    let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
+    model.rates(&state.at(), &mut rate, &mut bias);
+    let mut rhs = vec![0.0; nv];
+    rhs.extend(times_jacobian(model, work, &state.v).iter().zip(&rate).map(|(gv, gt)| -gv - gt));
+    rhs
+}
+
+/// `G x`, with the Jacobian in the mass system.
+fn times_jacobian(model: &Model, work: &mut Workspace, x: &[f64]) -> Vec<f64> {
+    let mut all = vec![0.0; model.structure().n];
+    work.times_mass(model, x, &mut all);
+    all.split_off(model.velocities())
+}
+
+fn project_velocities(model: &Model, state: &mut State, work: &mut Workspace) -> Result<f64, SolveError> {
+    if model.multipliers() == 0 {
+        return Ok(0.0);
+    }
+    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+    let mut rhs = velocity_rhs(model, state, work);
+    work.solve(model, Which::Mass, &mut rhs)?;
+    let size = work.norm(model, &rhs[..model.velocities()]);
+    for (v, d) in state.v.iter_mut().zip(&rhs) {
+        *v += d;
+    }
+    if size.is_finite() { Ok(size) } else { Err(SolveError::NotFinite) }
+}
+
+/// Solves `[M + stiff K, Gᵀ; G, 0] [a; λ] = [F; -bias]` at a place of evaluation.
+fn accelerations(
+    model: &Model,
+    at: &At<'_>,
+    work: &mut Workspace,
+    stiff: f64,
+    a: &mut [f64],
+    lambda: &mut [f64],
+) -> Result<(), SolveError> {
+    let zero = vec![0.0; model.velocities()];
+    let at = At { a: &zero, ..*at };
+    let known = lambda.to_vec();
+    work.assemble_mass(model, &at, &known, stiff, true)?;
+    solve_accelerations(model, &at, work, a, lambda)
+}
+
+fn solve_accelerations(
+    model: &Model,
+    at: &At<'_>,
+    work: &mut Workspace,
+    a: &mut [f64],
+    lambda: &mut [f64],
+) -> Result<(), SolveError> {
+    let (nv, m) = (model.velocities(), model.multipliers());
+    let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
+    model.rates(at, &mut rate, &mut bias);
+    let none = vec![0.0; m];
+    model.assemble(at, &none, None, &mut work.system);
+    let mut rhs: Vec<f64> = work.system.residual[..nv].iter().map(|r| -r).collect();
+    rhs.extend(bias.iter().map(|b| -b));
+    work.solve(model, Which::Mass, &mut rhs)?;
+    a.copy_from_slice(&rhs[..nv]);
+    lambda.copy_from_slice(&rhs[nv..]);
+    Ok(())
+}
+
+/// Sets the auxiliary acceleration a step's lead ahead of the true one, and gives the velocity the steady offset
+/// normal to the constraints that the scheme has: multipliers then start without ringing.
+fn settle(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+    c: &Coefficients,
+    h: f64,
+    stiff: f64,
+) -> Result<(), SolveError> {
+    let nv = model.velocities();
+    let e = 1e-2 * h;
+    let d: Vec<f64> = (0..nv).map(|i| e * state.v[i] + 0.5 * e * e * state.a[i]).collect();
+    let v: Vec<f64> = (0..nv).map(|i| state.v[i] + e * state.a[i]).collect();
+    let mut q = state.q.clone();
+    retract(model.nodes(), &state.q, &d, &mut q);
+    let at = At { t: state.t + e, q: &q, v: &v, ..state.at() };
+    let (mut later, mut lambda) = (vec![0.0; nv], state.lambda.clone());
+    accelerations(model, &at, work, stiff, &mut later, &mut lambda)?;
+    let jerk: Vec<f64> = later.iter().zip(&state.a).map(|(l, a)| (l - a) / e).collect();
+    for i in 0..nv {
+        state.aux[i] = state.a[i] + c.lead() * h * jerk[i];
+    }
+    if model.multipliers() > 0 {
+        work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+        let mut rhs = vec![0.0; nv];
+        rhs.extend(times_jacobian(model, work, &jerk));
+        work.solve(model, Which::Mass, &mut rhs)?;
+        for i in 0..nv {
+            state.v[i] += c.error_constant() * h * h * rhs[i];
+        }
+    }
+    Ok(())
+}

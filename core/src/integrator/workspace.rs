@@ -1,0 +1,206 @@
+//! Scratch and caches of an integration. Dropping it changes cost, never what is accepted.
+
+use crate::model::{Model, System};
+use crate::solver::{Guard, SolveError};
+use crate::state::At;
+use crate::term::Weights;
+
+/// What a run did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Counts {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Rejected tries.
+    pub rejected: u64,
+    /// Newton iterations, also of rejected tries.
+    pub newton_iterations: u64,
+    /// Evaluations of the iteration matrix.
+    pub jacobians: u64,
+    /// Factorisations.
+    pub factorizations: u64,
+    /// Factorisations without pivoting that were not good enough and were repeated with it.
+    pub fallbacks: u64,
+}
+
+/// Scratch of an integration: system, factors, mass matrix.
+pub struct Workspace {
+    /// Residual and iteration matrix.
+    pub system: System,
+    /// Factors of the iteration matrix.
+    pub(crate) solver: Guard,
+    /// For which weights and constraints the kept factors were made.
+    pub(crate) factored: Option<Weights>,
+    /// The mass matrix and its factors with the constraints' Jacobian; made when first needed.
+    pub(crate) mass: System,
+    pub(crate) mass_solver: Guard,
+    /// Whether `mass.values` holds the mass matrix of the start, for norms.
+    pub(crate) has_mass: bool,
+    pub(crate) total_mass: f64,
+    /// In elimination order.
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    /// Counters.
+    pub counts: Counts,
+    pub(crate) trial: Trial,
+}
+
+/// Vectors of a trial step.
+#[derive(Default)]
+pub(crate) struct Trial {
+    pub q: Vec<f64>,
+    pub v: Vec<f64>,
+    pub a: Vec<f64>,
+    pub aux: Vec<f64>,
+    pub aux_old: Vec<f64>,
+    pub lambda: Vec<f64>,
+    pub d: Vec<f64>,
+    pub g: Vec<f64>,
+}
+
+impl Workspace {
+    /// Scratch for a model.
+    pub fn new(model: &Model) -> Result<Self, SolveError> {
+        let s = model.structure();
+        let nv = model.velocities();
+        let zero = || vec![0.0; nv];
+        Ok(Workspace {
+            system: System::default(),
+            solver: Guard::new(s)?,
+            factored: None,
+            mass: System::default(),
+            mass_solver: Guard::new(s)?,
+            has_mass: false,
+            total_mass: 0.0,
+            x: vec![0.0; s.n],
+            y: vec![0.0; s.n],
+            counts: Counts::default(),
+            trial: Trial {
+                q: model.start.q.clone(),
+                v: zero(),
+                a: zero(),
+                aux: zero(),
+                aux_old: zero(),
+                lambda: vec![0.0; model.multipliers()],
+                d: zero(),
+                g: vec![0.0; model.multipliers()],
+            },
+        })
+    }
+
+    /// Forgets kept factors and the mass matrix: after an event, or to make runs independent of history.
+    pub fn forget(&mut self) {
+        self.factored = None;
+        self.has_mass = false;
+    }
+
+    /// Records the time of each term from now on.
+    pub fn profile(&mut self) {
+        self.system.profile = Some(Vec::new());
+    }
+
+    /// Brings a right-hand side (velocities, then multipliers) into elimination order, solves, and brings the
+    /// solution back.
+    pub(crate) fn solve(&mut self, model: &Model, which: Which, rhs: &mut [f64]) -> Result<(), SolveError> {
+        let s = model.structure();
+        for (i, &p) in s.position.iter().enumerate() {
+            self.x[p] = rhs[i];
+        }
+        match which {
+            Which::Iteration => self.solver.solve(s, &self.system.values, &mut self.x)?,
+            Which::Mass => self.mass_solver.solve(s, &self.mass.values, &mut self.x)?,
+        }
+        for (i, &p) in s.position.iter().enumerate() {
+            rhs[i] = self.x[p];
+        }
+        Ok(())
+    }
+
+    /// Factors the assembled iteration matrix.
+    pub(crate) fn factor(&mut self, model: &Model, weights: Weights) -> Result<(), SolveError> {
+        self.factored = None;
+        self.solver.factor(model.structure(), &self.system.values)?;
+        self.factored = Some(weights);
+        self.counts.jacobians += 1;
+        self.counts.factorizations += 1;
+        self.counts.fallbacks = self.solver.fallbacks + self.mass_solver.fallbacks;
+        Ok(())
+    }
+
+    /// Assembles the mass matrix `[M + stiff K, Gᵀ; G, 0]` and the residual at a state; with `factor` its factors too.
+    pub(crate) fn assemble_mass(
+        &mut self,
+        model: &Model,
+        at: &At<'_>,
+        lambda: &[f64],
+        stiff: f64,
+        factor: bool,
+    ) -> Result<(), SolveError> {
+        model.assemble(at, lambda, Some(Weights { q: stiff, v: 0.0, a: 1.0 }), &mut self.mass);
+        self.has_mass = stiff == 0.0;
+        if factor {
+            self.mass_solver.factor(model.structure(), &self.mass.values)?;
+            self.counts.factorizations += 1;
+        }
+        Ok(())
+    }
+
+    /// `M d` in the order of velocities, with the mass matrix last assembled.
+    pub(crate) fn times_mass(&mut self, model: &Model, d: &[f64], out: &mut [f64]) {
+        let s = model.structure();
+        self.x.fill(0.0);
+        for (i, d) in d.iter().enumerate() {
+            self.x[s.position[i]] = *d;
+        }
+        s.multiply(&self.mass.values, &self.x, &mut self.y);
+        for (i, o) in out.iter_mut().enumerate() {
+            *o = self.y[s.position[i]];
+        }
+    }
+
+    /// `sqrt(dᵀ M d / total mass)`: a length that doesn't depend on the mesh [m].
+    pub(crate) fn norm(&mut self, model: &Model, d: &[f64]) -> f64 {
+        let s = model.structure();
+        self.x.fill(0.0);
+        for (i, d) in d.iter().enumerate() {
+            self.x[s.position[i]] = *d;
+        }
+        s.multiply(&self.mass.values, &self.x, &mut self.y);
+        let sum: f64 = d.iter().enumerate().map(|(i, d)| d * self.y[s.position[i]]).sum();
+        // a NaN stays a NaN; rounding may make a tiny sum negative
+        if sum < 0.0 { 0.0 } else { (sum / self.total_mass).sqrt() }
+    }
+
+    /// Makes sure that norms have a mass matrix: assembled once, at the first state seen.
+    pub(crate) fn ensure_mass(
+        &mut self,
+        model: &Model,
+        at: &At<'_>,
+        lambda: &[f64],
+    ) -> Result<(), SolveError> {
+        if self.has_mass && self.total_mass > 0.0 {
+            return Ok(());
+        }
+        self.assemble_mass(model, at, lambda, 0.0, false)?;
+        // what a unit translation moves, as the mean over three directions: added mass depends on the direction
+        let mut unit = vec![0.0; model.velocities()];
+        let mut out = vec![0.0; model.velocities()];
+        let mut sum = 0.0;
+        for direction in 0..3 {
+            unit.fill(0.0);
+            for n in model.nodes().iter().filter(|n| n.kind.velocities() >= 3) {
+                unit[n.v + direction] = 1.0;
+            }
+            self.times_mass(model, &unit, &mut out);
+            sum += unit.iter().zip(&out).map(|(u, m)| u * m).sum::<f64>() / 3.0;
+        }
+        self.total_mass = sum;
+        if self.total_mass > 0.0 { Ok(()) } else { Err(SolveError::Singular(0)) }
+    }
+}
+
+/// Which matrix to solve with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Which {
+    Iteration,
+    Mass,
+}

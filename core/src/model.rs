@@ -1,0 +1,355 @@
+//! The model: nodes, terms, constraints and the structure of their equations. Immutable between events.
+
+use crate::constraint::{Constraint, RowKind};
+use crate::lane::Width;
+use crate::node::{Node, NodeId};
+use crate::part::Part;
+use crate::pattern::{Pattern, Rows, Structure};
+use crate::state::{At, Control, State};
+use crate::term::{Assembly, Energy, Power, Term, Weights};
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Nodes, terms and constraints, shared by reference. Remeshing makes a new one.
+pub struct Model {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) terms: Vec<Box<dyn Term>>,
+    pub(crate) constraints: Vec<Box<dyn Constraint>>,
+    pub(crate) parts: Vec<Arc<dyn Part>>,
+    pub(crate) start: Start,
+    structure: Structure,
+    velocities: usize,
+    /// First multiplier of each constraint, and one past the last.
+    rows: Vec<usize>,
+    /// Cliques of each term, then of each constraint.
+    cliques: Vec<Range<usize>>,
+    length: f64,
+    width: Width,
+}
+
+/// Where a run starts: configuration and velocities as the scene gives them.
+#[derive(Clone, Debug, Default)]
+pub struct Start {
+    /// Configuration.
+    pub q: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+    /// Modes.
+    pub modes: Vec<f64>,
+}
+
+/// Residual and iteration matrix of a model, with the scratch to assemble them.
+#[derive(Debug, Default)]
+pub struct System {
+    /// Residual: the equations of motion, then those of the constraints.
+    pub residual: Vec<f64>,
+    /// Values of the matrix, in the order of [`Structure::rows`].
+    pub values: Vec<f64>,
+    jacobian: Vec<f64>,
+    hessian: Vec<f64>,
+    /// Calls and time of each term, then of the constraints; only filled where profiling was asked for.
+    pub profile: Option<Vec<(u64, Duration)>>,
+}
+
+impl Model {
+    /// Puts a model together. `length` is the reference length of tolerances: that of the longest cable.
+    pub fn new(
+        nodes: Vec<Node>,
+        terms: Vec<Box<dyn Term>>,
+        constraints: Vec<Box<dyn Constraint>>,
+        parts: Vec<Arc<dyn Part>>,
+        start: Start,
+        length: f64,
+    ) -> Self {
+        let velocities = nodes.iter().map(|n| n.kind.velocities()).sum();
+        let mut pattern = Pattern::default();
+        let mut cliques = Vec::new();
+        for term in &terms {
+            let first = pattern.len();
+            term.pattern(&mut pattern);
+            cliques.push(first..pattern.len());
+        }
+        let mut rows = vec![0];
+        let mut touched = Vec::new();
+        for c in &constraints {
+            let (first, count) = (rows[rows.len() - 1], c.rows().len());
+            let dofs = c.nodes().iter().flat_map(|k| nodes[k.0 as usize].dofs());
+            let at = pattern.len();
+            pattern.clique(dofs.chain((first..first + count).map(|r| velocities + r)));
+            cliques.push(at..at + 1);
+            rows.push(first + count);
+            touched.push(Rows { count, nodes: c.nodes().to_vec() });
+        }
+        let symmetric = terms.iter().all(|t| t.symmetric());
+        let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
+        Model {
+            nodes,
+            terms,
+            constraints,
+            parts,
+            start,
+            structure,
+            velocities,
+            rows,
+            cliques,
+            length,
+            width: Width::best(),
+        }
+    }
+
+    /// Computes over another number of lanes; results differ by rounding only.
+    #[must_use]
+    pub fn with_width(mut self, width: Width) -> Self {
+        self.width = width;
+        self
+    }
+
+    /// The state in which the scene starts: as given, not yet consistent.
+    pub fn state(&self) -> State {
+        State {
+            t: 0.0,
+            q: self.start.q.clone(),
+            v: self.start.v.clone(),
+            a: vec![0.0; self.velocities],
+            aux: vec![0.0; self.velocities],
+            lambda: vec![0.0; self.multipliers()],
+            modes: self.start.modes.clone(),
+            control: Control::default(),
+        }
+    }
+
+    /// Its nodes.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+    /// One node.
+    pub fn node(&self, id: NodeId) -> &Node {
+        &self.nodes[id.0 as usize]
+    }
+    /// Its terms.
+    pub fn terms(&self) -> &[Box<dyn Term>] {
+        &self.terms
+    }
+    /// Its constraints.
+    pub fn constraints(&self) -> &[Box<dyn Constraint>] {
+        &self.constraints
+    }
+    /// Its named parts.
+    pub fn parts(&self) -> &[Arc<dyn Part>] {
+        &self.parts
+    }
+    /// The part of this name.
+    pub fn part(&self, name: &str) -> Option<&Arc<dyn Part>> {
+        self.parts.iter().find(|p| p.name() == name)
+    }
+    /// Number of velocities.
+    pub fn velocities(&self) -> usize {
+        self.velocities
+    }
+    /// Number of multipliers.
+    pub fn multipliers(&self) -> usize {
+        self.rows[self.rows.len() - 1]
+    }
+    /// The multipliers of one constraint.
+    pub fn rows_of(&self, constraint: usize) -> Range<usize> {
+        self.rows[constraint]..self.rows[constraint + 1]
+    }
+    /// Structure of the iteration matrix.
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+    /// The reference length of tolerances [m].
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// Evaluates the residual `[r + Gᵀλ; g]` into `sys` and, with weights, the iteration matrix
+    /// `[w.q (∂r/∂q + ∂(Gᵀλ)/∂q) + w.v ∂r/∂v + w.a ∂r/∂v̇, Gᵀ; G, 0]`.
+    pub fn assemble(&self, at: &At<'_>, lambda: &[f64], weights: Option<Weights>, sys: &mut System) {
+        let nv = self.velocities;
+        sys.residual.resize(self.structure.n, 0.0);
+        sys.residual.fill(0.0);
+        if weights.is_some() {
+            sys.values.resize(self.structure.entries(), 0.0);
+            sys.values.fill(0.0);
+        }
+        if let Some(p) = &mut sys.profile {
+            p.resize(self.terms.len() + 1, (0, Duration::ZERO));
+        }
+        for (k, term) in self.terms.iter().enumerate() {
+            let begin = sys.profile.as_ref().map(|_| Instant::now());
+            let mut out = Assembly {
+                residual: &mut sys.residual[..nv],
+                values: weights.map(|_| sys.values.as_mut_slice()),
+                weights: weights.unwrap_or_default(),
+                width: self.width,
+                symmetric: self.structure.symmetric,
+                cliques: &self.structure.cliques[self.cliques[k].clone()],
+                slots: &self.structure.slots,
+            };
+            term.add(at, &mut out);
+            if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
+                p[k].0 += 1;
+                p[k].1 += begin.elapsed();
+            }
+        }
+        let begin = sys.profile.as_ref().map(|_| Instant::now());
+        for c in 0..self.constraints.len() {
+            self.add_constraint(c, at, lambda, weights, sys);
+        }
+        if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
+            p[self.terms.len()].0 += 1;
+            p[self.terms.len()].1 += begin.elapsed();
+        }
+    }
+
+    fn add_constraint(
+        &self,
+        c: usize,
+        at: &At<'_>,
+        lambda: &[f64],
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
+        let (constraint, rows) = (&self.constraints[c], self.rows_of(c));
+        let m = rows.len();
+        let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+        let multipliers = &lambda[rows.clone()];
+        sys.jacobian.resize(n * m, 0.0);
+        let (motion, relation) = sys.residual.split_at_mut(self.velocities);
+        constraint.jacobian(&self.nodes, at, &mut relation[rows], &mut sys.jacobian);
+        let dofs = constraint.nodes().iter().flat_map(|&k| self.node(k).dofs());
+        for (j, dof) in dofs.enumerate() {
+            motion[dof] += (0..m).map(|r| sys.jacobian[r * n + j] * multipliers[r]).sum::<f64>();
+        }
+        let Some(w) = weights else { return };
+        sys.hessian.resize(n * n, 0.0);
+        if constraint.linear() || w.q == 0.0 {
+            sys.hessian.fill(0.0);
+        } else {
+            constraint.geometric(&self.nodes, at, multipliers, &mut sys.hessian);
+        }
+        let clique = self.structure.cliques[self.cliques[self.terms.len() + c].start];
+        let size = n + m;
+        for i in 0..size {
+            for j in 0..if self.structure.symmetric { i + 1 } else { size } {
+                let v = match (i < n, j < n) {
+                    (true, true) => w.q * sys.hessian[i * n + j],
+                    (false, true) => sys.jacobian[(i - n) * n + j],
+                    (true, false) => sys.jacobian[(j - n) * n + i],
+                    (false, false) => 0.0,
+                };
+                sys.values[self.structure.slots[clique + i * size + j] as usize] += v;
+            }
+        }
+    }
+
+    /// Values of the constraints alone.
+    pub fn violations(&self, at: &At<'_>, sys: &mut System, g: &mut [f64]) {
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+            sys.jacobian.resize(n * constraint.rows().len(), 0.0);
+            constraint.jacobian(&self.nodes, at, &mut g[self.rows_of(c)], &mut sys.jacobian);
+        }
+    }
+
+    /// `∂g/∂t` and the bias of the acceleration equations, for all rows.
+    pub fn rates(&self, at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            let rows = self.rows_of(c);
+            constraint.rates(&self.nodes, at, &mut rate[rows.clone()], &mut bias[rows]);
+        }
+    }
+
+    /// Generalised force of one constraint on one node: `-Gᵀλ`. Its first three entries are the force [N].
+    pub fn reaction(&self, constraint: usize, node: NodeId, at: &At<'_>, lambda: &[f64]) -> Vec<f64> {
+        let (c, rows) = (&self.constraints[constraint], self.rows_of(constraint));
+        let n: usize = c.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+        let (mut g, mut jac) = (vec![0.0; rows.len()], vec![0.0; rows.len() * n]);
+        c.jacobian(&self.nodes, at, &mut g, &mut jac);
+        let before: usize =
+            c.nodes().iter().take_while(|&&k| k != node).map(|&k| self.node(k).kind.velocities()).sum();
+        (before..before + self.node(node).kind.velocities())
+            .map(|j| -rows.clone().enumerate().map(|(r, row)| jac[r * n + j] * lambda[row]).sum::<f64>())
+            .collect()
+    }
+
+    /// Tolerance of each constraint row relative to that of lengths: positions in metres, directions as they are.
+    pub fn row_scale(&self) -> Vec<f64> {
+        let kinds = self.constraints.iter().flat_map(|c| c.rows().iter());
+        kinds.map(|k| if *k == RowKind::Position { 1.0 } else { 1.0 / self.length }).collect()
+    }
+
+    /// What an unknown is called in messages: its part or node, or the constraint's row.
+    pub fn unknown_name(&self, index: usize) -> String {
+        if index >= self.velocities {
+            let row = index - self.velocities;
+            let c = self.rows.partition_point(|&r| r <= row).saturating_sub(1);
+            return match self.constraints.get(c) {
+                Some(c_) => format!("constraint `{}`, equation {}", c_.name(), row - self.rows[c] + 1),
+                None => format!("multiplier {row}"),
+            };
+        }
+        let k = self.nodes.partition_point(|n| n.v <= index).saturating_sub(1);
+        let component = index - self.nodes[k].v;
+        let what = match component {
+            0..=2 => format!("position {}", ["x", "y", "z"][component]),
+            3..=5 => format!("slope or rotation {}", ["x", "y", "z"][component - 3]),
+            n => format!("coordinate {n}"),
+        };
+        let id = NodeId(k as u32);
+        match self.parts.iter().find_map(|p| p.place_of(id).map(|place| format!("`{}` {place}", p.name()))) {
+            Some(part) => format!("{part}, {what}"),
+            None => format!("node {k}, {what}"),
+        }
+    }
+
+    /// Kinetic and potential energy of all terms.
+    pub fn energy(&self, at: &At<'_>) -> Energy {
+        let mut e = Energy::default();
+        for t in &self.terms {
+            e += t.energy(at);
+        }
+        e
+    }
+
+    /// Power of all terms, and of the constraints that move with time: `λ · ∂g/∂t`.
+    pub fn power(&self, at: &At<'_>, lambda: &[f64]) -> Power {
+        let mut p = Power::default();
+        for t in &self.terms {
+            p += t.power(at);
+        }
+        let (mut rate, mut bias) = (vec![0.0; lambda.len()], vec![0.0; lambda.len()]);
+        self.rates(at, &mut rate, &mut bias);
+        p.supplied += rate.iter().zip(lambda).map(|(r, l)| r * l).sum::<f64>();
+        p
+    }
+
+    /// A state of another model of the same scene brought over to this one: each part interpolates its own. The
+    /// result still has to be made consistent.
+    pub fn carry(&self, old: &Model, state: &State) -> State {
+        let mut new = self.state();
+        new.t = state.t;
+        new.modes.clone_from(&state.modes);
+        for part in &self.parts {
+            if let Some(other) = old.part(part.name()) {
+                part.carry(&self.nodes, other.as_ref(), &state.at(), &mut new.q, &mut new.v);
+            }
+        }
+        new
+    }
+
+    /// First and last time for which every motion is defined.
+    pub fn range(&self) -> (f64, f64, String) {
+        let mut all = (f64::NEG_INFINITY, f64::INFINITY, String::new());
+        for c in &self.constraints {
+            let (a, b) = c.range();
+            if b < all.1 {
+                all.2 = c.name().to_string();
+            }
+            all = (a.max(all.0), b.min(all.1), all.2);
+        }
+        all
+    }
+}

@@ -1,0 +1,107 @@
+//! Parts: what a scene names, and what forces, constraints and records ask of it.
+
+use crate::lane::V3;
+use crate::marker::Marker;
+use crate::node::{Node, NodeId};
+use crate::state::At;
+use crate::station::Stations;
+use crate::term::Term;
+use std::sync::Arc;
+
+/// What a dead load is proportional to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Per {
+    /// Structural mass: the load is a force per kilogram, such as gravity [N/kg].
+    Mass,
+    /// Displaced volume: the load is a force per cubic metre, such as buoyancy [N/m³].
+    Volume,
+}
+
+/// What can be observed along a part, besides the motion of its markers.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Axial force [N].
+    Tension,
+    /// Axial strain [1].
+    Strain,
+    /// Curvature [1/m].
+    Curvature,
+    /// Bending moment [N m].
+    Moment,
+}
+
+impl Quantity {
+    /// Its SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Quantity::Tension => "N",
+            Quantity::Strain => "1",
+            Quantity::Curvature => "1/m",
+            Quantity::Moment => "N m",
+        }
+    }
+}
+
+/// A named part of a model: a cable, a point mass, a rigid body.
+pub trait Part: Send + Sync {
+    /// Its name in the scene.
+    fn name(&self) -> &str;
+    /// Its type, as in the scene file.
+    fn kind(&self) -> &'static str;
+    /// A marker at a named place: `start`, `end`, an arc length like `12.5`. The error says which places there are.
+    fn marker(&self, place: &Spot) -> Result<Marker, String>;
+    /// The points where distributed loads act, if it has any.
+    fn stations(&self) -> Option<Arc<dyn Stations>> {
+        None
+    }
+    /// The term of a load in a constant direction, proportional to mass or displaced volume.
+    fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>>;
+    /// Something along the part, at unstretched arc length `s`.
+    fn observe(&self, _what: Quantity, _s: f64, _at: &At<'_>) -> Option<f64> {
+        None
+    }
+    /// Position and velocity at unstretched arc length `s`.
+    fn point(&self, _s: f64, _at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
+        None
+    }
+    /// Points of its centre line, for pictures.
+    fn line(&self, _at: &At<'_>) -> Vec<V3<f64>> {
+        Vec::new()
+    }
+    /// Unstretched length, or size [m].
+    fn length(&self) -> f64;
+    /// Where on the part a node is, for messages; `None` if it isn't on it.
+    fn place_of(&self, node: NodeId) -> Option<String>;
+    /// Its material points where nodes are, by unstretched arc length.
+    fn mesh(&self) -> &[f64] {
+        &[]
+    }
+    /// Its state carried over to this part of another model, where the mesh may differ: sets the coordinates and
+    /// velocities of this part's nodes by interpolation of `old`.
+    fn carry(&self, _nodes: &[Node], _old: &dyn Part, _at: &At<'_>, _q: &mut [f64], _v: &mut [f64]) {}
+}
+
+/// A place on a part, as written in a scene behind the part's name.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spot {
+    /// `hose.end`: a name.
+    Named(String),
+    /// `hose@12.5m`: an unstretched arc length [m].
+    Along(f64),
+}
+
+/// Splits `hose.end`, `hose@12.5 m` or `hose` into part and place.
+pub fn split_marker(text: &str) -> Result<(&str, Spot), String> {
+    if let Some((part, along)) = text.split_once('@') {
+        let along = along.trim();
+        let s = along.parse().or_else(|_| crate::quantity::kind::LENGTH.parse(along))?;
+        return Ok((part.trim(), Spot::Along(s)));
+    }
+    Ok(match text.split_once('.') {
+        Some((part, place)) => (part.trim(), Spot::Named(place.trim().to_string())),
+        None => (text.trim(), Spot::Named(String::new())),
+    })
+}

@@ -1,0 +1,99 @@
+//! Records: named, unit-carrying outputs of a run.
+
+use crate::model::Model;
+use crate::state::At;
+use crate::term::{Energy, Power};
+
+/// What a record may look at: the model at a consistent instant.
+pub struct Sample<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Configuration, velocities and accelerations, consistent with the constraints.
+    pub at: At<'a>,
+    /// Multipliers from the index-1 system.
+    pub lambda: &'a [f64],
+    /// Energies and accumulated work.
+    pub audit: &'a Audit,
+}
+
+/// The balance of energy since the start of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Audit {
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Potential energy [J].
+    pub potential: f64,
+    /// Work done on the model by loads and motions since the start [J].
+    pub supplied: f64,
+    /// Energy carried in by material since the start [J].
+    pub carried: f64,
+    /// Energy dissipated since the start [J].
+    pub dissipated: f64,
+    /// Energy at the start [J].
+    pub initial: f64,
+    /// Largest energy or work that occurred, to compare the imbalance with [J].
+    pub scale: f64,
+}
+
+impl Audit {
+    /// Starts at an energy.
+    pub fn start(e: Energy) -> Self {
+        let initial = e.kinetic + e.potential;
+        Audit { kinetic: e.kinetic, potential: e.potential, initial, ..Audit::default() }
+    }
+    /// Goes on over a step `h` by the trapezoidal rule.
+    pub fn add(&mut self, h: f64, e: Energy, before: Power, after: Power) {
+        self.kinetic = e.kinetic;
+        self.potential = e.potential;
+        self.supplied += 0.5 * h * (before.supplied + after.supplied);
+        self.carried += 0.5 * h * (before.carried + after.carried);
+        self.dissipated += 0.5 * h * (before.dissipated + after.dissipated);
+        let all = [
+            e.kinetic,
+            (e.potential + e.kinetic - self.initial),
+            self.supplied,
+            self.dissipated,
+            self.carried,
+        ];
+        for x in all {
+            self.scale = self.scale.max(x.abs());
+        }
+    }
+    /// What the balance misses: energy gained beyond what was supplied and not dissipated [J]. Numerical damping
+    /// makes it negative.
+    pub fn imbalance(&self) -> f64 {
+        self.kinetic + self.potential - self.initial - self.supplied - self.carried + self.dissipated
+    }
+}
+
+/// A named column of the history.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Name, such as `hose.end.x`.
+    pub name: String,
+    /// SI unit, such as `m`.
+    pub unit: String,
+}
+
+impl Column {
+    /// A column.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Column { name: name.into(), unit: unit.into() }
+    }
+}
+
+/// An output: what it is called, and its value at an instant.
+pub trait Record: Send {
+    /// Its title in pictures.
+    fn title(&self) -> String;
+    /// Its name in the summary, such as `hose.end`.
+    fn name(&self) -> String;
+    /// Its columns.
+    fn columns(&self) -> Vec<Column>;
+    /// Whether it needs consistent accelerations and multipliers, which cost a factorisation per sample.
+    fn needs_forces(&self) -> bool {
+        false
+    }
+    /// Appends one value per column.
+    fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>);
+}

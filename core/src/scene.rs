@@ -1,0 +1,239 @@
+//! A scene: what the user wrote, as specs and options. Scene files and Rust code make the same thing.
+
+use crate::build::{BuildError, Builder};
+use crate::integrator::Options;
+use crate::model::Model;
+use crate::record::Record;
+use crate::spec::{ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
+use crate::statics::StaticsOptions;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Water {
+    /// Density [kg/m³].
+    #[serde(deserialize_with = "crate::quantity::density")]
+    pub density: f64,
+    /// Dynamic viscosity [Pa s].
+    #[serde(deserialize_with = "crate::quantity::viscosity")]
+    pub viscosity: f64,
+    /// Velocity of the water, the same everywhere [m/s].
+    #[serde(deserialize_with = "crate::quantity::vec3::speed")]
+    pub current: [f64; 3],
+    /// Velocity of the water by height, instead of `current`: piecewise linear between the levels, constant beyond.
+    pub profile: Vec<Level>,
+}
+
+/// Velocity of the water at one height.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Level {
+    /// Height [m].
+    #[serde(deserialize_with = "crate::quantity::length")]
+    pub z: f64,
+    /// Velocity of the water there [m/s].
+    #[serde(deserialize_with = "crate::quantity::vec3::speed")]
+    pub velocity: [f64; 3],
+}
+
+impl Default for Water {
+    fn default() -> Self {
+        Water { density: 1025.0, viscosity: 1.08e-3, current: [0.0; 3], profile: Vec::new() }
+    }
+}
+
+/// What is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Analysis {
+    /// Motion in time.
+    #[default]
+    Dynamics,
+    /// A sequence of equilibria while time runs as the load factor.
+    Statics,
+}
+
+/// What is run and how long.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Run {
+    /// What is computed.
+    pub analysis: Analysis,
+    /// Length of the run [s]; in statics the end of the load factor.
+    #[serde(deserialize_with = "crate::quantity::time")]
+    pub duration: f64,
+    /// Interval of the history [s]; 0 takes a thousandth of the duration.
+    #[serde(deserialize_with = "crate::quantity::time")]
+    pub output: f64,
+    /// Start a dynamic run from the equilibrium at t = 0 instead of the configuration as laid.
+    pub from_equilibrium: bool,
+    /// Keep account of energy and work at every step.
+    pub audit: bool,
+    /// Number of snapshots in the pictures of shapes.
+    pub snapshots: usize,
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Run {
+            analysis: Analysis::Dynamics,
+            duration: 1.0,
+            output: 0.0,
+            from_equilibrium: false,
+            audit: true,
+            snapshots: 9,
+        }
+    }
+}
+
+impl Run {
+    /// The interval of the history [s].
+    pub fn interval(&self) -> f64 {
+        if self.output > 0.0 { self.output } else { self.duration / 1000.0 }
+    }
+    /// What is wrong with the numbers, if anything.
+    pub fn check(&self) -> Result<(), BuildError> {
+        crate::build::positive("duration", self.duration)?;
+        crate::build::not_negative("output", self.output)?;
+        Ok(())
+    }
+}
+
+/// A scene: lists of specs, and options. Build a [`Model`] of it, or run it with `ropewalk::simulate`.
+#[derive(Debug, Default)]
+pub struct Scene {
+    /// One line that says what it shows.
+    pub title: String,
+    /// More about it.
+    pub description: String,
+    /// The water, if there is any.
+    pub water: Option<Water>,
+    /// Cables, bodies, masses.
+    pub elements: Vec<Box<dyn ElementSpec>>,
+    /// What holds them.
+    pub constraints: Vec<Box<dyn ConstraintSpec>>,
+    /// What acts on them.
+    pub forces: Vec<Box<dyn ForceSpec>>,
+    /// Prescribed motions, by name.
+    pub motions: Vec<Box<dyn MotionSpec>>,
+    /// Outputs.
+    pub records: Vec<Box<dyn RecordSpec>>,
+    /// What is run and how long.
+    pub run: Run,
+    /// How it is integrated.
+    pub solver: Options,
+    /// How equilibria are found.
+    pub statics: StaticsOptions,
+}
+
+/// An error and the spec that it belongs to, as kind and index.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{error}")]
+pub struct SceneError {
+    /// The spec, if the error belongs to one.
+    pub spec: Option<(SpecKind, usize)>,
+    /// What is wrong.
+    pub error: BuildError,
+}
+
+/// New meshes: for each named part the unstretched arc lengths of its nodes.
+pub type Plan = BTreeMap<String, Vec<f64>>;
+
+impl Scene {
+    /// An empty scene.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds an element.
+    pub fn element(&mut self, spec: impl ElementSpec + 'static) -> &mut Self {
+        self.elements.push(Box::new(spec));
+        self
+    }
+    /// Adds a constraint.
+    pub fn constraint(&mut self, spec: impl ConstraintSpec + 'static) -> &mut Self {
+        self.constraints.push(Box::new(spec));
+        self
+    }
+    /// Adds a force.
+    pub fn force(&mut self, spec: impl ForceSpec + 'static) -> &mut Self {
+        self.forces.push(Box::new(spec));
+        self
+    }
+    /// Adds a motion.
+    pub fn motion(&mut self, spec: impl MotionSpec + 'static) -> &mut Self {
+        self.motions.push(Box::new(spec));
+        self
+    }
+    /// Adds a record.
+    pub fn record(&mut self, spec: impl RecordSpec + 'static) -> &mut Self {
+        self.records.push(Box::new(spec));
+        self
+    }
+
+    /// Builds the model.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with the spec that it belongs to.
+    pub fn build(&self) -> Result<Model, SceneError> {
+        self.build_on(&Plan::new())
+    }
+
+    /// Builds the model with other meshes for some parts: what remeshing while running does. Markers and records
+    /// bind by name, so they hold on to the same material. [`Model::carry`] brings the state over.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub fn build_on(&self, plan: &Plan) -> Result<Model, SceneError> {
+        let mut b = Builder::new();
+        let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
+        let whole = |error| SceneError { spec: None, error };
+        b.set_water(self.water.clone());
+        for (part, mesh) in plan {
+            b.remesh(part, mesh.clone());
+        }
+        for (k, m) in self.motions.iter().enumerate() {
+            m.build().and_then(|motion| b.add_motion(m.name(), motion)).map_err(of(SpecKind::Motion, k))?;
+        }
+        for c in &self.constraints {
+            b.pin(&c.markers());
+        }
+        for f in &self.forces {
+            b.pin(&f.markers());
+        }
+        for (k, e) in self.elements.iter().enumerate() {
+            e.build(&mut b).map_err(of(SpecKind::Element, k))?;
+        }
+        for (k, c) in self.constraints.iter().enumerate() {
+            c.build(&mut b).map_err(of(SpecKind::Constraint, k))?;
+        }
+        for (k, f) in self.forces.iter().enumerate() {
+            f.build(&mut b).map_err(of(SpecKind::Force, k))?;
+        }
+        self.run.check().map_err(whole)?;
+        self.solver.check().map_err(|e| whole(BuildError::new(e)))?;
+        let model = b.finish().map_err(whole)?;
+        let (_, last, name) = model.range();
+        if last < self.run.duration {
+            return Err(whole(BuildError::new(format!(
+                "the motion of `{name}` is defined up to t = {last} s, but the run goes on to {} s: extend its \
+                 table or shorten `duration`",
+                self.run.duration
+            ))));
+        }
+        Ok(model)
+    }
+
+    /// The records of the scene for its model.
+    ///
+    /// # Errors
+    /// The first record that can't be made.
+    pub fn records(&self, model: &Model) -> Result<Vec<Box<dyn Record>>, SceneError> {
+        let make = |(k, r): (usize, &Box<dyn RecordSpec>)| {
+            r.build(model).map_err(|error| SceneError { spec: Some((SpecKind::Record, k)), error })
+        };
+        self.records.iter().enumerate().map(make).collect()
+    }
+}

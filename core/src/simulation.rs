@@ -1,0 +1,319 @@
+//! A run in time: steps, outputs, events, the audit of energy.
+
+use crate::dense::Dense;
+use crate::integrator::{
+    Alpha, Correction, Integrator, Options, StepError, StepReport, Workspace, consistent, prepare,
+};
+use crate::model::Model;
+use crate::record::{Audit, Sample};
+use crate::state::State;
+use crate::term::Power;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// What an event does once its time is located.
+pub enum Action {
+    /// Nothing: it was only of interest.
+    Continue,
+    /// The state (a mode, a velocity) was changed: the integrator starts anew from it.
+    Restart,
+    /// The mesh changes: the simulation goes on with another model.
+    Remesh(Box<Model>),
+    /// The run is over.
+    Stop,
+}
+
+/// A scalar function of the state whose change of sign is located in time, and what happens there.
+pub trait Event: Send {
+    /// Its name in reports.
+    fn name(&self) -> String;
+    /// The function.
+    fn value(&self, model: &Model, state: &State) -> f64;
+    /// Which way the sign has to change: +1 upwards, -1 downwards, 0 either.
+    fn direction(&self) -> i8 {
+        0
+    }
+    /// What happens there.
+    fn act(&mut self, model: &Model, state: &mut State) -> Action;
+}
+
+/// Sees every accepted step and every sample, read-only: recorders, progress bars.
+pub trait Observer {
+    /// A step was accepted.
+    fn step(&mut self, _model: &Model, _state: &State, _report: &StepReport) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// Whether samples need consistent accelerations and multipliers, at the price of a factorisation each.
+    fn needs_forces(&self) -> bool {
+        false
+    }
+    /// A sample at an instant of the output interval.
+    fn sample(&mut self, _sample: &Sample<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// An event was located.
+    fn event(&mut self, _name: &str, _t: f64) {}
+}
+
+/// An observer that looks away.
+impl Observer for () {}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// It reached its end.
+    Done,
+    /// An observer or an event stopped it.
+    Stopped {
+        /// Who stopped it.
+        by: String,
+    },
+}
+
+/// A model in motion.
+///
+/// Holds the model, its state, the integrator and its scratch. `advance` takes it to a time.
+pub struct Simulation {
+    /// The model.
+    pub model: Arc<Model>,
+    /// The state.
+    pub state: State,
+    /// Scratch and counters.
+    pub work: Workspace,
+    /// The integrator.
+    pub integrator: Alpha,
+    /// What the start had to be corrected by.
+    pub correction: Correction,
+    /// The balance of energy.
+    pub audit: Audit,
+    keep_audit: bool,
+    power: Power,
+    events: Vec<(Box<dyn Event>, f64)>,
+    previous: State,
+    scratch: State,
+}
+
+impl Simulation {
+    /// Starts a model from where its scene puts it. `duration` is the length of the run [s].
+    ///
+    /// # Errors
+    /// As [`Simulation::from`].
+    pub fn new(model: Model, options: &Options, duration: f64) -> Result<Self, StepError> {
+        let state = model.state();
+        Self::from(model, state, options, duration)
+    }
+
+    /// Starts a model from a state, which is made consistent.
+    ///
+    /// # Errors
+    /// The scheme is refused, the start is too far from the constraints, or a linear system can't be solved.
+    pub fn from(model: Model, mut state: State, options: &Options, duration: f64) -> Result<Self, StepError> {
+        let integrator = Alpha::new(options, &model, duration)?;
+        let mut work = Workspace::new(&model).map_err(|source| StepError::Linear {
+            t: state.t,
+            source,
+            unknown: "the structure of the equations".into(),
+        })?;
+        let correction = prepare(&model, &mut state, &mut work, &integrator)?;
+        let audit = Audit::start(model.energy(&state.at()));
+        let power = model.power(&state.at(), &state.lambda);
+        let (previous, scratch) = (state.clone(), state.clone());
+        Ok(Simulation {
+            model: Arc::new(model),
+            state,
+            work,
+            integrator,
+            correction,
+            audit,
+            keep_audit: true,
+            power,
+            events: Vec::new(),
+            previous,
+            scratch,
+        })
+    }
+
+    /// Switches the audit of energy, which costs an evaluation of all energies and powers per step.
+    pub fn keep_audit(&mut self, on: bool) {
+        self.keep_audit = on;
+    }
+
+    /// Adds an event.
+    pub fn add_event(&mut self, event: Box<dyn Event>) {
+        let value = event.value(&self.model, &self.state);
+        self.events.push((event, value));
+    }
+
+    /// Goes on to time `end`, with a sample now and every `interval` seconds.
+    ///
+    /// # Errors
+    /// A step that couldn't be taken; everything up to there has been sampled, and the state is the last good one.
+    pub fn advance(
+        &mut self,
+        end: f64,
+        interval: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<End, StepError> {
+        let start = self.state.t;
+        let mut next = 0u64;
+        let sample_time = |k: u64| start + interval * k as f64;
+        // times that differ by less than this are the same: no step of the size of rounding
+        let same =
+            |a: f64, b: f64| (a - b).abs() <= 1e-9 * interval.min(end - start) + 4.0 * f64::EPSILON * b.abs();
+        if self.sample(observer, None)?.is_break() {
+            return Ok(End::Stopped { by: "observer".into() });
+        }
+        next += 1;
+        while self.state.t < end && !same(self.state.t, end) {
+            self.previous.clone_from(&self.state);
+            let left = end - self.state.t;
+            let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left)?;
+            if same(self.state.t, end) {
+                self.state.t = end;
+            }
+            let fired = self.locate();
+            self.account();
+            if observer.step(&self.model, &self.state, &report).is_break() {
+                return Ok(End::Stopped { by: "interrupt".into() });
+            }
+            while next as f64 * interval <= (end - start) * (1.0 + 1e-12) {
+                let t = sample_time(next);
+                if t > self.state.t && !same(t, self.state.t) {
+                    break;
+                }
+                if self.sample(observer, Some(t))?.is_break() {
+                    return Ok(End::Stopped { by: "observer".into() });
+                }
+                next += 1;
+            }
+            if let Some(k) = fired
+                && let Some(end) = self.fire(k, observer)?
+            {
+                return Ok(end);
+            }
+        }
+        if !same(sample_time(next - 1), end) && self.sample(observer, None)?.is_break() {
+            return Ok(End::Stopped { by: "observer".into() });
+        }
+        Ok(End::Done)
+    }
+
+    fn account(&mut self) {
+        if self.keep_audit {
+            let power = self.model.power(&self.state.at(), &self.state.lambda);
+            let h = self.state.t - self.previous.t;
+            self.audit.add(h, self.model.energy(&self.state.at()), self.power, power);
+            self.power = power;
+        }
+    }
+
+    /// Samples at time `t` inside the last step, or at the present state.
+    fn sample(&mut self, observer: &mut dyn Observer, t: Option<f64>) -> Result<ControlFlow<()>, StepError> {
+        match t {
+            Some(t) if t < self.state.t => {
+                Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+            }
+            _ => {
+                self.scratch.clone_from(&self.state);
+                self.scratch.t = t.unwrap_or(self.state.t);
+            }
+        }
+        if observer.needs_forces() {
+            let (v, a, lambda) =
+                consistent(&self.model, &self.scratch, &mut self.work).map_err(|source| {
+                    StepError::Linear {
+                        t: self.scratch.t,
+                        source,
+                        unknown: "the accelerations for output".into(),
+                    }
+                })?;
+            self.scratch.v = v;
+            self.scratch.a = a;
+            self.scratch.lambda = lambda;
+        }
+        let sample = Sample {
+            model: &self.model,
+            at: self.scratch.at(),
+            lambda: &self.scratch.lambda,
+            audit: &self.audit,
+        };
+        Ok(observer.sample(&sample))
+    }
+
+    /// Finds the first event inside the last step and moves the state there.
+    fn locate(&mut self) -> Option<usize> {
+        let mut first: Option<(usize, f64)> = None;
+        for k in 0..self.events.len() {
+            let (event, before) = (&self.events[k].0, self.events[k].1);
+            let after = event.value(&self.model, &self.state);
+            let crossed = match event.direction() {
+                1 => before < 0.0 && after >= 0.0,
+                -1 => before > 0.0 && after <= 0.0,
+                _ => before * after < 0.0 || (after == 0.0 && before != 0.0),
+            };
+            if !crossed {
+                continue;
+            }
+            let dense = Dense::new(&self.model, &self.previous, &self.state);
+            let (mut low, mut high) = (self.previous.t, self.state.t);
+            let tolerance = 4.0 * f64::EPSILON * high.abs() + 1e-12 * (high - low);
+            while high - low > tolerance {
+                let mid = 0.5 * (low + high);
+                if mid <= low || mid >= high {
+                    break;
+                }
+                dense.at(mid, &mut self.scratch);
+                let value = event.value(&self.model, &self.scratch);
+                if (value > 0.0) == (before > 0.0) && value != 0.0 { low = mid } else { high = mid }
+            }
+            if first.is_none_or(|(_, t)| high < t) {
+                first = Some((k, high));
+            }
+        }
+        let fired = match first {
+            Some((k, t)) => {
+                Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+                let control = self.state.control.clone();
+                std::mem::swap(&mut self.state, &mut self.scratch);
+                self.state.control = control;
+                Some(k)
+            }
+            None => None,
+        };
+        for k in 0..self.events.len() {
+            self.events[k].1 = self.events[k].0.value(&self.model, &self.state);
+        }
+        fired
+    }
+
+    fn fire(&mut self, k: usize, observer: &mut dyn Observer) -> Result<Option<End>, StepError> {
+        observer.event(&self.events[k].0.name(), self.state.t);
+        let h = self.state.control.h_last;
+        match self.events[k].0.act(&self.model, &mut self.state) {
+            Action::Continue => {}
+            Action::Stop => return Ok(Some(End::Stopped { by: self.events[k].0.name() })),
+            Action::Restart => {}
+            Action::Remesh(model) => {
+                self.state = model.carry(&self.model, &self.state);
+                self.work = Workspace::new(&model).map_err(|source| StepError::Linear {
+                    t: self.state.t,
+                    source,
+                    unknown: "the structure of the new mesh".into(),
+                })?;
+                self.model = Arc::from(model);
+            }
+        }
+        // history doesn't reach across an event
+        let modes = self.state.modes.clone();
+        prepare(&self.model, &mut self.state, &mut self.work, &self.integrator)?;
+        self.state.modes = modes;
+        self.state.control.h_next = 0.1 * h;
+        self.previous.clone_from(&self.state);
+        self.scratch.clone_from(&self.state);
+        self.power = self.model.power(&self.state.at(), &self.state.lambda);
+        for (event, value) in &mut self.events {
+            *value = event.value(&self.model, &self.state);
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,102 @@
+//! Sparse LU with partial pivoting, by faer: the fallback, and the general unsymmetric path.
+
+use super::{LinearSolver, SolveError};
+use crate::pattern::Structure;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::lu::{LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Spec};
+
+/// LU with partial pivoting. Takes symmetric storage too, which it expands.
+#[derive(Default)]
+pub struct Lu {
+    symbolic: Option<SymbolicLu<usize>>,
+    numeric: Option<NumericLu<usize, f64>>,
+    memory: Option<MemBuffer>,
+    columns: Vec<usize>,
+    rows: Vec<usize>,
+    /// For each full entry, the stored entry that it comes from.
+    source: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl LinearSolver for Lu {
+    fn name(&self) -> &'static str {
+        "LU with pivoting (faer)"
+    }
+
+    fn analyse(&mut self, s: &Structure) -> Result<(), SolveError> {
+        let mut full: Vec<(usize, usize, usize)> = Vec::new();
+        for c in 0..s.n {
+            for p in s.columns[c]..s.columns[c + 1] {
+                full.push((c, s.rows[p], p));
+                if s.symmetric && s.rows[p] != c {
+                    full.push((s.rows[p], c, p));
+                }
+            }
+        }
+        full.sort_unstable();
+        self.columns = vec![0; s.n + 1];
+        for &(c, _, _) in &full {
+            self.columns[c + 1] += 1;
+        }
+        for c in 0..s.n {
+            self.columns[c + 1] += self.columns[c];
+        }
+        self.rows = full.iter().map(|e| e.1).collect();
+        self.source = full.iter().map(|e| e.2).collect();
+        self.values = vec![0.0; full.len()];
+        let symbolic = factorize_symbolic_lu(
+            SymbolicSparseColMatRef::new_checked(s.n, s.n, &self.columns, None, &self.rows),
+            LuSymbolicParams {
+                // the supernodal variant allocates at every refactorisation
+                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SIMPLICIAL,
+                ..Default::default()
+            },
+        )
+        .map_err(|_| SolveError::Memory)?;
+        let need = symbolic
+            .factorize_numeric_lu_scratch::<f64>(Par::Seq, Spec::default())
+            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        self.memory = Some(MemBuffer::try_new(need).map_err(|_| SolveError::Memory)?);
+        self.numeric = Some(NumericLu::new());
+        self.symbolic = Some(symbolic);
+        Ok(())
+    }
+
+    fn factor(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError> {
+        let (Some(symbolic), Some(numeric), Some(memory)) =
+            (&self.symbolic, &mut self.numeric, &mut self.memory)
+        else {
+            return Err(SolveError::Memory);
+        };
+        // faer would return NaN factors without a word
+        if values.iter().any(|v| !v.is_finite()) {
+            return Err(SolveError::NotFinite);
+        }
+        for (v, &p) in self.values.iter_mut().zip(&self.source) {
+            *v = values[p];
+        }
+        let structure = SymbolicSparseColMatRef::new_checked(s.n, s.n, &self.columns, None, &self.rows);
+        let a = SparseColMatRef::new(structure, &self.values);
+        symbolic
+            .factorize_numeric_lu(numeric, a, Par::Seq, MemStack::new(memory), Spec::default())
+            .map(|_| ())
+            .map_err(|e| match e {
+                faer::sparse::linalg::LuError::SymbolicSingular { index } => SolveError::Singular(index),
+                faer::sparse::linalg::LuError::Generic(_) => SolveError::Memory,
+            })
+    }
+
+    fn solve(&mut self, x: &mut [f64]) {
+        if let (Some(symbolic), Some(numeric), Some(memory)) =
+            (&self.symbolic, &self.numeric, &mut self.memory)
+        {
+            let n = x.len();
+            let x = MatMut::from_column_major_slice_mut(x, n, 1);
+            let lu = LuRef::new_unchecked(symbolic, numeric);
+            lu.solve_in_place_with_conj(Conj::No, x, Par::Seq, MemStack::new(memory));
+        }
+    }
+}

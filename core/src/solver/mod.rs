@@ -1,0 +1,201 @@
+//! Linear solvers behind one trait, and the guard that uses them: factor, check the backward error, refine once,
+//! and fall back to LU with pivoting.
+
+mod dense;
+mod ldlt;
+mod lu;
+mod profile;
+
+pub use dense::Dense;
+pub use ldlt::Ldlt;
+pub use lu::Lu;
+pub use profile::Profile;
+
+use crate::pattern::Structure;
+
+/// Why a linear system could not be solved.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// A pivot is zero: the matrix is singular.
+    #[error("the matrix is singular at unknown {0} of the elimination order")]
+    Singular(usize),
+    /// The matrix or the solution holds a NaN or an infinity.
+    #[error("the matrix or the solution is not finite")]
+    NotFinite,
+    /// Not enough memory for the factors.
+    #[error("not enough memory for the factors")]
+    Memory,
+}
+
+/// A direct solver of `A x = b` for matrices of one [`Structure`].
+///
+/// `analyse` fixes everything that depends on the structure alone; `factor` and `solve` don't allocate after their
+/// first call. Vectors are in elimination order.
+pub trait LinearSolver: Send {
+    /// Name in manifests.
+    fn name(&self) -> &'static str;
+    /// Prepares for a structure.
+    fn analyse(&mut self, s: &Structure) -> Result<(), SolveError>;
+    /// Factors the matrix with these values, in the order of `Structure::rows`.
+    fn factor(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError>;
+    /// Replaces `x`, holding the right-hand side, by the solution.
+    fn solve(&mut self, x: &mut [f64]);
+    /// Number of negative pivots, for solvers that know: by Sylvester's law the number of negative eigenvalues of a
+    /// symmetric matrix.
+    fn negative_pivots(&self) -> Option<usize> {
+        None
+    }
+}
+
+/// Solves systems of one structure and never returns a bad solution unnoticed.
+pub struct Guard {
+    primary: Box<dyn LinearSolver>,
+    fallback: Lu,
+    fallback_ready: bool,
+    use_fallback: bool,
+    unchecked: bool,
+    b: Vec<f64>,
+    r: Vec<f64>,
+    d: Vec<f64>,
+    /// Factorisations so far.
+    pub factorizations: u64,
+    /// How often LU with pivoting had to step in.
+    pub fallbacks: u64,
+}
+
+/// Backward error that a factorisation without pivoting is allowed before it is refined [componentwise].
+const REFINE: f64 = 1e-12;
+/// Backward error after refinement from which on LU with pivoting takes over.
+const GIVE_UP: f64 = 1e-9;
+
+impl Guard {
+    /// The solver that suits a structure: LDLᵀ for symmetric matrices; for unsymmetric ones LU along the profile,
+    /// or faer's sparse LU where the profile would fill in much more.
+    pub fn new(s: &Structure) -> Result<Self, SolveError> {
+        let primary: Box<dyn LinearSolver> = if s.symmetric {
+            Box::new(Ldlt::default())
+        } else if Profile::size(s) < 6 * s.entries() {
+            Box::new(Profile::default())
+        } else {
+            Box::new(Lu::default())
+        };
+        Self::with(s, primary)
+    }
+
+    /// A guard around a solver of one's own choice.
+    pub fn with(s: &Structure, mut primary: Box<dyn LinearSolver>) -> Result<Self, SolveError> {
+        primary.analyse(s)?;
+        let zero = vec![0.0; s.n];
+        Ok(Guard {
+            primary,
+            fallback: Lu::default(),
+            fallback_ready: false,
+            use_fallback: false,
+            unchecked: true,
+            b: zero.clone(),
+            r: zero.clone(),
+            d: zero,
+            factorizations: 0,
+            fallbacks: 0,
+        })
+    }
+
+    /// Name of the solver in use.
+    pub fn name(&self) -> &'static str {
+        self.primary.name()
+    }
+
+    /// Factors the matrix.
+    pub fn factor(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError> {
+        self.factorizations += 1;
+        self.unchecked = true;
+        self.use_fallback = false;
+        match self.primary.factor(s, values) {
+            Ok(()) => Ok(()),
+            Err(_) => self.fall_back(s, values),
+        }
+    }
+
+    fn fall_back(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError> {
+        self.fallbacks += 1;
+        if !self.fallback_ready {
+            self.fallback.analyse(s)?;
+            self.fallback_ready = true;
+        }
+        self.fallback.factor(s, values)?;
+        self.use_fallback = true;
+        Ok(())
+    }
+
+    fn raw_solve(&mut self, x: &mut [f64]) {
+        if self.use_fallback { self.fallback.solve(x) } else { self.primary.solve(x) }
+    }
+
+    /// Replaces `x`, holding the right-hand side, by the solution. The first solution with each factorisation is
+    /// checked, refined once if need be, and taken from LU with pivoting if that doesn't help.
+    pub fn solve(&mut self, s: &Structure, values: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
+        if !self.unchecked {
+            self.raw_solve(x);
+            return if x.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(SolveError::NotFinite) };
+        }
+        self.b.copy_from_slice(x);
+        self.raw_solve(x);
+        let mut error = self.backward_error(s, values, x);
+        if !(error <= REFINE) && error.is_finite() {
+            let mut dx = std::mem::take(&mut self.r);
+            self.raw_solve(&mut dx);
+            for (x, d) in x.iter_mut().zip(&dx) {
+                *x -= d;
+            }
+            self.r = dx;
+            error = self.backward_error(s, values, x);
+        }
+        if !(error <= GIVE_UP) && !self.use_fallback {
+            self.fall_back(s, values)?;
+            x.copy_from_slice(&self.b);
+            self.raw_solve(x);
+            error = self.backward_error(s, values, x);
+        }
+        self.unchecked = false;
+        if error <= 1e-4 { Ok(()) } else { Err(SolveError::NotFinite) }
+    }
+
+    /// Number of negative pivots, where the solver in use knows it.
+    pub fn negative_pivots(&self) -> Option<usize> {
+        if self.use_fallback { None } else { self.primary.negative_pivots() }
+    }
+
+    /// Componentwise backward error `max |A x - b|ᵢ / (|A||x| + |b|)ᵢ`; leaves `A x - b` in `r`.
+    fn backward_error(&mut self, s: &Structure, values: &[f64], x: &[f64]) -> f64 {
+        for i in 0..s.n {
+            self.r[i] = -self.b[i];
+            self.d[i] = self.b[i].abs();
+        }
+        for c in 0..s.n {
+            for p in s.columns[c]..s.columns[c + 1] {
+                let (i, y) = (s.rows[p], values[p] * x[c]);
+                self.r[i] += y;
+                self.d[i] += y.abs();
+                if s.symmetric && i != c {
+                    let y = values[p] * x[i];
+                    self.r[c] += y;
+                    self.d[c] += y.abs();
+                }
+            }
+        }
+        let mut worst = 0.0;
+        for i in 0..s.n {
+            // max() would swallow a NaN
+            if !self.r[i].is_finite() || !self.d[i].is_finite() {
+                return f64::INFINITY;
+            }
+            if self.d[i] > 0.0 && self.r[i].abs() > worst * self.d[i] {
+                worst = self.r[i].abs() / self.d[i];
+            }
+        }
+        worst
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,117 @@
+use super::*;
+use crate::node::{Node, NodeId, NodeKind};
+use crate::pattern::{Pattern, Rows};
+
+struct Rng(u64);
+impl Rng {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    }
+}
+
+/// A chain of slope nodes, held at both ends, with slopes `stiff` times stiffer than positions.
+fn chain(n: usize, stiff: f64, symmetric: bool) -> (Structure, Vec<f64>) {
+    let nodes: Vec<Node> =
+        (0..n).map(|k| Node { kind: NodeKind::Slope, q: 6 * k, v: 6 * k, shared: false }).collect();
+    let mut p = Pattern::default();
+    for k in 0..n - 1 {
+        p.clique(6 * k..6 * k + 12);
+    }
+    p.clique((0..3).chain(6 * n..6 * n + 3));
+    p.clique((6 * n - 6..6 * n - 3).chain(6 * n + 3..6 * n + 6));
+    let rows =
+        [Rows { count: 3, nodes: vec![NodeId(0)] }, Rows { count: 3, nodes: vec![NodeId(n as u32 - 1)] }];
+    let s = Structure::new(&nodes, &rows, &p, symmetric);
+    let mut values = vec![0.0; s.entries()];
+    let mut rng = Rng(0x9E37_79B9_7F4A_7C15);
+    let scale = |i: usize| if i % 6 < 3 { 1.0 } else { stiff };
+    let mut add = |clique: usize, size: usize, i: usize, j: usize, v: f64| {
+        values[s.slots[s.cliques[clique] + size * i + j] as usize] += v;
+    };
+    for e in 0..n - 1 {
+        let a: Vec<f64> = (0..144).map(|_| rng.next()).collect();
+        for i in 0..12 {
+            for j in 0..if symmetric { i + 1 } else { 12 } {
+                let dot: f64 = (0..12).map(|k| a[12 * i + k] * a[12 * j + k]).sum();
+                let twist = if symmetric { 0.0 } else { 0.2 * (i as f64 - j as f64).sin() };
+                let v = dot + twist + if i == j { 0.5 } else { 0.0 };
+                add(e, 12, i, j, v * scale(i) * scale(j));
+            }
+        }
+    }
+    for clique in [n - 1, n] {
+        for i in 0..3 {
+            add(clique, 6, 3 + i, i, 1.0);
+            if !symmetric {
+                add(clique, 6, i, 3 + i, 1.0);
+            }
+        }
+    }
+    (s, values)
+}
+
+#[test]
+fn sparse_solvers_agree_with_the_dense_oracle() {
+    for symmetric in [true, false] {
+        for stiff in [1.0, 1e3] {
+            let (s, values) = chain(12, stiff, symmetric);
+            let b: Vec<f64> = (0..s.n).map(|i| 1.0 + (i % 7) as f64).collect();
+            let mut exact = b.clone();
+            let mut dense = Guard::with(&s, Box::new(Dense::default())).unwrap();
+            dense.factor(&s, &values).unwrap();
+            dense.solve(&s, &values, &mut exact).unwrap();
+            let mut solvers: Vec<Box<dyn LinearSolver>> =
+                vec![Box::new(Lu::default()), Box::new(Profile::default())];
+            if symmetric {
+                solvers.push(Box::new(Ldlt::default()));
+            }
+            for solver in solvers {
+                let mut guard = Guard::with(&s, solver).unwrap();
+                // twice: the second solve goes without the check
+                guard.factor(&s, &values).unwrap();
+                for _ in 0..2 {
+                    let mut x = b.clone();
+                    guard.solve(&s, &values, &mut x).unwrap();
+                    assert_eq!(guard.fallbacks, 0, "{}", guard.name());
+                    for i in 0..s.n {
+                        approx::assert_relative_eq!(x[i], exact[i], max_relative = 1e-7, epsilon = 1e-9);
+                    }
+                }
+                if let Some(negative) = guard.negative_pivots().filter(|_| symmetric) {
+                    assert_eq!(negative, 6, "one negative pivot for each constraint row: {}", guard.name());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn zero_pivot_falls_back_to_pivoting() {
+    // [0 1; 1 0] has no LU without pivoting
+    let nodes = [Node { kind: NodeKind::Scalars(2), q: 0, v: 0, shared: false }];
+    let mut p = Pattern::default();
+    p.clique(0..2);
+    let s = Structure::new(&nodes, &[], &p, true);
+    let mut values = vec![0.0; s.entries()];
+    values[s.slots[1] as usize] = 1.0;
+    let mut guard = Guard::new(&s).unwrap();
+    guard.factor(&s, &values).unwrap();
+    let mut x = vec![3.0, 5.0];
+    guard.solve(&s, &values, &mut x).unwrap();
+    assert_eq!(x, vec![5.0, 3.0]);
+    assert_eq!(guard.fallbacks, 1);
+}
+
+#[test]
+fn singular_and_nan_are_errors() {
+    let (s, mut values) = chain(4, 1.0, false);
+    values.fill(0.0);
+    let mut guard = Guard::new(&s).unwrap();
+    let mut x = vec![1.0; s.n];
+    assert!(guard.factor(&s, &values).is_err() || guard.solve(&s, &values, &mut x).is_err());
+    values.fill(f64::NAN);
+    assert!(guard.factor(&s, &values).is_err() || guard.solve(&s, &values, &mut x).is_err());
+}

@@ -1,0 +1,155 @@
+//! The cable element: elastic force of one longitudinal and one transverse model, and the consistent mass.
+
+use super::longitudinal::{Longitudinal, add_axial, axial_energy};
+use super::quadrature::Rule;
+use super::reduced::Reduced;
+use super::shape::natural;
+use super::transverse::{Transverse, bending_energy};
+use ropewalk_core::{Batch, Element, Energy, Local, Real, Share, Weights};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::marker::PhantomData;
+
+/// What one cable element is made of; over lanes with `R` other than `f64`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CableParams<R = f64> {
+    /// Unstretched length `L` [m].
+    pub l: R,
+    /// Axial stiffness `EA` [N].
+    pub ea: R,
+    /// Bending stiffness `EI` [N m²].
+    pub ei: R,
+    /// Mass per unstretched length `ρA`, structure and the water inside [kg/m].
+    pub rho_a: R,
+}
+
+impl CableParams {
+    /// Refuses what no cable can be made of.
+    pub fn check(&self) -> Result<(), String> {
+        if !(self.l.is_finite() && self.l > 0.0) {
+            return Err(format!("the length of a cable element must be positive, not {} m", self.l));
+        }
+        for (name, x) in [("EA", self.ea), ("EI", self.ei), ("rhoA", self.rho_a)] {
+            if !(x.is_finite() && x >= 0.0) {
+                return Err(format!("{name} of a cable element must not be negative: {x}"));
+            }
+        }
+        Ok(())
+    }
+    /// The same in every lane.
+    pub fn lanes<R: Real>(&self) -> CableParams<R> {
+        CableParams { l: R::of(self.l), ea: R::of(self.ea), ei: R::of(self.ei), rho_a: R::of(self.rho_a) }
+    }
+}
+
+/// A two-node cable element without torsion, in the absolute nodal coordinate formulation: the position of its curve
+/// is a cubic, and its dofs are position and slope at both ends.
+///
+/// Use it for ropes, hoses, chains and thin beams that stretch and bend however far they like. It carries its
+/// elastic force and its consistent mass; everything else (weight, drag, damping, a bent rest shape) is a pool of its
+/// own. Which models go together is told by [`legal`](super::legal).
+#[derive(Clone, Copy, Debug)]
+pub struct Cable<L, T, Q> {
+    /// What it is made of.
+    pub params: CableParams,
+    models: PhantomData<(L, T, Q)>,
+}
+
+impl<L: Longitudinal, T: Transverse, Q: Rule> Cable<L, T, Q> {
+    /// An element of these properties.
+    pub fn new(params: CableParams) -> Self {
+        Cable { params, models: PhantomData }
+    }
+}
+
+impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q> {
+    type Lanes<R: Real> = CableParams<R>;
+    const SYMMETRIC: bool = L::SYMMETRIC;
+
+    fn label() -> String {
+        format!("cable {}+{} {}", L::LABEL, T::LABEL, Q::LABEL)
+    }
+
+    #[inline(always)]
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> CableParams<R> {
+        CableParams {
+            l: batch.get(|e| e.params.l),
+            ea: batch.get(|e| e.params.ea),
+            ei: batch.get(|e| e.params.ei),
+            rho_a: batch.get(|e| e.params.rho_a),
+        }
+    }
+
+    #[inline(always)]
+    fn add<R: Real, const TANGENT: bool>(
+        p: &CableParams<R>,
+        x: &Local<R, 12, 12>,
+        w: &Weights,
+        out: &mut Share<R, 12>,
+    ) {
+        let il = R::of(1.0) / p.l;
+        let q = natural(&x.q, il);
+        let ea_l = p.ea * p.l;
+        let mut local = Reduced::zero();
+        if TANGENT && x.smooth {
+            let last = natural(&x.last, il);
+            add_axial::<L, Q::Axial, R, TANGENT, true>(ea_l, &q, &last, &mut local);
+        } else {
+            add_axial::<L, Q::Axial, R, TANGENT, false>(ea_l, &q, &q, &mut local);
+        }
+        T::add::<Q::Bending, R, TANGENT>(p.ei, p.l, il, &q, &mut local);
+        local.spread_force(il, out);
+        if TANGENT {
+            if L::SYMMETRIC {
+                local.spread_symmetric(il, R::of(w.q), out);
+            } else {
+                local.spread_all(il, R::of(w.q), out);
+            }
+        }
+        add_mass::<R, TANGENT>(p, &x.a, w.a, out);
+    }
+
+    fn energy(p: &CableParams, x: &Local<f64, 12, 12>) -> Energy {
+        let q = natural(&x.q, 1.0 / p.l);
+        let m = mass(p);
+        let mut kinetic = 0.0;
+        for i in 0..4 {
+            for j in 0..4 {
+                for c in 0..3 {
+                    kinetic += 0.5 * m[i][j] * x.v[3 * i + c] * x.v[3 * j + c];
+                }
+            }
+        }
+        let potential =
+            axial_energy::<L, Q::Axial>(p.ea * p.l, &q) + bending_energy::<T, Q::Bending>(p.ei, p.l, &q);
+        Energy { kinetic, potential }
+    }
+}
+
+/// Consistent mass `ρA ∫ SᵀS dx`; each entry stands for a multiple of the 3×3 unit matrix.
+#[inline(always)]
+pub fn mass<R: Real>(p: &CableParams<R>) -> [[R; 4]; 4] {
+    let m = p.rho_a * p.l * R::of(1.0 / 420.0);
+    let (ml, mll) = (m * p.l, m * p.l * p.l);
+    let (near, far) = (R::of(156.0) * m, R::of(54.0) * m);
+    let (a, b) = (R::of(22.0) * ml, R::of(13.0) * ml);
+    let (c, d) = (R::of(4.0) * mll, R::of(-3.0) * mll);
+    [[near, a, far, -b], [a, c, b, d], [far, b, near, -a], [-b, d, -a, c]]
+}
+
+/// Adds `M v̇`, and with `TANGENT` `w M`.
+#[inline(always)]
+fn add_mass<R: Real, const TANGENT: bool>(p: &CableParams<R>, a: &[R; 12], w: f64, out: &mut Share<R, 12>) {
+    let m = mass(p);
+    for i in 0..4 {
+        for j in 0..4 {
+            let wm = R::of(w) * m[i][j];
+            for c in 0..3 {
+                out.r[3 * i + c] = m[i][j].fma(a[3 * j + c], out.r[3 * i + c]);
+                if TANGENT {
+                    out.k[3 * i + c][3 * j + c] += wm;
+                }
+            }
+        }
+    }
+}

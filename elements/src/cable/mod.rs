@@ -1,0 +1,36 @@
+//! Cable elements in the absolute nodal coordinate formulation (ANCF), without torsion.
+//!
+//! - [`shape`], [`quadrature`], [`reduced`]: the curve, and the nine natural variables in which kernels work.
+//! - [`longitudinal`] with L1 … L4 and [`transverse`] with T1 … T3: the strain measures, a file for each.
+//! - [`Cable`]: elastic force and mass. [`CableModel`] chooses its models at run time, [`push_cable`] makes it.
+
+mod element;
+mod l1;
+mod l1n;
+mod l2;
+mod l3;
+mod l4;
+pub mod longitudinal;
+mod model;
+pub mod quadrature;
+pub mod reduced;
+pub mod shape;
+mod t1;
+mod t2;
+mod t3;
+pub mod transverse;
+
+pub use element::{Cable, CableParams, mass};
+pub use l1::L1;
+pub use l1n::L1n;
+pub use l2::L2;
+pub use l3::L3;
+pub use l4::L4;
+pub use model::{
+    CableModel, Integration, LongitudinalModel, Sink, TransverseModel, WithModels, legal, push_cable,
+    with_models,
+};
+pub use quadrature::{Full, LockingFree};
+pub use t1::T1;
+pub use t2::T2;
+pub use t3::T3;

@@ -1,0 +1,25 @@
+//! What a run leaves behind, and what it shows while it computes.
+//!
+//! - [`RunFolder`]: the folder of a run; nothing in it is ever overwritten by a later run.
+//! - [`Table`], [`TableWriter`]: time histories, as CSV.
+//! - [`LinePlot`], [`ShapePlot`]: SVG pictures that need no fonts and no display.
+//! - [`Summary`]: the few numbers that say how a run ended, as JSON.
+//! - [`Progress`], [`Interrupt`], [`Stopwatch`]: the progress bar, Ctrl-C, and CPU time.
+
+mod error;
+mod folder;
+mod interrupt;
+mod plot;
+mod progress;
+mod stopwatch;
+mod summary;
+mod table;
+
+pub use error::OutputError;
+pub use folder::{RunFolder, write_atomic};
+pub use interrupt::Interrupt;
+pub use plot::{LinePlot, Mark, Plane, Series, ShapePlot, Snapshot};
+pub use progress::{Progress, ProgressMode};
+pub use stopwatch::{Elapsed, Stopwatch};
+pub use summary::{Counts, EnergyTotals, ProfileEntry, Summary};
+pub use table::{Column, Table, TableWriter};

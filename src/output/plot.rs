@@ -1,0 +1,16 @@
+//! SVG plots of results, publishable as they are and readable on any machine: no font files, no
+//! display, colours that colour-blind readers can tell apart.
+//!
+//! - [`LinePlot`]: quantities over time, or one over another.
+//! - [`ShapePlot`]: a cable in a plane at several times.
+
+mod axis;
+mod canvas;
+mod colour;
+mod frame;
+mod line;
+mod shape;
+mod thin;
+
+pub use line::{LinePlot, Mark, Series};
+pub use shape::{Plane, ShapePlot, Snapshot};

@@ -1,0 +1,270 @@
+//! A cable in a plane at several times.
+
+use std::path::Path;
+
+use super::axis::Axis;
+use super::canvas::Canvas;
+use super::colour;
+use super::frame::{Area, Bar, Entry, Frame};
+use super::line::Mark;
+use super::thin;
+use crate::output::{OutputError, write_atomic};
+
+/// Points of all snapshots together, as in a line plot.
+const BUDGET: usize = 16_000;
+/// More snapshots than this are not drawn but an even choice of them.
+const MOST_SNAPSHOTS: usize = 200;
+/// With more snapshots than this a colour bar takes the place of the legend.
+const MOST_ENTRIES: usize = 8;
+const LINE_WIDTH: f64 = 1.5;
+
+/// A cable at one time.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Snapshot {
+    /// Time, in seconds.
+    pub t: f64,
+    /// Points along the cable in the plane, in metres and in order. One that isn't finite breaks the
+    /// line.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// A plane in which a cable is looked at; z is up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plane {
+    /// From above: y over x.
+    Top,
+    /// From the side: z over x.
+    SideX,
+    /// From the end: z over y.
+    SideY,
+}
+
+impl Plane {
+    /// The point as it is seen in this plane.
+    pub fn project(self, point: [f64; 3]) -> (f64, f64) {
+        let [x, y, z] = point;
+        match self {
+            Self::Top => (x, y),
+            Self::SideX => (x, z),
+            Self::SideY => (y, z),
+        }
+    }
+
+    /// Labels of the horizontal and the vertical axis.
+    pub fn labels(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Top => ("x [m]", "y [m]"),
+            Self::SideX => ("x [m]", "z [m]"),
+            Self::SideY => ("y [m]", "z [m]"),
+        }
+    }
+}
+
+/// A cable in a plane at several times, coloured from early (dark) to late (light), with the same
+/// scale on both axes.
+///
+/// Use it to show how a hose swings or a line is paid out.
+///
+/// ```
+/// # use ropewalk::output::{OutputError, Plane, ShapePlot};
+/// let hanging = (0.0, vec![[0.0, 0.0, 0.0], [0.0, 0.0, -30.0]]);
+/// let swung_out = (2.5, vec![[0.0, 0.0, 0.0], [10.0, 0.0, -28.0]]);
+/// let plot = ShapePlot::of_positions("Free swing", Plane::SideX, &[hanging, swung_out]);
+/// assert!(plot.svg()?.contains("2.5 s"));
+/// # Ok::<(), OutputError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ShapePlot {
+    /// Title above the plot; may be empty.
+    pub title: String,
+    /// Horizontal axis, such as `x [m]`.
+    pub x_label: String,
+    /// Vertical axis, such as `z [m]`.
+    pub y_label: String,
+    /// The cable at several times, in order.
+    pub snapshots: Vec<Snapshot>,
+}
+
+impl ShapePlot {
+    /// The plot of positions in space: for each time, in seconds, the points along the cable, in
+    /// metres.
+    pub fn of_positions(title: impl Into<String>, plane: Plane, positions: &[(f64, Vec<[f64; 3]>)]) -> Self {
+        let (x_label, y_label) = plane.labels();
+        let snapshot = |(t, points): &(f64, Vec<[f64; 3]>)| Snapshot {
+            t: *t,
+            points: points.iter().map(|p| plane.project(*p)).collect(),
+        };
+        Self {
+            title: title.into(),
+            x_label: x_label.into(),
+            y_label: y_label.into(),
+            snapshots: positions.iter().map(snapshot).collect(),
+        }
+    }
+
+    /// Writes the picture to a file.
+    ///
+    /// # Errors
+    /// As [`svg`](Self::svg), or a file that can't be written.
+    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
+        write_atomic(path, &self.svg()?)
+    }
+
+    /// The picture as SVG text.
+    ///
+    /// # Errors
+    /// [`OutputError::EmptyPlot`] without a finite point.
+    pub fn svg(&self) -> Result<String, OutputError> {
+        let shown = self.shown();
+        let points = || {
+            let points = shown.iter().flat_map(|s| s.points.iter());
+            points.filter(|(x, y)| x.is_finite() && y.is_finite())
+        };
+        let x = Axis::covering(points().map(|p| p.0), false, 0.05);
+        let y = Axis::covering(points().map(|p| p.1), false, 0.05);
+        let (Some(x), Some(y)) = (x, y) else {
+            return Err(OutputError::EmptyPlot { title: self.title.clone() });
+        };
+        let frame = Frame {
+            title: &self.title,
+            x_label: &self.x_label,
+            y_label: &self.y_label,
+            x,
+            y,
+            equal: true,
+            legend: legend(&shown),
+            bar: bar(&shown),
+        };
+        frame.draw(|canvas, area| {
+            for snapshot in &shown {
+                let colour = colour::ramp(age(snapshot, &shown));
+                draw_snapshot(canvas, area, snapshot, BUDGET / shown.len(), colour)?;
+            }
+            Ok(())
+        })
+    }
+
+    fn shown(&self) -> Vec<&Snapshot> {
+        let all: Vec<_> = self.snapshots.iter().filter(|s| s.t.is_finite()).collect();
+        if all.len() <= MOST_SNAPSHOTS {
+            return all;
+        }
+        let place = |i: usize| i * (all.len() - 1) / (MOST_SNAPSHOTS - 1);
+        (0..MOST_SNAPSHOTS).map(|i| all[place(i)]).collect()
+    }
+}
+
+fn draw_snapshot(
+    canvas: &mut Canvas<'_>,
+    area: &Area,
+    snapshot: &Snapshot,
+    budget: usize,
+    colour: plotters::style::RGBColor,
+) -> Result<(), OutputError> {
+    let pixels: Vec<_> = snapshot.points.iter().map(|p| area.pixel(*p)).collect();
+    for run in thin::runs(&pixels, budget) {
+        match run[..] {
+            [only] => canvas.dot(only, 2.5, colour)?,
+            _ => canvas.line(run, LINE_WIDTH, colour)?,
+        }
+    }
+    Ok(())
+}
+
+fn span(shown: &[&Snapshot]) -> (f64, f64) {
+    let start = (f64::INFINITY, f64::NEG_INFINITY);
+    shown.iter().fold(start, |(low, high), s| (low.min(s.t), high.max(s.t)))
+}
+
+/// 0 for the earliest snapshot, 1 for the latest.
+fn age(snapshot: &Snapshot, shown: &[&Snapshot]) -> f64 {
+    let (first, last) = span(shown);
+    if last > first { (snapshot.t - first) / (last - first) } else { 0.0 }
+}
+
+fn legend(shown: &[&Snapshot]) -> Vec<Entry> {
+    if !(2..=MOST_ENTRIES).contains(&shown.len()) {
+        return Vec::new();
+    }
+    let (first, last) = span(shown);
+    let digits = (3.0 - (last - first).max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
+    let entry = |snapshot: &&Snapshot| {
+        let text = format!("{:.digits$}", snapshot.t);
+        let text = match text.contains('.') {
+            true => text.trim_end_matches('0').trim_end_matches('.'),
+            false => &text,
+        };
+        Entry {
+            label: format!("{text} s").replace('-', "−"),
+            colour: colour::ramp(age(snapshot, shown)),
+            mark: Mark::Line,
+        }
+    };
+    shown.iter().map(entry).collect()
+}
+
+fn bar(shown: &[&Snapshot]) -> Option<Bar> {
+    if shown.len() <= MOST_ENTRIES {
+        return None;
+    }
+    let axis = Axis::covering(shown.iter().map(|s| s.t), false, 0.0)?;
+    Some(Bar { label: "t [s]".into(), axis })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn swing(count: usize, points: usize) -> ShapePlot {
+        let snapshot = |i: usize| {
+            let t = i as f64 / count as f64;
+            let at = |k: usize| {
+                let s = 10.0 * k as f64 / points as f64;
+                let angle = t + 0.05 * s;
+                [s * angle.sin(), 0.0, -s * angle.cos()]
+            };
+            (t, (0..points).map(at).collect())
+        };
+        let all: Vec<_> = (0..count).map(snapshot).collect();
+        ShapePlot::of_positions("Swing", Plane::SideX, &all)
+    }
+
+    #[test]
+    fn few_snapshots_are_named_and_many_get_a_colour_bar() {
+        let few = swing(4, 30).svg().unwrap();
+        assert!(few.contains("0.25 s") && !few.contains("t [s]"));
+        let many = swing(30, 30).svg().unwrap();
+        assert!(many.contains("t [s]") && !many.contains("0.5 s"));
+        let one = swing(1, 30).svg().unwrap();
+        assert!(!one.contains("t [s]") && !one.contains("0 s"));
+    }
+
+    #[test]
+    fn many_snapshots_of_fine_cables_make_small_files() {
+        let svg = swing(1000, 1000).svg().unwrap();
+        assert!(svg.len() < 300_000, "{} bytes", svg.len());
+    }
+
+    #[test]
+    fn nothing_to_show_is_an_error() {
+        assert!(ShapePlot::default().svg().is_err());
+        let mut plot = swing(2, 5);
+        plot.snapshots.iter_mut().for_each(|s| s.points.clear());
+        assert!(matches!(plot.svg().unwrap_err(), OutputError::EmptyPlot { .. }));
+    }
+
+    #[test]
+    fn planes_look_along_one_axis() {
+        assert_eq!(Plane::Top.project([1.0, 2.0, 3.0]), (1.0, 2.0));
+        assert_eq!(Plane::SideX.project([1.0, 2.0, 3.0]), (1.0, 3.0));
+        assert_eq!(Plane::SideY.project([1.0, 2.0, 3.0]), (2.0, 3.0));
+    }
+
+    #[test]
+    fn a_straight_or_vertical_cable_still_has_two_axes() {
+        for end in [[1000.0, 0.0, 0.0], [0.0, 0.0, -1000.0], [0.0; 3]] {
+            let plot = ShapePlot::of_positions("", Plane::SideX, &[(0.0, vec![[0.0; 3], end])]);
+            assert!(!plot.svg().unwrap().contains("NaN"));
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! How long something takes, on the clock and in CPU time.
+
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+
+/// How long something took.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Elapsed {
+    /// Time on the clock, in seconds.
+    pub wall_s: f64,
+    /// CPU time of the process, in seconds, all threads together; NaN where the system can't tell.
+    pub cpu_s: f64,
+}
+
+/// Measures the clock and the CPU time from its start.
+#[derive(Debug, Clone, Copy)]
+pub struct Stopwatch {
+    wall: Instant,
+    cpu: Option<ProcessTime>,
+}
+
+impl Stopwatch {
+    /// Starts now.
+    pub fn start() -> Self {
+        Self { wall: Instant::now(), cpu: ProcessTime::try_now().ok() }
+    }
+
+    /// Time since the start.
+    pub fn elapsed(&self) -> Elapsed {
+        let cpu = self.cpu.and_then(|start| start.try_elapsed().ok());
+        Elapsed {
+            wall_s: self.wall.elapsed().as_secs_f64(),
+            cpu_s: cpu.map_or(f64::NAN, |time| time.as_secs_f64()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn sleeping_takes_time_but_no_work() {
+        let stopwatch = Stopwatch::start();
+        std::thread::sleep(Duration::from_millis(30));
+        let elapsed = stopwatch.elapsed();
+        assert!(elapsed.wall_s >= 0.03);
+        assert!(elapsed.cpu_s.is_finite() && elapsed.cpu_s >= 0.0);
+    }
+
+    #[test]
+    fn work_is_counted_as_cpu_time() {
+        let stopwatch = Stopwatch::start();
+        while stopwatch.wall.elapsed() < Duration::from_millis(30) {}
+        assert!(stopwatch.elapsed().cpu_s > 0.0);
+    }
+}
