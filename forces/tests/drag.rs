@@ -4,9 +4,9 @@ mod random;
 
 use random::{Random, rotate};
 use ropewalk_core::testing::check_law;
-use ropewalk_core::{Law, Load, Station, dot};
+use ropewalk_core::{Current, Law, Load, Station, dot};
 use ropewalk_forces::{
-    AddedMass, Current, Drag, LineLoad, NormalLaw, PerLength, TangentialLaw, TimeFunction, choo_casarella_cn,
+    AddedMass, Drag, LineLoad, NormalLaw, PerLength, TangentialLaw, TimeFunction, choo_casarella_cn,
     choo_casarella_ct_over_mu,
 };
 

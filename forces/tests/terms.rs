@@ -4,10 +4,8 @@ mod random;
 
 use random::{Random, rotate};
 use ropewalk_core::testing::{check_tangent, dense};
-use ropewalk_core::{At, Marker, Node, NodeId, NodeKind, Term, Weights, Width};
-use ropewalk_forces::{
-    Current, DeadEntry, DeadLoad, PointForce, PointMass, PointMoment, Spring, TimeFunction,
-};
+use ropewalk_core::{At, DeadLoad, Marker, Node, NodeId, NodeKind, Term, Weights, Width};
+use ropewalk_forces::{PointForce, PointMoment, Spring, TimeFunction};
 
 /// A point, a cable node, a body and another cable node.
 fn nodes() -> Vec<Node> {
@@ -48,10 +46,6 @@ fn harmonic() -> TimeFunction {
     TimeFunction::Harmonic { mean: 1.0, amplitude: 0.5, frequency: 0.7, phase: 0.1 }
 }
 
-fn sheared() -> Current {
-    Current::Linear { z0: 0.0, velocity: [0.4, 0.1, 0.0], gradient: [0.1, -0.3, 0.05] }
-}
-
 fn springs() -> Vec<Spring> {
     let (nodes, node) = (nodes(), Marker::node);
     let ground = Marker::ground([0.3, -4.0, 0.5]);
@@ -76,11 +70,6 @@ fn terms() -> Vec<Box<dyn Term>> {
     let mut all: Vec<Box<dyn Term>> = Vec::new();
     for node in [POINT, CABLE, BODY] {
         all.push(Box::new(PointForce::dead("f", &nodes, &Marker::node(node), force, harmonic()).unwrap()));
-        let mass = PointMass::new("m", &nodes, node, 5.0).unwrap();
-        all.push(Box::new(mass.clone()));
-        for current in [Current::Still, sheared()] {
-            all.push(Box::new(mass.clone().in_fluid(1025.0, 2.0, 0.01, current).unwrap()));
-        }
         let dead = DeadLoad::at_marker(&nodes, &Marker::node(node), force).unwrap();
         all.push(Box::new(DeadLoad::new("w", dead).unwrap()));
     }
@@ -208,22 +197,10 @@ fn nothing_breaks_at_rest_or_without_length() {
     let nodes = nodes();
     let s = Numbers { q: [0.0; 23].to_vec(), v: vec![0.0; 22], a: vec![0.0; 22] };
     let w = Weights { q: 1.0, v: 1.0, a: 1.0 };
-    let mass = PointMass::new("m", &nodes, POINT, 5.0).unwrap().in_fluid(1025.0, 0.0, 0.01, Current::Still);
-    let mut all: Vec<Box<dyn Term>> = vec![Box::new(mass.unwrap())];
-    all.extend(springs().into_iter().map(|s| Box::new(s) as Box<dyn Term>));
-    for term in all {
-        let (r, k) = dense(&*term, &nodes, &s.at(), w, Width::One);
+    for term in springs() {
+        let (r, k) = dense(&term, &nodes, &s.at(), w, Width::One);
         assert!(r.iter().chain(k.iter().flatten()).all(|x| x.is_finite()));
     }
-}
-
-#[test]
-fn weight_is_less_buoyancy() {
-    let nodes = nodes();
-    let mass = PointMass::new("sinker", &nodes, CABLE, 5.0).unwrap();
-    let mass = mass.in_fluid(1000.0, 1.0, 0.0, Current::Still).unwrap();
-    let entries = mass.weight(&nodes, 0.001, [0.0, 0.0, -10.0]).unwrap();
-    assert_eq!(entries, [DeadEntry { dof: 5, coordinate: 5, value: -40.0 }]);
 }
 
 #[test]
@@ -238,8 +215,6 @@ fn what_cannot_be_loaded_is_refused() {
     assert!(dead(&Marker::node(NodeId(77))).is_err());
     assert!(PointForce::follower("f", &nodes, POINT, 1.0, constant.clone()).is_err());
     assert!(PointMoment::new("m", &nodes, POINT, [1.0; 3], constant.clone()).is_err());
-    assert!(PointMass::new("m", &nodes, NUMBER, 1.0).is_err());
-    assert!(PointMass::new("m", &nodes, POINT, -1.0).is_err());
     let spring = |pair| Spring::new("s", &nodes, pair, 1.0, 1.0);
     assert!(spring([Marker::ground([0.0; 3]), Marker::ground([1.0; 3])]).is_err());
     assert!(spring([Marker::node(POINT), Marker::node(POINT)]).is_err());
