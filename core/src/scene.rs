@@ -1,6 +1,7 @@
 //! A scene: what the user wrote, as specs and options. Scene files and Rust code make the same thing.
 
 use crate::build::{BuildError, Builder};
+use crate::current::Current;
 use crate::integrator::Options;
 use crate::model::Model;
 use crate::record::Record;
@@ -41,6 +42,27 @@ pub struct Level {
 impl Default for Water {
     fn default() -> Self {
         Water { density: 1025.0, viscosity: 1.08e-3, current: [0.0; 3], profile: Vec::new() }
+    }
+}
+
+impl Water {
+    /// Its velocity as a function of height.
+    ///
+    /// # Errors
+    /// Both `current` and `profile` are given, or the levels don't ascend.
+    pub fn current(&self) -> Result<Current, BuildError> {
+        if self.profile.is_empty() {
+            return Ok(if self.current == [0.0; 3] {
+                Current::Still
+            } else {
+                Current::Uniform(self.current)
+            });
+        }
+        if self.current != [0.0; 3] {
+            return Err(BuildError::new("[water] has both `current` and `profile`: give one of them"));
+        }
+        let (z, velocity) = self.profile.iter().map(|l| (l.z, l.velocity)).unzip();
+        Current::profile(z, velocity)
     }
 }
 
@@ -196,6 +218,9 @@ impl Scene {
         }
         for (k, m) in self.motions.iter().enumerate() {
             m.build().and_then(|motion| b.add_motion(m.name(), motion)).map_err(of(SpecKind::Motion, k))?;
+        }
+        for e in &self.elements {
+            b.pin(&e.markers());
         }
         for c in &self.constraints {
             b.pin(&c.markers());

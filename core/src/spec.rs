@@ -19,6 +19,10 @@ use std::sync::Arc;
 pub trait ElementSpec: Debug + Send + Sync {
     /// Name by which the rest of the scene refers to it.
     fn name(&self) -> &str;
+    /// Markers of other elements that it holds on to; a cable puts a node where one is.
+    fn markers(&self) -> Vec<&MarkerRef> {
+        Vec::new()
+    }
     /// Adds its nodes and terms.
     fn build(&self, b: &mut Builder) -> Result<(), BuildError>;
 }

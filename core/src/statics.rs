@@ -217,7 +217,13 @@ impl<'a> Statics<'a> {
             let bad = trial.as_ref().map_or(true, |t| (t.negative && self.options.stable) || far(t));
             if bad {
                 found.floored += 1;
-                trial = self.newton(state, &q, &lambda, last.as_deref(), Relaxation { floor: Some(floor), ..how });
+                trial = self.newton(
+                    state,
+                    &q,
+                    &lambda,
+                    last.as_deref(),
+                    Relaxation { floor: Some(floor), ..how },
+                );
                 floor *= 0.8;
             }
             let trial = match trial {
@@ -377,10 +383,10 @@ impl<'a> Statics<'a> {
                     if s.is_multiplier[s.rows[at[0]]] {
                         continue;
                     }
-                    let (c, m) =
-                        (at.map(|p| self.damping.values[p]), at.map(|p| self.mass.values[p]));
+                    let (c, m) = (at.map(|p| self.damping.values[p]), at.map(|p| self.mass.values[p]));
                     for j in 0..3 {
-                        self.system.values[at[j]] += (0..3).map(|i| c[i] * w[i][j] + m[i] * w2[i][j]).sum::<f64>();
+                        self.system.values[at[j]] +=
+                            (0..3).map(|i| c[i] * w[i][j] + m[i] * w2[i][j]).sum::<f64>();
                     }
                 }
             }
@@ -439,7 +445,9 @@ impl<'a> Statics<'a> {
 
     fn position_size(&self, d: &[f64]) -> f64 {
         let nodes = self.model.nodes().iter();
-        nodes.flat_map(|n| d[n.v..n.v + n.kind.velocities().min(3)].iter()).fold(0.0, |m: f64, x| m.max(x.abs()))
+        nodes
+            .flat_map(|n| d[n.v..n.v + n.kind.velocities().min(3)].iter())
+            .fold(0.0, |m: f64, x| m.max(x.abs()))
     }
 
     fn worst(&self) -> (usize, f64) {

@@ -1,11 +1,14 @@
 //! A compact body at the end of a line.
 
-use ropewalk_core::build::{BuildError, need, not_negative};
+use ropewalk_core::build::{BuildError, Builder, finite, need, not_negative, positive};
 use ropewalk_core::held::{delta, find, three};
 use ropewalk_core::{
-    Assembly, At, Current, DeadEntry, DeadLoad, Energy, Marker, Node, NodeId, NodeKind, Pattern, Power, Term,
-    V3, dot,
+    Assembly, At, Current, DeadEntry, DeadLoad, ElementSpec, Energy, Marker, MarkerRef, Node, NodeId,
+    NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, dot, quantity, register_spec,
 };
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A point mass on a node, with added mass and drag that are the same in all directions.
 ///
@@ -136,5 +139,144 @@ impl Term for PointMass {
         // drag gives f·v in all, of which the current brings in f·u = f·v + dissipated
         let drag = -c * speed * dot(&relative, &v);
         Power { dissipated, supplied: drag + dissipated - self.added_mass * dot(&a, &v), carried: 0.0 }
+    }
+}
+
+/// A compact body: a sinker, a buoy, the load at the end of a hose.
+///
+/// On a marker of a cable it is part of that node; with a position it is a point of its own. Marker: `name`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointMassSpec {
+    /// Name by which the rest of the scene refers to it.
+    pub name: String,
+    /// Marker of an earlier element that it sits on, such as `"hose.end"`, or the point where it starts [m].
+    pub at: MarkerRef,
+    /// Mass [kg].
+    #[serde(deserialize_with = "quantity::mass")]
+    pub mass: f64,
+    /// Displaced volume, for buoyancy [m³].
+    #[serde(default, deserialize_with = "quantity::volume")]
+    pub volume: f64,
+    /// Added mass in water, the same in all directions [kg].
+    #[serde(default, deserialize_with = "quantity::mass")]
+    pub added_mass: f64,
+    /// Drag coefficient times area [m²].
+    #[serde(default, deserialize_with = "quantity::area")]
+    pub drag_area: f64,
+    /// Velocity at the start, of a point of its own [m/s].
+    #[serde(default, deserialize_with = "quantity::vec3::speed")]
+    pub velocity: V3<f64>,
+}
+register_spec!(Element, "point_mass", PointMassSpec);
+
+impl PointMassSpec {
+    /// A mass at a marker or a point.
+    pub fn new(name: &str, at: impl Into<MarkerRef>, mass: f64) -> Self {
+        PointMassSpec {
+            name: name.into(),
+            at: at.into(),
+            mass,
+            volume: 0.0,
+            added_mass: 0.0,
+            drag_area: 0.0,
+            velocity: [0.0; 3],
+        }
+    }
+}
+
+#[typetag::serde(name = "point_mass")]
+impl ElementSpec for PointMassSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.at]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        positive("mass", self.mass)?;
+        for (name, x) in
+            [("volume", self.volume), ("added_mass", self.added_mass), ("drag_area", self.drag_area)]
+        {
+            not_negative(name, x)?;
+        }
+        finite("velocity", &self.velocity)?;
+        let (node, own) = match &self.at {
+            MarkerRef::Point(x) => (b.node(NodeKind::Point, x, &self.velocity)?, true),
+            MarkerRef::Name(_) if self.velocity != [0.0; 3] => {
+                return Err(BuildError::at(
+                    "velocity",
+                    "a mass on a marker moves with it: leave `velocity` out",
+                ));
+            }
+            name @ MarkerRef::Name(_) => match b.marker("at", name)?.on() {
+                Some(node) => (node, false),
+                None => return Err(BuildError::at("at", "a mass needs a marker on a part, or a position")),
+            },
+        };
+        let mut mass = PointMass::new(&self.name, b.nodes(), node, self.mass)?;
+        if self.added_mass > 0.0 || self.drag_area > 0.0 {
+            let water = b.water()?.clone();
+            mass = mass.in_fluid(water.density, self.added_mass, self.drag_area, water.current()?)?;
+        }
+        let seat = b.nodes()[node.0 as usize].clone();
+        b.term(Box::new(mass));
+        b.part(Arc::new(Body { spec: self.clone(), node, own, q: seat.q, v: seat.v }))
+    }
+}
+
+/// A point mass as a part of a model.
+struct Body {
+    spec: PointMassSpec,
+    node: NodeId,
+    /// Whether the node is its own.
+    own: bool,
+    q: usize,
+    v: usize,
+}
+
+impl Part for Body {
+    fn name(&self) -> &str {
+        &self.spec.name
+    }
+    fn kind(&self) -> &'static str {
+        "point_mass"
+    }
+    fn marker(&self, spot: &Spot) -> Result<Marker, String> {
+        match spot {
+            Spot::Named(n) if n.is_empty() => Ok(Marker::node(self.node)),
+            _ => Err(format!("a point mass has only one place: `{}`", self.spec.name)),
+        }
+    }
+    fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
+        let (what, amount) = match per {
+            Per::Mass => ("weight", self.spec.mass),
+            Per::Volume => ("buoyancy", self.spec.volume),
+        };
+        if amount == 0.0 {
+            return None;
+        }
+        let entries = (0..3)
+            .filter(|&i| load[i] != 0.0)
+            .map(|i| DeadEntry { dof: self.v + i, coordinate: self.q + i, value: amount * load[i] })
+            .collect();
+        let load = DeadLoad::new(format!("{}: {what}", self.spec.name), entries).ok()?;
+        Some(Box::new(load))
+    }
+    fn point(&self, _: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
+        Some((three(at.q, self.q), three(at.v, self.v)))
+    }
+    fn length(&self) -> f64 {
+        0.0
+    }
+    fn place_of(&self, node: NodeId) -> Option<String> {
+        (self.own && node == self.node).then(String::new)
+    }
+    fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
+        if let (true, Some((x, dx))) = (self.own, old.point(0.0, at)) {
+            let node = &nodes[self.node.0 as usize];
+            q[node.q..node.q + 3].copy_from_slice(&x);
+            v[node.v..node.v + 3].copy_from_slice(&dx);
+        }
     }
 }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use ropewalk_core::{Relaxation, Element, LaneTask, Local, Real, Share, Weights, Width, run};
+use ropewalk_core::{Element, LaneTask, Local, Real, Relaxation, Share, Weights, Width, run};
 use ropewalk_elements::cable::longitudinal::Longitudinal;
 use ropewalk_elements::cable::quadrature::{Gauss2, Gauss3, Gauss5, Lobatto3, Quadrature, Rule};
 use ropewalk_elements::cable::transverse::Transverse;

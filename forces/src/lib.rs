@@ -7,6 +7,7 @@ mod added_mass;
 mod drag;
 mod line_load;
 mod point;
+mod spec;
 mod spring;
 mod time;
 
@@ -14,5 +15,9 @@ pub use added_mass::AddedMass;
 pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
 pub use line_load::LineLoad;
 pub use point::{PointForce, PointMoment};
+pub use spec::{
+    AddedMassSpec, BuoyancySpec, DragLaw, DragSpec, GravitySpec, LineLoadSpec, PointForceSpec,
+    PointMomentSpec, SpringSpec,
+};
 pub use spring::Spring;
 pub use time::TimeFunction;

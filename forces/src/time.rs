@@ -4,7 +4,8 @@ use ropewalk_core::build::{BuildError, finite, need};
 use std::f64::consts::TAU;
 
 /// A factor of a load as a function of time.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum TimeFunction {
     /// 1 at all times.
     #[default]

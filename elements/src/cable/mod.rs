@@ -28,6 +28,7 @@ mod t2;
 mod t3;
 pub mod transverse;
 
+pub use damping::{AxialDamping, BendingDamping};
 pub use element::{Cable, CableParams, mass};
 pub use l1::L1;
 pub use l1n::L1n;
@@ -38,7 +39,6 @@ pub use model::{
     CableModel, Integration, LongitudinalModel, Sink, TransverseModel, WithModels, legal, push_cable,
     with_models,
 };
-pub use damping::{AxialDamping, BendingDamping};
 pub use output::{Reading, read};
 pub use part::CablePart;
 pub use path::Path;

@@ -2,8 +2,8 @@
 
 use super::output::read;
 use super::shape::{hermite, hermite_slope};
-use super::{CableModel, CableParams};
 use super::spec::Section;
+use super::{CableModel, CableParams};
 use ropewalk_core::build::BuildError;
 use ropewalk_core::{
     At, DeadEntry, DeadLoad, Marker, Node, NodeId, Part, Per, Quantity, Spot, Stations, Term, V3,
@@ -113,7 +113,11 @@ impl Part for CablePart {
                 let (q, v) = self.seats[k + n / 2];
                 for i in (0..3).filter(|&i| load[i] != 0.0) {
                     let at = 3 * (n % 2) + i;
-                    entries.push(DeadEntry { dof: v + at, coordinate: q + at, value: density * load[i] * share });
+                    entries.push(DeadEntry {
+                        dof: v + at,
+                        coordinate: q + at,
+                        value: density * load[i] * share,
+                    });
                 }
             }
         }

@@ -61,7 +61,8 @@ impl Path {
         };
         // Gauss quadrature of the arc length, fine enough that linear interpolation of s is far below the mesh
         const STEPS: usize = 64;
-        let gauss = [(0.5 - 0.15f64.sqrt(), 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + 0.15f64.sqrt(), 5.0 / 18.0)];
+        let gauss =
+            [(0.5 - 0.15f64.sqrt(), 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + 0.15f64.sqrt(), 5.0 / 18.0)];
         let (mut samples, mut s) = (Vec::new(), 0.0);
         for k in 0..n - 1 {
             let h = (u[k + 1] - u[k]) / STEPS as f64;

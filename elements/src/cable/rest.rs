@@ -214,7 +214,9 @@ impl<S: Sink> WithModels for Push<'_, S> {
     fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) {
         let CableParams { l, ea, ei, .. } = self.params;
         let (axial, bending) = match self.rest {
-            Rest::Shape(e) => (AxialRest::<L, Q::Axial>::at_shape(l, ea, &e), BendingRest::at_shape(l, ei, &e)),
+            Rest::Shape(e) => {
+                (AxialRest::<L, Q::Axial>::at_shape(l, ea, &e), BendingRest::at_shape(l, ei, &e))
+            }
             Rest::Uniform { eps0, kappa0 } => {
                 (AxialRest::new(l, ea, [eps0; MOST]), BendingRest::new(l, ei, [kappa0; MOST]))
             }

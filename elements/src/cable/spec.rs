@@ -1,9 +1,9 @@
 //! `type = "cable"`: what a scene says about a cable.
 
+use super::damping::{push_axial_damping, push_bending_damping};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::{CablePart, mesh};
 use super::path::Path;
-use super::damping::{push_axial_damping, push_bending_damping};
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
@@ -206,10 +206,12 @@ impl CableSpec {
             push_rest(pools, model, params, rest, on).map_err(BuildError::new)?;
         }
         if s.axial_damping > 0.0 {
-            push_axial_damping(pools, model, params.l, s.axial_damping * s.ea, on).map_err(BuildError::new)?;
+            push_axial_damping(pools, model, params.l, s.axial_damping * s.ea, on)
+                .map_err(BuildError::new)?;
         }
         if s.bending_damping > 0.0 && s.ei > 0.0 {
-            push_bending_damping(pools, model, params.l, s.bending_damping * s.ei, on).map_err(BuildError::new)?;
+            push_bending_damping(pools, model, params.l, s.bending_damping * s.ei, on)
+                .map_err(BuildError::new)?;
         }
         Ok(())
     }
@@ -283,7 +285,8 @@ impl ElementSpec for CableSpec {
         let mut pools = Pools { builder: b, result: Ok(()) };
         for k in 0..mesh.len() - 1 {
             let on = [nodes[k], nodes[k + 1]];
-            let params = CableParams { l: mesh[k + 1] - mesh[k], ea: s.ea, ei: s.ei, rho_a: s.mass + s.flooded };
+            let params =
+                CableParams { l: mesh[k + 1] - mesh[k], ea: s.ea, ei: s.ei, rho_a: s.mass + s.flooded };
             push_cable(&mut pools, model, params, &on).map_err(BuildError::new)?;
             self.extras(&mut pools, model, params, &on, &shapes[k])?;
         }

@@ -22,9 +22,7 @@ pub struct CableStations<R = f64> {
 /// `Σ S_i e_i`
 #[inline(always)]
 fn interpolate<R: Real>(s: &[R; 4], e: &[R; 12]) -> V3<R> {
-    std::array::from_fn(|c| {
-        s[0].fma(e[c], s[1].fma(e[3 + c], s[2].fma(e[6 + c], s[3] * e[9 + c])))
-    })
+    std::array::from_fn(|c| s[0].fma(e[c], s[1].fma(e[3 + c], s[2].fma(e[6 + c], s[3] * e[9 + c]))))
 }
 
 impl StationElement<12, 12, 4> for CableStations {
@@ -84,8 +82,7 @@ impl StationElement<12, 12, 4> for CableStations {
                 let (wq, wv, wa) = (R::of(w.q) * weight, R::of(w.v) * weight, R::of(w.a) * weight);
                 for r in 0..3 {
                     for c in 0..3 {
-                        let by_x =
-                            wq.fma(load.d_x[r][c], wv.fma(load.d_v[r][c], wa * load.d_a[r][c]));
+                        let by_x = wq.fma(load.d_x[r][c], wv.fma(load.d_v[r][c], wa * load.d_a[r][c]));
                         let by_slope = wq * load.d_slope[r][c];
                         for j in 0..4 {
                             let column = s[j].fma(by_x, d[j] * by_slope);

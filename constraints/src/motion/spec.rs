@@ -1,0 +1,271 @@
+//! What a scene says about motions.
+
+use super::{Circle, Ends, Harmonic, Manoeuvre, Rest, Side, Straight, Table, Turn};
+use ropewalk_core::build::BuildError;
+use ropewalk_core::{Motion, MotionSpec, V3, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+fn ramp() -> f64 {
+    5.0
+}
+fn ahead() -> V3<f64> {
+    [1.0, 0.0, 0.0]
+}
+
+/// Stays where it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RestSpec {
+    /// Name, by which constraints refer to it.
+    pub name: String,
+}
+register_spec!(Motion, "rest", RestSpec);
+
+#[typetag::serde(name = "rest")]
+impl MotionSpec for RestSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+        Ok(Arc::new(Rest))
+    }
+}
+
+/// Rests, then runs straight ahead; the speed rises smoothly.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StraightSpec {
+    /// Name, by which constraints refer to it.
+    pub name: String,
+    /// Speed after the ramp [m/s].
+    #[serde(deserialize_with = "quantity::speed")]
+    pub speed: f64,
+    /// Direction of travel.
+    #[serde(default = "ahead")]
+    pub direction: V3<f64>,
+    /// Time at which it starts [s].
+    #[serde(default, deserialize_with = "quantity::time")]
+    pub start: f64,
+    /// Time in which the speed rises [s].
+    #[serde(default = "ramp", deserialize_with = "quantity::time")]
+    pub ramp: f64,
+}
+register_spec!(Motion, "straight", StraightSpec);
+
+#[typetag::serde(name = "straight")]
+impl MotionSpec for StraightSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+        Ok(Arc::new(Straight::new(self.direction, self.speed, self.start, self.ramp)?))
+    }
+}
+
+/// Which way a turn goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Towards {
+    /// To the left, seen from above.
+    #[default]
+    Port,
+    /// To the right, seen from above.
+    Starboard,
+}
+
+impl From<Towards> for Side {
+    fn from(t: Towards) -> Side {
+        match t {
+            Towards::Port => Side::Port,
+            Towards::Starboard => Side::Starboard,
+        }
+    }
+}
+
+/// Rests, then runs on a circle from the first moment; the speed rises smoothly.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircleSpec {
+    /// Name, by which constraints refer to it.
+    pub name: String,
+    /// Speed after the ramp [m/s].
+    #[serde(deserialize_with = "quantity::speed")]
+    pub speed: f64,
+    /// Radius of the circle [m].
+    #[serde(deserialize_with = "quantity::length")]
+    pub radius: f64,
+    /// Direction of travel at the start, horizontal.
+    #[serde(default = "ahead")]
+    pub heading: V3<f64>,
+    /// Which way it turns.
+    #[serde(default)]
+    pub towards: Towards,
+    /// Time at which it starts [s].
+    #[serde(default, deserialize_with = "quantity::time")]
+    pub start: f64,
+    /// Time in which the speed rises [s].
+    #[serde(default = "ramp", deserialize_with = "quantity::time")]
+    pub ramp: f64,
+}
+register_spec!(Motion, "circle", CircleSpec);
+
+#[typetag::serde(name = "circle")]
+impl MotionSpec for CircleSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+        let side = self.towards.into();
+        Ok(Arc::new(Circle::new(self.heading, side, self.radius, self.speed, self.start, self.ramp)?))
+    }
+}
+
+/// Runs straight and then turns: speed and, later, yaw rate rise smoothly.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TurnSpec {
+    /// Name, by which constraints refer to it.
+    pub name: String,
+    /// Speed after the ramp [m/s].
+    #[serde(deserialize_with = "quantity::speed")]
+    pub speed: f64,
+    /// Radius of the final circle [m].
+    #[serde(deserialize_with = "quantity::length")]
+    pub radius: f64,
+    /// Direction of travel at the start, horizontal.
+    #[serde(default = "ahead")]
+    pub heading: V3<f64>,
+    /// Which way it turns.
+    #[serde(default)]
+    pub towards: Towards,
+    /// Time at which it starts to run [s].
+    #[serde(default, deserialize_with = "quantity::time")]
+    pub start: f64,
+    /// Time in which the speed rises [s].
+    #[serde(default = "ramp", deserialize_with = "quantity::time")]
+    pub ramp: f64,
+    /// Time at which it starts to turn [s]; left out, when it starts to run.
+    #[serde(default, deserialize_with = "quantity::optional::time")]
+    pub turn_start: Option<f64>,
+    /// Time in which the yaw rate rises from 0 to speed over radius [s].
+    #[serde(default = "ramp", deserialize_with = "quantity::time")]
+    pub turn_ramp: f64,
+}
+register_spec!(Motion, "turn", TurnSpec);
+
+#[typetag::serde(name = "turn")]
+impl MotionSpec for TurnSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+        Ok(Arc::new(Turn::new(Manoeuvre {
+            heading: self.heading,
+            side: self.towards.into(),
+            speed: self.speed,
+            start: self.start,
+            ramp: self.ramp,
+            radius: self.radius,
+            turn_start: self.turn_start.unwrap_or(self.start),
+            turn_ramp: self.turn_ramp,
+        })?))
+    }
+}
+
+/// Goes to and fro.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HarmonicSpec {
+    /// Name, by which constraints refer to it.
+    pub name: String,
+    /// Amplitude [m].
+    #[serde(deserialize_with = "quantity::vec3::length")]
+    pub amplitude: V3<f64>,
+    /// Frequency [Hz].
+    #[serde(deserialize_with = "quantity::frequency")]
+    pub frequency: f64,
+    /// Phase [rad].
+    #[serde(default, deserialize_with = "quantity::angle")]
+    pub phase: f64,
+    /// Time at which it starts [s].
+    #[serde(default, deserialize_with = "quantity::time")]
+    pub start: f64,
+    /// Time in which the amplitude rises [s].
+    #[serde(default = "ramp", deserialize_with = "quantity::time")]
+    pub ramp: f64,
+}
+register_spec!(Motion, "harmonic", HarmonicSpec);
+
+#[typetag::serde(name = "harmonic")]
+impl MotionSpec for HarmonicSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+        let h = Harmonic::new(self.amplitude, self.frequency, self.phase, self.start, self.ramp)?;
+        Ok(Arc::new(h))
+    }
+}
+
+/// What a table of motion does at its ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TableEnds {
+    /// No acceleration at either end: a record cut out of a longer one.
+    #[default]
+    Natural,
+    /// No velocity at either end.
+    AtRest,
+    /// Starts without velocity and ends without acceleration: a manoeuvre from rest.
+    FromRest,
+}
+
+/// Follows a table of displacements, joined by a cubic spline: velocity and acceleration are continuous.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TableSpec {
+    /// Name, by which constraints refer to it.
+    pub name: String,
+    /// Times [s], ascending; the run must not go beyond the last.
+    #[serde(deserialize_with = "quantity::list::time")]
+    pub t: Vec<f64>,
+    /// Displacements along x at these times [m]; left out, none.
+    #[serde(default, deserialize_with = "quantity::list::length")]
+    pub x: Vec<f64>,
+    /// Displacements along y [m].
+    #[serde(default, deserialize_with = "quantity::list::length")]
+    pub y: Vec<f64>,
+    /// Displacements along z [m].
+    #[serde(default, deserialize_with = "quantity::list::length")]
+    pub z: Vec<f64>,
+    /// What it does at its ends.
+    #[serde(default)]
+    pub ends: TableEnds,
+}
+register_spec!(Motion, "table", TableSpec);
+
+#[typetag::serde(name = "table")]
+impl MotionSpec for TableSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+        for (name, column) in [("x", &self.x), ("y", &self.y), ("z", &self.z)] {
+            if !column.is_empty() && column.len() != self.t.len() {
+                let message = format!("`{name}` has {} entries, but `t` has {}", column.len(), self.t.len());
+                return Err(BuildError::at(name, message));
+            }
+        }
+        let of = |column: &[f64], k: usize| column.get(k).copied().unwrap_or(0.0);
+        let rows: Vec<[f64; 4]> =
+            (0..self.t.len()).map(|k| [self.t[k], of(&self.x, k), of(&self.y, k), of(&self.z, k)]).collect();
+        let ends = match self.ends {
+            TableEnds::Natural => Ends::Natural,
+            TableEnds::AtRest => Ends::AtRest,
+            TableEnds::FromRest => Ends::FromRest,
+        };
+        Ok(Arc::new(Table::new(&rows, ends).map_err(|e| BuildError { field: Some("t".into()), ..e })?))
+    }
+}

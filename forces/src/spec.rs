@@ -1,0 +1,349 @@
+//! What a scene says about forces.
+
+use crate::{
+    AddedMass, Drag, LineLoad, NormalLaw, PerLength, PointForce, PointMoment, Spring, TangentialLaw,
+    TimeFunction,
+};
+use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
+use ropewalk_core::{ForceSpec, MarkerRef, Per, V3, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+fn down() -> V3<f64> {
+    [0.0, 0.0, -9.81]
+}
+
+/// Gravity: pulls at the structural mass of every part.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GravitySpec {
+    /// Acceleration [m/s²]; left out, 9.81 down.
+    #[serde(default = "down", deserialize_with = "quantity::vec3::acceleration")]
+    pub g: V3<f64>,
+    /// Parts that it pulls at; left out, all.
+    #[serde(default)]
+    pub on: Vec<String>,
+}
+register_spec!(Force, "gravity", GravitySpec);
+
+impl Default for GravitySpec {
+    fn default() -> Self {
+        GravitySpec { g: down(), on: Vec::new() }
+    }
+}
+
+fn dead_loads(b: &mut Builder, on: &[String], per: Per, load: V3<f64>) -> Result<(), BuildError> {
+    for (_, part) in b.parts(on)? {
+        if let Some(term) = part.dead_load(per, load) {
+            b.term(term);
+        }
+    }
+    Ok(())
+}
+
+#[typetag::serde(name = "gravity")]
+impl ForceSpec for GravitySpec {
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        finite("g", &self.g)?;
+        dead_loads(b, &self.on, Per::Mass, self.g)
+    }
+}
+
+/// Buoyancy of the displaced volume, everything under water.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BuoyancySpec {
+    /// Acceleration of gravity [m/s²]; left out, 9.81 down.
+    #[serde(default = "down", deserialize_with = "quantity::vec3::acceleration")]
+    pub g: V3<f64>,
+    /// Parts that it lifts; left out, all.
+    #[serde(default)]
+    pub on: Vec<String>,
+}
+register_spec!(Force, "buoyancy", BuoyancySpec);
+
+impl Default for BuoyancySpec {
+    fn default() -> Self {
+        BuoyancySpec { g: down(), on: Vec::new() }
+    }
+}
+
+#[typetag::serde(name = "buoyancy")]
+impl ForceSpec for BuoyancySpec {
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        finite("g", &self.g)?;
+        let density = b.water()?.density;
+        positive("density", density)?;
+        dead_loads(b, &self.on, Per::Volume, self.g.map(|g| -density * g))
+    }
+}
+
+/// Law of drag across or along a cable.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DragLaw {
+    /// A constant coefficient.
+    Constant,
+    /// The law of Choo and Casarella (1971), by Reynolds number.
+    ChooCasarella,
+}
+
+fn constant() -> DragLaw {
+    DragLaw::Constant
+}
+fn normal_coefficient() -> f64 {
+    1.2
+}
+fn tangential_coefficient() -> f64 {
+    0.01
+}
+
+/// Drag of the water on cables, across and along, each by its own law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DragSpec {
+    /// Law across the cable.
+    #[serde(default = "constant")]
+    pub normal: DragLaw,
+    /// Law along the cable.
+    #[serde(default = "constant")]
+    pub tangential: DragLaw,
+    /// Coefficient across, for the constant law, on the diameter.
+    #[serde(default = "normal_coefficient", deserialize_with = "quantity::number")]
+    pub cn: f64,
+    /// Coefficient along, for the constant law, on the circumference.
+    #[serde(default = "tangential_coefficient", deserialize_with = "quantity::number")]
+    pub ct: f64,
+    /// Whether drag is per stretched length instead of unstretched.
+    #[serde(default)]
+    pub stretched: bool,
+    /// Relative width in Reynolds number over which the branches of Choo and Casarella are blended; left out, they
+    /// jump as published.
+    #[serde(default, deserialize_with = "quantity::optional::number")]
+    pub blend: Option<f64>,
+    /// Cables that it acts on; left out, all.
+    #[serde(default)]
+    pub on: Vec<String>,
+}
+register_spec!(Force, "drag", DragSpec);
+
+impl Default for DragSpec {
+    fn default() -> Self {
+        DragSpec {
+            normal: DragLaw::Constant,
+            tangential: DragLaw::Constant,
+            cn: normal_coefficient(),
+            ct: tangential_coefficient(),
+            stretched: false,
+            blend: None,
+            on: Vec::new(),
+        }
+    }
+}
+
+#[typetag::serde(name = "drag")]
+impl ForceSpec for DragSpec {
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        not_negative("cn", self.cn)?;
+        not_negative("ct", self.ct)?;
+        let water = b.water()?.clone();
+        let normal = match self.normal {
+            DragLaw::Constant => NormalLaw::Constant(self.cn),
+            DragLaw::ChooCasarella => NormalLaw::ChooCasarella,
+        };
+        let tangential = match self.tangential {
+            DragLaw::Constant => TangentialLaw::Quadratic(self.ct),
+            DragLaw::ChooCasarella => TangentialLaw::ChooCasarella,
+        };
+        let mut drag = Drag::new(water.density, water.viscosity, normal, tangential)?;
+        drag.current = water.current()?;
+        drag.per = if self.stretched { PerLength::Stretched } else { PerLength::Unstretched };
+        drag.blend = self.blend;
+        drag.check()?;
+        b.load(&self.on, drag)
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Water that a cable carries along when it accelerates across its axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AddedMassSpec {
+    /// Coefficient: mass over that of the water in a circle of the hydrodynamic diameter.
+    #[serde(default = "one", deserialize_with = "quantity::number")]
+    pub ca: f64,
+    /// Cables that it acts on; left out, all.
+    #[serde(default)]
+    pub on: Vec<String>,
+}
+register_spec!(Force, "added_mass", AddedMassSpec);
+
+impl Default for AddedMassSpec {
+    fn default() -> Self {
+        AddedMassSpec { ca: 1.0, on: Vec::new() }
+    }
+}
+
+#[typetag::serde(name = "added_mass")]
+impl ForceSpec for AddedMassSpec {
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        not_negative("ca", self.ca)?;
+        let density = b.water()?.density;
+        b.load(&self.on, AddedMass::new(density, self.ca)?)
+    }
+}
+
+/// A force per length in a constant direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineLoadSpec {
+    /// Force per length [N/m].
+    #[serde(deserialize_with = "quantity::vec3::force_per_length")]
+    pub force: V3<f64>,
+    /// Whether it is per stretched length instead of unstretched.
+    #[serde(default)]
+    pub stretched: bool,
+    /// Factor that changes with time.
+    #[serde(default)]
+    pub time: TimeFunction,
+    /// Cables that it acts on; left out, all.
+    #[serde(default)]
+    pub on: Vec<String>,
+}
+register_spec!(Force, "line_load", LineLoadSpec);
+
+#[typetag::serde(name = "line_load")]
+impl ForceSpec for LineLoadSpec {
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        finite("force", &self.force)?;
+        let per = if self.stretched { PerLength::Stretched } else { PerLength::Unstretched };
+        b.load(&self.on, LineLoad::new(self.force, per, self.time.clone())?)
+    }
+}
+
+/// A force at a marker, in a constant direction or along the cable there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointForceSpec {
+    /// Where it acts.
+    pub marker: MarkerRef,
+    /// Force in space [N].
+    #[serde(default, deserialize_with = "quantity::vec3::force")]
+    pub force: V3<f64>,
+    /// Instead: force along the cable at the marker, towards its end [N]. It turns with the cable.
+    #[serde(default, deserialize_with = "quantity::optional::force")]
+    pub follower: Option<f64>,
+    /// Factor that changes with time.
+    #[serde(default)]
+    pub time: TimeFunction,
+}
+register_spec!(Force, "point_force", PointForceSpec);
+
+impl PointForceSpec {
+    /// A force in space.
+    pub fn new(marker: impl Into<MarkerRef>, force: V3<f64>, time: TimeFunction) -> Self {
+        PointForceSpec { marker: marker.into(), force, follower: None, time }
+    }
+}
+
+#[typetag::serde(name = "point_force")]
+impl ForceSpec for PointForceSpec {
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let marker = b.marker("marker", &self.marker)?;
+        let label = format!("force at {}", self.marker);
+        let term = match (self.follower, marker.on()) {
+            (None, _) => PointForce::dead(label, b.nodes(), &marker, self.force, self.time.clone())?,
+            (Some(_), _) if self.force != [0.0; 3] => {
+                return Err(BuildError::at("follower", "give `force` or `follower`, not both"));
+            }
+            (Some(f), Some(node)) => PointForce::follower(label, b.nodes(), node, f, self.time.clone())?,
+            (Some(_), None) => {
+                return Err(BuildError::at("marker", "a follower force needs a marker on a cable"));
+            }
+        };
+        b.term(Box::new(term));
+        Ok(())
+    }
+}
+
+/// A moment at a marker on a cable, with constant axis. Its part along the cable is lost: a cable doesn't know twist.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointMomentSpec {
+    /// Where it acts.
+    pub marker: MarkerRef,
+    /// Moment [N m].
+    #[serde(deserialize_with = "quantity::vec3::moment")]
+    pub moment: V3<f64>,
+    /// Factor that changes with time.
+    #[serde(default)]
+    pub time: TimeFunction,
+}
+register_spec!(Force, "point_moment", PointMomentSpec);
+
+#[typetag::serde(name = "point_moment")]
+impl ForceSpec for PointMomentSpec {
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let marker = b.marker("marker", &self.marker)?;
+        let Some(node) = marker.on() else {
+            return Err(BuildError::at("marker", "a moment needs a marker on a cable"));
+        };
+        let label = format!("moment at {}", self.marker);
+        b.term(Box::new(PointMoment::new(label, b.nodes(), node, self.moment, self.time.clone())?));
+        Ok(())
+    }
+}
+
+/// A spring and damper between two markers, along the line between them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpringSpec {
+    /// Name.
+    pub name: String,
+    /// One end.
+    pub marker: MarkerRef,
+    /// The other end: a marker or a point in space.
+    pub to: MarkerRef,
+    /// Stiffness [N/m].
+    #[serde(deserialize_with = "quantity::spring_stiffness")]
+    pub stiffness: f64,
+    /// Damping [N s/m].
+    #[serde(default, deserialize_with = "quantity::damping")]
+    pub damping: f64,
+    /// Length without force [m]; left out, that at the start.
+    #[serde(default, deserialize_with = "quantity::optional::length")]
+    pub length: Option<f64>,
+    /// Whether it pulls only.
+    #[serde(default)]
+    pub tension_only: bool,
+}
+register_spec!(Force, "spring", SpringSpec);
+
+#[typetag::serde(name = "spring")]
+impl ForceSpec for SpringSpec {
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker, &self.to]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        not_negative("stiffness", self.stiffness)?;
+        not_negative("damping", self.damping)?;
+        let ends = [b.marker("marker", &self.marker)?, b.marker("to", &self.to)?];
+        let [a, c] = [b.place(&ends[0]).x, b.place(&ends[1]).x];
+        let start = (0..3).map(|i| (c[i] - a[i]).powi(2)).sum::<f64>().sqrt();
+        let length = not_negative("length", self.length.unwrap_or(start))?;
+        let mut spring = Spring::new(&self.name, b.nodes(), ends, self.stiffness, length)?;
+        spring.damping = self.damping;
+        spring.tension_only = self.tension_only;
+        b.term(Box::new(spring));
+        Ok(())
+    }
+}
