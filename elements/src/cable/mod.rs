@@ -3,7 +3,10 @@
 //! - [`shape`], [`quadrature`], [`reduced`]: the curve, and the nine natural variables in which kernels work.
 //! - [`longitudinal`] with L1 … L4 and [`transverse`] with T1 … T3: the strain measures, a file for each.
 //! - [`Cable`]: elastic force and mass. [`CableModel`] chooses its models at run time, [`push_cable`] makes it.
+//! - [`AxialDamping`], [`BendingDamping`], [`AxialRest`], [`BendingRest`]: what not every cable has, as elements of
+//!   their own. [`CableStations`]: where loads act. [`read`]: what comes out.
 
+mod damping;
 mod element;
 mod l1;
 mod l1n;
@@ -12,15 +15,19 @@ mod l3;
 mod l4;
 pub mod longitudinal;
 mod model;
+mod output;
 pub mod quadrature;
 pub mod reduced;
 mod relaxed;
+mod rest;
 pub mod shape;
+mod stations;
 mod t1;
 mod t2;
 mod t3;
 pub mod transverse;
 
+pub use damping::{AxialDamping, BendingDamping, push_axial_damping, push_bending_damping};
 pub use element::{Cable, CableParams, mass};
 pub use l1::L1;
 pub use l1n::L1n;
@@ -31,7 +38,10 @@ pub use model::{
     CableModel, Integration, LongitudinalModel, Sink, TransverseModel, WithModels, legal, push_cable,
     with_models,
 };
+pub use output::{Reading, read};
 pub use quadrature::{Full, LockingFree};
+pub use rest::{AtPoints, AxialRest, BendingRest, Rest, RestLanes, push_rest};
+pub use stations::CableStations;
 pub use t1::T1;
 pub use t2::T2;
 pub use t3::T3;
