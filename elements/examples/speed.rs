@@ -26,7 +26,7 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> LaneTask for Many<'_, Cable<L, T, 
         let w = Weights { q: 1.0, v: 0.0, a: 3.0 };
         for q in self.q.chunks_exact(R::LANES) {
             let q = std::array::from_fn(|i| R::each(|l| q[l][i]));
-            let x = Local { q, v: q, a: q, last: q, smooth: black_box(false) };
+            let x = Local { q, v: q, a: q, last: q, relaxed: black_box(None) };
             let mut out = Share::zero();
             if self.tangent {
                 Cable::<L, T, Q>::add::<R, true>(&p, &x, &w, &mut out);
