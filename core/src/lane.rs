@@ -184,9 +184,9 @@ pub fn dot<R: Real>(a: &V3<R>, b: &V3<R>) -> R {
 pub enum Width {
     /// One element at a time; works everywhere, and the oracle of the others.
     One,
-    /// Four elements at a time (AVX2 and FMA where present, else plain code).
+    /// Four elements at a time, with AVX2 and FMA.
     Four,
-    /// Eight elements at a time (AVX-512 where present, else plain code).
+    /// Eight elements at a time, with AVX-512.
     Eight,
 }
 
@@ -205,18 +205,23 @@ impl Width {
 
 /// Work that is generic over the carrier, so that [`run`] can choose it at run time.
 pub trait LaneTask {
+    /// Whether it is worth compiling for more than one lane. Each width is another copy of the code.
+    const WIDE: bool = true;
     /// Does the work. Mark the implementation `#[inline(always)]`.
     fn go<R: Real>(self);
 }
 
-/// Runs a task over the given number of lanes, with the best instructions that the processor has for it.
-pub fn run(width: Width, task: impl LaneTask) {
+/// Runs a task over at most the given number of lanes: as many as the processor has instructions for.
+pub fn run<T: LaneTask>(width: Width, task: T) {
+    // decided while compiling: a narrow task has no wide copies
+    if T::WIDE { wide(width, task) } else { task.go::<f64>() }
+}
+
+fn wide(width: Width, task: impl LaneTask) {
     match width {
-        Width::One => task.go::<f64>(),
-        Width::Four if has_avx2() => door::avx2(task),
-        Width::Four => task.go::<Pack<4, false>>(),
         Width::Eight if has_avx512() => door::avx512(task),
-        Width::Eight => task.go::<Pack<8, false>>(),
+        Width::Eight | Width::Four if has_avx2() => door::avx2(task),
+        _ => task.go::<f64>(),
     }
 }
 
@@ -267,12 +272,12 @@ mod door {
 }
 #[cfg(not(target_arch = "x86_64"))]
 mod door {
-    use super::{LaneTask, Pack};
+    use super::LaneTask;
     pub fn avx2(task: impl LaneTask) {
-        task.go::<Pack<4, false>>();
+        task.go::<f64>();
     }
     pub fn avx512(task: impl LaneTask) {
-        task.go::<Pack<8, false>>();
+        task.go::<f64>();
     }
 }
 

@@ -1,6 +1,6 @@
 //! All elements of one type, evaluated over lanes: gather, compute, scatter.
 
-use crate::lane::{LaneTask, Real, run};
+use crate::lane::{LaneTask, Real, Width, run};
 use crate::node::{Node, NodeId};
 use crate::pattern::Pattern;
 use crate::state::{At, Relaxation, Relaxed};
@@ -95,6 +95,8 @@ pub trait Element<const Q: usize, const N: usize>: Clone + Send + Sync + 'static
     type Lanes<R: Real>;
     /// Whether the tangent is symmetric for every choice of weights.
     const SYMMETRIC: bool = true;
+    /// Whether it is worth compiling for several lanes; an element that is rare can do without.
+    const WIDE: bool = true;
     /// What the pool is called in manifests and profiles.
     fn label() -> String;
     /// Brings the numbers of a batch of elements side by side.
@@ -206,6 +208,7 @@ struct AddAll<'a, 'b, 'c, E, const Q: usize, const N: usize> {
 }
 
 impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '_, '_, E, Q, N> {
+    const WIDE: bool = E::WIDE;
     #[inline(always)]
     fn go<R: Real>(self) {
         let w = self.out.weights();
@@ -238,7 +241,9 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
         E::SYMMETRIC
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        run(out.width(), AddAll { pool: self, at, out });
+        // the search for equilibrium isn't worth wide copies of what it relaxes
+        let width = if at.relaxed.is_some() { Width::One } else { out.width() };
+        run(width, AddAll { pool: self, at, out });
     }
     fn energy(&self, at: &At<'_>) -> Energy {
         self.sum(at, E::energy)

@@ -78,8 +78,8 @@ pub enum Towards {
 impl From<Towards> for Side {
     fn from(t: Towards) -> Side {
         match t {
-            Towards::Port => Side::Port,
-            Towards::Starboard => Side::Starboard,
+            Towards::Port => Side::Left,
+            Towards::Starboard => Side::Right,
         }
     }
 }

@@ -40,6 +40,7 @@ fn blend<R: Real>(s: R, a: &Natural<R>, t: R, b: &Natural<R>) -> Natural<R> {
 impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
     /// `[L, η EA]`
     type Lanes<R: Real> = [R; 2];
+    const WIDE: bool = false;
     const SYMMETRIC: bool = false;
 
     fn label() -> String {
@@ -115,6 +116,7 @@ impl<T: Transverse, Q: Quadrature> BendingDamping<T, Q> {
 impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingDamping<T, Q> {
     /// `[L, η EI, κ₀]`
     type Lanes<R: Real> = [R; 3];
+    const WIDE: bool = false;
     const SYMMETRIC: bool = false;
 
     fn label() -> String {

@@ -91,7 +91,10 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
         let il = R::of(1.0) / p.l;
         let q = natural(&x.q, il);
         let mut local = Reduced::zero();
-        if let Some(how) = &x.relaxed {
+        // the pool relaxes in scalar only, so wide copies needn't know how
+        if R::LANES == 1
+            && let Some(how) = &x.relaxed
+        {
             let last = natural(&x.last, il);
             add_relaxed::<L, T, Q, R, TANGENT>(p, how, il, &q, &last, &mut local);
         } else {

@@ -60,6 +60,7 @@ pub struct RestLanes<R> {
 
 impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialRest<L, Q> {
     type Lanes<R: Real> = RestLanes<R>;
+    const WIDE: bool = false;
 
     fn label() -> String {
         format!("stress-free strain {} {}", L::LABEL, Q::LABEL)
@@ -137,6 +138,7 @@ impl<T: Transverse, Q: Quadrature> BendingRest<T, Q> {
 
 impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingRest<T, Q> {
     type Lanes<R: Real> = RestLanes<R>;
+    const WIDE: bool = false;
 
     fn label() -> String {
         format!("stress-free curvature {} {}", T::LABEL, Q::LABEL)
