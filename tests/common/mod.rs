@@ -1,0 +1,82 @@
+//! What the integration tests share: reference data and scenes that several of them use.
+#![allow(dead_code)]
+
+use ropewalk_constraints::{ClampSpec, SphericalSpec};
+use ropewalk_core::{Model, Scene, State};
+use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
+use ropewalk_elements::{CableSpec, Section};
+use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
+use serde_json::Value;
+
+/// A file of `tests/data`.
+pub fn data(name: &str) -> Value {
+    let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+/// A number, written as a number or as a string of more digits.
+pub fn number(v: &Value) -> f64 {
+    v.as_f64().or_else(|| v.as_str().and_then(|s| s.parse().ok())).unwrap_or_else(|| panic!("{v} is no number"))
+}
+
+/// A ramp of a load over the load factor 0 … 1, linear so that load steps are equal.
+pub fn linear() -> TimeFunction {
+    TimeFunction::Table { t: vec![0.0, 1.0], value: vec![0.0, 1.0] }
+}
+
+pub type Models = (LongitudinalModel, TransverseModel, Integration);
+
+/// The models of a variant as the reference files name it, such as `L4(lob3)+T3(2)`.
+pub fn models(name: &str) -> Option<Models> {
+    use Integration::{Full, LockingFree};
+    use LongitudinalModel::{L1, L1n, L2, L3, L4};
+    use TransverseModel::{T1, T2, T3};
+    let (l, t) = name.split_once('+')?;
+    let (l, rule) = match l {
+        "L1" => (L1, Full),
+        "L1n" => (L1n, Full),
+        "L2" => (L2, Full),
+        "L3" => (L3, Full),
+        "L4" => (L4, Full),
+        "L3(lob3)" => (L3, LockingFree),
+        "L4(lob3)" => (L4, LockingFree),
+        _ => return None,
+    };
+    let t = match (t, rule) {
+        ("T1", _) => T1,
+        ("T2", Full) | ("T2(2)", LockingFree) => T2,
+        ("T3", Full) | ("T3(2)", LockingFree) => T3,
+        _ => return None,
+    };
+    ropewalk_elements::cable::legal(l, t).ok()?;
+    Some((l, t, rule))
+}
+
+/// A cantilever of length 1 and EI = 1 along x with a load at its tip that grows with the load factor.
+pub fn cantilever(n: usize, ea: f64, force: f64, (l, t, rule): Models) -> Scene {
+    let mut scene = Scene::new();
+    let cable = CableSpec::straight("beam", [0.0; 3], [1.0, 0.0, 0.0], n, Section::new(1.0, ea, 1.0));
+    scene
+        .element(cable.models(l, t, rule))
+        .constraint(SphericalSpec::pin("root", "beam.start"))
+        .constraint(ClampSpec::new("clamp", "beam.start"))
+        .force(PointForceSpec::new("beam.end", [0.0, force, 0.0], linear()));
+    scene
+}
+
+/// A cable hung by its start, laid along x, in the gravity of the reference (along -y).
+pub fn pendulum(n: usize, length: f64, section: Section, (l, t, rule): Models, g: f64) -> Scene {
+    let mut scene = Scene::new();
+    let cable = CableSpec::straight("cable", [0.0; 3], [length, 0.0, 0.0], n, section);
+    scene
+        .element(cable.models(l, t, rule))
+        .constraint(SphericalSpec::pin("pin", "cable.start"))
+        .force(GravitySpec { g: [0.0, -g, 0.0], on: vec![] });
+    scene
+}
+
+/// Where a marker of a cable is.
+pub fn place(model: &Model, state: &State, part: &str, s: f64) -> [f64; 3] {
+    model.part(part).and_then(|p| p.point(s, &state.at())).unwrap_or_else(|| panic!("{part} at {s}")).0
+}
