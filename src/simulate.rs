@@ -53,6 +53,7 @@ pub fn simulate(scene: &Scene) -> Result<History, Error> {
     let stopped_by = match ending {
         Ending::Finished => None,
         Ending::Stopped(by) => Some(by),
+        Ending::Interrupted => Some("Ctrl-C".into()),
         Ending::Failed(error) => return Err(error),
     };
     let (table, done) = (recorder.table, started.done());
