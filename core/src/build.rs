@@ -132,6 +132,11 @@ impl Builder {
         &self.nodes
     }
 
+    /// The coordinates at the start, of the nodes so far.
+    pub fn coordinates(&self) -> &[f64] {
+        &self.start.q
+    }
+
     /// Marks a node as shared by many elements, so that it is eliminated last.
     pub fn share(&mut self, node: NodeId) {
         self.nodes[node.0 as usize].shared = true;

@@ -243,3 +243,84 @@ impl<L: Law> LaneTask for OneLaw<'_, L> {
         self.out.extend((0..R::LANES).map(|lane| numbers(&load, lane)));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constraint::{Joint, Relation, RowKind};
+    use crate::marker::{Jet, Marker, Place};
+    use crate::node::{NodeId, NodeKind};
+
+    /// A spring `r = (1 + v² + a) q³` on one number, with a stiffness that is off by a factor.
+    struct Cubic(f64);
+    impl Term for Cubic {
+        fn label(&self) -> String {
+            "cubic".into()
+        }
+        fn pattern(&self, p: &mut Pattern) {
+            p.clique([0]);
+        }
+        fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+            let (w, q, v, s) = (out.weights(), at.q[0], at.v[0], 1.0 + at.v[0] * at.v[0] + at.a[0]);
+            out.add(0, s * q * q * q);
+            let k = self.0 * w.q * 3.0 * s * q * q + w.v * 2.0 * v * q * q * q + w.a * q * q * q;
+            out.add_block(0, 1, |_, _| k);
+        }
+    }
+
+    #[test]
+    fn wrong_tangents_are_seen() {
+        let nodes = [Node { kind: NodeKind::Scalars(1), q: 0, v: 0, shared: false }];
+        let at = At { t: 0.0, q: &[1.3], v: &[0.7], a: &[-0.2], modes: &[], last: None };
+        assert!(check_tangent(&Cubic(1.0), &nodes, &at, Width::One) < 1e-9);
+        let error = check_tangent(&Cubic(1.01), &nodes, &at, Width::One);
+        assert!((error - 0.01).abs() < 1e-3, "{error}");
+    }
+
+    /// Drag `-v² ` along x, with a derivative that is off by a factor.
+    struct Square(f64);
+    impl Law for Square {
+        fn label(&self) -> String {
+            "square".into()
+        }
+        #[inline(always)]
+        fn load<R: Real, const TANGENT: bool>(&self, _: f64, at: &Station<R>, out: &mut Load<R>) {
+            out.f[0] -= at.v[0] * at.v[0];
+            out.d_v[0][0] -= R::of(2.0 * self.0) * at.v[0];
+        }
+    }
+
+    #[test]
+    fn wrong_laws_are_seen() {
+        let v = [1.0, 2.0, 3.0];
+        let at =
+            Station { x: v, v, a: v, slope: v, curve_v: v, s: 0.0, weight: 1.0, diameter: 1.0, area: 1.0 };
+        assert!(check_law(&Square(1.0), 0.0, &at) < 1e-9);
+        assert!((check_law(&Square(1.01), 0.0, &at) - 0.01).abs() < 1e-3);
+    }
+
+    /// A curve that moves, and one that says that it is straight.
+    struct Curve(bool);
+    impl Relation for Curve {
+        fn rows(&self) -> Vec<RowKind> {
+            vec![RowKind::Position]
+        }
+        fn linear(&self) -> bool {
+            self.0
+        }
+        fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]) {
+            g[0] = at[0].x[0] * at[0].x[1] * t.sin() - at[0].direction[2];
+        }
+    }
+
+    #[test]
+    fn constraints_are_checked_whole() {
+        let nodes = [Node { kind: NodeKind::Frame, q: 0, v: 0, shared: false }];
+        let q = [1.0, 2.0, 3.0, 0.8, 0.0, 0.6, 0.0];
+        let at =
+            At { t: 0.4, q: &q, v: &[0.5, -1.0, 0.3, 1.0, 2.0, -1.0], a: &[0.0; 6], modes: &[], last: None };
+        let marker = Marker::Node { node: NodeId(0), point: [0.1, 0.5, 0.2], direction: [1.0, 0.5, 0.0] };
+        assert!(check_constraint(&Joint::new("curve", Curve(false), vec![marker]), &nodes, &at) < 1e-7);
+        assert!(check_constraint(&Joint::new("curve", Curve(true), vec![marker]), &nodes, &at) > 1e-2);
+    }
+}

@@ -1,7 +1,7 @@
 //! Ropewalk: forces.
 //!
 //! Distributed loads are laws on stations (drag, added mass, line loads); what acts at a point or between two points
-//! is a term (dead loads, point forces and moments, point masses, springs).
+//! is a term (point forces and moments, springs).
 
 mod added_mass;
 mod drag;

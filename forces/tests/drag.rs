@@ -4,9 +4,9 @@ mod random;
 
 use random::{Random, rotate};
 use ropewalk_core::testing::check_law;
-use ropewalk_core::{Law, Load, Station, dot};
+use ropewalk_core::{Current, Law, Load, Station, dot};
 use ropewalk_forces::{
-    AddedMass, Current, Drag, LineLoad, NormalLaw, PerLength, TangentialLaw, TimeFunction, choo_casarella_cn,
+    AddedMass, Drag, LineLoad, NormalLaw, PerLength, TangentialLaw, TimeFunction, choo_casarella_cn,
     choo_casarella_ct_over_mu,
 };
 
@@ -83,7 +83,6 @@ fn coefficients_are_those_of_the_reference() {
     let edges = &data["edges"];
     check(choo_casarella_cn(1.0), number(&edges["Re1"]["low_branch"]));
     check(choo_casarella_cn(30.0), number(&edges["Re30"]["mid_branch"]));
-    assert!(worst < 1e-12, "{worst}");
     // just above the edges: the next number, where only the change of Cn over one unit in the last place differs
     check(choo_casarella_cn(1.0_f64.next_up()), number(&edges["Re1"]["mid_branch"]));
     check(choo_casarella_cn(30.0_f64.next_up()), number(&edges["Re30"]["high_branch"]));
@@ -121,20 +120,33 @@ fn derivatives_are_exact_and_all_widths_agree() {
 fn derivatives_are_exact_at_every_reynolds_number() {
     // a thick fluid brings low Reynolds numbers to speeds that differences can see
     let mut r = Random(11);
-    let mut worst = 0.0_f64;
+    let (mut worst, mut seen) = (0.0_f64, [0; 3]);
     for viscosity in [1e4, 1e3, 1e2, 10.0, 3.0, 1.0, 0.1] {
         for tangential in TANGENTIAL {
             for blend in [None, Some(0.3)] {
                 let law = Drag::new(1025.0, viscosity, NormalLaw::ChooCasarella, tangential).unwrap();
                 let law = Drag { blend, ..law };
                 for _ in 0..10 {
-                    worst = worst.max(check_law(&law, 0.0, &station(&mut r, 2.0)));
+                    let at = station(&mut r, 2.0);
+                    let re = reynolds(&law, &at);
+                    // below 1e-3 the tangential derivative is faded out on purpose
+                    if re > 1e-3 || tangential != TANGENTIAL[1] {
+                        worst = worst.max(check_law(&law, 0.0, &at));
+                        seen[usize::from(re > 1.0) + usize::from(re > 30.0)] += 1;
+                    }
                 }
             }
         }
     }
-    println!("drag, Re from 1e-3 to 500: {worst:.1e}");
+    println!("drag, {seen:?} states in the three ranges of Re: {worst:.1e}");
+    assert!(seen.iter().all(|&n| n > 30), "{seen:?}");
     assert!(worst < 1e-7, "{worst}");
+}
+
+/// The Reynolds number of the normal flow in still water.
+fn reynolds(law: &Drag, at: &Station<f64>) -> f64 {
+    let axial = dot(&at.v, &at.slope) / dot(&at.slope, &at.slope).sqrt();
+    law.density * at.diameter * (dot(&at.v, &at.v) - axial * axial).sqrt() / law.viscosity
 }
 
 #[test]

@@ -20,6 +20,9 @@ impl Longitudinal for L1n {
     const LABEL: &'static str = "L1n";
     const SYMMETRIC: bool = false;
     type Strain<R: Real> = Frozen<R>;
+    fn lever(eps: f64) -> f64 {
+        1.0 + eps
+    }
     #[inline(always)]
     fn points<Q: Quadrature>() -> &'static [Point] {
         &WHOLE

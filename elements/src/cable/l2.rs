@@ -15,6 +15,9 @@ pub struct L2;
 impl Longitudinal for L2 {
     const LABEL: &'static str = "L2";
     type Strain<R: Real> = MeanGreen<R>;
+    fn lever(eps: f64) -> f64 {
+        (1.0 + 2.0 * eps).max(0.0).sqrt()
+    }
     #[inline(always)]
     fn points<Q: Quadrature>() -> &'static [Point] {
         &WHOLE

@@ -15,6 +15,9 @@ pub struct L3;
 impl Longitudinal for L3 {
     const LABEL: &'static str = "L3";
     type Strain<R: Real> = Stretch<R>;
+    fn lever(eps: f64) -> f64 {
+        (1.0 + 2.0 * eps).max(0.0).sqrt()
+    }
     #[inline(always)]
     fn strain<R: Real>(q: &Natural<R>, at: &Point) -> Stretch<R> {
         Stretch::green(q, at.phi)

@@ -17,6 +17,10 @@ pub trait Longitudinal: Copy + Send + Sync + 'static {
     const SYMMETRIC: bool = true;
     /// Strain with its derivatives.
     type Strain<R: Real>: Strain<R>;
+    /// Axial force per stress `EA ε`, as the force goes with the stretch and the stress with the strain.
+    fn lever(_eps: f64) -> f64 {
+        1.0
+    }
     /// Where the strain is taken: the points of `Q`, or [`WHOLE`](super::quadrature::WHOLE).
     fn points<Q: Quadrature>() -> &'static [Point] {
         Q::POINTS

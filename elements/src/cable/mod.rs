@@ -4,6 +4,7 @@
 //! - [`longitudinal`] with L1 … L4 and [`transverse`] with T1 … T3: the strain measures, a file for each.
 //! - [`Cable`]: elastic force and mass. [`CableModel`] chooses its models at run time, [`push_cable`] makes it.
 
+mod damping;
 mod element;
 mod l1;
 mod l1n;
@@ -12,10 +13,16 @@ mod l3;
 mod l4;
 pub mod longitudinal;
 mod model;
+mod output;
+mod part;
+mod path;
 pub mod quadrature;
 pub mod reduced;
 mod relaxed;
+mod rest;
 pub mod shape;
+mod spec;
+mod stations;
 mod t1;
 mod t2;
 mod t3;
@@ -31,7 +38,14 @@ pub use model::{
     CableModel, Integration, LongitudinalModel, Sink, TransverseModel, WithModels, legal, push_cable,
     with_models,
 };
+pub use damping::{AxialDamping, BendingDamping};
+pub use output::{Reading, read};
+pub use part::CablePart;
+pub use path::Path;
 pub use quadrature::{Full, LockingFree};
+pub use rest::{AxialRest, BendingRest, Rest};
+pub use spec::{CableSpec, Section, StressFree};
+pub use stations::CableStations;
 pub use t1::T1;
 pub use t2::T2;
 pub use t3::T3;

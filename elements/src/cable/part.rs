@@ -1,15 +1,14 @@
 //! A cable as a part of a model: its markers, its stations, what can be observed along it.
 
+use super::output::read;
 use super::shape::{hermite, hermite_slope};
+use super::{CableModel, CableParams};
 use super::spec::Section;
 use ropewalk_core::build::BuildError;
 use ropewalk_core::{
     At, DeadEntry, DeadLoad, Marker, Node, NodeId, Part, Per, Quantity, Spot, Stations, Term, V3,
 };
 use std::sync::Arc;
-
-/// What can be observed inside an element: `(element dofs, element length, xi) -> value`.
-pub(crate) type Observe = Box<dyn Fn(Quantity, &[f64; 12], f64, f64) -> f64 + Send + Sync>;
 
 /// A cable of a model.
 pub struct CablePart {
@@ -21,7 +20,11 @@ pub struct CablePart {
     pub(crate) mesh: Vec<f64>,
     pub(crate) section: Section,
     pub(crate) stations: Arc<dyn Stations>,
-    pub(crate) observe: Observe,
+    pub(crate) model: CableModel,
+    /// The stress-free shape of each element, where it isn't straight and unstretched.
+    pub(crate) rest: Option<Vec<[f64; 12]>>,
+    /// Stress-free strain and curvature on top of that.
+    pub(crate) offset: (f64, f64),
 }
 
 impl CablePart {
@@ -120,7 +123,16 @@ impl Part for CablePart {
 
     fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {
         let (k, l, xi) = self.locate(s)?;
-        Some((self.observe)(what, &self.dofs(k, at.q), l, xi))
+        let s = &self.section;
+        let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
+        let rest = self.rest.as_ref().map(|r| &r[k]);
+        let r = read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()?;
+        Some(match what {
+            Quantity::Tension => r.tension - s.ea * self.offset.0,
+            Quantity::Strain => r.strain,
+            Quantity::Curvature => r.curvature,
+            Quantity::Moment => r.moment - s.ei * self.offset.1,
+        })
     }
 
     fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {

@@ -3,9 +3,11 @@
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::{CablePart, mesh};
 use super::path::Path;
-use super::{CableParams, output, stations};
+use super::damping::{push_axial_damping, push_bending_damping};
+use super::rest::{Rest, push_rest};
+use super::{CableParams, CableStations};
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
-use ropewalk_core::{Element, ElementSpec, NodeId, NodeKind, V3, quantity, register_spec};
+use ropewalk_core::{Element, ElementSpec, NodeId, NodeKind, StationPool, V3, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -185,6 +187,34 @@ impl CableSpec {
     }
 }
 
+impl CableSpec {
+    /// Damping and a stress-free shape of one element, where the scene asks for them.
+    fn extras(
+        &self,
+        pools: &mut Pools<'_>,
+        model: CableModel,
+        params: CableParams,
+        on: &[NodeId],
+        shape: &[f64; 12],
+    ) -> Result<(), BuildError> {
+        let s = &self.section;
+        if self.stress_free == StressFree::AsLaid {
+            push_rest(pools, model, params, Rest::Shape(*shape), on).map_err(BuildError::new)?;
+        }
+        if self.strain != 0.0 || self.curvature != 0.0 {
+            let rest = Rest::Uniform { eps0: self.strain, kappa0: self.curvature };
+            push_rest(pools, model, params, rest, on).map_err(BuildError::new)?;
+        }
+        if s.axial_damping > 0.0 {
+            push_axial_damping(pools, model, params.l, s.axial_damping * s.ea, on).map_err(BuildError::new)?;
+        }
+        if s.bending_damping > 0.0 && s.ei > 0.0 {
+            push_bending_damping(pools, model, params.l, s.bending_damping * s.ei, on).map_err(BuildError::new)?;
+        }
+        Ok(())
+    }
+}
+
 struct Pools<'a> {
     builder: &'a mut Builder,
     result: Result<(), BuildError>,
@@ -244,15 +274,28 @@ impl ElementSpec for CableSpec {
             transverse: self.transverse,
             integration: self.integration,
         };
+        let all = b.coordinates();
+        let dofs = |k: usize| -> [f64; 12] {
+            let (a, c): (usize, usize) = (seats[k].0, seats[k + 1].0);
+            std::array::from_fn(|i| if i < 6 { all[a + i] } else { all[c + i - 6] })
+        };
+        let shapes: Vec<[f64; 12]> = (0..mesh.len() - 1).map(dofs).collect();
         let mut pools = Pools { builder: b, result: Ok(()) };
         for k in 0..mesh.len() - 1 {
             let on = [nodes[k], nodes[k + 1]];
             let params = CableParams { l: mesh[k + 1] - mesh[k], ea: s.ea, ei: s.ei, rho_a: s.mass + s.flooded };
             push_cable(&mut pools, model, params, &on).map_err(BuildError::new)?;
+            self.extras(&mut pools, model, params, &on, &shapes[k])?;
         }
         pools.result?;
-        self.build_extras(b, model, &mesh, &nodes)?;
-        let stations = stations::pool(b.nodes(), &mesh, &nodes, s);
+        let mut stations = StationPool::<CableStations, 12, 12, 4>::new();
+        for k in 0..mesh.len() - 1 {
+            let (l, s0) = (mesh[k + 1] - mesh[k], mesh[k]);
+            let element = CableStations { l, s0, diameter: s.diameter, area: s.displaced_area() };
+            if !stations.push(b.nodes(), element, &[nodes[k], nodes[k + 1]]) {
+                return Err(BuildError::new("the stations of the cable don't fit its nodes"));
+            }
+        }
         b.part(Arc::new(CablePart {
             name: self.name.clone(),
             nodes,
@@ -260,7 +303,9 @@ impl ElementSpec for CableSpec {
             mesh,
             section: s.clone(),
             stations: Arc::new(stations),
-            observe: output::observer(model, s.ea, s.ei),
+            model,
+            rest: (self.stress_free == StressFree::AsLaid).then_some(shapes),
+            offset: (self.strain, self.curvature),
         }))
     }
 }

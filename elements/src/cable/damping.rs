@@ -1,0 +1,214 @@
+//! Kelvin–Voigt damping: material that resists the rate of its strain and of its curvature.
+//!
+//! Dissipated power `∫ [η EA ε̇² + η EI κ̇²] dx` (Garcia-Vallejo, Mayo, Escalona & Dominguez, Nonlinear Dyn. 35, 2004).
+//! Strain and curvature don't see rigid motion, so neither does the damping: a bent cable that spins loses nothing.
+
+use super::longitudinal::{Longitudinal, Strain};
+use super::model::{CableModel, LongitudinalModel, Sink, WithModels, with_models};
+use super::quadrature::{Quadrature, Rule};
+use super::reduced::Reduced;
+use super::shape::{Natural, dot9, natural};
+use super::transverse::{Curve, Transverse};
+use ropewalk_core::{Batch, Element, Energy, Local, NodeId, Power, Real, Share, Weights};
+use std::marker::PhantomData;
+
+/// Damping of stretching: the axial force `η EA ε̇` besides the elastic one.
+///
+/// Not for L1n, whose force direction isn't the gradient of its strain; [`push_axial_damping`] takes L1 there.
+#[derive(Clone, Copy, Debug)]
+pub struct AxialDamping<L, Q> {
+    /// Unstretched length [m].
+    pub l: f64,
+    /// `η EA` [N s].
+    pub eta_ea: f64,
+    models: PhantomData<(L, Q)>,
+}
+
+impl<L: Longitudinal, Q: Quadrature> AxialDamping<L, Q> {
+    /// For an element of length `l`.
+    pub fn new(l: f64, eta_ea: f64) -> Self {
+        AxialDamping { l, eta_ea, models: PhantomData }
+    }
+}
+
+/// `s a + t b`
+#[inline(always)]
+fn blend<R: Real>(s: R, a: &Natural<R>, t: R, b: &Natural<R>) -> Natural<R> {
+    std::array::from_fn(|i| std::array::from_fn(|c| s.fma(a[i][c], t * b[i][c])))
+}
+
+impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
+    /// `[L, η EA]`
+    type Lanes<R: Real> = [R; 2];
+    const SYMMETRIC: bool = false;
+
+    fn label() -> String {
+        format!("axial damping {} {}", L::LABEL, Q::LABEL)
+    }
+    #[inline(always)]
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> [R; 2] {
+        [batch.get(|e| e.l), batch.get(|e| e.eta_ea)]
+    }
+    #[inline(always)]
+    fn add<R: Real, const TANGENT: bool>(
+        &[l, eta_ea]: &[R; 2],
+        x: &Local<R, 12, 12>,
+        w: &Weights,
+        out: &mut Share<R, 12>,
+    ) {
+        let il = R::of(1.0) / l;
+        let (q, v) = (natural(&x.q, il), natural(&x.v, il));
+        let mut local = Reduced::zero();
+        for at in L::points::<Q>() {
+            let strain = L::strain(&q, at);
+            let c = eta_ea * l * R::of(at.w);
+            let force = c * strain.rate(&v);
+            let gradient = strain.gradient();
+            local.add_force(force, &gradient);
+            if TANGENT {
+                let rate_by = blend(R::of(w.q), &strain.turn(&v), R::of(w.v), &gradient);
+                local.add_product(c, &gradient, &rate_by);
+                strain.add_hessian(R::of(w.q) * force, &mut local);
+            }
+        }
+        local.spread_force(il, out);
+        if TANGENT {
+            local.spread_all(il, R::of(1.0), out);
+        }
+    }
+    fn energy(_: &[f64; 2], _: &Local<f64, 12, 12>) -> Energy {
+        Energy::default()
+    }
+    fn power(&[l, eta_ea]: &[f64; 2], x: &Local<f64, 12, 12>) -> Power {
+        let (q, v) = (natural(&x.q, 1.0 / l), natural(&x.v, 1.0 / l));
+        let mut dissipated = 0.0;
+        for at in L::points::<Q>() {
+            let rate = L::strain(&q, at).rate(&v);
+            dissipated += eta_ea * l * at.w * rate * rate;
+        }
+        Power { dissipated, ..Power::default() }
+    }
+}
+
+/// Damping of bending: the moment `η EI κ̇` besides the elastic one.
+///
+/// Curvature here has no sign, so its rate jumps where the cable bends through straight. It is therefore taken of
+/// `√(κ² + κ₀²)`: below `κ₀` the damping fades out, and a straight cable feels none.
+#[derive(Clone, Copy, Debug)]
+pub struct BendingDamping<T, Q> {
+    /// Unstretched length [m].
+    pub l: f64,
+    /// `η EI` [N m² s].
+    pub eta_ei: f64,
+    /// Curvature below which the damping fades out [1/m].
+    pub kappa_0: f64,
+    models: PhantomData<(T, Q)>,
+}
+
+impl<T: Transverse, Q: Quadrature> BendingDamping<T, Q> {
+    /// For an element of length `l`; it fades out where the element bends by less than 1e-4 rad.
+    pub fn new(l: f64, eta_ei: f64) -> Self {
+        BendingDamping { l, eta_ei, kappa_0: 1e-4 / l, models: PhantomData }
+    }
+}
+
+impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingDamping<T, Q> {
+    /// `[L, η EI, κ₀]`
+    type Lanes<R: Real> = [R; 3];
+    const SYMMETRIC: bool = false;
+
+    fn label() -> String {
+        format!("bending damping {} {}", T::LABEL, Q::LABEL)
+    }
+    #[inline(always)]
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> [R; 3] {
+        [batch.get(|e| e.l), batch.get(|e| e.eta_ei), batch.get(|e| e.kappa_0)]
+    }
+    #[inline(always)]
+    fn add<R: Real, const TANGENT: bool>(
+        &[l, eta_ei, kappa_0]: &[R; 3],
+        x: &Local<R, 12, 12>,
+        w: &Weights,
+        out: &mut Share<R, 12>,
+    ) {
+        let il = R::of(1.0) / l;
+        let (q, v) = (natural(&x.q, il), natural(&x.v, il));
+        let mut local = Reduced::zero();
+        for at in Q::POINTS {
+            let curve = Curve::new::<T>(&q, at, il);
+            let gradient = curve.gradient();
+            // with κ̇ = (κ²)˙/2κ the force is m (κ²)˙ ∂κ², and no root is needed
+            let i = R::of(1.0) / kappa_0.fma(kappa_0, curve.square.value);
+            let m = eta_ei * l * R::of(0.25 * at.w) * i;
+            let rate = dot9(&gradient, &v);
+            local.add_force(m * rate, &gradient);
+            if TANGENT {
+                let wq = R::of(w.q);
+                let rate_by = blend(wq, &curve.turn(&v), R::of(w.v) - wq * rate * i, &gradient);
+                local.add_product(m, &gradient, &rate_by);
+                curve.add_hessian(wq * m * rate, &mut local);
+            }
+        }
+        local.spread_force(il, out);
+        if TANGENT {
+            local.spread_all(il, R::of(1.0), out);
+        }
+    }
+    fn energy(_: &[f64; 3], _: &Local<f64, 12, 12>) -> Energy {
+        Energy::default()
+    }
+    fn power(&[l, eta_ei, kappa_0]: &[f64; 3], x: &Local<f64, 12, 12>) -> Power {
+        let (q, v) = (natural(&x.q, 1.0 / l), natural(&x.v, 1.0 / l));
+        let mut dissipated = 0.0;
+        for at in Q::POINTS {
+            let curve = Curve::new::<T>(&q, at, 1.0 / l);
+            let rate = dot9(&curve.gradient(), &v);
+            dissipated += 0.25 * eta_ei * l * at.w * rate * rate / (curve.square.value + kappa_0 * kappa_0);
+        }
+        Power { dissipated, ..Power::default() }
+    }
+}
+
+struct Push<'a, S> {
+    sink: &'a mut S,
+    bending: bool,
+    l: f64,
+    eta: f64,
+    nodes: &'a [NodeId],
+}
+
+impl<S: Sink> WithModels for Push<'_, S> {
+    type Output = ();
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) {
+        if self.bending {
+            self.sink.push(BendingDamping::<T, Q::Bending>::new(self.l, self.eta), self.nodes);
+        } else {
+            self.sink.push(AxialDamping::<L, Q::Axial>::new(self.l, self.eta), self.nodes);
+        }
+    }
+}
+
+/// Pushes the axial damping that belongs to a cable element of the chosen models.
+pub fn push_axial_damping(
+    sink: &mut impl Sink,
+    mut model: CableModel,
+    l: f64,
+    eta_ea: f64,
+    nodes: &[NodeId],
+) -> Result<(), String> {
+    if model.longitudinal == LongitudinalModel::L1n {
+        model.longitudinal = LongitudinalModel::L1;
+    }
+    with_models(model, Push { sink, bending: false, l, eta: eta_ea, nodes })
+}
+
+/// Pushes the bending damping that belongs to a cable element of the chosen models.
+pub fn push_bending_damping(
+    sink: &mut impl Sink,
+    model: CableModel,
+    l: f64,
+    eta_ei: f64,
+    nodes: &[NodeId],
+) -> Result<(), String> {
+    with_models(model, Push { sink, bending: true, l, eta: eta_ei, nodes })
+}

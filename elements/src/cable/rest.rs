@@ -1,0 +1,243 @@
+//! Cables that are bent or stretched when free of stress.
+//!
+//! The strain energy `½ EA (ε - ε₀)² + ½ EI (κ - κ₀)²` differs from that of a straight cable by terms linear in ε and
+//! κ. They are elements of their own, so that a straight cable doesn't carry them. Subtracting from the strain, and
+//! not from the force, keeps it independent of how the cable is turned.
+
+use super::element::CableParams;
+use super::longitudinal::{Longitudinal, Strain};
+use super::model::{CableModel, Sink, WithModels, with_models};
+use super::quadrature::{MOST, Quadrature, Rule};
+use super::reduced::Reduced;
+use super::shape::natural;
+use super::transverse::{Curve, Transverse};
+use ropewalk_core::{Batch, Element, Energy, Local, NodeId, Real, Share, Weights};
+use std::marker::PhantomData;
+
+/// One number for each point of a quadrature rule; those behind the last point count for nothing.
+pub type AtPoints<R> = [R; MOST];
+
+/// Curvature times length below which a point counts as straight.
+const STRAIGHT: f64 = 1e-6;
+
+/// Stress-free strain: adds the energy `EA ∫ (½ ε₀² - ε₀ ε) dx`.
+#[derive(Clone, Copy, Debug)]
+pub struct AxialRest<L, Q> {
+    /// Unstretched length [m].
+    pub l: f64,
+    /// Axial stiffness [N].
+    pub ea: f64,
+    /// Stress-free strain at the points of the model, in the model's own measure.
+    pub eps0: AtPoints<f64>,
+    models: PhantomData<(L, Q)>,
+}
+
+impl<L: Longitudinal, Q: Quadrature> AxialRest<L, Q> {
+    /// For an element of length `l` and axial stiffness `ea`.
+    pub fn new(l: f64, ea: f64, eps0: AtPoints<f64>) -> Self {
+        AxialRest { l, ea, eps0, models: PhantomData }
+    }
+    /// Stress-free at the shape `e`.
+    pub fn at_shape(l: f64, ea: f64, e: &[f64; 12]) -> Self {
+        let (q, mut eps0) = (natural(e, 1.0 / l), [0.0; MOST]);
+        for (eps0, at) in eps0.iter_mut().zip(L::points::<Q>()) {
+            *eps0 = L::strain(&q, at).eps();
+        }
+        Self::new(l, ea, eps0)
+    }
+}
+
+/// An element's length, stiffness and numbers at the points.
+#[derive(Clone, Copy, Debug)]
+pub struct RestLanes<R> {
+    /// Unstretched length.
+    pub l: R,
+    /// `EA` or `EI`.
+    pub stiffness: R,
+    /// `ε₀` or `κ₀`.
+    pub rest: AtPoints<R>,
+}
+
+impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialRest<L, Q> {
+    type Lanes<R: Real> = RestLanes<R>;
+
+    fn label() -> String {
+        format!("stress-free strain {} {}", L::LABEL, Q::LABEL)
+    }
+    #[inline(always)]
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> RestLanes<R> {
+        let rest = std::array::from_fn(|k| batch.get(|e| e.eps0[k]));
+        RestLanes { l: batch.get(|e| e.l), stiffness: batch.get(|e| e.ea), rest }
+    }
+    #[inline(always)]
+    fn add<R: Real, const TANGENT: bool>(
+        p: &RestLanes<R>,
+        x: &Local<R, 12, 12>,
+        w: &Weights,
+        out: &mut Share<R, 12>,
+    ) {
+        let il = R::of(1.0) / p.l;
+        let q = natural(&x.q, il);
+        let mut local = Reduced::zero();
+        for (at, eps0) in L::points::<Q>().iter().zip(p.rest) {
+            let strain = L::strain(&q, at);
+            let stress = -(p.stiffness * p.l * R::of(at.w) * eps0);
+            local.add_force(stress, &strain.gradient());
+            if TANGENT {
+                strain.add_hessian(stress, &mut local);
+            }
+        }
+        local.spread_force(il, out);
+        if TANGENT {
+            local.spread_symmetric(il, R::of(w.q), out);
+        }
+    }
+    fn energy(p: &RestLanes<f64>, x: &Local<f64, 12, 12>) -> Energy {
+        let q = natural(&x.q, 1.0 / p.l);
+        let mut potential = 0.0;
+        for (at, eps0) in L::points::<Q>().iter().zip(p.rest) {
+            let eps = L::strain(&q, at).eps();
+            potential += p.stiffness * p.l * at.w * eps0 * (0.5 * eps0 - eps);
+        }
+        Energy { potential, ..Energy::default() }
+    }
+}
+
+/// Stress-free curvature: adds the energy `EI ∫ (½ κ₀² - κ₀ κ) dx`.
+///
+/// κ₀ is a number without a direction: a cable without torsion doesn't know to which side it was bent, and in its
+/// straightened state may fall to any. There κ has a kink, so `√(κ² + κₛ²)` with `κₛ = 1e-6/L` takes its place; a
+/// straight element with κ₀ > 0 is in unstable equilibrium.
+#[derive(Clone, Copy, Debug)]
+pub struct BendingRest<T, Q> {
+    /// Unstretched length [m].
+    pub l: f64,
+    /// Bending stiffness [N m²].
+    pub ei: f64,
+    /// Stress-free curvature at the quadrature points, of `√(κ² + κₛ²)` [1/m].
+    pub kappa0: AtPoints<f64>,
+    models: PhantomData<(T, Q)>,
+}
+
+impl<T: Transverse, Q: Quadrature> BendingRest<T, Q> {
+    /// For an element of length `l` and bending stiffness `ei`.
+    pub fn new(l: f64, ei: f64, kappa0: AtPoints<f64>) -> Self {
+        BendingRest { l, ei, kappa0, models: PhantomData }
+    }
+    /// Stress-free at the shape `e`; points that are straight there stay so.
+    pub fn at_shape(l: f64, ei: f64, e: &[f64; 12]) -> Self {
+        let (q, mut kappa0, s2) = (natural(e, 1.0 / l), [0.0; MOST], (STRAIGHT / l).powi(2));
+        for (kappa0, at) in kappa0.iter_mut().zip(Q::POINTS) {
+            let square = Curve::new::<T>(&q, at, 1.0 / l).square.value;
+            *kappa0 = if square > s2 { (square + s2).sqrt() } else { 0.0 };
+        }
+        Self::new(l, ei, kappa0)
+    }
+}
+
+impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingRest<T, Q> {
+    type Lanes<R: Real> = RestLanes<R>;
+
+    fn label() -> String {
+        format!("stress-free curvature {} {}", T::LABEL, Q::LABEL)
+    }
+    #[inline(always)]
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> RestLanes<R> {
+        let rest = std::array::from_fn(|k| batch.get(|e| e.kappa0[k]));
+        RestLanes { l: batch.get(|e| e.l), stiffness: batch.get(|e| e.ei), rest }
+    }
+    #[inline(always)]
+    fn add<R: Real, const TANGENT: bool>(
+        p: &RestLanes<R>,
+        x: &Local<R, 12, 12>,
+        w: &Weights,
+        out: &mut Share<R, 12>,
+    ) {
+        let il = R::of(1.0) / p.l;
+        let q = natural(&x.q, il);
+        let kappa_s = R::of(STRAIGHT) * il;
+        let mut local = Reduced::zero();
+        for (at, kappa0) in Q::POINTS.iter().zip(p.rest) {
+            let curve = Curve::new::<T>(&q, at, il);
+            let i2 = R::of(1.0) / kappa_s.fma(kappa_s, curve.square.value);
+            // derivative of the energy by κ²
+            let by = -(p.stiffness * p.l * R::of(0.5 * at.w) * kappa0 * i2.sqrt());
+            let gradient = curve.gradient();
+            local.add_force(by, &gradient);
+            if TANGENT {
+                curve.add_hessian(by, &mut local);
+                local.add_square(R::of(-0.5) * by * i2, &gradient);
+            }
+        }
+        local.spread_force(il, out);
+        if TANGENT {
+            local.spread_symmetric(il, R::of(w.q), out);
+        }
+    }
+    fn energy(p: &RestLanes<f64>, x: &Local<f64, 12, 12>) -> Energy {
+        let q = natural(&x.q, 1.0 / p.l);
+        let s2 = (STRAIGHT / p.l).powi(2);
+        let mut potential = 0.0;
+        for (at, kappa0) in Q::POINTS.iter().zip(p.rest) {
+            let kappa = (Curve::new::<T>(&q, at, 1.0 / p.l).square.value + s2).sqrt();
+            // with ½ EI κ² of the elastic term this is ½ EI (√(κ² + κₛ²) - κ₀)²
+            let constant = if kappa0 == 0.0 { 0.0 } else { 0.5 * (kappa0 * kappa0 + s2) };
+            potential += p.stiffness * p.l * at.w * (constant - kappa0 * kappa);
+        }
+        Energy { potential, ..Energy::default() }
+    }
+}
+
+/// What an element looks like when free of stress.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rest {
+    /// As in this shape: the twelve dofs of the element.
+    Shape([f64; 12]),
+    /// The same strain and curvature everywhere.
+    Uniform {
+        /// Strain in the model's own measure.
+        eps0: f64,
+        /// Curvature [1/m].
+        kappa0: f64,
+    },
+}
+
+struct Push<'a, S> {
+    sink: &'a mut S,
+    params: CableParams,
+    rest: Rest,
+    nodes: &'a [NodeId],
+}
+
+impl<S: Sink> WithModels for Push<'_, S> {
+    type Output = ();
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) {
+        let CableParams { l, ea, ei, .. } = self.params;
+        let (axial, bending) = match self.rest {
+            Rest::Shape(e) => (AxialRest::<L, Q::Axial>::at_shape(l, ea, &e), BendingRest::at_shape(l, ei, &e)),
+            Rest::Uniform { eps0, kappa0 } => {
+                (AxialRest::new(l, ea, [eps0; MOST]), BendingRest::new(l, ei, [kappa0; MOST]))
+            }
+        };
+        if axial.eps0.iter().any(|&x| x != 0.0) {
+            self.sink.push(axial, self.nodes);
+        }
+        let bending: BendingRest<T, Q::Bending> = bending;
+        if bending.kappa0.iter().any(|&x| x != 0.0) {
+            self.sink.push(bending, self.nodes);
+        }
+    }
+}
+
+/// Pushes what a cable element of the chosen models needs to be free of stress at `rest`: nothing, stress-free
+/// strain, stress-free curvature, or both.
+pub fn push_rest(
+    sink: &mut impl Sink,
+    model: CableModel,
+    params: CableParams,
+    rest: Rest,
+    nodes: &[NodeId],
+) -> Result<(), String> {
+    params.check()?;
+    with_models(model, Push { sink, params, rest, nodes })
+}

@@ -1,0 +1,101 @@
+//! Where distributed loads act on a cable element: four Gauss points, exact for loads up to degree four.
+
+use super::quadrature::{Gauss4, Point, Quadrature};
+use super::shape::{combine, hermite, hermite_slope, natural};
+use ropewalk_core::{Batch, Load, Local, Real, Share, Station, StationElement, V3, Weights};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The stations of one cable element. Loads are per unstretched length.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CableStations<R = f64> {
+    /// Unstretched length `L` [m].
+    pub l: R,
+    /// Unstretched arc length at the element's start [m].
+    pub s0: R,
+    /// Hydrodynamic diameter [m].
+    pub diameter: R,
+    /// Area of the displaced volume per length [m²].
+    pub area: R,
+}
+
+/// `Σ S_i e_i`
+#[inline(always)]
+fn interpolate<R: Real>(s: &[R; 4], e: &[R; 12]) -> V3<R> {
+    std::array::from_fn(|c| {
+        s[0].fma(e[c], s[1].fma(e[3 + c], s[2].fma(e[6 + c], s[3] * e[9 + c])))
+    })
+}
+
+impl StationElement<12, 12, 4> for CableStations {
+    type Lanes<R: Real> = CableStations<R>;
+
+    #[inline(always)]
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> CableStations<R> {
+        CableStations {
+            l: batch.get(|e| e.l),
+            s0: batch.get(|e| e.s0),
+            diameter: batch.get(|e| e.diameter),
+            area: batch.get(|e| e.area),
+        }
+    }
+
+    #[inline(always)]
+    fn stations<R: Real>(p: &CableStations<R>, x: &Local<R, 12, 12>) -> [Station<R>; 4] {
+        let q = natural(&x.q, R::of(1.0) / p.l);
+        std::array::from_fn(|k| {
+            let at: &Point = &Gauss4::POINTS[k];
+            let s = hermite(at.xi, p.l);
+            let v = interpolate(&s, &x.v);
+            Station {
+                x: interpolate(&s, &x.q),
+                v,
+                a: interpolate(&s, &x.a),
+                slope: combine(&at.phi, &q),
+                curve_v: v,
+                s: R::of(at.xi).fma(p.l, p.s0),
+                weight: R::of(at.w) * p.l,
+                diameter: p.diameter,
+                area: p.area,
+            }
+        })
+    }
+
+    #[inline(always)]
+    fn spread<R: Real, const TANGENT: bool>(
+        p: &CableStations<R>,
+        _: &Local<R, 12, 12>,
+        loads: &[Load<R>; 4],
+        w: &Weights,
+        out: &mut Share<R, 12>,
+    ) {
+        let il = R::of(1.0) / p.l;
+        for (at, load) in Gauss4::POINTS.iter().zip(loads) {
+            let weight = R::of(at.w) * p.l;
+            let s = hermite(at.xi, p.l);
+            for i in 0..4 {
+                let si = s[i] * weight;
+                for c in 0..3 {
+                    out.r[3 * i + c] -= si * load.f[c];
+                }
+            }
+            if TANGENT {
+                let d = hermite_slope(at.xi, il);
+                let (wq, wv, wa) = (R::of(w.q) * weight, R::of(w.v) * weight, R::of(w.a) * weight);
+                for r in 0..3 {
+                    for c in 0..3 {
+                        let by_x =
+                            wq.fma(load.d_x[r][c], wv.fma(load.d_v[r][c], wa * load.d_a[r][c]));
+                        let by_slope = wq * load.d_slope[r][c];
+                        for j in 0..4 {
+                            let column = s[j].fma(by_x, d[j] * by_slope);
+                            for i in 0..4 {
+                                out.k[3 * i + r][3 * j + c] -= s[i] * column;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
