@@ -8,7 +8,6 @@ mod start;
 
 pub use manifest::Manifest;
 pub(crate) use recorder::{Recorder, records};
-pub(crate) use report::number;
 pub(crate) use start::{Ending, Started};
 
 use crate::error::Error;

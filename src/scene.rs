@@ -36,7 +36,7 @@ mod value;
 mod write;
 
 pub use fault::Fault;
-pub(crate) use fault::{did_you_mean, expected, quoted};
+pub(crate) use fault::{did_you_mean, quoted};
 pub use parameters::Parameter;
 pub use read::{Document, Format};
 pub use source::{Place, Span};

@@ -7,7 +7,7 @@ use ropewalk_core::Analysis;
 use std::fmt::Write;
 
 /// A number in six significant digits, without trailing zeros.
-pub(crate) fn number(x: f64) -> String {
+fn number(x: f64) -> String {
     let size = x.abs();
     if x == 0.0 || !x.is_finite() {
         return format!("{}", x + 0.0);

@@ -106,7 +106,7 @@ pub(crate) fn quoted(name: &str) -> String {
 }
 
 /// ``expected `a` or `b` ``, whatever the number of names.
-pub(crate) fn expected<S: AsRef<str>>(names: &[S]) -> String {
+pub(super) fn expected<S: AsRef<str>>(names: &[S]) -> String {
     let names: Vec<String> = names.iter().map(|n| format!("`{}`", n.as_ref())).collect();
     match names.as_slice() {
         [] => "expected nothing here".to_string(),
