@@ -1,4 +1,40 @@
 //! Ropewalk: flexible multibody dynamics of cables, hoses and tethers.
+//!
+//! A [`Scene`] says what there is: elements, constraints, forces, motions, and what is recorded. It is written as a
+//! TOML or JSON file or put together in Rust; [`simulate`] runs it:
+//!
+//! ```no_run
+//! let scene = ropewalk::read("scene.toml")?;
+//! let history = ropewalk::simulate(&scene)?;
+//! println!("the tension at the end is {:?} N", history.last("hose.end.tension"));
+//! # Ok::<(), ropewalk::Error>(())
+//! ```
+//!
+//! The same with more control: [`Scene::build`] makes a [`Model`], and a [`Simulation`] moves it.
+//!
+//! The parts are crates of their own, and naming them here is what makes their types known to scene files:
+//! [`core`] (model, solvers, integrators), [`elements`], [`constraints`], [`forces`], [`models`] (bundled scenes). A
+//! crate that adds types of its own offers them with [`cli::main_with`] in the same command line.
+
+pub mod cli;
+mod commands;
+mod error;
 pub mod output;
+mod read;
+mod run;
 pub mod scene;
+mod simulate;
+
+pub use ropewalk_constraints as constraints;
 pub use ropewalk_core as core;
+pub use ropewalk_elements as elements;
+pub use ropewalk_forces as forces;
+pub use ropewalk_models as models;
+
+pub use error::Error;
+pub use read::{SceneFile, read};
+pub use ropewalk_core::integrator::Options;
+pub use ropewalk_core::{BuildError, Builder, MarkerRef, Model, Run, Scene, SceneError, Simulation, State, Water};
+pub use ropewalk_models::{Bundled, bundled};
+pub use run::{Manifest, Outcome, RunOptions, run};
+pub use simulate::{History, simulate};

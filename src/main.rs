@@ -1,1 +1,7 @@
-fn main() {}
+//! The command line of Ropewalk.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ropewalk::cli::main_with(ropewalk::bundled())
+}

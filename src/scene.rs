@@ -10,7 +10,7 @@
 //! [`Document`] leads through all of them:
 //!
 //! ```
-//! use ropewalk::scene::{Document, Format}; // ropewalk::scene in the product
+//! use ropewalk::scene::{Document, Format};
 //! #[derive(serde::Deserialize)]
 //! struct Solver {
 //!     step: f64,
@@ -36,6 +36,7 @@ mod value;
 mod write;
 
 pub use fault::Fault;
+pub(crate) use fault::{did_you_mean, quoted};
 pub use parameters::Parameter;
 pub use read::{Document, Format};
 pub use source::{Place, Span};

@@ -20,6 +20,7 @@ mod pattern;
 mod pool;
 pub mod quantity;
 mod record;
+pub mod records;
 mod scene;
 mod simulation;
 mod solver;

@@ -1,1 +1,37 @@
-//! Ropewalk: models.
+//! The cases that come with Ropewalk: scene files, compiled into the program.
+
+/// A scene that is known by its name.
+///
+/// A crate with scenes of its own makes more of these and hands them to the command line together with
+/// [`bundled`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bundled {
+    /// Name, as in `ropewalk run NAME`.
+    pub name: &'static str,
+    /// The scene file, as TOML.
+    pub text: &'static str,
+}
+
+/// `scenes/NAME.toml` under its name.
+macro_rules! scenes {
+    ($($name:literal),* $(,)?) => {
+        &[$(Bundled { name: $name, text: include_str!(concat!("../scenes/", $name, ".toml")) }),*]
+    };
+}
+
+/// All bundled scenes, by name.
+pub fn bundled() -> &'static [Bundled] {
+    const ALL: &[Bundled] = scenes![];
+    ALL
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_ascend_and_are_names() {
+        assert!(bundled().windows(2).all(|w| w[0].name < w[1].name));
+        assert!(bundled().iter().all(|b| !b.name.contains(['/', '\\', '.']) && !b.text.is_empty()));
+    }
+}

@@ -62,7 +62,7 @@ pub struct Counts {
 
 /// The energy balance at the end of a run, in joules.
 ///
-/// kinetic + potential − (what they were at the start) = supplied − dissipated + imbalance.
+/// kinetic + potential − initial = supplied + carried − dissipated + imbalance.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyTotals {
     /// Kinetic energy at the end.
@@ -74,9 +74,15 @@ pub struct EnergyTotals {
     /// Work done on the model from outside, since the start.
     #[serde(deserialize_with = "null_as_nan")]
     pub supplied: f64,
+    /// Energy that material carried in over the ends, since the start.
+    #[serde(default, deserialize_with = "null_as_nan")]
+    pub carried: f64,
     /// Energy lost to damping, drag and friction, since the start.
     #[serde(deserialize_with = "null_as_nan")]
     pub dissipated: f64,
+    /// Kinetic and potential energy at the start.
+    #[serde(default, deserialize_with = "null_as_nan")]
+    pub initial: f64,
     /// What the balance doesn't account for: the error of the integration.
     #[serde(deserialize_with = "null_as_nan")]
     pub imbalance: f64,

@@ -30,7 +30,8 @@ pub struct Fault {
 }
 
 impl Fault {
-    pub(super) fn new(message: impl Into<String>) -> Self {
+    /// A fault of the scene as a whole.
+    pub fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), help: None, path: String::new(), place: None, notes: Vec::new() }
     }
 
@@ -99,7 +100,7 @@ pub(super) fn one_line(text: &str) -> String {
 }
 
 /// A name as a message quotes it: in backticks, on one line, and not longer than a name should be.
-pub(super) fn quoted(name: &str) -> String {
+pub(crate) fn quoted(name: &str) -> String {
     let short: String = name.chars().take(60).map(|c| if c.is_control() { ' ' } else { c }).collect();
     format!("`{short}{}`", if name.chars().nth(60).is_some() { "…" } else { "" })
 }
@@ -116,7 +117,7 @@ pub(super) fn expected<S: AsRef<str>>(names: &[S]) -> String {
 }
 
 /// ``did you mean `b`?`` if one of the names is close to what was written.
-pub(super) fn did_you_mean<S: AsRef<str>>(written: &str, names: &[S]) -> Option<String> {
+pub(crate) fn did_you_mean<S: AsRef<str>>(written: &str, names: &[S]) -> Option<String> {
     let plain = |s: &str| s.to_lowercase().replace(['-', ' '], "_");
     let written = plain(written);
     let length = written.chars().count();

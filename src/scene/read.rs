@@ -121,6 +121,12 @@ impl Document {
         self.table().get(name).filter(|value| value.kind != Kind::Null)
     }
 
+    /// What stands at a path like `elements[2].section`, if anything does.
+    #[must_use]
+    pub fn find(&self, path: &str) -> Option<&Value> {
+        self.root.find(path)
+    }
+
     fn ask(&mut self, name: &str) {
         if !self.asked.iter().any(|a| a == name) {
             self.asked.push(name.to_string());

@@ -81,18 +81,27 @@ impl Value {
     /// The value at a path below this one, or the nearest one above it that exists: `[0].section.ea`.
     pub(super) fn nearest(&self, path: &str) -> &Self {
         let mut here = self;
-        for step in path.split(['.', '[']).filter(|s| !s.is_empty()) {
-            let next = match (&here.kind, step.strip_suffix(']').map(str::parse::<usize>)) {
-                (Kind::Array(list), Some(Ok(i))) => list.get(i),
-                (Kind::Table(table), None) => table.get(step),
-                _ => None,
-            };
-            match next {
+        for step in steps(path) {
+            match here.step(step) {
                 Some(value) => here = value,
                 None => break,
             }
         }
         here
+    }
+
+    /// The value at a path below this one.
+    pub(super) fn find(&self, path: &str) -> Option<&Self> {
+        steps(path).try_fold(self, |here, step| here.step(step))
+    }
+
+    /// The value one step below this one: `section`, or `0]`.
+    fn step(&self, step: &str) -> Option<&Self> {
+        match (&self.kind, step.strip_suffix(']').map(str::parse::<usize>)) {
+            (Kind::Array(list), Some(Ok(i))) => list.get(i),
+            (Kind::Table(table), None) => table.get(step),
+            _ => None,
+        }
     }
 
     /// Levels below and including this one, and a measure of the memory that a copy would take.
@@ -110,6 +119,10 @@ impl Value {
             _ => (1, EACH),
         }
     }
+}
+
+fn steps(path: &str) -> impl Iterator<Item = &str> {
+    path.split(['.', '[']).filter(|s| !s.is_empty())
 }
 
 impl Table {

@@ -1,0 +1,30 @@
+//! The records that come with Ropewalk: motion of a point, tension and the like along a cable, reaction of a
+//! constraint, balance of energy.
+//!
+//! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
+
+mod along;
+mod energy;
+mod motion;
+mod place;
+mod reaction;
+
+pub use along::AlongSpec;
+pub use energy::EnergySpec;
+pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
+pub use place::Station as RecordPlace;
+pub use reaction::ReactionSpec;
+
+/// `` `a`, `b` ``, or what is said instead if there is nothing.
+fn listed<'a>(names: impl Iterator<Item = &'a str>, none: &str) -> String {
+    let names: Vec<String> = names.map(|n| format!("`{n}`")).collect();
+    if names.is_empty() { none.to_string() } else { names.join(", ") }
+}
+
+/// The name that a record was given, or the one that it has otherwise.
+fn named(given: &Option<String>, otherwise: impl FnOnce() -> String) -> String {
+    given.as_ref().map(|n| n.trim().to_string()).filter(|n| !n.is_empty()).unwrap_or_else(otherwise)
+}
+
+#[cfg(test)]
+mod tests;

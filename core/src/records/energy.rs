@@ -1,0 +1,52 @@
+//! The balance of energy over time.
+
+use super::named;
+use crate::build::BuildError;
+use crate::model::Model;
+use crate::record::{Column, Record, Sample};
+use crate::register_spec;
+use crate::spec::RecordSpec;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Balance of energy: columns `energy.kinetic`, `.potential`, `.supplied`, `.dissipated` and `.imbalance` in J.
+///
+/// Work is counted from the start of the run. The imbalance is what the integration gained (positive) or, by its
+/// numerical damping, lost (negative).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EnergySpec {
+    /// Name in results; left out, `energy`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+register_spec!(Record, "energy", EnergySpec);
+
+struct Balance(String);
+
+impl Record for Balance {
+    fn title(&self) -> String {
+        "Balance of energy".into()
+    }
+    fn name(&self) -> String {
+        self.0.clone()
+    }
+    fn columns(&self) -> Vec<Column> {
+        ["kinetic", "potential", "supplied", "dissipated", "imbalance"]
+            .map(|i| Column::new(format!("{}.{i}", self.0), "J"))
+            .to_vec()
+    }
+    fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
+        let a = s.audit;
+        // what material carries in over an end is supplied from outside as well
+        out.extend([a.kinetic, a.potential, a.supplied + a.carried, a.dissipated, a.imbalance()]);
+    }
+}
+
+#[typetag::serde(name = "energy")]
+impl RecordSpec for EnergySpec {
+    fn build(&self, _: &Model) -> Result<Box<dyn Record>, BuildError> {
+        Ok(Box::new(Balance(named(&self.name, || "energy".into()))))
+    }
+}

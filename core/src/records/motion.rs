@@ -1,0 +1,143 @@
+//! Position, velocity and acceleration of a point.
+
+use super::named;
+use super::place::Spotted;
+use crate::build::BuildError;
+use crate::lane::V3;
+use crate::model::Model;
+use crate::record::{Column, Record, Sample};
+use crate::register_spec;
+use crate::spec::RecordSpec;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Position of a point: columns `hose.end.x`, `.y` and `.z` in m.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PositionSpec {
+    /// The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
+    pub of: String,
+    /// Name in results; left out, that of the point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+/// Velocity of a point: columns `hose.end.vx`, `.vy` and `.vz` in m/s.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VelocitySpec {
+    /// The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
+    pub of: String,
+    /// Name in results; left out, that of the point and `.velocity`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+/// Acceleration of a point: columns `hose.end.ax`, `.ay` and `.az` in m/s².
+///
+/// It is the one that fits positions and velocities by the equations of motion, less noisy than the integrator's own.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AccelerationSpec {
+    /// The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
+    pub of: String,
+    /// Name in results; left out, that of the point and `.acceleration`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+register_spec!(Record, "position", PositionSpec);
+register_spec!(Record, "velocity", VelocitySpec);
+register_spec!(Record, "acceleration", AccelerationSpec);
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Order {
+    Position,
+    Velocity,
+    Acceleration,
+}
+
+struct Motion {
+    point: Spotted,
+    order: Order,
+    name: String,
+    /// What columns begin with.
+    stem: String,
+    of: String,
+}
+
+impl Motion {
+    fn boxed(
+        model: &Model,
+        of: &str,
+        name: &Option<String>,
+        order: Order,
+    ) -> Result<Box<dyn Record>, BuildError> {
+        let point = Spotted::find(model, of)?;
+        let of: String = of.chars().filter(|c| !c.is_whitespace()).collect();
+        let stem = named(name, || of.clone());
+        let name = named(name, || match order {
+            Order::Position => of.clone(),
+            Order::Velocity => format!("{of}.velocity"),
+            Order::Acceleration => format!("{of}.acceleration"),
+        });
+        Ok(Box::new(Motion { point, order, name, stem, of }))
+    }
+
+    fn value(&self, s: &Sample<'_>) -> V3<f64> {
+        match self.order {
+            Order::Position => self.point.position(s),
+            Order::Velocity => self.point.velocity(s),
+            Order::Acceleration => self.point.acceleration(s),
+        }
+    }
+}
+
+impl Record for Motion {
+    fn title(&self) -> String {
+        let what = match self.order {
+            Order::Position => "Position",
+            Order::Velocity => "Velocity",
+            Order::Acceleration => "Acceleration",
+        };
+        format!("{what} of {}", self.of)
+    }
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+    fn columns(&self) -> Vec<Column> {
+        let (prefix, unit) = match self.order {
+            Order::Position => ("", "m"),
+            Order::Velocity => ("v", "m/s"),
+            Order::Acceleration => ("a", "m/s^2"),
+        };
+        ["x", "y", "z"].map(|i| Column::new(format!("{}.{prefix}{i}", self.stem), unit)).to_vec()
+    }
+    fn needs_forces(&self) -> bool {
+        self.order == Order::Acceleration
+    }
+    fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
+        out.extend(self.value(s));
+    }
+}
+
+#[typetag::serde(name = "position")]
+impl RecordSpec for PositionSpec {
+    fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
+        Motion::boxed(model, &self.of, &self.name, Order::Position)
+    }
+}
+
+#[typetag::serde(name = "velocity")]
+impl RecordSpec for VelocitySpec {
+    fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
+        Motion::boxed(model, &self.of, &self.name, Order::Velocity)
+    }
+}
+
+#[typetag::serde(name = "acceleration")]
+impl RecordSpec for AccelerationSpec {
+    fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
+        Motion::boxed(model, &self.of, &self.name, Order::Acceleration)
+    }
+}

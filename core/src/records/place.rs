@@ -1,0 +1,150 @@
+//! Where a record looks: a marker, or any arc length of a part.
+
+use super::listed;
+use crate::build::BuildError;
+use crate::lane::V3;
+use crate::marker::Marker;
+use crate::model::Model;
+use crate::part::{Part, Spot, split_marker};
+use crate::quantity;
+use crate::record::Sample;
+use crate::state::At;
+use schemars::JsonSchema;
+use serde::de::{self, Deserializer, Visitor};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::Arc;
+
+/// A point of a part whose motion is watched.
+pub(super) enum Spotted {
+    /// A named place, which is a point of a node.
+    Marker(Marker),
+    /// An arc length [m] of a part, whether there is a node or not.
+    Along(Arc<dyn Part>, f64),
+}
+
+impl Spotted {
+    /// Finds `hose.end` or `hose@12.5m`.
+    pub(super) fn find(model: &Model, of: &str) -> Result<Self, BuildError> {
+        let (name, spot) = split_marker(of).map_err(|e| BuildError::at("of", format!("`{of}`: {e}")))?;
+        let part = part(model, name)?;
+        match spot {
+            Spot::Along(s) if part.point(s, &model.state().at()).is_some() => Ok(Self::Along(part, s)),
+            Spot::Along(s) => Err(off(part.as_ref(), "of", s)),
+            named => {
+                part.marker(&named).map(Self::Marker).map_err(|e| BuildError::at("of", format!("`{of}`: {e}")))
+            }
+        }
+    }
+
+    /// Position [m].
+    pub(super) fn position(&self, s: &Sample<'_>) -> V3<f64> {
+        match self {
+            Self::Marker(m) => m.now(s.model.nodes(), &s.at).x,
+            Self::Along(part, arc) => part.point(*arc, &s.at).map_or([f64::NAN; 3], |(x, _)| x),
+        }
+    }
+
+    /// Velocity [m/s].
+    pub(super) fn velocity(&self, s: &Sample<'_>) -> V3<f64> {
+        match self {
+            Self::Marker(m) => m.velocity(s.model.nodes(), &s.at),
+            Self::Along(part, arc) => part.point(*arc, &s.at).map_or([f64::NAN; 3], |(_, v)| v),
+        }
+    }
+
+    /// Acceleration [m/s²].
+    pub(super) fn acceleration(&self, s: &Sample<'_>) -> V3<f64> {
+        match self {
+            Self::Marker(m) => m.acceleration(s.model.nodes(), &s.at),
+            // a point is a linear function of its nodes' coordinates: accelerations go the way of velocities
+            Self::Along(part, arc) => {
+                part.point(*arc, &At { v: s.at.a, ..s.at }).map_or([f64::NAN; 3], |(_, a)| a)
+            }
+        }
+    }
+}
+
+/// The part of this name.
+pub(super) fn part(model: &Model, name: &str) -> Result<Arc<dyn Part>, BuildError> {
+    model.part(name).cloned().ok_or_else(|| {
+        let parts = listed(model.parts().iter().map(|p| p.name()), "none");
+        BuildError::at("of", format!("there is no part `{name}`; the parts are {parts}"))
+    })
+}
+
+/// An arc length that a part doesn't have.
+pub(super) fn off(part: &dyn Part, field: &'static str, s: f64) -> BuildError {
+    let (name, length) = (part.name(), part.length());
+    BuildError::at(field, format!("`{name}` has no point at arc length {s} m: it goes from 0 to {length} m"))
+}
+
+/// A place along a cable: `"start"`, `"end"`, or an unstretched arc length like `"12.5 m"`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Station {
+    /// Where it starts.
+    Start,
+    /// Where it ends.
+    End,
+    /// At an unstretched arc length [m].
+    #[serde(untagged)]
+    At(f64),
+}
+
+impl Station {
+    /// Its arc length on a part of this length [m].
+    pub fn on(self, length: f64) -> f64 {
+        match self {
+            Station::Start => 0.0,
+            Station::End => length,
+            Station::At(s) => s,
+        }
+    }
+}
+
+impl fmt::Display for Station {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Station::Start => f.write_str(".start"),
+            Station::End => f.write_str(".end"),
+            Station::At(s) => write!(f, "@{s}m"),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Station {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl Visitor<'_> for Either {
+            type Value = Station;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"start\", \"end\" or an arc length like \"12.5 m\"")
+            }
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<Station, E> {
+                match text.trim() {
+                    "start" => Ok(Station::Start),
+                    "end" => Ok(Station::End),
+                    s if s.starts_with(|c: char| c.is_alphabetic()) => {
+                        Err(E::invalid_value(de::Unexpected::Str(s), &self))
+                    }
+                    s => quantity::kind::LENGTH.parse(s).map(Station::At).map_err(E::custom),
+                }
+            }
+            fn visit_f64<E: de::Error>(self, s: f64) -> Result<Station, E> {
+                if s.is_finite() {
+                    Ok(Station::At(s))
+                } else {
+                    Err(E::invalid_value(de::Unexpected::Float(s), &self))
+                }
+            }
+            fn visit_i64<E: de::Error>(self, s: i64) -> Result<Station, E> {
+                Ok(Station::At(s as f64))
+            }
+            fn visit_u64<E: de::Error>(self, s: u64) -> Result<Station, E> {
+                Ok(Station::At(s as f64))
+            }
+        }
+        d.deserialize_any(Either)
+    }
+}

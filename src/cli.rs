@@ -1,0 +1,143 @@
+//! The command line, as a function: programs with types and scenes of their own offer the same one.
+//!
+//! A crate that adds an element registers it (see `ropewalk::core::register_spec`); a program that names that crate
+//! and calls [`main_with`] then knows it in scene files, in `list` and in `describe`:
+//!
+//! ```no_run
+//! // use my_elements as _; links the crate, and with it the types that it registers
+//! use ropewalk::Bundled;
+//! use std::process::ExitCode;
+//!
+//! fn main() -> ExitCode {
+//!     let mut scenes = ropewalk::bundled().to_vec();
+//!     scenes.push(Bundled { name: "kite", text: "title = \"A kite\"\n" });
+//!     ropewalk::cli::main_with(&scenes)
+//! }
+//! ```
+
+use crate::commands::{self, Exit};
+use clap::{Parser, Subcommand};
+use ropewalk_models::Bundled;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Flexible multibody dynamics: cables, hoses and tethers, bodies, joints and water
+#[derive(Debug, Parser)]
+#[command(
+    name = "ropewalk",
+    version,
+    after_help = "Examples:\n  \
+        ropewalk list                           what there is\n  \
+        ropewalk run scene.toml                 results go to runs/scene\n  \
+        ropewalk run scene.toml --set n=40      the same with another parameter\n  \
+        ropewalk describe cable                 the fields of a type\n\n\
+        Exit codes: 0 done, 2 wrong scene or usage, 3 the solver gave up, 130 Ctrl-C.",
+    disable_help_subcommand = true
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene; history, summary and pictures go into a folder of their own
+    #[command(after_help = "Examples:\n  \
+        ropewalk run scene.toml\n  \
+        ropewalk run scene.toml --set speed='25 kn' --set n=40 --out results\n  \
+        ropewalk run runs/scene/scene.toml      again, from what a run left behind\n\n\
+        The folder holds scene.toml (as it was run), manifest.json, history.csv, summary.json and plots/*.svg.\n\
+        Ctrl-C ends the run in good order; what was computed is kept.")]
+    Run {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Folder for the results, new or empty [default: runs/SCENE, numbered]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Measure the time of every term
+        #[arg(long)]
+        profile: bool,
+        /// Say nothing but errors and warnings
+        #[arg(long, short)]
+        quiet: bool,
+    },
+    /// List the bundled scenes and the types that a scene can use
+    List,
+    /// Explain a scene, a type, or a section of a scene file
+    #[command(after_help = "Examples:\n  \
+        ropewalk describe scene.toml            title, parameters, parts\n  \
+        ropewalk describe cable                 fields with units and defaults\n  \
+        ropewalk describe solver                also: water, run, statics")]
+    Describe {
+        /// A scene, a type, or one of: water, run, solver, statics
+        #[arg(value_name = "SCENE|TYPE")]
+        what: String,
+    },
+    /// Read and build a scene without running it, and show what it consists of
+    #[command(after_help = "Example:\n  ropewalk check scene.toml --set n=200")]
+    Check {
+        #[command(flatten)]
+        scene: SceneArgs,
+    },
+}
+
+/// A scene and its parameters.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SceneArgs {
+    /// A bundled scene, or a .toml or .json file
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: String,
+    /// Set a parameter of the scene; may be given several times
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub(crate) overrides: Vec<String>,
+}
+
+/// The whole command line with these bundled scenes, on the arguments of the program.
+///
+/// Exit codes: 0 done; 2 something is wrong with the scene or the command; 3 the solver gave up, all results until
+/// then are kept; 130 interrupted by Ctrl-C, all results until then are kept.
+pub fn main_with(bundled: &[Bundled]) -> ExitCode {
+    main_from(bundled, std::env::args_os())
+}
+
+/// As [`main_with`], on other arguments, the first of which is the name of the program.
+pub fn main_from(
+    bundled: &[Bundled],
+    arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(e) => {
+            // a closed pipe is nobody's business
+            let _ = e.print();
+            return ExitCode::from(if e.use_stderr() { Exit::Input as u8 } else { 0 });
+        }
+    };
+    let done = match cli.command {
+        Command::Run { scene, out, profile, quiet } => {
+            commands::run::run(&scene, out, profile, quiet, bundled)
+        }
+        Command::List => commands::list::list(bundled),
+        Command::Describe { what } => commands::describe::describe(&what, bundled),
+        Command::Check { scene } => commands::check::check(&scene, bundled),
+    };
+    match done {
+        Ok(exit) => ExitCode::from(exit as u8),
+        Err(e) => {
+            commands::complain(&e);
+            ExitCode::from(if e.is_input() { Exit::Input as u8 } else { Exit::Solver as u8 })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,140 @@
+//! `ropewalk describe SCENE|TYPE`
+
+use super::{Exit, first_line, say, schema, wrapped};
+use crate::error::Error;
+use crate::read::SceneFile;
+use crate::scene::{Document, Fault, Format, Kind, Parameter, Value, did_you_mean, quoted};
+use ropewalk_core::integrator::Options;
+use ropewalk_core::statics::StaticsOptions;
+use ropewalk_core::{Run, SpecInfo, Water, registered, schemars};
+use ropewalk_models::Bundled;
+use std::path::{Path, is_separator};
+
+/// Sections of a scene file that are no lists of parts.
+const SECTIONS: [(&str, fn() -> schemars::Schema); 4] = [
+    ("water", || schemars::schema_for!(Water)),
+    ("run", || schemars::schema_for!(Run)),
+    ("solver", || schemars::schema_for!(Options)),
+    ("statics", || schemars::schema_for!(StaticsOptions)),
+];
+
+pub(crate) fn describe(what: &str, bundled: &[Bundled]) -> Result<Exit, Error> {
+    let lower = what.to_lowercase();
+    let is_path = what.contains(is_separator) || lower.ends_with(".toml") || lower.ends_with(".json");
+    if !is_path && let Some(b) = bundled.iter().find(|b| b.name == what) {
+        say(scene(&Document::parse(b.text, b.name, Format::Toml, &[])?, what)?);
+        return Ok(Exit::Done);
+    }
+    let types: Vec<&SpecInfo> = registered().into_iter().filter(|s| s.name == what).collect();
+    if !is_path && !types.is_empty() {
+        let texts: Vec<String> = types.into_iter().map(of_type).collect();
+        say(texts.join("\n").trim_end());
+        return Ok(Exit::Done);
+    }
+    if !is_path && let Some((name, schema)) = SECTIONS.iter().find(|(name, _)| *name == what) {
+        let text = format!("[{name}]\n\n{}", schema::explain(&schema()));
+        say(text.trim_end());
+        return Ok(Exit::Done);
+    }
+    if !is_path && !Path::new(what).exists() {
+        return Err(unknown(what, bundled).into());
+    }
+    say(scene(&Document::read(Path::new(what), &[])?, what)?);
+    Ok(Exit::Done)
+}
+
+fn of_type(s: &SpecInfo) -> String {
+    format!("[[{}]]\ntype = \"{}\"\n\n{}", s.kind.list(), s.name, schema::explain(&(s.schema)()))
+}
+
+/// Title, description, parameters and parts of a scene.
+fn scene(document: &Document, name: &str) -> Result<String, Fault> {
+    let text = |key: &str| document.get(key).and_then(Value::as_str).unwrap_or_default();
+    let mut out = match text("title") {
+        "" => format!("{name}\n"),
+        title => format!("{title}\n"),
+    };
+    let description = text("description");
+    if !description.trim().is_empty() {
+        out += &format!("\n{}", wrapped(description.trim(), 0));
+    }
+    if !document.parameters().is_empty() {
+        out += "\nparameters\n";
+        let wide = document.parameters().iter().map(|p| label(p).chars().count()).max().unwrap_or(0);
+        for p in document.parameters() {
+            let description = p.description.as_deref().unwrap_or_default();
+            out += format!("  {:<wide$}  {description}", label(p)).trim_end();
+            out.push('\n');
+        }
+    }
+    for list in ["elements", "constraints", "forces", "motions", "records"] {
+        let Some(Kind::Array(parts)) = document.get(list).map(|v| &v.kind) else { continue };
+        if !parts.is_empty() {
+            out += &format!("\n{list}\n");
+        }
+        for part in parts {
+            out += format!("  {}", of_part(part)).trim_end();
+            out.push('\n');
+        }
+    }
+    let sections: Vec<&str> = SECTIONS.iter().map(|s| s.0).filter(|s| document.get(s).is_some()).collect();
+    if !sections.is_empty() {
+        out += &format!("\nsections: {}\n", sections.join(", "));
+    }
+    // what is wrong with the scene is said after what it is about
+    match SceneFile::parse(&document.to_toml(), name, Format::Toml, &[]) {
+        Ok(_) => Ok(out.trim_end().to_string()),
+        Err(fault) => {
+            say(out.trim_end());
+            Err(fault)
+        }
+    }
+}
+
+fn label(p: &Parameter) -> String {
+    format!("{} = {}", p.name, shown(&p.value))
+}
+
+/// A part by its type, its name, and what it holds or acts on.
+fn of_part(part: &Value) -> String {
+    let Some(table) = part.as_table() else { return String::new() };
+    let get = |key: &str| table.get(key).map(shown);
+    let kind = table.get("type").and_then(Value::as_str).unwrap_or("?");
+    let mut line = match table.get("name").and_then(Value::as_str) {
+        Some(name) => format!("{name} ({kind})"),
+        None => kind.to_string(),
+    };
+    for key in ["of", "what", "at", "on", "between", "motion"] {
+        if let Some(value) = get(key) {
+            line += &format!(", {key} {value}");
+        }
+    }
+    line
+}
+
+/// A value on one line.
+fn shown(value: &Value) -> String {
+    match &value.kind {
+        Kind::Null => "none".into(),
+        Kind::Bool(b) => b.to_string(),
+        Kind::Integer(i) => i.to_string(),
+        Kind::Float(x) => format!("{x:?}"),
+        Kind::String(s) => first_line(s),
+        Kind::Array(list) => format!("[{}]", list.iter().map(shown).collect::<Vec<_>>().join(", ")),
+        Kind::Table(table) => {
+            let entries: Vec<String> = table.iter().map(|(k, v)| format!("{} = {}", k.name, shown(v))).collect();
+            format!("{{ {} }}", entries.join(", "))
+        }
+    }
+}
+
+fn unknown(what: &str, bundled: &[Bundled]) -> Fault {
+    let mut names: Vec<&str> = bundled.iter().map(|b| b.name).collect();
+    names.extend(registered().iter().map(|s| s.name));
+    names.extend(SECTIONS.iter().map(|s| s.0));
+    let fault = Fault::new(format!("there is no scene, type or section {}", quoted(what)));
+    match did_you_mean(what, &names) {
+        Some(guess) => fault.with_help(guess),
+        None => fault.with_help("`ropewalk list` shows what there is"),
+    }
+}

@@ -1,0 +1,51 @@
+//! `ropewalk list`
+
+use super::{Exit, first_line, say};
+use crate::error::Error;
+use crate::scene::{Document, Format};
+use ropewalk_core::{SpecKind, registered};
+use ropewalk_models::Bundled;
+
+/// The kinds of types, in the order of a scene file.
+const KINDS: [SpecKind; 5] =
+    [SpecKind::Element, SpecKind::Constraint, SpecKind::Force, SpecKind::Motion, SpecKind::Record];
+
+pub(crate) fn list(bundled: &[Bundled]) -> Result<Exit, Error> {
+    let mut out = String::new();
+    let scenes: Vec<(&str, String)> = bundled.iter().map(|b| (b.name, title(b))).collect();
+    section(&mut out, "scenes", &scenes);
+    for kind in KINDS {
+        let types = registered().into_iter().filter(|s| s.kind == kind);
+        let types: Vec<(&str, String)> = types
+            .map(|s| {
+                let schema = (s.schema)();
+                let doc = schema.get("description").and_then(|d| d.as_str()).unwrap_or_default().to_string();
+                (s.name, first_line(&doc))
+            })
+            .collect();
+        section(&mut out, kind.list(), &types);
+    }
+    out += "`ropewalk describe NAME` explains a scene or a type.";
+    say(out);
+    Ok(Exit::Done)
+}
+
+fn title(b: &Bundled) -> String {
+    let title = Document::parse(b.text, b.name, Format::Toml, &[])
+        .ok()
+        .and_then(|mut d| d.take::<String>("title").ok().flatten());
+    title.unwrap_or_default()
+}
+
+fn section(out: &mut String, heading: &str, lines: &[(&str, String)]) {
+    if lines.is_empty() {
+        return;
+    }
+    let wide = lines.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    *out += &format!("{heading}\n");
+    for (name, text) in lines {
+        *out += format!("  {name:<wide$}  {text}").trim_end();
+        out.push('\n');
+    }
+    out.push('\n');
+}

@@ -1,0 +1,180 @@
+//! A JSON schema in words: what can be written, with units, defaults and the doc comments of the source.
+
+use super::wrapped;
+use ropewalk_core::schemars::Schema;
+use serde_json::Value;
+
+/// Description and fields of a type.
+pub(super) fn explain(schema: &Schema) -> String {
+    let root = schema.as_value();
+    let mut out = String::new();
+    if let Some(text) = description(root) {
+        out += &format!("{}\n", wrapped(text, 0));
+    }
+    Words { root }.fields(&mut out, root, 2, 0);
+    out
+}
+
+struct Words<'a> {
+    root: &'a Value,
+}
+
+impl<'a> Words<'a> {
+    /// The fields of a table, each with those of the tables inside.
+    fn fields(&self, out: &mut String, schema: &'a Value, indent: usize, depth: usize) {
+        let Some(fields) = schema.get("properties").and_then(Value::as_object) else { return };
+        let required = |name: &str| {
+            let list = schema.get("required").and_then(Value::as_array);
+            list.is_some_and(|list| list.iter().any(|r| r == name))
+        };
+        for (name, field) in fields {
+            let inner = self.resolved(field);
+            let doc = description(field).or_else(|| description(inner)).unwrap_or_default();
+            let mut kind = self.kind(field, doc);
+            match field.get("default").filter(|d| !d.is_null()).and_then(short) {
+                Some(default) => kind += &format!(", default {default}"),
+                None if required(name) => kind += ", required",
+                None => kind += ", optional",
+            }
+            *out += &format!("{:indent$}{name}: {kind}\n", "");
+            *out += &wrapped(doc, indent + 4);
+            if depth < 3 {
+                self.fields(out, inner, indent + 4, depth + 1);
+                self.choices(out, inner, indent + 4, depth + 1);
+            }
+        }
+    }
+
+    /// The variants of an enum that have a doc comment or fields.
+    fn choices(&self, out: &mut String, schema: &'a Value, indent: usize, depth: usize) {
+        for variant in variants(schema) {
+            let doc = description(variant).unwrap_or_default();
+            for name in names(variant) {
+                let text = if doc.is_empty() { format!("\"{name}\"") } else { format!("\"{name}\": {doc}") };
+                *out += &wrapped(&text, indent);
+                if let Some(fields) = variant.get("properties").and_then(|p| p.get(&name)) {
+                    self.fields(out, self.resolved(fields), indent + 4, depth + 1);
+                }
+            }
+        }
+    }
+
+    /// Follows a reference, and looks through the `null` of an option.
+    fn resolved(&self, schema: &'a Value) -> &'a Value {
+        let mut here = schema;
+        for _ in 0..8 {
+            let target = here.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix('#'));
+            if let Some(target) = target.and_then(|path| self.root.pointer(path)) {
+                here = target;
+            } else if let Some(all) = here.get("allOf").and_then(Value::as_array).and_then(|a| a.first()) {
+                here = all;
+            } else if let Some(one) = optional(here) {
+                here = one;
+            } else {
+                break;
+            }
+        }
+        here
+    }
+
+    /// What stands there, in words.
+    fn kind(&self, field: &'a Value, doc: &str) -> String {
+        let s = self.resolved(field);
+        let unit = unit(doc);
+        let names: Vec<String> = variants(s).into_iter().flat_map(names).map(|n| format!("\"{n}\"")).collect();
+        if !names.is_empty() {
+            return format!("one of {}", names.join(", "));
+        }
+        match type_of(s) {
+            "number" => match unit {
+                Some(unit) => format!("number in {unit}, or text with a unit"),
+                None => "number".into(),
+            },
+            "integer" => "whole number".into(),
+            "string" => "text".into(),
+            "boolean" => "true or false".into(),
+            "array" => {
+                let list = |key| s.get(key).and_then(Value::as_u64);
+                let items = s.get("items").or_else(|| s.get("prefixItems").and_then(|p| p.get(0)));
+                let items = items.map_or("any".into(), |i| self.kind(i, doc));
+                match (list("minItems"), list("maxItems")) {
+                    (Some(n), Some(m)) if n == m => format!("list of {n}, each {items}"),
+                    _ => format!("list, each {items}"),
+                }
+            }
+            "object" => "table".into(),
+            _ => match s.get("anyOf").and_then(Value::as_array) {
+                Some(any) => any.iter().map(|one| self.kind(one, doc)).collect::<Vec<_>>().join(" or "),
+                None => "any".into(),
+            },
+        }
+    }
+}
+
+fn description(schema: &Value) -> Option<&str> {
+    schema.get("description").and_then(Value::as_str)
+}
+
+/// The type, or the one of two that isn't `null`.
+fn type_of(schema: &Value) -> &str {
+    match schema.get("type") {
+        Some(Value::String(one)) => one,
+        Some(Value::Array(many)) => many.iter().filter_map(Value::as_str).find(|t| *t != "null").unwrap_or(""),
+        _ => "",
+    }
+}
+
+/// What an option holds.
+fn optional(schema: &Value) -> Option<&Value> {
+    let any = schema.get("anyOf")?.as_array()?;
+    let mut some = any.iter().filter(|one| type_of(one) != "null" && one.get("type") != Some(&"null".into()));
+    match (some.next(), some.next(), any.len()) {
+        (Some(one), None, 2) => Some(one),
+        _ => None,
+    }
+}
+
+/// The variants of an enum.
+fn variants(schema: &Value) -> Vec<&Value> {
+    let list = schema.get("oneOf").or_else(|| schema.get("anyOf")).and_then(Value::as_array);
+    match list {
+        Some(list) => list.iter().filter(|v| !names(v).is_empty()).collect(),
+        None if schema.get("enum").is_some() => vec![schema],
+        None => Vec::new(),
+    }
+}
+
+/// What a variant is called in a scene; one without fields and doc comment may share its entry with others.
+fn names(variant: &Value) -> Vec<String> {
+    let text = |v: &Value| v.as_str().map(str::to_string);
+    if let Some(one) = variant.get("const").and_then(text) {
+        return vec![one];
+    }
+    if let Some(many) = variant.get("enum").and_then(Value::as_array) {
+        return many.iter().filter_map(text).collect();
+    }
+    match (variant.get("properties").and_then(Value::as_object), variant.get("required")) {
+        (Some(fields), Some(_)) if fields.len() == 1 => fields.keys().cloned().collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The unit that a doc comment ends with: `Stiffness [N/m].`
+fn unit(doc: &str) -> Option<&str> {
+    let first = doc.split("\n\n").next()?;
+    let start = first.rfind('[')?;
+    let unit = first[start + 1..].split(']').next()?;
+    let like_unit = !unit.is_empty() && unit.len() < 24 && !unit.contains([',', '`', '<', '(', '-', ')']);
+    (like_unit && unit != "1").then_some(unit)
+}
+
+/// A default, if it is short enough to be said.
+fn short(default: &Value) -> Option<String> {
+    let text = match default {
+        Value::Array(list) if list.is_empty() => return Some("none".into()),
+        Value::Object(table) if table.is_empty() => return None,
+        Value::String(s) => format!("\"{s}\""),
+        other => other.to_string(),
+    };
+    (text.len() <= 60).then_some(text)
+}

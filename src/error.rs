@@ -1,0 +1,39 @@
+//! What can go wrong between a scene and its results.
+
+use crate::output::OutputError;
+use crate::scene::Fault;
+use ropewalk_core::SceneError;
+use ropewalk_core::integrator::StepError;
+use ropewalk_core::statics::StaticsError;
+
+/// Why there are no results.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The scene file is wrong; the message shows the place.
+    #[error("{0}")]
+    File(#[from] Fault),
+    /// The scene can't be built.
+    #[error("error: {0}")]
+    Scene(#[from] SceneError),
+    /// A step could not be taken.
+    #[error("error: {0}")]
+    Step(#[from] StepError),
+    /// An equilibrium was not found.
+    #[error("error: {0}")]
+    Statics(#[from] StaticsError),
+    /// Results could not be written.
+    #[error("error: {0}")]
+    Output(#[from] OutputError),
+}
+
+impl Error {
+    /// Whether the scene or the command is to blame, not the solver: something has to be changed before the run
+    /// can even begin.
+    pub fn is_input(&self) -> bool {
+        match self {
+            Error::File(_) | Error::Scene(_) | Error::Output(_) => true,
+            Error::Step(e) => matches!(e, StepError::Scheme(_) | StepError::Inconsistent(_)),
+            Error::Statics(_) => false,
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The pictures of a run: every record over time, and the shape of all parts.
+
+use super::Recorder;
+use super::recorder::Figure;
+use crate::output::{LinePlot, OutputError, Plane, RunFolder, Series, ShapePlot};
+use ropewalk_core::V3;
+
+/// Draws everything and says what was drawn. A picture that can't be drawn is no reason to fail.
+pub(crate) fn draw(
+    folder: &RunFolder,
+    title: &str,
+    recorder: &Recorder<'_>,
+    warn: &mut dyn FnMut(&str),
+) -> Vec<String> {
+    let mut drawn = Vec::new();
+    let mut keep = |name: String, result: Result<(), OutputError>| match result {
+        Ok(()) => drawn.push(name),
+        // nothing to show is no fault: a run that failed at once has no history
+        Err(OutputError::EmptyPlot { .. }) => {}
+        Err(e) => warn(&e.to_string()),
+    };
+    for figure in &recorder.figures {
+        for (name, plot) in histories(figure, recorder) {
+            let written = folder.plot_file(&name).and_then(|path| plot.write(&path));
+            keep(name, written);
+        }
+    }
+    for plane in planes(&recorder.shapes) {
+        let (name, from) = match plane {
+            Plane::Top => ("shape_top", "from above"),
+            Plane::SideX => ("shape_side", "from the side"),
+            Plane::SideY => ("shape_end", "from the end"),
+        };
+        let plot = ShapePlot::of_positions(format!("{title}, {from}"), plane, &recorder.shapes);
+        let written = folder.plot_file(name).and_then(|path| plot.write(&path));
+        keep(name.to_string(), written);
+    }
+    drawn
+}
+
+/// A plot of each unit that the record has: one axis can't show metres and newtons.
+fn histories(figure: &Figure, recorder: &Recorder<'_>) -> Vec<(String, LinePlot)> {
+    let columns = &recorder.table.columns;
+    let Some(time) = columns.first() else { return Vec::new() };
+    let mut units: Vec<&str> = Vec::new();
+    for k in figure.columns.clone() {
+        if !units.contains(&columns[k].unit.as_str()) {
+            units.push(&columns[k].unit);
+        }
+    }
+    let plot = |unit: &&str| {
+        let shown: Vec<_> = figure.columns.clone().map(|k| &columns[k]).filter(|c| c.unit == *unit).collect();
+        // `hose.end.x` is `x` where the title says of what
+        let short = |name: &str| name.rsplit_once('.').map_or(name, |(_, last)| last).to_string();
+        let labels: Vec<String> = shown.iter().map(|c| short(&c.name)).collect();
+        let series = shown.iter().zip(&labels).map(|(c, label)| {
+            Series::new(label, time.values.iter().copied().zip(c.values.iter().copied()).collect())
+        });
+        let name = match units.as_slice() {
+            [_] => figure.name.clone(),
+            _ => format!("{}.{}", figure.name, labels.join("-")),
+        };
+        let plot = LinePlot {
+            title: figure.title.clone(),
+            x_label: time.heading(),
+            y_label: format!("{} [{}]", labels.join(", "), if unit.is_empty() { "-" } else { unit }),
+            series: series.collect(),
+            ..LinePlot::default()
+        };
+        (name, plot)
+    };
+    units.iter().map(plot).collect()
+}
+
+/// The planes in which there is anything to see: both directions are moved or extended in.
+fn planes(shapes: &[(f64, Vec<V3<f64>>)]) -> Vec<Plane> {
+    let points = || shapes.iter().flat_map(|(_, line)| line).filter(|p| p.iter().all(|x| x.is_finite()));
+    if points().next().is_none() {
+        return Vec::new();
+    }
+    let extent = [0, 1, 2].map(|i| {
+        let (low, high) = points()
+            .map(|p| p[i])
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        high - low
+    });
+    let largest = extent.iter().fold(0.0_f64, |a, b| a.max(*b));
+    let shows = |i: usize, j: usize| extent[i].min(extent[j]) > 1e-3 * largest;
+    let all = [(Plane::SideX, 0, 2), (Plane::Top, 0, 1), (Plane::SideY, 1, 2)];
+    let seen: Vec<Plane> = all.iter().filter(|(_, i, j)| shows(*i, *j)).map(|(plane, ..)| *plane).collect();
+    match (seen.is_empty(), extent[1] > extent[0]) {
+        (false, _) => seen,
+        // a straight line along an axis, or points at rest
+        (true, false) => vec![Plane::SideX],
+        (true, true) => vec![Plane::SideY],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_planes_with_something_to_see_are_drawn() {
+        let line = |end: V3<f64>| vec![(0.0, vec![[0.0; 3], [f64::NAN; 3], end])];
+        assert_eq!(planes(&line([1.0, 0.0, 2.0])), [Plane::SideX]);
+        assert_eq!(planes(&line([1.0, 1e-9, 2.0])), [Plane::SideX]);
+        assert_eq!(planes(&line([1.0, 3.0, 0.0])), [Plane::Top]);
+        assert_eq!(planes(&line([1.0, 3.0, 2.0])), [Plane::SideX, Plane::Top, Plane::SideY]);
+        assert_eq!(planes(&line([0.0, 3.0, 0.0])), [Plane::SideY]);
+        assert_eq!(planes(&line([0.0; 3])), [Plane::SideX]);
+        assert!(planes(&[]).is_empty());
+    }
+}

@@ -1,0 +1,205 @@
+//! The observer of a run: it evaluates the records, writes the history, shows the progress and keeps shapes.
+
+use super::start::Ending;
+use crate::error::Error;
+use crate::output::{self, Interrupt, Progress, Summary, Table, TableWriter};
+use ropewalk_core::integrator::StepReport;
+use ropewalk_core::{
+    Analysis, At, BuildError, Model, Observer, Record, Sample, Scene, SceneError, SpecKind, State, V3,
+};
+use std::collections::HashSet;
+use std::ops::ControlFlow;
+
+/// A record in the table: its name, its title, and its columns.
+pub(crate) struct Figure {
+    pub name: String,
+    pub title: String,
+    pub columns: std::ops::Range<usize>,
+}
+
+/// Sees every step and sample of a run.
+pub(crate) struct Recorder<'a> {
+    scene: &'a Scene,
+    records: Vec<Box<dyn Record>>,
+    needs_forces: bool,
+    /// Address of the model that the records are bound to.
+    bound: Option<usize>,
+    row: Vec<f64>,
+    /// All samples so far.
+    pub table: Table,
+    /// Which columns belong to which record.
+    pub figures: Vec<Figure>,
+    /// Where the samples go at once.
+    pub writer: Option<TableWriter>,
+    /// Where the progress is shown.
+    pub progress: Option<Progress>,
+    /// Whether Ctrl-C was pressed.
+    pub interrupt: Option<Interrupt>,
+    /// Lines of all parts at several times; parts are separated by a point that isn't finite.
+    pub shapes: Vec<(f64, Vec<V3<f64>>)>,
+    /// When shapes are still to be kept, last first.
+    due: Vec<f64>,
+    /// Why it stopped the run.
+    pub stop: Option<Ending>,
+}
+
+/// The records of a scene, each with a name of its own.
+pub(crate) fn records(scene: &Scene, model: &Model) -> Result<Vec<Box<dyn Record>>, SceneError> {
+    let records = scene.records(model)?;
+    let (mut names, mut columns) = (HashSet::new(), HashSet::new());
+    for (k, record) in records.iter().enumerate() {
+        let twice = |what: &str, name: &str| SceneError {
+            spec: Some((SpecKind::Record, k)),
+            error: BuildError::at(
+                "name",
+                format!("there are two {what} named `{name}`: give one of them a `name`"),
+            ),
+        };
+        if !names.insert(record.name()) {
+            return Err(twice("records", &record.name()));
+        }
+        if let Some(column) = record.columns().into_iter().find(|c| !columns.insert(c.name.clone())) {
+            return Err(twice("columns", &column.name));
+        }
+    }
+    Ok(records)
+}
+
+impl<'a> Recorder<'a> {
+    /// A recorder that keeps everything in memory.
+    pub(crate) fn new(scene: &'a Scene, records: Vec<Box<dyn Record>>) -> Self {
+        let mut table = Table::new([]);
+        if scene.run.analysis == Analysis::Statics {
+            table.columns = vec![output::Column::new("load factor", "")];
+        }
+        let mut figures = Vec::new();
+        for record in &records {
+            let first = table.columns.len();
+            for c in record.columns() {
+                let unit = if c.unit == "1" { String::new() } else { c.unit };
+                table.columns.push(output::Column::new(c.name, unit));
+            }
+            let columns = first..table.columns.len();
+            figures.push(Figure { name: record.name(), title: record.title(), columns });
+        }
+        let n = scene.run.snapshots;
+        let last = n.saturating_sub(1).max(1);
+        let due = (0..n).rev().map(|k| scene.run.duration * if n == 1 { 1.0 } else { k as f64 / last as f64 });
+        Recorder {
+            scene,
+            needs_forces: records.iter().any(|r| r.needs_forces()),
+            records,
+            bound: None,
+            row: Vec::new(),
+            table,
+            figures,
+            writer: None,
+            progress: None,
+            interrupt: None,
+            shapes: Vec::new(),
+            due: due.collect(),
+            stop: None,
+        }
+    }
+
+    /// Binds the records to the model if it is another one than before: node numbers change with the mesh.
+    fn bind(&mut self, model: &Model) -> Result<(), Error> {
+        let address = std::ptr::from_ref(model) as usize;
+        if self.bound.is_some_and(|bound| bound != address) {
+            self.records = records(self.scene, model)?;
+        }
+        self.bound = Some(address);
+        Ok(())
+    }
+
+    fn record(&mut self, s: &Sample<'_>) -> Result<(), Error> {
+        self.bind(s.model)?;
+        self.row.clear();
+        self.row.push(s.at.t);
+        for record in &self.records {
+            record.sample(s, &mut self.row);
+        }
+        self.table.push_row(&self.row)?;
+        if let Some(writer) = &mut self.writer {
+            writer.push(&self.row)?;
+        }
+        // an instant that is off by rounding is the right one
+        let now = s.at.t + 1e-9 * self.scene.run.duration;
+        if self.due.last().is_some_and(|due| *due <= now) {
+            while self.due.last().is_some_and(|due| *due <= now) {
+                self.due.pop();
+            }
+            self.shapes.push((s.at.t, lines(s.model, &s.at)));
+        }
+        Ok(())
+    }
+
+    /// Keeps the shape in which the run ended, unless it is there already.
+    pub(crate) fn last_shape(&mut self, model: &Model, state: &State) {
+        let missing = self.shapes.last().is_some_and(|(t, _)| *t < state.t);
+        if missing && !self.due.is_empty() {
+            self.shapes.push((state.t, lines(model, &state.at())));
+        }
+    }
+
+    /// The last value of every record.
+    pub(crate) fn finals(&self, summary: &mut Summary) {
+        for f in &self.figures {
+            let last = |k: usize| self.table.columns[k].values.last().copied();
+            let values: Vec<f64> = f.columns.clone().filter_map(last).collect();
+            match values.as_slice() {
+                [] => {}
+                [one] => summary.set(&f.name, *one),
+                many => summary.set(&f.name, many),
+            }
+        }
+    }
+
+    /// The last instant that was sampled [s].
+    pub(crate) fn t(&self) -> f64 {
+        self.table.columns.first().and_then(|c| c.values.last()).copied().unwrap_or(0.0)
+    }
+
+    fn go_on(&mut self, result: Result<(), Error>) -> ControlFlow<()> {
+        match result {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                self.stop = Some(Ending::Failed(error));
+                ControlFlow::Break(())
+            }
+        }
+    }
+}
+
+impl Observer for Recorder<'_> {
+    fn step(&mut self, model: &Model, state: &State, report: &StepReport) -> ControlFlow<()> {
+        if let Some(progress) = &mut self.progress {
+            progress.step(state.t, report.h, report.rejected);
+        }
+        if self.interrupt.is_some_and(Interrupt::requested) {
+            self.stop = Some(Ending::Interrupted);
+            return ControlFlow::Break(());
+        }
+        let bound = self.bind(model);
+        self.go_on(bound)
+    }
+    fn needs_forces(&self) -> bool {
+        self.needs_forces
+    }
+    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
+        let recorded = self.record(sample);
+        self.go_on(recorded)
+    }
+}
+
+fn lines(model: &Model, at: &At<'_>) -> Vec<V3<f64>> {
+    let mut all = Vec::new();
+    for part in model.parts() {
+        let line = part.line(at);
+        if !all.is_empty() && !line.is_empty() {
+            all.push([f64::NAN; 3]);
+        }
+        all.extend(line);
+    }
+    all
+}

@@ -1,0 +1,175 @@
+//! The analyses: motion in time, and a path of equilibria.
+
+use super::Recorder;
+use crate::error::Error;
+use crate::output::{Counts, ProfileEntry};
+use ropewalk_core::integrator::{StepError, StepReport};
+use ropewalk_core::statics::Statics;
+use ropewalk_core::{Analysis, Audit, End, Model, Observer, Sample, Scene, Simulation, SolveError, State};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// How an analysis ended.
+pub(crate) enum Ending {
+    /// At its end.
+    Finished,
+    /// By an event.
+    Stopped(String),
+    /// By Ctrl-C.
+    Interrupted,
+    /// With an error.
+    Failed(Error),
+}
+
+/// What an analysis leaves behind.
+pub(crate) struct Done {
+    pub model: Arc<Model>,
+    pub state: State,
+    pub audit: Audit,
+    pub counts: Counts,
+}
+
+/// An analysis that is ready to go.
+pub(crate) enum Started {
+    /// Motion in time.
+    Dynamics(Box<Simulation>),
+    /// Equilibria while time runs as the load factor.
+    Statics(Box<Done>),
+}
+
+impl Started {
+    /// Brings the model to its start.
+    pub(crate) fn new(scene: &Scene, model: Model) -> Result<Self, Error> {
+        let run = &scene.run;
+        if run.analysis == Analysis::Statics {
+            let mut state = model.state();
+            state.v.fill(0.0);
+            let audit = Audit::start(model.energy(&state.at()));
+            let counts = Counts::default();
+            return Ok(Started::Statics(Box::new(Done { model: Arc::new(model), state, audit, counts })));
+        }
+        // an unsuitable scheme should not have to wait for the equilibrium
+        ropewalk_core::integrator::Alpha::new(&scene.solver, &model, run.duration)?;
+        let mut state = model.state();
+        if run.from_equilibrium {
+            state.v.fill(0.0);
+            let mut search = Statics::new(&model, &scene.statics).map_err(no_memory)?;
+            search.find(&mut state, true)?;
+        }
+        let mut simulation = Simulation::from(model, state, &scene.solver, run.duration)?;
+        simulation.keep_audit(run.audit);
+        Ok(Started::Dynamics(Box::new(simulation)))
+    }
+
+    /// What one should know although the run goes on.
+    pub(crate) fn warnings(&self, scene: &Scene) -> Vec<String> {
+        let mut all = Vec::new();
+        if let Started::Dynamics(s) = self {
+            all.extend(s.integrator.warning.clone());
+            let c = s.correction;
+            if c.position > 1e-8 * s.model.length() || c.velocity > 1e-6 {
+                all.push(format!(
+                    "the start was moved onto the constraints: positions by {:.1e} m, velocities by {:.1e} m/s \
+                     (root mean square over the mass)",
+                    c.position, c.velocity
+                ));
+            }
+        }
+        if !scene.run.audit && scene.records.iter().any(|r| r.typetag_name() == "energy") {
+            all.push("energy is recorded but not followed: set `audit = true` in [run]".into());
+        }
+        all
+    }
+
+    /// Measures the time of every term from now on.
+    pub(crate) fn profile(&mut self) {
+        if let Started::Dynamics(s) = self {
+            s.work.profile();
+        }
+    }
+
+    /// The measured times.
+    pub(crate) fn times(&self) -> Vec<ProfileEntry> {
+        let Started::Dynamics(s) = self else { return Vec::new() };
+        let labels = s.model.terms().iter().map(|t| t.label()).chain(["constraints".to_string()]);
+        let times = s.work.system.profile.iter().flatten();
+        let entry = |(label, &(calls, time)): (String, &(u64, std::time::Duration))| ProfileEntry {
+            label,
+            calls,
+            seconds: time.as_secs_f64(),
+            share: 0.0,
+        };
+        labels.zip(times).map(entry).collect()
+    }
+
+    /// Computes until the end, or until something stops it.
+    pub(crate) fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>) -> Ending {
+        let end = match self {
+            Started::Dynamics(s) => {
+                s.advance(scene.run.duration, scene.run.interval(), recorder).map_err(Error::from)
+            }
+            Started::Statics(path) => path.go(scene, recorder),
+        };
+        match (end, recorder.stop.take()) {
+            (_, Some(error)) => error,
+            (Ok(End::Done), None) => Ending::Finished,
+            (Ok(End::Stopped { by }), None) => Ending::Stopped(by),
+            (Err(error), None) => Ending::Failed(error),
+        }
+    }
+
+    /// What is left.
+    pub(crate) fn done(self) -> Done {
+        match self {
+            Started::Statics(done) => *done,
+            Started::Dynamics(s) => {
+                let c = s.work.counts;
+                let counts = Counts {
+                    steps: c.steps,
+                    rejected: c.rejected,
+                    newton_iterations: c.newton_iterations,
+                    factorizations: c.factorizations,
+                };
+                Done { model: s.model, state: s.state, audit: s.audit, counts }
+            }
+        }
+    }
+}
+
+impl Done {
+    /// One equilibrium after the other; each starts from the one before.
+    fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>) -> Result<End, Error> {
+        let mut search = Statics::new(&self.model, &scene.statics).map_err(no_memory)?;
+        let steps = scene.statics.steps.max(1);
+        for k in 0..=steps {
+            let before = self.state.t;
+            self.state.t = scene.run.duration * k as f64 / steps as f64;
+            let found = search.find(&mut self.state, k == 0)?;
+            self.counts.steps += 1;
+            self.counts.newton_iterations += u64::from(found.iterations);
+            self.counts.factorizations += u64::from(found.iterations);
+            // work isn't followed along the path: the balance begins anew at every equilibrium
+            self.audit = Audit::start(self.model.energy(&self.state.at()));
+            let report = StepReport {
+                h: self.state.t - before,
+                iterations: found.iterations,
+                ..StepReport::default()
+            };
+            let sample = Sample {
+                model: &self.model,
+                at: self.state.at(),
+                lambda: &self.state.lambda,
+                audit: &self.audit,
+            };
+            let flow = [recorder.sample(&sample), recorder.step(&self.model, &self.state, &report)];
+            if flow.iter().any(ControlFlow::is_break) {
+                return Ok(End::Stopped { by: "observer".into() });
+            }
+        }
+        Ok(End::Done)
+    }
+}
+
+fn no_memory(source: SolveError) -> Error {
+    Error::Step(StepError::Linear { t: 0.0, source, unknown: "the structure of the equations".into() })
+}
