@@ -49,6 +49,17 @@ pub struct Found {
     pub residual: f64,
 }
 
+impl Found {
+    /// Adds the work of another search; the residual is that of the later one.
+    pub fn add(&mut self, later: &Found) {
+        self.iterations += later.iterations;
+        self.floored += later.floored;
+        self.pushes += later.pushes;
+        self.straightened |= later.straightened;
+        self.residual = later.residual;
+    }
+}
+
 /// Why no equilibrium was found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
@@ -142,7 +153,12 @@ impl<'a> Statics<'a> {
     /// None was found; the state is as it was.
     pub fn find(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
         let before = state.clone();
-        let first = self.search(state, cold);
+        let mut first = self.search(state, cold, cold);
+        if first.is_err() && !cold {
+            // from a neighbouring equilibrium the bare iteration nearly always gets there, and faster
+            state.clone_from(&before);
+            first = self.search(state, false, true);
+        }
         let suspicious = match &first {
             Ok(_) => cold && self.options.stable && self.folded(state) < FOLD,
             Err(_) => cold,
@@ -159,7 +175,7 @@ impl<'a> Statics<'a> {
         for part in self.model.parts() {
             part.straighten(&mut other.q);
         }
-        let second = self.search(&mut other, true);
+        let second = self.search(&mut other, true, true);
         match (first, second) {
             (Ok(found), Ok(again)) => {
                 if self.folded(&other) > self.folded(state) {
@@ -181,7 +197,35 @@ impl<'a> Statics<'a> {
         }
     }
 
-    fn search(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
+    /// Moves the state from one equilibrium to that at time `t`, in one step if that converges, else in as many
+    /// smaller ones as it needs. Returns the work of all of them.
+    ///
+    /// # Errors
+    /// The path could not be followed; the state is the last equilibrium that was found.
+    pub fn follow(&mut self, state: &mut State, t: f64) -> Result<Found, StaticsError> {
+        let (mut h, mut sum) = (t - state.t, Found::default());
+        let least = h.abs() / 256.0;
+        while state.t != t {
+            let from = state.t;
+            state.t = if (t - from).abs() <= 1.001 * h.abs() { t } else { from + h };
+            match self.find(state, false) {
+                Ok(found) => {
+                    sum.add(&found);
+                    h *= 2.0;
+                }
+                Err(e) => {
+                    state.t = from;
+                    h *= 0.5;
+                    if h.abs() < least {
+                        return Err(e);
+                    }
+                }
+            }
+        }
+        Ok(sum)
+    }
+
+    fn search(&mut self, state: &mut State, cold: bool, mut careful: bool) -> Result<Found, StaticsError> {
         let (model, nv) = (self.model, self.model.velocities());
         let length = model.length();
         let load = self.load(state);
@@ -214,7 +258,8 @@ impl<'a> Statics<'a> {
             how.smooth = last.is_some();
             let mut trial = self.newton(state, &q, &lambda, last.as_deref(), how);
             let far = |t: &Trial| self.position_size(&t.d) > 2.0 * length;
-            let bad = trial.as_ref().map_or(true, |t| (t.negative && self.options.stable) || far(t));
+            let wrong = |t: &Trial| careful && t.negative && self.options.stable;
+            let bad = trial.as_ref().map_or(true, |t| wrong(t) || far(t));
             if bad {
                 found.floored += 1;
                 trial = self.newton(
@@ -254,15 +299,18 @@ impl<'a> Statics<'a> {
             if ramping || !done {
                 continue;
             }
-            // what is accepted is checked at the point itself, with nothing relaxed
-            let check = self.solve_at(state, &q, &lambda, None);
+            // what is accepted is checked at the point itself; with a stiff EA even now only the smooth stress is
+            // good enough to tell stable from unstable
+            let how = Relaxation { smooth: true, ramp: f64::INFINITY, ramp_before: f64::INFINITY, load, floor: None };
+            let check = self.newton(state, &q, &lambda, last.as_deref(), how);
             found.residual = self.worst().1;
             match check {
                 Ok(t) if t.negative && self.options.stable => {
-                    if found.pushes >= 3 {
+                            if found.pushes >= 3 {
                         return fail(self, "only unstable equilibria were met", &found);
                     }
                     found.pushes += 1;
+                    careful = true;
                     let push = self.softest(found.pushes);
                     retract(model.nodes(), &q, &push, &mut next);
                     std::mem::swap(&mut q, &mut next);
@@ -418,7 +466,9 @@ impl<'a> Statics<'a> {
     /// Whether the cap on stiffness still changes the forces.
     fn ramp_binds(&mut self, state: &State, q: &[f64], lambda: &[f64], how: Relaxation) -> bool {
         self.follow_frame(q);
+        // both by the same path through the elements, so that equal means equal to the last bit
         let mut at = At { t: state.t, q, v: &self.v, a: &self.a, modes: &state.modes, relaxed: None };
+        at.relaxed = Some(Relaxed { last: None, how: Relaxation { ramp: f64::INFINITY, ..how } });
         self.model.assemble_in(&self.structure, &at, lambda, None, &mut self.system);
         let free = self.system.residual.clone();
         at.relaxed = Some(Relaxed { last: None, how });

@@ -57,6 +57,7 @@ pub struct Guard {
     b: Vec<f64>,
     r: Vec<f64>,
     d: Vec<f64>,
+    sums: Vec<f64>,
     /// Factorisations so far.
     pub factorizations: u64,
     /// How often LU with pivoting had to step in.
@@ -94,7 +95,8 @@ impl Guard {
             unchecked: true,
             b: zero.clone(),
             r: zero.clone(),
-            d: zero,
+            d: zero.clone(),
+            sums: zero,
             factorizations: 0,
             fallbacks: 0,
         })
@@ -165,8 +167,11 @@ impl Guard {
         if self.use_fallback { None } else { self.primary.negative_pivots() }
     }
 
-    /// Componentwise backward error `max |A x - b|ᵢ / (|A||x| + |b|)ᵢ`; leaves `A x - b` in `r`.
+    /// Componentwise backward error `max |A x - b|ᵢ / (|A||x| + |b|)ᵢ`; leaves `A x - b` in `r`. Rows whose terms are
+    /// all rounding errors are measured against `(|A| 1)ᵢ |x|∞` instead (Arioli, Demmel & Duff 1989).
     fn backward_error(&mut self, s: &Structure, values: &[f64], x: &[f64]) -> f64 {
+        let largest = x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        self.sums.fill(0.0);
         for i in 0..s.n {
             self.r[i] = -self.b[i];
             self.d[i] = self.b[i].abs();
@@ -176,7 +181,9 @@ impl Guard {
                 let (i, y) = (s.rows[p], values[p] * x[c]);
                 self.r[i] += y;
                 self.d[i] += y.abs();
+                self.sums[i] += values[p].abs();
                 if s.symmetric && i != c {
+                    self.sums[c] += values[p].abs();
                     let y = values[p] * x[i];
                     self.r[c] += y;
                     self.d[c] += y.abs();
@@ -189,8 +196,10 @@ impl Guard {
             if !self.r[i].is_finite() || !self.d[i].is_finite() {
                 return f64::INFINITY;
             }
-            if self.d[i] > 0.0 && self.r[i].abs() > worst * self.d[i] {
-                worst = self.r[i].abs() / self.d[i];
+            let all = self.sums[i] * largest;
+            let d = if self.d[i] <= 1e3 * s.n as f64 * f64::EPSILON * all { self.d[i] + all } else { self.d[i] };
+            if d > 0.0 && self.r[i].abs() > worst * d {
+                worst = self.r[i].abs() / d;
             }
         }
         worst
