@@ -117,3 +117,25 @@ pub fn towed(from: [f64; 3], to: [f64; 3], n: usize, section: Section, law: Drag
         .force(AddedMassSpec::default());
     scene
 }
+
+/// A line of a verification case.
+#[derive(serde::Deserialize)]
+pub struct Reference {
+    pub quantity: String,
+    pub value: Value,
+    pub tolerance: f64,
+}
+
+impl Reference {
+    pub fn number(&self) -> f64 {
+        number(&self.value)
+    }
+    pub fn numbers(&self) -> Vec<f64> {
+        self.value.as_array().expect("array").iter().map(number).collect()
+    }
+}
+
+/// The references of a verification case.
+pub fn case(name: &str) -> Vec<Reference> {
+    serde_json::from_value(data("cases.json")[name]["reference"].clone()).expect(name)
+}
