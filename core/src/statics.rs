@@ -305,7 +305,7 @@ impl<'a> Statics<'a> {
             let check = self.newton(state, &q, &lambda, last.as_deref(), how);
             found.residual = self.worst().1;
             match check {
-                Ok(t) if t.negative && self.options.stable => {
+                Ok(t) if self.options.stable && self.unstable(&t) => {
                             if found.pushes >= 3 {
                         return fail(self, "only unstable equilibria were met", &found);
                     }
@@ -439,6 +439,16 @@ impl<'a> Statics<'a> {
                 }
             }
         }
+    }
+
+    /// Whether the last factors show an instability: Sylvester's law where the tangent is symmetric; where it isn't,
+    /// a negative determinant, which means a real eigenvalue on the wrong side.
+    fn unstable(&self, trial: &Trial) -> bool {
+        if self.structure.symmetric {
+            return trial.negative;
+        }
+        let negative = self.solver.negative_pivots().map(|n| n + self.model.multipliers());
+        negative.is_some_and(|n| n % 2 == 1)
     }
 
     /// Size of the load: the residual with every stiff modulus switched off.

@@ -2,10 +2,12 @@
 #![allow(dead_code)]
 
 use ropewalk_constraints::{ClampSpec, SphericalSpec};
-use ropewalk_core::{Model, Scene, State};
+use ropewalk_core::{Model, Scene, State, Water};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
 use ropewalk_elements::{CableSpec, Section};
-use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
+use ropewalk_forces::{
+    AddedMassSpec, BuoyancySpec, DragLaw, DragSpec, GravitySpec, PointForceSpec, TimeFunction,
+};
 use serde_json::Value;
 
 /// A file of `tests/data`.
@@ -79,4 +81,61 @@ pub fn pendulum(n: usize, length: f64, section: Section, (l, t, rule): Models, g
 /// Where a marker of a cable is.
 pub fn place(model: &Model, state: &State, part: &str, s: f64) -> [f64; 3] {
     model.part(part).and_then(|p| p.point(s, &state.at())).unwrap_or_else(|| panic!("{part} at {s}")).0
+}
+
+/// Force of a constraint on the node at an end of a cable [N].
+pub fn reaction(model: &Model, state: &State, constraint: &str) -> [f64; 3] {
+    let c = model.constraints().iter().position(|c| c.name() == constraint).expect(constraint);
+    let node = model.constraints()[c].nodes()[0];
+    let r = model.reaction(c, node, &state.at(), &state.lambda);
+    [r[0], r[1], r[2]]
+}
+
+pub fn size(x: [f64; 3]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The hose of the towing references: 30 m, free at its end, with the stiffness given.
+pub fn hose(ea: f64, ei: f64) -> Section {
+    Section {
+        flooded: 0.361,
+        diameter: 0.023,
+        displaced: Some((0.5 - 4.271 / 9.81) / 1025.0),
+        ..Section::new(0.5, ea, ei)
+    }
+}
+
+/// A hose in water, laid straight between two points and pinned at its start.
+pub fn towed(from: [f64; 3], to: [f64; 3], n: usize, section: Section, law: DragLaw) -> Scene {
+    let mut scene = Scene::new();
+    scene.water = Some(Water::default());
+    scene
+        .element(CableSpec::straight("hose", from, to, n, section).unstretched(30.0))
+        .force(GravitySpec::default())
+        .force(BuoyancySpec::default())
+        .force(DragSpec { normal: law, tangential: law, ..DragSpec::default() })
+        .force(AddedMassSpec::default());
+    scene
+}
+
+/// A line of a verification case.
+#[derive(serde::Deserialize)]
+pub struct Reference {
+    pub quantity: String,
+    pub value: Value,
+    pub tolerance: f64,
+}
+
+impl Reference {
+    pub fn number(&self) -> f64 {
+        number(&self.value)
+    }
+    pub fn numbers(&self) -> Vec<f64> {
+        self.value.as_array().expect("array").iter().map(number).collect()
+    }
+}
+
+/// The references of a verification case.
+pub fn case(name: &str) -> Vec<Reference> {
+    serde_json::from_value(data("cases.json")[name]["reference"].clone()).expect(name)
 }
