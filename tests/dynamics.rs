@@ -279,7 +279,7 @@ fn orders_in_positions_velocities_and_multipliers() {
         for (k, name) in ["q", "v", "λ"].iter().enumerate() {
             let changes: Vec<f64> = runs.windows(2).map(|w| worst(&w[0][k], &w[1][k])).collect();
             let orders: Vec<f64> = changes.windows(2).map(|w| (w[0] / w[1]).log2() / 2.0).collect();
-            println!("{scheme:?} {name}: changes {changes:.1e?}, orders {orders:.2?}");
+            println!("{scheme:?} {name}: changes {changes:?}, orders {orders:.2?}");
             assert!(orders.iter().all(|o| *o >= 1.9), "{scheme:?} {name}: {orders:?}");
         }
     }
