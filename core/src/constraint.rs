@@ -21,8 +21,7 @@ pub enum RowKind {
 ///
 /// # Example: two points stay at a given distance
 /// ```
-/// use crate::marker::Jet;
-/// use ropewalk_core::{Place, Relation, RowKind};
+/// use ropewalk_core::{Jet, Place, Relation, RowKind};
 ///
 /// struct Rod(f64);
 /// impl Relation for Rod {

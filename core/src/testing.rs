@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn wrong_tangents_are_seen() {
         let nodes = [Node { kind: NodeKind::Scalars(1), q: 0, v: 0, shared: false }];
-        let at = At { t: 0.0, q: &[1.3], v: &[0.7], a: &[-0.2], modes: &[], last: None };
+        let at = At { t: 0.0, q: &[1.3], v: &[0.7], a: &[-0.2], modes: &[], relaxed: None };
         assert!(check_tangent(&Cubic(1.0), &nodes, &at, Width::One) < 1e-9);
         let error = check_tangent(&Cubic(1.01), &nodes, &at, Width::One);
         assert!((error - 0.01).abs() < 1e-3, "{error}");
@@ -318,7 +318,7 @@ mod tests {
         let nodes = [Node { kind: NodeKind::Frame, q: 0, v: 0, shared: false }];
         let q = [1.0, 2.0, 3.0, 0.8, 0.0, 0.6, 0.0];
         let at =
-            At { t: 0.4, q: &q, v: &[0.5, -1.0, 0.3, 1.0, 2.0, -1.0], a: &[0.0; 6], modes: &[], last: None };
+            At { t: 0.4, q: &q, v: &[0.5, -1.0, 0.3, 1.0, 2.0, -1.0], a: &[0.0; 6], modes: &[], relaxed: None };
         let marker = Marker::Node { node: NodeId(0), point: [0.1, 0.5, 0.2], direction: [1.0, 0.5, 0.0] };
         assert!(check_constraint(&Joint::new("curve", Curve(false), vec![marker]), &nodes, &at) < 1e-7);
         assert!(check_constraint(&Joint::new("curve", Curve(true), vec![marker]), &nodes, &at) > 1e-2);

@@ -43,7 +43,7 @@ pub use output::{Reading, read};
 pub use part::CablePart;
 pub use path::Path;
 pub use quadrature::{Full, LockingFree};
-pub use rest::{AxialRest, BendingRest, Rest};
+pub use rest::{AxialRest, BendingRest, Rest, RestLanes, push_rest};
 pub use spec::{CableSpec, Section, StressFree};
 pub use stations::CableStations;
 pub use t1::T1;
