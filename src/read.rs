@@ -121,7 +121,7 @@ impl SceneFile {
                 self.inside(&part, field).unwrap_or(part)
             }
             (Some((kind, k)), None) => format!("{}[{k}]", kind.list()),
-            (None, Some(field)) => format!("run.{field}"),
+            (None, Some(path)) => path.to_string(),
             (None, None) => return Fault::new(&e.error.message),
         };
         self.located(&path, &e.error.message)
