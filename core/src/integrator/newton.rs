@@ -132,7 +132,7 @@ impl Newton<'_> {
             }
             if theta >= 1.0 && k > 0 {
                 // at the floor of rounding the iteration wanders; far from it, it diverges
-                if size <= 30.0 * stop && fresh {
+                if size <= 30.0 * floor && fresh {
                     outcome = Outcome::Converged { iterations: k + 1, eta: 1.0 };
                     break;
                 }

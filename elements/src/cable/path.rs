@@ -170,7 +170,9 @@ mod tests {
         let p = Path::polyline(&[[0.0; 3], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]]).unwrap();
         assert_eq!(p.length(), 7.0);
         assert_eq!(p.corners(), &[3.0]);
-        assert_eq!(p.at(1.0), ([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]));
+        let (x, t) = p.at(1.0);
+        approx::assert_relative_eq!(x[..], [1.0, 0.0, 0.0][..], epsilon = 1e-12);
+        assert_eq!(t, [1.0, 0.0, 0.0]);
         let (x, t) = p.at(3.0);
         assert_eq!(x, [3.0, 0.0, 0.0]);
         approx::assert_relative_eq!(t[0], 0.5f64.sqrt(), epsilon = 1e-12);
