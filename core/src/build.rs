@@ -9,7 +9,8 @@ use crate::part::{Part, Spot, split_marker};
 use crate::pool::{Element, Pool};
 use crate::scene::Water;
 use crate::spec::MarkerRef;
-use crate::station::{FieldTerm, Law, Laws};
+use crate::state::At;
+use crate::station::{FieldTerm, Law, Laws, Stations};
 use crate::term::Term;
 use std::any::{Any, TypeId};
 use std::collections::{BTreeMap, HashMap};
@@ -286,10 +287,19 @@ impl Builder {
     }
 
     /// Makes a law act on the stations of parts; all parts that have stations if none is named.
-    pub fn load(&mut self, on: &[String], law: impl Law + Clone) -> Result<(), BuildError> {
+    pub fn load<L: Law + Clone>(&mut self, on: &[String], law: L) -> Result<(), BuildError> {
         let mut any = false;
         for (k, part) in self.parts(on)? {
-            if part.stations().is_some_and(|s| !s.is_empty()) {
+            if let Some(stations) = part.stations().filter(|s| !s.is_empty()) {
+                if L::NEEDS_DIAMETER && self.least_diameter(stations.as_ref()) == 0.0 {
+                    let message = format!(
+                        "{} needs a diameter, and `{}` has none: give its section a `diameter`, or name in `on` what \
+                         it is to act on",
+                        law.label(),
+                        part.name()
+                    );
+                    return Err(BuildError::at("on", message));
+                }
                 self.laws.entry(k).or_default().push(law.clone());
                 any = true;
             } else if !on.is_empty() {
@@ -301,6 +311,14 @@ impl Builder {
         } else {
             Err(BuildError::new("there is nothing in the scene that carries this load"))
         }
+    }
+
+    fn least_diameter(&self, stations: &dyn Stations) -> f64 {
+        let (q, v) = (&self.start.q, &self.start.v);
+        let at = At { t: 0.0, q, v, a: v, modes: &[], relaxed: None };
+        let mut least = f64::INFINITY;
+        stations.each(&at, &mut |s| least = least.min(s.diameter));
+        least
     }
 
     /// The water, which the scene must have for what acts in it.

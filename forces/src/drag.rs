@@ -160,6 +160,7 @@ impl Drag {
 const SMALL_RE: f64 = 1e-3;
 
 impl Law for Drag {
+    const NEEDS_DIAMETER: bool = true;
     fn label(&self) -> String {
         "drag".into()
     }
