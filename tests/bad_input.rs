@@ -153,6 +153,16 @@ fn zero_and_negative_numbers_are_refused_where_they_make_no_sense() {
         ("duration = 0.2", "duration = 0", "0", &["`duration` must be positive"]),
         ("output = 0.02", "output = -1", "-1", &["`output` must not be negative"]),
         ("output = 0.02", "output = 1e-9", "1e-9", &["make `output` longer"]),
+        (
+            "snapshots = 3",
+            "snapshots = 1000000000000",
+            "1000000000000",
+            &["`snapshots` must be at most 10000"],
+        ),
+        ("steps = 10", "steps = 0", "0", &["`steps` must be between 1 and 1000000"]),
+        ("max_iterations = 60", "max_iterations = 0", "0", &["`max_iterations` must be at least 1"]),
+        ("tolerance = 1e-9", "tolerance = 0", "0", &["`tolerance` must be positive"]),
+        ("radius = 20", "radius = 1e-300", "[[motions]]", &["before speed and yaw rate are steady"]),
         ("density = 1025", "density = 0", "0", &["`density` must be positive"]),
         ("viscosity = 0.00108", "viscosity = -1", "-1", &["`viscosity` must not be negative"]),
         (

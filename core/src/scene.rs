@@ -126,6 +126,10 @@ impl Run {
     pub fn check(&self) -> Result<(), BuildError> {
         crate::build::positive("duration", self.duration).map_err(|e| e.of("run.duration"))?;
         crate::build::not_negative("output", self.output).map_err(|e| e.of("run.output"))?;
+        if self.snapshots > 10_000 {
+            let message = format!("`snapshots` must be at most 10000, not {}", self.snapshots);
+            return Err(BuildError::at("run.snapshots", message));
+        }
         Ok(())
     }
 }
@@ -250,6 +254,7 @@ impl Scene {
             f.build(&mut b).map_err(of(SpecKind::Force, k))?;
         }
         self.run.check().map_err(whole)?;
+        self.statics.check().map_err(whole)?;
         self.solver.check().map_err(|e| whole(BuildError::new(e)))?;
         let model = b.finish().map_err(whole)?;
         for c in model.constraints() {

@@ -64,6 +64,15 @@ impl Turn {
             );
             return Err(BuildError::at("turn_start", message));
         }
+        // the way is summed piece by piece
+        let angle = yaw.at(speed.end().max(yaw.end()))[0];
+        if !(angle < 1e4) {
+            let message = format!(
+                "the vehicle would turn through {angle:.0e} rad before speed and yaw rate are steady: check `speed`, \
+                 `radius` and the ramps"
+            );
+            return Err(BuildError::new(message));
+        }
         let rule = gauss(12);
         let mut turn =
             Turn { course, radius: m.radius, speed, yaw, pieces: Vec::new(), centre: [0.0; 2], rule };
