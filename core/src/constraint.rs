@@ -85,7 +85,7 @@ pub struct Joint<R> {
 }
 
 /// More rows than any joint has.
-const MOST_ROWS: usize = 16;
+pub(crate) const MOST_ROWS: usize = 16;
 
 impl<R: Relation> Joint<R> {
     /// Holds markers by a relation.
@@ -185,8 +185,11 @@ impl<R: Relation> Constraint for Joint<R> {
             rate[r] = out[r].v1;
         }
         // along the path that goes on with the present velocity and no acceleration
-        let velocity: Vec<usize> = self.nodes.iter().flat_map(|k| nodes[k.0 as usize].dofs()).collect();
-        self.eval(nodes, at, t, |i| Dual2_64::new(0.0, at.v[velocity[i]], 0.0), &mut out);
+        let velocity = |i: usize| {
+            let mut dofs = self.nodes.iter().flat_map(|k| nodes[k.0 as usize].dofs());
+            at.v[dofs.nth(i).unwrap_or_default()]
+        };
+        self.eval(nodes, at, t, |i| Dual2_64::new(0.0, velocity(i), 0.0), &mut out);
         for r in 0..self.rows.len() {
             bias[r] = out[r].v2;
         }

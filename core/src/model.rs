@@ -1,6 +1,6 @@
 //! The model: nodes, terms, constraints and the structure of their equations. Immutable between events.
 
-use crate::constraint::{Constraint, RowKind};
+use crate::constraint::{Constraint, MOST_ROWS, RowKind};
 use crate::lane::Width;
 use crate::node::{Node, NodeId};
 use crate::part::Part;
@@ -328,9 +328,9 @@ impl Model {
     }
 
     /// Tolerance of each constraint row relative to that of lengths: positions in metres, directions as they are.
-    pub fn row_scale(&self) -> Vec<f64> {
+    pub fn row_scale(&self) -> impl Iterator<Item = f64> + '_ {
         let kinds = self.constraints.iter().flat_map(|c| c.rows().iter());
-        kinds.map(|k| if *k == RowKind::Position { 1.0 } else { 1.0 / self.length }).collect()
+        kinds.map(|k| if *k == RowKind::Position { 1.0 } else { 1.0 / self.length })
     }
 
     /// What an unknown is called in messages: its part or node, or the constraint's row.
@@ -372,9 +372,11 @@ impl Model {
         for t in &self.terms {
             p += t.power(at);
         }
-        let (mut rate, mut bias) = (vec![0.0; lambda.len()], vec![0.0; lambda.len()]);
-        self.rates(at, &mut rate, &mut bias);
-        p.supplied += rate.iter().zip(lambda).map(|(r, l)| r * l).sum::<f64>();
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            let (mut rate, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
+            constraint.rates(&self.nodes, at, &mut rate, &mut bias);
+            p.supplied += rate.iter().zip(&lambda[self.rows_of(c)]).map(|(r, l)| r * l).sum::<f64>();
+        }
         p
     }
 

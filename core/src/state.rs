@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Time, configuration, velocities, multipliers and the memory of the integrator: what a checkpoint holds.
 ///
 /// A `State` belongs to the [`Model`](crate::Model) that made it with [`Model::state`](crate::Model::state).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Time [s].
     pub t: f64,
@@ -26,7 +26,7 @@ pub struct State {
 }
 
 /// Memory of the integrator and its step-size controller.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Control {
     /// Size of the last accepted step [s]; 0 before the first.
     pub h_last: f64,
@@ -41,6 +41,22 @@ pub struct Control {
     /// How many entries of `a_back` hold.
     pub backs: usize,
 }
+
+/// Derived `Clone` for two types whose `clone_from` must not allocate: it runs at every step.
+macro_rules! clone_in_place {
+    ($type:ident { $($field:ident),* }) => {
+        impl Clone for $type {
+            fn clone(&self) -> Self {
+                $type { $($field: self.$field.clone()),* }
+            }
+            fn clone_from(&mut self, other: &Self) {
+                $(self.$field.clone_from(&other.$field);)*
+            }
+        }
+    };
+}
+clone_in_place!(State { t, q, v, a, aux, lambda, modes, control });
+clone_in_place!(Control { h_last, h_next, h_cap, eta, a_back, backs });
 
 /// Where terms and constraints are evaluated: slices into a state, or into a trial of an integrator.
 #[derive(Clone, Copy, Debug)]

@@ -87,15 +87,19 @@ impl Alpha {
     /// numerical damping take away, per unit step.
     fn error(&self, model: &Model, work: &mut Workspace, h: f64, tolerance: f64) -> Result<f64, StepError> {
         let factor = self.scheme.error_constant() * h * h;
+        let (nv, mut e, mut rhs) =
+            (model.velocities(), std::mem::take(&mut work.trial.d), std::mem::take(&mut work.trial.rhs));
         let t = &work.trial;
-        let e: Vec<f64> = t.aux.iter().zip(&t.aux_old).map(|(new, old)| factor * (new - old)).collect();
-        let mut rhs = vec![0.0; model.structure().n];
-        work.times_mass(model, &e, &mut rhs[..model.velocities()]);
-        for r in &mut rhs {
-            *r *= self.scheme.mass();
+        for (e, (new, old)) in e.iter_mut().zip(t.aux.iter().zip(&t.aux_old)) {
+            *e = factor * self.scheme.mass() * (new - old);
         }
-        work.solve(model, Which::Iteration, &mut rhs).map_err(|source| linear(model, 0.0, source))?;
-        let size = work.norm(model, &rhs[..model.velocities()]);
+        rhs.clear();
+        rhs.resize(model.structure().n, 0.0);
+        work.times_mass(model, &e, &mut rhs[..nv]);
+        let solved = work.solve(model, Which::Iteration, &mut rhs);
+        let size = work.norm(model, &rhs[..nv]);
+        (work.trial.d, work.trial.rhs) = (e, rhs);
+        solved.map_err(|source| linear(model, 0.0, source))?;
         Ok(size * (self.horizon / h) / (tolerance.min(1e-3) * model.length()))
     }
 

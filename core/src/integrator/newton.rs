@@ -77,16 +77,15 @@ impl Newton<'_> {
         let stop = self.tolerance.max(floor);
         let mut fresh = false;
         let (mut last, mut theta) = (0.0, 0.0);
-        let mut rhs = std::mem::take(&mut work.y);
-        let mut outcome =
-            Outcome::Failed { why: format!("{} Newton iterations were not enough", self.max_iterations) };
+        let mut rhs = std::mem::take(&mut work.trial.rhs);
+        let mut outcome = None;
         self.kinematics(work);
         for k in 0..self.max_iterations {
             let stale = work.factored != Some(self.weights());
             // a slow iteration with an old matrix gets a new one
             let refresh = stale || self.policy == NewtonPolicy::Full || (theta > 0.5 && !fresh);
             if let Err(e) = self.evaluate(work, refresh) {
-                outcome = Outcome::Linear(e);
+                outcome = Some(Outcome::Linear(e));
                 break;
             }
             fresh = refresh || (fresh && k > 0);
@@ -97,11 +96,11 @@ impl Newton<'_> {
                 *g /= self.scheme.beta * self.h * self.h;
             }
             if rhs.iter().any(|r| !r.is_finite()) {
-                outcome = Outcome::Failed { why: "the residual is not finite".into() };
+                outcome = Some(Outcome::Failed { why: "the residual is not finite".into() });
                 break;
             }
             if let Err(e) = work.solve(self.model, Which::Iteration, &mut rhs) {
-                outcome = Outcome::Linear(e);
+                outcome = Some(Outcome::Linear(e));
                 break;
             }
             for i in 0..nv {
@@ -111,11 +110,9 @@ impl Newton<'_> {
                 work.trial.lambda[i - nv] += rhs[i];
             }
             self.kinematics(work);
-            // norm() needs work.y, which rhs took
-            work.y.resize(rhs.len(), 0.0);
             let size = beta_h2 * work.norm(self.model, &rhs[..nv]);
             if !size.is_finite() {
-                outcome = Outcome::Failed { why: "the iteration left the finite numbers".into() };
+                outcome = Some(Outcome::Failed { why: "the iteration left the finite numbers".into() });
                 break;
             }
             if k > 0 {
@@ -127,24 +124,26 @@ impl Newton<'_> {
             last = size;
             let done = size * eta.min(1e3) <= stop || size <= floor;
             if done && self.constraints_hold(work) {
-                outcome = Outcome::Converged { iterations: k + 1, eta };
+                outcome = Some(Outcome::Converged { iterations: k + 1, eta });
                 break;
             }
             if theta >= 1.0 && k > 0 {
                 // at the floor of rounding the iteration wanders; far from it, it diverges
                 if size <= 30.0 * floor && fresh {
-                    outcome = Outcome::Converged { iterations: k + 1, eta: 1.0 };
+                    outcome = Some(Outcome::Converged { iterations: k + 1, eta: 1.0 });
                     break;
                 }
                 if fresh && (theta >= 2.0 || k > 4) {
-                    outcome = Outcome::Failed { why: "Newton's method diverges".into() };
+                    outcome = Some(Outcome::Failed { why: "Newton's method diverges".into() });
                     break;
                 }
             }
         }
-        work.y = rhs;
-        work.y.resize(self.model.structure().n, 0.0);
-        outcome
+        work.trial.rhs = rhs;
+        outcome.unwrap_or_else(|| {
+            let why = format!("{} Newton iterations were not enough", self.max_iterations);
+            Outcome::Failed { why }
+        })
     }
 
     fn constraints_hold(&self, work: &mut Workspace) -> bool {
@@ -163,8 +162,7 @@ impl Newton<'_> {
             relaxed: None,
         };
         self.model.violations(&at, &mut work.system, &mut g);
-        let scale = self.model.row_scale();
-        let fine = g.iter().zip(&scale).all(|(g, s)| g.abs() <= limit * s);
+        let fine = g.iter().zip(self.model.row_scale()).all(|(g, s)| g.abs() <= limit * s);
         work.trial.g = g;
         fine
     }

@@ -134,13 +134,12 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
         return Ok(0.0);
     }
     let start = state.q.clone();
-    let scale = model.row_scale();
     let (mut d, mut md) = (vec![0.0; nv], vec![0.0; nv]);
     let limit = 1e-14 * model.length();
     for _ in 0..50 {
         work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
         let g = &work.mass.residual[nv..];
-        let fine = g.iter().zip(&scale).all(|(g, s)| g.abs() <= limit * s);
+        let fine = g.iter().zip(model.row_scale()).all(|(g, s)| g.abs() <= limit * s);
         let mut rhs: Vec<f64> = vec![0.0; nv];
         rhs.extend(g.iter().map(|g| -g));
         work.times_mass(model, &d, &mut md);

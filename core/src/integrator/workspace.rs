@@ -55,6 +55,7 @@ pub(crate) struct Trial {
     pub lambda: Vec<f64>,
     pub d: Vec<f64>,
     pub g: Vec<f64>,
+    pub rhs: Vec<f64>,
 }
 
 impl Workspace {
@@ -83,6 +84,7 @@ impl Workspace {
                 lambda: vec![0.0; model.multipliers()],
                 d: zero(),
                 g: vec![0.0; model.multipliers()],
+                rhs: Vec::new(),
             },
         })
     }

@@ -1,0 +1,261 @@
+//! What a run does beside stepping: events, restarts, other meshes, failures, energies, memory.
+
+mod common;
+
+use common::{models, pendulum, place, size};
+use ropewalk_constraints::SphericalSpec;
+use ropewalk_core::integrator::{Options, Stepping, StepError, StepReport};
+use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Scene, Simulation, State, Water};
+use ropewalk_elements::{CableSpec, PointMassSpec, Section};
+use ropewalk_forces::{DragSpec, GravitySpec, SpringSpec};
+use std::ops::ControlFlow;
+
+fn fixed(h: f64) -> Options {
+    Options { stepping: Stepping::Fixed { h }, ..Options::default() }
+}
+
+/// The floor that a mass falls on.
+struct Bounce {
+    restitution: f64,
+    times: std::sync::Arc<std::sync::Mutex<Vec<f64>>>,
+}
+
+impl Event for Bounce {
+    fn name(&self) -> String {
+        "bounce".into()
+    }
+    fn value(&self, _: &Model, state: &State) -> f64 {
+        state.q[2]
+    }
+    fn direction(&self) -> i8 {
+        -1
+    }
+    fn act(&mut self, _: &Model, state: &mut State) -> Action {
+        self.times.lock().expect("times").push(state.t);
+        state.v[2] *= -self.restitution;
+        Action::Restart
+    }
+}
+
+#[test]
+fn bounces_happen_when_and_where_they_should() {
+    let mut scene = Scene::new();
+    scene.element(PointMassSpec::new("ball", [0.0, 0.0, 1.0], 1.0)).force(GravitySpec::default());
+    for options in [fixed(0.037), Options::default()] {
+        let times = std::sync::Arc::default();
+        let mut s = Simulation::new(scene.build().expect("model"), &options, 2.0).expect("start");
+        s.add_event(Box::new(Bounce { restitution: 0.8, times: std::sync::Arc::clone(&times) }));
+        assert_eq!(s.advance(2.0, f64::INFINITY, &mut ()), Ok(End::Done));
+        let (mut t, mut v) = ((2.0f64 / 9.81).sqrt(), (2.0f64 * 9.81).sqrt());
+        let times = times.lock().expect("times");
+        assert!(times.len() >= 3, "{times:?}");
+        for got in times.iter() {
+            assert!((got - t).abs() < 1e-9, "{got} instead of {t}");
+            v *= 0.8;
+            t += 2.0 * v / 9.81;
+        }
+        let since = 2.0 - times[times.len() - 1];
+        assert!((s.state.q[2] - (v * since - 0.5 * 9.81 * since * since)).abs() < 1e-8);
+    }
+}
+
+/// Changes the mesh once, at a time.
+struct Refine {
+    at: f64,
+    scene: Scene,
+    mesh: Vec<f64>,
+    stop: bool,
+}
+
+impl Event for Refine {
+    fn name(&self) -> String {
+        "refine".into()
+    }
+    fn value(&self, _: &Model, state: &State) -> f64 {
+        state.t - self.at
+    }
+    fn direction(&self) -> i8 {
+        1
+    }
+    fn act(&mut self, _: &Model, _: &mut State) -> Action {
+        if self.stop {
+            return Action::Stop;
+        }
+        let plan: Plan = [("cable".to_string(), self.mesh.clone())].into_iter().collect();
+        Action::Remesh(Box::new(self.scene.build_on(&plan).expect("model")))
+    }
+}
+
+fn swinging() -> Scene {
+    pendulum(24, 1.2, Section::new(10.0, 1e5, 0.85), models("L4(lob3)+T3(2)").expect("legal"), 9.81)
+}
+
+#[test]
+fn a_run_goes_on_with_another_mesh() {
+    let run = |remesh: bool| {
+        let mut s = Simulation::new(swinging().build().expect("model"), &fixed(5e-4), 0.6).expect("start");
+        if remesh {
+            // finer towards the end, and not nested in the old mesh
+            let mesh: Vec<f64> = (0..=40).map(|k| 1.2 * (1.0 - (1.0 - f64::from(k) / 40.0).powf(1.2))).collect();
+            s.add_event(Box::new(Refine { at: 0.3, scene: swinging(), mesh, stop: false }));
+        }
+        assert_eq!(s.advance(0.6, f64::INFINITY, &mut ()), Ok(End::Done));
+        (place(&s.model, &s.state, "cable", 1.2), s.model.nodes().len())
+    };
+    let (whole, remeshed) = (run(false), run(true));
+    assert_eq!((whole.1, remeshed.1), (25, 41));
+    let off: [f64; 3] = std::array::from_fn(|i| whole.0[i] - remeshed.0[i]);
+    println!("after remeshing the tip is {:.1e} m away", size(off));
+    assert!(size(off) < 2e-3, "{off:?}");
+}
+
+#[test]
+fn an_event_ends_a_run() {
+    let mut s = Simulation::new(swinging().build().expect("model"), &fixed(1e-3), 1.0).expect("start");
+    s.add_event(Box::new(Refine { at: 0.2503, scene: Scene::new(), mesh: vec![], stop: true }));
+    assert_eq!(s.advance(1.0, f64::INFINITY, &mut ()), Ok(End::Stopped { by: "refine".into() }));
+    assert!((s.state.t - 0.2503).abs() < 1e-12);
+}
+
+#[test]
+fn a_failed_step_leaves_the_state_as_it_was() {
+    // one iteration too few for a step so large, and no smaller one allowed
+    let options = Options { max_iterations: 2, h_min: 0.4, newton_tolerance: 1e-9, ..fixed(0.5) };
+    let mut s = Simulation::new(swinging().build().expect("model"), &options, 1.0).expect("start");
+    let before = s.state.clone();
+    let error = s.advance(1.0, f64::INFINITY, &mut ()).expect_err("must fail");
+    assert!(matches!(error, StepError::NoConvergence { .. }), "{error}");
+    assert!(error.to_string().contains("`cable`") && error.to_string().contains("t = 0.0"), "{error}");
+    assert_eq!((s.state.q, s.state.v, s.state.t), (before.q, before.v, before.t));
+}
+
+/// A cable in water, sprung, with a mass: everything that takes or brings energy.
+fn everything() -> Scene {
+    let section = Section {
+        diameter: 0.03,
+        axial_damping: 1e-3,
+        bending_damping: 1e-2,
+        ..Section::new(2.0, 1e5, 1.0)
+    };
+    let mut scene = Scene::new();
+    scene.water = Some(Water::default());
+    scene
+        .element(CableSpec::straight("cable", [0.0; 3], [2.0, 0.0, 0.0], 8, section))
+        .element(PointMassSpec::new("bob", "cable.end", 1.0))
+        .constraint(SphericalSpec::pin("pin", "cable.start"))
+        .force(GravitySpec::default())
+        .force(DragSpec::default())
+        .force(SpringSpec {
+            name: "spring".into(),
+            marker: "cable@1.0".into(),
+            to: [1.0, 0.5, 0.0].into(),
+            stiffness: 50.0,
+            damping: 2.0,
+            length: Some(0.3),
+            tension_only: false,
+        });
+    scene
+}
+
+#[test]
+fn energy_is_accounted_for() {
+    let balance = |h: f64| {
+        let mut s = Simulation::new(everything().build().expect("model"), &fixed(h), 1.0).expect("start");
+        s.advance(1.0, f64::INFINITY, &mut ()).expect("run");
+        (s.audit.imbalance(), s.audit.dissipated)
+    };
+    let (coarse, fine) = (balance(4e-4), balance(1e-4));
+    println!("imbalance {:.1e} and {:.1e} J of {:.1} J dissipated", coarse.0, fine.0, fine.1);
+    assert!(fine.1 > 1.0 && fine.0.abs() < 1e-3 * fine.1, "{fine:?}");
+    assert!(fine.0.abs() < 0.3 * coarse.0.abs(), "{coarse:?} {fine:?}");
+}
+
+/// The scene turned about a slanted axis and seen from elsewhere.
+fn turned(x: [f64; 3], shift: bool) -> [f64; 3] {
+    // columns: an orthonormal frame
+    let r = [[2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0], [2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0], [-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0]];
+    let d = if shift { [100.0, -50.0, 20.0] } else { [0.0; 3] };
+    std::array::from_fn(|i| (0..3).map(|j| r[i][j] * x[j]).sum::<f64>() + d[i])
+}
+
+#[test]
+fn motion_does_not_depend_on_the_frame() {
+    let run = |turn: bool, base: [f64; 3], end: [f64; 3], g: [f64; 3], to: [f64; 3]| {
+        let section = Section { diameter: 0.03, bending_damping: 1e-2, ..Section::new(2.0, 1e4, 1.0) };
+        let mut scene = Scene::new();
+        scene.water = Some(Water::default());
+        scene
+            .element(CableSpec::straight("cable", base, end, 8, section))
+            .constraint(SphericalSpec::pin("pin", "cable.start"))
+            .force(GravitySpec { g, on: vec![] })
+            .force(DragSpec::default())
+            .force(SpringSpec {
+                name: "spring".into(),
+                marker: "cable.end".into(),
+                to: to.into(),
+                stiffness: 5.0,
+                damping: 1.0,
+                length: Some(0.3),
+                tension_only: false,
+            });
+        let mut s = Simulation::new(scene.build().expect("model"), &fixed(1e-3), 0.5).expect("start");
+        s.advance(0.5, f64::INFINITY, &mut ()).expect("run");
+        let p = place(&s.model, &s.state, "cable", 1.7);
+        if turn { p } else { turned(p, true) }
+    };
+    let (a, b, g, to) = ([0.0; 3], [2.0, 0.0, 0.0], [0.0, 0.0, -9.81], [1.0, 1.0, 0.5]);
+    let plain = run(false, a, b, g, to);
+    let seen = run(true, turned(a, true), turned(b, true), turned(g, false), turned(to, true));
+    let off: [f64; 3] = std::array::from_fn(|i| plain[i] - seen[i]);
+    assert!(size(off) < 1e-8, "{off:?}");
+}
+
+#[test]
+fn motion_does_not_depend_on_units() {
+    // the same cable in millimetres and grams: lengths times 1000, forces times 1e6, EI times 1e12
+    let run = |l: f64, m: f64| {
+        let section = Section::new(2.0 * m / l, 1e4 * m * l, m * l * l * l);
+        let scene = pendulum(8, 2.0 * l, section, models("L4(lob3)+T3(2)").expect("legal"), 9.81 * l);
+        let mut s = Simulation::new(scene.build().expect("model"), &Options::default(), 0.5).expect("start");
+        s.advance(0.5, f64::INFINITY, &mut ()).expect("run");
+        (place(&s.model, &s.state, "cable", 2.0 * l).map(|x| x / l), s.work.counts.steps)
+    };
+    let (metres, millimetres) = (run(1.0, 1.0), run(1000.0, 1000.0));
+    let off: [f64; 3] = std::array::from_fn(|i| metres.0[i] - millimetres.0[i]);
+    assert!(size(off) < 1e-6, "{off:?}, {} and {} steps", metres.1, millimetres.1);
+}
+
+/// Counts allocations of every step but the first ones.
+#[derive(Default)]
+struct Steps(u64);
+
+impl Observer for Steps {
+    fn step(&mut self, _: &Model, _: &State, _: &StepReport) -> ControlFlow<()> {
+        self.0 += 1;
+        ControlFlow::Continue(())
+    }
+}
+
+#[test]
+fn stepping_does_not_allocate() {
+    for options in [fixed(1e-3), Options::default()] {
+        let mut s = Simulation::new(everything().build().expect("model"), &options, 1.0).expect("start");
+        let mut steps = Steps::default();
+        s.advance(0.2, f64::INFINITY, &mut steps).expect("run");
+        let warm = steps.0;
+        let count = |s: &mut Simulation, steps: &mut Steps, t: f64| {
+            allocation_counter::measure(|| {
+                s.advance(t, f64::INFINITY, steps).expect("run");
+            })
+            .count_total
+        };
+        // what an interval costs for itself, whatever its length
+        let short = count(&mut s, &mut steps, 0.21);
+        let few = steps.0 - warm;
+        let long = count(&mut s, &mut steps, 0.5);
+        let many = steps.0 - warm - few;
+        println!("{short} allocations in {few} steps, {long} in {many}");
+        assert!(many > 10 * few.max(1) || many > 100);
+        assert!(long <= short + 4, "{short} allocations in {few} steps, {long} in {many}");
+    }
+}
