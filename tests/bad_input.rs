@@ -50,7 +50,7 @@ fn place(said: &Said) -> (usize, String) {
 fn numbers(line: &str) -> Vec<(usize, usize)> {
     let bytes = line.as_bytes();
     let (mut found, mut quoted, mut k) = (Vec::new(), false, 0);
-    while k < bytes.len() && !(bytes[k] == b'#' && !quoted) {
+    while k < bytes.len() && (quoted || bytes[k] != b'#') {
         quoted ^= bytes[k] == b'"';
         let begins = bytes[k].is_ascii_digit() || bytes[k] == b'-';
         if !quoted && begins && !(bytes[k - 1].is_ascii_alphanumeric() || bytes[k - 1] == b'_') {

@@ -223,9 +223,8 @@ impl Scene {
         let mut b = Builder::new();
         let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
         let whole = |error: BuildError| {
-            let named = |c: &Box<dyn ConstraintSpec>| Some(c.name()) == error.field.as_deref();
-            let spec = self.constraints.iter().position(named).map(|k| (SpecKind::Constraint, k));
-            SceneError { spec, error }
+            let named = self.constraints.iter().position(|c| Some(c.name()) == error.field.as_deref());
+            SceneError { spec: named.map(|k| (SpecKind::Constraint, k)), error }
         };
         self.water.as_ref().map_or(Ok(()), Water::check).map_err(whole)?;
         b.set_water(self.water.clone());

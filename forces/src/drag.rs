@@ -101,11 +101,9 @@ impl Drag {
         need(!viscous || self.viscosity > 0.0, || {
             "drag by Choo and Casarella needs a viscosity above zero (sea water: 1.07e-3 Pa s)".into()
         })?;
-        if let Some(b) = self.blend {
-            if !(b > 0.0 && b <= 0.5) {
-                let message = format!("`blend` must be above 0 and at most 0.5, not {b}");
-                return Err(BuildError::at("blend", message));
-            }
+        if let Some(b) = self.blend.filter(|b| !(*b > 0.0 && *b <= 0.5)) {
+            let message = format!("`blend` must be above 0 and at most 0.5, not {b}");
+            return Err(BuildError::at("blend", message));
         }
         self.current.check()
     }

@@ -84,10 +84,12 @@ impl<'a> Words<'a> {
     fn kind(&self, field: &'a Value, doc: &str) -> String {
         let s = self.resolved(field);
         let unit = unit(doc);
-        let names: Vec<String> = variants(s).into_iter().flat_map(names).map(|n| format!("\"{n}\"")).collect();
+        let names: Vec<String> =
+            variants(s).into_iter().flat_map(names).map(|n| format!("\"{n}\"")).collect();
         if !names.is_empty() {
             // an enum may also take what isn't a name
-            let other = |v: &&'a Value| self::names(v).is_empty() && type_of(v) != "" && type_of(v) != "null";
+            let other =
+                |v: &&'a Value| self::names(v).is_empty() && !type_of(v).is_empty() && type_of(v) != "null";
             let others = s.get("anyOf").and_then(Value::as_array).into_iter().flatten().filter(other);
             let others: String =
                 others.map(|v| format!(" or {}", self.kind(v, description(v).unwrap_or(doc)))).collect();
@@ -127,7 +129,9 @@ fn description(schema: &Value) -> Option<&str> {
 fn type_of(schema: &Value) -> &str {
     match schema.get("type") {
         Some(Value::String(one)) => one,
-        Some(Value::Array(many)) => many.iter().filter_map(Value::as_str).find(|t| *t != "null").unwrap_or(""),
+        Some(Value::Array(many)) => {
+            many.iter().filter_map(Value::as_str).find(|t| *t != "null").unwrap_or("")
+        }
         _ => "",
     }
 }

@@ -66,7 +66,7 @@ impl Turn {
         }
         // the way is summed piece by piece
         let angle = yaw.at(speed.end().max(yaw.end()))[0];
-        if !(angle < 1e4) {
+        if angle.is_nan() || angle > 1e4 {
             let message = format!(
                 "the vehicle would turn through {angle:.0e} rad before speed and yaw rate are steady: check `speed`, \
                  `radius` and the ramps"

@@ -116,7 +116,9 @@ impl Scheme {
             Scheme::PurelyExplicit => newmark(0.0, 0.0),
             Scheme::Newmark { beta, gamma } => {
                 if !((0.0..=1.0).contains(&beta) && (0.0..=1.0).contains(&gamma)) {
-                    return Err(format!("`beta` and `gamma` must be between 0 and 1, not {beta} and {gamma}"));
+                    return Err(format!(
+                        "`beta` and `gamma` must be between 0 and 1, not {beta} and {gamma}"
+                    ));
                 }
                 newmark(beta, gamma)
             }

@@ -81,7 +81,7 @@ impl ElementSpec for FloatSpec {
         not_negative("resistance", self.resistance)?;
         let id = b.node(NodeKind::Point, &self.at, &[0.0; 3])?;
         b.element(Float { mass: self.mass, resistance: self.resistance }, &[id])?;
-        let node = b.nodes()[id.0 as usize].clone();
+        let node = b.nodes()[id.0 as usize];
         b.part(Arc::new(FloatPart { name: self.name.clone(), id, node, mass: self.mass }))
     }
 }
