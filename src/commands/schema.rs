@@ -81,7 +81,8 @@ impl<'a> Words<'a> {
     fn kind(&self, field: &'a Value, doc: &str) -> String {
         let s = self.resolved(field);
         let unit = unit(doc);
-        let names: Vec<String> = variants(s).into_iter().flat_map(names).map(|n| format!("\"{n}\"")).collect();
+        let names: Vec<String> =
+            variants(s).into_iter().flat_map(names).map(|n| format!("\"{n}\"")).collect();
         if !names.is_empty() {
             return format!("one of {}", names.join(", "));
         }
@@ -119,7 +120,9 @@ fn description(schema: &Value) -> Option<&str> {
 fn type_of(schema: &Value) -> &str {
     match schema.get("type") {
         Some(Value::String(one)) => one,
-        Some(Value::Array(many)) => many.iter().filter_map(Value::as_str).find(|t| *t != "null").unwrap_or(""),
+        Some(Value::Array(many)) => {
+            many.iter().filter_map(Value::as_str).find(|t| *t != "null").unwrap_or("")
+        }
         _ => "",
     }
 }
