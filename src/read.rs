@@ -121,7 +121,7 @@ impl SceneFile {
                 self.inside(&part, field).unwrap_or(part)
             }
             (Some((kind, k)), None) => format!("{}[{k}]", kind.list()),
-            (None, Some(field)) => format!("run.{field}"),
+            (None, Some(path)) => path.to_string(),
             (None, None) => return Fault::new(&e.error.message),
         };
         self.located(&path, &e.error.message)
@@ -144,15 +144,13 @@ impl SceneFile {
         }
     }
 
-    /// Path of a field of a table, or of a table directly inside it.
+    /// Path of a field of a table, or of the tables inside it.
     fn inside(&self, path: &str, field: &str) -> Option<String> {
         let table = self.document.find(path)?.as_table()?;
         if table.get(field).is_some() {
             return Some(format!("{path}.{field}"));
         }
-        let holds = |v: &crate::scene::Value| v.as_table().is_some_and(|t| t.get(field).is_some());
-        let (key, _) = table.iter().find(|(_, v)| holds(v))?;
-        Some(format!("{path}.{}.{field}", key.name))
+        table.iter().find_map(|(key, _)| self.inside(&format!("{path}.{}", key.name), field))
     }
 }
 

@@ -7,7 +7,10 @@ use ropewalk_core::{Marker, Node, NodeKind, V3};
 pub(crate) fn unit(name: &str, d: V3<f64>) -> Result<V3<f64>, BuildError> {
     finite(name, &d)?;
     let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
-    need(length > 0.0, || format!("{name} has no length; give any vector along it"))?;
+    if !(length > 0.0 && length.is_finite()) {
+        let message = format!("`{name}` has no length that can be computed; give any vector along it");
+        return Err(BuildError::at(name, message));
+    }
     Ok(d.map(|x| x / length))
 }
 

@@ -27,7 +27,7 @@ impl Clamp {
     ) -> Result<Joint<Self>, BuildError> {
         let name = name.into();
         has_slope(&name, nodes, node)?;
-        let normals = normals(unit(&format!("{name}: direction of the clamp"), direction)?);
+        let normals = normals(unit("direction", direction)?);
         Ok(Joint::new(name, Clamp { normals }, vec![Marker::node(node)]))
     }
 }
@@ -67,7 +67,7 @@ impl BodyClamp {
         has_slope(&name, nodes, node)?;
         let is_body = nodes.get(body.0 as usize).is_some_and(|n| n.kind == NodeKind::Frame);
         need(is_body, || format!("{name}: node {} isn't a rigid body", body.0))?;
-        let normals = normals(unit(&format!("{name}: direction of the clamp"), direction)?);
+        let normals = normals(unit("direction", direction)?);
         let on_body = |direction| Marker::Node { node: body, point: [0.0; 3], direction };
         Ok(Joint::new(name, BodyClamp, vec![Marker::node(node), on_body(normals[0]), on_body(normals[1])]))
     }

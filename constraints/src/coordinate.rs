@@ -34,7 +34,7 @@ impl Coordinate {
         motion: Option<Arc<dyn Motion>>,
     ) -> Result<Joint<Self>, BuildError> {
         let name = name.into();
-        let direction = unit(&format!("{name}: direction"), direction)?;
+        let direction = unit("direction", direction)?;
         finite(&format!("{name}: start"), &start)?;
         markers(&name, nodes, &[marker])?;
         let linear = moves_linearly(nodes, &marker);

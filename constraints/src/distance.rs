@@ -26,7 +26,7 @@ impl Distance {
         length: f64,
     ) -> Result<Joint<Self>, BuildError> {
         let name = name.into();
-        positive(&format!("{name}: length of the rod"), length)?;
+        positive("length", length)?;
         markers(&name, nodes, &between)?;
         Ok(Joint::new(name, Distance { length }, between.to_vec()))
     }

@@ -9,7 +9,8 @@ use crate::part::{Part, Spot, split_marker};
 use crate::pool::{Element, Pool};
 use crate::scene::Water;
 use crate::spec::MarkerRef;
-use crate::station::{FieldTerm, Law, Laws};
+use crate::state::At;
+use crate::station::{FieldTerm, Law, Laws, Stations};
 use crate::term::Term;
 use std::any::{Any, TypeId};
 use std::collections::{BTreeMap, HashMap};
@@ -22,7 +23,8 @@ pub struct BuildError {
     /// What is wrong and what to do.
     pub message: String,
     /// The field of the spec that is to blame, so that a message can point at its line; a name that is no field of
-    /// the spec points at the spec as a whole.
+    /// the spec points at the spec as a whole. Of errors of the whole model: the name of a constraint, or a path such
+    /// as `water.density`.
     pub field: Option<String>,
 }
 
@@ -34,6 +36,11 @@ impl BuildError {
     /// An error of one field.
     pub fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
         BuildError { message: message.into(), field: Some(field.into()) }
+    }
+    /// The same error, put down to another field: that of the spec which the number came from.
+    #[must_use]
+    pub fn of(self, field: impl Into<String>) -> Self {
+        BuildError { field: Some(field.into()), ..self }
     }
 }
 
@@ -280,10 +287,19 @@ impl Builder {
     }
 
     /// Makes a law act on the stations of parts; all parts that have stations if none is named.
-    pub fn load(&mut self, on: &[String], law: impl Law + Clone) -> Result<(), BuildError> {
+    pub fn load<L: Law + Clone>(&mut self, on: &[String], law: L) -> Result<(), BuildError> {
         let mut any = false;
         for (k, part) in self.parts(on)? {
-            if part.stations().is_some_and(|s| !s.is_empty()) {
+            if let Some(stations) = part.stations().filter(|s| !s.is_empty()) {
+                if L::NEEDS_DIAMETER && self.least_diameter(stations.as_ref()) == 0.0 {
+                    let message = format!(
+                        "{} needs a diameter, and `{}` has none: give its section a `diameter`, or name in `on` what \
+                         it is to act on",
+                        law.label(),
+                        part.name()
+                    );
+                    return Err(BuildError::at("on", message));
+                }
                 self.laws.entry(k).or_default().push(law.clone());
                 any = true;
             } else if !on.is_empty() {
@@ -295,6 +311,14 @@ impl Builder {
         } else {
             Err(BuildError::new("there is nothing in the scene that carries this load"))
         }
+    }
+
+    fn least_diameter(&self, stations: &dyn Stations) -> f64 {
+        let (q, v) = (&self.start.q, &self.start.v);
+        let at = At { t: 0.0, q, v, a: v, modes: &[], relaxed: None };
+        let mut least = f64::INFINITY;
+        stations.each(&at, &mut |s| least = least.min(s.diameter));
+        least
     }
 
     /// The water, which the scene must have for what acts in it.
@@ -358,21 +382,23 @@ fn redundancy(model: &Model) -> Result<(), BuildError> {
         let (mut g, mut jac) = (vec![0.0; m], vec![0.0; m * n]);
         constraint.jacobian(model.nodes(), &state.at(), &mut g, &mut jac);
         if jac.iter().chain(&g).any(|x| !x.is_finite()) {
-            return Err(BuildError::new(format!(
+            let message = format!(
                 "constraint `{}` is not defined where the scene starts (two of its points coincide?)",
                 constraint.name()
-            )));
+            );
+            return Err(BuildError::at(constraint.name(), message));
         }
         for r in 0..m {
             let mut row: BTreeMap<usize, f64> =
                 dofs.iter().enumerate().map(|(j, &d)| (d, jac[r * n + j])).filter(|e| e.1 != 0.0).collect();
             let size = row.values().map(|x| x * x).sum::<f64>().sqrt();
             if size == 0.0 {
-                return Err(BuildError::new(format!(
+                let message = format!(
                     "equation {} of constraint `{}` holds nothing where the scene starts: it is singular there",
                     r + 1,
                     constraint.name()
-                )));
+                );
+                return Err(BuildError::at(constraint.name(), message));
             }
             let mut blamed: Vec<usize> = Vec::new();
             let mut seen = vec![false; basis.len()];
@@ -402,11 +428,12 @@ fn redundancy(model: &Model) -> Result<(), BuildError> {
                 let others: Vec<String> =
                     blamed.iter().map(|&b| format!("`{}`", model.constraints()[b].name())).collect();
                 let others = if others.is_empty() { "its own equations".into() } else { others.join(", ") };
-                return Err(BuildError::new(format!(
+                let message = format!(
                     "constraint `{}` is redundant: its equation {} already follows from {others}. Remove one of them",
                     constraint.name(),
                     r + 1
-                )));
+                );
+                return Err(BuildError::at(constraint.name(), message));
             }
             for x in row.values_mut() {
                 *x /= left;

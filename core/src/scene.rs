@@ -64,6 +64,13 @@ impl Water {
         let (z, velocity) = self.profile.iter().map(|l| (l.z, l.velocity)).unzip();
         Current::profile(z, velocity)
     }
+    /// What is wrong with the numbers, if anything.
+    pub fn check(&self) -> Result<(), BuildError> {
+        crate::build::positive("density", self.density).map_err(|e| e.of("water.density"))?;
+        crate::build::not_negative("viscosity", self.viscosity).map_err(|e| e.of("water.viscosity"))?;
+        crate::build::finite("current", &self.current).map_err(|e| e.of("water.current"))?;
+        self.current().map(drop).map_err(|e| e.of("water.profile"))
+    }
 }
 
 /// What is computed.
@@ -117,8 +124,12 @@ impl Run {
     }
     /// What is wrong with the numbers, if anything.
     pub fn check(&self) -> Result<(), BuildError> {
-        crate::build::positive("duration", self.duration)?;
-        crate::build::not_negative("output", self.output)?;
+        crate::build::positive("duration", self.duration).map_err(|e| e.of("run.duration"))?;
+        crate::build::not_negative("output", self.output).map_err(|e| e.of("run.output"))?;
+        if self.snapshots > 10_000 {
+            let message = format!("`snapshots` must be at most 10000, not {}", self.snapshots);
+            return Err(BuildError::at("run.snapshots", message));
+        }
         Ok(())
     }
 }
@@ -211,7 +222,12 @@ impl Scene {
     pub fn build_on(&self, plan: &Plan) -> Result<Model, SceneError> {
         let mut b = Builder::new();
         let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
-        let whole = |error| SceneError { spec: None, error };
+        let whole = |error: BuildError| {
+            let named = |c: &Box<dyn ConstraintSpec>| Some(c.name()) == error.field.as_deref();
+            let spec = self.constraints.iter().position(named).map(|k| (SpecKind::Constraint, k));
+            SceneError { spec, error }
+        };
+        self.water.as_ref().map_or(Ok(()), Water::check).map_err(whole)?;
         b.set_water(self.water.clone());
         for (part, mesh) in plan {
             b.remesh(part, mesh.clone());
@@ -238,15 +254,26 @@ impl Scene {
             f.build(&mut b).map_err(of(SpecKind::Force, k))?;
         }
         self.run.check().map_err(whole)?;
+        self.statics.check().map_err(whole)?;
         self.solver.check().map_err(|e| whole(BuildError::new(e)))?;
         let model = b.finish().map_err(whole)?;
-        let (_, last, name) = model.range();
-        if last < self.run.duration {
-            return Err(whole(BuildError::new(format!(
-                "the motion of `{name}` is defined up to t = {last} s, but the run goes on to {} s: extend its \
-                 table or shorten `duration`",
-                self.run.duration
-            ))));
+        for c in model.constraints() {
+            let ((first, last), name) = (c.range(), c.name());
+            if first > 0.0 {
+                let message = format!(
+                    "the motion of `{name}` is defined from t = {first} s on, but the run begins at 0 s: begin its \
+                     table there"
+                );
+                return Err(whole(BuildError::at(name, message)));
+            }
+            if last < self.run.duration {
+                let message = format!(
+                    "the motion of `{name}` is defined up to t = {last} s, but the run goes on to {} s: extend its \
+                     table or shorten `duration`",
+                    self.run.duration
+                );
+                return Err(whole(BuildError::at(name, message)));
+            }
         }
         Ok(model)
     }

@@ -4,6 +4,7 @@
 //! before; a floor of tension where the tangent isn't positive; a cap of the stiff modulus at the first iterations.
 //! An equilibrium is accepted if it is stable (by the inertia of the factors) and not folded.
 
+use crate::build::{BuildError, positive};
 use crate::lane::V3;
 use crate::model::{Model, System};
 use crate::motion::SteadyFrame;
@@ -31,6 +32,20 @@ pub struct StaticsOptions {
 impl Default for StaticsOptions {
     fn default() -> Self {
         StaticsOptions { steps: 10, max_iterations: 60, stable: true, tolerance: 1e-9 }
+    }
+}
+
+impl StaticsOptions {
+    /// What is wrong with the numbers, if anything.
+    pub fn check(&self) -> Result<(), BuildError> {
+        let refused = |name: &str, message: String| Err(BuildError::at(format!("statics.{name}"), message));
+        if self.steps == 0 || self.steps > 1_000_000 {
+            return refused("steps", format!("`steps` must be between 1 and 1000000, not {}", self.steps));
+        }
+        if self.max_iterations == 0 {
+            return refused("max_iterations", "`max_iterations` must be at least 1".into());
+        }
+        positive("tolerance", self.tolerance).map(drop).map_err(|e| e.of("statics.tolerance"))
     }
 }
 

@@ -60,6 +60,8 @@ impl<R: Real> Load<R> {
 
 /// A law of distributed load, such as drag. Write it once over the carrier; add to `out`, don't set it.
 pub trait Law: Send + Sync + 'static {
+    /// Whether it means nothing for a part without a diameter.
+    const NEEDS_DIAMETER: bool = false;
     /// What it is called in manifests and profiles.
     fn label(&self) -> String;
     /// Adds the force per unstretched length at a station, and its derivatives if `TANGENT`.

@@ -31,6 +31,7 @@ impl AddedMass {
 }
 
 impl Law for AddedMass {
+    const NEEDS_DIAMETER: bool = true;
     fn label(&self) -> String {
         "added mass".into()
     }

@@ -102,7 +102,10 @@ impl Drag {
             "drag by Choo and Casarella needs a viscosity above zero (sea water: 1.07e-3 Pa s)".into()
         })?;
         if let Some(b) = self.blend {
-            need(b > 0.0 && b <= 0.5, || format!("blend must be above 0 and at most 0.5, not {b}"))?;
+            if !(b > 0.0 && b <= 0.5) {
+                let message = format!("`blend` must be above 0 and at most 0.5, not {b}");
+                return Err(BuildError::at("blend", message));
+            }
         }
         self.current.check()
     }
@@ -157,6 +160,7 @@ impl Drag {
 const SMALL_RE: f64 = 1e-3;
 
 impl Law for Drag {
+    const NEEDS_DIAMETER: bool = true;
     fn label(&self) -> String {
         "drag".into()
     }

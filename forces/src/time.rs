@@ -56,6 +56,11 @@ impl TimeFunction {
     /// # Errors
     /// Times that don't ascend, lists of different length, no entry, numbers that aren't finite.
     pub fn check(&self) -> Result<(), BuildError> {
+        // the field of every spec that has one
+        self.numbers().map_err(|e| e.of("time"))
+    }
+
+    fn numbers(&self) -> Result<(), BuildError> {
         match self {
             TimeFunction::Constant => Ok(()),
             TimeFunction::Ramp { from, to, t0, t1 } => {

@@ -1,6 +1,6 @@
 //! `ropewalk list`
 
-use super::{Exit, first_line, say};
+use super::{Exit, first_line, say, schema};
 use crate::error::Error;
 use crate::scene::{Document, Format};
 use ropewalk_core::{SpecKind, registered};
@@ -18,9 +18,9 @@ pub(crate) fn list(bundled: &[Bundled]) -> Result<Exit, Error> {
         let types = registered().into_iter().filter(|s| s.kind == kind);
         let types: Vec<(&str, String)> = types
             .map(|s| {
-                let schema = (s.schema)();
-                let doc = schema.get("description").and_then(|d| d.as_str()).unwrap_or_default().to_string();
-                (s.name, first_line(&doc))
+                let about = (s.schema)();
+                let doc = about.get("description").and_then(|d| d.as_str()).unwrap_or_default().to_string();
+                (s.name, first_line(&schema::plain(&doc)))
             })
             .collect();
         section(&mut out, kind.list(), &types);

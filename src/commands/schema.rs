@@ -9,7 +9,7 @@ pub(super) fn explain(schema: &Schema) -> String {
     let root = schema.as_value();
     let mut out = String::new();
     if let Some(text) = description(root) {
-        out += &format!("{}\n", wrapped(text, 0));
+        out += &format!("{}\n", wrapped(&plain(text), 0));
     }
     Words { root }.fields(&mut out, root, 2, 0);
     out
@@ -31,6 +31,7 @@ impl<'a> Words<'a> {
             let inner = self.resolved(field);
             let doc = description(field).or_else(|| description(inner)).unwrap_or_default();
             let mut kind = self.kind(field, doc);
+            let doc = &plain(doc);
             match field.get("default").filter(|d| !d.is_null()).and_then(short) {
                 Some(default) => kind += &format!(", default {default}"),
                 None if required(name) => kind += ", required",
@@ -39,6 +40,8 @@ impl<'a> Words<'a> {
             *out += &format!("{:indent$}{name}: {kind}\n", "");
             *out += &wrapped(doc, indent + 4);
             if depth < 3 {
+                // of a list, what each of its entries holds
+                let inner = inner.get("items").map_or(inner, |one| self.resolved(one));
                 self.fields(out, inner, indent + 4, depth + 1);
                 self.choices(out, inner, indent + 4, depth + 1);
             }
@@ -48,7 +51,7 @@ impl<'a> Words<'a> {
     /// The variants of an enum that have a doc comment or fields.
     fn choices(&self, out: &mut String, schema: &'a Value, indent: usize, depth: usize) {
         for variant in variants(schema) {
-            let doc = description(variant).unwrap_or_default();
+            let doc = plain(description(variant).unwrap_or_default());
             for name in names(variant) {
                 let text = if doc.is_empty() { format!("\"{name}\"") } else { format!("\"{name}\": {doc}") };
                 *out += &wrapped(&text, indent);
@@ -84,7 +87,12 @@ impl<'a> Words<'a> {
         let names: Vec<String> =
             variants(s).into_iter().flat_map(names).map(|n| format!("\"{n}\"")).collect();
         if !names.is_empty() {
-            return format!("one of {}", names.join(", "));
+            // an enum may also take what isn't a name
+            let other = |v: &&'a Value| self::names(v).is_empty() && type_of(v) != "" && type_of(v) != "null";
+            let others = s.get("anyOf").and_then(Value::as_array).into_iter().flatten().filter(other);
+            let others: String =
+                others.map(|v| format!(" or {}", self.kind(v, description(v).unwrap_or(doc)))).collect();
+            return format!("one of {}{others}", names.join(", "));
         }
         match type_of(s) {
             "number" => match unit {
@@ -176,8 +184,50 @@ fn short(default: &Value) -> Option<String> {
     let text = match default {
         Value::Array(list) if list.is_empty() => return Some("none".into()),
         Value::Object(table) if table.is_empty() => return None,
-        Value::String(s) => format!("\"{s}\""),
-        other => other.to_string(),
+        other => toml(other),
     };
     (text.len() <= 60).then_some(text)
+}
+
+/// A value as one writes it in a scene.
+fn toml(value: &Value) -> String {
+    match value {
+        Value::Array(list) => format!("[{}]", list.iter().map(toml).collect::<Vec<_>>().join(", ")),
+        Value::Object(table) => {
+            let entries: Vec<String> = table.iter().map(|(k, v)| format!("{k} = {}", toml(v))).collect();
+            format!("{{ {} }}", entries.join(", "))
+        }
+        other => other.to_string(),
+    }
+}
+
+/// A doc comment without the links that only rustdoc can follow: ``[`Name`]`` and ``[`Name`](path)``.
+pub(super) fn plain(doc: &str) -> String {
+    let mut out = String::new();
+    let mut rest = doc;
+    while let Some((before, link)) = rest.split_once("[`") {
+        let Some((name, after)) = link.split_once("`]") else { break };
+        out += &format!("{before}`{name}`");
+        let target = after.strip_prefix('(').and_then(|a| a.split_once(')'));
+        rest = target.map_or(after, |(_, after)| after);
+    }
+    out + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn links_of_rustdoc_become_names() {
+        let doc = "Sum [N], see [`Term`], [`Drag`](crate::Drag) and [`open.";
+        assert_eq!(plain(doc), "Sum [N], see `Term`, `Drag` and [`open.");
+    }
+
+    #[test]
+    fn defaults_are_toml() {
+        let value = json!({ "fixed": { "h": 0.001, "on": ["a", 1] } });
+        assert_eq!(short(&value).unwrap(), "{ fixed = { h = 0.001, on = [\"a\", 1] } }");
+    }
 }

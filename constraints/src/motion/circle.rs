@@ -32,9 +32,9 @@ impl Circle {
         start: f64,
         ramp: f64,
     ) -> Result<Self, BuildError> {
-        let course = Course::new("circle", heading, side)?;
-        positive("circle: radius", radius)?;
-        Ok(Circle { course, radius, rise: Rise::new("circle", speed, start, ramp)? })
+        let course = Course::new(heading, side)?;
+        positive("radius", radius)?;
+        Ok(Circle { course, radius, rise: Rise::new(["start", "ramp"], speed, start, ramp)? })
     }
 }
 

@@ -30,10 +30,11 @@ impl Harmonic {
         start: f64,
         ramp: f64,
     ) -> Result<Self, BuildError> {
-        finite("harmonic motion: amplitude", &amplitude)?;
-        finite("harmonic motion: phase and start", &[phase, start])?;
-        positive("harmonic motion: frequency", frequency)?;
-        positive("harmonic motion: duration of the ramp", ramp)?;
+        finite("amplitude", &amplitude)?;
+        finite("phase", &[phase])?;
+        finite("start", &[start])?;
+        positive("frequency", frequency)?;
+        positive("ramp", ramp)?;
         Ok(Harmonic { amplitude, frequency, phase, start, ramp })
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::check::unit;
 use ropewalk_core::V3;
-use ropewalk_core::build::{BuildError, need};
+use ropewalk_core::build::BuildError;
 
 /// To which side a vehicle turns, as seen from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,9 +26,12 @@ pub(crate) struct Course {
 
 impl Course {
     /// The course of this horizontal heading, of any length.
-    pub fn new(name: &str, heading: V3<f64>, side: Side) -> Result<Self, BuildError> {
-        let ahead = unit(&format!("{name}: heading"), heading)?;
-        need(ahead[2] == 0.0, || format!("{name}: heading must be horizontal (no z), not {heading:?}"))?;
+    pub fn new(heading: V3<f64>, side: Side) -> Result<Self, BuildError> {
+        let ahead = unit("heading", heading)?;
+        if ahead[2] != 0.0 {
+            let message = format!("`heading` must be horizontal (no z), not {heading:?}");
+            return Err(BuildError::at("heading", message));
+        }
         let sign = if side == Side::Left { 1.0 } else { -1.0 };
         Ok(Course { ahead, inward: [-sign * ahead[1], sign * ahead[0], 0.0], sign })
     }

@@ -1,6 +1,6 @@
 //! Speeds that rise smoothly.
 
-use ropewalk_core::build::{BuildError, finite, need, positive};
+use ropewalk_core::build::{BuildError, finite, positive};
 
 /// The quintic smooth step `S = 10u³ - 15u⁴ + 6u⁵` with its integral and its derivative: `[∫S, S, S']`. It has two
 /// continuous derivatives; before 0 it is 0, after 1 it is 1.
@@ -33,13 +33,15 @@ pub(crate) struct Rise {
 }
 
 impl Rise {
-    /// Refuses a step, which no finite force can follow.
-    pub fn new(name: &str, top: f64, start: f64, ramp: f64) -> Result<Self, BuildError> {
-        finite(&format!("{name}: speed and start"), &[top, start])?;
-        need(ramp != 0.0, || {
-            format!("{name}: a ramp of 0 s would be a jump of velocity, with infinite forces; try 1 s")
-        })?;
-        positive(&format!("{name}: duration of the ramp"), ramp)?;
+    /// Refuses a step, which no finite force can follow. The fields name `start` and `ramp` in messages.
+    pub fn new(fields: [&str; 2], top: f64, start: f64, ramp: f64) -> Result<Self, BuildError> {
+        finite("speed", &[top])?;
+        finite(fields[0], &[start])?;
+        if ramp == 0.0 {
+            let message = "a ramp of 0 s would be a jump of velocity, with infinite forces; try 1 s";
+            return Err(BuildError::at(fields[1], message));
+        }
+        positive(fields[1], ramp)?;
         Ok(Rise { top, start, ramp })
     }
     /// What has passed, the rate, and its derivative.

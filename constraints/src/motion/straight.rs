@@ -21,8 +21,8 @@ impl Straight {
     /// # Errors
     /// A direction without length, a ramp that isn't above zero, numbers that aren't finite.
     pub fn new(direction: V3<f64>, speed: f64, start: f64, ramp: f64) -> Result<Self, BuildError> {
-        let direction = unit("straight run: direction", direction)?;
-        Ok(Straight { direction, rise: Rise::new("straight run", speed, start, ramp)? })
+        let direction = unit("direction", direction)?;
+        Ok(Straight { direction, rise: Rise::new(["start", "ramp"], speed, start, ramp)? })
     }
 }
 

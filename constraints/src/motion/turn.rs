@@ -2,7 +2,7 @@
 
 use super::plane::{Course, Side};
 use super::smooth::Rise;
-use ropewalk_core::build::{BuildError, need, positive};
+use ropewalk_core::build::{BuildError, positive};
 use ropewalk_core::{Motion, Moving, SteadyFrame, V3};
 
 /// The numbers of a [`Turn`].
@@ -52,17 +52,27 @@ impl Turn {
     /// A heading that isn't horizontal or has no length; a radius, speed or duration that isn't above zero; a turn that
     /// begins before the run; numbers that aren't finite.
     pub fn new(m: Manoeuvre) -> Result<Self, BuildError> {
-        let course = Course::new("turn", m.heading, m.side)?;
-        positive("turn: radius", m.radius)?;
-        positive("turn: speed", m.speed)?;
-        let speed = Rise::new("turn", m.speed, m.start, m.ramp)?;
-        let yaw = Rise::new("turn: yaw rate", m.speed / m.radius, m.turn_start, m.turn_ramp)?;
-        need(m.turn_start >= m.start, || {
-            format!(
-                "turn: must begin at {} s or later, when the run starts, not at {} s",
+        let course = Course::new(m.heading, m.side)?;
+        positive("radius", m.radius)?;
+        positive("speed", m.speed)?;
+        let speed = Rise::new(["start", "ramp"], m.speed, m.start, m.ramp)?;
+        let yaw = Rise::new(["turn_start", "turn_ramp"], m.speed / m.radius, m.turn_start, m.turn_ramp)?;
+        if m.turn_start < m.start {
+            let message = format!(
+                "the turn must begin at {} s or later, when the run starts, not at {} s",
                 m.start, m.turn_start
-            )
-        })?;
+            );
+            return Err(BuildError::at("turn_start", message));
+        }
+        // the way is summed piece by piece
+        let angle = yaw.at(speed.end().max(yaw.end()))[0];
+        if !(angle < 1e4) {
+            let message = format!(
+                "the vehicle would turn through {angle:.0e} rad before speed and yaw rate are steady: check `speed`, \
+                 `radius` and the ramps"
+            );
+            return Err(BuildError::new(message));
+        }
         let rule = gauss(12);
         let mut turn =
             Turn { course, radius: m.radius, speed, yaw, pieces: Vec::new(), centre: [0.0; 2], rule };

@@ -86,7 +86,7 @@ impl Scheme {
         Ok(match *self {
             Scheme::GeneralizedAlpha { rho_inf } => {
                 if !(0.0..=1.0).contains(&rho_inf) {
-                    return Err(format!("rho_inf = {rho_inf} is not between 0 and 1"));
+                    return Err(format!("`rho_inf` must be between 0 and 1, not {rho_inf}"));
                 }
                 let (alpha_m, alpha_f) = ((2.0 * rho_inf - 1.0) / (rho_inf + 1.0), rho_inf / (rho_inf + 1.0));
                 let gamma = 0.5 + alpha_f - alpha_m;
@@ -94,7 +94,7 @@ impl Scheme {
             }
             Scheme::Hht { alpha } => {
                 if !(-1.0 / 3.0 - 1e-12..=0.0).contains(&alpha) {
-                    return Err(format!("alpha = {alpha} is not between -1/3 and 0"));
+                    return Err(format!("`alpha` must be between -1/3 and 0, not {alpha}"));
                 }
                 Coefficients {
                     alpha_m: 0.0,
@@ -106,7 +106,7 @@ impl Scheme {
             Scheme::AverageAcceleration => newmark(0.25, 0.5),
             Scheme::DampedAverageAcceleration { a } => {
                 if !(a >= 0.0 && a.is_finite()) {
-                    return Err(format!("a = {a} is negative or not a number"));
+                    return Err(format!("`a` must not be negative, but is {a}"));
                 }
                 newmark((1.0 + a).powi(2) / 4.0, 0.5 + a)
             }
@@ -116,7 +116,7 @@ impl Scheme {
             Scheme::PurelyExplicit => newmark(0.0, 0.0),
             Scheme::Newmark { beta, gamma } => {
                 if !((0.0..=1.0).contains(&beta) && (0.0..=1.0).contains(&gamma)) {
-                    return Err(format!("beta = {beta} or gamma = {gamma} is not between 0 and 1"));
+                    return Err(format!("`beta` and `gamma` must be between 0 and 1, not {beta} and {gamma}"));
                 }
                 newmark(beta, gamma)
             }

@@ -41,9 +41,9 @@ pub enum TransverseModel {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integration {
-    /// [`Full`]: five Gauss points for each part.
+    /// Five Gauss points for each part.
     Full,
-    /// [`LockingFree`]: three Lobatto points for the strain, two Gauss points for the curvature.
+    /// Three Lobatto points for the strain, two Gauss points for the curvature.
     #[default]
     LockingFree,
 }

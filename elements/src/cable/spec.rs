@@ -254,7 +254,7 @@ impl ElementSpec for CableSpec {
         pins.sort_by(f64::total_cmp);
         let mesh = match b.mesh(&self.name) {
             Some(m) => m.to_vec(),
-            None => mesh(length, self.elements, &pins, &self.name)?,
+            None => mesh(length, self.elements, &pins),
         };
         if mesh.len() < 2 || mesh[0] != 0.0 || mesh.windows(2).any(|w| !(w[1] > w[0])) {
             return Err(BuildError::new("a mesh must start at 0 and ascend"));
