@@ -34,7 +34,9 @@ pub use ropewalk_models as models;
 pub use error::Error;
 pub use read::{SceneFile, read};
 pub use ropewalk_core::integrator::Options;
-pub use ropewalk_core::{BuildError, Builder, MarkerRef, Model, Run, Scene, SceneError, Simulation, State, Water};
+pub use ropewalk_core::{
+    BuildError, Builder, MarkerRef, Model, Run, Scene, SceneError, Simulation, State, Water,
+};
 pub use ropewalk_models::{Bundled, bundled};
 pub use run::{Manifest, Outcome, RunOptions, run};
 pub use simulate::{History, simulate};

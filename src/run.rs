@@ -12,8 +12,8 @@ pub(crate) use start::{Ending, Started};
 
 use crate::error::Error;
 use crate::output::{
-    EnergyTotals, Interrupt, OutputError, ProfileEntry, Progress, ProgressMode, RunFolder, Stopwatch, Summary,
-    TableWriter,
+    EnergyTotals, Interrupt, OutputError, ProfileEntry, Progress, ProgressMode, RunFolder, Stopwatch,
+    Summary, TableWriter,
 };
 use crate::read::SceneFile;
 use crate::scene::Fault;

@@ -8,7 +8,8 @@ use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::{End, Model, Scene, Simulation, Water};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{
-    AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec, PointForceSpec, PointMomentSpec, SpringSpec, TimeFunction,
+    AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec, PointForceSpec, PointMomentSpec, SpringSpec,
+    TimeFunction,
 };
 
 fn fixed(h: f64) -> Options {
@@ -58,7 +59,8 @@ fn simple_pendulum_of_the_benchmark_library() {
             "y" => s.state.q[1],
             // the relation is the distance itself or its square; the force tells
             _ => {
-                let f = s.model.reaction(0, s.model.constraints()[0].nodes()[0], &s.state.at(), &s.state.lambda);
+                let f =
+                    s.model.reaction(0, s.model.constraints()[0].nodes()[0], &s.state.at(), &s.state.lambda);
                 size([f[0], f[1], f[2]])
             }
         };
@@ -73,7 +75,10 @@ fn simple_pendulum_of_the_benchmark_library() {
 fn inconsistent_start_is_refused_or_projected() {
     let scene = rod_pendulum([0.6, -0.81, 0.0], [1.0, 0.3, 0.0]);
     let refused = Simulation::new(scene.build().expect("model"), &fixed(1e-3), 1.0).err().expect("refused");
-    assert!(refused.to_string().contains("project = true") && refused.to_string().contains("rod"), "{refused}");
+    assert!(
+        refused.to_string().contains("project = true") && refused.to_string().contains("rod"),
+        "{refused}"
+    );
     let options = Options { project: true, filter_start: false, ..fixed(1e-6) };
     let s = start(&scene, &options, 1.0);
     let near = |a: f64, b: f64, eps: f64| assert!((a - b).abs() < eps, "{a} instead of {b}");
@@ -177,7 +182,8 @@ fn spaghetti_flies_as_the_reference() {
         [(500.0, "eng", "L4(lob3)+T3(2)"), (100.0, "eng", "L4(lob3)+T3(2)"), (100.0, "gs", "L3+T2")]
     {
         let mut scene = Scene::new();
-        let rod = CableSpec::straight("rod", [6.0, 0.0, 0.0], [0.0, 8.0, 0.0], 32, Section::new(1.0, 1e4, ei));
+        let rod =
+            CableSpec::straight("rod", [6.0, 0.0, 0.0], [0.0, 8.0, 0.0], 32, Section::new(1.0, 1e4, ei));
         let (l, t, i) = models(variant).expect("legal");
         scene
             .element(rod.models(l, t, i))
@@ -199,7 +205,12 @@ fn spaghetti_flies_as_the_reference() {
             go(&mut s, t.trim_end_matches(" s").parse().expect("time"));
             let (a, b) = (place(&s.model, &s.state, "rod", 0.0), place(&s.model, &s.state, "rod", 10.0));
             for (got, want) in [a[0], a[1], b[0], b[1]].into_iter().zip(r.numbers()) {
-                assert!((got - want).abs() < r.tolerance, "{} {}: {got} instead of {want}", s.state.t, r.quantity);
+                assert!(
+                    (got - want).abs() < r.tolerance,
+                    "{} {}: {got} instead of {want}",
+                    s.state.t,
+                    r.quantity
+                );
             }
             let e = s.model.energy(&s.state.at());
             energy = e.kinetic + e.potential;
@@ -231,7 +242,11 @@ fn cylinders_sink_as_the_closed_form() {
             go(&mut s, 30.0);
             let (sink, drift) = (-s.state.v[2], s.state.v[0]);
             let want = r.numbers();
-            assert!((sink - want[0]).abs() < 1e-4 && (drift - want[1]).abs() < 1e-4, "{}: {sink} {drift}", r.quantity);
+            assert!(
+                (sink - want[0]).abs() < 1e-4 && (drift - want[1]).abs() < 1e-4,
+                "{}: {sink} {drift}",
+                r.quantity
+            );
             continue;
         }
         let added = if r.quantity.contains("Ca=1") { 1.0 } else { 0.0 };
@@ -287,7 +302,9 @@ fn orders_in_positions_velocities_and_multipliers() {
 
 #[test]
 fn error_control_keeps_its_promise_on_a_pendulum() {
-    let scene = |n| pendulum(n, 1.2, Section::new(9.972, 25_200.0, 1.701), models("L4(lob3)+T3(2)").expect("legal"), 9.81);
+    let scene = |n| {
+        pendulum(n, 1.2, Section::new(9.972, 25_200.0, 1.701), models("L4(lob3)+T3(2)").expect("legal"), 9.81)
+    };
     let tips = |options: &Options| {
         let mut s = start(&scene(8), options, 1.0);
         let mut all = Vec::new();

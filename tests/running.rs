@@ -4,7 +4,7 @@ mod common;
 
 use common::{models, pendulum, place, size};
 use ropewalk_constraints::SphericalSpec;
-use ropewalk_core::integrator::{Options, Stepping, StepError, StepReport};
+use ropewalk_core::integrator::{Options, StepError, StepReport, Stepping};
 use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Scene, Simulation, State, Water};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{DragSpec, GravitySpec, SpringSpec};
@@ -96,7 +96,8 @@ fn a_run_goes_on_with_another_mesh() {
         let mut s = Simulation::new(swinging().build().expect("model"), &fixed(5e-4), 0.6).expect("start");
         if remesh {
             // finer towards the end, and not nested in the old mesh
-            let mesh: Vec<f64> = (0..=40).map(|k| 1.2 * (1.0 - (1.0 - f64::from(k) / 40.0).powf(1.2))).collect();
+            let mesh: Vec<f64> =
+                (0..=40).map(|k| 1.2 * (1.0 - (1.0 - f64::from(k) / 40.0).powf(1.2))).collect();
             s.add_event(Box::new(Refine { at: 0.3, scene: swinging(), mesh, stop: false }));
         }
         assert_eq!(s.advance(0.6, f64::INFINITY, &mut ()), Ok(End::Done));
@@ -131,12 +132,8 @@ fn a_failed_step_leaves_the_state_as_it_was() {
 
 /// A cable in water, sprung, with a mass: everything that takes or brings energy.
 fn everything() -> Scene {
-    let section = Section {
-        diameter: 0.03,
-        axial_damping: 1e-3,
-        bending_damping: 1e-2,
-        ..Section::new(2.0, 1e5, 1.0)
-    };
+    let section =
+        Section { diameter: 0.03, axial_damping: 1e-3, bending_damping: 1e-2, ..Section::new(2.0, 1e5, 1.0) };
     let mut scene = Scene::new();
     scene.water = Some(Water::default());
     scene
@@ -173,7 +170,11 @@ fn energy_is_accounted_for() {
 /// The scene turned about a slanted axis and seen from elsewhere.
 fn turned(x: [f64; 3], shift: bool) -> [f64; 3] {
     // columns: an orthonormal frame
-    let r = [[2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0], [2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0], [-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0]];
+    let r = [
+        [2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0],
+        [2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0],
+        [-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0],
+    ];
     let d = if shift { [100.0, -50.0, 20.0] } else { [0.0; 3] };
     std::array::from_fn(|i| (0..3).map(|j| r[i][j] * x[j]).sum::<f64>() + d[i])
 }

@@ -42,7 +42,10 @@ fn cantilever_reproduces_the_tabulated_error_of_every_variant() {
                 let (error, tabulated) = ((y - exact) / exact, (number(&tip[1]) - exact) / exact);
                 let off = (error - tabulated).abs();
                 worst = worst.max(off);
-                assert!(off <= (0.02 * tabulated.abs()).max(1e-9), "{case} {variant} n={n}: {error:e} {tabulated:e}");
+                assert!(
+                    off <= (0.02 * tabulated.abs()).max(1e-9),
+                    "{case} {variant} n={n}: {error:e} {tabulated:e}"
+                );
             }
         }
     }
@@ -94,7 +97,8 @@ fn elastica_of_bisshopp_and_drucker() {
     for (force, y, x, angle) in exact {
         // 16 elements come to 1.1e-5 under the largest load
         let n = if force > 5.0 { 18 } else { 16 };
-        let model = cantilever(n, 1e8, force, models("L4(lob3)+T3(2)").expect("legal")).build().expect("model");
+        let model =
+            cantilever(n, 1e8, force, models("L4(lob3)+T3(2)").expect("legal")).build().expect("model");
         let (state, _) = follow(&model, 5);
         let q = &state.q[state.q.len() - 6..];
         let off = [q[0] - x, q[1] - y, q[4].atan2(q[3]) - angle, q[2]];
@@ -106,11 +110,9 @@ fn elastica_of_bisshopp_and_drucker() {
 #[test]
 fn cantilever_rolls_up_under_an_end_moment() {
     use std::f64::consts::{FRAC_2_PI, TAU};
-    for (turns, n, steps, x, y, tolerance) in [
-        (0.5, 20, 5, 0.0, FRAC_2_PI, 1e-4),
-        (1.0, 20, 10, 0.0, 0.0, 1e-4),
-        (2.0, 40, 20, 0.0, 0.0, 1e-3),
-    ] {
+    for (turns, n, steps, x, y, tolerance) in
+        [(0.5, 20, 5, 0.0, FRAC_2_PI, 1e-4), (1.0, 20, 10, 0.0, 0.0, 1e-4), (2.0, 40, 20, 0.0, 0.0, 1e-3)]
+    {
         let mut scene = cantilever(n, 1e6, 0.0, models("L4(lob3)+T3(2)").expect("legal"));
         scene.force(PointMomentSpec {
             marker: "beam.end".into(),
@@ -161,8 +163,24 @@ fn equilibrium(scene: &Scene) -> (Model, State, Found) {
 fn elastic_catenaries_of_irvine_from_straight_and_folded_guesses() {
     // L0, span, h, EA; H, tension at the upper support, midpoint
     let cases = [
-        (120.0, 100.0, 0.0, 1e6, 917.361_173_808_266_9, 1_492.431_359_631_283_4, [50.0, 29.345_723_024_618_58]),
-        (200.0, 60.0, 30.0, 1e6, 197.292_849_656_625_38, 2_265.841_642_033_317_4, [19.522_507_056, 97.515_591_647]),
+        (
+            120.0,
+            100.0,
+            0.0,
+            1e6,
+            917.361_173_808_266_9,
+            1_492.431_359_631_283_4,
+            [50.0, 29.345_723_024_618_58],
+        ),
+        (
+            200.0,
+            60.0,
+            30.0,
+            1e6,
+            197.292_849_656_625_38,
+            2_265.841_642_033_317_4,
+            [19.522_507_056, 97.515_591_647],
+        ),
         (99.9, 100.0, 0.0, 1e6, 5_761.496_855_494_502, 5_844.252_155_428_788, [50.0, 4.242_381_169_952_421]),
         (100.0, 100.0, 10.0, 5e3, 799.739_129_465, 1_345.559_948_982, [48.119_363_481, 33.411_213_367]),
     ];
@@ -215,9 +233,10 @@ fn catenaries_of_the_reference_have_its_shape_and_tension() {
 
 #[test]
 fn cable_in_a_current_takes_its_critical_angle() {
-    for (u, angle, tension) in
-        [(0.5, 0.880_884_643_423_247_6, 111.321_928_672_420_36), (2.0, 0.240_507_767_194_530_01, 151.930_108_782_895_05)]
-    {
+    for (u, angle, tension) in [
+        (0.5, 0.880_884_643_423_247_6, 111.321_928_672_420_36),
+        (2.0, 0.240_507_767_194_530_01, 151.930_108_782_895_05),
+    ] {
         let section = Section { diameter: 0.02, ..Section::new(0.6, 1e8, 0.0) };
         let mut scene = Scene::new();
         scene.water = Some(Water { density: 1000.0, current: [-u, 0.0, 0.0], ..Water::default() });
@@ -278,13 +297,19 @@ fn straight_tow_is_one_relative_equilibrium() {
         scene.constraint(SphericalSpec::pin("tow", "hose.start"));
         let model = scene.build().expect("model");
         let frame = SteadyFrame { velocity: [number(&c["U"]), 0.0, 0.0], omega: [0.0; 3], centre: [0.0; 3] };
-        let mut statics = Statics::relative(&model, &StaticsOptions::default(), Some(frame)).expect("statics");
+        let mut statics =
+            Statics::relative(&model, &StaticsOptions::default(), Some(frame)).expect("statics");
         let mut state = model.state();
         let found = statics.find(&mut state, true).unwrap_or_else(|e| panic!("{c}: {e}"));
         let (end, r) = (place(&model, &state, "hose", 30.0), reaction(&model, &state, "tow"));
         let (height, tension) = (end[2] - number(&c["end_height"]), size(r) / number(&c["T_top"]) - 1.0);
         println!("{} {} kn: height {height:.1e}, tension {tension:.1e}, {found:?}", c["model"], c["kn"]);
-        assert!(height.abs() < 1e-4 && tension.abs() < 1e-3, "{} {} kn: {height:e} {tension:e}", c["model"], c["kn"]);
+        assert!(
+            height.abs() < 1e-4 && tension.abs() < 1e-3,
+            "{} {} kn: {height:e} {tension:e}",
+            c["model"],
+            c["kn"]
+        );
     }
 }
 
@@ -293,15 +318,19 @@ fn turning_tow_is_one_relative_equilibrium() {
     for c in data("tow_turn.json")["cases"].as_array().expect("cases") {
         let Some(exact) = c["solutions"].get(0) else { continue };
         let radius = number(&c["R"]);
-        let mut scene = towed([radius, 0.0, 0.0], [radius, -29.5, -5.0], 20, hose(1e9, 1e-6), law(&c["model"]));
+        let mut scene =
+            towed([radius, 0.0, 0.0], [radius, -29.5, -5.0], 20, hose(1e9, 1e-6), law(&c["model"]));
         scene.constraint(SphericalSpec::pin("tow", "hose.start"));
         let model = scene.build().expect("model");
-        let frame = SteadyFrame { velocity: [0.0; 3], omega: [0.0, 0.0, number(&c["Omega"])], centre: [0.0; 3] };
-        let mut statics = Statics::relative(&model, &StaticsOptions::default(), Some(frame)).expect("statics");
+        let frame =
+            SteadyFrame { velocity: [0.0; 3], omega: [0.0, 0.0, number(&c["Omega"])], centre: [0.0; 3] };
+        let mut statics =
+            Statics::relative(&model, &StaticsOptions::default(), Some(frame)).expect("statics");
         let mut state = model.state();
         let found = statics.find(&mut state, true).unwrap_or_else(|e| panic!("{}: {e}", c["kn"]));
         let (end, r) = (place(&model, &state, "hose", 30.0), reaction(&model, &state, "tow"));
-        let (height, tension) = (end[2] - number(&exact["end_height"]), size(r) / number(&exact["T_top"]) - 1.0);
+        let (height, tension) =
+            (end[2] - number(&exact["end_height"]), size(r) / number(&exact["T_top"]) - 1.0);
         println!("turn {} kn: height {height:.1e}, tension {tension:.1e}, {found:?}", c["kn"]);
         assert!(height.abs() < 1e-3 && tension.abs() < 1e-3, "{} kn: {height:e} {tension:e}", c["kn"]);
     }

@@ -31,7 +31,8 @@ fn steady(scene: &Scene, duration: f64, tolerance: f64) -> ([f64; 3], f64, u64) 
     s.keep_audit(false);
     s.advance(duration, f64::INFINITY, &mut ()).unwrap_or_else(|e| panic!("{e}"));
     let (start, end) = (place(&s.model, &s.state, "hose", 0.0), place(&s.model, &s.state, "hose", 30.0));
-    let (_, _, lambda) = ropewalk_core::integrator::consistent(&s.model, &s.state, &mut s.work).expect("forces");
+    let (_, _, lambda) =
+        ropewalk_core::integrator::consistent(&s.model, &s.state, &mut s.work).expect("forces");
     let node = s.model.constraints()[0].nodes()[0];
     let r = s.model.reaction(0, node, &s.state.at(), &lambda);
     (std::array::from_fn(|i| end[i] - start[i]), size([r[0], r[1], r[2]]), s.work.counts.steps)
@@ -55,7 +56,12 @@ fn straight_run_settles_at_the_reference() {
         let (end, force, steps) = steady(&scene, 60.0, 1e-5);
         let (height, tension) = (end[2] - number(&c["end_height"]), force / number(&c["T_top"]) - 1.0);
         println!("{} {} kn: height {height:.1e}, tension {tension:.1e}, {steps} steps", c["model"], c["kn"]);
-        assert!(height.abs() < 1e-4 && tension.abs() < 1e-3, "{} {} kn: {height:e} {tension:e}", c["model"], c["kn"]);
+        assert!(
+            height.abs() < 1e-4 && tension.abs() < 1e-3,
+            "{} {} kn: {height:e} {tension:e}",
+            c["model"],
+            c["kn"]
+        );
     }
 }
 
@@ -75,7 +81,8 @@ fn turn_settles_at_the_reference() {
         });
         scene.constraint(DrivingSpec::new("ship", "hose.start", "course"));
         let (end, force, steps) = steady(&scene, if c["kn"] == 5 { 120.0 } else { 40.0 }, 1e-5);
-        let (height, tension) = (end[2] - number(&exact["end_height"]), force / number(&exact["T_top"]) - 1.0);
+        let (height, tension) =
+            (end[2] - number(&exact["end_height"]), force / number(&exact["T_top"]) - 1.0);
         println!("turn {} kn: height {height:.1e}, tension {tension:.1e}, {steps} steps", c["kn"]);
         assert!(height.abs() < 1e-3 && tension.abs() < 1e-3, "{} kn: {height:e} {tension:e}", c["kn"]);
     }

@@ -155,17 +155,34 @@ impl Structure {
     pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         for c in 0..self.n {
-            let mut sum = 0.0;
-            for p in self.columns[c]..self.columns[c + 1] {
-                let r = self.rows[p];
-                y[r] += values[p] * x[c];
-                if self.symmetric && r != c {
-                    sum += values[p] * x[r];
+            let (rows, values) = self.column(c, values);
+            // the entries above the diagonal stand for those on its left as well
+            let mirrored = if self.symmetric { rows.len() - 1 } else { 0 };
+            if let Some(run) = consecutive(rows) {
+                for (y, a) in y[run.clone()].iter_mut().zip(values) {
+                    *y += a * x[c];
                 }
+                y[c] += values[..mirrored].iter().zip(&x[run]).map(|(a, x)| a * x).sum::<f64>();
+            } else {
+                for (&r, a) in rows.iter().zip(values) {
+                    y[r] += a * x[c];
+                }
+                y[c] += values[..mirrored].iter().zip(rows).map(|(a, &r)| a * x[r]).sum::<f64>();
             }
-            y[c] += sum;
         }
     }
+
+    /// Rows and values of a column.
+    pub(crate) fn column<'a>(&'a self, c: usize, values: &'a [f64]) -> (&'a [usize], &'a [f64]) {
+        let range = self.columns[c]..self.columns[c + 1];
+        (&self.rows[range.clone()], &values[range])
+    }
+}
+
+/// The rows as a range, if they follow each other without a gap: along a chain nearly all do.
+pub(crate) fn consecutive(rows: &[usize]) -> Option<std::ops::Range<usize>> {
+    let (&first, &last) = (rows.first()?, rows.last()?);
+    (last + 1 - first == rows.len()).then_some(first..last + 1)
 }
 
 fn node_of_dof(nodes: &[Node], nv: usize) -> Vec<u32> {

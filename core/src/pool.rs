@@ -134,17 +134,26 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
     #[inline(always)]
     pub fn gather<R: Real>(seats: &[Self], at: &At<'_>) -> Local<R, Q, N> {
         let last = seats.len() - 1;
-        let pick = |x: &[f64], i: usize| R::each(|l| x[seats[l.min(last)].v[i] as usize]);
-        Local {
-            q: std::array::from_fn(|i| R::each(|l| at.q[seats[l.min(last)].q[i] as usize])),
-            v: std::array::from_fn(|i| pick(at.v, i)),
-            a: std::array::from_fn(|i| pick(at.a, i)),
-            last: match at.relaxed {
-                Some(Relaxed { last: Some(d), .. }) => std::array::from_fn(|i| pick(d, i)),
-                _ => [R::zero(); N],
-            },
+        let mut local = Local {
+            q: [R::zero(); Q],
+            v: [R::zero(); N],
+            a: [R::zero(); N],
+            last: [R::zero(); N],
             relaxed: at.relaxed.map(|r| r.how),
+        };
+        for i in 0..Q {
+            local.q[i] = R::each(|l| at.q[seats[l.min(last)].q[i] as usize]);
         }
+        for i in 0..N {
+            local.v[i] = R::each(|l| at.v[seats[l.min(last)].v[i] as usize]);
+            local.a[i] = R::each(|l| at.a[seats[l.min(last)].v[i] as usize]);
+        }
+        if let Some(Relaxed { last: Some(d), .. }) = at.relaxed {
+            for i in 0..N {
+                local.last[i] = R::each(|l| d[seats[l.min(last)].v[i] as usize]);
+            }
+        }
+        local
     }
     /// Scatters what a batch computed; `first` is the clique of its first element.
     #[inline(always)]

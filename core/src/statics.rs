@@ -316,12 +316,18 @@ impl<'a> Statics<'a> {
             }
             // what is accepted is checked at the point itself; with a stiff EA even now only the smooth stress is
             // good enough to tell stable from unstable
-            let how = Relaxation { smooth: true, ramp: f64::INFINITY, ramp_before: f64::INFINITY, load, floor: None };
+            let how = Relaxation {
+                smooth: true,
+                ramp: f64::INFINITY,
+                ramp_before: f64::INFINITY,
+                load,
+                floor: None,
+            };
             let check = self.newton(state, &q, &lambda, last.as_deref(), how);
             found.residual = self.worst().1;
             match check {
                 Ok(t) if self.options.stable && self.unstable(&t) => {
-                            if found.pushes >= 3 {
+                    if found.pushes >= 3 {
                         return fail(self, "only unstable equilibria were met", &found);
                     }
                     found.pushes += 1;

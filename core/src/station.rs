@@ -78,6 +78,11 @@ const STATION: usize = 19;
 const LOAD: usize = 39;
 
 impl<R: Real> Station<R> {
+    /// A station with every number zero, to be filled.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self::of([R::zero(); STATION])
+    }
     #[inline(always)]
     fn numbers(&self) -> [R; STATION] {
         let (x, v, a, p, c) = (self.x, self.v, self.a, self.slope, self.curve_v);
@@ -300,23 +305,26 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             for law in &self.laws.0 {
                 law.load(width, self.at.t, tangent, self.exchange, count);
             }
-            let loads: [Load<R>; S] = std::array::from_fn(|k| {
+            // loops: what is inside of array::from_fn would not be compiled for the lanes
+            let mut loads = [Load::<R>::zero(); S];
+            for (k, load) in loads.iter_mut().enumerate() {
                 let (row, from) = (k * R::LANES / 8, k * R::LANES % 8);
                 let n = &self.exchange.loads[row];
-                let get = |i: usize| R::each(|l| n[i].0[from + l]);
-                let matrix = |o: usize| std::array::from_fn(|i| std::array::from_fn(|j| get(o + 3 * i + j)));
-                if tangent {
-                    Load {
-                        f: std::array::from_fn(get),
-                        d_x: matrix(3),
-                        d_slope: matrix(12),
-                        d_v: matrix(21),
-                        d_a: matrix(30),
-                    }
-                } else {
-                    Load { f: std::array::from_fn(get), ..Load::zero() }
+                for i in 0..3 {
+                    load.f[i] = R::each(|l| n[i].0[from + l]);
                 }
-            });
+                if !tangent {
+                    continue;
+                }
+                let matrices = [&mut load.d_x, &mut load.d_slope, &mut load.d_v, &mut load.d_a];
+                for (m, matrix) in matrices.into_iter().enumerate() {
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            matrix[i][j] = R::each(|l| n[3 + 9 * m + 3 * i + j].0[from + l]);
+                        }
+                    }
+                }
+            }
             let mut share = Share::zero();
             if tangent {
                 E::spread::<R, true>(&p, &x, &loads, &w, &mut share);

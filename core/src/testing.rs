@@ -317,8 +317,14 @@ mod tests {
     fn constraints_are_checked_whole() {
         let nodes = [Node { kind: NodeKind::Frame, q: 0, v: 0, shared: false }];
         let q = [1.0, 2.0, 3.0, 0.8, 0.0, 0.6, 0.0];
-        let at =
-            At { t: 0.4, q: &q, v: &[0.5, -1.0, 0.3, 1.0, 2.0, -1.0], a: &[0.0; 6], modes: &[], relaxed: None };
+        let at = At {
+            t: 0.4,
+            q: &q,
+            v: &[0.5, -1.0, 0.3, 1.0, 2.0, -1.0],
+            a: &[0.0; 6],
+            modes: &[],
+            relaxed: None,
+        };
         let marker = Marker::Node { node: NodeId(0), point: [0.1, 0.5, 0.2], direction: [1.0, 0.5, 0.0] };
         assert!(check_constraint(&Joint::new("curve", Curve(false), vec![marker]), &nodes, &at) < 1e-7);
         assert!(check_constraint(&Joint::new("curve", Curve(true), vec![marker]), &nodes, &at) > 1e-2);

@@ -122,7 +122,8 @@ fn shown(value: &Value) -> String {
         Kind::String(s) => first_line(s),
         Kind::Array(list) => format!("[{}]", list.iter().map(shown).collect::<Vec<_>>().join(", ")),
         Kind::Table(table) => {
-            let entries: Vec<String> = table.iter().map(|(k, v)| format!("{} = {}", k.name, shown(v))).collect();
+            let entries: Vec<String> =
+                table.iter().map(|(k, v)| format!("{} = {}", k.name, shown(v))).collect();
             format!("{{ {} }}", entries.join(", "))
         }
     }

@@ -84,7 +84,8 @@ impl<'a> Recorder<'a> {
         }
         let n = scene.run.snapshots;
         let last = n.saturating_sub(1).max(1);
-        let due = (0..n).rev().map(|k| scene.run.duration * if n == 1 { 1.0 } else { k as f64 / last as f64 });
+        let due =
+            (0..n).rev().map(|k| scene.run.duration * if n == 1 { 1.0 } else { k as f64 / last as f64 });
         Recorder {
             scene,
             needs_forces: records.iter().any(|r| r.needs_forces()),

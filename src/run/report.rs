@@ -46,7 +46,8 @@ pub(crate) fn report(
     let mut line = |what: &str, text: String| _ = writeln!(out, "  {what:<9} {text}");
     let statics = file.scene().run.analysis == Analysis::Statics;
     let t = recorder.t();
-    let at = if statics { format!("at load factor {}", number(t)) } else { format!("at t = {} s", number(t)) };
+    let at =
+        if statics { format!("at load factor {}", number(t)) } else { format!("at t = {} s", number(t)) };
     match &summary.message {
         Some(message) => line(&summary.status, format!("{at}: {message}")),
         None => line(&summary.status, at),

@@ -19,7 +19,9 @@ pub fn data(name: &str) -> Value {
 
 /// A number, written as a number or as a string of more digits.
 pub fn number(v: &Value) -> f64 {
-    v.as_f64().or_else(|| v.as_str().and_then(|s| s.parse().ok())).unwrap_or_else(|| panic!("{v} is no number"))
+    v.as_f64()
+        .or_else(|| v.as_str().and_then(|s| s.parse().ok()))
+        .unwrap_or_else(|| panic!("{v} is no number"))
 }
 
 /// A ramp of a load over the load factor 0 … 1, linear so that load steps are equal.

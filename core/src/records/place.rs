@@ -31,9 +31,10 @@ impl Spotted {
         match spot {
             Spot::Along(s) if part.point(s, &model.state().at()).is_some() => Ok(Self::Along(part, s)),
             Spot::Along(s) => Err(off(part.as_ref(), "of", s)),
-            named => {
-                part.marker(&named).map(Self::Marker).map_err(|e| BuildError::at("of", format!("`{of}`: {e}")))
-            }
+            named => part
+                .marker(&named)
+                .map(Self::Marker)
+                .map_err(|e| BuildError::at("of", format!("`{of}`: {e}"))),
         }
     }
 

@@ -103,12 +103,7 @@ fn a_named_place_and_any_arc_length_have_position_velocity_and_acceleration() {
     for (json, name, first, values) in [
         (r#"{"position": {"of": "line.end"}}"#, "line.end", "line.end.x [m]", [2.0, 0.0, 0.0]),
         (r#"{"position": {"of": "line @ 50 cm"}}"#, "line@50cm", "line@50cm.x [m]", [0.5, 0.0, 0.0]),
-        (
-            r#"{"velocity": {"of": "line@1"}}"#,
-            "line@1.velocity",
-            "line@1.vx [m/s]",
-            [0.0, 2.0, 0.0],
-        ),
+        (r#"{"velocity": {"of": "line@1"}}"#, "line@1.velocity", "line@1.vx [m/s]", [0.0, 2.0, 0.0]),
         (r#"{"velocity": {"of": "line.end", "name": "tip"}}"#, "tip", "tip.vx [m/s]", [0.0, 4.0, 0.0]),
         (
             r#"{"acceleration": {"of": "line.end"}}"#,
@@ -139,11 +134,10 @@ fn tension_is_observed_at_ends_and_arc_lengths() {
         ("1", "line@1m.tension", 3.0),
     ] {
         let json = format!(r#"{{"along": {{"of": "line", "what": "tension", "at": {at}}}}}"#);
-        assert_eq!(sampled(spec(&json).as_ref()).unwrap(), (
-            name.to_string(),
-            vec![format!("{name} [N]")],
-            vec![value]
-        ));
+        assert_eq!(
+            sampled(spec(&json).as_ref()).unwrap(),
+            (name.to_string(), vec![format!("{name} [N]")], vec![value])
+        );
     }
 }
 

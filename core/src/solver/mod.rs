@@ -11,7 +11,7 @@ pub use ldlt::Ldlt;
 pub use lu::Lu;
 pub use profile::Profile;
 
-use crate::pattern::Structure;
+use crate::pattern::{Structure, consecutive};
 
 /// Why a linear system could not be solved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -170,36 +170,71 @@ impl Guard {
     /// Componentwise backward error `max |A x - b|ᵢ / (|A||x| + |b|)ᵢ`; leaves `A x - b` in `r`. Rows whose terms are
     /// all rounding errors are measured against `(|A| 1)ᵢ |x|∞` instead (Arioli, Demmel & Duff 1989).
     fn backward_error(&mut self, s: &Structure, values: &[f64], x: &[f64]) -> f64 {
-        let largest = x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        self.sums.fill(0.0);
-        for i in 0..s.n {
-            self.r[i] = -self.b[i];
-            self.d[i] = self.b[i].abs();
+        for ((r, d), b) in self.r.iter_mut().zip(&mut self.d).zip(&self.b) {
+            *r = -b;
+            *d = b.abs();
         }
         for c in 0..s.n {
+            let (rows, values) = s.column(c, values);
+            let mirrored = if s.symmetric { rows.len() - 1 } else { 0 };
+            let (mut rc, mut dc) = (0.0, 0.0);
+            if let Some(run) = consecutive(rows) {
+                let (r, d) = (&mut self.r[run.clone()], &mut self.d[run.clone()]);
+                for ((r, d), a) in r.iter_mut().zip(d).zip(values) {
+                    let y = a * x[c];
+                    *r += y;
+                    *d += y.abs();
+                }
+                for (a, x) in values[..mirrored].iter().zip(&x[run]) {
+                    rc += a * x;
+                    dc += (a * x).abs();
+                }
+            } else {
+                for (&i, a) in rows.iter().zip(values) {
+                    let y = a * x[c];
+                    self.r[i] += y;
+                    self.d[i] += y.abs();
+                }
+                for (&i, a) in rows[..mirrored].iter().zip(values) {
+                    rc += a * x[i];
+                    dc += (a * x[i]).abs();
+                }
+            }
+            self.r[c] += rc;
+            self.d[c] += dc;
+        }
+        let mut worst = 0.0;
+        for (r, d) in self.r.iter().zip(&self.d) {
+            // max() would swallow a NaN
+            if !(r.is_finite() && d.is_finite()) {
+                return f64::INFINITY;
+            }
+            if r.abs() > worst * d {
+                worst = r.abs() / d;
+            }
+        }
+        if worst > REFINE { self.against_norms(s, values, x) } else { worst }
+    }
+
+    /// The same, with row sums for the rows that need them.
+    fn against_norms(&mut self, s: &Structure, values: &[f64], x: &[f64]) -> f64 {
+        self.sums.fill(0.0);
+        for c in 0..s.n {
             for p in s.columns[c]..s.columns[c + 1] {
-                let (i, y) = (s.rows[p], values[p] * x[c]);
-                self.r[i] += y;
-                self.d[i] += y.abs();
+                let i = s.rows[p];
                 self.sums[i] += values[p].abs();
                 if s.symmetric && i != c {
                     self.sums[c] += values[p].abs();
-                    let y = values[p] * x[i];
-                    self.r[c] += y;
-                    self.d[c] += y.abs();
                 }
             }
         }
+        let largest = x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let mut worst = 0.0;
-        for i in 0..s.n {
-            // max() would swallow a NaN
-            if !self.r[i].is_finite() || !self.d[i].is_finite() {
-                return f64::INFINITY;
-            }
-            let all = self.sums[i] * largest;
-            let d = if self.d[i] <= 1e3 * s.n as f64 * f64::EPSILON * all { self.d[i] + all } else { self.d[i] };
-            if d > 0.0 && self.r[i].abs() > worst * d {
-                worst = self.r[i].abs() / d;
+        for ((r, &d), sum) in self.r.iter().zip(&self.d).zip(&self.sums) {
+            let all = sum * largest;
+            let d = if d <= 1e3 * s.n as f64 * f64::EPSILON * all { d + all } else { d };
+            if d > 0.0 && r.abs() > worst * d {
+                worst = r.abs() / d;
             }
         }
         worst

@@ -1,8 +1,8 @@
 //! LU without pivoting inside the profile of the matrix, in elimination order.
 //!
-//! Along a chain the profile is a narrow band, and rows of `L` and columns of `U` are contiguous: short scalar
-//! products, no index lists. The order of [`Structure`] keeps it stable (multipliers follow their nodes); the
-//! [`Guard`](super::Guard) checks.
+//! Along a chain the profile is a narrow band. Each row of `L` and `U` is contiguous, and elimination subtracts
+//! multiples of rows: short loops over neighbours, no index lists. The order of [`Structure`] keeps it stable
+//! (multipliers follow their nodes); the [`Guard`](super::Guard) checks.
 
 use super::{LinearSolver, SolveError};
 use crate::pattern::Structure;
@@ -10,17 +10,18 @@ use crate::pattern::Structure;
 /// LU without pivoting for structurally symmetric matrices with a small profile.
 #[derive(Default)]
 pub struct Profile {
-    /// First column of each row of `L` (and first row of each column of `U`).
+    /// First column of each row of `L`.
     first: Vec<usize>,
-    /// Where row `i` of `L` starts in `lower`, minus `first[i]`; likewise in `upper`.
+    /// One past the last column of each row of `U`; ascends, so that rows below hold what rows above leave in them.
+    end: Vec<usize>,
+    /// Where each row starts in `rows`.
     start: Vec<usize>,
-    lower: Vec<f64>,
-    upper: Vec<f64>,
+    /// `L` without its unit diagonal, and `U`, row by row.
+    rows: Vec<f64>,
     /// Reciprocal pivots.
     inverse: Vec<f64>,
-    /// For each stored entry of the matrix, where it goes: below `lower.len()` into `lower`, then `upper`, then the
-    /// diagonal.
-    slots: Vec<usize>,
+    /// For each stored entry of the matrix, where it goes in `rows`; of a symmetric one, its mirror image too.
+    slots: Vec<[u32; 2]>,
     negative: usize,
 }
 
@@ -35,10 +36,22 @@ fn first_columns(s: &Structure) -> Vec<usize> {
     first
 }
 
+fn ends(first: &[usize]) -> Vec<usize> {
+    let mut end: Vec<usize> = (1..=first.len()).collect();
+    for (c, &f) in first.iter().enumerate() {
+        end[f] = end[f].max(c + 1);
+    }
+    for i in 1..end.len() {
+        end[i] = end[i].max(end[i - 1]);
+    }
+    end
+}
+
 impl Profile {
     /// Entries that the factors would have.
     pub fn size(s: &Structure) -> usize {
-        first_columns(s).iter().enumerate().map(|(i, f)| 2 * (i - f) + 1).sum()
+        let first = first_columns(s);
+        ends(&first).iter().zip(&first).map(|(e, f)| e - f).sum()
     }
 }
 
@@ -49,69 +62,53 @@ impl LinearSolver for Profile {
 
     fn analyse(&mut self, s: &Structure) -> Result<(), SolveError> {
         self.first = first_columns(s);
+        self.end = ends(&self.first);
         let mut total = 0;
         self.start = Vec::with_capacity(s.n);
-        for (i, f) in self.first.iter().enumerate() {
+        for (f, e) in self.first.iter().zip(&self.end) {
             self.start.push(total);
-            total += i - f;
+            total += e - f;
         }
-        self.lower = vec![0.0; total];
-        self.upper = vec![0.0; total];
+        if u32::try_from(total).is_err() {
+            return Err(SolveError::Memory);
+        }
+        self.rows = vec![0.0; total];
         self.inverse = vec![0.0; s.n];
+        let slot = |r: usize, c: usize| (self.start[r] + c - self.first[r]) as u32;
         self.slots = Vec::with_capacity(s.entries());
         for c in 0..s.n {
             for &r in &s.rows[s.columns[c]..s.columns[c + 1]] {
-                self.slots.push(match r.cmp(&c) {
-                    std::cmp::Ordering::Greater => self.start[r] + c - self.first[r],
-                    std::cmp::Ordering::Less => total + self.start[c] + r - self.first[c],
-                    std::cmp::Ordering::Equal => 2 * total + r,
-                });
+                self.slots.push([slot(r, c), if s.symmetric { slot(c, r) } else { slot(r, c) }]);
             }
         }
         Ok(())
     }
 
     fn factor(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError> {
-        let total = self.lower.len();
-        self.lower.fill(0.0);
-        self.upper.fill(0.0);
-        self.inverse.fill(0.0);
-        for (&slot, &v) in self.slots.iter().zip(values) {
-            if slot < total {
-                self.lower[slot] = v;
-            } else if slot < 2 * total {
-                self.upper[slot - total] = v;
-            } else {
-                self.inverse[slot - 2 * total] = v;
-            }
-        }
-        if s.symmetric {
-            self.lower.copy_from_slice(&self.upper);
+        self.rows.fill(0.0);
+        for (&[a, b], &v) in self.slots.iter().zip(values) {
+            self.rows[a as usize] = v;
+            self.rows[b as usize] = v;
         }
         self.negative = 0;
         for i in 0..s.n {
             let f = self.first[i];
-            let (done_l, row) = self.lower.split_at_mut(self.start[i]);
-            let (done_u, column) = self.upper.split_at_mut(self.start[i]);
-            let (row, column) = (&mut row[..i - f], &mut column[..i - f]);
+            let (above, below) = self.rows.split_at_mut(self.start[i]);
+            let row = &mut below[..self.end[i] - f];
             for j in f..i {
-                let fj = self.first[j];
-                let from = f.max(fj);
-                let (a, b) = (self.start[j] + from - fj, self.start[j] + j - fj);
-                let (mut l, mut u) = (row[j - f], column[j - f]);
-                for (((ri, uj), lj), ci) in row[from - f..j - f]
-                    .iter()
-                    .zip(&done_u[a..b])
-                    .zip(&done_l[a..b])
-                    .zip(&column[from - f..j - f])
-                {
-                    l -= ri * uj;
-                    u -= lj * ci;
+                let l = row[j - f];
+                if l == 0.0 {
+                    continue;
                 }
-                row[j - f] = l * self.inverse[j];
-                column[j - f] = u;
+                let l = l * self.inverse[j];
+                row[j - f] = l;
+                let upper = &above
+                    [self.start[j] + j + 1 - self.first[j]..self.start[j] + self.end[j] - self.first[j]];
+                for (x, u) in row[j + 1 - f..].iter_mut().zip(upper) {
+                    *x -= l * u;
+                }
             }
-            let pivot = self.inverse[i] - row.iter().zip(column.iter()).map(|(l, u)| l * u).sum::<f64>();
+            let pivot = row[i - f];
             if pivot == 0.0 || !pivot.is_finite() {
                 return Err(SolveError::Singular(i));
             }
@@ -124,17 +121,15 @@ impl LinearSolver for Profile {
     fn solve(&mut self, x: &mut [f64]) {
         for i in 0..x.len() {
             let (f, start) = (self.first[i], self.start[i]);
-            let row = &self.lower[start..start + i - f];
-            let sum: f64 = row.iter().zip(&x[f..i]).map(|(l, x)| l * x).sum();
+            let sum: f64 = self.rows[start..start + i - f].iter().zip(&x[f..i]).map(|(l, x)| l * x).sum();
             x[i] -= sum;
         }
         for i in (0..x.len()).rev() {
-            let (f, start) = (self.first[i], self.start[i]);
-            x[i] *= self.inverse[i];
-            let xi = x[i];
-            for (x, u) in x[f..i].iter_mut().zip(&self.upper[start..start + i - f]) {
-                *x -= u * xi;
-            }
+            let (diagonal, end) =
+                (self.start[i] + i - self.first[i], self.start[i] + self.end[i] - self.first[i]);
+            let upper = &self.rows[diagonal + 1..end];
+            let sum: f64 = upper.iter().zip(&x[i + 1..]).map(|(u, x)| u * x).sum();
+            x[i] = (x[i] - sum) * self.inverse[i];
         }
     }
 

@@ -142,7 +142,12 @@ impl<R: Real> Reduced<R> {
         let (wl, wll) = (w * il, w * il * il);
         for r in 0..3 {
             for c in 0..3 {
-                let m: M3<R> = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j, r, c)));
+                let mut m: M3<R> = [[R::zero(); 3]; 3];
+                for i in 0..3 {
+                    for j in 0..3 {
+                        m[i][j] = entry(i, j, r, c);
+                    }
+                }
                 // row and column of t = Δ - α - β
                 let row: V3<R> = std::array::from_fn(|j| m[0][j] - m[1][j] - m[2][j]);
                 let column: V3<R> = std::array::from_fn(|i| m[i][0] - m[i][1] - m[i][2]);

@@ -22,7 +22,11 @@ pub struct CableStations<R = f64> {
 /// `Σ S_i e_i`
 #[inline(always)]
 fn interpolate<R: Real>(s: &[R; 4], e: &[R; 12]) -> V3<R> {
-    std::array::from_fn(|c| s[0].fma(e[c], s[1].fma(e[3 + c], s[2].fma(e[6 + c], s[3] * e[9 + c]))))
+    let mut x = [R::zero(); 3];
+    for c in 0..3 {
+        x[c] = s[0].fma(e[c], s[1].fma(e[3 + c], s[2].fma(e[6 + c], s[3] * e[9 + c])));
+    }
+    x
 }
 
 impl StationElement<12, 12, 4> for CableStations {
@@ -41,11 +45,11 @@ impl StationElement<12, 12, 4> for CableStations {
     #[inline(always)]
     fn stations<R: Real>(p: &CableStations<R>, x: &Local<R, 12, 12>) -> [Station<R>; 4] {
         let q = natural(&x.q, R::of(1.0) / p.l);
-        std::array::from_fn(|k| {
-            let at: &Point = &Gauss4::POINTS[k];
+        let mut stations = [Station::zero(); 4];
+        for (station, at) in stations.iter_mut().zip(Gauss4::POINTS) {
             let s = hermite(at.xi, p.l);
             let v = interpolate(&s, &x.v);
-            Station {
+            *station = Station {
                 x: interpolate(&s, &x.q),
                 v,
                 a: interpolate(&s, &x.a),
@@ -55,8 +59,9 @@ impl StationElement<12, 12, 4> for CableStations {
                 weight: R::of(at.w) * p.l,
                 diameter: p.diameter,
                 area: p.area,
-            }
-        })
+            };
+        }
+        stations
     }
 
     #[inline(always)]
