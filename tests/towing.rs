@@ -31,10 +31,9 @@ fn steady(scene: &Scene, duration: f64, tolerance: f64) -> ([f64; 3], f64, u64) 
     s.keep_audit(false);
     s.advance(duration, f64::INFINITY, &mut ()).unwrap_or_else(|e| panic!("{e}"));
     let (start, end) = (place(&s.model, &s.state, "hose", 0.0), place(&s.model, &s.state, "hose", 30.0));
-    let (_, _, lambda) =
-        ropewalk_core::integrator::consistent(&s.model, &s.state, &mut s.work).expect("forces");
+    ropewalk_core::integrator::consistent(&s.model, &mut s.state, &mut s.work).expect("forces");
     let node = s.model.constraints()[0].nodes()[0];
-    let r = s.model.reaction(0, node, &s.state.at(), &lambda);
+    let r = s.model.reaction(0, node, &s.state.at(), &s.state.lambda);
     (std::array::from_fn(|i| end[i] - start[i]), size([r[0], r[1], r[2]]), s.work.counts.steps)
 }
 

@@ -214,7 +214,8 @@ impl Builder {
         Ok(())
     }
 
-    /// The parts so far, or those of these names.
+    /// The parts so far, or those of these names, each with its number.
+    #[allow(clippy::type_complexity)]
     pub fn parts(&self, names: &[String]) -> Result<Vec<(usize, Arc<dyn Part>)>, BuildError> {
         if names.is_empty() {
             return Ok(self.parts.iter().cloned().enumerate().collect());

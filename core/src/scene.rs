@@ -282,9 +282,7 @@ impl Scene {
     /// # Errors
     /// The first record that can't be made.
     pub fn records(&self, model: &Model) -> Result<Vec<Box<dyn Record>>, SceneError> {
-        let make = |(k, r): (usize, &Box<dyn RecordSpec>)| {
-            r.build(model).map_err(|error| SceneError { spec: Some((SpecKind::Record, k)), error })
-        };
-        self.records.iter().enumerate().map(make).collect()
+        let of = |k| move |error| SceneError { spec: Some((SpecKind::Record, k)), error };
+        self.records.iter().enumerate().map(|(k, r)| r.build(model).map_err(of(k))).collect()
     }
 }

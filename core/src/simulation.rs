@@ -219,17 +219,10 @@ impl Simulation {
             }
         }
         if observer.needs_forces() {
-            let (v, a, lambda) =
-                consistent(&self.model, &self.scratch, &mut self.work).map_err(|source| {
-                    StepError::Linear {
-                        t: self.scratch.t,
-                        source,
-                        unknown: "the accelerations for output".into(),
-                    }
-                })?;
-            self.scratch.v = v;
-            self.scratch.a = a;
-            self.scratch.lambda = lambda;
+            let t = self.scratch.t;
+            consistent(&self.model, &mut self.scratch, &mut self.work).map_err(|source| {
+                StepError::Linear { t, source, unknown: "the accelerations for output".into() }
+            })?;
         }
         let sample = Sample {
             model: &self.model,

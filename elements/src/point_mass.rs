@@ -219,7 +219,7 @@ impl ElementSpec for PointMassSpec {
             let water = b.water()?.clone();
             mass = mass.in_fluid(water.density, self.added_mass, self.drag_area, water.current()?)?;
         }
-        let seat = b.nodes()[node.0 as usize].clone();
+        let seat = b.nodes()[node.0 as usize];
         b.term(Box::new(mass));
         b.part(Arc::new(Body { spec: self.clone(), node, own, q: seat.q, v: seat.v }))
     }

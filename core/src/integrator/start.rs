@@ -82,13 +82,12 @@ pub fn prepare(
     }
 }
 
-/// Accelerations and multipliers for output: those of the index-1 system at the positions of `state` and at its
-/// velocities projected onto the constraints, which are returned with them. The integrator's own are noisier.
-pub fn consistent(
-    model: &Model,
-    state: &State,
-    work: &mut Workspace,
-) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>), SolveError> {
+/// Replaces velocities, accelerations and multipliers by those for output: velocities projected onto the
+/// constraints, and what the index-1 system gives there. The integrator's own are noisier.
+///
+/// # Errors
+/// The mass matrix with the constraints is singular; the state is as it was.
+pub fn consistent(model: &Model, state: &mut State, work: &mut Workspace) -> Result<(), SolveError> {
     let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
     let mut v = state.v.clone();
     work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
@@ -102,7 +101,8 @@ pub fn consistent(
     let zero = vec![0.0; model.velocities()];
     let at = At { v: &v, a: &zero, ..state.at() };
     solve_accelerations(model, &at, work, &mut a, &mut lambda)?;
-    Ok((v, a, lambda))
+    (state.v, state.a, state.lambda) = (v, a, lambda);
+    Ok(())
 }
 
 fn inconsistent(

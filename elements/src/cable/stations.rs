@@ -1,6 +1,6 @@
 //! Where distributed loads act on a cable element: four Gauss points, exact for loads up to degree four.
 
-use super::quadrature::{Gauss4, Point, Quadrature};
+use super::quadrature::{Gauss4, Quadrature};
 use super::shape::{combine, hermite, hermite_slope, natural};
 use ropewalk_core::{Batch, Load, Local, Real, Share, Station, StationElement, V3, Weights};
 use schemars::JsonSchema;
