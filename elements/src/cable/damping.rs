@@ -14,7 +14,7 @@ use std::marker::PhantomData;
 
 /// Damping of stretching: the axial force `η EA ε̇` besides the elastic one.
 ///
-/// Not for L1n, whose force direction isn't the gradient of its strain; [`push_axial_damping`] takes L1 there.
+/// Not for L1n, whose force direction isn't the gradient of its strain; `push_axial_damping` takes L1 there.
 #[derive(Clone, Copy, Debug)]
 pub struct AxialDamping<L, Q> {
     /// Unstretched length [m].
