@@ -48,8 +48,9 @@ pub fn simulate(scene: &Scene) -> Result<History, Error> {
     let model = scene.build()?;
     let mut recorder = Recorder::new(scene, records(scene, &model)?);
     let mut started = Started::new(scene, model)?;
-    let warnings = started.warnings(scene);
+    let mut warnings = started.warnings(scene);
     let ending = started.go(scene, &mut recorder);
+    warnings.extend(started.flutter());
     let stopped_by = match ending {
         Ending::Finished => None,
         Ending::Stopped(by) => Some(by),

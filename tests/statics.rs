@@ -286,6 +286,27 @@ fn buoy_on_a_cable_in_a_sheared_current() {
     assert!((r[0].abs() - 963.562_756_8).abs() < 2.0 && (r[2].abs() - 1_994.588_278_2).abs() < 2.0, "{r:?}");
 }
 
+#[test]
+fn a_cable_that_stands_on_its_end_is_no_equilibrium() {
+    // exactly upright nothing tips it over, with a symmetric tangent and, in a current along it, without
+    for current in [0.0, -0.3] {
+        let section = Section { diameter: 0.02, ..Section::new(0.6, 1e5, 1.0) };
+        let mut scene = Scene::new();
+        scene.water = Some(Water { current: [0.0, 0.0, current], ..Water::default() });
+        scene
+            .element(CableSpec::straight("cable", [0.0; 3], [0.0, 0.0, 10.0], 12, section))
+            .constraint(SphericalSpec::pin("pin", "cable.start"))
+            .force(GravitySpec::default());
+        if current != 0.0 {
+            scene.force(DragSpec::default());
+        }
+        let (model, state, found) = equilibrium(&scene);
+        let end = place(&model, &state, "cable", 10.0);
+        println!("current {current}: {found:?}, end {end:?}");
+        assert!(end[2] < -9.9, "{end:?}");
+    }
+}
+
 fn law(name: &serde_json::Value) -> DragLaw {
     if name == "choo" { DragLaw::ChooCasarella } else { DragLaw::Constant }
 }
@@ -334,4 +355,27 @@ fn turning_tow_is_one_relative_equilibrium() {
         println!("turn {} kn: height {height:.1e}, tension {tension:.1e}, {found:?}", c["kn"]);
         assert!(height.abs() < 1e-3 && tension.abs() < 1e-3, "{} kn: {height:e} {tension:e}", c["kn"]);
     }
+}
+
+#[test]
+fn what_stiffness_changes_in_a_steady_turn() {
+    // the reference is inextensible and limp; the default hose is neither
+    let c = &data("tow_turn.json")["cases"][2];
+    let exact = number(&c["solutions"][0]["end_height"]);
+    let height = |ea: f64, ei: f64| {
+        let radius = number(&c["R"]);
+        let mut scene = towed([radius, 0.0, 0.0], [radius, -29.5, -5.0], 40, hose(ea, ei), DragLaw::Constant);
+        scene.constraint(SphericalSpec::pin("tow", "hose.start"));
+        let model = scene.build().expect("model");
+        let frame = SteadyFrame { omega: [0.0, 0.0, number(&c["Omega"])], ..SteadyFrame::default() };
+        let mut statics = Statics::relative(&model, &StaticsOptions::default(), Some(frame)).expect("statics");
+        let mut state = model.state();
+        statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
+        place(&model, &state, "hose", 30.0)[2]
+    };
+    let limp = height(1e9, 1e-6);
+    let (stretches, bends, both) = (height(1e6, 1e-6) - limp, height(1e9, 2.0) - limp, height(1e6, 2.0) - limp);
+    println!("25 kn: EA {stretches:.2e} m, EI {bends:.2e} m, both {both:.2e} m of {limp:.4} m");
+    assert!((limp - exact).abs() < 1e-3);
+    assert!((both - stretches - bends).abs() < 0.2 * both.abs(), "{both:e} {stretches:e} {bends:e}");
 }

@@ -86,3 +86,43 @@ fn turn_settles_at_the_reference() {
         assert!(height.abs() < 1e-3 && tension.abs() < 1e-3, "{} kn: {height:e} {tension:e}", c["kn"]);
     }
 }
+
+#[test]
+fn error_control_keeps_its_promise_when_a_tow_starts() {
+    let points = |stepping: Stepping| {
+        let mut scene = towed([0.0; 3], [-29.0, 0.0, -7.0], 20, hose(1e6, 2.0), DragLaw::Constant);
+        scene.motion(StraightSpec {
+            name: "course".into(),
+            speed: 15.0 * 1852.0 / 3600.0,
+            direction: [1.0, 0.0, 0.0],
+            start: 0.0,
+            ramp: 5.0,
+        });
+        scene.constraint(DrivingSpec::new("ship", "hose.start", "course"));
+        let options = Options { stepping, ..Options::default() };
+        let mut s = Simulation::new(scene.build().expect("model"), &options, 8.0).expect("start");
+        s.keep_audit(false);
+        let mut all = Vec::new();
+        for k in 1..=16 {
+            s.advance(0.5 * f64::from(k), f64::INFINITY, &mut ()).unwrap_or_else(|e| panic!("{e}"));
+            all.extend((1..=20).map(|j| place(&s.model, &s.state, "hose", 1.5 * f64::from(j))));
+        }
+        (all, s.work.counts)
+    };
+    let exact = points(Stepping::Controlled { tolerance: 3e-8 }).0;
+    for tolerance in [1e-3, 1e-4, 1e-5, 1e-6] {
+        let (got, counts) = points(Stepping::Controlled { tolerance });
+        // the mean over the hose, as the tolerance is meant; the worst instant
+        let error = got
+            .chunks(20)
+            .zip(exact.chunks(20))
+            .map(|(a, b)| {
+                let square = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>();
+                (a.iter().zip(b).map(square).sum::<f64>() / 20.0).sqrt()
+            })
+            .fold(0.0f64, |m, e| if e.is_nan() { f64::INFINITY } else { m.max(e) });
+        let ratio = error / 30.0 / tolerance;
+        println!("tolerance {tolerance:e}: true error {ratio:.3} of it, {counts:?}");
+        assert!((0.05..5.0).contains(&ratio), "tolerance {tolerance:e}: {ratio}");
+    }
+}

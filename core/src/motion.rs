@@ -1,5 +1,6 @@
 //! Prescribed functions of time: what ships, vehicles and winches do.
 
+use serde::{Deserialize, Serialize};
 use crate::lane::V3;
 use std::fmt::Debug;
 
@@ -15,13 +16,17 @@ pub struct Moving {
 }
 
 /// A frame that moves steadily: it translates with `velocity` and turns at `omega` about `centre`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct SteadyFrame {
     /// Velocity of the centre [m/s].
+    #[serde(deserialize_with = "crate::quantity::vec3::speed")]
     pub velocity: V3<f64>,
     /// Angular velocity [rad/s].
+    #[serde(deserialize_with = "crate::quantity::vec3::angular_velocity")]
     pub omega: V3<f64>,
-    /// A point on the axis of rotation, relative to where the driven marker starts [m].
+    /// A point on the axis of rotation [m]: in space, or of a motion's frame relative to where the motion starts.
+    #[serde(deserialize_with = "crate::quantity::vec3::length")]
     pub centre: V3<f64>,
 }
 

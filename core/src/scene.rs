@@ -4,6 +4,7 @@ use crate::build::{BuildError, Builder};
 use crate::current::Current;
 use crate::integrator::Options;
 use crate::model::Model;
+use crate::motion::SteadyFrame;
 use crate::record::Record;
 use crate::spec::{ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
 use crate::statics::StaticsOptions;
@@ -96,6 +97,9 @@ pub struct Run {
     /// Interval of the history [s]; 0 takes a thousandth of the duration.
     #[serde(deserialize_with = "crate::quantity::time")]
     pub output: f64,
+    /// In statics: the frame that the equilibrium is relative to, such as that of a ship that tows steadily. What is
+    /// held fixed then moves with the frame.
+    pub frame: Option<SteadyFrame>,
     /// Start a dynamic run from the equilibrium at t = 0 instead of the configuration as laid.
     pub from_equilibrium: bool,
     /// Keep account of energy and work at every step.
@@ -110,6 +114,7 @@ impl Default for Run {
             analysis: Analysis::Dynamics,
             duration: 1.0,
             output: 0.0,
+            frame: None,
             from_equilibrium: false,
             audit: true,
             snapshots: 9,
@@ -126,6 +131,14 @@ impl Run {
     pub fn check(&self) -> Result<(), BuildError> {
         crate::build::positive("duration", self.duration).map_err(|e| e.of("run.duration"))?;
         crate::build::not_negative("output", self.output).map_err(|e| e.of("run.output"))?;
+        if let Some(f) = self.frame {
+            crate::build::finite("frame", &[f.velocity, f.omega, f.centre].concat())
+                .map_err(|e| e.of("run.frame"))?;
+            if self.analysis != Analysis::Statics {
+                let message = "`frame` belongs to `analysis = \"statics\"`; a run in time has motions instead";
+                return Err(BuildError::at("run.frame", message));
+            }
+        }
         if self.snapshots > 10_000 {
             let message = format!("`snapshots` must be at most 10000, not {}", self.snapshots);
             return Err(BuildError::at("run.snapshots", message));

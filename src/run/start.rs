@@ -21,18 +21,22 @@ pub(crate) enum Ending {
     Failed(Error),
 }
 
+/// Rate at which disturbances of an equilibrium grow [1/s]; 0 if they don't.
+type Flutter = f64;
+
 /// What an analysis leaves behind.
 pub(crate) struct Done {
     pub model: Arc<Model>,
     pub state: State,
     pub audit: Audit,
     pub counts: Counts,
+    pub flutter: Flutter,
 }
 
 /// An analysis that is ready to go.
 pub(crate) enum Started {
     /// Motion in time.
-    Dynamics(Box<Simulation>),
+    Dynamics(Box<Simulation>, Flutter),
     /// Equilibria while time runs as the load factor.
     Statics(Box<Done>),
 }
@@ -46,25 +50,25 @@ impl Started {
             state.v.fill(0.0);
             let audit = Audit::start(model.energy(&state.at()));
             let counts = Counts::default();
-            return Ok(Started::Statics(Box::new(Done { model: Arc::new(model), state, audit, counts })));
+            return Ok(Started::Statics(Box::new(Done { model: Arc::new(model), state, audit, counts, flutter: 0.0 })));
         }
         // an unsuitable scheme should not have to wait for the equilibrium
         ropewalk_core::integrator::Alpha::new(&scene.solver, &model, run.duration)?;
-        let mut state = model.state();
+        let (mut state, mut flutter) = (model.state(), 0.0);
         if run.from_equilibrium {
             state.v.fill(0.0);
             let mut search = Statics::new(&model, &scene.statics).map_err(no_memory)?;
-            search.find(&mut state, true)?;
+            flutter = search.find(&mut state, true)?.flutter;
         }
         let mut simulation = Simulation::from(model, state, &scene.solver, run.duration)?;
         simulation.keep_audit(run.audit);
-        Ok(Started::Dynamics(Box::new(simulation)))
+        Ok(Started::Dynamics(Box::new(simulation), flutter))
     }
 
     /// What one should know although the run goes on.
     pub(crate) fn warnings(&self, scene: &Scene) -> Vec<String> {
         let mut all = Vec::new();
-        if let Started::Dynamics(s) = self {
+        if let Started::Dynamics(s, _) = self {
             all.extend(s.integrator.warning.clone());
             let c = s.correction;
             if c.position > 1e-8 * s.model.length() || c.velocity > 1e-6 {
@@ -81,16 +85,31 @@ impl Started {
         all
     }
 
+    /// What one should know about the equilibria, once they have been found.
+    pub(crate) fn flutter(&self) -> Option<String> {
+        let rate = match self {
+            Started::Dynamics(_, flutter) => *flutter,
+            Started::Statics(done) => done.flutter,
+        };
+        (rate > 0.0).then(|| {
+            format!(
+                "the equilibrium is not stable: small disturbances swing ever wider, e-fold in {:.2} s. In motion it \
+                 will flutter",
+                1.0 / rate
+            )
+        })
+    }
+
     /// Measures the time of every term from now on.
     pub(crate) fn profile(&mut self) {
-        if let Started::Dynamics(s) = self {
+        if let Started::Dynamics(s, _) = self {
             s.work.profile();
         }
     }
 
     /// The measured times.
     pub(crate) fn times(&self) -> Vec<ProfileEntry> {
-        let Started::Dynamics(s) = self else { return Vec::new() };
+        let Started::Dynamics(s, _) = self else { return Vec::new() };
         let labels = s.model.terms().iter().map(|t| t.label()).chain(["constraints".to_string()]);
         let times = s.work.system.profile.iter().flatten();
         let entry = |(label, &(calls, time)): (String, &(u64, std::time::Duration))| ProfileEntry {
@@ -105,7 +124,7 @@ impl Started {
     /// Computes until the end, or until something stops it.
     pub(crate) fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>) -> Ending {
         let end = match self {
-            Started::Dynamics(s) => {
+            Started::Dynamics(s, _) => {
                 s.advance(scene.run.duration, scene.run.interval(), recorder).map_err(Error::from)
             }
             Started::Statics(path) => path.go(scene, recorder),
@@ -122,7 +141,7 @@ impl Started {
     pub(crate) fn done(self) -> Done {
         match self {
             Started::Statics(done) => *done,
-            Started::Dynamics(s) => {
+            Started::Dynamics(s, _) => {
                 let c = s.work.counts;
                 let counts = Counts {
                     steps: c.steps,
@@ -130,7 +149,7 @@ impl Started {
                     newton_iterations: c.newton_iterations,
                     factorizations: c.factorizations,
                 };
-                Done { model: s.model, state: s.state, audit: s.audit, counts }
+                Done { model: s.model, state: s.state, audit: s.audit, counts, flutter: 0.0 }
             }
         }
     }
@@ -139,12 +158,16 @@ impl Started {
 impl Done {
     /// One equilibrium after the other; each starts from the one before.
     fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>) -> Result<End, Error> {
-        let mut search = Statics::new(&self.model, &scene.statics).map_err(no_memory)?;
+        let mut search =
+            Statics::relative(&self.model, &scene.statics, scene.run.frame).map_err(no_memory)?;
         let steps = scene.statics.steps.max(1);
         for k in 0..=steps {
             let before = self.state.t;
-            self.state.t = scene.run.duration * k as f64 / steps as f64;
-            let found = search.find(&mut self.state, k == 0)?;
+            let found = match k {
+                0 => search.find(&mut self.state, true)?,
+                _ => search.follow(&mut self.state, scene.run.duration * k as f64 / steps as f64)?,
+            };
+            self.flutter = self.flutter.max(found.flutter);
             self.counts.steps += 1;
             self.counts.newton_iterations += u64::from(found.iterations);
             self.counts.factorizations += u64::from(found.iterations);

@@ -1,0 +1,242 @@
+//! Equilibria: at rest, along a load path, or relative to a frame that moves steadily.
+//!
+//! Newton's method with the remedies of [`Relaxed`]: geometric stiffness from the stress linearised at the iterate
+//! before; a floor of tension where the tangent isn't positive; a cap of the stiff modulus at the first iterations.
+//! An equilibrium is accepted if it is stable and not folded: by the inertia of the factors where the tangent is
+//! symmetric, else by what becomes of a small disturbance.
+
+mod search;
+mod stability;
+mod tangent;
+
+pub use stability::Disturbance;
+
+use crate::build::{BuildError, positive};
+use crate::model::{Model, System};
+use crate::motion::SteadyFrame;
+use crate::pattern::Structure;
+use crate::solver::{Guard, LinearSolver, Profile, SolveError};
+use crate::state::State;
+use search::FOLD;
+use serde::{Deserialize, Serialize};
+
+/// How equilibria are found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct StaticsOptions {
+    /// Number of load steps from t = 0 to the end of the run.
+    pub steps: usize,
+    /// Most Newton iterations per equilibrium.
+    pub max_iterations: u32,
+    /// Refuse equilibria that are unstable or folded, and look for the true one.
+    pub stable: bool,
+    /// Tolerance of positions, relative to the reference length.
+    pub tolerance: f64,
+}
+
+impl Default for StaticsOptions {
+    fn default() -> Self {
+        StaticsOptions { steps: 10, max_iterations: 60, stable: true, tolerance: 1e-9 }
+    }
+}
+
+impl StaticsOptions {
+    /// What is wrong with the numbers, if anything.
+    pub fn check(&self) -> Result<(), BuildError> {
+        let refused = |name: &str, message: String| Err(BuildError::at(format!("statics.{name}"), message));
+        if self.steps == 0 || self.steps > 1_000_000 {
+            return refused("steps", format!("`steps` must be between 1 and 1000000, not {}", self.steps));
+        }
+        if self.max_iterations == 0 {
+            return refused("max_iterations", "`max_iterations` must be at least 1".into());
+        }
+        positive("tolerance", self.tolerance).map(drop).map_err(|e| e.of("statics.tolerance"))
+    }
+}
+
+/// How an equilibrium was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Found {
+    /// Newton iterations, each one factorisation and one solution.
+    pub iterations: u32,
+    /// Iterations in which the tangent was not positive and tension was given a floor.
+    pub floored: u32,
+    /// How often an unstable equilibrium was left by a push along its softest direction.
+    pub pushes: u32,
+    /// Whether the search was begun again from straight cables, because the first guess led to a fold.
+    pub straightened: bool,
+    /// Rate at which small disturbances grow, swinging to and fro [1/s]; 0 if they don't. Only asked where the first
+    /// tangent of a path is not symmetric, as in flowing water.
+    pub flutter: f64,
+    /// Largest residual force [N].
+    pub residual: f64,
+}
+
+impl Found {
+    /// Adds the work of another search; the residual is that of the later one.
+    pub fn add(&mut self, later: &Found) {
+        self.iterations += later.iterations;
+        self.floored += later.floored;
+        self.pushes += later.pushes;
+        self.straightened |= later.straightened;
+        self.flutter = self.flutter.max(later.flutter);
+        self.residual = later.residual;
+    }
+}
+
+/// Why no equilibrium was found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "no equilibrium was found at t = {t}: {why} (after {iterations} iterations, largest residual {residual:.2e} in \
+     {equation}). Try more load `steps`, a start closer to the solution, or a little bending stiffness"
+)]
+pub struct StaticsError {
+    /// Time, or load factor.
+    pub t: f64,
+    /// What went wrong.
+    pub why: String,
+    /// Iterations spent.
+    pub iterations: u32,
+    /// Largest residual [N].
+    pub residual: f64,
+    /// Where.
+    pub equation: String,
+}
+
+/// Searches equilibria of one model. Keeps its scratch between searches.
+pub struct Statics<'a> {
+    model: &'a Model,
+    options: StaticsOptions,
+    frame: Option<SteadyFrame>,
+    structure: Structure,
+    solver: Guard,
+    system: System,
+    damping: System,
+    mass: System,
+    v: Vec<f64>,
+    a: Vec<f64>,
+}
+
+impl<'a> Statics<'a> {
+    /// Prepares the search for equilibria at rest.
+    ///
+    /// # Errors
+    /// Not enough memory for the factors.
+    pub fn new(model: &'a Model, options: &StaticsOptions) -> Result<Self, SolveError> {
+        Self::relative(model, options, None)
+    }
+
+    /// Prepares the search for equilibria relative to a frame that moves steadily, such as a tow at constant speed or
+    /// in a steady turn: one solution instead of a long run. The frame's centre is a point in space at the time of
+    /// the search.
+    ///
+    /// # Errors
+    /// Not enough memory for the factors.
+    pub fn relative(
+        model: &'a Model,
+        options: &StaticsOptions,
+        frame: Option<SteadyFrame>,
+    ) -> Result<Self, SolveError> {
+        let turning = frame.is_some_and(|f| f.omega != [0.0; 3]);
+        let structure = if turning { model.unsymmetric_structure() } else { model.structure().clone() };
+        // the profile solver knows the signs of its pivots for unsymmetric matrices too
+        let chain: Box<dyn LinearSolver> = Box::new(Profile::default());
+        let solver = if Profile::size(&structure) < 20 * structure.entries() {
+            Guard::with(&structure, chain)?
+        } else {
+            Guard::new(&structure)?
+        };
+        let zero = vec![0.0; model.velocities()];
+        Ok(Statics {
+            model,
+            options: options.clone(),
+            frame,
+            structure,
+            solver,
+            system: System::default(),
+            damping: System::default(),
+            mass: System::default(),
+            v: zero.clone(),
+            a: zero,
+        })
+    }
+
+    /// Moves `state` to the equilibrium at its time. `cold` says that no equilibrium nearby is known: the first of a
+    /// path, or a guess.
+    ///
+    /// # Errors
+    /// None was found; the state is as it was.
+    pub fn find(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
+        let before = state.clone();
+        let mut first = self.search(state, cold, cold);
+        if first.is_err() && !cold {
+            // from a neighbouring equilibrium the bare iteration nearly always gets there, and faster
+            state.clone_from(&before);
+            first = self.search(state, false, true);
+        }
+        let suspicious = match &first {
+            Ok(_) => cold && self.options.stable && self.folded(state) < FOLD,
+            Err(_) => cold,
+        };
+        if !suspicious {
+            if first.is_err() {
+                *state = before;
+            }
+            return first;
+        }
+        // a guess can lead into a fold or nowhere; straight cables between their ends rarely do
+        let mut other = before.clone();
+        other.lambda.fill(0.0);
+        for part in self.model.parts() {
+            part.straighten(&mut other.q);
+        }
+        let second = self.search(&mut other, true, true);
+        match (first, second) {
+            (Ok(found), Ok(again)) => {
+                if self.folded(&other) > self.folded(state) {
+                    *state = other;
+                    Ok(Found { straightened: true, ..again })
+                } else {
+                    Ok(found)
+                }
+            }
+            (Err(_), Ok(again)) => {
+                *state = other;
+                Ok(Found { straightened: true, ..again })
+            }
+            (Ok(found), Err(_)) => Ok(found),
+            (Err(e), Err(_)) => {
+                *state = before;
+                Err(e)
+            }
+        }
+    }
+
+    /// Moves the state from one equilibrium to that at time `t`, in one step if that converges, else in as many
+    /// smaller ones as it needs. Returns the work of all of them.
+    ///
+    /// # Errors
+    /// The path could not be followed; the state is the last equilibrium that was found.
+    pub fn follow(&mut self, state: &mut State, t: f64) -> Result<Found, StaticsError> {
+        let (mut h, mut sum) = (t - state.t, Found::default());
+        let least = h.abs() / 256.0;
+        while state.t != t {
+            let from = state.t;
+            state.t = if (t - from).abs() <= 1.001 * h.abs() { t } else { from + h };
+            match self.find(state, false) {
+                Ok(found) => {
+                    sum.add(&found);
+                    h *= 2.0;
+                }
+                Err(e) => {
+                    state.t = from;
+                    h *= 0.5;
+                    if h.abs() < least {
+                        return Err(e);
+                    }
+                }
+            }
+        }
+        Ok(sum)
+    }
+}

@@ -1,0 +1,178 @@
+//! One linear system of the search: assembly, in a frame that may move, factorisation and solution.
+
+use super::Statics;
+use crate::lane::V3;
+use crate::node::NodeKind;
+use crate::solver::SolveError;
+use crate::state::{At, Relaxation, Relaxed, State};
+use crate::term::Weights;
+
+pub(super) struct Trial {
+    /// Correction of velocities (as increments) and multipliers.
+    pub d: Vec<f64>,
+    /// Whether there are more negative pivots than multipliers.
+    pub negative: bool,
+}
+
+impl Statics<'_> {
+    pub(super) fn newton(
+        &mut self,
+        state: &State,
+        q: &[f64],
+        lambda: &[f64],
+        last: Option<&[f64]>,
+        how: Relaxation,
+    ) -> Result<Trial, SolveError> {
+        self.solve_at(state, q, lambda, Some(Relaxed { last, how }))
+    }
+
+    /// Assembles, factors and solves once.
+    pub(super) fn solve_at(
+        &mut self,
+        state: &State,
+        q: &[f64],
+        lambda: &[f64],
+        relaxed: Option<Relaxed<'_>>,
+    ) -> Result<Trial, SolveError> {
+        self.assemble(state, q, lambda, relaxed, false);
+        self.brace();
+        self.solver.factor(&self.structure, &self.system.values)?;
+        let negative = self.solver.negative_pivots().is_none_or(|n| n != self.model.multipliers());
+        let s = &self.structure;
+        let mut x = vec![0.0; s.n];
+        for (i, &p) in s.position.iter().enumerate() {
+            x[p] = -self.system.residual[i];
+        }
+        self.solver.solve(s, &self.system.values, &mut x)?;
+        let d: Vec<f64> = s.position.iter().map(|&p| x[p]).collect();
+        Ok(Trial { d, negative })
+    }
+
+    /// Residual and stiffness as seen from the frame; with `motion` damping and mass as well.
+    pub(super) fn assemble(
+        &mut self,
+        state: &State,
+        q: &[f64],
+        lambda: &[f64],
+        relaxed: Option<Relaxed<'_>>,
+        motion: bool,
+    ) {
+        self.follow_frame(q);
+        let at = At { t: state.t, q, v: &self.v, a: &self.a, modes: &state.modes, relaxed };
+        let one = |q, v, a| Some(Weights { q, v, a });
+        self.model.assemble_in(&self.structure, &at, lambda, one(1.0, 0.0, 0.0), &mut self.system);
+        let omega = self.frame.map_or([0.0; 3], |f| f.omega);
+        if motion || omega != [0.0; 3] {
+            self.model.assemble_in(&self.structure, &at, lambda, one(0.0, 1.0, 0.0), &mut self.damping);
+            self.model.assemble_in(&self.structure, &at, lambda, one(0.0, 0.0, 1.0), &mut self.mass);
+        }
+        if omega != [0.0; 3] {
+            self.turn_columns(omega);
+        }
+    }
+
+    /// Adds `ρ GᵀG` to the stiffness and `ρ Gᵀ g` to the residual. The solution is the same, and no node is left
+    /// without stiffness before its constraint is reached in the elimination.
+    pub(super) fn brace(&mut self) {
+        if self.model.multipliers() == 0 {
+            return;
+        }
+        let s = &self.structure;
+        let nv = self.model.velocities();
+        let scale = (0..nv).map(|i| self.system.values[s.diagonal[i] as usize].abs()).fold(0.0, f64::max);
+        self.model.add_brace(s, scale.max(f64::MIN_POSITIVE), &mut self.system);
+    }
+
+    /// Velocities and accelerations of the frame at a configuration.
+    pub(super) fn follow_frame(&mut self, q: &[f64]) {
+        let Some(f) = self.frame else { return };
+        let cross = |a: V3<f64>, b: V3<f64>| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        for n in self.model.nodes() {
+            let x = &q[n.coords()];
+            let blocks = match n.kind {
+                NodeKind::Point | NodeKind::Frame => 1,
+                NodeKind::Slope => 2,
+                NodeKind::Scalars(_) => 0,
+            };
+            for b in 0..blocks {
+                let origin = if b == 0 { f.centre } else { [0.0; 3] };
+                let arm: V3<f64> = std::array::from_fn(|i| x[3 * b + i] - origin[i]);
+                let turn = cross(f.omega, arm);
+                let pull = cross(f.omega, turn);
+                for i in 0..3 {
+                    self.v[n.v + 3 * b + i] = turn[i] + if b == 0 { f.velocity[i] } else { 0.0 };
+                    self.a[n.v + 3 * b + i] = pull[i];
+                }
+            }
+            if n.kind == NodeKind::Frame {
+                // the spin of the body itself, in its own axes, is left to the bodies
+                self.v[n.v + 3..n.v + 6].fill(0.0);
+            }
+        }
+    }
+
+    /// Adds `C W + M W²` to the stiffness and `2 M W` to the damping, where `W` turns each three components of a node
+    /// by `ω ×`.
+    pub(super) fn turn_columns(&mut self, omega: V3<f64>) {
+        let [x, y, z] = omega;
+        let w = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+        let w2: [[f64; 3]; 3] =
+            std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| w[i][k] * w[k][j]).sum()));
+        let s = &self.structure;
+        for n in self.model.nodes() {
+            for block in 0..n.kind.velocities() / 3 {
+                let columns: [usize; 3] = std::array::from_fn(|i| s.position[n.v + 3 * block + i]);
+                let count = s.columns[columns[0] + 1] - s.columns[columns[0]];
+                for k in 0..count {
+                    let at = columns.map(|c| s.columns[c] + k);
+                    if s.is_multiplier[s.rows[at[0]]] {
+                        continue;
+                    }
+                    let (c, m) = (at.map(|p| self.damping.values[p]), at.map(|p| self.mass.values[p]));
+                    for j in 0..3 {
+                        self.system.values[at[j]] +=
+                            (0..3).map(|i| c[i] * w[i][j] + m[i] * w2[i][j]).sum::<f64>();
+                        self.damping.values[at[j]] += 2.0 * (0..3).map(|i| m[i] * w[i][j]).sum::<f64>();
+                    }
+                }
+            }
+        }
+    }
+
+    /// Size of the load: the residual with every stiff modulus switched off.
+    pub(super) fn load(&mut self, state: &State) -> f64 {
+        self.follow_frame(&state.q);
+        let how = Relaxation { ramp: 0.0, ramp_before: 0.0, ..Relaxation::default() };
+        let at = At {
+            t: state.t,
+            q: &state.q,
+            v: &self.v,
+            a: &self.a,
+            modes: &state.modes,
+            relaxed: Some(Relaxed { last: None, how }),
+        };
+        let none = vec![0.0; self.model.multipliers()];
+        self.model.assemble_in(&self.structure, &at, &none, None, &mut self.system);
+        let mut sum = 0.0;
+        for n in self.model.nodes().iter().filter(|n| n.kind.velocities() >= 3) {
+            let r = &self.system.residual[n.v..n.v + 3];
+            sum += r.iter().map(|x| x * x).sum::<f64>().sqrt();
+        }
+        sum
+    }
+
+    /// Whether the cap on stiffness still changes the forces.
+    pub(super) fn ramp_binds(&mut self, state: &State, q: &[f64], lambda: &[f64], how: Relaxation) -> bool {
+        self.follow_frame(q);
+        // both by the same path through the elements, so that equal means equal to the last bit
+        let mut at = At { t: state.t, q, v: &self.v, a: &self.a, modes: &state.modes, relaxed: None };
+        at.relaxed = Some(Relaxed { last: None, how: Relaxation { ramp: f64::INFINITY, ..how } });
+        self.model.assemble_in(&self.structure, &at, lambda, None, &mut self.system);
+        let free = self.system.residual.clone();
+        at.relaxed = Some(Relaxed { last: None, how });
+        self.model.assemble_in(&self.structure, &at, lambda, None, &mut self.system);
+        free != self.system.residual
+    }
+}
