@@ -40,3 +40,8 @@ pub use ropewalk_core::{
 pub use ropewalk_models::{Bundled, bundled};
 pub use run::{Manifest, Outcome, RunOptions, run};
 pub use simulate::{History, simulate};
+
+/// The program of the README must compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -6,6 +6,7 @@ use common::{data, hose, number, place, size, towed};
 use ropewalk_constraints::DrivingSpec;
 use ropewalk_constraints::motion::{CircleSpec, StraightSpec, Towards};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
+use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Scene, Simulation};
 use ropewalk_elements::Section;
 use ropewalk_forces::DragLaw;
@@ -40,7 +41,7 @@ fn steady(scene: &Scene, duration: f64, tolerance: f64) -> ([f64; 3], f64, u64) 
 #[test]
 fn straight_run_settles_at_the_reference() {
     for c in data("tow_straight.json")["free_end"].as_array().expect("cases") {
-        // with little drag along it, the limp hose flutters: its tension is below `m U²` (theory: docs/towing.md).
+        // with little drag along it, the limp hose flutters: its tension is below `m U²`.
         // It is straight in the end, so that bending stiffness changes nothing but the way there
         let ei = if c["model"] == "choo" { 20.0 } else { 0.1 };
         let mut scene = towed([0.0; 3], [-30.0, 0.0, 0.0], 20, limp(1e8, ei), law(&c["model"]));
@@ -89,8 +90,9 @@ fn turn_settles_at_the_reference() {
 
 #[test]
 fn error_control_keeps_its_promise_when_a_tow_starts() {
+    // from hanging at rest: no shock but that of the ship
     let points = |stepping: Stepping| {
-        let mut scene = towed([0.0; 3], [-29.0, 0.0, -7.0], 20, hose(1e6, 2.0), DragLaw::Constant);
+        let mut scene = towed([0.0; 3], [0.0, 0.0, -30.0], 10, hose(1e6, 2.0), DragLaw::Constant);
         scene.motion(StraightSpec {
             name: "course".into(),
             speed: 15.0 * 1852.0 / 3600.0,
@@ -100,25 +102,30 @@ fn error_control_keeps_its_promise_when_a_tow_starts() {
         });
         scene.constraint(DrivingSpec::new("ship", "hose.start", "course"));
         let options = Options { stepping, ..Options::default() };
-        let mut s = Simulation::new(scene.build().expect("model"), &options, 8.0).expect("start");
+        let model = scene.build().expect("model");
+        let mut state = model.state();
+        let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
+        statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
+        drop(statics);
+        let mut s = Simulation::from(model, state, &options, 8.0).expect("start");
         s.keep_audit(false);
         let mut all = Vec::new();
         for k in 1..=16 {
             s.advance(0.5 * f64::from(k), f64::INFINITY, &mut ()).unwrap_or_else(|e| panic!("{e}"));
-            all.extend((1..=20).map(|j| place(&s.model, &s.state, "hose", 1.5 * f64::from(j))));
+            all.extend((1..=10).map(|j| place(&s.model, &s.state, "hose", 3.0 * f64::from(j))));
         }
         (all, s.work.counts)
     };
-    let exact = points(Stepping::Controlled { tolerance: 3e-8 }).0;
+    let exact = points(Stepping::Controlled { tolerance: 1e-7 }).0;
     for tolerance in [1e-3, 1e-4, 1e-5, 1e-6] {
         let (got, counts) = points(Stepping::Controlled { tolerance });
         // the mean over the hose, as the tolerance is meant; the worst instant
         let error = got
-            .chunks(20)
-            .zip(exact.chunks(20))
+            .chunks(10)
+            .zip(exact.chunks(10))
             .map(|(a, b)| {
                 let square = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>();
-                (a.iter().zip(b).map(square).sum::<f64>() / 20.0).sqrt()
+                (a.iter().zip(b).map(square).sum::<f64>() / 10.0).sqrt()
             })
             .fold(0.0f64, |m, e| if e.is_nan() { f64::INFINITY } else { m.max(e) });
         let ratio = error / 30.0 / tolerance;
