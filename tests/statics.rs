@@ -368,13 +368,15 @@ fn what_stiffness_changes_in_a_steady_turn() {
         scene.constraint(SphericalSpec::pin("tow", "hose.start"));
         let model = scene.build().expect("model");
         let frame = SteadyFrame { omega: [0.0, 0.0, number(&c["Omega"])], ..SteadyFrame::default() };
-        let mut statics = Statics::relative(&model, &StaticsOptions::default(), Some(frame)).expect("statics");
+        let mut statics =
+            Statics::relative(&model, &StaticsOptions::default(), Some(frame)).expect("statics");
         let mut state = model.state();
         statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
         place(&model, &state, "hose", 30.0)[2]
     };
     let limp = height(1e9, 1e-6);
-    let (stretches, bends, both) = (height(1e6, 1e-6) - limp, height(1e9, 2.0) - limp, height(1e6, 2.0) - limp);
+    let (stretches, bends, both) =
+        (height(1e6, 1e-6) - limp, height(1e9, 2.0) - limp, height(1e6, 2.0) - limp);
     println!("25 kn: EA {stretches:.2e} m, EI {bends:.2e} m, both {both:.2e} m of {limp:.4} m");
     assert!((limp - exact).abs() < 1e-3);
     assert!((both - stretches - bends).abs() < 0.2 * both.abs(), "{both:e} {stretches:e} {bends:e}");

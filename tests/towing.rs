@@ -124,7 +124,8 @@ fn error_control_keeps_its_promise_when_a_tow_starts() {
             .chunks(10)
             .zip(exact.chunks(10))
             .map(|(a, b)| {
-                let square = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>();
+                let square =
+                    |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>();
                 (a.iter().zip(b).map(square).sum::<f64>() / 10.0).sqrt()
             })
             .fold(0.0f64, |m, e| if e.is_nan() { f64::INFINITY } else { m.max(e) });

@@ -1,7 +1,7 @@
 //! Prescribed functions of time: what ships, vehicles and winches do.
 
-use serde::{Deserialize, Serialize};
 use crate::lane::V3;
+use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 
 /// A displacement and its first two time derivatives.

@@ -135,7 +135,8 @@ impl Run {
             crate::build::finite("frame", &[f.velocity, f.omega, f.centre].concat())
                 .map_err(|e| e.of("run.frame"))?;
             if self.analysis != Analysis::Statics {
-                let message = "`frame` belongs to `analysis = \"statics\"`; a run in time has motions instead";
+                let message =
+                    "`frame` belongs to `analysis = \"statics\"`; a run in time has motions instead";
                 return Err(BuildError::at("run.frame", message));
             }
         }

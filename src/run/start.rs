@@ -50,7 +50,13 @@ impl Started {
             state.v.fill(0.0);
             let audit = Audit::start(model.energy(&state.at()));
             let counts = Counts::default();
-            return Ok(Started::Statics(Box::new(Done { model: Arc::new(model), state, audit, counts, flutter: 0.0 })));
+            return Ok(Started::Statics(Box::new(Done {
+                model: Arc::new(model),
+                state,
+                audit,
+                counts,
+                flutter: 0.0,
+            })));
         }
         // an unsuitable scheme should not have to wait for the equilibrium
         ropewalk_core::integrator::Alpha::new(&scene.solver, &model, run.duration)?;

@@ -10,7 +10,12 @@ use crate::state::{Relaxation, State};
 pub(super) const FOLD: f64 = 0.5;
 
 impl Statics<'_> {
-    pub(super) fn search(&mut self, state: &mut State, cold: bool, mut careful: bool) -> Result<Found, StaticsError> {
+    pub(super) fn search(
+        &mut self,
+        state: &mut State,
+        cold: bool,
+        mut careful: bool,
+    ) -> Result<Found, StaticsError> {
         let (model, nv) = (self.model, self.model.velocities());
         let length = model.length();
         let load = self.load(state);

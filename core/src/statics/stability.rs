@@ -76,8 +76,8 @@ impl Statics<'_> {
         for column in 0..n {
             for p in self.structure.columns[column]..self.structure.columns[column + 1] {
                 let (k, d, m) = (self.system.values[p], self.damping.values[p], self.mass.values[p]);
-                let constrains =
-                    self.structure.is_multiplier[column] || self.structure.is_multiplier[self.structure.rows[p]];
+                let constrains = self.structure.is_multiplier[column]
+                    || self.structure.is_multiplier[self.structure.rows[p]];
                 values[p] = if constrains { k } else { c.beta * h * h * k + c.gamma * h * d + c.mass() * m };
             }
         }
@@ -85,7 +85,8 @@ impl Statics<'_> {
         solver.factor(&self.structure, &values)?;
 
         // a disturbance that holds everything, and respects the constraints
-        let mut v: Vec<f64> = (0..n).map(|p| if self.structure.is_multiplier[p] { 0.0 } else { noise(p) }).collect();
+        let mut v: Vec<f64> =
+            (0..n).map(|p| if self.structure.is_multiplier[p] { 0.0 } else { noise(p) }).collect();
         let mut y = vec![0.0; n];
         self.structure.multiply(&self.mass.values, &v, &mut y);
         zero_rows(&self.structure, &mut y);
