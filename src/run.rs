@@ -102,7 +102,7 @@ pub fn run(file: &SceneFile, options: &RunOptions, warn: &mut dyn FnMut(&str)) -
             }
             let clock = std::time::Instant::now();
             let ending = started.go(scene, &mut recorder);
-            started.flutter().iter().for_each(|w| warn(w));
+            started.afterthought().iter().for_each(|w| warn(w));
             if options.profile {
                 profile = Some(shares(started.times(), clock.elapsed().as_secs_f64()));
             }

@@ -50,7 +50,7 @@ pub fn simulate(scene: &Scene) -> Result<History, Error> {
     let mut started = Started::new(scene, model)?;
     let mut warnings = started.warnings(scene);
     let ending = started.go(scene, &mut recorder);
-    warnings.extend(started.flutter());
+    warnings.extend(started.afterthought());
     let stopped_by = match ending {
         Ending::Finished => None,
         Ending::Stopped(by) => Some(by),

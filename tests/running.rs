@@ -4,7 +4,7 @@ mod common;
 
 use common::{models, pendulum, place, size};
 use ropewalk_constraints::SphericalSpec;
-use ropewalk_core::integrator::{Options, StepError, StepReport, Stepping};
+use ropewalk_core::integrator::{Options, Scheme, StepError, StepReport, Stepping};
 use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Scene, Simulation, State, Water};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{DragSpec, GravitySpec, SpringSpec};
@@ -224,6 +224,24 @@ fn motion_does_not_depend_on_units() {
     let (metres, millimetres) = (run(1.0, 1.0), run(1000.0, 1000.0));
     let off: [f64; 3] = std::array::from_fn(|i| metres.0[i] - millimetres.0[i]);
     assert!(size(off) < 1e-6, "{off:?}, {} and {} steps", metres.1, millimetres.1);
+}
+
+#[test]
+fn schemes_that_ring_are_refused_or_say_how_much() {
+    let scheme = Scheme::AverageAcceleration;
+    let refused = Simulation::new(swinging().build().expect("model"), &Options { scheme, ..fixed(1e-3) }, 1.0);
+    assert!(refused.err().expect("refused").to_string().contains("allow_unstable"));
+    let mut ringing = Vec::new();
+    for scheme in [scheme, Scheme::Newmark { beta: 0.24, gamma: 0.5 }] {
+        let options = Options { scheme, allow_unstable: true, ..fixed(1e-3) };
+        let mut s = Simulation::new(swinging().build().expect("model"), &options, 1.0).expect("start");
+        assert!(s.integrator.warning.is_some());
+        // the second one blows up, which may end the run
+        let _ = s.advance(0.05, f64::INFINITY, &mut ());
+        ringing.push(s.ringing);
+    }
+    println!("ringing {ringing:?}");
+    assert!(ringing[0] > 0.0 && ringing[1] > ringing[0], "{ringing:?}");
 }
 
 /// Counts allocations of every step but the first ones.

@@ -86,6 +86,10 @@ pub struct Simulation {
     pub correction: Correction,
     /// The balance of energy.
     pub audit: Audit,
+    /// How far the multipliers swung to and fro from step to step, in parts of their size: the largest so far. Only
+    /// measured with a scheme that had to be allowed.
+    pub ringing: f64,
+    change: Vec<f64>,
     keep_audit: bool,
     power: Power,
     events: Vec<(Box<dyn Event>, f64)>,
@@ -125,6 +129,8 @@ impl Simulation {
             integrator,
             correction,
             audit,
+            ringing: 0.0,
+            change: Vec::new(),
             keep_audit: true,
             power,
             events: Vec::new(),
@@ -173,6 +179,7 @@ impl Simulation {
             }
             let fired = self.locate();
             self.account();
+            self.measure_ringing();
             if observer.step(&self.model, &self.state, &report).is_break() {
                 return Ok(End::Stopped { by: "interrupt".into() });
             }
@@ -204,6 +211,26 @@ impl Simulation {
             let h = self.state.t - self.previous.t;
             self.audit.add(h, self.model.energy(&self.state.at()), self.power, power);
             self.power = power;
+        }
+    }
+
+    /// Measures by how much the last two changes of the multipliers undid each other.
+    fn measure_ringing(&mut self) {
+        if self.integrator.warning.is_none() {
+            return;
+        }
+        self.change.resize(self.state.lambda.len(), 0.0);
+        let (mut undone, mut size) = (0.0f64, 0.0f64);
+        for ((c, new), old) in self.change.iter_mut().zip(&self.state.lambda).zip(&self.previous.lambda) {
+            let change = new - old;
+            if change * *c < 0.0 {
+                undone = undone.max(change.abs().min(c.abs()));
+            }
+            size = size.max(new.abs());
+            *c = change;
+        }
+        if size > 0.0 {
+            self.ringing = self.ringing.max(0.5 * undone / size);
         }
     }
 

@@ -91,8 +91,16 @@ impl Started {
         all
     }
 
-    /// What one should know about the equilibria, once they have been found.
-    pub(crate) fn flutter(&self) -> Option<String> {
+    /// What only the run could tell: equilibria that aren't stable, multipliers that ring.
+    pub(crate) fn afterthought(&self) -> Option<String> {
+        if let Started::Dynamics(s, _) = self
+            && s.ringing > 0.0
+        {
+            return Some(format!(
+                "the multipliers rang: from step to step they swung by up to {:.1e} of their size",
+                s.ringing
+            ));
+        }
         let rate = match self {
             Started::Dynamics(_, flutter) => *flutter,
             Started::Statics(done) => done.flutter,
