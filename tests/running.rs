@@ -229,7 +229,8 @@ fn motion_does_not_depend_on_units() {
 #[test]
 fn schemes_that_ring_are_refused_or_say_how_much() {
     let scheme = Scheme::AverageAcceleration;
-    let refused = Simulation::new(swinging().build().expect("model"), &Options { scheme, ..fixed(1e-3) }, 1.0);
+    let refused =
+        Simulation::new(swinging().build().expect("model"), &Options { scheme, ..fixed(1e-3) }, 1.0);
     assert!(refused.err().expect("refused").to_string().contains("allow_unstable"));
     let mut ringing = Vec::new();
     for scheme in [scheme, Scheme::Newmark { beta: 0.24, gamma: 0.5 }] {

@@ -124,8 +124,9 @@ impl Started {
     /// The measured times.
     pub(crate) fn times(&self) -> Vec<ProfileEntry> {
         let Started::Dynamics(s, _) = self else { return Vec::new() };
-        let labels = s.model.terms().iter().map(|t| t.label()).chain(["constraints".to_string()]);
-        let times = s.work.system.profile.iter().flatten();
+        let phases = ["constraints", "factorisation", "solution and its check"].map(String::from);
+        let labels = s.model.terms().iter().map(|t| t.label()).chain(phases);
+        let times = s.work.system.profile.iter().flatten().chain(s.work.phases.iter().flatten());
         let entry = |(label, &(calls, time)): (String, &(u64, std::time::Duration))| ProfileEntry {
             label,
             calls,

@@ -4,6 +4,7 @@ use crate::model::{Model, System};
 use crate::solver::{Guard, SolveError};
 use crate::state::At;
 use crate::term::Weights;
+use std::time::{Duration, Instant};
 
 /// What a run did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -41,6 +42,8 @@ pub struct Workspace {
     pub(crate) y: Vec<f64>,
     /// Counters.
     pub counts: Counts,
+    /// Calls and time of factorisations and of solutions; only filled where profiling was asked for.
+    pub phases: Option<[(u64, Duration); 2]>,
     pub(crate) trial: Trial,
 }
 
@@ -75,6 +78,7 @@ impl Workspace {
             x: vec![0.0; s.n],
             y: vec![0.0; s.n],
             counts: Counts::default(),
+            phases: None,
             trial: Trial {
                 q: model.start.q.clone(),
                 v: zero(),
@@ -98,12 +102,24 @@ impl Workspace {
     /// Records the time of each term from now on.
     pub fn profile(&mut self) {
         self.system.profile = Some(Vec::new());
+        self.phases = Some(Default::default());
+    }
+
+    fn clock(&self) -> Option<Instant> {
+        self.phases.map(|_| Instant::now())
+    }
+
+    fn count(&mut self, phase: usize, begin: Option<Instant>) {
+        if let (Some(phases), Some(begin)) = (&mut self.phases, begin) {
+            phases[phase].0 += 1;
+            phases[phase].1 += begin.elapsed();
+        }
     }
 
     /// Brings a right-hand side (velocities, then multipliers) into elimination order, solves, and brings the
     /// solution back.
     pub(crate) fn solve(&mut self, model: &Model, which: Which, rhs: &mut [f64]) -> Result<(), SolveError> {
-        let s = model.structure();
+        let (s, begin) = (model.structure(), self.clock());
         for (i, &p) in s.position.iter().enumerate() {
             self.x[p] = rhs[i];
         }
@@ -111,6 +127,7 @@ impl Workspace {
             Which::Iteration => self.solver.solve(s, &self.system.values, &mut self.x)?,
             Which::Mass => self.mass_solver.solve(s, &self.mass.values, &mut self.x)?,
         }
+        self.count(1, begin);
         for (i, &p) in s.position.iter().enumerate() {
             rhs[i] = self.x[p];
         }
@@ -120,7 +137,9 @@ impl Workspace {
     /// Factors the assembled iteration matrix.
     pub(crate) fn factor(&mut self, model: &Model, weights: Weights) -> Result<(), SolveError> {
         self.factored = None;
+        let begin = self.clock();
         self.solver.factor(model.structure(), &self.system.values)?;
+        self.count(0, begin);
         self.factored = Some(weights);
         self.counts.jacobians += 1;
         self.counts.factorizations += 1;
