@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{cantilever, data, hose, linear, models, number, place, reaction, size, towed};
+use common::{cantilever, data, hose, law, linear, models, number, place, reaction, size, towed};
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::statics::{Found, Statics, StaticsOptions};
 use ropewalk_core::{Level, Model, Scene, State, SteadyFrame, Water};
@@ -307,8 +307,20 @@ fn a_cable_that_stands_on_its_end_is_no_equilibrium() {
     }
 }
 
-fn law(name: &serde_json::Value) -> DragLaw {
-    if name == "choo" { DragLaw::ChooCasarella } else { DragLaw::Constant }
+#[test]
+fn without_load_there_is_nothing_to_find_and_nothing_unstable() {
+    // drag makes the tangent unsymmetric; neither weight nor current gives a characteristic time
+    let section = Section { diameter: 0.02, ..Section::new(0.6, 1e5, 1.0) };
+    let mut scene = Scene::new();
+    scene.water = Some(Water::default());
+    scene
+        .element(CableSpec::straight("cable", [0.0; 3], [0.0, 0.0, 10.0], 12, section))
+        .constraint(SphericalSpec::pin("pin", "cable.start"))
+        .constraint(SphericalSpec::pin("other", "cable.end"))
+        .force(DragSpec::default());
+    let (model, state, found) = equilibrium(&scene);
+    assert_eq!(found.flutter, 0.0);
+    assert!((place(&model, &state, "cable", 5.0)[2] - 5.0).abs() < 1e-9);
 }
 
 #[test]

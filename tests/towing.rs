@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{data, hose, number, place, size, towed};
+use common::{data, hose, law, number, place, size, towed};
 use ropewalk_constraints::DrivingSpec;
 use ropewalk_constraints::motion::{CircleSpec, StraightSpec, Towards};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
@@ -10,10 +10,6 @@ use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Scene, Simulation};
 use ropewalk_elements::Section;
 use ropewalk_forces::DragLaw;
-
-fn law(name: &serde_json::Value) -> DragLaw {
-    if name == "choo" { DragLaw::ChooCasarella } else { DragLaw::Constant }
-}
 
 /// Nearly inextensible and limp, with a little damping against axial ringing.
 fn limp(ea: f64, ei: f64) -> Section {

@@ -88,6 +88,9 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> AnyPool for Pool<E, Q, N>
     }
 }
 
+/// A part with its number in the scene.
+pub type Numbered = (usize, Arc<dyn Part>);
+
 /// Collects nodes, terms, constraints and parts, and makes a [`Model`] of them.
 #[derive(Default)]
 pub struct Builder {
@@ -215,8 +218,7 @@ impl Builder {
     }
 
     /// The parts so far, or those of these names, each with its number.
-    #[allow(clippy::type_complexity)]
-    pub fn parts(&self, names: &[String]) -> Result<Vec<(usize, Arc<dyn Part>)>, BuildError> {
+    pub fn parts(&self, names: &[String]) -> Result<Vec<Numbered>, BuildError> {
         if names.is_empty() {
             return Ok(self.parts.iter().cloned().enumerate().collect());
         }

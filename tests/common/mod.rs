@@ -107,6 +107,11 @@ pub fn hose(ea: f64, ei: f64) -> Section {
     }
 }
 
+/// The drag law of a towing reference.
+pub fn law(name: &Value) -> DragLaw {
+    if name == "choo" { DragLaw::ChooCasarella } else { DragLaw::Constant }
+}
+
 /// A hose in water, laid straight between two points and pinned at its start.
 pub fn towed(from: [f64; 3], to: [f64; 3], n: usize, section: Section, law: DragLaw) -> Scene {
     let mut scene = Scene::new();

@@ -24,6 +24,8 @@ const STEPS: usize = 800;
 const PER_TIME: f64 = 20.0;
 /// Growth over the second half of the steps from which on the equilibrium is unstable.
 const GROWTH: f64 = 3.0;
+/// How often the steps are made smaller to resolve a fast growth.
+const REFINEMENTS: u32 = 12;
 
 impl Statics<'_> {
     /// Follows a small disturbance of the equilibrium in `state` for a few tens of its characteristic time
@@ -35,7 +37,12 @@ impl Statics<'_> {
     /// The matrices can't be factored.
     pub fn disturb(&mut self, state: &State) -> Result<Disturbance, SolveError> {
         let model = self.model;
-        let load = self.load(state).max(f64::MIN_POSITIVE);
+        let load = self.load(state);
+        if load <= f64::MIN_POSITIVE {
+            // nothing pulls, so nothing can tip over; there is no characteristic time either
+            let shape = vec![0.0; model.velocities()];
+            return Ok(Disturbance { rate: 0.0, one_way: false, shape, unstable: false });
+        }
         self.assemble(state, &state.q, &state.lambda, None, true);
         let n = self.structure.n;
         let order = |d: &[f64], x: &mut Vec<f64>, s: &crate::pattern::Structure| {
@@ -57,14 +64,16 @@ impl Statics<'_> {
         };
         let time = (mass * model.length() / load).sqrt();
         let mut h = time / PER_TIME;
-        loop {
-            let found = self.integrate(h, time)?;
+        let mut found = self.integrate(h, time)?;
+        for _ in 0..REFINEMENTS {
             // a growth that the steps don't resolve changes sign at each of them
             if !found.unstable || found.one_way || found.rate * h < 0.3 {
-                return Ok(found);
+                break;
             }
             h *= 0.25;
+            found = self.integrate(h, time)?;
         }
+        Ok(found)
     }
 
     /// Integrates with `STEPS` steps of `h`; `time` weighs velocities against positions.
