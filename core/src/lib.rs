@@ -46,7 +46,7 @@ pub use pool::{Batch, Element, Local, Pool, Share};
 pub use record::{Audit, Column, Record, Sample};
 pub use scene::{Analysis, Level, Plan, Run, Scene, SceneError, Water};
 pub use simulation::{Action, End, Event, Observer, Simulation};
-pub use solver::{Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, SolveError};
+pub use solver::{Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
 };

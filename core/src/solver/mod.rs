@@ -5,11 +5,13 @@ mod dense;
 mod ldlt;
 mod lu;
 mod profile;
+mod scalar;
 
 pub use dense::Dense;
 pub use ldlt::Ldlt;
 pub use lu::Lu;
 pub use profile::Profile;
+pub use scalar::Scalar;
 
 use crate::pattern::{Structure, consecutive};
 
@@ -31,15 +33,15 @@ pub enum SolveError {
 ///
 /// `analyse` fixes everything that depends on the structure alone; `factor` and `solve` don't allocate after their
 /// first call. Vectors are in elimination order.
-pub trait LinearSolver: Send {
+pub trait LinearSolver<T: Scalar = f64>: Send {
     /// Name in manifests.
     fn name(&self) -> &'static str;
     /// Prepares for a structure.
     fn analyse(&mut self, s: &Structure) -> Result<(), SolveError>;
     /// Factors the matrix with these values, in the order of `Structure::rows`.
-    fn factor(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError>;
+    fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError>;
     /// Replaces `x`, holding the right-hand side, by the solution.
-    fn solve(&mut self, x: &mut [f64]);
+    fn solve(&mut self, x: &mut [T]);
     /// Number of negative pivots, for solvers that know: by Sylvester's law the number of negative eigenvalues of a
     /// symmetric matrix.
     fn negative_pivots(&self) -> Option<usize> {

@@ -4,12 +4,12 @@
 //! multiples of rows: short loops over neighbours, no index lists. The order of [`Structure`] keeps it stable
 //! (multipliers follow their nodes); the [`Guard`](super::Guard) checks.
 
-use super::{LinearSolver, SolveError};
+use super::{LinearSolver, Scalar, SolveError};
 use crate::pattern::Structure;
 
 /// LU without pivoting for structurally symmetric matrices with a small profile.
 #[derive(Default)]
-pub struct Profile {
+pub struct Profile<T = f64> {
     /// First column of each row of `L`.
     first: Vec<usize>,
     /// One past the last column of each row of `U`; ascends, so that rows below hold what rows above leave in them.
@@ -17,9 +17,9 @@ pub struct Profile {
     /// Where each row starts in `rows`.
     start: Vec<usize>,
     /// `L` without its unit diagonal, and `U`, row by row.
-    rows: Vec<f64>,
+    rows: Vec<T>,
     /// Reciprocal pivots.
-    inverse: Vec<f64>,
+    inverse: Vec<T>,
     /// For each stored entry of the matrix, where it goes in `rows`; of a symmetric one, its mirror image too.
     slots: Vec<[u32; 2]>,
     negative: usize,
@@ -55,7 +55,7 @@ impl Profile {
     }
 }
 
-impl LinearSolver for Profile {
+impl<T: Scalar> LinearSolver<T> for Profile<T> {
     fn name(&self) -> &'static str {
         "LU along the chain"
     }
@@ -72,8 +72,8 @@ impl LinearSolver for Profile {
         if u32::try_from(total).is_err() {
             return Err(SolveError::Memory);
         }
-        self.rows = vec![0.0; total];
-        self.inverse = vec![0.0; s.n];
+        self.rows = vec![T::default(); total];
+        self.inverse = vec![T::default(); s.n];
         let slot = |r: usize, c: usize| (self.start[r] + c - self.first[r]) as u32;
         self.slots = Vec::with_capacity(s.entries());
         for c in 0..s.n {
@@ -84,8 +84,8 @@ impl LinearSolver for Profile {
         Ok(())
     }
 
-    fn factor(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError> {
-        self.rows.fill(0.0);
+    fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
+        self.rows.fill(T::default());
         for (&[a, b], &v) in self.slots.iter().zip(values) {
             self.rows[a as usize] = v;
             self.rows[b as usize] = v;
@@ -97,7 +97,7 @@ impl LinearSolver for Profile {
             let row = &mut below[..self.end[i] - f];
             for j in f..i {
                 let l = row[j - f];
-                if l == 0.0 {
+                if l == T::default() {
                     continue;
                 }
                 let l = l * self.inverse[j];
@@ -105,30 +105,30 @@ impl LinearSolver for Profile {
                 let upper = &above
                     [self.start[j] + j + 1 - self.first[j]..self.start[j] + self.end[j] - self.first[j]];
                 for (x, u) in row[j + 1 - f..].iter_mut().zip(upper) {
-                    *x -= l * u;
+                    *x -= l * *u;
                 }
             }
             let pivot = row[i - f];
-            if pivot == 0.0 || !pivot.is_finite() {
+            if pivot == T::default() || !Scalar::is_finite(pivot) {
                 return Err(SolveError::Singular(i));
             }
-            self.negative += usize::from(pivot < 0.0);
-            self.inverse[i] = 1.0 / pivot;
+            self.negative += usize::from(pivot.real() < 0.0);
+            self.inverse[i] = pivot.inverse();
         }
         Ok(())
     }
 
-    fn solve(&mut self, x: &mut [f64]) {
+    fn solve(&mut self, x: &mut [T]) {
         for i in 0..x.len() {
             let (f, start) = (self.first[i], self.start[i]);
-            let sum: f64 = self.rows[start..start + i - f].iter().zip(&x[f..i]).map(|(l, x)| l * x).sum();
+            let sum: T = self.rows[start..start + i - f].iter().zip(&x[f..i]).map(|(l, x)| *l * *x).sum();
             x[i] -= sum;
         }
         for i in (0..x.len()).rev() {
             let (diagonal, end) =
                 (self.start[i] + i - self.first[i], self.start[i] + self.end[i] - self.first[i]);
             let upper = &self.rows[diagonal + 1..end];
-            let sum: f64 = upper.iter().zip(&x[i + 1..]).map(|(u, x)| u * x).sum();
+            let sum: T = upper.iter().zip(&x[i + 1..]).map(|(u, x)| *u * *x).sum();
             x[i] = (x[i] - sum) * self.inverse[i];
         }
     }

@@ -1,6 +1,7 @@
 use super::*;
 use crate::node::{Node, NodeId, NodeKind};
 use crate::pattern::{Pattern, Rows};
+use faer::c64;
 
 struct Rng(u64);
 impl Rng {
@@ -84,6 +85,35 @@ fn sparse_solvers_agree_with_the_dense_oracle() {
                     assert_eq!(negative, 6, "one negative pivot for each constraint row: {}", guard.name());
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn complex_elimination_agrees_with_the_real_system_of_twice_the_size() {
+    for symmetric in [true, false] {
+        let (s, re) = chain(5, 1.0, symmetric);
+        let im: Vec<f64> = re.iter().enumerate().map(|(k, v)| 0.3 * v * (k as f64).cos()).collect();
+        let values: Vec<c64> = re.iter().zip(&im).map(|(&re, &im)| c64 { re, im }).collect();
+        let mut profile = Profile::default();
+        profile.analyse(&s).unwrap();
+        profile.factor(&s, &values).unwrap();
+        let mut x: Vec<c64> =
+            (0..s.n).map(|i| c64 { re: 1.0 + (i % 7) as f64, im: (i % 3) as f64 }).collect();
+        let b = x.clone();
+        profile.solve(&mut x);
+        // (A + iB)(x + iy) by the real product
+        let part = |f: fn(&c64) -> f64| x.iter().map(f).collect::<Vec<f64>>();
+        let (xr, xi) = (part(|z| z.re), part(|z| z.im));
+        let product = |a: &[f64], x: &[f64]| {
+            let mut y = vec![0.0; s.n];
+            s.multiply(a, x, &mut y);
+            y
+        };
+        let (rr, ii, ri, ir) = (product(&re, &xr), product(&im, &xi), product(&re, &xi), product(&im, &xr));
+        for i in 0..s.n {
+            approx::assert_relative_eq!(rr[i] - ii[i], b[i].re, epsilon = 1e-9);
+            approx::assert_relative_eq!(ri[i] + ir[i], b[i].im, epsilon = 1e-9);
         }
     }
 }
