@@ -15,6 +15,7 @@ mod marker;
 mod model;
 mod motion;
 mod node;
+mod order;
 mod part;
 mod pattern;
 mod pool;
@@ -28,6 +29,7 @@ mod spec;
 mod state;
 pub mod statics;
 mod station;
+mod structure;
 mod term;
 pub mod testing;
 
@@ -41,17 +43,18 @@ pub use model::{Model, Start, System};
 pub use motion::{Motion, Moving, SteadyFrame};
 pub use node::{Node, NodeId, NodeKind, difference, retract};
 pub use part::{Part, Per, Quantity, Spot, split_marker};
-pub use pattern::{Pattern, Structure};
+pub use pattern::Pattern;
 pub use pool::{Batch, Element, Local, Pool, Share};
 pub use record::{Audit, Column, Record, Sample};
 pub use scene::{Analysis, Level, Plan, Run, Scene, SceneError, Water};
 pub use simulation::{Action, End, Event, Observer, Simulation};
-pub use solver::{Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
+pub use solver::{Chain, Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
 };
 pub use state::{At, Control, Relaxation, Relaxed, State};
 pub use station::{FieldTerm, Law, Laws, Load, Station, StationElement, StationPool, Stations};
+pub use structure::{Block, Columns, Structure};
 pub use term::{Assembly, Energy, Power, Term, Weights};
 
 #[doc(hidden)]

@@ -2,10 +2,12 @@
 
 use crate::constraint::{Constraint, MOST_ROWS, RowKind};
 use crate::lane::Width;
-use crate::node::{Node, NodeId};
+use crate::node::{Node, NodeId, NodeKind, retract};
 use crate::part::Part;
-use crate::pattern::{Pattern, Rows, Structure};
+use crate::order::Rows;
+use crate::pattern::Pattern;
 use crate::state::{At, Control, State};
+use crate::structure::Structure;
 use crate::term::{Assembly, Energy, Power, Term, Weights};
 use std::ops::Range;
 use std::sync::Arc;
@@ -28,6 +30,8 @@ pub struct Model {
     cliques: Vec<Range<usize>>,
     length: f64,
     width: Width,
+    /// Whether no node has an orientation, so that `q ⊕ d` is `q + d`.
+    flat: bool,
 }
 
 /// Where a run starts: configuration and velocities as the scene gives them.
@@ -46,7 +50,7 @@ pub struct Start {
 pub struct System {
     /// Residual: the equations of motion, then those of the constraints.
     pub residual: Vec<f64>,
-    /// Values of the matrix, in the order of [`Structure::rows`].
+    /// Values of the matrix, where [`Structure::rows`] says.
     pub values: Vec<f64>,
     jacobian: Vec<f64>,
     hessian: Vec<f64>,
@@ -84,6 +88,7 @@ impl Model {
             touched.push(Rows { count, nodes: c.nodes().to_vec() });
         }
         let symmetric = terms.iter().all(|t| t.symmetric());
+        let flat = nodes.iter().all(|n| n.kind != NodeKind::Frame);
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
         Model {
             nodes,
@@ -99,6 +104,7 @@ impl Model {
             cliques,
             length,
             width: Width::best(),
+            flat,
         }
     }
 
@@ -168,6 +174,17 @@ impl Model {
         self.length
     }
 
+    /// Moves every node: `out = q ⊕ d`.
+    pub fn retract(&self, q: &[f64], d: &[f64], out: &mut [f64]) {
+        if self.flat {
+            for ((out, q), d) in out.iter_mut().zip(q).zip(d) {
+                *out = q + d;
+            }
+        } else {
+            retract(&self.nodes, q, d, out);
+        }
+    }
+
     /// Evaluates the residual `[r + Gᵀλ; g]` into `sys` and, with weights, the iteration matrix
     /// `[w.q (∂r/∂q + ∂(Gᵀλ)/∂q) + w.v ∂r/∂v + w.a ∂r/∂v̇, Gᵀ; G, 0]`.
     pub fn assemble(&self, at: &At<'_>, lambda: &[f64], weights: Option<Weights>, sys: &mut System) {
@@ -205,9 +222,8 @@ impl Model {
                 values: weights.map(|_| sys.values.as_mut_slice()),
                 weights: weights.unwrap_or_default(),
                 width: self.width,
-                symmetric: structure.symmetric,
-                cliques: &structure.cliques[self.cliques[k].clone()],
-                slots: &structure.slots,
+                structure,
+                clique: self.cliques[k].start,
             };
             term.add(at, &mut out);
             if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
@@ -252,19 +268,21 @@ impl Model {
         } else {
             constraint.geometric(&self.nodes, at, multipliers, &mut sys.hessian);
         }
-        let clique = structure.cliques[self.cliques[self.terms.len() + c].start];
-        let size = n + m;
-        for i in 0..size {
-            for j in 0..if structure.symmetric { i + 1 } else { size } {
-                let v = match (i < n, j < n) {
-                    (true, true) => w.q * sys.hessian[i * n + j],
-                    (false, true) => sys.jacobian[(i - n) * n + j],
-                    (true, false) => sys.jacobian[(j - n) * n + i],
-                    (false, false) => 0.0,
-                };
-                sys.values[structure.slots[clique + i * size + j] as usize] += v;
-            }
-        }
+        let (jacobian, hessian) = (&sys.jacobian, &sys.hessian);
+        let mut out = Assembly {
+            residual: motion,
+            values: Some(&mut sys.values),
+            weights: w,
+            width: self.width,
+            structure,
+            clique: self.cliques[self.terms.len() + c].start,
+        };
+        out.add_block(0, n + m, |i, j| match (i < n, j < n) {
+            (true, true) => w.q * hessian[i * n + j],
+            (false, true) => jacobian[(i - n) * n + j],
+            (true, false) => jacobian[(j - n) * n + i],
+            (false, false) => 0.0,
+        });
     }
 
     /// Adds `ρ GᵀG` to an assembled matrix and `ρ Gᵀg` to its residual. For each row `ρ = scale / |G row|²`.
@@ -274,12 +292,12 @@ impl Model {
             let (m, dofs): (usize, Vec<usize>) =
                 (rows.len(), constraint.nodes().iter().flat_map(|&k| self.node(k).dofs()).collect());
             let n = dofs.len();
-            let clique = structure.cliques[self.cliques[self.terms.len() + c].start];
-            let size = n + m;
             // the Jacobian stands in the matrix already
-            let slot = |i: usize, j: usize| structure.slots[clique + i * size + j] as usize;
-            let jac: Vec<f64> = (0..m * n).map(|k| sys.values[slot(n + k / n, k % n)]).collect();
-            for (r, row) in rows.enumerate() {
+            let place = |i: usize| structure.position[i];
+            let row_of = |k: usize| place(self.velocities + rows.start + k / n);
+            let jac: Vec<f64> =
+                (0..m * n).map(|k| sys.values[structure.slot(row_of(k), place(dofs[k % n]))]).collect();
+            for (r, row) in rows.clone().enumerate() {
                 let g = &jac[r * n..(r + 1) * n];
                 let square: f64 = g.iter().map(|x| x * x).sum();
                 if square == 0.0 {
@@ -290,7 +308,7 @@ impl Model {
                 for i in 0..n {
                     sys.residual[dofs[i]] += rho * g[i] * value;
                     for j in 0..if structure.symmetric { i + 1 } else { n } {
-                        sys.values[slot(i, j)] += rho * g[i] * g[j];
+                        sys.values[structure.slot(place(dofs[i]), place(dofs[j]))] += rho * g[i] * g[j];
                     }
                 }
             }

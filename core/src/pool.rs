@@ -117,23 +117,72 @@ pub trait Element<const Q: usize, const N: usize>: Clone + Send + Sync + 'static
 }
 
 /// Where the numbers of one element stand in the vectors of the model.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Seat<const Q: usize, const N: usize> {
-    pub q: [u32; Q],
-    pub v: [u32; N],
+    q: Places<Q>,
+    pub v: Places<N>,
 }
+
+/// Places of `M` numbers in a vector.
+#[derive(Clone, Debug)]
+pub(crate) enum Places<const M: usize> {
+    /// One after the other, as those of two neighbours along a cable.
+    From(u32),
+    /// Anywhere.
+    List(Box<[u32; M]>),
+}
+
+impl<const M: usize> Places<M> {
+    fn new(places: impl Iterator<Item = usize>) -> Option<Self> {
+        let list: Vec<u32> = places.map(|i| i as u32).collect();
+        let list: Box<[u32; M]> = list.try_into().ok()?;
+        let first = list.first().copied().unwrap_or(0);
+        let run = list.iter().zip(first..).all(|(&i, k)| i == k);
+        Some(if run { Places::From(first) } else { Places::List(list) })
+    }
+    /// Each of them.
+    pub fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..M).map(move |i| match self {
+            Places::From(first) => *first as usize + i,
+            Places::List(list) => list[i] as usize,
+        })
+    }
+    #[inline(always)]
+    fn read(&self, x: &[f64], out: &mut [f64; M]) {
+        match self {
+            Places::From(first) => out.copy_from_slice(&x[*first as usize..][..M]),
+            Places::List(list) => *out = std::array::from_fn(|i| x[list[i] as usize]),
+        }
+    }
+}
+
+/// Numbers of up to eight elements, one element after the other, on their way into lanes and out of them.
+type ByElement<const M: usize> = [[f64; M]; MOST_LANES];
+const MOST_LANES: usize = 8;
 
 impl<const Q: usize, const N: usize> Seat<Q, N> {
     /// The seat of an element on these nodes, or `None` if their kinds don't add up to `Q` and `N`.
     pub fn new(nodes: &[Node], on: &[NodeId]) -> Option<Self> {
-        let q: Vec<u32> = on.iter().flat_map(|k| nodes[k.0 as usize].coords()).map(|i| i as u32).collect();
-        let v: Vec<u32> = on.iter().flat_map(|k| nodes[k.0 as usize].dofs()).map(|i| i as u32).collect();
-        Some(Seat { q: q.try_into().ok()?, v: v.try_into().ok()? })
+        Some(Seat {
+            q: Places::new(on.iter().flat_map(|k| nodes[k.0 as usize].coords()))?,
+            v: Places::new(on.iter().flat_map(|k| nodes[k.0 as usize].dofs()))?,
+        })
     }
     /// Gathers the local state of a batch.
     #[inline(always)]
     pub fn gather<R: Real>(seats: &[Self], at: &At<'_>) -> Local<R, Q, N> {
         let last = seats.len() - 1;
+        let (mut q, mut v): (ByElement<Q>, ByElement<N>) = ([[0.0; Q]; MOST_LANES], [[0.0; N]; MOST_LANES]);
+        let (mut a, mut d) = (v, v);
+        for l in 0..R::LANES {
+            let seat = &seats[l.min(last)];
+            seat.q.read(at.q, &mut q[l]);
+            seat.v.read(at.v, &mut v[l]);
+            seat.v.read(at.a, &mut a[l]);
+            if let Some(Relaxed { last: Some(x), .. }) = at.relaxed {
+                seat.v.read(x, &mut d[l]);
+            }
+        }
         let mut local = Local {
             q: [R::zero(); Q],
             v: [R::zero(); N],
@@ -142,16 +191,12 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
             relaxed: at.relaxed.map(|r| r.how),
         };
         for i in 0..Q {
-            local.q[i] = R::each(|l| at.q[seats[l.min(last)].q[i] as usize]);
+            local.q[i] = R::each(|l| q[l][i]);
         }
         for i in 0..N {
-            local.v[i] = R::each(|l| at.v[seats[l.min(last)].v[i] as usize]);
-            local.a[i] = R::each(|l| at.a[seats[l.min(last)].v[i] as usize]);
-        }
-        if let Some(Relaxed { last: Some(d), .. }) = at.relaxed {
-            for i in 0..N {
-                local.last[i] = R::each(|l| d[seats[l.min(last)].v[i] as usize]);
-            }
+            local.v[i] = R::each(|l| v[l][i]);
+            local.a[i] = R::each(|l| a[l][i]);
+            local.last[i] = R::each(|l| d[l][i]);
         }
         local
     }
@@ -159,10 +204,24 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
     #[inline(always)]
     pub fn scatter<R: Real>(seats: &[Self], first: usize, share: &Share<R, N>, out: &mut Assembly<'_>) {
         for (l, seat) in seats.iter().enumerate() {
-            for i in 0..N {
-                out.add(seat.v[i] as usize, share.r[i].lane(l));
+            let r: [f64; N] = std::array::from_fn(|i| share.r[i].lane(l));
+            match &seat.v {
+                Places::From(first) => out.add_run(*first as usize, &r),
+                Places::List(list) => {
+                    for i in 0..N {
+                        out.add(list[i] as usize, r[i]);
+                    }
+                }
             }
-            out.add_block(first + l, N, |i, j| share.k[i][j].lane(l));
+            if out.wants_tangent() {
+                let mut k = [[0.0; N]; N];
+                for i in 0..N {
+                    for j in 0..N {
+                        k[i][j] = share.k[i][j].lane(l);
+                    }
+                }
+                out.add_square(first + l, &k);
+            }
         }
     }
 }
@@ -243,7 +302,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
     }
     fn pattern(&self, p: &mut Pattern) {
         for seat in &self.seats {
-            p.clique(seat.v.iter().map(|&d| d as usize));
+            p.clique(seat.v.iter());
         }
     }
     fn symmetric(&self) -> bool {

@@ -341,7 +341,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
 {
     fn pattern(&self, p: &mut Pattern) {
         for seat in &self.seats {
-            p.clique(seat.v.iter().map(|&d| d as usize));
+            p.clique(seat.v.iter());
         }
     }
     fn is_empty(&self) -> bool {

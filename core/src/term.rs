@@ -3,6 +3,7 @@
 use crate::lane::Width;
 use crate::pattern::Pattern;
 use crate::state::At;
+use crate::structure::Structure;
 use std::ops::AddAssign;
 
 /// Kinetic and potential energy [J].
@@ -84,10 +85,9 @@ pub struct Assembly<'a> {
     pub(crate) values: Option<&'a mut [f64]>,
     pub(crate) weights: Weights,
     pub(crate) width: Width,
-    pub(crate) symmetric: bool,
-    /// Start of each clique of the current term in `slots`.
-    pub(crate) cliques: &'a [usize],
-    pub(crate) slots: &'a [u32],
+    pub(crate) structure: &'a Structure,
+    /// First clique of the current term.
+    pub(crate) clique: usize,
 }
 
 impl Assembly<'_> {
@@ -110,25 +110,53 @@ impl Assembly<'_> {
     pub fn add(&mut self, dof: usize, r: f64) {
         self.residual[dof] += r;
     }
+    /// Adds to equations of the residual that follow each other.
+    #[inline(always)]
+    pub(crate) fn add_run<const N: usize>(&mut self, first: usize, r: &[f64; N]) {
+        for (sum, r) in self.residual[first..first + N].iter_mut().zip(r) {
+            *sum += r;
+        }
+    }
     /// Adds the block of the term's clique number `clique`, which has `n` unknowns: `k(i, j)` for row `i` and
     /// column `j`. Does nothing where no tangent is wanted.
     #[inline(always)]
     pub fn add_block(&mut self, clique: usize, n: usize, k: impl Fn(usize, usize) -> f64) {
         let Some(values) = self.values.as_deref_mut() else { return };
-        let start = self.cliques[clique];
-        let slots = &self.slots[start..start + n * n];
-        if self.symmetric {
-            for i in 0..n {
-                for j in 0..=i {
-                    values[slots[i * n + j] as usize] += k(i, j);
+        for t in self.structure.tiles(self.clique + clique) {
+            debug_assert!((t.row + t.rows) as usize <= n && (t.column + t.columns) as usize <= n);
+            for i in 0..t.rows as usize {
+                let row = &mut values[t.at as usize + i * t.stride as usize..][..t.columns as usize];
+                for (j, value) in row.iter_mut().enumerate() {
+                    *value += k(t.row as usize + i, t.column as usize + j);
                 }
             }
-        } else {
-            for i in 0..n {
-                for j in 0..n {
-                    values[slots[i * n + j] as usize] += k(i, j);
+        }
+    }
+    /// The same for a block in memory.
+    #[inline(always)]
+    pub(crate) fn add_square<const N: usize>(&mut self, clique: usize, k: &[[f64; N]; N]) {
+        let Some(values) = self.values.as_deref_mut() else { return };
+        for t in self.structure.tiles(self.clique + clique) {
+            let rows = &k[t.row as usize..][..t.rows as usize];
+            for (i, k) in rows.iter().enumerate() {
+                let k = &k[t.column as usize..];
+                let to = &mut values[t.at as usize + i * t.stride as usize..];
+                match t.columns {
+                    // the usual lengths unrolled: both nodes of a cable element, or one of them
+                    12 => add_few::<12>(to, k),
+                    6 => add_few::<6>(to, k),
+                    n => to[..n as usize].iter_mut().zip(k).for_each(|(to, k)| *to += k),
                 }
             }
+        }
+    }
+}
+
+#[inline(always)]
+fn add_few<const M: usize>(to: &mut [f64], k: &[f64]) {
+    if let (Some(to), Some(k)) = (to.first_chunk_mut::<M>(), k.first_chunk::<M>()) {
+        for (to, k) in to.iter_mut().zip(k) {
+            *to += k;
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::node::{Node, retract};
 use crate::pattern::Pattern;
 use crate::state::At;
 use crate::station::{Law, Load, Station};
+use crate::structure::Structure;
 use crate::term::{Assembly, Term, Weights};
 
 /// Residual and weighted tangent of one term as plain vectors over all unknowns of `nodes`, rows first.
@@ -24,13 +25,8 @@ pub fn dense(
     let n = nodes.iter().map(|n| n.kind.velocities()).sum::<usize>();
     let mut pattern = Pattern::default();
     term.pattern(&mut pattern);
-    let (mut cliques, mut slots) = (Vec::new(), Vec::new());
-    for k in 0..pattern.len() {
-        cliques.push(slots.len());
-        let clique = pattern.get(k);
-        slots.extend(clique.iter().flat_map(|&i| clique.iter().map(move |&j| i * n as u32 + j)));
-    }
-    let (mut residual, mut values) = (vec![0.0; n], vec![0.0; n * n]);
+    let structure = Structure::new(nodes, &[], &pattern, false);
+    let (mut residual, mut values) = (vec![0.0; n], vec![0.0; structure.entries()]);
     term.add(
         at,
         &mut Assembly {
@@ -38,12 +34,21 @@ pub fn dense(
             values: Some(&mut values),
             weights: w,
             width,
-            symmetric: false,
-            cliques: &cliques,
-            slots: &slots,
+            structure: &structure,
+            clique: 0,
         },
     );
-    (residual, values.chunks(n.max(1)).map(<[f64]>::to_vec).collect())
+    let mut unknown = vec![0; n];
+    for (i, &p) in structure.position.iter().enumerate() {
+        unknown[p] = i;
+    }
+    let mut tangent = vec![vec![0.0; n]; n];
+    for (r, columns, at) in structure.rows() {
+        for (k, v) in values[at].iter().enumerate() {
+            tangent[unknown[r]][unknown[columns.get(k)]] = *v;
+        }
+    }
+    (residual, tangent)
 }
 
 /// The worst relative error of a term's stiffness, damping and mass against differences of its residual, and of

@@ -7,7 +7,6 @@
 use super::workspace::Which;
 use super::{Coefficients, NewtonPolicy, Workspace};
 use crate::model::Model;
-use crate::node::retract;
 use crate::solver::SolveError;
 use crate::state::{At, State};
 use crate::term::Weights;
@@ -44,14 +43,21 @@ impl Newton<'_> {
 
     /// Sets positions, velocities and true accelerations of the trial from its auxiliary acceleration.
     pub fn kinematics(&self, work: &mut Workspace) {
-        let (c, h, s, t) = (&self.scheme, self.h, self.state, &mut work.trial);
-        for i in 0..t.aux.len() {
-            let (old, new) = (t.aux_old[i], t.aux[i]);
-            t.d[i] = h * s.v[i] + h * h * ((0.5 - c.beta) * old + c.beta * new);
-            t.v[i] = s.v[i] + h * ((1.0 - c.gamma) * old + c.gamma * new);
-            t.a[i] = ((1.0 - c.alpha_m) * new + c.alpha_m * old - c.alpha_f * s.a[i]) / (1.0 - c.alpha_f);
+        let (c, h, t) = (&self.scheme, self.h, &mut work.trial);
+        let n = t.aux.len();
+        let (old, new) = (&t.aux_old[..n], &t.aux[..n]);
+        let (v, a) = (&self.state.v[..n], &self.state.a[..n]);
+        let (d, v_new, a_new) = (&mut t.d[..n], &mut t.v[..n], &mut t.a[..n]);
+        let (d_old, d_new) = (h * h * (0.5 - c.beta), h * h * c.beta);
+        let (g_old, g_new) = (h * (1.0 - c.gamma), h * c.gamma);
+        let scale = 1.0 / (1.0 - c.alpha_f);
+        let (m_old, m_new, f_old) = (c.alpha_m * scale, (1.0 - c.alpha_m) * scale, c.alpha_f * scale);
+        for i in 0..n {
+            d[i] = h * v[i] + (d_old * old[i] + d_new * new[i]);
+            v_new[i] = v[i] + (g_old * old[i] + g_new * new[i]);
+            a_new[i] = m_new * new[i] + (m_old * old[i] - f_old * a[i]);
         }
-        retract(self.model.nodes(), &s.q, &t.d, &mut t.q);
+        self.model.retract(&self.state.q, &t.d, &mut t.q);
     }
 
     /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.
@@ -77,8 +83,8 @@ impl Newton<'_> {
         let stop = self.tolerance.max(floor);
         let mut fresh = false;
         let (mut last, mut theta) = (0.0, 0.0);
-        let mut rhs = std::mem::take(&mut work.trial.rhs);
         let mut outcome = None;
+        let multiplier_scale = 1.0 / (self.scheme.beta * self.h * self.h);
         self.kinematics(work);
         for k in 0..self.max_iterations {
             let stale = work.factored != Some(self.weights());
@@ -90,27 +96,24 @@ impl Newton<'_> {
             }
             fresh = refresh || (fresh && k > 0);
             work.counts.newton_iterations += 1;
-            rhs.clear();
-            rhs.extend(work.system.residual.iter().map(|r| -r));
-            for g in &mut rhs[nv..] {
-                *g /= self.scheme.beta * self.h * self.h;
-            }
-            if rhs.iter().any(|r| !r.is_finite()) {
+            let residual = &mut work.system.residual;
+            if residual.iter().fold(false, |bad, r| bad | !r.is_finite()) {
                 outcome = Some(Outcome::Failed { why: "the residual is not finite".into() });
                 break;
             }
-            if let Err(e) = work.solve(self.model, Which::Iteration, &mut rhs) {
+            for g in &mut residual[nv..] {
+                *g *= multiplier_scale;
+            }
+            self.model.structure().order(residual, &mut work.x);
+            work.x.iter_mut().for_each(|x| *x = -*x);
+            if let Err(e) = work.solve_ordered(self.model, Which::Iteration) {
                 outcome = Some(Outcome::Linear(e));
                 break;
             }
-            for i in 0..nv {
-                work.trial.aux[i] += rhs[i];
-            }
-            for i in nv..rhs.len() {
-                work.trial.lambda[i - nv] += rhs[i];
-            }
+            let trial = &mut work.trial;
+            self.model.structure().add_restored(&work.x, &mut trial.aux, &mut trial.lambda);
             self.kinematics(work);
-            let size = beta_h2 * work.norm(self.model, &rhs[..nv]);
+            let size = beta_h2 * work.norm_of_solution(self.model);
             if !size.is_finite() {
                 outcome = Some(Outcome::Failed { why: "the iteration left the finite numbers".into() });
                 break;
@@ -139,7 +142,6 @@ impl Newton<'_> {
                 }
             }
         }
-        work.trial.rhs = rhs;
         outcome.unwrap_or_else(|| {
             let why = format!("{} Newton iterations were not enough", self.max_iterations);
             Outcome::Failed { why }

@@ -116,21 +116,23 @@ impl Workspace {
         }
     }
 
-    /// Brings a right-hand side (velocities, then multipliers) into elimination order, solves, and brings the
-    /// solution back.
+    /// Solves for a right-hand side (velocities, then multipliers), which the solution replaces.
     pub(crate) fn solve(&mut self, model: &Model, which: Which, rhs: &mut [f64]) -> Result<(), SolveError> {
+        let s = model.structure();
+        s.order(rhs, &mut self.x);
+        self.solve_ordered(model, which)?;
+        s.restore(&self.x, rhs);
+        Ok(())
+    }
+
+    /// Replaces `x`, a right-hand side in elimination order, by the solution.
+    pub(crate) fn solve_ordered(&mut self, model: &Model, which: Which) -> Result<(), SolveError> {
         let (s, begin) = (model.structure(), self.clock());
-        for (i, &p) in s.position.iter().enumerate() {
-            self.x[p] = rhs[i];
-        }
         match which {
             Which::Iteration => self.solver.solve(s, &self.system.values, &mut self.x)?,
             Which::Mass => self.mass_solver.solve(s, &self.mass.values, &mut self.x)?,
         }
         self.count(1, begin);
-        for (i, &p) in s.position.iter().enumerate() {
-            rhs[i] = self.x[p];
-        }
         Ok(())
     }
 
@@ -169,24 +171,27 @@ impl Workspace {
     pub(crate) fn times_mass(&mut self, model: &Model, d: &[f64], out: &mut [f64]) {
         let s = model.structure();
         self.x.fill(0.0);
-        for (i, d) in d.iter().enumerate() {
-            self.x[s.position[i]] = *d;
-        }
+        s.order(d, &mut self.x);
         s.multiply(&self.mass.values, &self.x, &mut self.y);
-        for (i, o) in out.iter_mut().enumerate() {
-            *o = self.y[s.position[i]];
-        }
+        s.restore(&self.y, out);
     }
 
     /// `sqrt(dᵀ M d / total mass)`: a length that doesn't depend on the mesh [m].
     pub(crate) fn norm(&mut self, model: &Model, d: &[f64]) -> f64 {
-        let s = model.structure();
-        self.x.fill(0.0);
-        for (i, d) in d.iter().enumerate() {
-            self.x[s.position[i]] = *d;
-        }
-        s.multiply(&self.mass.values, &self.x, &mut self.y);
-        let sum: f64 = d.iter().enumerate().map(|(i, d)| d * self.y[s.position[i]]).sum();
+        self.y.fill(0.0);
+        model.structure().order(d, &mut self.y);
+        self.norm_ordered(model)
+    }
+
+    /// The same for the velocities of the solution in `x`.
+    pub(crate) fn norm_of_solution(&mut self, model: &Model) -> f64 {
+        self.y.copy_from_slice(&self.x);
+        model.structure().clear_multipliers(&mut self.y);
+        self.norm_ordered(model)
+    }
+
+    fn norm_ordered(&mut self, model: &Model) -> f64 {
+        let sum = model.structure().form(&self.mass.values, &self.y);
         // a NaN stays a NaN; rounding may make a tiny sum negative
         if sum < 0.0 { 0.0 } else { (sum / self.total_mass).sqrt() }
     }

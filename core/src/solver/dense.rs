@@ -1,7 +1,7 @@
 //! Dense LU with full pivoting, by nalgebra: the oracle that the sparse solvers are tested against.
 
 use super::{LinearSolver, SolveError};
-use crate::pattern::Structure;
+use crate::structure::Structure;
 use nalgebra::{DMatrix, DVectorViewMut, Dyn, FullPivLU};
 
 /// Dense LU with full pivoting. Slow and trustworthy; for tests and small systems.
@@ -19,11 +19,11 @@ impl LinearSolver for Dense {
     }
     fn factor(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError> {
         let mut a = DMatrix::zeros(s.n, s.n);
-        for c in 0..s.n {
-            for p in s.columns[c]..s.columns[c + 1] {
-                a[(s.rows[p], c)] = values[p];
+        for (r, columns, at) in s.rows() {
+            for (k, &v) in values[at].iter().enumerate() {
+                a[(r, columns.get(k))] = v;
                 if s.symmetric {
-                    a[(c, s.rows[p])] = values[p];
+                    a[(columns.get(k), r)] = v;
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Sparse LDLᵀ without pivoting, by faer, in the elimination order of the structure.
 
 use super::{LinearSolver, SolveError};
-use crate::pattern::Structure;
+use crate::structure::Structure;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
@@ -16,6 +16,11 @@ use faer::{Conj, MatMut, Par, Side, Spec};
 #[derive(Default)]
 pub struct Ldlt {
     symbolic: Option<SymbolicCholesky<usize>>,
+    columns: Vec<usize>,
+    rows: Vec<usize>,
+    /// For each entry, where the structure stores it.
+    source: Vec<u32>,
+    values: Vec<f64>,
     factors: Vec<f64>,
     memory: Option<MemBuffer>,
 }
@@ -26,9 +31,24 @@ impl LinearSolver for Ldlt {
     }
 
     fn analyse(&mut self, s: &Structure) -> Result<(), SolveError> {
-        // with the identity ordering faer wants the upper triangle, whatever side it is told
+        // with the identity ordering faer wants the upper triangle column by column, whatever side it is told
+        let mut upper: Vec<(usize, usize, u32)> = Vec::with_capacity(s.entries());
+        for (r, columns, at) in s.rows() {
+            upper.extend(at.enumerate().map(|(k, p)| (columns.get(k), r, p as u32)));
+        }
+        upper.sort_unstable();
+        self.columns = vec![0; s.n + 1];
+        for &(c, _, _) in &upper {
+            self.columns[c + 1] += 1;
+        }
+        for c in 0..s.n {
+            self.columns[c + 1] += self.columns[c];
+        }
+        self.rows = upper.iter().map(|e| e.1).collect();
+        self.source = upper.iter().map(|e| e.2).collect();
+        self.values = vec![0.0; upper.len()];
         let symbolic = factorize_symbolic_cholesky(
-            SymbolicSparseColMatRef::new_checked(s.n, s.n, &s.columns, None, &s.rows),
+            SymbolicSparseColMatRef::new_checked(s.n, s.n, &self.columns, None, &self.rows),
             Side::Upper,
             SymmetricOrdering::Identity,
             CholeskySymbolicParams {
@@ -50,8 +70,11 @@ impl LinearSolver for Ldlt {
         let (Some(symbolic), Some(memory)) = (&self.symbolic, &mut self.memory) else {
             return Err(SolveError::Memory);
         };
-        let structure = SymbolicSparseColMatRef::new_checked(s.n, s.n, &s.columns, None, &s.rows);
-        let a = SparseColMatRef::new(structure, values);
+        for (v, &p) in self.values.iter_mut().zip(&self.source) {
+            *v = values[p as usize];
+        }
+        let structure = SymbolicSparseColMatRef::new_checked(s.n, s.n, &self.columns, None, &self.rows);
+        let a = SparseColMatRef::new(structure, &self.values);
         symbolic
             .factorize_numeric_ldlt(
                 &mut self.factors,

@@ -1,7 +1,7 @@
 //! Sparse LU with partial pivoting, by faer: the fallback, and the general unsymmetric path.
 
 use super::{LinearSolver, SolveError};
-use crate::pattern::Structure;
+use crate::structure::Structure;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::lu::{LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu};
@@ -28,11 +28,12 @@ impl LinearSolver for Lu {
 
     fn analyse(&mut self, s: &Structure) -> Result<(), SolveError> {
         let mut full: Vec<(usize, usize, usize)> = Vec::new();
-        for c in 0..s.n {
-            for p in s.columns[c]..s.columns[c + 1] {
-                full.push((c, s.rows[p], p));
-                if s.symmetric && s.rows[p] != c {
-                    full.push((s.rows[p], c, p));
+        for (r, columns, at) in s.rows() {
+            for (k, p) in at.enumerate() {
+                let c = columns.get(k);
+                full.push((c, r, p));
+                if s.symmetric && r != c {
+                    full.push((r, c, p));
                 }
             }
         }

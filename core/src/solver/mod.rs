@@ -1,19 +1,21 @@
 //! Linear solvers behind one trait, and the guard that uses them: factor, check the backward error, refine once,
 //! and fall back to LU with pivoting.
 
+mod chain;
 mod dense;
 mod ldlt;
 mod lu;
 mod profile;
 mod scalar;
 
+pub use chain::Chain;
 pub use dense::Dense;
 pub use ldlt::Ldlt;
 pub use lu::Lu;
 pub use profile::Profile;
 pub use scalar::Scalar;
 
-use crate::pattern::{Structure, consecutive};
+use crate::structure::{Columns, Structure};
 
 /// Why a linear system could not be solved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -24,6 +26,9 @@ pub enum SolveError {
     /// The matrix or the solution holds a NaN or an infinity.
     #[error("the matrix or the solution is not finite")]
     NotFinite,
+    /// The solver wants a chain.
+    #[error("the equations are not coupled like a chain")]
+    NotAChain,
     /// Not enough memory for the factors.
     #[error("not enough memory for the factors")]
     Memory,
@@ -38,7 +43,7 @@ pub trait LinearSolver<T: Scalar = f64>: Send {
     fn name(&self) -> &'static str;
     /// Prepares for a structure.
     fn analyse(&mut self, s: &Structure) -> Result<(), SolveError>;
-    /// Factors the matrix with these values, in the order of `Structure::rows`.
+    /// Factors the matrix with these values, stored as `Structure::rows` says.
     fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError>;
     /// Replaces `x`, holding the right-hand side, by the solution.
     fn solve(&mut self, x: &mut [T]);
@@ -72,10 +77,12 @@ const REFINE: f64 = 1e-12;
 const GIVE_UP: f64 = 1e-9;
 
 impl Guard {
-    /// The solver that suits a structure: LDLᵀ for symmetric matrices; for unsymmetric ones LU along the profile,
-    /// or faer's sparse LU where the profile would fill in much more.
+    /// The solver that suits a structure: block elimination for chains; else LDLᵀ for symmetric matrices and for
+    /// unsymmetric ones LU along the profile, or faer's sparse LU where the profile would fill in much more.
     pub fn new(s: &Structure) -> Result<Self, SolveError> {
-        let primary: Box<dyn LinearSolver> = if s.symmetric {
+        let primary: Box<dyn LinearSolver> = if s.chain {
+            Box::new(Chain::default())
+        } else if s.symmetric {
             Box::new(Ldlt::default())
         } else if Profile::size(s) < 6 * s.entries() {
             Box::new(Profile::default())
@@ -176,34 +183,35 @@ impl Guard {
             *r = -b;
             *d = b.abs();
         }
-        for c in 0..s.n {
-            let (rows, values) = s.column(c, values);
-            let mirrored = if s.symmetric { rows.len() - 1 } else { 0 };
-            let (mut rc, mut dc) = (0.0, 0.0);
-            if let Some(run) = consecutive(rows) {
-                let (r, d) = (&mut self.r[run.clone()], &mut self.d[run.clone()]);
-                for ((r, d), a) in r.iter_mut().zip(d).zip(values) {
-                    let y = a * x[c];
-                    *r += y;
-                    *d += y.abs();
+        for (i, columns, at) in s.rows() {
+            let values = &values[at];
+            let (mut ri, mut di) = (0.0, 0.0);
+            let xi = if s.symmetric { x[i] } else { 0.0 };
+            match columns {
+                Columns::From(first) => {
+                    let (x, r, d) = (&x[first..], &mut self.r[first..], &mut self.d[first..]);
+                    for (((a, x), r), d) in values.iter().zip(x).zip(r).zip(d) {
+                        let (right, left) = (a * x, a * xi);
+                        ri += right;
+                        di += right.abs();
+                        *r += left;
+                        *d += left.abs();
+                    }
                 }
-                for (a, x) in values[..mirrored].iter().zip(&x[run]) {
-                    rc += a * x;
-                    dc += (a * x).abs();
-                }
-            } else {
-                for (&i, a) in rows.iter().zip(values) {
-                    let y = a * x[c];
-                    self.r[i] += y;
-                    self.d[i] += y.abs();
-                }
-                for (&i, a) in rows[..mirrored].iter().zip(values) {
-                    rc += a * x[i];
-                    dc += (a * x[i]).abs();
+                Columns::List(list) => {
+                    for (a, &c) in values.iter().zip(list) {
+                        let (right, left) = (a * x[c as usize], a * xi);
+                        ri += right;
+                        di += right.abs();
+                        self.r[c as usize] += left;
+                        self.d[c as usize] += left.abs();
+                    }
                 }
             }
-            self.r[c] += rc;
-            self.d[c] += dc;
+            // the diagonal has been counted on both sides
+            let twice = values[0] * xi;
+            self.r[i] += ri - twice;
+            self.d[i] += di - twice.abs();
         }
         let mut worst = 0.0;
         for (r, d) in self.r.iter().zip(&self.d) {
@@ -221,12 +229,12 @@ impl Guard {
     /// The same, with row sums for the rows that need them.
     fn against_norms(&mut self, s: &Structure, values: &[f64], x: &[f64]) -> f64 {
         self.sums.fill(0.0);
-        for c in 0..s.n {
-            for p in s.columns[c]..s.columns[c + 1] {
-                let i = s.rows[p];
-                self.sums[i] += values[p].abs();
+        for (i, columns, at) in s.rows() {
+            for (k, v) in values[at].iter().enumerate() {
+                let c = columns.get(k);
+                self.sums[i] += v.abs();
                 if s.symmetric && i != c {
-                    self.sums[c] += values[p].abs();
+                    self.sums[c] += v.abs();
                 }
             }
         }

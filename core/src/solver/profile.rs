@@ -5,7 +5,7 @@
 //! (multipliers follow their nodes); the [`Guard`](super::Guard) checks.
 
 use super::{LinearSolver, Scalar, SolveError};
-use crate::pattern::Structure;
+use crate::structure::Structure;
 
 /// LU without pivoting for structurally symmetric matrices with a small profile.
 #[derive(Default)]
@@ -20,15 +20,16 @@ pub struct Profile<T = f64> {
     rows: Vec<T>,
     /// Reciprocal pivots.
     inverse: Vec<T>,
-    /// For each stored entry of the matrix, where it goes in `rows`; of a symmetric one, its mirror image too.
-    slots: Vec<[u32; 2]>,
+    /// For each entry of the matrix, where it is stored and where it goes in `rows`; of a symmetric one, where its
+    /// mirror image goes too.
+    slots: Vec<[u32; 3]>,
     negative: usize,
 }
 
 fn first_columns(s: &Structure) -> Vec<usize> {
     let mut first: Vec<usize> = (0..s.n).collect();
-    for c in 0..s.n {
-        for &r in &s.rows[s.columns[c]..s.columns[c + 1]] {
+    for (r, columns, at) in s.rows() {
+        for c in (0..at.len()).map(|k| columns.get(k)) {
             let (low, high) = (r.min(c), r.max(c));
             first[high] = first[high].min(low);
         }
@@ -76,9 +77,10 @@ impl<T: Scalar> LinearSolver<T> for Profile<T> {
         self.inverse = vec![T::default(); s.n];
         let slot = |r: usize, c: usize| (self.start[r] + c - self.first[r]) as u32;
         self.slots = Vec::with_capacity(s.entries());
-        for c in 0..s.n {
-            for &r in &s.rows[s.columns[c]..s.columns[c + 1]] {
-                self.slots.push([slot(r, c), if s.symmetric { slot(c, r) } else { slot(r, c) }]);
+        for (r, columns, at) in s.rows() {
+            for (k, p) in at.enumerate() {
+                let c = columns.get(k);
+                self.slots.push([p as u32, slot(r, c), if s.symmetric { slot(c, r) } else { slot(r, c) }]);
             }
         }
         Ok(())
@@ -86,7 +88,8 @@ impl<T: Scalar> LinearSolver<T> for Profile<T> {
 
     fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
         self.rows.fill(T::default());
-        for (&[a, b], &v) in self.slots.iter().zip(values) {
+        for &[p, a, b] in &self.slots {
+            let v = values[p as usize];
             self.rows[a as usize] = v;
             self.rows[b as usize] = v;
         }

@@ -29,6 +29,8 @@ pub trait Scalar:
 {
     /// Its reciprocal.
     fn inverse(self) -> Self;
+    /// `self - a b`; with `FUSED`, which may be set only where the processor has fused multiply-add, rounded once.
+    fn minus<const FUSED: bool>(self, a: Self, b: Self) -> Self;
     /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Its real part.
@@ -41,6 +43,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn inverse(self) -> Self {
         1.0 / self
+    }
+    #[inline(always)]
+    fn minus<const FUSED: bool>(self, a: Self, b: Self) -> Self {
+        if FUSED { (-a).mul_add(b, self) } else { self - a * b }
     }
     #[inline(always)]
     fn is_finite(self) -> bool {
@@ -60,6 +66,13 @@ impl Scalar for c64 {
     #[inline(always)]
     fn inverse(self) -> Self {
         self.inv()
+    }
+    #[inline(always)]
+    fn minus<const FUSED: bool>(self, a: Self, b: Self) -> Self {
+        c64 {
+            re: self.re.minus::<FUSED>(a.re, b.re) + a.im * b.im,
+            im: self.im.minus::<FUSED>(a.re, b.im) - a.im * b.re,
+        }
     }
     #[inline(always)]
     fn is_finite(self) -> bool {

@@ -14,9 +14,9 @@ pub use stability::Disturbance;
 use crate::build::{BuildError, positive};
 use crate::model::{Model, System};
 use crate::motion::SteadyFrame;
-use crate::pattern::Structure;
-use crate::solver::{Guard, LinearSolver, Profile, SolveError};
+use crate::solver::{Guard, Profile, SolveError};
 use crate::state::State;
+use crate::structure::Structure;
 use search::FOLD;
 use serde::{Deserialize, Serialize};
 
@@ -140,9 +140,8 @@ impl<'a> Statics<'a> {
         let turning = frame.is_some_and(|f| f.omega != [0.0; 3]);
         let structure = if turning { model.unsymmetric_structure() } else { model.structure().clone() };
         // the profile solver knows the signs of its pivots for unsymmetric matrices too
-        let chain: Box<dyn LinearSolver> = Box::new(Profile::default());
-        let solver = if Profile::size(&structure) < 20 * structure.entries() {
-            Guard::with(&structure, chain)?
+        let solver = if !structure.chain && Profile::size(&structure) < 20 * structure.entries() {
+            Guard::with(&structure, Box::new(Profile::default()))?
         } else {
             Guard::new(&structure)?
         };

@@ -45,7 +45,7 @@ impl Statics<'_> {
         }
         self.assemble(state, &state.q, &state.lambda, None, true);
         let n = self.structure.n;
-        let order = |d: &[f64], x: &mut Vec<f64>, s: &crate::pattern::Structure| {
+        let order = |d: &[f64], x: &mut Vec<f64>, s: &crate::structure::Structure| {
             x.clear();
             x.resize(s.n, 0.0);
             for (i, d) in d.iter().enumerate() {
@@ -82,11 +82,11 @@ impl Statics<'_> {
         let c = Scheme::GeneralizedAlpha { rho_inf: 0.9 }.coefficients().unwrap_or_else(|_| unreachable!());
 
         let mut values = vec![0.0; self.structure.entries()];
-        for column in 0..n {
-            for p in self.structure.columns[column]..self.structure.columns[column + 1] {
+        for (r, columns, at) in self.structure.rows() {
+            for (i, p) in at.enumerate() {
                 let (k, d, m) = (self.system.values[p], self.damping.values[p], self.mass.values[p]);
-                let constrains = self.structure.is_multiplier[column]
-                    || self.structure.is_multiplier[self.structure.rows[p]];
+                let constrains =
+                    self.structure.is_multiplier[r] || self.structure.is_multiplier[columns.get(i)];
                 values[p] = if constrains { k } else { c.beta * h * h * k + c.gamma * h * d + c.mass() * m };
             }
         }
@@ -159,7 +159,7 @@ impl Statics<'_> {
     }
 }
 
-fn zero_rows(s: &crate::pattern::Structure, x: &mut [f64]) {
+fn zero_rows(s: &crate::structure::Structure, x: &mut [f64]) {
     for (x, &multiplier) in x.iter_mut().zip(&s.is_multiplier) {
         if multiplier {
             *x = 0.0;

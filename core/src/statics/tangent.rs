@@ -121,21 +121,23 @@ impl Statics<'_> {
         let w2: [[f64; 3]; 3] =
             std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| w[i][k] * w[k][j]).sum()));
         let s = &self.structure;
+        // the first of three components at each position that a node's components start at
+        let mut triple = vec![false; s.n];
         for n in self.model.nodes() {
             for block in 0..n.kind.velocities() / 3 {
-                let columns: [usize; 3] = std::array::from_fn(|i| s.position[n.v + 3 * block + i]);
-                let count = s.columns[columns[0] + 1] - s.columns[columns[0]];
-                for k in 0..count {
-                    let at = columns.map(|c| s.columns[c] + k);
-                    if s.is_multiplier[s.rows[at[0]]] {
-                        continue;
-                    }
-                    let (c, m) = (at.map(|p| self.damping.values[p]), at.map(|p| self.mass.values[p]));
-                    for j in 0..3 {
-                        self.system.values[at[j]] +=
-                            (0..3).map(|i| c[i] * w[i][j] + m[i] * w2[i][j]).sum::<f64>();
-                        self.damping.values[at[j]] += 2.0 * (0..3).map(|i| m[i] * w[i][j]).sum::<f64>();
-                    }
+                triple[s.position[n.v + 3 * block]] = true;
+            }
+        }
+        for (_, columns, at) in s.rows().filter(|(r, ..)| !s.is_multiplier[*r]) {
+            for k in (0..at.len()).filter(|&k| triple[columns.get(k)]) {
+                let p = at.start + k;
+                let (c, m): (V3<f64>, V3<f64>) = (
+                    std::array::from_fn(|i| self.damping.values[p + i]),
+                    std::array::from_fn(|i| self.mass.values[p + i]),
+                );
+                for j in 0..3 {
+                    self.system.values[p + j] += (0..3).map(|i| c[i] * w[i][j] + m[i] * w2[i][j]).sum::<f64>();
+                    self.damping.values[p + j] += 2.0 * (0..3).map(|i| m[i] * w[i][j]).sum::<f64>();
                 }
             }
         }

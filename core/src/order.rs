@@ -1,0 +1,168 @@
+//! The order in which nodes are eliminated, and which unknowns are eliminated together.
+//!
+//! Nodes are taken along the chain where they form one, else in the order in which they were made or in an
+//! approximate minimum degree order of the *nodes*, whichever fills in less. The rows of a constraint follow the last
+//! node that they touch, which keeps elimination without pivoting stable; shared nodes come last.
+
+use crate::node::{Node, NodeId};
+use crate::pattern::Pattern;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::amd;
+
+/// The rows of one constraint and the nodes that they touch.
+#[derive(Clone, Debug)]
+pub(crate) struct Rows {
+    pub count: usize,
+    pub nodes: Vec<NodeId>,
+}
+
+/// An elimination order.
+pub(crate) struct Order {
+    /// Position of each unknown: velocities first, then multipliers.
+    pub position: Vec<usize>,
+    /// First position of each block, a node with the constraint rows behind it, and one past the last.
+    pub starts: Vec<usize>,
+}
+
+impl Order {
+    pub fn new(nodes: &[Node], constraints: &[Rows], pattern: &Pattern) -> Self {
+        let nv = nodes.iter().map(|n| n.kind.velocities()).sum::<usize>();
+        let graph = node_graph(nodes, constraints, pattern, nv);
+        let natural: Vec<usize> = shared_last(nodes, (0..nodes.len()).collect());
+        let order = if is_chain(&graph, &natural) {
+            natural
+        } else if let Some(path) = path(&graph).filter(|p| is_chain(&graph, &shared_last(nodes, p.clone()))) {
+            shared_last(nodes, path)
+        } else {
+            let degree = shared_last(nodes, minimum_degree(&graph));
+            if fill(&graph, &degree) < fill(&graph, &natural) { degree } else { natural }
+        };
+        positions(nodes, constraints, &order, nv)
+    }
+}
+
+fn node_graph(nodes: &[Node], constraints: &[Rows], pattern: &Pattern, nv: usize) -> Vec<Vec<u32>> {
+    let mut node_of = vec![0; nv];
+    for (k, n) in nodes.iter().enumerate() {
+        node_of[n.dofs()].fill(k as u32);
+    }
+    let mut graph: Vec<Vec<u32>> = vec![Vec::new(); nodes.len()];
+    let mut join = |members: &mut Vec<u32>| {
+        members.sort_unstable();
+        members.dedup();
+        for &a in members.iter() {
+            graph[a as usize].extend(members.iter().filter(|&&b| b != a));
+        }
+    };
+    for k in 0..pattern.len() {
+        let own = pattern.get(k).iter().filter(|&&d| (d as usize) < nv);
+        join(&mut own.map(|&d| node_of[d as usize]).collect());
+    }
+    for c in constraints {
+        join(&mut c.nodes.iter().map(|n| n.0).collect());
+    }
+    for g in &mut graph {
+        g.sort_unstable();
+        g.dedup();
+    }
+    graph
+}
+
+fn shared_last(nodes: &[Node], order: Vec<usize>) -> Vec<usize> {
+    let (shared, own): (Vec<usize>, Vec<usize>) = order.into_iter().partition(|&k| nodes[k].shared);
+    own.into_iter().chain(shared).collect()
+}
+
+/// Whether each node is coupled with no other than the one before and the one behind it.
+fn is_chain(graph: &[Vec<u32>], order: &[usize]) -> bool {
+    let place = places(order);
+    graph.iter().enumerate().all(|(a, g)| g.iter().all(|&b| place[a].abs_diff(place[b as usize]) <= 1))
+}
+
+/// Walks along every path of the graph from one of its ends; `None` if there are branches or rings.
+fn path(graph: &[Vec<u32>]) -> Option<Vec<usize>> {
+    let mut order = Vec::with_capacity(graph.len());
+    let mut seen = vec![false; graph.len()];
+    for end in (0..graph.len()).filter(|&k| graph[k].len() <= 1) {
+        let mut next = (!seen[end]).then_some(end);
+        while let Some(k) = next {
+            seen[k] = true;
+            order.push(k);
+            next = graph[k].iter().map(|&b| b as usize).find(|&b| !seen[b]);
+        }
+    }
+    (order.len() == graph.len()).then_some(order)
+}
+
+fn places(order: &[usize]) -> Vec<usize> {
+    let mut place = vec![0; order.len()];
+    for (p, &k) in order.iter().enumerate() {
+        place[k] = p;
+    }
+    place
+}
+
+/// Approximate minimum degree order of the node graph, by faer.
+fn minimum_degree(graph: &[Vec<u32>]) -> Vec<usize> {
+    let n = graph.len();
+    let natural: Vec<usize> = (0..n).collect();
+    let mut columns = vec![0];
+    let mut rows: Vec<usize> = Vec::new();
+    for g in graph {
+        rows.extend(g.iter().map(|&r| r as usize));
+        columns.push(rows.len());
+    }
+    let a = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows);
+    let (mut order, mut inverse) = (vec![0usize; n], vec![0usize; n]);
+    let mut memory = MemBuffer::new(amd::order_scratch::<usize>(n, rows.len()));
+    match amd::order(&mut order, &mut inverse, a, amd::Control::default(), MemStack::new(&mut memory)) {
+        Ok(_) => order,
+        Err(_) => natural,
+    }
+}
+
+/// Number of off-diagonal blocks of the factor if nodes are eliminated in this order.
+fn fill(graph: &[Vec<u32>], order: &[usize]) -> usize {
+    let n = order.len();
+    let place = places(order);
+    // elimination tree and column counts by merging the rows of children
+    let mut columns: Vec<Vec<usize>> = vec![Vec::new(); n];
+    let mut total = 0;
+    for p in 0..n {
+        let mut mine = std::mem::take(&mut columns[p]);
+        mine.extend(graph[order[p]].iter().map(|&b| place[b as usize]).filter(|&b| b > p));
+        mine.sort_unstable();
+        mine.dedup();
+        total += mine.len();
+        if let Some(&parent) = mine.first() {
+            columns[parent].extend(mine.into_iter().skip(1));
+        }
+    }
+    total
+}
+
+fn positions(nodes: &[Node], constraints: &[Rows], order: &[usize], nv: usize) -> Order {
+    let place = places(order);
+    let n = nv + constraints.iter().map(|c| c.count).sum::<usize>();
+    let mut behind: Vec<Vec<usize>> = vec![Vec::new(); nodes.len()];
+    let mut row = nv;
+    for c in constraints {
+        let rows = row..row + c.count;
+        row += c.count;
+        // a constraint between fixed things only is refused by the model; its place doesn't matter
+        if let Some(last) = c.nodes.iter().map(|k| place[k.0 as usize]).max().or(nodes.len().checked_sub(1)) {
+            behind[last].extend(rows);
+        }
+    }
+    let mut position = vec![usize::MAX; n];
+    let (mut next, mut starts) = (0, vec![0]);
+    for (p, &k) in order.iter().enumerate() {
+        for d in nodes[k].dofs().chain(behind[p].iter().copied()) {
+            position[d] = next;
+            next += 1;
+        }
+        starts.push(next);
+    }
+    Order { position, starts }
+}

@@ -1,0 +1,383 @@
+//! The sparse structure of the iteration matrix, by blocks, and the way of every clique into it.
+//!
+//! A block is a node with the rows of the constraints behind it. All rows of a block share one list of columns, so
+//! that what an element adds goes in rectangles ([`Tile`]) instead of entry by entry, and along a chain every row is
+//! one run of neighbours.
+
+use crate::node::Node;
+use crate::order::{Order, Rows};
+use crate::pattern::Pattern;
+use std::ops::Range;
+
+/// Rows that share their columns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// Position of its first row.
+    pub first: usize,
+    /// Number of rows.
+    pub size: usize,
+    /// Storage of its first row.
+    pub base: usize,
+    /// Its columns in [`Structure::columns`].
+    columns: Range<usize>,
+    /// Its first column, if the columns follow each other without a gap.
+    run: Option<usize>,
+}
+
+impl Block {
+    /// Entries stored for each of its rows.
+    pub fn width(&self) -> usize {
+        self.columns.len()
+    }
+}
+
+/// The columns of a row.
+#[derive(Clone, Copy, Debug)]
+pub enum Columns<'a> {
+    /// From this one on, one after the other.
+    From(usize),
+    /// These.
+    List(&'a [u32]),
+}
+
+impl Columns<'_> {
+    /// The column of the entry number `k`.
+    pub fn get(&self, k: usize) -> usize {
+        match self {
+            Columns::From(first) => first + k,
+            Columns::List(list) => list[k] as usize,
+        }
+    }
+}
+
+/// A rectangle of a clique's square block: row `row + i`, column `column + j` of the clique go to storage
+/// `at + i stride + j`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Tile {
+    pub at: u32,
+    pub stride: u32,
+    pub row: u16,
+    pub column: u16,
+    pub rows: u16,
+    pub columns: u16,
+}
+
+/// Unknowns `unknown..unknown + count` stand at `position..position + count`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Move {
+    unknown: usize,
+    position: usize,
+    count: usize,
+}
+
+/// The sparse structure of the iteration matrix in elimination order, row by row.
+///
+/// Of a symmetric matrix the upper triangle counts. Its diagonal blocks are stored whole all the same; what stands
+/// below the diagonal in them is never read.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    /// Number of unknowns: velocities and multipliers.
+    pub n: usize,
+    /// How many of them are multipliers.
+    pub multipliers: usize,
+    /// Only the upper triangle counts.
+    pub symmetric: bool,
+    /// Position of each unknown (velocities first, then multipliers) in the elimination order.
+    pub position: Vec<usize>,
+    /// For each position whether it is a multiplier.
+    pub is_multiplier: Vec<bool>,
+    /// Its rows, block by block.
+    pub blocks: Vec<Block>,
+    /// Storage of the diagonal entry of each unknown.
+    pub diagonal: Vec<u32>,
+    /// Whether every block is coupled with the one before and the one behind it only.
+    pub chain: bool,
+    /// Runs of unknowns that follow each other in the elimination order too.
+    moves: Vec<Move>,
+    columns: Vec<u32>,
+    entries: usize,
+    tiles: Vec<Tile>,
+    /// Where the tiles of each clique end.
+    ends: Vec<u32>,
+}
+
+/// Largest block, and largest block with its successor, of what is solved as a chain.
+pub(crate) const LARGEST: usize = 16;
+const WIDEST: usize = 32;
+
+impl Structure {
+    /// `pattern` holds the cliques of terms and then one per constraint, whose unknowns are velocities followed by
+    /// its rows (`nv + row`).
+    pub(crate) fn new(nodes: &[Node], constraints: &[Rows], pattern: &Pattern, symmetric: bool) -> Self {
+        let Order { position, starts } = Order::new(nodes, constraints, pattern);
+        let n = position.len();
+        let nv = nodes.iter().map(|n| n.kind.velocities()).sum::<usize>();
+        let mut is_multiplier = vec![false; n];
+        for &p in &position[nv..] {
+            is_multiplier[p] = true;
+        }
+        let mut moves: Vec<Move> = Vec::new();
+        for (unknown, &position) in position.iter().enumerate() {
+            match moves.last_mut() {
+                Some(m) if m.position + m.count == position => m.count += 1,
+                _ => moves.push(Move { unknown, position, count: 1 }),
+            }
+        }
+        let mut s = Structure {
+            n,
+            multipliers: n - nv,
+            symmetric,
+            position,
+            is_multiplier,
+            blocks: Vec::with_capacity(starts.len()),
+            diagonal: Vec::new(),
+            chain: false,
+            moves,
+            columns: Vec::new(),
+            entries: 0,
+            tiles: Vec::new(),
+            ends: Vec::with_capacity(pattern.len()),
+        };
+        s.add_blocks(&starts, pattern);
+        for k in 0..pattern.len() {
+            s.add_tiles(pattern.get(k));
+        }
+        s.diagonal = (0..n).map(|i| s.slot(s.position[i], s.position[i]) as u32).collect();
+        s
+    }
+
+    fn add_blocks(&mut self, starts: &[usize], pattern: &Pattern) {
+        let mut block_of = vec![0; self.n];
+        for (k, w) in starts.windows(2).enumerate() {
+            block_of[w[0]..w[1]].fill(k);
+        }
+        let mut couplings: Vec<(u32, u32)> = Vec::new();
+        let mut rows = Vec::new();
+        for k in 0..pattern.len() {
+            let columns = pattern.get(k).iter().map(|&d| self.position[d as usize]);
+            rows.clear();
+            rows.extend(columns.clone().map(|p| block_of[p]));
+            rows.sort_unstable();
+            rows.dedup();
+            for &b in &rows {
+                let below = |c: &usize| !self.symmetric || *c >= starts[b];
+                couplings.extend(columns.clone().filter(below).map(|c| (b as u32, c as u32)));
+            }
+        }
+        couplings.sort_unstable();
+        couplings.dedup();
+
+        let count = starts.len() - 1;
+        // the whole window of each block: from the one before, or from its own start, to the end of the next
+        let window = |b: usize| {
+            let from = if self.symmetric { starts[b] } else { starts[b.saturating_sub(1)] };
+            from..starts[(b + 2).min(count)]
+        };
+        self.chain = couplings.iter().all(|&(b, c)| window(b as usize).contains(&(c as usize)))
+            && (0..count).all(|b| starts[b + 1] - starts[b] <= LARGEST)
+            && (0..count).all(|b| starts[(b + 2).min(count)] - starts[b] <= WIDEST);
+        let mut rest = couplings.iter().peekable();
+        for b in 0..count {
+            let begin = self.columns.len();
+            if self.chain {
+                self.columns.extend(window(b).map(|c| c as u32));
+            } else {
+                while let Some(&(_, c)) = rest.next_if(|&&(row, _)| row as usize == b) {
+                    self.columns.push(c);
+                }
+                self.columns.extend(starts[b] as u32..starts[b + 1] as u32);
+                self.columns[begin..].sort_unstable();
+                let mut kept = begin;
+                for k in begin..self.columns.len() {
+                    if k == begin || self.columns[k] != self.columns[k - 1] {
+                        self.columns[kept] = self.columns[k];
+                        kept += 1;
+                    }
+                }
+                self.columns.truncate(kept);
+            }
+            let columns = &self.columns[begin..];
+            let run = match (columns.first(), columns.last()) {
+                (Some(&a), Some(&b)) if (b - a) as usize + 1 == columns.len() => Some(a as usize),
+                _ => None,
+            };
+            let size = starts[b + 1] - starts[b];
+            let columns = begin..self.columns.len();
+            self.blocks.push(Block { first: starts[b], size, base: self.entries, columns, run });
+            self.entries += size * (self.columns.len() - begin);
+        }
+    }
+
+    /// The tiles of a clique: pairs of runs that are neighbours in the matrix.
+    fn add_tiles(&mut self, clique: &[u32]) {
+        let place = |d: u32| self.position[d as usize];
+        // runs of the clique inside of one block
+        let mut runs: Vec<(usize, usize, usize)> = Vec::new();
+        for (k, &d) in clique.iter().enumerate() {
+            let (p, block) = (place(d), self.block_of(place(d)));
+            match runs.last_mut() {
+                Some((b, from, count)) if *b == block && place(clique[*from]) + *count == p => *count += 1,
+                _ => runs.push((block, k, 1)),
+            }
+        }
+        for &(block, row, rows) in &runs {
+            let b = &self.blocks[block];
+            let inside = place(clique[row]) - b.first;
+            let mut tiles: Vec<Tile> = Vec::new();
+            for &(other, column, columns) in &runs {
+                if self.symmetric && other < block {
+                    continue;
+                }
+                // every clique was entered above, so the column is there
+                let at = b.base + inside * b.width() + self.index_in(b, place(clique[column])).unwrap_or(0);
+                match tiles.last_mut() {
+                    Some(t)
+                        if t.at as usize + t.columns as usize == at
+                            && (t.column + t.columns) as usize == column =>
+                    {
+                        t.columns += columns as u16;
+                    }
+                    _ => tiles.push(Tile {
+                        at: at as u32,
+                        stride: b.width() as u32,
+                        row: row as u16,
+                        column: column as u16,
+                        rows: rows as u16,
+                        columns: columns as u16,
+                    }),
+                }
+            }
+            self.tiles.extend(tiles);
+        }
+        self.ends.push(self.tiles.len() as u32);
+    }
+
+    fn block_of(&self, position: usize) -> usize {
+        self.blocks.partition_point(|b| b.first <= position) - 1
+    }
+
+    fn index_in(&self, b: &Block, column: usize) -> Option<usize> {
+        self.columns[b.columns.clone()].binary_search(&(column as u32)).ok()
+    }
+
+    /// Brings a vector (velocities, then multipliers; or velocities alone) into elimination order.
+    pub fn order(&self, x: &[f64], out: &mut [f64]) {
+        for m in self.moves.iter().take_while(|m| m.unknown < x.len()) {
+            let count = m.count.min(x.len() - m.unknown);
+            out[m.position..m.position + count].copy_from_slice(&x[m.unknown..m.unknown + count]);
+        }
+    }
+
+    /// Brings a vector in elimination order back; `out` may hold velocities alone.
+    pub fn restore(&self, x: &[f64], out: &mut [f64]) {
+        let len = out.len();
+        for m in self.moves.iter().take_while(|m| m.unknown < len) {
+            let count = m.count.min(len - m.unknown);
+            out[m.unknown..m.unknown + count].copy_from_slice(&x[m.position..m.position + count]);
+        }
+    }
+
+    /// Adds a vector in elimination order to velocities and to multipliers.
+    pub(crate) fn add_restored(&self, x: &[f64], velocities: &mut [f64], multipliers: &mut [f64]) {
+        let nv = velocities.len();
+        for m in &self.moves {
+            let own = m.count.min(nv.saturating_sub(m.unknown));
+            let (x, begin) = (&x[m.position..m.position + m.count], m.unknown.min(nv));
+            velocities[begin..begin + own].iter_mut().zip(x).for_each(|(v, x)| *v += x);
+            let begin = (m.unknown + own).saturating_sub(nv);
+            multipliers[begin..begin + m.count - own].iter_mut().zip(&x[own..]).for_each(|(l, x)| *l += x);
+        }
+    }
+
+    /// Sets the rows of multipliers to zero.
+    pub fn clear_multipliers(&self, x: &mut [f64]) {
+        let velocities = self.n - self.multipliers;
+        for m in self.moves.iter().filter(|m| m.unknown + m.count > velocities) {
+            let skip = velocities.saturating_sub(m.unknown);
+            x[m.position + skip..m.position + m.count].fill(0.0);
+        }
+    }
+
+    /// Number of stored values.
+    pub fn entries(&self) -> usize {
+        self.entries
+    }
+
+    /// Where the entry of these positions is stored; it must be coupled.
+    pub(crate) fn slot(&self, row: usize, column: usize) -> usize {
+        let (row, column) = if self.symmetric && row > column { (column, row) } else { (row, column) };
+        let b = &self.blocks[self.block_of(row)];
+        let index = self.index_in(b, column);
+        debug_assert!(index.is_some(), "no entry at {row}, {column}");
+        b.base + (row - b.first) * b.width() + index.unwrap_or(0)
+    }
+
+    /// The tiles of a clique.
+    #[inline(always)]
+    pub(crate) fn tiles(&self, clique: usize) -> &[Tile] {
+        let begin = if clique == 0 { 0 } else { self.ends[clique - 1] };
+        &self.tiles[begin as usize..self.ends[clique] as usize]
+    }
+
+    /// Every row: its position, its columns, and where its values are stored. Of symmetric matrices from the diagonal
+    /// on.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, Columns<'_>, Range<usize>)> + '_ {
+        self.blocks.iter().flat_map(move |b| {
+            (0..b.size).map(move |i| {
+                let skip = if self.symmetric { i } else { 0 };
+                let columns = match b.run {
+                    Some(first) => Columns::From(first + skip),
+                    None => Columns::List(&self.columns[b.columns.start + skip..b.columns.end]),
+                };
+                let at = b.base + i * b.width();
+                (b.first + i, columns, at + skip..at + b.width())
+            })
+        })
+    }
+
+    /// `y = A x` in elimination order.
+    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for (r, columns, at) in self.rows() {
+            let values = &values[at];
+            let mut sum = 0.0;
+            match columns {
+                Columns::From(first) => {
+                    sum += values.iter().zip(&x[first..]).map(|(a, x)| a * x).sum::<f64>();
+                    if self.symmetric {
+                        for (a, y) in values[1..].iter().zip(&mut y[first + 1..]) {
+                            *y += a * x[r];
+                        }
+                    }
+                }
+                Columns::List(list) => {
+                    sum += values.iter().zip(list).map(|(a, &c)| a * x[c as usize]).sum::<f64>();
+                    if self.symmetric {
+                        for (a, &c) in values[1..].iter().zip(&list[1..]) {
+                            y[c as usize] += a * x[r];
+                        }
+                    }
+                }
+            }
+            y[r] += sum;
+        }
+    }
+
+    /// `xᵀ A x` in elimination order.
+    pub fn form(&self, values: &[f64], x: &[f64]) -> f64 {
+        let mut total = 0.0;
+        for (r, columns, at) in self.rows() {
+            let values = &values[at];
+            let sum: f64 = match columns {
+                Columns::From(first) => values.iter().zip(&x[first..]).map(|(a, x)| a * x).sum(),
+                Columns::List(list) => values.iter().zip(list).map(|(a, &c)| a * x[c as usize]).sum(),
+            };
+            // of a symmetric matrix each entry off the diagonal stands for two
+            total += x[r] * if self.symmetric { 2.0 * sum - values[0] * x[r] } else { sum };
+        }
+        total
+    }
+}
+
+#[cfg(test)]
+mod tests;
