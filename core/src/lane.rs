@@ -1,8 +1,9 @@
 //! One arithmetic trait and its carriers: the same kernel source runs one element or eight at once.
 //!
-//! [`Real`] is implemented by `f64` and by [`Pack`], an array of lanes that the compiler turns into vector
-//! instructions when the kernel is entered through [`run`]. Everything that a kernel calls must be
-//! `#[inline(always)]`: the processor features of the door reach only what is inlined behind it.
+//! [`Real`] is implemented by `f64`, by [`Pack`] (plain arrays, for any processor), and by the vector registers of
+//! newer processors, which no code can name: a kernel meets them only where [`run`] has found them. Everything that a
+//! kernel calls must be `#[inline(always)]`, closures in hot places avoided: the processor features of the door
+//! reach only what is inlined behind it.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -84,22 +85,20 @@ impl Real for f64 {
     }
 }
 
-/// `N` numbers side by side. `FUSED` may be true only behind a door that enables fused multiply-add.
+/// `N` numbers side by side, for any processor.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub struct Pack<const N: usize, const FUSED: bool>(pub [f64; N]);
+pub struct Pack<const N: usize>(pub [f64; N]);
 
 macro_rules! lanewise {
     ($tr:ident, $f:ident, $op:tt) => {
-        impl<const N: usize, const F: bool> $tr for Pack<N, F> {
+        impl<const N: usize> $tr for Pack<N> {
             type Output = Self;
             #[inline(always)]
-            fn $f(self, r: Self) -> Self {
-                let mut o = [0.0; N];
+            fn $f(mut self, r: Self) -> Self {
                 for i in 0..N {
-                    o[i] = self.0[i] $op r.0[i];
+                    self.0[i] = self.0[i] $op r.0[i];
                 }
-                Pack(o)
+                self
             }
         }
     };
@@ -109,27 +108,27 @@ lanewise!(Sub, sub, -);
 lanewise!(Mul, mul, *);
 lanewise!(Div, div, /);
 
-impl<const N: usize, const F: bool> Neg for Pack<N, F> {
+impl<const N: usize> Neg for Pack<N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
         Pack(self.0.map(|x| -x))
     }
 }
-impl<const N: usize, const F: bool> AddAssign for Pack<N, F> {
+impl<const N: usize> AddAssign for Pack<N> {
     #[inline(always)]
     fn add_assign(&mut self, r: Self) {
         *self = *self + r;
     }
 }
-impl<const N: usize, const F: bool> SubAssign for Pack<N, F> {
+impl<const N: usize> SubAssign for Pack<N> {
     #[inline(always)]
     fn sub_assign(&mut self, r: Self) {
         *self = *self - r;
     }
 }
 
-impl<const N: usize, const F: bool> Real for Pack<N, F> {
+impl<const N: usize> Real for Pack<N> {
     const LANES: usize = N;
     #[inline(always)]
     fn of(x: f64) -> Self {
@@ -145,19 +144,11 @@ impl<const N: usize, const F: bool> Real for Pack<N, F> {
     }
     #[inline(always)]
     fn fma(self, a: Self, b: Self) -> Self {
-        let mut o = [0.0; N];
-        for i in 0..N {
-            o[i] = if F { self.0[i].mul_add(a.0[i], b.0[i]) } else { self.0[i] * a.0[i] + b.0[i] };
-        }
-        Pack(o)
+        self * a + b
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let mut o = [0.0; N];
-        for i in 0..N {
-            o[i] = self.0[i].sqrt();
-        }
-        Pack(o)
+        Pack(self.0.map(f64::sqrt))
     }
     #[inline(always)]
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
@@ -165,11 +156,7 @@ impl<const N: usize, const F: bool> Real for Pack<N, F> {
     }
     #[inline(always)]
     fn if_gt(self, limit: Self, yes: Self, no: Self) -> Self {
-        let mut o = [0.0; N];
-        for i in 0..N {
-            o[i] = if self.0[i] > limit.0[i] { yes.0[i] } else { no.0[i] };
-        }
-        Pack(o)
+        Self::each(|i| if self.0[i] > limit.0[i] { yes.0[i] } else { no.0[i] })
     }
 }
 
@@ -245,19 +232,150 @@ fn has_avx512() -> bool {
     false
 }
 
-/// The whole of the project's unsafe code: two doors into code compiled for a newer processor.
+/// The whole of the project's unsafe code: the vector registers of newer processors, and a door to each.
+///
+/// The carriers are private, and nothing makes one but code behind its door. That is why their operations are safe:
+/// whoever holds one runs on a processor that has the instructions.
 #[cfg(target_arch = "x86_64")]
 #[allow(unsafe_code)]
 mod door {
-    use super::{LaneTask, Pack, has_avx2, has_avx512};
+    use super::{Add, AddAssign, Div, LaneTask, Mul, Neg, Real, Sub, SubAssign, has_avx2, has_avx512};
+    use std::arch::x86_64::*;
+
+    macro_rules! carrier {
+        ($name:ident, $register:ty, $lanes:literal, $set:ident, $load:ident, $store:ident, $add:ident, $sub:ident,
+         $mul:ident, $div:ident, $fma:ident, $sqrt:ident, |$x:ident, $limit:ident, $yes:ident, $no:ident| $if_gt:expr) => {
+            #[derive(Clone, Copy)]
+            struct $name($register);
+
+            impl $name {
+                #[inline(always)]
+                fn numbers(self) -> [f64; $lanes] {
+                    let mut x = [0.0; $lanes];
+                    // SAFETY: see the module; `x` has room for the register
+                    unsafe { $store(x.as_mut_ptr(), self.0) };
+                    x
+                }
+                #[inline(always)]
+                fn from(x: [f64; $lanes]) -> Self {
+                    // SAFETY: see the module; `x` fills the register
+                    $name(unsafe { $load(x.as_ptr()) })
+                }
+            }
+            carrier!($name, Add, add, $add);
+            carrier!($name, Sub, sub, $sub);
+            carrier!($name, Mul, mul, $mul);
+            carrier!($name, Div, div, $div);
+            impl Neg for $name {
+                type Output = Self;
+                #[inline(always)]
+                fn neg(self) -> Self {
+                    Self::of(-0.0) - self
+                }
+            }
+            impl AddAssign for $name {
+                #[inline(always)]
+                fn add_assign(&mut self, r: Self) {
+                    *self = *self + r;
+                }
+            }
+            impl SubAssign for $name {
+                #[inline(always)]
+                fn sub_assign(&mut self, r: Self) {
+                    *self = *self - r;
+                }
+            }
+            impl Real for $name {
+                const LANES: usize = $lanes;
+                #[inline(always)]
+                fn of(x: f64) -> Self {
+                    // SAFETY: see the module
+                    $name(unsafe { $set(x) })
+                }
+                #[inline(always)]
+                fn each(mut f: impl FnMut(usize) -> f64) -> Self {
+                    let mut x = [0.0; $lanes];
+                    for i in 0..$lanes {
+                        x[i] = f(i);
+                    }
+                    Self::from(x)
+                }
+                #[inline(always)]
+                fn lane(self, lane: usize) -> f64 {
+                    self.numbers()[lane]
+                }
+                #[inline(always)]
+                fn fma(self, a: Self, b: Self) -> Self {
+                    // SAFETY: see the module
+                    $name(unsafe { $fma(self.0, a.0, b.0) })
+                }
+                #[inline(always)]
+                fn sqrt(self) -> Self {
+                    // SAFETY: see the module
+                    $name(unsafe { $sqrt(self.0) })
+                }
+                #[inline(always)]
+                fn map(self, f: impl Fn(f64) -> f64) -> Self {
+                    let x = self.numbers();
+                    Self::each(|i| f(x[i]))
+                }
+                #[inline(always)]
+                fn if_gt(self, limit: Self, yes: Self, no: Self) -> Self {
+                    let ($x, $limit, $yes, $no) = (self.0, limit.0, yes.0, no.0);
+                    // SAFETY: see the module
+                    $name(unsafe { $if_gt })
+                }
+            }
+        };
+        ($name:ident, $tr:ident, $f:ident, $intrinsic:ident) => {
+            impl $tr for $name {
+                type Output = Self;
+                #[inline(always)]
+                fn $f(self, r: Self) -> Self {
+                    // SAFETY: see the module
+                    $name(unsafe { $intrinsic(self.0, r.0) })
+                }
+            }
+        };
+    }
+    carrier!(
+        Avx2,
+        __m256d,
+        4,
+        _mm256_set1_pd,
+        _mm256_loadu_pd,
+        _mm256_storeu_pd,
+        _mm256_add_pd,
+        _mm256_sub_pd,
+        _mm256_mul_pd,
+        _mm256_div_pd,
+        _mm256_fmadd_pd,
+        _mm256_sqrt_pd,
+        |x, limit, yes, no| _mm256_blendv_pd(no, yes, _mm256_cmp_pd::<_CMP_GT_OQ>(x, limit))
+    );
+    carrier!(
+        Avx512,
+        __m512d,
+        8,
+        _mm512_set1_pd,
+        _mm512_loadu_pd,
+        _mm512_storeu_pd,
+        _mm512_add_pd,
+        _mm512_sub_pd,
+        _mm512_mul_pd,
+        _mm512_div_pd,
+        _mm512_fmadd_pd,
+        _mm512_sqrt_pd,
+        |x, limit, yes, no| _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit), no, yes)
+    );
 
     #[target_feature(enable = "avx2,fma")]
     fn inside_avx2(task: impl LaneTask) {
-        task.go::<Pack<4, true>>();
+        task.go::<Avx2>();
     }
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
     fn inside_avx512(task: impl LaneTask) {
-        task.go::<Pack<8, true>>();
+        task.go::<Avx512>();
     }
     pub fn avx2(task: impl LaneTask) {
         debug_assert!(has_avx2());

@@ -73,7 +73,7 @@ pub trait Law: Send + Sync + 'static {
 }
 
 /// Eight numbers in memory: how stations and loads pass between elements and laws that are compiled apart.
-type Wide = Pack<8, false>;
+type Wide = Pack<8>;
 const STATION: usize = 19;
 const LOAD: usize = 39;
 

@@ -127,7 +127,7 @@ pub fn check_law(law: &impl Law, t: f64, at: &Station<f64>) -> f64 {
         }
     }
     let mut pack = Load::zero();
-    law.load::<Pack<2, false>, true>(t, &spread(at), &mut pack);
+    law.load::<Pack<2>, true>(t, &spread(at), &mut pack);
     worst.max(column_error(&[numbers(&load, 0)], &[numbers(&pack, 1)], size))
 }
 

@@ -6,7 +6,7 @@
 use super::longitudinal::{Longitudinal, Strain};
 use super::model::{CableModel, LongitudinalModel, Sink, WithModels, with_models};
 use super::quadrature::{Quadrature, Rule};
-use super::reduced::Reduced;
+use super::reduced::{Reduced, add_product};
 use super::shape::{Natural, dot9, natural};
 use super::transverse::{Curve, Transverse};
 use ropewalk_core::{Batch, Element, Energy, Local, NodeId, Power, Real, Share, Weights};
@@ -34,13 +34,18 @@ impl<L: Longitudinal, Q: Quadrature> AxialDamping<L, Q> {
 /// `s a + t b`
 #[inline(always)]
 fn blend<R: Real>(s: R, a: &Natural<R>, t: R, b: &Natural<R>) -> Natural<R> {
-    std::array::from_fn(|i| std::array::from_fn(|c| s.fma(a[i][c], t * b[i][c])))
+    let mut sum = *a;
+    for i in 0..3 {
+        for c in 0..3 {
+            sum[i][c] = s.fma(a[i][c], t * b[i][c]);
+        }
+    }
+    sum
 }
 
 impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
     /// `[L, η EA]`
     type Lanes<R: Real> = [R; 2];
-    const WIDE: bool = false;
     const SYMMETRIC: bool = false;
 
     fn label() -> String {
@@ -68,13 +73,13 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
             local.add_force(force, &gradient);
             if TANGENT {
                 let rate_by = blend(R::of(w.q), &strain.turn(&v), R::of(w.v), &gradient);
-                local.add_product(c, &gradient, &rate_by);
+                add_product(c, &gradient, &rate_by, il, out);
                 strain.add_hessian(R::of(w.q) * force, &mut local);
             }
         }
         local.spread_force(il, out);
         if TANGENT {
-            local.spread_all(il, R::of(1.0), out);
+            local.spread_tangent(il, R::of(1.0), out);
         }
     }
     fn energy(_: &[f64; 2], _: &Local<f64, 12, 12>) -> Energy {
@@ -116,7 +121,6 @@ impl<T: Transverse, Q: Quadrature> BendingDamping<T, Q> {
 impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingDamping<T, Q> {
     /// `[L, η EI, κ₀]`
     type Lanes<R: Real> = [R; 3];
-    const WIDE: bool = false;
     const SYMMETRIC: bool = false;
 
     fn label() -> String {
@@ -147,13 +151,13 @@ impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingDamping<T, Q> {
             if TANGENT {
                 let wq = R::of(w.q);
                 let rate_by = blend(wq, &curve.turn(&v), R::of(w.v) - wq * rate * i, &gradient);
-                local.add_product(m, &gradient, &rate_by);
+                add_product(m, &gradient, &rate_by, il, out);
                 curve.add_hessian(wq * m * rate, &mut local);
             }
         }
         local.spread_force(il, out);
         if TANGENT {
-            local.spread_all(il, R::of(1.0), out);
+            local.spread_tangent(il, R::of(1.0), out);
         }
     }
     fn energy(_: &[f64; 3], _: &Local<f64, 12, 12>) -> Energy {

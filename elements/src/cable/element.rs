@@ -3,7 +3,7 @@
 use super::longitudinal::{Longitudinal, add_axial, axial_energy};
 use super::quadrature::Rule;
 use super::reduced::Reduced;
-use super::relaxed::add_relaxed;
+use super::relaxed::{add_relaxed, capped};
 use super::shape::natural;
 use super::transverse::{Transverse, bending_energy};
 use ropewalk_core::{Batch, Element, Energy, Local, Real, Share, Weights};
@@ -91,23 +91,22 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
         let il = R::of(1.0) / p.l;
         let q = natural(&x.q, il);
         let mut local = Reduced::zero();
+        let mut ea = p.ea;
         // the pool relaxes in scalar only, so wide copies needn't know how
         if R::LANES == 1
             && let Some(how) = &x.relaxed
         {
             let last = natural(&x.last, il);
+            ea = capped(p, how.ramp, how.load);
             add_relaxed::<L, T, Q, R, TANGENT>(p, how, il, &q, &last, &mut local);
         } else {
-            add_axial::<L, Q::Axial, R, TANGENT>(p.ea * p.l, &q, &mut local);
+            add_axial::<L, Q::Axial, R, TANGENT>(ea * p.l, &q, &mut local);
             T::add::<Q::Bending, R, TANGENT>(p.ei, p.l, il, &q, &mut local);
         }
         local.spread_force(il, out);
         if TANGENT {
-            if L::SYMMETRIC {
-                local.spread_symmetric(il, R::of(w.q), out);
-            } else {
-                local.spread_all(il, R::of(w.q), out);
-            }
+            local.spread_tangent(il, R::of(w.q), out);
+            L::add_unsymmetric(R::of(w.q) * ea * p.l, &q, il, out);
         }
         add_mass::<R, TANGENT>(p, &x.a, w.a, out);
     }

@@ -2,9 +2,9 @@
 
 use super::longitudinal::{Longitudinal, MeanGreen, Strain, Stretch};
 use super::quadrature::{Point, Quadrature, WHOLE};
-use super::reduced::Reduced;
+use super::reduced::{Reduced, add_product};
 use super::shape::Natural;
-use ropewalk_core::Real;
+use ropewalk_core::{Real, Share};
 
 /// **Not conservative.** Force `EA ε Ŝ e` with `ε` the strain of the chord and `Ŝ = ∫ S'ᵀS' dx`: a "stiffness
 /// matrix" `K(e) = EA ε Ŝ` times `e`, as the equations were printed when the strain inside `K` was taken as known.
@@ -30,6 +30,11 @@ impl Longitudinal for L1n {
     #[inline(always)]
     fn strain<R: Real>(q: &Natural<R>, _: &Point) -> Frozen<R> {
         Frozen { chord: Stretch::engineering(q, WHOLE[0].phi), mean: MeanGreen::new(q) }
+    }
+    #[inline(always)]
+    fn add_unsymmetric<R: Real>(material: R, q: &Natural<R>, il: R, out: &mut Share<R, 12>) {
+        let Frozen { chord, mean } = Self::strain(q, &WHOLE[0]);
+        add_product(material, &mean.gradient(), &chord.gradient(), il, out);
     }
 }
 
@@ -62,8 +67,7 @@ impl<R: Real> Strain<R> for Frozen<R> {
         self.mean.add_hessian(s, out);
     }
     #[inline(always)]
-    fn add_stiffness(&self, material: R, stress: R, out: &mut Reduced<R>) {
-        out.add_product(material, &self.mean.gradient(), &self.chord.gradient());
+    fn add_stiffness(&self, _: R, stress: R, out: &mut Reduced<R>) {
         self.mean.add_hessian(stress, out);
     }
 }

@@ -7,7 +7,7 @@
 use super::quadrature::{Point, Quadrature};
 use super::reduced::Reduced;
 use super::shape::{Natural, combine, dot9};
-use ropewalk_core::{Real, V3, dot};
+use ropewalk_core::{Real, Share, V3, dot};
 
 /// A longitudinal model.
 pub trait Longitudinal: Copy + Send + Sync + 'static {
@@ -27,6 +27,9 @@ pub trait Longitudinal: Copy + Send + Sync + 'static {
     }
     /// The strain at one of these points.
     fn strain<R: Real>(q: &Natural<R>, at: &Point) -> Self::Strain<R>;
+    /// Adds the part of the tangent that has no symmetry, times `material`: none, for a conservative model.
+    #[inline(always)]
+    fn add_unsymmetric<R: Real>(_material: R, _q: &Natural<R>, _il: R, _out: &mut Share<R, 12>) {}
 }
 
 /// A strain ε of the natural variables `q`, with its derivatives.
@@ -41,7 +44,7 @@ pub trait Strain<R: Real> {
     fn turn(&self, v: &Natural<R>) -> Natural<R>;
     /// Adds `s ∂²ε/∂q²`.
     fn add_hessian(&self, s: R, out: &mut Reduced<R>);
-    /// Adds `material ∂ε ∂εᵀ + stress ∂²ε`.
+    /// Adds `material ∂ε ∂εᵀ + stress ∂²ε`, so far as it is symmetric.
     #[inline(always)]
     fn add_stiffness(&self, material: R, stress: R, out: &mut Reduced<R>) {
         out.add_square(material, &self.gradient());
@@ -86,10 +89,14 @@ impl<R: Real> Stretch<R> {
     /// The natural force that a force `s v` on `p` makes.
     #[inline(always)]
     fn lift(&self, s: R, v: &V3<R>) -> Natural<R> {
-        self.phi.map(|f| {
-            let sf = s * R::of(f);
-            v.map(|x| sf * x)
-        })
+        let mut g = [*v; 3];
+        for i in 0..3 {
+            let sf = s * R::of(self.phi[i]);
+            for c in 0..3 {
+                g[i][c] = sf * v[c];
+            }
+        }
+        g
     }
     /// Adds `unit φφᵀ ⊗ I + square φφᵀ ⊗ ppᵀ`.
     #[inline(always)]
@@ -133,7 +140,11 @@ impl<R: Real> Strain<R> for Stretch<R> {
     fn turn(&self, v: &Natural<R>) -> Natural<R> {
         let d = combine(&self.phi, v);
         let along = self.h * dot(&self.p, &d);
-        self.lift(R::of(1.0), &std::array::from_fn(|c| along.fma(self.p[c], self.n * d[c])))
+        let mut turn = d;
+        for c in 0..3 {
+            turn[c] = along.fma(self.p[c], self.n * d[c]);
+        }
+        self.lift(R::of(1.0), &turn)
     }
     #[inline(always)]
     fn add_hessian(&self, s: R, out: &mut Reduced<R>) {
@@ -165,11 +176,12 @@ impl<R: Real> MeanGreen<R> {
     #[inline(always)]
     fn matrix(v: &Natural<R>) -> Natural<R> {
         let (d, o) = (R::of(2.0 / 15.0), R::of(-1.0 / 30.0));
-        [
-            v[0],
-            std::array::from_fn(|c| d.fma(v[1][c], o * v[2][c])),
-            std::array::from_fn(|c| d.fma(v[2][c], o * v[1][c])),
-        ]
+        let mut m = *v;
+        for c in 0..3 {
+            m[1][c] = d.fma(v[1][c], o * v[2][c]);
+            m[2][c] = d.fma(v[2][c], o * v[1][c]);
+        }
+        m
     }
 }
 

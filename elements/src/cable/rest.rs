@@ -60,14 +60,16 @@ pub struct RestLanes<R> {
 
 impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialRest<L, Q> {
     type Lanes<R: Real> = RestLanes<R>;
-    const WIDE: bool = false;
 
     fn label() -> String {
         format!("stress-free strain {} {}", L::LABEL, Q::LABEL)
     }
     #[inline(always)]
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> RestLanes<R> {
-        let rest = std::array::from_fn(|k| batch.get(|e| e.eps0[k]));
+        let mut rest = [R::zero(); MOST];
+        for k in 0..MOST {
+            rest[k] = batch.get(|e| e.eps0[k]);
+        }
         RestLanes { l: batch.get(|e| e.l), stiffness: batch.get(|e| e.ea), rest }
     }
     #[inline(always)]
@@ -90,7 +92,7 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialRest<L, Q> {
         }
         local.spread_force(il, out);
         if TANGENT {
-            local.spread_symmetric(il, R::of(w.q), out);
+            local.spread_tangent(il, R::of(w.q), out);
         }
     }
     fn energy(p: &RestLanes<f64>, x: &Local<f64, 12, 12>) -> Energy {
@@ -138,14 +140,16 @@ impl<T: Transverse, Q: Quadrature> BendingRest<T, Q> {
 
 impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingRest<T, Q> {
     type Lanes<R: Real> = RestLanes<R>;
-    const WIDE: bool = false;
 
     fn label() -> String {
         format!("stress-free curvature {} {}", T::LABEL, Q::LABEL)
     }
     #[inline(always)]
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> RestLanes<R> {
-        let rest = std::array::from_fn(|k| batch.get(|e| e.kappa0[k]));
+        let mut rest = [R::zero(); MOST];
+        for k in 0..MOST {
+            rest[k] = batch.get(|e| e.kappa0[k]);
+        }
         RestLanes { l: batch.get(|e| e.l), stiffness: batch.get(|e| e.ei), rest }
     }
     #[inline(always)]
@@ -173,7 +177,7 @@ impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingRest<T, Q> {
         }
         local.spread_force(il, out);
         if TANGENT {
-            local.spread_symmetric(il, R::of(w.q), out);
+            local.spread_tangent(il, R::of(w.q), out);
         }
     }
     fn energy(p: &RestLanes<f64>, x: &Local<f64, 12, 12>) -> Energy {

@@ -31,20 +31,33 @@ pub fn hermite_slope<R: Real>(xi: f64, il: R) -> [R; 4] {
 /// `[Δ, α, β]` of the twelve dofs, or their rates if `e` holds velocities; `il = 1/L`.
 #[inline(always)]
 pub fn natural<R: Real>(e: &[R; 12], il: R) -> Natural<R> {
-    let delta: V3<R> = std::array::from_fn(|c| (e[6 + c] - e[c]) * il);
-    [delta, std::array::from_fn(|c| e[3 + c] - delta[c]), std::array::from_fn(|c| e[9 + c] - delta[c])]
+    let mut q = [[R::zero(); 3]; 3];
+    for c in 0..3 {
+        q[0][c] = (e[6 + c] - e[c]) * il;
+        q[1][c] = e[3 + c] - q[0][c];
+        q[2][c] = e[9 + c] - q[0][c];
+    }
+    q
 }
 
 /// `Σ c_i q_i`: the slope `r'` for `c = phi`.
 #[inline(always)]
 pub fn combine<R: Real>(c: &[f64; 3], q: &Natural<R>) -> V3<R> {
-    std::array::from_fn(|i| R::of(c[0]).fma(q[0][i], R::of(c[1]).fma(q[1][i], R::of(c[2]) * q[2][i])))
+    let mut p = q[0];
+    for i in 0..3 {
+        p[i] = R::of(c[0]).fma(q[0][i], R::of(c[1]).fma(q[1][i], R::of(c[2]) * q[2][i]));
+    }
+    p
 }
 
 /// Second derivative `r'' = (ψ₁ α + ψ₂ β)/L`.
 #[inline(always)]
 pub fn second<R: Real>(psi: &[f64; 2], il: R, q: &Natural<R>) -> V3<R> {
-    std::array::from_fn(|i| il * R::of(psi[0]).fma(q[1][i], R::of(psi[1]) * q[2][i]))
+    let mut d = q[1];
+    for i in 0..3 {
+        d[i] = il * R::of(psi[0]).fma(q[1][i], R::of(psi[1]) * q[2][i]);
+    }
+    d
 }
 
 /// Scalar product over all nine natural variables.

@@ -119,11 +119,13 @@ impl<R: Real> Curve<R> {
     /// The natural force of a force `gp` on `r'` and `gq` on `r''`.
     #[inline(always)]
     fn lift(&self, gp: &V3<R>, gq: &V3<R>) -> Natural<R> {
-        let row = |i: usize| -> V3<R> {
-            let f = R::of(self.phi[i]);
-            std::array::from_fn(|c| f.fma(gp[c], self.psi[i] * gq[c]))
-        };
-        [*gp, row(1), row(2)]
+        let mut g = [*gp; 3];
+        for i in 1..3 {
+            for c in 0..3 {
+                g[i][c] = R::of(self.phi[i]).fma(gp[c], self.psi[i] * gq[c]);
+            }
+        }
+        g
     }
 
     /// Gradient of κ².
@@ -131,8 +133,11 @@ impl<R: Real> Curve<R> {
     pub fn gradient(&self) -> Natural<R> {
         let s = &self.square;
         let (a, c) = (s.a + s.a, s.c + s.c);
-        let gp = std::array::from_fn(|i| a.fma(self.p[i], s.b * self.q[i]));
-        let gq = std::array::from_fn(|i| c.fma(self.q[i], s.b * self.p[i]));
+        let (mut gp, mut gq) = (self.p, self.q);
+        for i in 0..3 {
+            gp[i] = a.fma(self.p[i], s.b * self.q[i]);
+            gq[i] = c.fma(self.q[i], s.b * self.p[i]);
+        }
         self.lift(&gp, &gq)
     }
 
@@ -147,15 +152,21 @@ impl<R: Real> Curve<R> {
     pub fn turn(&self, v: &Natural<R>) -> Natural<R> {
         let (s, p, q) = (&self.square, &self.p, &self.q);
         let dp = combine(&self.phi, v);
-        let dq: V3<R> = std::array::from_fn(|c| self.psi[1].fma(v[1][c], self.psi[2] * v[2][c]));
+        let mut dq = dp;
+        for c in 0..3 {
+            dq[c] = self.psi[1].fma(v[1][c], self.psi[2] * v[2][c]);
+        }
         let two = R::of(2.0);
         let (da, db, dc) = (two * dot(p, &dp), dot(&dp, q) + dot(p, &dq), two * dot(q, &dq));
         let va = two * (s.aa * da + s.ab * db + s.ac * dc);
         let vb = s.ab * da + s.bb * db;
         let vc = two * s.ac * da;
         let (a, c) = (two * s.a, two * s.c);
-        let gp = std::array::from_fn(|i| va * p[i] + vb * q[i] + a * dp[i] + s.b * dq[i]);
-        let gq = std::array::from_fn(|i| vb * p[i] + vc * q[i] + s.b * dp[i] + c * dq[i]);
+        let (mut gp, mut gq) = (dp, dq);
+        for i in 0..3 {
+            gp[i] = va.fma(p[i], vb.fma(q[i], a.fma(dp[i], s.b * dq[i])));
+            gq[i] = vb.fma(p[i], vc.fma(q[i], s.b.fma(dp[i], c * dq[i])));
+        }
         self.lift(&gp, &gq)
     }
 
