@@ -32,6 +32,18 @@ pub trait Real:
     fn each(f: impl FnMut(usize) -> f64) -> Self;
     /// The number in one lane.
     fn lane(self, lane: usize) -> f64;
+    /// Four values from the four numbers that each lane has side by side in memory: `f(lane)`.
+    #[inline(always)]
+    fn from_rows(f: impl Fn(usize) -> [f64; 4]) -> [Self; 4] {
+        [0, 1, 2, 3].map(|i| Self::each(|l| f(l)[i]))
+    }
+    /// The way back: hands `f` each lane with its four numbers.
+    #[inline(always)]
+    fn to_rows(values: [Self; 4], mut f: impl FnMut(usize, [f64; 4])) {
+        for l in 0..Self::LANES {
+            f(l, [values[0].lane(l), values[1].lane(l), values[2].lane(l), values[3].lane(l)]);
+        }
+    }
     /// `self * a + b`, fused where the processor does it for free.
     fn fma(self, a: Self, b: Self) -> Self;
     /// Square root.
@@ -244,7 +256,8 @@ mod door {
 
     macro_rules! carrier {
         ($name:ident, $register:ty, $lanes:literal, $set:ident, $load:ident, $store:ident, $add:ident, $sub:ident,
-         $mul:ident, $div:ident, $fma:ident, $sqrt:ident, |$x:ident, $limit:ident, $yes:ident, $no:ident| $if_gt:expr) => {
+         $mul:ident, $div:ident, $fma:ident, $sqrt:ident, |$x:ident, $limit:ident, $yes:ident, $no:ident| $if_gt:expr,
+         |$get:ident| $from_rows:expr, |$values:ident, $put:ident| $to_rows:expr) => {
             #[derive(Clone, Copy)]
             struct $name($register);
 
@@ -305,6 +318,16 @@ mod door {
                     self.numbers()[lane]
                 }
                 #[inline(always)]
+                fn from_rows($get: impl Fn(usize) -> [f64; 4]) -> [Self; 4] {
+                    // SAFETY: see the module
+                    unsafe { $from_rows }
+                }
+                #[inline(always)]
+                fn to_rows($values: [Self; 4], mut $put: impl FnMut(usize, [f64; 4])) {
+                    // SAFETY: see the module
+                    unsafe { $to_rows }
+                }
+                #[inline(always)]
                 fn fma(self, a: Self, b: Self) -> Self {
                     // SAFETY: see the module
                     $name(unsafe { $fma(self.0, a.0, b.0) })
@@ -351,7 +374,14 @@ mod door {
         _mm256_div_pd,
         _mm256_fmadd_pd,
         _mm256_sqrt_pd,
-        |x, limit, yes, no| _mm256_blendv_pd(no, yes, _mm256_cmp_pd::<_CMP_GT_OQ>(x, limit))
+        |x, limit, yes, no| _mm256_blendv_pd(no, yes, _mm256_cmp_pd::<_CMP_GT_OQ>(x, limit)),
+        |get| transpose([0, 1, 2, 3].map(|l| Avx2::from(get(l)).0)).map(Avx2),
+        |values, put| {
+            let rows = transpose(values.map(|v| v.0));
+            for l in 0..4 {
+                put(l, Avx2(rows[l]).numbers());
+            }
+        }
     );
     carrier!(
         Avx512,
@@ -366,8 +396,37 @@ mod door {
         _mm512_div_pd,
         _mm512_fmadd_pd,
         _mm512_sqrt_pd,
-        |x, limit, yes, no| _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit), no, yes)
+        |x, limit, yes, no| _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit), no, yes),
+        |get| {
+            let low = transpose([0, 1, 2, 3].map(|l| Avx2::from(get(l)).0));
+            let high = transpose([4, 5, 6, 7].map(|l| Avx2::from(get(l)).0));
+            [0, 1, 2, 3].map(|i| Avx512(_mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low[i]), high[i])))
+        },
+        |values, put| {
+            let low = transpose(values.map(|v| _mm512_castpd512_pd256(v.0)));
+            let high = transpose(values.map(|v| _mm512_extractf64x4_pd::<1>(v.0)));
+            for l in 0..4 {
+                put(l, Avx2(low[l]).numbers());
+                put(4 + l, Avx2(high[l]).numbers());
+            }
+        }
     );
+
+    /// Four registers of four numbers, rows for columns. Only behind a door.
+    #[inline(always)]
+    unsafe fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
+        // SAFETY: the caller is behind a door
+        unsafe {
+            let (ab, ab_odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+            let (cd, cd_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+            [
+                _mm256_permute2f128_pd::<0x20>(ab, cd),
+                _mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd),
+                _mm256_permute2f128_pd::<0x31>(ab, cd),
+                _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd),
+            ]
+        }
+    }
 
     #[target_feature(enable = "avx2,fma")]
     fn inside_avx2(task: impl LaneTask) {
@@ -412,6 +471,30 @@ mod tests {
                 let y = x.fma(x, x.sqrt());
                 *self.1 += (0..R::LANES).map(|l| y.lane(l)).sum::<f64>();
             }
+        }
+    }
+
+    struct Turn<'a>(&'a [[f64; 4]; 8], &'a mut [[f64; 4]; 8]);
+    impl LaneTask for Turn<'_> {
+        #[inline(always)]
+        fn go<R: Real>(self) {
+            for first in (0..8).step_by(R::LANES) {
+                let values = R::from_rows(|l| self.0[first + l]);
+                for (i, v) in values.iter().enumerate() {
+                    assert_eq!(v.lane(R::LANES - 1), self.0[first + R::LANES - 1][i]);
+                }
+                R::to_rows(values, |l, row| self.1[first + l] = row);
+            }
+        }
+    }
+
+    #[test]
+    fn rows_go_into_lanes_and_come_back() {
+        let rows: [[f64; 4]; 8] = std::array::from_fn(|l| std::array::from_fn(|i| (10 * l + i) as f64));
+        for width in [Width::One, Width::Four, Width::Eight] {
+            let mut back = [[0.0; 4]; 8];
+            run(width, Turn(&rows, &mut back));
+            assert_eq!(back, rows);
         }
     }
 

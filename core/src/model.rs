@@ -3,8 +3,8 @@
 use crate::constraint::{Constraint, MOST_ROWS, RowKind};
 use crate::lane::Width;
 use crate::node::{Node, NodeId, NodeKind, retract};
-use crate::part::Part;
 use crate::order::Rows;
+use crate::part::Part;
 use crate::pattern::Pattern;
 use crate::state::{At, Control, State};
 use crate::structure::Structure;

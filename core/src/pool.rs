@@ -147,18 +147,69 @@ impl<const M: usize> Places<M> {
             Places::List(list) => list[i] as usize,
         })
     }
+    /// The numbers at the places of each lane, side by side.
     #[inline(always)]
-    fn read(&self, x: &[f64], out: &mut [f64; M]) {
-        match self {
-            Places::From(first) => out.copy_from_slice(&x[*first as usize..][..M]),
-            Places::List(list) => *out = std::array::from_fn(|i| x[list[i] as usize]),
+    fn gather<'a, R: Real>(x: &[f64], of: impl Fn(usize) -> &'a Self) -> [R; M] {
+        let mut out = [R::zero(); M];
+        let mut rows: [&[f64; M]; MOST_LANES] = [&[0.0; M]; MOST_LANES];
+        let mut neighbours = true;
+        for l in 0..R::LANES {
+            match of(l) {
+                Places::From(first) => match x[*first as usize..].first_chunk() {
+                    Some(row) => rows[l] = row,
+                    None => neighbours = false,
+                },
+                Places::List(_) => neighbours = false,
+            }
         }
+        if neighbours {
+            let whole = M / 4 * 4;
+            for j in (0..whole).step_by(4) {
+                let four = R::from_rows(|l| [rows[l][j], rows[l][j + 1], rows[l][j + 2], rows[l][j + 3]]);
+                out[j..j + 4].copy_from_slice(&four);
+            }
+            for j in whole..M {
+                out[j] = R::each(|l| rows[l][j]);
+            }
+        } else {
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = R::each(|l| match of(l) {
+                    Places::From(first) => x[*first as usize + i],
+                    Places::List(list) => x[list[i] as usize],
+                });
+            }
+        }
+        out
     }
 }
 
-/// Numbers of up to eight elements, one element after the other, on their way into lanes and out of them.
-type ByElement<const M: usize> = [[f64; M]; MOST_LANES];
+/// More lanes than this has no processor.
 const MOST_LANES: usize = 8;
+
+/// Blocks of tangents on their way out of lanes, one element after the other.
+pub(crate) struct Blocks<const N: usize>([[[f64; N]; N]; MOST_LANES]);
+
+impl<const N: usize> Blocks<N> {
+    /// Room for a batch, to be used again for the next.
+    pub fn new() -> Self {
+        Blocks([[[0.0; N]; N]; MOST_LANES])
+    }
+}
+
+/// Hands out the numbers of each lane, several at a time: `put(lane, first index, numbers)`.
+#[inline(always)]
+fn unpack<R: Real, const N: usize>(values: &[R; N], mut put: impl FnMut(usize, usize, &[f64])) {
+    let whole = N / 4 * 4;
+    for j in (0..whole).step_by(4) {
+        let four = [values[j], values[j + 1], values[j + 2], values[j + 3]];
+        R::to_rows(four, |l, row| put(l, j, &row));
+    }
+    for j in whole..N {
+        for l in 0..R::LANES {
+            put(l, j, &[values[j].lane(l)]);
+        }
+    }
+}
 
 impl<const Q: usize, const N: usize> Seat<Q, N> {
     /// The seat of an element on these nodes, or `None` if their kinds don't add up to `Q` and `N`.
@@ -172,56 +223,46 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
     #[inline(always)]
     pub fn gather<R: Real>(seats: &[Self], at: &At<'_>) -> Local<R, Q, N> {
         let last = seats.len() - 1;
-        let (mut q, mut v): (ByElement<Q>, ByElement<N>) = ([[0.0; Q]; MOST_LANES], [[0.0; N]; MOST_LANES]);
-        let (mut a, mut d) = (v, v);
-        for l in 0..R::LANES {
-            let seat = &seats[l.min(last)];
-            seat.q.read(at.q, &mut q[l]);
-            seat.v.read(at.v, &mut v[l]);
-            seat.v.read(at.a, &mut a[l]);
-            if let Some(Relaxed { last: Some(x), .. }) = at.relaxed {
-                seat.v.read(x, &mut d[l]);
-            }
-        }
-        let mut local = Local {
-            q: [R::zero(); Q],
-            v: [R::zero(); N],
-            a: [R::zero(); N],
-            last: [R::zero(); N],
+        Local {
+            q: Places::gather(at.q, |l| &seats[l.min(last)].q),
+            v: Places::gather(at.v, |l| &seats[l.min(last)].v),
+            a: Places::gather(at.a, |l| &seats[l.min(last)].v),
+            last: match at.relaxed {
+                Some(Relaxed { last: Some(d), .. }) => Places::gather(d, |l| &seats[l.min(last)].v),
+                _ => [R::zero(); N],
+            },
             relaxed: at.relaxed.map(|r| r.how),
-        };
-        for i in 0..Q {
-            local.q[i] = R::each(|l| q[l][i]);
         }
-        for i in 0..N {
-            local.v[i] = R::each(|l| v[l][i]);
-            local.a[i] = R::each(|l| a[l][i]);
-            local.last[i] = R::each(|l| d[l][i]);
-        }
-        local
     }
     /// Scatters what a batch computed; `first` is the clique of its first element.
     #[inline(always)]
-    pub fn scatter<R: Real>(seats: &[Self], first: usize, share: &Share<R, N>, out: &mut Assembly<'_>) {
-        for (l, seat) in seats.iter().enumerate() {
-            let r: [f64; N] = std::array::from_fn(|i| share.r[i].lane(l));
+    pub fn scatter<R: Real>(
+        seats: &[Self],
+        first: usize,
+        share: &Share<R, N>,
+        blocks: &mut Blocks<N>,
+        out: &mut Assembly<'_>,
+    ) {
+        let rows = &mut blocks.0;
+        unpack(&share.r, |l, j, r| rows[l][0][j..j + r.len()].copy_from_slice(r));
+        for (row, seat) in rows.iter().zip(seats) {
             match &seat.v {
-                Places::From(first) => out.add_run(*first as usize, &r),
+                Places::From(first) => out.add_run(*first as usize, &row[0]),
                 Places::List(list) => {
                     for i in 0..N {
-                        out.add(list[i] as usize, r[i]);
+                        out.add(list[i] as usize, row[0][i]);
                     }
                 }
             }
-            if out.wants_tangent() {
-                let mut k = [[0.0; N]; N];
-                for i in 0..N {
-                    for j in 0..N {
-                        k[i][j] = share.k[i][j].lane(l);
-                    }
-                }
-                out.add_square(first + l, &k);
-            }
+        }
+        if !out.wants_tangent() {
+            return;
+        }
+        for i in 0..N {
+            unpack(&share.k[i], |l, j, k| rows[l][i][j..j + k.len()].copy_from_slice(k));
+        }
+        for l in 0..seats.len() {
+            out.add_square(first + l, &blocks.0[l]);
         }
     }
 }
@@ -281,6 +322,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
     fn go<R: Real>(self) {
         let w = self.out.weights();
         let tangent = self.out.wants_tangent();
+        let mut blocks = Blocks::new();
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
@@ -291,7 +333,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
             } else {
                 E::add::<R, false>(&p, &x, &w, &mut share);
             }
-            Seat::scatter(seats, b * R::LANES, &share, self.out);
+            Seat::scatter(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
     }
 }

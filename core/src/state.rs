@@ -34,12 +34,18 @@ pub struct Control {
     pub h_next: f64,
     /// No larger step until it has grown back after a failure of Newton's method [s]; 0 if free.
     pub h_cap: f64,
-    /// Convergence rate that Newton's method last showed.
+    /// What Newton's method expects its remaining error to be, in parts of its last correction.
     pub eta: f64,
+    /// Convergence rate that the kept factors last showed; 0 if none was seen.
+    pub theta: f64,
     /// True accelerations one and two steps back, for the predictor.
     pub a_back: [Vec<f64>; 2],
     /// How many entries of `a_back` hold.
     pub backs: usize,
+    /// Size of the accepted step before the last [s].
+    pub h_before: f64,
+    /// Order of the polynomial that would have predicted the last accelerations best.
+    pub order: usize,
 }
 
 /// Derived `Clone` for two types whose `clone_from` must not allocate: it runs at every step.
@@ -56,7 +62,7 @@ macro_rules! clone_in_place {
     };
 }
 clone_in_place!(State { t, q, v, a, aux, lambda, modes, control });
-clone_in_place!(Control { h_last, h_next, h_cap, eta, a_back, backs });
+clone_in_place!(Control { h_last, h_next, h_cap, eta, theta, a_back, backs, h_before, order });
 
 /// Where terms and constraints are evaluated: slices into a state, or into a trial of an integrator.
 #[derive(Clone, Copy, Debug)]

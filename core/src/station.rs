@@ -6,7 +6,7 @@
 use crate::lane::{LaneTask, Pack, Real, V3, Width, run};
 use crate::node::{Node, NodeId};
 use crate::pattern::Pattern;
-use crate::pool::{Batch, Local, Seat, Share};
+use crate::pool::{Batch, Blocks, Local, Seat, Share};
 use crate::state::At;
 use crate::term::{Assembly, Power, Term, Weights};
 use std::sync::Arc;
@@ -286,6 +286,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         let w = self.out.weights();
         let (tangent, width) = (self.out.wants_tangent(), self.out.width());
         let count = S * R::LANES;
+        let mut blocks = Blocks::new();
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
@@ -331,7 +332,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             } else {
                 E::spread::<R, false>(&p, &x, &loads, &w, &mut share);
             }
-            Seat::scatter(seats, b * R::LANES, &share, self.out);
+            Seat::scatter(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
     }
 }

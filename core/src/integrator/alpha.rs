@@ -15,6 +15,8 @@ pub struct Alpha {
     pub warning: Option<String>,
 }
 
+/// Convergence rate of Newton's method from which on the next step gets a new matrix.
+const REFRESH: f64 = 0.1;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
@@ -67,20 +69,55 @@ impl Alpha {
         aux.extend(state.aux.iter().zip(&state.a).map(|(aux, a)| a + ratio * (aux - a)));
     }
 
-    /// Predicts the auxiliary acceleration: the true one is continued as the predictor says that was best last time.
+    /// Predicts the auxiliary acceleration: the true one is continued by the polynomial that was best last time.
     fn predict(&self, state: &State, h: f64, work: &mut Workspace) {
         let c = &self.scheme;
-        let control = &state.control;
-        // linear where two old accelerations hold, constant else
-        let slope = if control.backs >= 1 && control.h_last > 0.0 { h / control.h_last } else { 0.0 };
-        let t = &mut work.trial;
-        for i in 0..t.aux.len() {
-            let a =
-                state.a[i] + slope * (state.a[i] - control.a_back[0].get(i).copied().unwrap_or(state.a[i]));
-            t.aux[i] = ((1.0 - c.alpha_f) * a + c.alpha_f * state.a[i] - c.alpha_m * t.aux_old[i])
-                / (1.0 - c.alpha_m);
+        let n = state.a.len();
+        let (a, t) = (&state.a[..n], &mut work.trial);
+        let (new, old) = (&mut t.aux[..n], &t.aux_old[..n]);
+        let scale = 1.0 / (1.0 - c.alpha_m);
+        let (f_new, f_old, m_old) = ((1.0 - c.alpha_f) * scale, c.alpha_f * scale, c.alpha_m * scale);
+        let order = state.control.order.min(state.control.backs);
+        match Past::new(state, h).continued(order) {
+            [_, 0.0, 0.0] => {
+                for i in 0..n {
+                    new[i] = (f_new + f_old) * a[i] - m_old * old[i];
+                }
+            }
+            [x, y, z] => {
+                let [one, two] = &state.control.a_back;
+                let (one, two) = (&one[..n], if z == 0.0 { &one[..n] } else { &two[..n] });
+                for i in 0..n {
+                    let ahead = x * a[i] + y * one[i] + z * two[i];
+                    new[i] = f_new * ahead + f_old * a[i] - m_old * old[i];
+                }
+            }
         }
         t.lambda.copy_from_slice(&state.lambda);
+    }
+
+    /// The order of the polynomial that would have predicted the accelerations of the trial best.
+    fn best_order(&self, state: &State, h: f64, work: &Workspace) -> usize {
+        let n = state.a.len();
+        let past = Past::new(state, h);
+        let [one, two] = &state.control.a_back;
+        let a = &state.a[..n];
+        // where there is no past yet, its weight is zero
+        let one = if state.control.backs > 0 { &one[..n] } else { a };
+        let two = if state.control.backs > 1 { &two[..n] } else { a };
+        let (new, mass) = (&work.trial.a[..n], &work.mass_diagonal[..n]);
+        let ([x1, y1, _], [x2, y2, z2]) = (past.continued(1), past.continued(2));
+        let mut miss = [0.0; 3];
+        for i in 0..n {
+            let constant = new[i] - a[i];
+            let linear = new[i] - (x1 * a[i] + y1 * one[i]);
+            let quadratic = new[i] - (x2 * a[i] + y2 * one[i] + z2 * two[i]);
+            miss[0] += mass[i] * constant * constant;
+            miss[1] += mass[i] * linear * linear;
+            miss[2] += mass[i] * quadratic * quadratic;
+        }
+        let backs = (state.control.backs + 1).min(2);
+        (1..=backs).fold(0, |best, k| if miss[k] < miss[best] { k } else { best })
     }
 
     /// Estimated error of the trial over the tolerance: `|Cq h² (a₊ - a)|`, without what the constraints and the
@@ -103,8 +140,11 @@ impl Alpha {
         Ok(size * (self.horizon / h) / (tolerance.min(1e-3) * model.length()))
     }
 
-    fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, eta: f64) {
+    fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, eta: f64, theta: Option<f64>) {
+        let order = self.best_order(state, h, work);
         let c = &mut state.control;
+        c.order = order;
+        c.h_before = c.h_last;
         let [one, two] = &mut c.a_back;
         std::mem::swap(one, two);
         one.clear();
@@ -112,6 +152,7 @@ impl Alpha {
         c.backs = (c.backs + 1).min(2);
         c.h_last = h;
         c.eta = eta;
+        c.theta = theta.unwrap_or(c.theta);
         c.h_cap = if c.h_cap > 0.0 { c.h_cap * 1.1 } else { 0.0 };
         let t = &mut work.trial;
         std::mem::swap(&mut state.q, &mut t.q);
@@ -121,6 +162,36 @@ impl Alpha {
         std::mem::swap(&mut state.lambda, &mut t.lambda);
         state.t += h;
         work.counts.steps += 1;
+    }
+}
+
+/// The times of the accelerations that are kept, before the present one.
+struct Past {
+    h: f64,
+    one: f64,
+    two: f64,
+}
+
+impl Past {
+    fn new(state: &State, h: f64) -> Self {
+        let c = &state.control;
+        // without a past any time will do: its weight isn't used
+        let one = if c.h_last > 0.0 { c.h_last } else { h };
+        Past { h, one, two: one + if c.h_before > 0.0 { c.h_before } else { h } }
+    }
+    /// Weights of the present acceleration and of those one and two steps back, to continue the polynomial of this
+    /// order by a step `h`.
+    fn continued(&self, order: usize) -> [f64; 3] {
+        let Past { h, one, two } = *self;
+        match order {
+            0 => [1.0, 0.0, 0.0],
+            1 => [1.0 + h / one, -h / one, 0.0],
+            _ => [
+                (h + one) * (h + two) / (one * two),
+                -h * (h + two) / (one * (two - one)),
+                h * (h + one) / (two * (two - one)),
+            ],
+        }
     }
 }
 
@@ -184,22 +255,23 @@ impl Integrator for Alpha {
                 tolerance: self.newton_tolerance(model, h),
                 linear_constraints,
             };
-            if state.control.eta > 0.1 {
+            // factors that served badly last time are not tried again
+            if state.control.theta > REFRESH {
                 work.factored = None;
             }
             let why = match newton.solve(work, state.control.eta.max(0.05)) {
-                Outcome::Converged { iterations, eta } => {
+                Outcome::Converged { iterations, eta, theta } => {
                     report.h = h;
                     report.iterations = iterations;
                     let Some(tolerance) = controlled else {
-                        self.accept(state, work, h, eta);
+                        self.accept(state, work, h, eta, theta);
                         return Ok(report);
                     };
                     let error = self.error(model, work, h, tolerance)?;
                     let grow = (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5);
                     if error <= 1.0 {
                         report.error = error;
-                        self.accept(state, work, h, eta);
+                        self.accept(state, work, h, eta, theta);
                         // small changes aren't worth a new factorisation
                         let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
                         state.control.h_next = if cut { next.max(state.control.h_next) } else { next };

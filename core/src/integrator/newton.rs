@@ -14,11 +14,21 @@ use crate::term::Weights;
 /// Unit round-off.
 const U: f64 = f64::EPSILON / 2.0;
 
+/// Iterations with kept factors that are cheaper than new factors.
+const PATIENCE: i32 = 3;
+
 /// What Newton's method of a trial came to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Outcome {
-    Converged { iterations: u32, eta: f64 },
-    Failed { why: String },
+    /// `theta` is the rate at which it converged, `None` after a single iteration.
+    Converged {
+        iterations: u32,
+        eta: f64,
+        theta: Option<f64>,
+    },
+    Failed {
+        why: String,
+    },
     Linear(SolveError),
 }
 
@@ -82,14 +92,15 @@ impl Newton<'_> {
         let floor = 4.0 * U * self.model.length();
         let stop = self.tolerance.max(floor);
         let mut fresh = false;
-        let (mut last, mut theta) = (0.0, 0.0);
+        let (mut last, mut theta) = (0.0_f64, 0.0_f64);
         let mut outcome = None;
         let multiplier_scale = 1.0 / (self.scheme.beta * self.h * self.h);
         self.kinematics(work);
         for k in 0..self.max_iterations {
             let stale = work.factored != Some(self.weights());
-            // a slow iteration with an old matrix gets a new one
-            let refresh = stale || self.policy == NewtonPolicy::Full || (theta > 0.5 && !fresh);
+            // an iteration that would go on for long with an old matrix gets a new one
+            let slow = k > 0 && last * theta.powi(PATIENCE) > stop;
+            let refresh = stale || self.policy == NewtonPolicy::Full || (slow && !fresh);
             if let Err(e) = self.evaluate(work, refresh) {
                 outcome = Some(Outcome::Linear(e));
                 break;
@@ -127,13 +138,15 @@ impl Newton<'_> {
             last = size;
             let done = size * eta.min(1e3) <= stop || size <= floor;
             if done && self.constraints_hold(work) {
-                outcome = Some(Outcome::Converged { iterations: k + 1, eta });
+                // new factors have a clean slate until they are seen to converge slowly
+                let rate = if k > 0 { Some(theta) } else { fresh.then_some(0.0) };
+                outcome = Some(Outcome::Converged { iterations: k + 1, eta, theta: rate });
                 break;
             }
             if theta >= 1.0 && k > 0 {
                 // at the floor of rounding the iteration wanders; far from it, it diverges
                 if size <= 30.0 * floor && fresh {
-                    outcome = Some(Outcome::Converged { iterations: k + 1, eta: 1.0 });
+                    outcome = Some(Outcome::Converged { iterations: k + 1, eta: 1.0, theta: Some(1.0) });
                     break;
                 }
                 if fresh && (theta >= 2.0 || k > 4) {

@@ -37,6 +37,8 @@ pub struct Workspace {
     /// Whether `mass.values` holds the mass matrix of the start, for norms.
     pub(crate) has_mass: bool,
     pub(crate) total_mass: f64,
+    /// Diagonal of the mass matrix, for comparisons of accelerations.
+    pub(crate) mass_diagonal: Vec<f64>,
     /// In elimination order.
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
@@ -75,6 +77,7 @@ impl Workspace {
             mass_solver: Guard::new(s)?,
             has_mass: false,
             total_mass: 0.0,
+            mass_diagonal: zero(),
             x: vec![0.0; s.n],
             y: vec![0.0; s.n],
             counts: Counts::default(),
@@ -220,6 +223,9 @@ impl Workspace {
             sum += unit.iter().zip(&out).map(|(u, m)| u * m).sum::<f64>() / 3.0;
         }
         self.total_mass = sum;
+        for (m, &p) in self.mass_diagonal.iter_mut().zip(&model.structure().diagonal) {
+            *m = self.mass.values[p as usize];
+        }
         if self.total_mass > 0.0 { Ok(()) } else { Err(SolveError::Singular(0)) }
     }
 }

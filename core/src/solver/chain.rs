@@ -133,7 +133,11 @@ struct Solve<'a, T> {
 impl<T: Scalar> LaneTask for Solve<'_, T> {
     #[inline(always)]
     fn go<R: Real>(self) {
-        if R::LANES > 1 { self.chain.substitute::<true>(self.x) } else { self.chain.substitute::<false>(self.x) }
+        if R::LANES > 1 {
+            self.chain.substitute::<true>(self.x)
+        } else {
+            self.chain.substitute::<false>(self.x)
+        }
     }
 }
 

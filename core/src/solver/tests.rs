@@ -67,8 +67,11 @@ fn sparse_solvers_agree_with_the_dense_oracle() {
             let mut dense = Guard::with(&s, Box::new(Dense::default())).unwrap();
             dense.factor(&s, &values).unwrap();
             dense.solve(&s, &values, &mut exact).unwrap();
-            let mut solvers: Vec<Box<dyn LinearSolver>> =
-                vec![Box::new(Lu::default()), Box::new(Profile::<f64>::default()), Box::new(Chain::<f64>::default())];
+            let mut solvers: Vec<Box<dyn LinearSolver>> = vec![
+                Box::new(Lu::default()),
+                Box::new(Profile::<f64>::default()),
+                Box::new(Chain::<f64>::default()),
+            ];
             if symmetric {
                 solvers.push(Box::new(Ldlt::default()));
             }

@@ -136,7 +136,8 @@ impl Statics<'_> {
                     std::array::from_fn(|i| self.mass.values[p + i]),
                 );
                 for j in 0..3 {
-                    self.system.values[p + j] += (0..3).map(|i| c[i] * w[i][j] + m[i] * w2[i][j]).sum::<f64>();
+                    self.system.values[p + j] +=
+                        (0..3).map(|i| c[i] * w[i][j] + m[i] * w2[i][j]).sum::<f64>();
                     self.damping.values[p + j] += 2.0 * (0..3).map(|i| m[i] * w[i][j]).sum::<f64>();
                 }
             }
