@@ -143,20 +143,21 @@ fn add<R: Real>(row: &mut [f64], i: usize, there: bool, x: &V3<R>) {
     put(row, i, &sum);
 }
 
+#[inline(always)]
+fn add_matrix<R: Real>(row: &mut [f64], from: usize, there: bool, x: &[V3<R>; 3]) {
+    add(row, from, there, &x[0]);
+    add(row, from + 3, there, &x[1]);
+    add(row, from + 6, there, &x[2]);
+}
+
 impl<R: Real> Station<R> {
-    /// A station with every number zero, to be filled.
-    #[inline(always)]
-    pub fn zero() -> Self {
-        let (zero, nought) = (R::zero(), [R::zero(); 3]);
-        let (x, v, a, slope, curve_v) = (nought, nought, nought, nought, nought);
-        Station { x, v, a, slope, curve_v, s: zero, weight: zero, diameter: zero, area: zero }
-    }
     #[inline(always)]
     fn write(&self, row: &mut [f64]) {
-        let vectors = [&self.x, &self.v, &self.a, &self.slope, &self.curve_v];
-        for k in 0..5 {
-            put(row, 3 * k, vectors[k]);
-        }
+        put(row, 0, &self.x);
+        put(row, 3, &self.v);
+        put(row, 6, &self.a);
+        put(row, 9, &self.slope);
+        put(row, 12, &self.curve_v);
         put(row, 15, &[self.s, self.weight, self.diameter, self.area]);
     }
     #[inline(always)]
@@ -179,16 +180,18 @@ impl<R: Real> Load<R> {
     #[inline(always)]
     fn read(&mut self, row: &[f64], gives: Gives) {
         self.f = vector(row, 0);
-        let matrices = [
-            (&mut self.d_x, D_X, gives.x),
-            (&mut self.d_slope, D_SLOPE, gives.slope),
-            (&mut self.d_v, D_V, gives.v),
-            (&mut self.d_a, D_A, gives.a),
-        ];
-        for (matrix, from, given) in matrices {
-            if given {
-                *matrix = [vector(row, from), vector(row, from + 3), vector(row, from + 6)];
-            }
+        let matrix = |from: usize| [vector(row, from), vector(row, from + 3), vector(row, from + 6)];
+        if gives.x {
+            self.d_x = matrix(D_X);
+        }
+        if gives.slope {
+            self.d_slope = matrix(D_SLOPE);
+        }
+        if gives.v {
+            self.d_v = matrix(D_V);
+        }
+        if gives.a {
+            self.d_a = matrix(D_A);
         }
     }
 }
@@ -227,18 +230,17 @@ impl<L: Law> LoadAll<'_, L> {
             let mut load = Load::zero();
             self.law.load::<R, TANGENT>(self.t, &Station::read(station), &mut load);
             add(out, 0, x.loaded, &load.f);
-            let matrices = [
-                (&load.d_x, D_X, gives.x, x.given.x),
-                (&load.d_slope, D_SLOPE, gives.slope, x.given.slope),
-                (&load.d_v, D_V, gives.v, x.given.v),
-                (&load.d_a, D_A, gives.a, x.given.a),
-            ];
-            for (matrix, from, gives, there) in matrices {
-                if gives {
-                    for i in 0..3 {
-                        add(out, from + 3 * i, there, &matrix[i]);
-                    }
-                }
+            if gives.x {
+                add_matrix(out, D_X, x.given.x, &load.d_x);
+            }
+            if gives.slope {
+                add_matrix(out, D_SLOPE, x.given.slope, &load.d_slope);
+            }
+            if gives.v {
+                add_matrix(out, D_V, x.given.v, &load.d_v);
+            }
+            if gives.a {
+                add_matrix(out, D_A, x.given.a, &load.d_a);
             }
         }
         (x.loaded, x.given) = (true, x.given.and(gives));
@@ -274,8 +276,8 @@ pub trait StationElement<const Q: usize, const N: usize, const S: usize>:
     type Lanes<R: Real>;
     /// Brings the numbers of a batch of elements side by side.
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R>;
-    /// The stations of an element.
-    fn stations<R: Real>(p: &Self::Lanes<R>, x: &Local<R, Q, N>) -> [Station<R>; S];
+    /// Station `k` of an element, `k < S`.
+    fn station<R: Real>(p: &Self::Lanes<R>, x: &Local<R, Q, N>, k: usize) -> Station<R>;
     /// Sets the residual to minus the loads and, with `TANGENT`, the whole of the tangent to minus their derivatives,
     /// each multiplied by its station's weight; with the geometric part where the way back depends on the
     /// coordinates. Derivatives that aren't given are zero and best passed over.
@@ -368,11 +370,8 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
             let x = Seat::gather::<R>(seats, self.at);
-            let stations = E::stations(&p, &x);
-            for (station, row) in
-                stations.iter().zip(self.exchange.stations.chunks_exact_mut(STATION * R::LANES))
-            {
-                station.write(row);
+            for (k, row) in self.exchange.stations.chunks_exact_mut(STATION * R::LANES).enumerate() {
+                E::station(&p, &x, k).write(row);
             }
             (self.exchange.loaded, self.exchange.given) = (false, Gives::NOTHING);
             for law in &self.laws.0 {
@@ -407,8 +406,8 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         for (e, seat) in self.elements.iter().zip(&self.seats) {
             let p = E::lanes::<f64>(&Batch(std::slice::from_ref(e)));
             let x = Seat::gather::<f64>(std::slice::from_ref(seat), at);
-            for s in E::stations(&p, &x) {
-                f(&s);
+            for k in 0..S {
+                f(&E::station(&p, &x, k));
             }
         }
     }

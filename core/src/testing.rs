@@ -256,6 +256,7 @@ mod tests {
     use crate::constraint::{Joint, Relation, RowKind};
     use crate::marker::{Jet, Marker, Place};
     use crate::node::{NodeId, NodeKind};
+    use crate::station::Gives;
 
     /// A spring `r = (1 + v² + a) q³` on one number, with a stiffness that is off by a factor.
     struct Cubic(f64);
@@ -283,11 +284,14 @@ mod tests {
         assert!((error - 0.01).abs() < 1e-3, "{error}");
     }
 
-    /// Drag `-v² ` along x, with a derivative that is off by a factor.
-    struct Square(f64);
+    /// Drag `-v² ` along x, with a derivative that is off by a factor, or not declared.
+    struct Square(f64, bool);
     impl Law for Square {
         fn label(&self) -> String {
             "square".into()
+        }
+        fn gives(&self) -> Gives {
+            Gives { v: self.1, ..Gives::NOTHING }
         }
         #[inline(always)]
         fn load<R: Real, const TANGENT: bool>(&self, _: f64, at: &Station<R>, out: &mut Load<R>) {
@@ -301,8 +305,9 @@ mod tests {
         let v = [1.0, 2.0, 3.0];
         let at =
             Station { x: v, v, a: v, slope: v, curve_v: v, s: 0.0, weight: 1.0, diameter: 1.0, area: 1.0 };
-        assert!(check_law(&Square(1.0), 0.0, &at) < 1e-9);
-        assert!((check_law(&Square(1.01), 0.0, &at) - 0.01).abs() < 1e-3);
+        assert!(check_law(&Square(1.0, true), 0.0, &at) < 1e-9);
+        assert!((check_law(&Square(1.01, true), 0.0, &at) - 0.01).abs() < 1e-3);
+        assert_eq!(check_law(&Square(1.0, false), 0.0, &at), f64::INFINITY);
     }
 
     /// A curve that moves, and one that says that it is straight.

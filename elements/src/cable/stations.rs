@@ -43,25 +43,21 @@ impl StationElement<12, 12, 4> for CableStations {
     }
 
     #[inline(always)]
-    fn stations<R: Real>(p: &CableStations<R>, x: &Local<R, 12, 12>) -> [Station<R>; 4] {
-        let q = natural(&x.q, R::of(1.0) / p.l);
-        let mut stations = [Station::zero(); 4];
-        for (station, at) in stations.iter_mut().zip(Gauss4::POINTS) {
-            let s = hermite(at.xi, p.l);
-            let v = interpolate(&s, &x.v);
-            *station = Station {
-                x: interpolate(&s, &x.q),
-                v,
-                a: interpolate(&s, &x.a),
-                slope: combine(&at.phi, &q),
-                curve_v: v,
-                s: R::of(at.xi).fma(p.l, p.s0),
-                weight: R::of(at.w) * p.l,
-                diameter: p.diameter,
-                area: p.area,
-            };
+    fn station<R: Real>(p: &CableStations<R>, x: &Local<R, 12, 12>, k: usize) -> Station<R> {
+        let at = &Gauss4::POINTS[k];
+        let (s, q) = (hermite(at.xi, p.l), natural(&x.q, R::of(1.0) / p.l));
+        let v = interpolate(&s, &x.v);
+        Station {
+            x: interpolate(&s, &x.q),
+            v,
+            a: interpolate(&s, &x.a),
+            slope: combine(&at.phi, &q),
+            curve_v: v,
+            s: R::of(at.xi).fma(p.l, p.s0),
+            weight: R::of(at.w) * p.l,
+            diameter: p.diameter,
+            area: p.area,
         }
-        stations
     }
 
     #[inline(always)]
