@@ -78,15 +78,21 @@ impl Current {
         let nought = [R::zero(); 3];
         match self {
             Current::Still => (nought, nought),
-            Current::Uniform(u) => (u.map(R::of), nought),
+            Current::Uniform(u) => ([R::of(u[0]), R::of(u[1]), R::of(u[2])], nought),
             Current::Linear { z0, velocity, gradient } => {
                 let dz = z - R::of(*z0);
-                let u = std::array::from_fn(|i| R::of(gradient[i]).fma(dz, R::of(velocity[i])));
-                (u, gradient.map(R::of))
+                let (mut u, mut du) = (nought, nought);
+                for i in 0..3 {
+                    du[i] = R::of(gradient[i]);
+                    u[i] = du[i].fma(dz, R::of(velocity[i]));
+                }
+                (u, du)
             }
             Current::Profile { z: heights, velocity } => {
-                let mut u = velocity.first().map_or(nought, |u| u.map(R::of));
-                let mut du = nought;
+                let (mut u, mut du) = (nought, nought);
+                if let Some(lowest) = velocity.first() {
+                    u = [R::of(lowest[0]), R::of(lowest[1]), R::of(lowest[2])];
+                }
                 for (h, w) in heights.windows(2).zip(velocity.windows(2)) {
                     let (from, to) = (R::of(h[0]), R::of(h[1]));
                     // the part of this layer that lies below z

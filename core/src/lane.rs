@@ -44,6 +44,10 @@ pub trait Real:
             f(l, [values[0].lane(l), values[1].lane(l), values[2].lane(l), values[3].lane(l)]);
         }
     }
+    /// One number per lane, from the front of a slice.
+    fn read(from: &[f64]) -> Self;
+    /// Writes one number per lane to the front of a slice.
+    fn write(self, to: &mut [f64]);
     /// `self * a + b`, fused where the processor does it for free.
     fn fma(self, a: Self, b: Self) -> Self;
     /// Square root.
@@ -77,6 +81,14 @@ impl Real for f64 {
     #[inline(always)]
     fn lane(self, _: usize) -> f64 {
         self
+    }
+    #[inline(always)]
+    fn read(from: &[f64]) -> Self {
+        from[0]
+    }
+    #[inline(always)]
+    fn write(self, to: &mut [f64]) {
+        to[0] = self;
     }
     #[inline(always)]
     fn fma(self, a: Self, b: Self) -> Self {
@@ -155,6 +167,14 @@ impl<const N: usize> Real for Pack<N> {
         self.0[lane]
     }
     #[inline(always)]
+    fn read(from: &[f64]) -> Self {
+        Self::each(|i| from[i])
+    }
+    #[inline(always)]
+    fn write(self, to: &mut [f64]) {
+        to[..N].copy_from_slice(&self.0);
+    }
+    #[inline(always)]
     fn fma(self, a: Self, b: Self) -> Self {
         self * a + b
     }
@@ -176,6 +196,12 @@ impl<const N: usize> Real for Pack<N> {
 #[inline(always)]
 pub fn dot<R: Real>(a: &V3<R>, b: &V3<R>) -> R {
     a[0].fma(b[0], a[1].fma(b[1], a[2] * b[2]))
+}
+
+/// `s a`
+#[inline(always)]
+pub fn scaled<R: Real>(s: R, a: &V3<R>) -> V3<R> {
+    [s * a[0], s * a[1], s * a[2]]
 }
 
 /// How many lanes a kernel runs over.
@@ -265,14 +291,8 @@ mod door {
                 #[inline(always)]
                 fn numbers(self) -> [f64; $lanes] {
                     let mut x = [0.0; $lanes];
-                    // SAFETY: see the module; `x` has room for the register
-                    unsafe { $store(x.as_mut_ptr(), self.0) };
+                    self.write(&mut x);
                     x
-                }
-                #[inline(always)]
-                fn from(x: [f64; $lanes]) -> Self {
-                    // SAFETY: see the module; `x` fills the register
-                    $name(unsafe { $load(x.as_ptr()) })
                 }
             }
             carrier!($name, Add, add, $add);
@@ -311,7 +331,7 @@ mod door {
                     for i in 0..$lanes {
                         x[i] = f(i);
                     }
-                    Self::from(x)
+                    Self::read(&x)
                 }
                 #[inline(always)]
                 fn lane(self, lane: usize) -> f64 {
@@ -326,6 +346,18 @@ mod door {
                 fn to_rows($values: [Self; 4], mut $put: impl FnMut(usize, [f64; 4])) {
                     // SAFETY: see the module
                     unsafe { $to_rows }
+                }
+                #[inline(always)]
+                fn read(from: &[f64]) -> Self {
+                    let from = &from[..$lanes];
+                    // SAFETY: see the module; `from` fills the register
+                    $name(unsafe { $load(from.as_ptr()) })
+                }
+                #[inline(always)]
+                fn write(self, to: &mut [f64]) {
+                    let to = &mut to[..$lanes];
+                    // SAFETY: see the module; `to` has room for the register
+                    unsafe { $store(to.as_mut_ptr(), self.0) };
                 }
                 #[inline(always)]
                 fn fma(self, a: Self, b: Self) -> Self {

@@ -37,7 +37,7 @@ pub use build::{BuildError, Builder};
 pub use constraint::{Constraint, Joint, Relation, RowKind, lift};
 pub use current::Current;
 pub use dead::{DeadEntry, DeadLoad};
-pub use lane::{LaneTask, Pack, Real, V3, Width, dot, run};
+pub use lane::{LaneTask, Pack, Real, V3, Width, dot, run, scaled};
 pub use marker::{Jet, Marker, Place};
 pub use model::{Model, Start, System};
 pub use motion::{Motion, Moving, SteadyFrame};
@@ -53,7 +53,7 @@ pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
 };
 pub use state::{At, Control, Relaxation, Relaxed, State};
-pub use station::{FieldTerm, Law, Laws, Load, Station, StationElement, StationPool, Stations};
+pub use station::{FieldTerm, Gives, Law, Laws, Load, Station, StationElement, StationPool, Stations};
 pub use structure::{Block, Columns, Structure};
 pub use term::{Assembly, Energy, Power, Term, Weights};
 

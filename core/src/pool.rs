@@ -97,6 +97,8 @@ pub trait Element<const Q: usize, const N: usize>: Clone + Send + Sync + 'static
     const SYMMETRIC: bool = true;
     /// Whether it is worth compiling for several lanes; an element that is rare can do without.
     const WIDE: bool = true;
+    /// Whether it sets every entry of its share, so that the pool needn't clear it for each batch.
+    const SETS: bool = false;
     /// What the pool is called in manifests and profiles.
     fn label() -> String;
     /// Brings the numbers of a batch of elements side by side.
@@ -324,10 +326,13 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
         let tangent = self.out.wants_tangent();
         let mut blocks = Blocks::new();
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
+        let mut share = Share::zero();
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
             let x = Seat::gather::<R>(seats, self.at);
-            let mut share = Share::zero();
+            if !E::SETS {
+                share = Share::zero();
+            }
             if tangent {
                 E::add::<R, true>(&p, &x, &w, &mut share);
             } else {

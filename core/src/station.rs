@@ -3,7 +3,7 @@
 //! Elements offer stations, laws load them, and neither knows the other: N elements and M laws are N + M pieces of
 //! code. A law never sees an unknown; an element never sees what kind of load it carries.
 
-use crate::lane::{LaneTask, Pack, Real, V3, Width, run};
+use crate::lane::{LaneTask, Real, V3, Width, run};
 use crate::node::{Node, NodeId};
 use crate::pattern::Pattern;
 use crate::pool::{Batch, Blocks, Local, Seat, Share};
@@ -58,12 +58,47 @@ impl<R: Real> Load<R> {
     }
 }
 
+/// Which derivatives of a [`Load`] are there; the others are zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Gives {
+    /// By position.
+    pub x: bool,
+    /// By slope.
+    pub slope: bool,
+    /// By velocity.
+    pub v: bool,
+    /// By acceleration.
+    pub a: bool,
+}
+
+impl Gives {
+    /// None of them.
+    pub const NOTHING: Gives = Gives { x: false, slope: false, v: false, a: false };
+    /// All of them.
+    pub const ALL: Gives = Gives { x: true, slope: true, v: true, a: true };
+
+    #[inline(always)]
+    fn and(self, other: Gives) -> Gives {
+        Gives {
+            x: self.x || other.x,
+            slope: self.slope || other.slope,
+            v: self.v || other.v,
+            a: self.a || other.a,
+        }
+    }
+}
+
 /// A law of distributed load, such as drag. Write it once over the carrier; add to `out`, don't set it.
 pub trait Law: Send + Sync + 'static {
     /// Whether it means nothing for a part without a diameter.
     const NEEDS_DIAMETER: bool = false;
     /// What it is called in manifests and profiles.
     fn label(&self) -> String;
+    /// Which derivatives it has; what is left out here is never read. [`check_law`](crate::testing::check_law) tells
+    /// if one is missing.
+    fn gives(&self) -> Gives {
+        Gives::ALL
+    }
     /// Adds the force per unstretched length at a station, and its derivatives if `TANGENT`.
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>);
     /// The power of the load `f` per unstretched length [W/m]. By default all of it is supplied from outside.
@@ -72,68 +107,110 @@ pub trait Law: Send + Sync + 'static {
     }
 }
 
-/// Eight numbers in memory: how stations and loads pass between elements and laws that are compiled apart.
-type Wide = Pack<8>;
+/// How many numbers make a station, and a load.
 const STATION: usize = 19;
 const LOAD: usize = 39;
+/// Where the derivatives stand in a load.
+const D_X: usize = 3;
+const D_SLOPE: usize = 12;
+const D_V: usize = 21;
+const D_A: usize = 30;
+
+/// Number `i` of a row of numbers over lanes.
+#[inline(always)]
+fn number<R: Real>(row: &[f64], i: usize) -> R {
+    R::read(&row[i * R::LANES..])
+}
+#[inline(always)]
+fn vector<R: Real>(row: &[f64], i: usize) -> V3<R> {
+    [number(row, i), number(row, i + 1), number(row, i + 2)]
+}
+#[inline(always)]
+fn put<R: Real, const K: usize>(row: &mut [f64], i: usize, x: &[R; K]) {
+    for k in 0..K {
+        x[k].write(&mut row[(i + k) * R::LANES..]);
+    }
+}
+/// Adds to numbers of a row if there are some, else sets them.
+#[inline(always)]
+fn add<R: Real>(row: &mut [f64], i: usize, there: bool, x: &V3<R>) {
+    let mut sum = *x;
+    if there {
+        for k in 0..3 {
+            sum[k] += number(row, i + k);
+        }
+    }
+    put(row, i, &sum);
+}
+
+#[inline(always)]
+fn add_matrix<R: Real>(row: &mut [f64], from: usize, there: bool, x: &[V3<R>; 3]) {
+    add(row, from, there, &x[0]);
+    add(row, from + 3, there, &x[1]);
+    add(row, from + 6, there, &x[2]);
+}
 
 impl<R: Real> Station<R> {
-    /// A station with every number zero, to be filled.
     #[inline(always)]
-    pub fn zero() -> Self {
-        Self::of([R::zero(); STATION])
+    fn write(&self, row: &mut [f64]) {
+        put(row, 0, &self.x);
+        put(row, 3, &self.v);
+        put(row, 6, &self.a);
+        put(row, 9, &self.slope);
+        put(row, 12, &self.curve_v);
+        put(row, 15, &[self.s, self.weight, self.diameter, self.area]);
     }
     #[inline(always)]
-    fn numbers(&self) -> [R; STATION] {
-        let (x, v, a, p, c) = (self.x, self.v, self.a, self.slope, self.curve_v);
-        [
-            x[0],
-            x[1],
-            x[2],
-            v[0],
-            v[1],
-            v[2],
-            a[0],
-            a[1],
-            a[2],
-            p[0],
-            p[1],
-            p[2],
-            c[0],
-            c[1],
-            c[2],
-            self.s,
-            self.weight,
-            self.diameter,
-            self.area,
-        ]
-    }
-    #[inline(always)]
-    fn of(n: [R; STATION]) -> Self {
+    fn read(row: &[f64]) -> Self {
         Station {
-            x: [n[0], n[1], n[2]],
-            v: [n[3], n[4], n[5]],
-            a: [n[6], n[7], n[8]],
-            slope: [n[9], n[10], n[11]],
-            curve_v: [n[12], n[13], n[14]],
-            s: n[15],
-            weight: n[16],
-            diameter: n[17],
-            area: n[18],
+            x: vector(row, 0),
+            v: vector(row, 3),
+            a: vector(row, 6),
+            slope: vector(row, 9),
+            curve_v: vector(row, 12),
+            s: number(row, 15),
+            weight: number(row, 16),
+            diameter: number(row, 17),
+            area: number(row, 18),
         }
     }
 }
 
-/// Stations and loads of a batch, eight lanes to a row.
+impl<R: Real> Load<R> {
+    #[inline(always)]
+    fn read(&mut self, row: &[f64], gives: Gives) {
+        self.f = vector(row, 0);
+        let matrix = |from: usize| [vector(row, from), vector(row, from + 3), vector(row, from + 6)];
+        if gives.x {
+            self.d_x = matrix(D_X);
+        }
+        if gives.slope {
+            self.d_slope = matrix(D_SLOPE);
+        }
+        if gives.v {
+            self.d_v = matrix(D_V);
+        }
+        if gives.a {
+            self.d_a = matrix(D_A);
+        }
+    }
+}
+
+/// Stations and loads of a batch in memory, a row for each station of an element: how they pass between elements and
+/// laws, which are compiled apart.
 struct Exchange {
-    stations: Vec<[Wide; STATION]>,
-    loads: Vec<[Wide; LOAD]>,
+    stations: Vec<f64>,
+    loads: Vec<f64>,
+    /// Whether a law has been there, and which derivatives have been given so far.
+    loaded: bool,
+    given: Gives,
 }
 
 /// A [`Law`] behind a virtual call that serves a whole batch.
 trait ErasedLaw: Send + Sync {
     fn label(&self) -> String;
-    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange, count: usize);
+    /// Loads a batch; `width` must be that of the element's own code.
+    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange);
     fn power(&self, t: f64, at: &Station<f64>) -> Power;
 }
 
@@ -142,40 +219,38 @@ struct LoadAll<'a, L> {
     t: f64,
     tangent: bool,
     x: &'a mut Exchange,
-    count: usize,
+}
+
+impl<L: Law> LoadAll<'_, L> {
+    #[inline(always)]
+    fn all<R: Real, const TANGENT: bool>(self) {
+        let (x, gives) = (self.x, if TANGENT { self.law.gives() } else { Gives::NOTHING });
+        let rows = x.stations.chunks_exact(STATION * R::LANES).zip(x.loads.chunks_exact_mut(LOAD * R::LANES));
+        for (station, out) in rows {
+            let mut load = Load::zero();
+            self.law.load::<R, TANGENT>(self.t, &Station::read(station), &mut load);
+            add(out, 0, x.loaded, &load.f);
+            if gives.x {
+                add_matrix(out, D_X, x.given.x, &load.d_x);
+            }
+            if gives.slope {
+                add_matrix(out, D_SLOPE, x.given.slope, &load.d_slope);
+            }
+            if gives.v {
+                add_matrix(out, D_V, x.given.v, &load.d_v);
+            }
+            if gives.a {
+                add_matrix(out, D_A, x.given.a, &load.d_a);
+            }
+        }
+        (x.loaded, x.given) = (true, x.given.and(gives));
+    }
 }
 
 impl<L: Law> LaneTask for LoadAll<'_, L> {
     #[inline(always)]
     fn go<R: Real>(self) {
-        for k in (0..self.count).step_by(R::LANES) {
-            let (row, from) = (k / 8, k % 8);
-            let n = &self.x.stations[row];
-            let at = Station::of(std::array::from_fn(|i| R::each(|l| n[i].0[from + l])));
-            let mut load = Load::zero();
-            if self.tangent {
-                self.law.load::<R, true>(self.t, &at, &mut load);
-            } else {
-                self.law.load::<R, false>(self.t, &at, &mut load);
-            }
-            let out = &mut self.x.loads[row];
-            let mut put = |i: usize, value: R| {
-                for l in 0..R::LANES {
-                    out[i].0[from + l] += value.lane(l);
-                }
-            };
-            for i in 0..3 {
-                put(i, load.f[i]);
-                if self.tangent {
-                    for j in 0..3 {
-                        put(3 + 3 * i + j, load.d_x[i][j]);
-                        put(12 + 3 * i + j, load.d_slope[i][j]);
-                        put(21 + 3 * i + j, load.d_v[i][j]);
-                        put(30 + 3 * i + j, load.d_a[i][j]);
-                    }
-                }
-            }
-        }
+        if self.tangent { self.all::<R, true>() } else { self.all::<R, false>() }
     }
 }
 
@@ -183,8 +258,8 @@ impl<L: Law> ErasedLaw for L {
     fn label(&self) -> String {
         Law::label(self)
     }
-    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange, count: usize) {
-        run(width, LoadAll { law: self, t, tangent, x, count });
+    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange) {
+        run(width, LoadAll { law: self, t, tangent, x });
     }
     fn power(&self, t: f64, at: &Station<f64>) -> Power {
         let mut load = Load::zero();
@@ -201,14 +276,16 @@ pub trait StationElement<const Q: usize, const N: usize, const S: usize>:
     type Lanes<R: Real>;
     /// Brings the numbers of a batch of elements side by side.
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R>;
-    /// The stations of an element.
-    fn stations<R: Real>(p: &Self::Lanes<R>, x: &Local<R, Q, N>) -> [Station<R>; S];
-    /// Subtracts the loads from the residual and, with `TANGENT`, their derivatives from the tangent, each
-    /// multiplied by its station's weight; with the geometric part where the way back depends on the coordinates.
+    /// Station `k` of an element, `k < S`.
+    fn station<R: Real>(p: &Self::Lanes<R>, x: &Local<R, Q, N>, k: usize) -> Station<R>;
+    /// Sets the residual to minus the loads and, with `TANGENT`, the whole of the tangent to minus their derivatives,
+    /// each multiplied by its station's weight; with the geometric part where the way back depends on the
+    /// coordinates. Derivatives that aren't given are zero and best passed over.
     fn spread<R: Real, const TANGENT: bool>(
         p: &Self::Lanes<R>,
         x: &Local<R, Q, N>,
         loads: &[Load<R>; S],
+        gives: Gives,
         w: &Weights,
         out: &mut Share<R, N>,
     );
@@ -285,52 +362,30 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     fn go<R: Real>(self) {
         let w = self.out.weights();
         let (tangent, width) = (self.out.wants_tangent(), self.out.width());
-        let count = S * R::LANES;
         let mut blocks = Blocks::new();
+        self.exchange.stations.resize(S * STATION * R::LANES, 0.0);
+        self.exchange.loads.resize(S * LOAD * R::LANES, 0.0);
+        // derivatives that no law gives stay zero throughout
+        let (mut loads, mut share) = ([Load::<R>::zero(); S], Share::zero());
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
             let x = Seat::gather::<R>(seats, self.at);
-            let stations = E::stations(&p, &x);
-            for (k, s) in stations.iter().enumerate() {
-                let (row, from) = (k * R::LANES / 8, k * R::LANES % 8);
-                for (i, n) in s.numbers().into_iter().enumerate() {
-                    for l in 0..R::LANES {
-                        self.exchange.stations[row][i].0[from + l] = n.lane(l);
-                    }
-                }
+            for (k, row) in self.exchange.stations.chunks_exact_mut(STATION * R::LANES).enumerate() {
+                E::station(&p, &x, k).write(row);
             }
-            for row in &mut self.exchange.loads {
-                row[..if tangent { LOAD } else { 3 }].fill(Pack([0.0; 8]));
-            }
+            (self.exchange.loaded, self.exchange.given) = (false, Gives::NOTHING);
             for law in &self.laws.0 {
-                law.load(width, self.at.t, tangent, self.exchange, count);
+                law.load(width, self.at.t, tangent, self.exchange);
             }
-            // loops: what is inside of array::from_fn would not be compiled for the lanes
-            let mut loads = [Load::<R>::zero(); S];
-            for (k, load) in loads.iter_mut().enumerate() {
-                let (row, from) = (k * R::LANES / 8, k * R::LANES % 8);
-                let n = &self.exchange.loads[row];
-                for i in 0..3 {
-                    load.f[i] = R::each(|l| n[i].0[from + l]);
-                }
-                if !tangent {
-                    continue;
-                }
-                let matrices = [&mut load.d_x, &mut load.d_slope, &mut load.d_v, &mut load.d_a];
-                for (m, matrix) in matrices.into_iter().enumerate() {
-                    for i in 0..3 {
-                        for j in 0..3 {
-                            matrix[i][j] = R::each(|l| n[3 + 9 * m + 3 * i + j].0[from + l]);
-                        }
-                    }
-                }
+            let gives = self.exchange.given;
+            for (load, row) in loads.iter_mut().zip(self.exchange.loads.chunks_exact(LOAD * R::LANES)) {
+                load.read(row, gives);
             }
-            let mut share = Share::zero();
             if tangent {
-                E::spread::<R, true>(&p, &x, &loads, &w, &mut share);
+                E::spread::<R, true>(&p, &x, &loads, gives, &w, &mut share);
             } else {
-                E::spread::<R, false>(&p, &x, &loads, &w, &mut share);
+                E::spread::<R, false>(&p, &x, &loads, gives, &w, &mut share);
             }
             Seat::scatter(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
@@ -352,24 +407,28 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         for (e, seat) in self.elements.iter().zip(&self.seats) {
             let p = E::lanes::<f64>(&Batch(std::slice::from_ref(e)));
             let x = Seat::gather::<f64>(std::slice::from_ref(seat), at);
-            for s in E::stations(&p, &x) {
-                f(&s);
+            for k in 0..S {
+                f(&E::station(&p, &x, k));
             }
         }
     }
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>) {
         thread_local! {
             // kept between calls, so that no step allocates
-            static EXCHANGE: std::cell::RefCell<Exchange> =
-                const { std::cell::RefCell::new(Exchange { stations: Vec::new(), loads: Vec::new() }) };
+            static EXCHANGE: std::cell::RefCell<Exchange> = const {
+                std::cell::RefCell::new(Exchange {
+                    stations: Vec::new(),
+                    loads: Vec::new(),
+                    loaded: false,
+                    given: Gives::NOTHING,
+                })
+            };
         }
-        EXCHANGE.with_borrow_mut(|exchange| {
-            if exchange.stations.len() < S {
-                exchange.stations.resize(S, [Pack([1.0; 8]); STATION]);
-                exchange.loads.resize(S, [Pack([0.0; 8]); LOAD]);
-            }
-            run(out.width(), SpreadAll { pool: self, laws, at, out, exchange });
-        });
+        if !laws.0.is_empty() {
+            EXCHANGE.with_borrow_mut(|exchange| {
+                run(out.width(), SpreadAll { pool: self, laws, at, out, exchange });
+            });
+        }
     }
 }
 

@@ -99,6 +99,12 @@ pub fn check_law(law: &impl Law, t: f64, at: &Station<f64>) -> f64 {
     };
     let size = largest(&load.f);
     let mut worst = column_error(&[load.f.to_vec()], &[plain.f.to_vec()], size);
+    let gives = law.gives();
+    let kept = [(gives.x, load.d_x), (gives.slope, load.d_slope), (gives.v, load.d_v), (gives.a, load.d_a)];
+    if kept.iter().any(|(given, d)| !given && d.iter().flatten().any(|&x| x != 0.0)) {
+        // nobody would read it
+        return f64::INFINITY;
+    }
     type Field = fn(&mut Station<f64>) -> &mut V3<f64>;
     let fields: [(Field, [V3<f64>; 3]); 4] = [
         (|s| &mut s.x, load.d_x),
@@ -255,6 +261,7 @@ mod tests {
     use crate::constraint::{Joint, Relation, RowKind};
     use crate::marker::{Jet, Marker, Place};
     use crate::node::{NodeId, NodeKind};
+    use crate::station::Gives;
 
     /// A spring `r = (1 + v² + a) q³` on one number, with a stiffness that is off by a factor.
     struct Cubic(f64);
@@ -282,11 +289,14 @@ mod tests {
         assert!((error - 0.01).abs() < 1e-3, "{error}");
     }
 
-    /// Drag `-v² ` along x, with a derivative that is off by a factor.
-    struct Square(f64);
+    /// Drag `-v² ` along x, with a derivative that is off by a factor, or not declared.
+    struct Square(f64, bool);
     impl Law for Square {
         fn label(&self) -> String {
             "square".into()
+        }
+        fn gives(&self) -> Gives {
+            Gives { v: self.1, ..Gives::NOTHING }
         }
         #[inline(always)]
         fn load<R: Real, const TANGENT: bool>(&self, _: f64, at: &Station<R>, out: &mut Load<R>) {
@@ -300,8 +310,9 @@ mod tests {
         let v = [1.0, 2.0, 3.0];
         let at =
             Station { x: v, v, a: v, slope: v, curve_v: v, s: 0.0, weight: 1.0, diameter: 1.0, area: 1.0 };
-        assert!(check_law(&Square(1.0), 0.0, &at) < 1e-9);
-        assert!((check_law(&Square(1.01), 0.0, &at) - 0.01).abs() < 1e-3);
+        assert!(check_law(&Square(1.0, true), 0.0, &at) < 1e-9);
+        assert!((check_law(&Square(1.01, true), 0.0, &at) - 0.01).abs() < 1e-3);
+        assert_eq!(check_law(&Square(1.0, false), 0.0, &at), f64::INFINITY);
     }
 
     /// A curve that moves, and one that says that it is straight.

@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use ropewalk_core::{Element, Load, Local, Share, StationElement, Weights};
+use ropewalk_core::{Element, Gives, Load, Local, Share, Station, StationElement, Weights};
 use ropewalk_elements::cable::longitudinal::Longitudinal;
 use ropewalk_elements::cable::quadrature::{Gauss2, Gauss5, Lobatto3, Quadrature, Rule};
 use ropewalk_elements::cable::transverse::Transverse;
@@ -158,7 +158,7 @@ fn rest_forces_are_derivatives_of_their_energies() {
 }
 
 /// A load that depends on everything, with its derivatives.
-fn load(s: &ropewalk_core::Station<f64>) -> Load<f64> {
+fn load(s: &Station<f64>) -> Load<f64> {
     let mut out = Load::zero();
     for i in 0..3 {
         let j = (i + 1) % 3;
@@ -173,11 +173,15 @@ fn load(s: &ropewalk_core::Station<f64>) -> Load<f64> {
     out
 }
 
+fn stations(p: &CableStations, x: &Local<f64, 12, 12>) -> [Station<f64>; 4] {
+    std::array::from_fn(|k| CableStations::station(p, x, k))
+}
+
 fn loaded(x: &Local<f64, 12, 12>, w: Weights) -> Share<f64, 12> {
     let p = CableStations { l: L, s0: 5.0, diameter: 0.1, area: 0.01 };
-    let loads = CableStations::stations(&p, x).map(|s| load(&s));
+    let loads = stations(&p, x).map(|s| load(&s));
     let mut out = Share::zero();
-    CableStations::spread::<f64, true>(&p, x, &loads, &w, &mut out);
+    CableStations::spread::<f64, true>(&p, x, &loads, Gives::ALL, &w, &mut out);
     out
 }
 
@@ -209,14 +213,14 @@ fn stations_spread_loads_and_their_derivatives() {
 fn stations_weigh_the_element() {
     let p = CableStations { l: L, s0: 5.0, diameter: 0.1, area: 0.01 };
     let x = at(bent()[1], noise(5, 1.0), noise(6, 1.0));
-    let stations = CableStations::stations(&p, &x);
+    let stations = stations(&p, &x);
     approx::assert_relative_eq!(stations.iter().map(|s| s.weight).sum::<f64>(), L, max_relative = 1e-15);
     approx::assert_relative_eq!(stations.iter().map(|s| s.s * s.weight).sum::<f64>() / L, 5.0 + 0.5 * L);
     // a uniform load gives w L [1/2, L/12, 1/2, -L/12]
     let mut one = Load::zero();
     one.f[2] = 1.0;
     let mut out = Share::zero();
-    CableStations::spread::<f64, false>(&p, &x, &[one; 4], &Weights::default(), &mut out);
+    CableStations::spread::<f64, false>(&p, &x, &[one; 4], Gives::NOTHING, &Weights::default(), &mut out);
     for (k, s) in [0.5, L / 12.0, 0.5, -L / 12.0].into_iter().enumerate() {
         approx::assert_relative_eq!(out.r[3 * k + 2], -L * s, max_relative = 1e-14);
     }

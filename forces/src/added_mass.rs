@@ -1,7 +1,7 @@
 //! Added mass: the water that a slender body pushes aside.
 
 use ropewalk_core::build::{BuildError, not_negative};
-use ropewalk_core::{Law, Load, Real, Station, V3, dot};
+use ropewalk_core::{Gives, Law, Load, Real, Station, dot, scaled};
 use std::f64::consts::PI;
 
 /// Added mass of a slender body in still water, `f = -m_a (I - t tᵀ) a` per unstretched length, with
@@ -35,24 +35,30 @@ impl Law for AddedMass {
     fn label(&self) -> String {
         "added mass".into()
     }
+    fn gives(&self) -> Gives {
+        Gives { slope: true, a: true, ..Gives::NOTHING }
+    }
 
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, _t: f64, at: &Station<R>, out: &mut Load<R>) {
         let mass = R::of(self.coefficient * self.density * PI / 4.0) * at.diameter * at.diameter;
         let stretch = dot(&at.slope, &at.slope).sqrt();
-        let t: V3<R> = at.slope.map(|p| p / stretch);
+        let inverse = R::of(1.0) / stretch;
+        let t = scaled(inverse, &at.slope);
         let axial = dot(&at.a, &t);
-        let normal: V3<R> = std::array::from_fn(|i| at.a[i] - axial * t[i]);
+        let mut normal = at.a;
         for i in 0..3 {
+            normal[i] -= axial * t[i];
             out.f[i] -= mass * normal[i];
         }
         if TANGENT {
-            let turn = mass / stretch;
+            let turn = mass * inverse;
             for i in 0..3 {
                 for j in 0..3 {
-                    let p = R::of(if i == j { 1.0 } else { 0.0 }) - t[i] * t[j];
+                    let tt = t[i] * t[j];
+                    let p = if i == j { R::of(1.0) - tt } else { -tt };
                     out.d_a[i][j] -= mass * p;
-                    out.d_slope[i][j] += turn * (axial * p + t[i] * normal[j]);
+                    out.d_slope[i][j] += turn * axial.fma(p, t[i] * normal[j]);
                 }
             }
         }

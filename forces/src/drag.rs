@@ -6,7 +6,7 @@
 
 use ropewalk_core::Current;
 use ropewalk_core::build::{BuildError, need, not_negative};
-use ropewalk_core::{Law, Load, Power, Real, Station, V3, dot};
+use ropewalk_core::{Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
 use std::f64::consts::PI;
 
 /// Law of the normal force `f_n = -½ ρ d Cn |v_n| v_n` per length.
@@ -110,7 +110,7 @@ impl Drag {
 
     /// Resistance `k` of the normal flow, `f_n = -k v_n`, and `s dk/ds` by the speed `s = |v_n|`.
     #[inline(always)]
-    fn normal<R: Real, const TANGENT: bool>(&self, d: R, s: R) -> (R, R) {
+    fn normal<R: Real>(&self, d: R, s: R) -> (R, R) {
         match self.normal {
             NormalLaw::Constant(cn) => {
                 let k = R::of(0.5 * self.density * cn) * d * s;
@@ -119,10 +119,8 @@ impl Drag {
             NormalLaw::ChooCasarella => {
                 let re = R::of(self.density / self.viscosity) * d * s;
                 let half_mu = R::of(0.5 * self.viscosity);
-                let blend = self.blend;
-                let k = half_mu * re.map(|re| cn_re(re, blend).0);
-                let by_s = if TANGENT { half_mu * re.map(|re| cn_re(re, blend).1) } else { R::zero() };
-                (k, by_s)
+                let (k, by_s) = cn_re(re, self.blend);
+                (half_mu * k, half_mu * by_s)
             }
         }
     }
@@ -138,7 +136,7 @@ impl Drag {
             TangentialLaw::ChooCasarella => {
                 let re_per_s = R::of(self.density / self.viscosity) * d;
                 let re = re_per_s * s;
-                let (half, third) = (re.sqrt(), re.map(f64::cbrt));
+                let (half, third) = (re.sqrt(), cube_root(re));
                 let two_thirds = third * third;
                 let mu = R::of(PI * self.viscosity);
                 let m = mu * R::of(0.55).fma(half, R::of(0.084) * two_thirds);
@@ -152,6 +150,18 @@ impl Drag {
     }
 }
 
+/// Cube root of a number that isn't negative: a third of the exponent for a start, then Halley's method, which triples
+/// the digits at each step.
+#[inline(always)]
+fn cube_root<R: Real>(a: R) -> R {
+    let (mut x, two) = (a.map(|a| f64::from_bits(a.to_bits() / 3 + 0x2A9F_7893_0000_0000)), R::of(2.0));
+    for _ in 0..3 {
+        let cube = x * x * x;
+        x = x * (two.fma(a, cube) / two.fma(cube, a));
+    }
+    a.if_gt(R::zero(), x, R::zero())
+}
+
 /// Below this Reynolds number the derivative of Choo and Casarella's tangential force by `v_n` fades to zero instead of
 /// growing like `Re^-½`: in axial flow `v_n` is rounding noise and such a tangent only hinders Newton's method. The
 /// force itself is never changed.
@@ -162,31 +172,39 @@ impl Law for Drag {
     fn label(&self) -> String {
         "drag".into()
     }
+    fn gives(&self) -> Gives {
+        Gives { x: !self.current.is_uniform(), slope: true, v: true, a: false }
+    }
 
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, _t: f64, at: &Station<R>, out: &mut Load<R>) {
         let one = R::of(1.0);
         let (u, du) = self.current.at(at.x[2]);
-        let v: V3<R> = std::array::from_fn(|i| at.v[i] - u[i]);
+        let v = [at.v[0] - u[0], at.v[1] - u[1], at.v[2] - u[2]];
         let stretch = dot(&at.slope, &at.slope).sqrt();
-        let t: V3<R> = at.slope.map(|p| p / stretch);
+        let per_stretch = one / stretch;
+        let t = scaled(per_stretch, &at.slope);
         let w = dot(&v, &t);
-        let vn: V3<R> = std::array::from_fn(|i| v[i] - w * t[i]);
+        let mut vn = v;
+        for i in 0..3 {
+            vn[i] -= w * t[i];
+        }
         let s = dot(&vn, &vn).sqrt();
-        let (k, ks) = self.normal::<R, TANGENT>(at.diameter, s);
+        let (k, ks) = self.normal(at.diameter, s);
         let (h, hw, hs) = self.tangential(at.diameter, w, s);
         // |r'| per stretched length, else 1
         let length = if self.per == PerLength::Stretched { stretch } else { one };
-        let f: V3<R> = std::array::from_fn(|i| -(k.fma(vn[i], h * t[i])));
+        let mut f = vn;
         for i in 0..3 {
+            f[i] = -(k.fma(vn[i], h * t[i]));
             out.f[i] += length * f[i];
         }
         if !TANGENT {
             return;
         }
         let inverse = s.if_gt(R::zero(), one / s, R::zero());
-        let n: V3<R> = vn.map(|x| x * inverse);
-        let per_slope = length / stretch;
+        let n = scaled(inverse, &vn);
+        let per_slope = length * per_stretch;
         let tn = s.fma(k - hw, w * hs);
         let side = w.fma(k, -h);
         let mut dv = [[R::zero(); 3]; 3];
@@ -194,9 +212,9 @@ impl Law for Drag {
             for j in 0..3 {
                 let (nn, tt, cross) = (n[i] * n[j], t[i] * t[j], t[i] * n[j]);
                 let p = if i == j { one - tt } else { -tt };
-                dv[i][j] = -(length * (k * p + ks * nn + hw * tt + hs * cross));
+                dv[i][j] = -(length * k.fma(p, ks.fma(nn, hw.fma(tt, hs * cross))));
                 out.d_v[i][j] += dv[i][j];
-                out.d_slope[i][j] += per_slope * (w * ks * nn + tn * cross + side * p);
+                out.d_slope[i][j] += per_slope * (w * ks).fma(nn, tn.fma(cross, side * p));
                 if self.per == PerLength::Stretched {
                     out.d_slope[i][j] += f[i] * t[j];
                 }
@@ -224,7 +242,7 @@ impl Law for Drag {
 /// `1.1 + 4 Re^-½` above. The last one was published up to 10⁵ and is kept beyond. Infinite at `Re = 0`, where the
 /// force is zero all the same.
 pub fn choo_casarella_cn(re: f64) -> f64 {
-    if re > 0.0 { cn_re(re, None).0 / re } else { f64::INFINITY }
+    if re > 0.0 { cn_re_one(re, None).0 / re } else { f64::INFINITY }
 }
 
 /// Tangential coefficient by viscosity, `π (0.55 Re^½ + 0.084 Re^⅔)`: the force per length is `-μ` times this times
@@ -252,7 +270,23 @@ fn high(re: f64) -> (f64, f64) {
 }
 
 /// `Cn Re` and its derivative by `ln Re`: both are finite and zero at `Re = 0`.
-fn cn_re(re: f64, blend: Option<f64>) -> (f64, f64) {
+#[inline(always)]
+fn cn_re<R: Real>(re: R, blend: Option<f64>) -> (R, R) {
+    let root = re.sqrt();
+    let mut y = (R::of(1.1).fma(re, R::of(4.0) * root), R::of(1.1).fma(re, R::of(2.0) * root));
+    // cables are nearly always above the last edge; logarithms and powers are for those that aren't
+    let last = 30.0 * (1.0 + blend.unwrap_or(0.0));
+    let mut below = false;
+    for lane in 0..R::LANES {
+        below |= !(re.lane(lane) > last);
+    }
+    if below {
+        y = (re.map(|re| cn_re_one(re, blend).0), re.map(|re| cn_re_one(re, blend).1));
+    }
+    y
+}
+
+fn cn_re_one(re: f64, blend: Option<f64>) -> (f64, f64) {
     let edges: [(f64, Branch, Branch); 2] = [(1.0, low, middle), (30.0, middle, high)];
     for (edge, below, above) in edges {
         if let Some(b) = blend

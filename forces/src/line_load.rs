@@ -3,7 +3,7 @@
 use crate::drag::PerLength;
 use crate::time::TimeFunction;
 use ropewalk_core::build::{BuildError, finite};
-use ropewalk_core::{Law, Load, Real, Station, V3, dot};
+use ropewalk_core::{Gives, Law, Load, Real, Station, V3, dot, scaled};
 
 /// A force per length that keeps its direction in space, times a function of time.
 ///
@@ -34,20 +34,28 @@ impl Law for LineLoad {
     fn label(&self) -> String {
         "line load".into()
     }
+    fn gives(&self) -> Gives {
+        Gives { slope: self.per == PerLength::Stretched, ..Gives::NOTHING }
+    }
 
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let factor = self.time.at(t);
-        let f: V3<R> = self.force.map(|f| R::of(factor * f));
+        let f = scaled(R::of(factor), &[R::of(self.force[0]), R::of(self.force[1]), R::of(self.force[2])]);
         match self.per {
-            PerLength::Unstretched => (0..3).for_each(|i| out.f[i] += f[i]),
+            PerLength::Unstretched => {
+                for i in 0..3 {
+                    out.f[i] += f[i];
+                }
+            }
             PerLength::Stretched => {
                 let stretch = dot(&at.slope, &at.slope).sqrt();
+                let t = scaled(R::of(1.0) / stretch, &at.slope);
                 for i in 0..3 {
                     out.f[i] += stretch * f[i];
                     if TANGENT {
                         for j in 0..3 {
-                            out.d_slope[i][j] += f[i] * at.slope[j] / stretch;
+                            out.d_slope[i][j] += f[i] * t[j];
                         }
                     }
                 }

@@ -77,9 +77,9 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
                 strain.add_hessian(R::of(w.q) * force, &mut local);
             }
         }
-        local.spread_force(il, out);
+        local.spread_force::<false>(il, out);
         if TANGENT {
-            local.spread_tangent(il, R::of(1.0), out);
+            local.spread_tangent::<false>(il, R::of(1.0), out);
         }
     }
     fn energy(_: &[f64; 2], _: &Local<f64, 12, 12>) -> Energy {
@@ -155,9 +155,9 @@ impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingDamping<T, Q> {
                 curve.add_hessian(wq * m * rate, &mut local);
             }
         }
-        local.spread_force(il, out);
+        local.spread_force::<false>(il, out);
         if TANGENT {
-            local.spread_tangent(il, R::of(1.0), out);
+            local.spread_tangent::<false>(il, R::of(1.0), out);
         }
     }
     fn energy(_: &[f64; 3], _: &Local<f64, 12, 12>) -> Energy {

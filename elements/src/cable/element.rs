@@ -66,6 +66,7 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Cable<L, T, Q> {
 impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q> {
     type Lanes<R: Real> = CableParams<R>;
     const SYMMETRIC: bool = L::SYMMETRIC;
+    const SETS: bool = true;
 
     fn label() -> String {
         format!("cable {}+{} {}", L::LABEL, T::LABEL, Q::LABEL)
@@ -103,9 +104,9 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
             add_axial::<L, Q::Axial, R, TANGENT>(ea * p.l, &q, &mut local);
             T::add::<Q::Bending, R, TANGENT>(p.ei, p.l, il, &q, &mut local);
         }
-        local.spread_force(il, out);
+        local.spread_force::<true>(il, out);
         if TANGENT {
-            local.spread_tangent(il, R::of(w.q), out);
+            local.spread_tangent::<true>(il, R::of(w.q), out);
             L::add_unsymmetric(R::of(w.q) * ea * p.l, &q, il, out);
         }
         add_mass::<R, TANGENT>(p, &x.a, w.a, out);

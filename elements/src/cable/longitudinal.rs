@@ -101,21 +101,18 @@ impl<R: Real> Stretch<R> {
     /// Adds `unit φφᵀ ⊗ I + square φφᵀ ⊗ ppᵀ`.
     #[inline(always)]
     fn add(&self, unit: R, square: R, out: &mut Reduced<R>) {
-        let mut m = [[R::zero(); 3]; 3];
+        let [_, f1, f2] = self.phi;
+        let f = [1.0, f1, f2, f1 * f1, f1 * f2, f2 * f2].map(R::of);
         for r in 0..3 {
             let sp = square * self.p[r];
             for c in r..3 {
-                m[r][c] = sp * self.p[c];
-                m[c][r] = m[r][c];
-            }
-            m[r][r] += unit;
-        }
-        for i in 0..3 {
-            for j in i..3 {
-                let f = R::of(self.phi[i] * self.phi[j]);
-                for r in 0..3 {
-                    for c in (if i == j { r } else { 0 })..3 {
-                        out.k[i][j][r][c] = f.fma(m[r][c], out.k[i][j][r][c]);
+                let m = if r == c { sp.fma(self.p[c], unit) } else { sp * self.p[c] };
+                for b in 0..6 {
+                    out.k[b][r][c] = f[b].fma(m, out.k[b][r][c]);
+                }
+                if r != c {
+                    for b in [1, 2, 4] {
+                        out.k[b][c][r] = f[b].fma(m, out.k[b][c][r]);
                     }
                 }
             }

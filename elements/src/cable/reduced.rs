@@ -11,16 +11,22 @@ pub type M3<R> = [V3<R>; 3];
 pub struct Reduced<R> {
     /// Forces.
     pub g: Natural<R>,
-    /// Their derivatives, symmetric. Only blocks `k[i][j]` with `i <= j` are kept, and of those with `i == j`
-    /// only the upper triangle.
-    pub k: [[M3<R>; 3]; 3],
+    /// Their derivatives, symmetric: the blocks of the upper triangle, see [`block`]; of those on the diagonal only
+    /// their own upper triangle counts.
+    pub k: [M3<R>; 6],
+}
+
+/// Where block `(i, j)`, `i <= j`, stands in [`Reduced::k`].
+#[inline(always)]
+pub const fn block(i: usize, j: usize) -> usize {
+    i * (5 - i) / 2 + j
 }
 
 impl<R: Real> Reduced<R> {
     /// Nothing yet.
     #[inline(always)]
     pub fn zero() -> Self {
-        Reduced { g: [[R::zero(); 3]; 3], k: [[[[R::zero(); 3]; 3]; 3]; 3] }
+        Reduced { g: [[R::zero(); 3]; 3], k: [[[R::zero(); 3]; 3]; 6] }
     }
 
     /// Adds `s` times a force.
@@ -37,7 +43,7 @@ impl<R: Real> Reduced<R> {
     #[inline(always)]
     pub fn add_unit(&mut self, i: usize, j: usize, s: R) {
         for c in 0..3 {
-            self.k[i][j][c][c] += s;
+            self.k[block(i, j)][c][c] += s;
         }
     }
 
@@ -48,58 +54,41 @@ impl<R: Real> Reduced<R> {
             for r in 0..3 {
                 let sa = s * a[i][r];
                 for c in r..3 {
-                    self.k[i][i][r][c] = sa.fma(a[i][c], self.k[i][i][r][c]);
+                    self.k[block(i, i)][r][c] = sa.fma(a[i][c], self.k[block(i, i)][r][c]);
                 }
                 for j in i + 1..3 {
                     for c in 0..3 {
-                        self.k[i][j][r][c] = sa.fma(a[j][c], self.k[i][j][r][c]);
+                        self.k[block(i, j)][r][c] = sa.fma(a[j][c], self.k[block(i, j)][r][c]);
                     }
                 }
             }
         }
     }
 
-    /// Force on the dofs.
+    /// Adds the force to the dofs.
     #[inline(always)]
-    pub fn spread_force(&self, il: R, out: &mut Share<R, 12>) {
+    pub fn spread_force<const SET: bool>(&self, il: R, out: &mut Share<R, 12>) {
         let f = on_dofs(&self.g, il);
         for i in 0..12 {
-            out.r[i] += f[i];
+            put::<SET, R>(&mut out.r[i], f[i]);
         }
     }
 
-    /// Tangent on the dofs, times `w`.
+    /// Tangent on the dofs, times `w`: set with `SET`, else added.
     #[inline(always)]
-    pub fn spread_tangent(&self, il: R, w: R, out: &mut Share<R, 12>) {
-        let [[dd, da, db], [_, aa, ab], [_, _, bb]] = &self.k;
+    pub fn spread_tangent<const SET: bool>(&self, il: R, w: R, out: &mut Share<R, 12>) {
+        let [dd, da, db, aa, ab, bb] = &self.k;
         let (wl, wll) = (w * il, w * il * il);
         for r in 0..3 {
-            for c in 0..3 {
-                let (aa, bb) = if r <= c { (aa[r][c], bb[r][c]) } else { (aa[c][r], bb[c][r]) };
-                // derivatives of t by α and β
-                let ta = wl * (da[r][c] - aa - ab[c][r]);
-                let tb = wl * (db[r][c] - ab[r][c] - bb);
-                let m = w * ab[r][c];
-                for (i, j, k) in [(6 + r, 3 + c, ta), (6 + r, 9 + c, tb), (3 + r, 9 + c, m)] {
-                    out.k[i][j] += k;
-                    out.k[j][i] += k;
-                }
-                for (j, t) in [(3 + c, ta), (9 + c, tb)] {
-                    out.k[r][j] -= t;
-                    out.k[j][r] -= t;
-                }
-                out.k[3 + r][3 + c] += w * aa;
-                out.k[9 + r][9 + c] += w * bb;
-            }
             for c in r..3 {
-                let across = (da[r][c] + da[c][r]) + (db[r][c] + db[c][r]) - (ab[r][c] + ab[c][r]);
-                let tt = wll * (dd[r][c] + aa[r][c] + bb[r][c] - across);
-                let twice = [(r, c), (c, r)];
-                for &(r, c) in if r == c { &twice[..1] } else { &twice[..] } {
-                    out.k[r][c] += tt;
-                    out.k[r][6 + c] -= tt;
-                    out.k[6 + r][c] -= tt;
-                    out.k[6 + r][6 + c] += tt;
+                // derivatives of t = Δ - α - β by α and β, above the diagonal and below it
+                let (a, b) = (aa[r][c], bb[r][c]);
+                let (ta, at) = (da[r][c] - a - ab[c][r], da[c][r] - a - ab[r][c]);
+                let (tb, bt) = (db[r][c] - ab[r][c] - b, db[c][r] - ab[c][r] - b);
+                let tt = wll * (dd[r][c] - da[c][r] - db[c][r] - ta - tb);
+                put_block::<SET, R>(out, r, c, [tt, wl * ta, wl * tb, w * a, w * ab[r][c], w * b]);
+                if r != c {
+                    put_block::<SET, R>(out, c, r, [tt, wl * at, wl * bt, w * a, w * ab[c][r], w * b]);
                 }
             }
         }
@@ -115,6 +104,38 @@ fn on_dofs<R: Real>(g: &Natural<R>, il: R) -> [R; 12] {
         (f[c], f[3 + c], f[6 + c], f[9 + c]) = (-t, g[1][c], t, g[2][c]);
     }
     f
+}
+
+/// Puts entry `(r, c)` of the blocks `[tt, tα, tβ, αα, αβ, ββ]` where it belongs among the dofs, and its mirror image.
+#[inline(always)]
+fn put_block<const SET: bool, R: Real>(out: &mut Share<R, 12>, r: usize, c: usize, b: [R; 6]) {
+    let [tt, ta, tb, aa, ab, bb] = b;
+    let minus = [-tt, -ta, -tb];
+    for (i, j, k) in [(r, c, tt), (r, 6 + c, minus[0]), (6 + r, c, minus[0]), (6 + r, 6 + c, tt)] {
+        put::<SET, R>(&mut out.k[i][j], k);
+    }
+    put::<SET, R>(&mut out.k[3 + r][3 + c], aa);
+    put::<SET, R>(&mut out.k[9 + r][9 + c], bb);
+    let pairs = [
+        (r, 3 + c, minus[1]),
+        (6 + r, 3 + c, ta),
+        (r, 9 + c, minus[2]),
+        (6 + r, 9 + c, tb),
+        (3 + r, 9 + c, ab),
+    ];
+    for (i, j, k) in pairs {
+        put::<SET, R>(&mut out.k[i][j], k);
+        put::<SET, R>(&mut out.k[j][i], k);
+    }
+}
+
+#[inline(always)]
+fn put<const SET: bool, R: Real>(entry: &mut R, x: R) {
+    if SET {
+        *entry = x;
+    } else {
+        *entry += x;
+    }
 }
 
 /// Adds `s a bᵀ` of natural forces to the tangent on the dofs: for tangents without symmetry.

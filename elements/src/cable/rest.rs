@@ -90,9 +90,9 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialRest<L, Q> {
                 strain.add_hessian(stress, &mut local);
             }
         }
-        local.spread_force(il, out);
+        local.spread_force::<false>(il, out);
         if TANGENT {
-            local.spread_tangent(il, R::of(w.q), out);
+            local.spread_tangent::<false>(il, R::of(w.q), out);
         }
     }
     fn energy(p: &RestLanes<f64>, x: &Local<f64, 12, 12>) -> Energy {
@@ -175,9 +175,9 @@ impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingRest<T, Q> {
                 local.add_square(R::of(-0.5) * by * i2, &gradient);
             }
         }
-        local.spread_force(il, out);
+        local.spread_force::<false>(il, out);
         if TANGENT {
-            local.spread_tangent(il, R::of(w.q), out);
+            local.spread_tangent::<false>(il, R::of(w.q), out);
         }
     }
     fn energy(p: &RestLanes<f64>, x: &Local<f64, 12, 12>) -> Energy {

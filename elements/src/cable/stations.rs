@@ -2,7 +2,7 @@
 
 use super::quadrature::{Gauss4, Quadrature};
 use super::shape::{combine, hermite, hermite_slope, natural};
-use ropewalk_core::{Batch, Load, Local, Real, Share, Station, StationElement, V3, Weights};
+use ropewalk_core::{Batch, Gives, Load, Local, Real, Share, Station, StationElement, V3, Weights};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -43,25 +43,21 @@ impl StationElement<12, 12, 4> for CableStations {
     }
 
     #[inline(always)]
-    fn stations<R: Real>(p: &CableStations<R>, x: &Local<R, 12, 12>) -> [Station<R>; 4] {
-        let q = natural(&x.q, R::of(1.0) / p.l);
-        let mut stations = [Station::zero(); 4];
-        for (station, at) in stations.iter_mut().zip(Gauss4::POINTS) {
-            let s = hermite(at.xi, p.l);
-            let v = interpolate(&s, &x.v);
-            *station = Station {
-                x: interpolate(&s, &x.q),
-                v,
-                a: interpolate(&s, &x.a),
-                slope: combine(&at.phi, &q),
-                curve_v: v,
-                s: R::of(at.xi).fma(p.l, p.s0),
-                weight: R::of(at.w) * p.l,
-                diameter: p.diameter,
-                area: p.area,
-            };
+    fn station<R: Real>(p: &CableStations<R>, x: &Local<R, 12, 12>, k: usize) -> Station<R> {
+        let at = &Gauss4::POINTS[k];
+        let (s, q) = (hermite(at.xi, p.l), natural(&x.q, R::of(1.0) / p.l));
+        let v = interpolate(&s, &x.v);
+        Station {
+            x: interpolate(&s, &x.q),
+            v,
+            a: interpolate(&s, &x.a),
+            slope: combine(&at.phi, &q),
+            curve_v: v,
+            s: R::of(at.xi).fma(p.l, p.s0),
+            weight: R::of(at.w) * p.l,
+            diameter: p.diameter,
+            area: p.area,
         }
-        stations
     }
 
     #[inline(always)]
@@ -69,32 +65,61 @@ impl StationElement<12, 12, 4> for CableStations {
         p: &CableStations<R>,
         _: &Local<R, 12, 12>,
         loads: &[Load<R>; 4],
+        gives: Gives,
         w: &Weights,
         out: &mut Share<R, 12>,
     ) {
         let il = R::of(1.0) / p.l;
-        for (at, load) in Gauss4::POINTS.iter().zip(loads) {
-            let weight = R::of(at.w) * p.l;
-            let s = hermite(at.xi, p.l);
-            for i in 0..4 {
-                let si = s[i] * weight;
-                for c in 0..3 {
-                    out.r[3 * i + c] -= si * load.f[c];
+        // shape functions and weights of the stations, with the sign that loads have in a residual
+        let (mut s, mut d, mut weight) = ([[R::zero(); 4]; 4], [[R::zero(); 4]; 4], [R::zero(); 4]);
+        for (k, at) in Gauss4::POINTS.iter().enumerate() {
+            (s[k], d[k]) = (hermite(at.xi, p.l), hermite_slope(at.xi, il));
+            weight[k] = R::of(-at.w) * p.l;
+        }
+        for c in 0..3 {
+            let mut r = [R::zero(); 4];
+            for k in 0..4 {
+                let f = weight[k] * loads[k].f[c];
+                for i in 0..4 {
+                    r[i] = s[k][i].fma(f, r[i]);
                 }
             }
-            if TANGENT {
-                let d = hermite_slope(at.xi, il);
-                let (wq, wv, wa) = (R::of(w.q) * weight, R::of(w.v) * weight, R::of(w.a) * weight);
-                for r in 0..3 {
-                    for c in 0..3 {
-                        let by_x = wq.fma(load.d_x[r][c], wv.fma(load.d_v[r][c], wa * load.d_a[r][c]));
-                        let by_slope = wq * load.d_slope[r][c];
-                        for j in 0..4 {
-                            let column = s[j].fma(by_x, d[j] * by_slope);
-                            for i in 0..4 {
-                                out.k[3 * i + r][3 * j + c] -= s[i] * column;
-                            }
+            for i in 0..4 {
+                out.r[3 * i + c] = r[i];
+            }
+        }
+        if !TANGENT {
+            return;
+        }
+        let (wq, wv, wa) = (R::of(w.q), R::of(w.v), R::of(w.a));
+        for r in 0..3 {
+            for c in 0..3 {
+                let mut block = [[R::zero(); 4]; 4];
+                for k in 0..4 {
+                    let (load, mut by_x, mut by_slope) = (&loads[k], R::zero(), R::zero());
+                    if gives.x {
+                        by_x = wq * load.d_x[r][c];
+                    }
+                    if gives.v {
+                        by_x = wv.fma(load.d_v[r][c], by_x);
+                    }
+                    if gives.a {
+                        by_x = wa.fma(load.d_a[r][c], by_x);
+                    }
+                    if gives.slope {
+                        by_slope = weight[k] * wq * load.d_slope[r][c];
+                    }
+                    by_x = weight[k] * by_x;
+                    for j in 0..4 {
+                        let column = s[k][j].fma(by_x, d[k][j] * by_slope);
+                        for i in 0..4 {
+                            block[i][j] = s[k][i].fma(column, block[i][j]);
                         }
+                    }
+                }
+                for i in 0..4 {
+                    for j in 0..4 {
+                        out.k[3 * i + r][3 * j + c] = block[i][j];
                     }
                 }
             }

@@ -5,7 +5,7 @@
 //! derivatives there are 0/0. Strain energy `½ EI ∫ κ² dx`.
 
 use super::quadrature::{Point, Quadrature};
-use super::reduced::{M3, Reduced};
+use super::reduced::{M3, Reduced, block};
 use super::shape::{Natural, combine, second};
 use ropewalk_core::{Real, V3, dot};
 
@@ -99,8 +99,10 @@ pub struct Curve<R> {
     pub q: V3<R>,
     /// `∂r'/∂q`
     pub phi: [f64; 3],
-    /// `∂r''/∂q`; the first is zero.
-    pub psi: [R; 3],
+    /// `L ∂r''/∂q` by `α` and `β`; `Δ` has no part in it.
+    pub psi: [f64; 2],
+    /// `1/L`
+    pub il: R,
     /// Squared curvature.
     pub square: Square<R>,
 }
@@ -112,8 +114,7 @@ impl<R: Real> Curve<R> {
         let (p, q) = (combine(&at.phi, nat), second(&at.psi, il, nat));
         let x: V3<R> = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
         let i = Invariants { a: dot(&p, &p), b: dot(&p, &q), c: dot(&q, &q), d: dot(&x, &x) };
-        let psi = [R::zero(), il * R::of(at.psi[0]), il * R::of(at.psi[1])];
-        Curve { p, q, phi: at.phi, psi, square: T::square(&i) }
+        Curve { p, q, phi: at.phi, psi: at.psi, il, square: T::square(&i) }
     }
 
     /// The natural force of a force `gp` on `r'` and `gq` on `r''`.
@@ -122,7 +123,7 @@ impl<R: Real> Curve<R> {
         let mut g = [*gp; 3];
         for i in 1..3 {
             for c in 0..3 {
-                g[i][c] = R::of(self.phi[i]).fma(gp[c], self.psi[i] * gq[c]);
+                g[i][c] = R::of(self.phi[i]).fma(gp[c], self.il * R::of(self.psi[i - 1]) * gq[c]);
             }
         }
         g
@@ -152,10 +153,7 @@ impl<R: Real> Curve<R> {
     pub fn turn(&self, v: &Natural<R>) -> Natural<R> {
         let (s, p, q) = (&self.square, &self.p, &self.q);
         let dp = combine(&self.phi, v);
-        let mut dq = dp;
-        for c in 0..3 {
-            dq[c] = self.psi[1].fma(v[1][c], self.psi[2] * v[2][c]);
-        }
+        let dq = second(&self.psi, self.il, v);
         let two = R::of(2.0);
         let (da, db, dc) = (two * dot(p, &dp), dot(&dp, q) + dot(p, &dq), two * dot(q, &dq));
         let va = two * (s.aa * da + s.ab * db + s.ac * dc);
@@ -173,56 +171,53 @@ impl<R: Real> Curve<R> {
     /// Adds `s` times the second derivative of κ².
     #[inline(always)]
     pub fn add_hessian(&self, s: R, out: &mut Reduced<R>) {
-        let (k, p, q) = (&self.square, &self.p, &self.q);
+        let (k, p, q, il) = (&self.square, &self.p, &self.q, self.il);
         let two = s + s;
         let (aa, ab, ac, bb) = ((two + two) * k.aa, two * k.ab, (two + two) * k.ac, s * k.bb);
-        let (a, b, c) = (two * k.a, s * k.b, two * k.c);
-        let mut pp: M3<R> = [[R::zero(); 3]; 3];
-        let (mut pq, mut qq) = (pp, pp);
+        // the second derivatives by r' and r'' are pp = u pᵀ + v qᵀ + a I, pq = (v pᵀ + ac p qᵀ + b I)/L and
+        // qq = (bb p pᵀ + c I)/L², the powers of L being those of r'' by the natural variables
+        let (a, b, c) = (two * k.a, s * k.b * il, two * k.c * il * il);
+        let (mut u, mut v, mut vl, mut w, mut bp) = (*p, *p, *p, *p, *p);
         for i in 0..3 {
-            // rows of the three second derivatives by r' and r''
-            let (up, uq) = (aa.fma(p[i], ab * q[i]), ab.fma(p[i], bb * q[i]));
-            let (vp, vq, bp) = (ab.fma(p[i], bb * q[i]), ac * p[i], bb * p[i]);
-            for j in 0..3 {
-                pq[i][j] = vp.fma(p[j], vq * q[j]);
-            }
+            u[i] = aa.fma(p[i], ab * q[i]);
+            v[i] = ab.fma(p[i], bb * q[i]);
+            vl[i] = il * v[i];
+            w[i] = il * ac * p[i];
+            bp[i] = il * il * bb * p[i];
+        }
+        let ([_, f1, f2], [s1, s2]) = (self.phi, self.psi);
+        for i in 0..3 {
             for j in i..3 {
-                pp[i][j] = up.fma(p[j], uq * q[j]);
-                qq[i][j] = bp * p[j];
-                pp[j][i] = pp[i][j];
-                qq[j][i] = qq[i][j];
-            }
-            pp[i][i] += a;
-            pq[i][i] += b;
-            qq[i][i] += c;
-        }
-        for r in 0..3 {
-            for c in r..3 {
-                out.k[0][0][r][c] += pp[r][c];
-            }
-        }
-        for i in 1..3 {
-            let (fi, si) = (R::of(self.phi[i]), self.psi[i]);
-            let mut rows_p = pp;
-            let mut rows_q = qq;
-            for r in 0..3 {
-                for c in 0..3 {
-                    out.k[0][i][r][c] += fi.fma(pp[r][c], si * pq[r][c]);
-                    rows_p[r][c] = fi.fma(pp[r][c], si * pq[c][r]);
-                    rows_q[r][c] = fi.fma(pq[r][c], si * qq[r][c]);
+                let mut pp = u[i].fma(p[j], v[i] * q[j]);
+                let mut qq = bp[i] * p[j];
+                let (mut pq, mut qp) = (vl[i].fma(p[j], w[i] * q[j]), vl[j].fma(p[i], w[j] * q[i]));
+                if i == j {
+                    (pp, pq, qq) = (pp + a, pq + b, qq + c);
+                    qp = pq;
                 }
-            }
-            for j in i..3 {
-                let (fj, sj) = (R::of(self.phi[j]), self.psi[j]);
-                for r in 0..3 {
-                    for c in (if i == j { r } else { 0 })..3 {
-                        let k = &mut out.k[i][j][r][c];
-                        *k = fj.fma(rows_p[r][c], sj.fma(rows_q[r][c], *k));
+                let both = pq + qp;
+                let mut add = |b: usize, i: usize, j: usize, x: R| out.k[b][i][j] += x;
+                add(block(0, 0), i, j, pp);
+                add(block(1, 1), i, j, blend(f1 * f1, pp, f1 * s1, both, s1 * s1, qq));
+                add(block(2, 2), i, j, blend(f2 * f2, pp, f2 * s2, both, s2 * s2, qq));
+                let common = R::of(f1 * f2).fma(pp, R::of(s1 * s2) * qq);
+                for (r, c, pq, qp) in [(i, j, pq, qp), (j, i, qp, pq)] {
+                    add(block(0, 1), r, c, R::of(f1).fma(pp, R::of(s1) * pq));
+                    add(block(0, 2), r, c, R::of(f2).fma(pp, R::of(s2) * pq));
+                    add(block(1, 2), r, c, R::of(f1 * s2).fma(pq, R::of(s1 * f2).fma(qp, common)));
+                    if i == j {
+                        break;
                     }
                 }
             }
         }
     }
+}
+
+/// `a x + b y + c z`
+#[inline(always)]
+fn blend<R: Real>(a: f64, x: R, b: f64, y: R, c: f64, z: R) -> R {
+    R::of(a).fma(x, R::of(b).fma(y, R::of(c) * z))
 }
 
 /// Strain energy of bending, `½ EI L Σ w κ²`.
