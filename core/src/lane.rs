@@ -407,7 +407,7 @@ mod door {
         _mm256_fmadd_pd,
         _mm256_sqrt_pd,
         |x, limit, yes, no| _mm256_blendv_pd(no, yes, _mm256_cmp_pd::<_CMP_GT_OQ>(x, limit)),
-        |get| transpose([0, 1, 2, 3].map(|l| Avx2::from(get(l)).0)).map(Avx2),
+        |get| transpose([0, 1, 2, 3].map(|l| Avx2::read(&get(l)).0)).map(Avx2),
         |values, put| {
             let rows = transpose(values.map(|v| v.0));
             for l in 0..4 {
@@ -430,8 +430,8 @@ mod door {
         _mm512_sqrt_pd,
         |x, limit, yes, no| _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit), no, yes),
         |get| {
-            let low = transpose([0, 1, 2, 3].map(|l| Avx2::from(get(l)).0));
-            let high = transpose([4, 5, 6, 7].map(|l| Avx2::from(get(l)).0));
+            let low = transpose([0, 1, 2, 3].map(|l| Avx2::read(&get(l)).0));
+            let high = transpose([4, 5, 6, 7].map(|l| Avx2::read(&get(l)).0));
             [0, 1, 2, 3].map(|i| Avx512(_mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low[i]), high[i])))
         },
         |values, put| {
