@@ -35,7 +35,7 @@ pub trait Real:
     /// Four values from the four numbers that each lane has side by side in memory: `f(lane)`.
     #[inline(always)]
     fn from_rows(f: impl Fn(usize) -> [f64; 4]) -> [Self; 4] {
-        [0, 1, 2, 3].map(|i| Self::each(|l| f(l)[i]))
+        [Self::each(|l| f(l)[0]), Self::each(|l| f(l)[1]), Self::each(|l| f(l)[2]), Self::each(|l| f(l)[3])]
     }
     /// The way back: hands `f` each lane with its four numbers.
     #[inline(always)]
@@ -407,12 +407,16 @@ mod door {
         _mm256_fmadd_pd,
         _mm256_sqrt_pd,
         |x, limit, yes, no| _mm256_blendv_pd(no, yes, _mm256_cmp_pd::<_CMP_GT_OQ>(x, limit)),
-        |get| transpose([0, 1, 2, 3].map(|l| Avx2::read(&get(l)).0)).map(Avx2),
+        |get| {
+            let [a, b, c, d] = transpose([row(get(0)), row(get(1)), row(get(2)), row(get(3))]);
+            [Avx2(a), Avx2(b), Avx2(c), Avx2(d)]
+        },
         |values, put| {
-            let rows = transpose(values.map(|v| v.0));
-            for l in 0..4 {
-                put(l, Avx2(rows[l]).numbers());
-            }
+            let [a, b, c, d] = transpose([values[0].0, values[1].0, values[2].0, values[3].0]);
+            put(0, Avx2(a).numbers());
+            put(1, Avx2(b).numbers());
+            put(2, Avx2(c).numbers());
+            put(3, Avx2(d).numbers());
         }
     );
     carrier!(
@@ -430,19 +434,34 @@ mod door {
         _mm512_sqrt_pd,
         |x, limit, yes, no| _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit), no, yes),
         |get| {
-            let low = transpose([0, 1, 2, 3].map(|l| Avx2::read(&get(l)).0));
-            let high = transpose([4, 5, 6, 7].map(|l| Avx2::read(&get(l)).0));
-            [0, 1, 2, 3].map(|i| Avx512(_mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low[i]), high[i])))
+            let low = transpose([row(get(0)), row(get(1)), row(get(2)), row(get(3))]);
+            let high = transpose([row(get(4)), row(get(5)), row(get(6)), row(get(7))]);
+            let mut out = [Avx512::of(0.0); 4];
+            for i in 0..4 {
+                out[i] = Avx512(_mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low[i]), high[i]));
+            }
+            out
         },
         |values, put| {
-            let low = transpose(values.map(|v| _mm512_castpd512_pd256(v.0)));
-            let high = transpose(values.map(|v| _mm512_extractf64x4_pd::<1>(v.0)));
+            let (mut low, mut high) = ([row([0.0; 4]); 4], [row([0.0; 4]); 4]);
+            for i in 0..4 {
+                low[i] = _mm512_castpd512_pd256(values[i].0);
+                high[i] = _mm512_extractf64x4_pd::<1>(values[i].0);
+            }
+            (low, high) = (transpose(low), transpose(high));
             for l in 0..4 {
                 put(l, Avx2(low[l]).numbers());
                 put(4 + l, Avx2(high[l]).numbers());
             }
         }
     );
+
+    /// A register of four numbers. Only behind a door.
+    #[inline(always)]
+    unsafe fn row(x: [f64; 4]) -> __m256d {
+        // SAFETY: the caller is behind a door; `x` fills the register
+        unsafe { _mm256_loadu_pd(x.as_ptr()) }
+    }
 
     /// Four registers of four numbers, rows for columns. Only behind a door.
     #[inline(always)]
