@@ -242,7 +242,8 @@ fn schemes_that_ring_are_refused_or_say_how_much() {
         ringing.push(s.ringing);
     }
     println!("ringing {ringing:?}");
-    assert!(ringing[0] > 0.0 && ringing[1] > ringing[0], "{ringing:?}");
+    // from a consistent start the first has nothing to ring with; the second makes it out of rounding errors
+    assert!(ringing[0] < 1e-3 && ringing[1] > 0.1, "{ringing:?}");
 }
 
 /// Counts allocations of every step but the first ones.

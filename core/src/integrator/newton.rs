@@ -17,6 +17,10 @@ const U: f64 = f64::EPSILON / 2.0;
 /// Iterations with kept factors that are cheaper than new factors.
 const PATIENCE: i32 = 3;
 
+/// Largest expected rest of the error that is believed without a second iteration. What is expected grows from step to
+/// step that has only one.
+const TRUST: f64 = 0.1;
+
 /// What Newton's method of a trial came to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Outcome {
@@ -136,7 +140,9 @@ impl Newton<'_> {
                 eta = eta.max(1e-16).powf(0.8);
             }
             last = size;
-            let done = size * eta.min(1e3) <= stop || size <= floor;
+            // a rate that wasn't seen for some steps has to be seen again before it is trusted
+            let trusted = k > 0 || eta <= TRUST;
+            let done = trusted && size * eta.min(1e3) <= stop || size <= floor;
             if done && self.constraints_hold(work) {
                 // new factors have a clean slate until they are seen to converge slowly
                 let rate = if k > 0 { Some(theta) } else { fresh.then_some(0.0) };

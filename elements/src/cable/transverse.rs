@@ -5,7 +5,7 @@
 //! derivatives there are 0/0. Strain energy `½ EI ∫ κ² dx`.
 
 use super::quadrature::{Point, Quadrature};
-use super::reduced::{M3, Reduced, block};
+use super::reduced::{Reduced, block};
 use super::shape::{Natural, combine, second};
 use ropewalk_core::{Real, V3, dot};
 
