@@ -83,10 +83,11 @@ impl<E> Batch<'_, E> {
 ///             }
 ///         }
 ///     }
-///     fn energy(p: &[f64; 2], x: &Local<f64, 6, 6>) -> Energy {
-///         let d: [f64; 3] = std::array::from_fn(|i| x.q[3 + i] - x.q[i]);
+///     #[inline(always)]
+///     fn energy<R: Real>(p: &[R; 2], x: &Local<R, 6, 6>) -> Energy<R> {
+///         let d: [R; 3] = std::array::from_fn(|i| x.q[3 + i] - x.q[i]);
 ///         let stretch = dot(&d, &d).sqrt() - p[1];
-///         Energy { potential: 0.5 * p[0] * stretch * stretch, ..Energy::default() }
+///         Energy { potential: R::of(0.5) * p[0] * stretch * stretch, ..Energy::zero() }
 ///     }
 /// }
 /// ```
@@ -111,10 +112,14 @@ pub trait Element<const Q: usize, const N: usize>: Clone + Send + Sync + 'static
         out: &mut Share<R, N>,
     );
     /// Kinetic and potential energy.
-    fn energy(p: &Self::Lanes<f64>, x: &Local<f64, Q, N>) -> Energy;
+    #[inline(always)]
+    fn energy<R: Real>(_p: &Self::Lanes<R>, _x: &Local<R, Q, N>) -> Energy<R> {
+        Energy::zero()
+    }
     /// Power dissipated and supplied.
-    fn power(_p: &Self::Lanes<f64>, _x: &Local<f64, Q, N>) -> Power {
-        Power::default()
+    #[inline(always)]
+    fn power<R: Real>(_p: &Self::Lanes<R>, _x: &Local<R, Q, N>) -> Power<R> {
+        Power::zero()
     }
 }
 
@@ -292,18 +297,6 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> Pool<E, Q, N> {
     pub fn elements(&self) -> &[E] {
         &self.elements
     }
-    fn sum<T: Default + std::ops::AddAssign>(
-        &self,
-        at: &At<'_>,
-        f: impl Fn(&E::Lanes<f64>, &Local<f64, Q, N>) -> T,
-    ) -> T {
-        let mut total = T::default();
-        for (e, seat) in self.elements.iter().zip(&self.seats) {
-            let p = E::lanes::<f64>(&Batch(std::slice::from_ref(e)));
-            total += f(&p, &Seat::gather(std::slice::from_ref(seat), at));
-        }
-        total
-    }
 }
 
 impl<E: Element<Q, N>, const Q: usize, const N: usize> Default for Pool<E, Q, N> {
@@ -343,6 +336,33 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
     }
 }
 
+/// Energy and power of all elements, for the audit.
+struct Sum<'a, E, const Q: usize, const N: usize> {
+    pool: &'a Pool<E, Q, N>,
+    at: &'a At<'a>,
+    energy: Option<&'a mut Energy>,
+    power: Option<&'a mut Power>,
+}
+
+impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for Sum<'_, E, Q, N> {
+    const WIDE: bool = E::WIDE;
+    #[inline(always)]
+    fn go<R: Real>(mut self) {
+        for (elements, seats) in self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES)) {
+            let p = E::lanes::<R>(&Batch(elements));
+            let x = Seat::gather::<R>(seats, self.at);
+            if let Some(total) = self.energy.as_deref_mut() {
+                let energy = E::energy(&p, &x);
+                (0..seats.len()).for_each(|l| *total += energy.lane(l));
+            }
+            if let Some(total) = self.power.as_deref_mut() {
+                let power = E::power(&p, &x);
+                (0..seats.len()).for_each(|l| *total += power.lane(l));
+            }
+        }
+    }
+}
+
 impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
     fn label(&self) -> String {
         E::label()
@@ -361,9 +381,13 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
         run(width, AddAll { pool: self, at, out });
     }
     fn energy(&self, at: &At<'_>) -> Energy {
-        self.sum(at, E::energy)
+        let mut energy = Energy::default();
+        run(Width::best(), Sum { pool: self, at, energy: Some(&mut energy), power: None });
+        energy
     }
     fn power(&self, at: &At<'_>) -> Power {
-        self.sum(at, E::power)
+        let mut power = Power::default();
+        run(Width::best(), Sum { pool: self, at, energy: None, power: Some(&mut power) });
+        power
     }
 }

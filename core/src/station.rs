@@ -3,12 +3,13 @@
 //! Elements offer stations, laws load them, and neither knows the other: N elements and M laws are N + M pieces of
 //! code. A law never sees an unknown; an element never sees what kind of load it carries.
 
-use crate::lane::{LaneTask, Real, V3, Width, run};
+use crate::lane::{LaneTask, Real, V3, Width, dot, run};
 use crate::node::{Node, NodeId};
 use crate::pattern::Pattern;
 use crate::pool::{Batch, Blocks, Local, Seat, Share};
 use crate::state::At;
 use crate::term::{Assembly, Power, Term, Weights};
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// A point of a body and its motion.
@@ -102,8 +103,9 @@ pub trait Law: Send + Sync + 'static {
     /// Adds the force per unstretched length at a station, and its derivatives if `TANGENT`.
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>);
     /// The power of the load `f` per unstretched length [W/m]. By default all of it is supplied from outside.
-    fn power(&self, _t: f64, at: &Station<f64>, f: V3<f64>) -> Power {
-        Power { supplied: crate::lane::dot(&f, &at.v), ..Power::default() }
+    #[inline(always)]
+    fn power<R: Real>(&self, _t: f64, at: &Station<R>, f: &V3<R>) -> Power<R> {
+        Power { supplied: dot(f, &at.v), ..Power::zero() }
     }
 }
 
@@ -206,12 +208,28 @@ struct Exchange {
     given: Gives,
 }
 
+impl Exchange {
+    /// Makes room for elements of `count` stations.
+    fn resize<R: Real>(&mut self, count: usize) {
+        self.stations.resize(count * STATION * R::LANES, 0.0);
+        self.loads.resize(count * LOAD * R::LANES, 0.0);
+    }
+}
+
+thread_local! {
+    // kept between calls, so that no step allocates
+    static EXCHANGE: RefCell<Exchange> = const {
+        RefCell::new(Exchange { stations: Vec::new(), loads: Vec::new(), loaded: false, given: Gives::NOTHING })
+    };
+}
+
 /// A [`Law`] behind a virtual call that serves a whole batch.
 trait ErasedLaw: Send + Sync {
     fn label(&self) -> String;
     /// Loads a batch; `width` must be that of the element's own code.
     fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange);
-    fn power(&self, t: f64, at: &Station<f64>) -> Power;
+    /// The power of the loads in the first `lanes` lanes of a batch.
+    fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power;
 }
 
 struct LoadAll<'a, L> {
@@ -261,10 +279,34 @@ impl<L: Law> ErasedLaw for L {
     fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange) {
         run(width, LoadAll { law: self, t, tangent, x });
     }
-    fn power(&self, t: f64, at: &Station<f64>) -> Power {
-        let mut load = Load::zero();
-        Law::load::<f64, false>(self, t, at, &mut load);
-        Law::power(self, t, at, load.f)
+    fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power {
+        let mut out = Power::default();
+        run(width, PowerOf { law: self, t, x, lanes, out: &mut out });
+        out
+    }
+}
+
+struct PowerOf<'a, L> {
+    law: &'a L,
+    t: f64,
+    x: &'a Exchange,
+    lanes: usize,
+    out: &'a mut Power,
+}
+
+impl<L: Law> LaneTask for PowerOf<'_, L> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        let mut sum = Power::<R>::zero();
+        for row in self.x.stations.chunks_exact(STATION * R::LANES) {
+            let (at, mut load) = (Station::read(row), Load::zero());
+            self.law.load::<R, false>(self.t, &at, &mut load);
+            let power = self.law.power(self.t, &at, &load.f);
+            sum.dissipated = at.weight.fma(power.dissipated, sum.dissipated);
+            sum.supplied = at.weight.fma(power.supplied, sum.supplied);
+            sum.carried = at.weight.fma(power.carried, sum.carried);
+        }
+        (0..self.lanes).for_each(|l| *self.out += sum.lane(l));
     }
 }
 
@@ -299,6 +341,8 @@ pub trait Stations: Send + Sync {
     fn is_empty(&self) -> bool;
     /// Calls `f` with every station.
     fn each(&self, at: &At<'_>, f: &mut dyn FnMut(&Station<f64>));
+    /// The power of all laws.
+    fn power(&self, laws: &Laws, at: &At<'_>) -> Power;
     /// Applies all laws and adds what comes of it.
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>);
 }
@@ -347,6 +391,17 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     }
 }
 
+#[inline(always)]
+fn write_stations<E: StationElement<Q, N, S>, R: Real, const Q: usize, const N: usize, const S: usize>(
+    p: &E::Lanes<R>,
+    x: &Local<R, Q, N>,
+    exchange: &mut Exchange,
+) {
+    for (k, row) in exchange.stations.chunks_exact_mut(STATION * R::LANES).enumerate() {
+        E::station(p, x, k).write(row);
+    }
+}
+
 struct SpreadAll<'a, 'b, 'c, E, const Q: usize, const N: usize, const S: usize> {
     pool: &'a StationPool<E, Q, N, S>,
     laws: &'a Laws,
@@ -363,17 +418,14 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         let w = self.out.weights();
         let (tangent, width) = (self.out.wants_tangent(), self.out.width());
         let mut blocks = Blocks::new();
-        self.exchange.stations.resize(S * STATION * R::LANES, 0.0);
-        self.exchange.loads.resize(S * LOAD * R::LANES, 0.0);
+        self.exchange.resize::<R>(S);
         // derivatives that no law gives stay zero throughout
         let (mut loads, mut share) = ([Load::<R>::zero(); S], Share::zero());
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
             let x = Seat::gather::<R>(seats, self.at);
-            for (k, row) in self.exchange.stations.chunks_exact_mut(STATION * R::LANES).enumerate() {
-                E::station(&p, &x, k).write(row);
-            }
+            write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
             (self.exchange.loaded, self.exchange.given) = (false, Gives::NOTHING);
             for law in &self.laws.0 {
                 law.load(width, self.at.t, tangent, self.exchange);
@@ -388,6 +440,30 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
                 E::spread::<R, false>(&p, &x, &loads, gives, &w, &mut share);
             }
             Seat::scatter(seats, b * R::LANES, &share, &mut blocks, self.out);
+        }
+    }
+}
+
+struct PowerAll<'a, E, const Q: usize, const N: usize, const S: usize> {
+    pool: &'a StationPool<E, Q, N, S>,
+    laws: &'a Laws,
+    at: &'a At<'a>,
+    total: &'a mut Power,
+    exchange: &'a mut Exchange,
+}
+
+impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize> LaneTask
+    for PowerAll<'_, E, Q, N, S>
+{
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        self.exchange.resize::<R>(S);
+        for (elements, seats) in self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES)) {
+            let (p, x) = (E::lanes::<R>(&Batch(elements)), Seat::gather::<R>(seats, self.at));
+            write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
+            for law in &self.laws.0 {
+                *self.total += law.power(Width::best(), self.at.t, self.exchange, seats.len());
+            }
         }
     }
 }
@@ -413,22 +489,18 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         }
     }
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>) {
-        thread_local! {
-            // kept between calls, so that no step allocates
-            static EXCHANGE: std::cell::RefCell<Exchange> = const {
-                std::cell::RefCell::new(Exchange {
-                    stations: Vec::new(),
-                    loads: Vec::new(),
-                    loaded: false,
-                    given: Gives::NOTHING,
-                })
-            };
-        }
         if !laws.0.is_empty() {
             EXCHANGE.with_borrow_mut(|exchange| {
                 run(out.width(), SpreadAll { pool: self, laws, at, out, exchange });
             });
         }
+    }
+    fn power(&self, laws: &Laws, at: &At<'_>) -> Power {
+        let mut total = Power::default();
+        EXCHANGE.with_borrow_mut(|exchange| {
+            run(Width::best(), PowerAll { pool: self, laws, at, total: &mut total, exchange });
+        });
+        total
     }
 }
 
@@ -457,15 +529,6 @@ impl Term for FieldTerm {
         self.stations.add(&self.laws, at, out);
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let mut total = Power::default();
-        self.stations.each(at, &mut |s| {
-            for law in &self.laws.0 {
-                let p = law.power(at.t, s);
-                total.dissipated += s.weight * p.dissipated;
-                total.supplied += s.weight * p.supplied;
-                total.carried += s.weight * p.carried;
-            }
-        });
-        total
+        self.stations.power(&self.laws, at)
     }
 }

@@ -1,18 +1,31 @@
 //! A term is one share of the equations of motion; a model is a flat list of them.
 
-use crate::lane::Width;
+use crate::lane::{Real, Width};
 use crate::pattern::Pattern;
 use crate::state::At;
 use crate::structure::Structure;
 use std::ops::AddAssign;
 
-/// Kinetic and potential energy [J].
+/// Kinetic and potential energy [J]; over lanes with `R` other than `f64`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Energy {
+pub struct Energy<R = f64> {
     /// Kinetic energy [J].
-    pub kinetic: f64,
+    pub kinetic: R,
     /// Potential energy: strain, weight, springs [J].
-    pub potential: f64,
+    pub potential: R,
+}
+
+impl<R: Real> Energy<R> {
+    /// None.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Energy { kinetic: R::zero(), potential: R::zero() }
+    }
+    /// The energy in one lane.
+    #[inline(always)]
+    pub(crate) fn lane(&self, l: usize) -> Energy {
+        Energy { kinetic: self.kinetic.lane(l), potential: self.potential.lane(l) }
+    }
 }
 
 impl AddAssign for Energy {
@@ -22,15 +35,33 @@ impl AddAssign for Energy {
     }
 }
 
-/// Rates of the energy balance `d/dt (kinetic + potential) = supplied + carried - dissipated` [W].
+/// Rates of the energy balance `d/dt (kinetic + potential) = supplied + carried - dissipated` [W]; over lanes with `R`
+/// other than `f64`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Power {
+pub struct Power<R = f64> {
     /// Turned into heat or left in the water.
-    pub dissipated: f64,
+    pub dissipated: R,
     /// Done by loads from outside.
-    pub supplied: f64,
+    pub supplied: R,
     /// Carried over the ends by material that flows in or out.
-    pub carried: f64,
+    pub carried: R,
+}
+
+impl<R: Real> Power<R> {
+    /// None.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Power { dissipated: R::zero(), supplied: R::zero(), carried: R::zero() }
+    }
+    /// The power in one lane.
+    #[inline(always)]
+    pub(crate) fn lane(&self, l: usize) -> Power {
+        Power {
+            dissipated: self.dissipated.lane(l),
+            supplied: self.supplied.lane(l),
+            carried: self.carried.lane(l),
+        }
+    }
 }
 
 impl AddAssign for Power {

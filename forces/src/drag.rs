@@ -228,10 +228,11 @@ impl Law for Drag {
     }
 
     /// What the fluid takes by friction, `-f·(v - u)`, is dissipated; what it carries along, `f·u`, is supplied.
-    fn power(&self, _t: f64, at: &Station<f64>, f: V3<f64>) -> Power {
+    #[inline(always)]
+    fn power<R: Real>(&self, _t: f64, at: &Station<R>, f: &V3<R>) -> Power<R> {
         let (u, _) = self.current.at(at.x[2]);
-        let supplied = dot(&f, &u);
-        Power { dissipated: supplied - dot(&f, &at.v), supplied, carried: 0.0 }
+        let supplied = dot(f, &u);
+        Power { dissipated: supplied - dot(f, &at.v), supplied, carried: R::zero() }
     }
 }
 

@@ -9,7 +9,7 @@ use super::quadrature::{Quadrature, Rule};
 use super::reduced::{Reduced, add_product};
 use super::shape::{Natural, dot9, natural};
 use super::transverse::{Curve, Transverse};
-use ropewalk_core::{Batch, Element, Energy, Local, NodeId, Power, Real, Share, Weights};
+use ropewalk_core::{Batch, Element, Local, NodeId, Power, Real, Share, Weights};
 use std::marker::PhantomData;
 
 /// Damping of stretching: the axial force `η EA ε̇` besides the elastic one.
@@ -82,17 +82,16 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
             local.spread_tangent::<false>(il, R::of(1.0), out);
         }
     }
-    fn energy(_: &[f64; 2], _: &Local<f64, 12, 12>) -> Energy {
-        Energy::default()
-    }
-    fn power(&[l, eta_ea]: &[f64; 2], x: &Local<f64, 12, 12>) -> Power {
-        let (q, v) = (natural(&x.q, 1.0 / l), natural(&x.v, 1.0 / l));
-        let mut dissipated = 0.0;
+    #[inline(always)]
+    fn power<R: Real>(&[l, eta_ea]: &[R; 2], x: &Local<R, 12, 12>) -> Power<R> {
+        let il = R::of(1.0) / l;
+        let (q, v) = (natural(&x.q, il), natural(&x.v, il));
+        let mut dissipated = R::zero();
         for at in L::points::<Q>() {
             let rate = L::strain(&q, at).rate(&v);
-            dissipated += eta_ea * l * at.w * rate * rate;
+            dissipated += eta_ea * l * R::of(at.w) * rate * rate;
         }
-        Power { dissipated, ..Power::default() }
+        Power { dissipated, ..Power::zero() }
     }
 }
 
@@ -160,18 +159,18 @@ impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingDamping<T, Q> {
             local.spread_tangent::<false>(il, R::of(1.0), out);
         }
     }
-    fn energy(_: &[f64; 3], _: &Local<f64, 12, 12>) -> Energy {
-        Energy::default()
-    }
-    fn power(&[l, eta_ei, kappa_0]: &[f64; 3], x: &Local<f64, 12, 12>) -> Power {
-        let (q, v) = (natural(&x.q, 1.0 / l), natural(&x.v, 1.0 / l));
-        let mut dissipated = 0.0;
+    #[inline(always)]
+    fn power<R: Real>(&[l, eta_ei, kappa_0]: &[R; 3], x: &Local<R, 12, 12>) -> Power<R> {
+        let il = R::of(1.0) / l;
+        let (q, v) = (natural(&x.q, il), natural(&x.v, il));
+        let mut dissipated = R::zero();
         for at in Q::POINTS {
-            let curve = Curve::new::<T>(&q, at, 1.0 / l);
+            let curve = Curve::new::<T>(&q, at, il);
             let rate = dot9(&curve.gradient(), &v);
-            dissipated += 0.25 * eta_ei * l * at.w * rate * rate / (curve.square.value + kappa_0 * kappa_0);
+            let m = eta_ei * l * R::of(0.25 * at.w);
+            dissipated += m * rate * rate / kappa_0.fma(kappa_0, curve.square.value);
         }
-        Power { dissipated, ..Power::default() }
+        Power { dissipated, ..Power::zero() }
     }
 }
 

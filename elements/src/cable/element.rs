@@ -112,20 +112,23 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
         add_mass::<R, TANGENT>(p, &x.a, w.a, out);
     }
 
-    fn energy(p: &CableParams, x: &Local<f64, 12, 12>) -> Energy {
-        let q = natural(&x.q, 1.0 / p.l);
-        let m = mass(p);
-        let mut kinetic = 0.0;
+    #[inline(always)]
+    fn energy<R: Real>(p: &CableParams<R>, x: &Local<R, 12, 12>) -> Energy<R> {
+        let il = R::of(1.0) / p.l;
+        let q = natural(&x.q, il);
+        let (m, mut twice) = (mass(p), R::zero());
         for i in 0..4 {
             for j in 0..4 {
                 for c in 0..3 {
-                    kinetic += 0.5 * m[i][j] * x.v[3 * i + c] * x.v[3 * j + c];
+                    twice = (m[i][j] * x.v[3 * i + c]).fma(x.v[3 * j + c], twice);
                 }
             }
         }
-        let potential =
-            axial_energy::<L, Q::Axial>(p.ea * p.l, &q) + bending_energy::<T, Q::Bending>(p.ei, p.l, &q);
-        Energy { kinetic, potential }
+        let (axial, bending) = (
+            axial_energy::<L, Q::Axial, R>(p.ea * p.l, &q),
+            bending_energy::<T, Q::Bending, R>(p.ei, p.l, il, &q),
+        );
+        Energy { kinetic: R::of(0.5) * twice, potential: axial + bending }
     }
 }
 

@@ -228,10 +228,11 @@ pub fn add_axial<L: Longitudinal, Q: Quadrature, R: Real, const TANGENT: bool>(
 
 /// Strain energy of stretching, `½ EA L Σ w ε²`.
 #[inline(always)]
-pub fn axial_energy<L: Longitudinal, Q: Quadrature>(ea_l: f64, q: &Natural<f64>) -> f64 {
-    let squares = L::points::<Q>().iter().map(|at| {
+pub fn axial_energy<L: Longitudinal, Q: Quadrature, R: Real>(ea_l: R, q: &Natural<R>) -> R {
+    let mut sum = R::zero();
+    for at in L::points::<Q>() {
         let eps = L::strain(q, at).eps();
-        at.w * eps * eps
-    });
-    0.5 * ea_l * squares.sum::<f64>()
+        sum = (R::of(at.w) * eps).fma(eps, sum);
+    }
+    R::of(0.5) * ea_l * sum
 }

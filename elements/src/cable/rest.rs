@@ -95,14 +95,15 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialRest<L, Q> {
             local.spread_tangent::<false>(il, R::of(w.q), out);
         }
     }
-    fn energy(p: &RestLanes<f64>, x: &Local<f64, 12, 12>) -> Energy {
-        let q = natural(&x.q, 1.0 / p.l);
-        let mut potential = 0.0;
+    #[inline(always)]
+    fn energy<R: Real>(p: &RestLanes<R>, x: &Local<R, 12, 12>) -> Energy<R> {
+        let q = natural(&x.q, R::of(1.0) / p.l);
+        let mut potential = R::zero();
         for (at, eps0) in L::points::<Q>().iter().zip(p.rest) {
             let eps = L::strain(&q, at).eps();
-            potential += p.stiffness * p.l * at.w * eps0 * (0.5 * eps0 - eps);
+            potential += p.stiffness * p.l * R::of(at.w) * eps0 * (R::of(0.5) * eps0 - eps);
         }
-        Energy { potential, ..Energy::default() }
+        Energy { kinetic: R::zero(), potential }
     }
 }
 
@@ -180,17 +181,20 @@ impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingRest<T, Q> {
             local.spread_tangent::<false>(il, R::of(w.q), out);
         }
     }
-    fn energy(p: &RestLanes<f64>, x: &Local<f64, 12, 12>) -> Energy {
-        let q = natural(&x.q, 1.0 / p.l);
-        let s2 = (STRAIGHT / p.l).powi(2);
-        let mut potential = 0.0;
+    #[inline(always)]
+    fn energy<R: Real>(p: &RestLanes<R>, x: &Local<R, 12, 12>) -> Energy<R> {
+        let il = R::of(1.0) / p.l;
+        let q = natural(&x.q, il);
+        let s2 = R::of(STRAIGHT * STRAIGHT) * il * il;
+        let (half, mut potential) = (R::of(0.5), R::zero());
         for (at, kappa0) in Q::POINTS.iter().zip(p.rest) {
-            let kappa = (Curve::new::<T>(&q, at, 1.0 / p.l).square.value + s2).sqrt();
+            let kappa = (Curve::new::<T>(&q, at, il).square.value + s2).sqrt();
             // with ½ EI κ² of the elastic term this is ½ EI (√(κ² + κₛ²) - κ₀)²
-            let constant = if kappa0 == 0.0 { 0.0 } else { 0.5 * (kappa0 * kappa0 + s2) };
-            potential += p.stiffness * p.l * at.w * (constant - kappa0 * kappa);
+            let bent = half * kappa0.fma(kappa0, s2);
+            let constant = kappa0.abs().if_gt(R::zero(), bent, R::zero());
+            potential += p.stiffness * p.l * R::of(at.w) * (constant - kappa0 * kappa);
         }
-        Energy { potential, ..Energy::default() }
+        Energy { kinetic: R::zero(), potential }
     }
 }
 

@@ -222,7 +222,10 @@ fn blend<R: Real>(a: f64, x: R, b: f64, y: R, c: f64, z: R) -> R {
 
 /// Strain energy of bending, `½ EI L Σ w κ²`.
 #[inline(always)]
-pub fn bending_energy<T: Transverse, Q: Quadrature>(ei: f64, l: f64, q: &Natural<f64>) -> f64 {
-    let sum: f64 = Q::POINTS.iter().map(|at| at.w * Curve::new::<T>(q, at, 1.0 / l).square.value).sum();
-    0.5 * ei * l * sum
+pub fn bending_energy<T: Transverse, Q: Quadrature, R: Real>(ei: R, l: R, il: R, q: &Natural<R>) -> R {
+    let mut sum = R::zero();
+    for at in Q::POINTS {
+        sum = R::of(at.w).fma(Curve::new::<T>(q, at, il).square.value, sum);
+    }
+    R::of(0.5) * ei * l * sum
 }

@@ -3,7 +3,7 @@
 use ropewalk::core::build::{BuildError, Builder, not_negative, positive};
 use ropewalk::core::{
     At, Batch, DeadEntry, DeadLoad, Element, ElementSpec, Energy, Local, Marker, Node, NodeId, NodeKind,
-    Part, Per, Power, Real, Share, Spot, Term, V3, Weights, quantity, register_spec,
+    Part, Per, Power, Real, Share, Spot, Term, V3, Weights, dot, quantity, register_spec,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -41,16 +41,14 @@ impl Element<3, 3> for Float {
             }
         }
     }
-    fn energy(&[mass, _]: &[f64; 2], x: &Local<f64, 3, 3>) -> Energy {
-        Energy { kinetic: 0.5 * mass * square(&x.v), potential: 0.0 }
+    #[inline(always)]
+    fn energy<R: Real>(&[mass, _]: &[R; 2], x: &Local<R, 3, 3>) -> Energy<R> {
+        Energy { kinetic: R::of(0.5) * mass * dot(&x.v, &x.v), ..Energy::zero() }
     }
-    fn power(&[_, c]: &[f64; 2], x: &Local<f64, 3, 3>) -> Power {
-        Power { dissipated: c * square(&x.v), ..Power::default() }
+    #[inline(always)]
+    fn power<R: Real>(&[_, c]: &[R; 2], x: &Local<R, 3, 3>) -> Power<R> {
+        Power { dissipated: c * dot(&x.v, &x.v), ..Power::zero() }
     }
-}
-
-fn square(v: &V3<f64>) -> f64 {
-    v.iter().map(|v| v * v).sum()
 }
 
 /// A float that loses energy to the waves that it makes. Marker: `name`, at its keel.
