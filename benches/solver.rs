@@ -62,14 +62,14 @@ fn net(n: usize) -> Scene {
         let (at, end) = (k as f64, n as f64);
         let lines = [("weft", [0.0, at, 0.0], [end, at, 0.0]), ("warp", [at, 0.0, 0.0], [at, end, 0.0])];
         for (name, from, to) in lines {
-            let line = CableSpec::straight(format!("{name}{k}"), from, to, n * ALONG, section.clone());
+            let line = CableSpec::straight(&format!("{name}{k}"), from, to, n * ALONG, section.clone());
             scene.element(line);
         }
     }
     for i in 0..=n {
         for j in 0..=n {
             let ends = (format!("weft{j}@{i}m"), format!("warp{i}@{j}m"));
-            scene.constraint(SphericalSpec::new(format!("knot{i}-{j}"), ends.0.as_str(), ends.1.as_str()));
+            scene.constraint(SphericalSpec::new(&format!("knot{i}-{j}"), ends.0.as_str(), ends.1.as_str()));
         }
     }
     scene
@@ -82,7 +82,7 @@ fn cases() -> Vec<Case> {
 }
 
 #[divan::bench(args = cases())]
-fn factor(bencher: Bencher<'_, '_>, case: &Case) {
+fn factor(bencher: Bencher<'_, '_>, case: Case) {
     let mut ready = case.ready().expect("ready");
     let items = ItemsCount::new(case.elements());
     bencher.counter(items).bench_local(|| black_box(&mut ready).factor().expect("factors"));
@@ -90,7 +90,7 @@ fn factor(bencher: Bencher<'_, '_>, case: &Case) {
 
 /// With factors that were checked before.
 #[divan::bench(args = cases())]
-fn solve(bencher: Bencher<'_, '_>, case: &Case) {
+fn solve(bencher: Bencher<'_, '_>, case: Case) {
     let mut ready = case.ready().expect("ready");
     let items = ItemsCount::new(case.elements());
     bencher.counter(items).bench_local(|| black_box(&mut ready).solve().expect("solution"));
