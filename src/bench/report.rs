@@ -97,30 +97,47 @@ pub struct Memory {
 /// What a row of a table says about each mesh.
 type Rows = Vec<(String, Vec<f64>)>;
 
-fn rows(costs: &[Cost]) -> Rows {
-    let row = |label: &str, f: &dyn Fn(&Cost) -> f64| (label.to_string(), costs.iter().map(f).collect());
-    let mut all: Rows = Vec::new();
-    for (k, p) in costs.first().map_or(&[][..], |c| &c.phases).iter().enumerate() {
-        all.push(row(&format!("  {}", p.label), &|c| c.phases[k].us));
-    }
-    all.push(row("full Newton iteration", &|c| c.iteration));
-    all.push(row("residual alone", &|c| c.residual));
-    all.push(row("step", &|c| c.step.us));
-    all.push(row("  Newton iterations per step", &|c| c.step.iterations));
-    all.push(row("  factorisations per step", &|c| c.step.factorizations));
+fn row(costs: &[Cost], label: &str, f: impl Fn(&Cost) -> f64) -> (String, Vec<f64>) {
+    (label.to_string(), costs.iter().map(f).collect())
+}
+
+/// µs per element: the phases of an iteration, then what they add up to.
+fn times(costs: &[Cost]) -> Rows {
+    let phases = costs.first().map_or(&[][..], |c| &c.phases).iter().enumerate();
+    let mut all: Rows =
+        phases.map(|(k, p)| row(costs, &format!("  {}", p.label), |c| c.phases[k].us)).collect();
+    all.push(row(costs, "full Newton iteration", |c| c.iteration));
+    all.push(row(costs, "residual alone", |c| c.residual));
+    all.push(row(costs, "step", |c| c.step.us));
     all
+}
+
+fn counts(costs: &[Cost]) -> Rows {
+    vec![
+        row(costs, "  Newton iterations per step", |c| c.step.iterations),
+        row(costs, "  factorisations per step", |c| c.step.factorizations),
+    ]
 }
 
 /// The table of a pendulum in air or in water: a row for each phase, a column for each mesh.
 pub(crate) fn costs(title: &str, costs: &[Cost]) -> String {
     let mut out = format!("{title}: µs per element\n");
-    let rows = rows(costs);
+    let rows = [times(costs), counts(costs)].concat();
     let wide = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
     let header: String = costs.iter().map(|c| format!("{:>9}", c.elements)).collect();
     _ = writeln!(out, "  {:<wide$}{header}", "elements");
     for (label, values) in rows {
         let cells: String = values.iter().map(|x| format!("{x:9.3}")).collect();
         _ = writeln!(out, "  {label:<wide$}{cells}");
+    }
+    let fine = costs.iter().filter(|c| c.elements >= 32).map(|c| c.iteration);
+    let (low, high) = fine.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+    if high > low {
+        _ = writeln!(
+            out,
+            "  from 32 elements on, the dearest iteration is {:.2} times the cheapest",
+            high / low
+        );
     }
     let fallbacks: u64 = costs.iter().map(|c| c.fallbacks).sum();
     if fallbacks > 0 {
@@ -169,11 +186,7 @@ impl Report {
     pub fn csv(&self) -> String {
         let mut out = String::from("what,elements,quantity,value [us per element]\n");
         for (what, costs) in [("dry", &self.dry), ("water", &self.water)] {
-            for (label, values) in rows(costs) {
-                // counts have another unit, and are in the JSON
-                if label.ends_with("per step") {
-                    continue;
-                }
+            for (label, values) in times(costs) {
                 for (c, x) in costs.iter().zip(values) {
                     _ = writeln!(out, "{what},{},{},{x}", c.elements, quoted(label.trim()));
                 }
