@@ -74,6 +74,12 @@ enum Command {
         #[arg(value_name = "SCENE|TYPE")]
         what: String,
     },
+    /// Measure what an element costs on this machine, by phase and by stiffness model
+    #[command(after_help = "Examples:\n  \
+        ropewalk bench\n  \
+        ropewalk bench --elements 8,64,512 --lanes four\n  \
+        ropewalk bench --out cost               with a picture, CSV and JSON")]
+    Bench(commands::bench::BenchArgs),
     /// Read and build a scene without running it, and show what it consists of
     #[command(after_help = "Example:\n  ropewalk check scene.toml --set n=200")]
     Check {
@@ -120,6 +126,7 @@ pub fn main_from(
         }
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
+        Command::Bench(args) => commands::bench::bench(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
     };
     match done {

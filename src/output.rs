@@ -19,6 +19,7 @@ pub use error::OutputError;
 pub use folder::{RunFolder, write_atomic};
 pub use interrupt::Interrupt;
 pub use plot::{LinePlot, Mark, Plane, Series, ShapePlot, Snapshot};
+pub(crate) use progress::new_bar;
 pub use progress::{Progress, ProgressMode};
 pub use stopwatch::{Elapsed, Stopwatch};
 pub use summary::{Counts, EnergyTotals, ProfileEntry, Summary};

@@ -202,6 +202,53 @@ fn a_profile_tells_the_time_of_every_term() {
 }
 
 #[test]
+fn a_benchmark_tells_the_cost_by_phase_mesh_and_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let quick = ["bench", "--seconds", "0", "--elements", "8,4,8"];
+    let tables = done(run(folder.path(), &[&quick[..], &["--csv", "cost.csv", "--out", "out"]].concat()));
+    for text in
+        ["in air", "in water", "drag", "factorisation", "full Newton iteration", "step", "cable L2+T1"]
+    {
+        assert!(tables.contains(text), "no {text} in\n{tables}");
+    }
+    let csv = text(folder.path().join("cost.csv"));
+    assert!(
+        csv.starts_with("what,elements,quantity,value") && csv.contains("\ndry,4,full Newton iteration,")
+    );
+    assert!(csv.lines().skip(1).all(|l| l.rsplit(',').next().unwrap().parse::<f64>().unwrap() >= 0.0));
+    assert_eq!(text(folder.path().join("out/bench.csv")), csv);
+    well_formed(&text(folder.path().join("out/bench.svg")));
+    let report = json(folder.path().join("out/bench.json"));
+    assert_eq!(
+        (report["dry"].as_array().unwrap().len(), report["variants"].as_array().unwrap().len()),
+        (2, 15)
+    );
+    assert!(report["water"][1]["iteration_us"].as_f64() > Some(0.0) && report["memory"].is_null());
+    for case in [report["dry"].clone(), report["water"].clone()] {
+        assert_eq!((&case[0]["elements"], &case[1]["elements"]), (&4.into(), &8.into()));
+        assert!(case[0]["fallbacks"] == 0 && case[0]["phases"].as_array().unwrap().len() >= 6);
+    }
+    let out = done(run(folder.path(), &[&quick[..], &["--lanes", "one", "--json"]].concat()));
+    let report: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(report["lanes"], 1);
+}
+
+#[test]
+fn a_benchmark_is_refused_before_it_begins() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("mine.csv"), "dear").unwrap();
+    let bench = |more: &[&str]| run(folder.path(), &[&["bench"], more].concat());
+    bench(&["--csv", "mine.csv"]).refused(&["mine.csv exists", "--csv"]);
+    bench(&["--csv", "no/such/folder/cost.csv"]).refused(&["no/such/folder/cost.csv"]);
+    bench(&["--out", "."]).refused(&["not empty", "--out"]);
+    bench(&["--seconds", "NaN"]).refused(&["--seconds"]);
+    for wrong in [["--elements", "0"], ["--elements", "8,x"], ["--elements", ""], ["--lanes", "three"]] {
+        bench(&wrong).refused(&[wrong[0]]);
+    }
+    assert_eq!(text(folder.path().join("mine.csv")), "dear");
+}
+
+#[test]
 fn json_scenes_are_read_too() {
     let folder = folder();
     let scene = r#"{

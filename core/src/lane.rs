@@ -226,6 +226,15 @@ impl Width {
             Width::One
         }
     }
+
+    /// How many elements it evaluates at a time.
+    pub fn lanes(self) -> usize {
+        match self {
+            Width::One => 1,
+            Width::Four => 4,
+            Width::Eight => 8,
+        }
+    }
 }
 
 /// Work that is generic over the carrier, so that [`run`] can choose it at run time.

@@ -77,7 +77,7 @@ impl Progress {
             ProgressMode::Quiet => Shown::Nothing,
             ProgressMode::Auto if !on_terminal => Shown::Lines(Box::new(io::stderr())),
             ProgressMode::Lines => Shown::Lines(Box::new(io::stderr())),
-            ProgressMode::Auto | ProgressMode::Bar => Shown::Bar(new_bar()),
+            ProgressMode::Auto | ProgressMode::Bar => Shown::Bar(new_bar(BAR_LENGTH)),
         };
         Self::showing(t_start, t_end, shown)
     }
@@ -285,9 +285,10 @@ impl fmt::Display for Clock {
     }
 }
 
-fn new_bar() -> ProgressBar {
+/// A bar on standard error that is full at `length`; nothing is seen where that is no terminal.
+pub(crate) fn new_bar(length: u64) -> ProgressBar {
     // This module limits the rate itself, before the message is even written.
-    let bar = ProgressBar::with_draw_target(Some(BAR_LENGTH), ProgressDrawTarget::stderr());
+    let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
     if let Ok(style) = ProgressStyle::with_template("{bar:18.cyan/dim} {percent:>3} %  {wide_msg}") {
         bar.set_style(style.progress_chars("━╸─"));
     }

@@ -59,11 +59,7 @@ impl Manifest {
             non_zeros: s.entries(),
             symmetric: s.symmetric,
             solver,
-            lanes: match Width::best() {
-                Width::One => 1,
-                Width::Four => 4,
-                Width::Eight => 8,
-            },
+            lanes: Width::best().lanes(),
         })
     }
 }

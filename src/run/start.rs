@@ -124,16 +124,13 @@ impl Started {
     /// The measured times.
     pub(crate) fn times(&self) -> Vec<ProfileEntry> {
         let Started::Dynamics(s, _) = self else { return Vec::new() };
-        let phases = ["constraints", "factorisation", "solution and its check"].map(String::from);
-        let labels = s.model.terms().iter().map(|t| t.label()).chain(phases);
-        let times = s.work.system.profile.iter().flatten().chain(s.work.phases.iter().flatten());
-        let entry = |(label, &(calls, time)): (String, &(u64, std::time::Duration))| ProfileEntry {
+        let entry = |(label, calls, time): (String, u64, std::time::Duration)| ProfileEntry {
             label,
             calls,
             seconds: time.as_secs_f64(),
             share: 0.0,
         };
-        labels.zip(times).map(entry).collect()
+        s.work.times(&s.model).into_iter().map(entry).collect()
     }
 
     /// Computes until the end, or until something stops it.

@@ -108,6 +108,20 @@ impl Workspace {
         self.phases = Some(Default::default());
     }
 
+    /// No longer records times, and forgets those that were.
+    pub fn unprofile(&mut self) {
+        self.system.profile = None;
+        self.phases = None;
+    }
+
+    /// Calls and time of each term, of the constraints and of the solver; nothing without [`Workspace::profile`].
+    pub fn times(&self, model: &Model) -> Vec<(String, u64, Duration)> {
+        let phases = ["constraints", "factorisation", "solution and its check"].map(String::from);
+        let labels = model.terms().iter().map(|t| t.label()).chain(phases);
+        let times = self.system.profile.iter().flatten().chain(self.phases.iter().flatten());
+        labels.zip(times).map(|(label, &(calls, time))| (label, calls, time)).collect()
+    }
+
     fn clock(&self) -> Option<Instant> {
         self.phases.map(|_| Instant::now())
     }
@@ -139,8 +153,11 @@ impl Workspace {
         Ok(())
     }
 
-    /// Factors the assembled iteration matrix.
-    pub(crate) fn factor(&mut self, model: &Model, weights: Weights) -> Result<(), SolveError> {
+    /// Factors the iteration matrix that was assembled into `system` with these weights.
+    ///
+    /// # Errors
+    /// The matrix is singular or not finite.
+    pub fn factor(&mut self, model: &Model, weights: Weights) -> Result<(), SolveError> {
         self.factored = None;
         let begin = self.clock();
         self.solver.factor(model.structure(), &self.system.values)?;
@@ -150,6 +167,15 @@ impl Workspace {
         self.counts.factorizations += 1;
         self.counts.fallbacks = self.solver.fallbacks + self.mass_solver.fallbacks;
         Ok(())
+    }
+
+    /// Replaces a right-hand side (velocities, then multipliers) by the solution with the factors of the iteration
+    /// matrix. The first solution after [`Workspace::factor`] is checked, later ones trust the factors.
+    ///
+    /// # Errors
+    /// The solution is not good enough, even with pivoting.
+    pub fn solve_iteration(&mut self, model: &Model, rhs: &mut [f64]) -> Result<(), SolveError> {
+        self.solve(model, Which::Iteration, rhs)
     }
 
     /// Assembles the mass matrix `[M + stiff K, Gᵀ; G, 0]` and the residual at a state; with `factor` its factors too.

@@ -1,0 +1,172 @@
+//! `ropewalk bench`
+
+use super::{Exit, say};
+use crate::bench::measure::{Meter, VariantMeter, memory};
+use crate::bench::{Cost, Pendulum, Report, models, report};
+use crate::error::Error;
+use crate::output::{OutputError, RunFolder, new_bar, write_atomic};
+use crate::scene::Fault;
+use ropewalk_core::Width;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// What is measured, and where it goes.
+#[derive(Debug, clap::Args)]
+pub(crate) struct BenchArgs {
+    /// Numbers of elements
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', default_value = "8,32,128,512,2048,8192",
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    elements: Vec<u32>,
+    /// Elements that are evaluated at once [default: the most that the processor can do]
+    #[arg(long, value_enum)]
+    lanes: Option<Lanes>,
+    /// About how long to measure [s]; the longer, the less other work on the machine is felt
+    #[arg(long, value_name = "TIME", default_value_t = 10.0)]
+    seconds: f64,
+    /// Print JSON instead of tables
+    #[arg(long)]
+    json: bool,
+    /// Write all times to a new CSV file
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Folder for a picture, CSV and JSON, new or empty
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Lanes {
+    One,
+    Four,
+    Eight,
+}
+
+/// Everything is measured this often, each time in its turn.
+const ROUNDS: u32 = 4;
+/// Elements of the mesh on which stiffness models are compared.
+const COMPARED: usize = 512;
+
+pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, Error> {
+    let width = width(args.lanes)?;
+    let mut meshes: Vec<usize> = args.elements.iter().map(|n| *n as usize).collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    if !(args.seconds >= 0.0 && args.seconds <= 1e5) {
+        let fault = Fault::new(format!("`--seconds` must be between 0 and 100000, not {}", args.seconds));
+        return Err(fault.into());
+    }
+    // what can't be written should not have to wait for the numbers
+    if let Some(path) = &args.csv {
+        free(path)?;
+    }
+    let folder = args.out.clone().map(RunFolder::at).transpose()?;
+
+    let models = models();
+    // a stiffness model has fewer numbers than a mesh
+    let share = args.seconds / ((2.0 * meshes.len() as f64 + 0.3 * models.len() as f64) * f64::from(ROUNDS));
+    let budget = Duration::from_secs_f64(share);
+    let bar = new_bar(u64::from(ROUNDS) * (2 * meshes.len() + models.len()) as u64);
+    let show = |text: String| {
+        if !args.json {
+            bar.suspend(|| say(text));
+        }
+    };
+    show(format!(
+        "ropewalk {} on {}, {} elements at once, one thread; the shortest of many samples\n\
+         full Newton iteration: force, exact tangent, assembly, factors, solution; step: 1 ms, default policy\n",
+        env!("CARGO_PKG_VERSION"),
+        std::env::consts::ARCH,
+        width.lanes()
+    ));
+    bar.set_message("memory");
+    let memory = memory(meshes.last().copied().unwrap_or(0), width)?;
+    let costs = |title: &str, water: bool| {
+        let meter = |n: &usize| Meter::new(&Pendulum { water, ..Pendulum::new(*n) }, width);
+        let mut meters = meshes.iter().map(meter).collect::<Result<Vec<_>, _>>()?;
+        for _ in 0..ROUNDS {
+            for (meter, n) in meters.iter_mut().zip(&meshes) {
+                bar.set_message(format!("{title}: {n} elements"));
+                meter.round(budget)?;
+                bar.inc(1);
+            }
+        }
+        let costs: Vec<Cost> = meters.iter().map(Meter::cost).collect();
+        show(report::costs(title, &costs));
+        Ok::<_, Error>(costs)
+    };
+    let dry = costs("pendulum in air, gravity", false)?;
+    let water = costs("pendulum in water, gravity, buoyancy, drag, added mass", true)?;
+
+    let mesh = meshes.iter().copied().filter(|n| *n <= COMPARED).max().unwrap_or(COMPARED);
+    let meter = |m| VariantMeter::new(m, mesh, width);
+    let mut meters = models.into_iter().map(meter).collect::<Result<Vec<_>, _>>()?;
+    bar.set_message("stiffness models");
+    for _ in 0..ROUNDS {
+        for meter in &mut meters {
+            meter.round(budget.mul_f64(0.3))?;
+            bar.inc(1);
+        }
+    }
+    let variants: Vec<_> = meters.iter().map(VariantMeter::cost).collect();
+    show(report::variants(&variants));
+    if let Some(memory) = &memory {
+        show(memory.line());
+    }
+    bar.finish_and_clear();
+
+    let report = Report {
+        ropewalk: env!("CARGO_PKG_VERSION"),
+        architecture: std::env::consts::ARCH,
+        lanes: width.lanes(),
+        dry,
+        water,
+        variants,
+        memory,
+    };
+    let json = serde_json::to_string_pretty(&report).map_err(|e| Fault::new(e.to_string()))?;
+    if args.json {
+        say(&json);
+    }
+    if let Some(path) = &args.csv {
+        free(path)?;
+        write_atomic(path, &report.csv())?;
+    }
+    if let Some(folder) = &folder {
+        let path = folder.path();
+        write_atomic(&path.join("bench.csv"), &report.csv())?;
+        write_atomic(&path.join("bench.json"), &(json + "\n"))?;
+        report.plot().write(&path.join("bench.svg"))?;
+        if !args.json {
+            say(format!("\nbench.svg, bench.csv and bench.json are in {}", path.display()));
+        }
+    }
+    Ok(Exit::Done)
+}
+
+/// The width asked for. One that the processor can't do would silently be measured as another.
+fn width(lanes: Option<Lanes>) -> Result<Width, Fault> {
+    let best = Width::best();
+    let wish = match lanes {
+        None => best,
+        Some(Lanes::One) => Width::One,
+        Some(Lanes::Four) => Width::Four,
+        Some(Lanes::Eight) => Width::Eight,
+    };
+    if wish.lanes() <= best.lanes() {
+        return Ok(wish);
+    }
+    let (wish, best) = (wish.lanes(), best.lanes());
+    Err(Fault::new(format!("this processor has no instructions for {wish} lanes, at most for {best}"))
+        .with_help("leave out `--lanes`, or give a smaller number"))
+}
+
+/// Nobody's results are overwritten, and a folder that isn't there is told at once.
+fn free(path: &Path) -> Result<(), Error> {
+    if path.exists() {
+        let fault = Fault::new(format!("{} exists, and results are never overwritten", path.display()));
+        return Err(fault.with_help("give another name with `--csv`").into());
+    }
+    write_atomic(path, "")?;
+    std::fs::remove_file(path).map_err(OutputError::io("write", path))?;
+    Ok(())
+}
