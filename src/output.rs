@@ -9,6 +9,7 @@
 mod error;
 mod folder;
 mod interrupt;
+mod number;
 mod plot;
 mod progress;
 mod stopwatch;
@@ -16,8 +17,10 @@ mod summary;
 mod table;
 
 pub use error::OutputError;
+pub(crate) use folder::{RUNS, cannot_create, file_name, write_json};
 pub use folder::{RunFolder, write_atomic};
 pub use interrupt::Interrupt;
+pub(crate) use number::{number, rough};
 pub use plot::{LinePlot, Mark, Plane, Series, ShapePlot, Snapshot};
 pub use progress::{Progress, ProgressMode};
 pub use stopwatch::{Elapsed, Stopwatch};
