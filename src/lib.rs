@@ -24,6 +24,7 @@ mod read;
 mod run;
 pub mod scene;
 mod simulate;
+mod sweep;
 
 pub use ropewalk_constraints as constraints;
 pub use ropewalk_core as core;

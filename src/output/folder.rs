@@ -195,7 +195,14 @@ pub(crate) fn cannot_create(path: &Path, error: io::Error) -> OutputError {
 }
 
 /// A name that is one valid path component on every system.
-pub(crate) fn file_name(name: &str) -> String {
+fn file_name(name: &str) -> String {
+    // File systems allow 255 bytes; numbers and endings need some of them.
+    let clean: String = plain(name).chars().take(60).collect();
+    if clean.is_empty() { "scene".into() } else { clean }
+}
+
+/// The same without a limit to its length; it may be empty.
+pub(crate) fn plain(name: &str) -> String {
     let clean: String = name
         .trim()
         .chars()
@@ -205,9 +212,7 @@ pub(crate) fn file_name(name: &str) -> String {
             c => c,
         })
         .collect();
-    // File systems allow 255 bytes; numbers and endings need some of them.
-    let clean: String = clean.trim_matches('.').chars().take(60).collect();
-    if clean.is_empty() { "scene".into() } else { clean }
+    clean.trim_matches('.').to_string()
 }
 
 #[cfg(test)]
