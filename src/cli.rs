@@ -122,11 +122,18 @@ pub(crate) struct SweepArgs {
     #[arg(long)]
     pub(crate) fresh: bool,
     /// Runs at the same time [default: as many as there are cores]
-    #[arg(long, short, value_name = "N", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    #[arg(long, short, value_name = "N", value_parser = at_least_one)]
     pub(crate) jobs: Option<usize>,
     /// Say nothing but errors and warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) | Err(_) => Err("expected a whole number, at least 1".into()),
+        Ok(n) => Ok(n),
+    }
 }
 
 /// The whole command line with these bundled scenes, on the arguments of the program.

@@ -91,7 +91,7 @@ pub(crate) fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome,
 
     let interrupted = results.count("interrupted") > 0 || results.len() < grid.len();
     let failed = results.count("failed") + results.count("refused");
-    let complete = results.len() - failed - results.count("interrupted");
+    let complete = results.rows().filter(|(_, row)| row.is_complete()).count();
     let report = report::report(&results, &folder, stopwatch.elapsed().wall_s, grid.len(), pictures);
     let runs = (grid.len(), complete);
     Ok(SweepOutcome { interrupted, failed, runs, folder: folder.path().to_path_buf(), report })

@@ -155,19 +155,19 @@ impl Grid {
     }
 
     /// The scene, if there are several, and the values of the parameters but for the first `skipped`:
-    /// `speed=5kn,start=40`.
+    /// `speed=5kn, start=40`.
     pub(super) fn label(&self, k: usize, skipped: usize) -> String {
         let (scene, values) = self.choice(k);
         let scene = (self.scenes.len() > 1).then(|| self.scenes[scene].name.clone());
         let value = |text: &str| unquoted(text).split_whitespace().collect::<String>();
         let pairs = self.vary.iter().zip(values).skip(skipped);
         let pairs = pairs.map(|(v, i)| format!("{}={}", v.name, value(&v.values[i])));
-        scene.into_iter().chain(pairs).collect::<Vec<_>>().join(",")
+        scene.into_iter().chain(pairs).collect::<Vec<_>>().join(", ")
     }
 
     /// A name for each run that is a folder on every system: its values, or a number where that won't do.
     fn unique_names(&self, runs: usize) -> Vec<String> {
-        let names: Vec<String> = (0..runs).map(|k| plain(&self.label(k, 0))).collect();
+        let names: Vec<String> = (0..runs).map(|k| plain(&self.label(k, 0).replace(", ", ","))).collect();
         // some systems take `L` and `l` for the same
         let different: HashSet<String> = names.iter().map(|n| n.to_lowercase()).collect();
         if different.len() == runs && names.iter().all(|n| n.len() <= LONGEST_NAME) {

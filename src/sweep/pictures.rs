@@ -28,8 +28,10 @@ pub(super) fn draw(
         if shown < all { format!("{what}, {scenes}: {shown} of {all}") } else { format!("{what}, {scenes}") }
     };
 
-    let with_history: Vec<(usize, &Row)> =
-        results.rows().filter(|(_, row)| Results::values(row, time)[0].is_finite()).collect();
+    let with_history: Vec<(usize, &Row)> = results
+        .rows()
+        .filter(|(_, row)| Results::values(row, time).is_some_and(|v| v[0].is_finite()))
+        .collect();
     let lines = chosen(&with_history);
     let mut histories: HashMap<&str, Vec<Series>> = HashMap::new();
     for (k, _) in &lines {
@@ -91,13 +93,14 @@ pub(super) fn draw(
 fn finals(column: &Recorded, grid: &Grid, axis: &Axis, results: &Results) -> Vec<Series> {
     let mut series: Vec<Series> = Vec::new();
     let mut place: HashMap<String, usize> = HashMap::new();
-    for (k, row) in results.rows().filter(|(_, row)| row.complaint().is_none()) {
+    for (k, row) in results.rows().filter(|(_, row)| row.is_complete()) {
+        let Some([last, ..]) = Results::values(row, column) else { continue };
         let others = grid.label(k, 1);
         let at = *place.entry(others.clone()).or_insert_with(|| {
             series.push(Series::new(others, Vec::new()).with_mark(Mark::LineAndDots));
             series.len() - 1
         });
-        series[at].points.push((axis.numbers[grid.choice(k).1[0]], Results::values(row, column)[0]));
+        series[at].points.push((axis.numbers[grid.choice(k).1[0]], last));
     }
     for s in &mut series {
         s.points.sort_by(|a, b| a.0.total_cmp(&b.0));

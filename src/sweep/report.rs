@@ -32,7 +32,10 @@ pub(super) fn report(
                 row.counts.steps.to_string(),
                 row.counts.newton_iterations.to_string(),
             ];
-            let finals = recorded.iter().skip(1).map(|c| number(Results::values(row, c)[0]));
+            let finals = recorded
+                .iter()
+                .skip(1)
+                .map(|c| Results::values(row, c).map_or(String::new(), |v| number(v[0])));
             results.cells(k).iter().cloned().chain(work).chain(finals).collect()
         })
         .collect();
@@ -70,7 +73,7 @@ pub(super) fn report(
 
 /// Columns under their headings, numbers to the right, as many as there is room for; and how many these are.
 fn table(headings: &[String], rows: &[Vec<String>]) -> (String, usize) {
-    let is_number = |text: &str| text.parse::<f64>().is_ok();
+    let is_number = |text: &str| text.is_empty() || text.parse::<f64>().is_ok();
     let wide = |c: usize| {
         let cells = rows.iter().map(|row| &row[c]).chain([&headings[c]]);
         cells.map(|text| text.chars().count()).max().unwrap_or(0)

@@ -59,6 +59,11 @@ impl Row {
         Self::new(&summary, &Table::default(), false)
     }
 
+    /// Whether the run came to its end.
+    pub(super) fn is_complete(&self) -> bool {
+        matches!(self.status.as_str(), "finished" | "stopped")
+    }
+
     /// What is to be said about a run that has no result.
     pub(super) fn complaint(&self) -> Option<&str> {
         let failed = matches!(self.status.as_str(), "failed" | "refused");
@@ -151,10 +156,9 @@ impl Results {
         all
     }
 
-    /// Last, least and largest value of a column in a run.
-    pub(super) fn values(row: &Row, column: &Recorded) -> [f64; 3] {
-        let at = row.columns.iter().position(|c| c == column);
-        at.map_or([f64::NAN; 3], |k| row.values[k])
+    /// Last, least and largest value of a column in a run, if the run has it.
+    pub(super) fn values(row: &Row, column: &Recorded) -> Option<[f64; 3]> {
+        row.columns.iter().position(|c| c == column).map(|k| row.values[k])
     }
 
     /// The table as CSV: name, parameters, status, work, last, least and largest values, message.
@@ -184,7 +188,9 @@ impl Results {
                 // least and largest time are no news
                 for column in recorded.iter().skip(usize::from(which > 0)) {
                     text.push(',');
-                    push_number(&mut text, Self::values(row, column)[which]);
+                    if let Some(values) = Self::values(row, column) {
+                        push_number(&mut text, values[which]);
+                    }
                 }
             }
             text.push(',');

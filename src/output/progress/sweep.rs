@@ -6,7 +6,7 @@ use std::io::{self, IsTerminal};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Shows how far a sweep has come, on standard error: a bar for the whole and one for each run that computes, or now
+/// Shows how far a sweep has come, on standard error: a bar for each run that computes and one for the whole, or now
 /// and then a line where there is no terminal. All threads share one.
 pub struct SweepProgress {
     bars: Option<(MultiProgress, ProgressBar)>,
@@ -44,9 +44,10 @@ impl SweepProgress {
     /// The progress of one run up to `t_end`, in seconds.
     pub fn begin(&self, name: &str, t_end: f64) -> Progress {
         let shown = match &self.bars {
-            Some((all, _)) => {
+            Some((all, whole)) => {
+                // above the whole, since what has ended is forgotten from above
                 let bar = with_style(
-                    all.add(new_bar()),
+                    all.insert_before(whole, new_bar()),
                     "  {prefix:30!} {bar:18.cyan/dim} {percent:>3} %  {wide_msg}",
                 );
                 bar.set_prefix(name.to_string());
