@@ -442,11 +442,13 @@ fn endless(folder: &Path) -> std::process::Child {
         folder,
         &["sweep", "swing.toml", "--vary", "duration=0.02,10000,20000,30000", "--out", "out", "--jobs", "2"],
     );
+    let (start, now) = (Instant::now(), SystemTime::now());
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let start = Instant::now();
     let at = |file: &str| folder.join("out/runs").join(file);
-    let begun =
-        |d: &str| fs::metadata(at(&format!("duration={d}/history.csv"))).is_ok_and(|m| m.len() > 1000);
+    let begun = |d: &str| {
+        fs::metadata(at(&format!("duration={d}/history.csv")))
+            .is_ok_and(|m| m.len() > 1000 && m.modified().unwrap() > now)
+    };
     while !(at("duration=0.02/summary.json").exists() && begun("10000") && begun("20000")) {
         assert!(start.elapsed() < Duration::from_secs(60));
         std::thread::sleep(Duration::from_millis(20));
