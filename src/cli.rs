@@ -31,6 +31,7 @@ use std::process::ExitCode;
         ropewalk list                           what there is\n  \
         ropewalk run scene.toml                 results go to runs/scene\n  \
         ropewalk run scene.toml --set n=40      the same with another parameter\n  \
+        ropewalk sweep scene.toml --vary n=10,20,40 --vary speed=5:25:10kn\n  \
         ropewalk describe cable                 the fields of a type\n\n\
         Exit codes: 0 done, 2 wrong scene or usage, 3 the solver gave up, 130 Ctrl-C.",
     disable_help_subcommand = true
@@ -62,6 +63,15 @@ enum Command {
         #[arg(long, short)]
         quiet: bool,
     },
+    /// Run a scene with all combinations of parameters, on all cores; what is there already is not computed again
+    #[command(after_help = "Examples:\n  \
+        ropewalk sweep hose-turn --vary speed=5kn,15kn,25kn --vary start=40,80,120\n  \
+        ropewalk sweep hose-turn hose-straight --vary speed=5:25:10kn --set drag=choo-casarella\n  \
+        ropewalk sweep scene.toml --vary law=constant,choo-casarella --vary 'end=[\"1 m\",0,0],[\"2 m\",0,0]'\n\n\
+        A range is FROM:TO:STEP and includes its ends. The folder holds sweep.json (scenes and parameters), table.csv\n\
+        (a row for each run), plots/*.svg (over all runs) and runs/NAME (what `ropewalk run` leaves behind).\n\
+        The same command again computes only what is missing, failed or was interrupted.")]
+    Sweep(SweepArgs),
     /// List the bundled scenes and the types that a scene can use
     List,
     /// Explain a scene, a type, or a section of a scene file
@@ -99,6 +109,39 @@ pub(crate) struct SceneArgs {
     pub(crate) overrides: Vec<String>,
 }
 
+/// Scenes, the values of their parameters, and how to run them.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SweepArgs {
+    /// Bundled scenes, or .toml or .json files
+    #[arg(value_name = "SCENE", required = true)]
+    pub(crate) scenes: Vec<String>,
+    /// Vary a parameter over values separated by commas, or over a range FROM:TO:STEP; may be given several times
+    #[arg(long, value_name = "NAME=V1,V2,...")]
+    pub(crate) vary: Vec<String>,
+    /// Set a parameter in all runs; may be given several times
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Folder for the results: new, empty, or that of the same sweep [default: runs/SCENE-sweep, numbered]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Delete what an earlier sweep left in the folder, and compute everything
+    #[arg(long)]
+    pub(crate) fresh: bool,
+    /// Runs at the same time [default: as many as there are cores]
+    #[arg(long, short, value_name = "N", value_parser = at_least_one)]
+    pub(crate) jobs: Option<usize>,
+    /// Say nothing but errors and warnings
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) | Err(_) => Err("expected a whole number, at least 1".into()),
+        Ok(n) => Ok(n),
+    }
+}
+
 /// The whole command line with these bundled scenes, on the arguments of the program.
 ///
 /// Exit codes: 0 done; 2 something is wrong with the scene or the command; 3 the solver gave up, all results until
@@ -124,6 +167,7 @@ pub fn main_from(
         Command::Run { scene, out, profile, quiet } => {
             commands::run::run(&scene, out, profile, quiet, bundled)
         }
+        Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),

@@ -6,6 +6,7 @@ pub(crate) mod describe;
 pub(crate) mod list;
 pub(crate) mod run;
 mod schema;
+pub(crate) mod sweep;
 
 use std::fmt::Display;
 use std::io::Write;

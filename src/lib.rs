@@ -25,6 +25,7 @@ mod read;
 mod run;
 pub mod scene;
 mod simulate;
+mod sweep;
 
 pub use ropewalk_constraints as constraints;
 pub use ropewalk_core as core;

@@ -4,11 +4,12 @@
 //! - [`Table`], [`TableWriter`]: time histories, as CSV.
 //! - [`LinePlot`], [`ShapePlot`]: SVG pictures that need no fonts and no display.
 //! - [`Summary`]: the few numbers that say how a run ended, as JSON.
-//! - [`Progress`], [`Interrupt`], [`Stopwatch`]: the progress bar, Ctrl-C, and CPU time.
+//! - [`Progress`], [`SweepProgress`], [`Interrupt`], [`Stopwatch`]: the progress bars, Ctrl-C, and CPU time.
 
 mod error;
 mod folder;
 mod interrupt;
+mod number;
 mod plot;
 mod progress;
 mod stopwatch;
@@ -16,11 +17,14 @@ mod summary;
 mod table;
 
 pub use error::OutputError;
+pub(crate) use folder::{RUNS, cannot_create, plain, write_json};
 pub use folder::{RunFolder, write_atomic};
 pub use interrupt::Interrupt;
+pub(crate) use number::{number, rough};
 pub use plot::{LinePlot, Mark, Plane, Series, ShapePlot, Snapshot};
 pub(crate) use progress::new_bar;
-pub use progress::{Progress, ProgressMode};
+pub use progress::{Progress, ProgressMode, SweepProgress};
 pub use stopwatch::{Elapsed, Stopwatch};
 pub use summary::{Counts, EnergyTotals, ProfileEntry, Summary};
 pub use table::{Column, Table, TableWriter};
+pub(crate) use table::{push_cell, push_number};

@@ -1,7 +1,7 @@
 //! From a scene file to a [`Scene`], and from what is wrong with the scene back to the place in the file.
 
 use crate::error::Error;
-use crate::scene::{Document, Fault, Format, did_you_mean, quoted};
+use crate::scene::{Document, Fault, Format, did_you_mean, quoted, read_text};
 use ropewalk_core::{Model, Record, Scene, SceneError, SpecKind};
 use ropewalk_models::{Bundled, bundled};
 use std::path::{Path, is_separator};
@@ -13,6 +13,44 @@ use std::path::{Path, is_separator};
 pub fn read(scene: impl AsRef<Path>) -> Result<Scene, Error> {
     let scene = scene.as_ref().to_string_lossy();
     Ok(SceneFile::open(&scene, &[], bundled())?.into_scene())
+}
+
+/// The text of a scene, of which parameters make one scene or another.
+#[derive(Debug)]
+pub(crate) struct SceneText {
+    /// Its bundled name, or that of its file without ending.
+    pub(crate) name: String,
+    /// The text itself.
+    pub(crate) text: String,
+    /// What messages call it.
+    label: String,
+    format: Format,
+}
+
+impl SceneText {
+    /// Finds a scene as [`SceneFile::open`] does.
+    pub(crate) fn open(scene: &str, bundled: &[Bundled]) -> Result<Self, Fault> {
+        let path = Path::new(scene);
+        let lower = scene.to_lowercase();
+        if !(scene.contains(is_separator) || lower.ends_with(".toml") || lower.ends_with(".json")) {
+            if let Some(b) = bundled.iter().find(|b| b.name == scene) {
+                let (name, text) = (b.name.to_string(), b.text.to_string());
+                return Ok(Self { label: name.clone(), name, text, format: Format::Toml });
+            }
+            if !path.exists() {
+                return Err(unknown(scene, bundled));
+            }
+        }
+        let name = path.file_stem().map_or_else(|| scene.to_string(), |s| s.to_string_lossy().into_owned());
+        let (text, format) = read_text(path)?;
+        Ok(Self { name, text, label: path.display().to_string(), format })
+    }
+
+    /// The scene with these parameters, each `name=value`.
+    pub(crate) fn with(&self, overrides: &[String]) -> Result<SceneFile, Fault> {
+        let document = Document::parse(&self.text, &self.label, self.format, overrides)?;
+        SceneFile::of(document, self.name.clone())
+    }
 }
 
 /// A scene together with the file that it was read from, so that messages can point at lines.
@@ -31,18 +69,7 @@ impl SceneFile {
     /// # Errors
     /// There is no such scene, or anything is wrong with it or with the overrides.
     pub fn open(scene: &str, overrides: &[String], bundled: &[Bundled]) -> Result<Self, Fault> {
-        let path = Path::new(scene);
-        let lower = scene.to_lowercase();
-        if !(scene.contains(is_separator) || lower.ends_with(".toml") || lower.ends_with(".json")) {
-            if let Some(b) = bundled.iter().find(|b| b.name == scene) {
-                return Self::parse(b.text, b.name, Format::Toml, overrides);
-            }
-            if !path.exists() {
-                return Err(unknown(scene, bundled));
-            }
-        }
-        let name = path.file_stem().map_or_else(|| scene.to_string(), |s| s.to_string_lossy().into_owned());
-        Self::of(Document::read(path, overrides)?, name)
+        SceneText::open(scene, bundled)?.with(overrides)
     }
 
     /// Reads a scene from a text; `name` is what messages and run folders call it.

@@ -13,7 +13,7 @@ pub(crate) use start::{Ending, Started};
 use crate::error::Error;
 use crate::output::{
     EnergyTotals, Interrupt, OutputError, ProfileEntry, Progress, ProgressMode, RunFolder, Stopwatch,
-    Summary, TableWriter,
+    Summary, Table, TableWriter,
 };
 use crate::read::SceneFile;
 use crate::scene::Fault;
@@ -39,6 +39,8 @@ pub struct Outcome {
     /// What `summary.json` says. The status is `finished`, `stopped` (by an event), `interrupted` (by Ctrl-C) or
     /// `failed` (the solver gave up).
     pub summary: Summary,
+    /// What `history.csv` says.
+    pub history: Table,
     /// Names of the pictures in `plots/`, without ending.
     pub pictures: Vec<String>,
     /// A summary for people, several lines.
@@ -56,6 +58,21 @@ const MOST_ROWS: f64 = 1e7;
 /// # Errors
 /// The run could not even begin: the scene is wrong, or the folder can't be used.
 pub fn run(file: &SceneFile, options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcome, Error> {
+    run_showing(file, options, &|t_end| Progress::new(0.0, t_end, options.progress), warn)
+}
+
+/// As [`run`], but with a progress of its own, which is asked for when the computing begins.
+pub(crate) fn run_showing(
+    file: &SceneFile,
+    options: &RunOptions,
+    progress: &dyn Fn(f64) -> Progress,
+    warn: &mut dyn FnMut(&str),
+) -> Result<Outcome, Error> {
+    let mut warnings = Vec::new();
+    let warn = &mut |text: &str| {
+        warnings.push(text.to_string());
+        warn(text);
+    };
     let scene = file.scene();
     let model = file.build()?;
     let records = file.records(&model)?;
@@ -86,7 +103,7 @@ pub fn run(file: &SceneFile, options: &RunOptions, warn: &mut dyn FnMut(&str)) -
     folder.write_scene(&file.document().to_toml())?;
     folder.write_manifest(&manifest)?;
     recorder.writer = Some(TableWriter::create(&folder.history_file(), &recorder.table)?);
-    recorder.progress = Some(Progress::new(0.0, scene.run.duration, options.progress));
+    recorder.progress = Some(progress(scene.run.duration));
     match Interrupt::install() {
         Ok(interrupt) => recorder.interrupt = Some(interrupt),
         Err(e) => warn(&e.to_string()),
@@ -144,10 +161,12 @@ pub fn run(file: &SceneFile, options: &RunOptions, warn: &mut dyn FnMut(&str)) -
         writer.finish().unwrap_or_else(|e| warn(&e.to_string()));
     }
     recorder.finals(&mut summary);
-    folder.write_summary(&summary)?;
     let pictures = pictures::draw(&folder, file.title(), &recorder, warn);
+    summary.warnings = warnings;
+    // last of all: who finds a summary finds everything
+    folder.write_summary(&summary)?;
     let report = report::report(file, &summary, &recorder, &folder, &pictures);
-    Ok(Outcome { folder, summary, pictures, report })
+    Ok(Outcome { folder, summary, history: recorder.table, pictures, report })
 }
 
 /// A start that is refused is the fault of a section of the scene: point there.

@@ -33,11 +33,14 @@ mod source;
 mod tests;
 mod toml;
 mod value;
+mod vary;
 mod write;
 
 pub use fault::Fault;
 pub(crate) use fault::{did_you_mean, quoted};
 pub use parameters::Parameter;
+pub(crate) use read::read_text;
 pub use read::{Document, Format};
 pub use source::{Place, Span};
 pub use value::{Key, Kind, Table, Value};
+pub(crate) use vary::Varied;

@@ -24,10 +24,12 @@
 //! Writing stays plain: the `f64` in SI.
 
 mod unit;
+mod written;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, SeqAccess, Visitor};
 use std::fmt;
 pub use unit::Dimension;
+pub use written::Written;
 
 /// A kind of quantity: what it is called, its SI unit, and the dimension that a unit has to have to fit.
 #[derive(Debug)]

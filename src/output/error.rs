@@ -30,6 +30,25 @@ pub enum OutputError {
         path: PathBuf,
     },
 
+    /// The folder asked for belongs to another sweep.
+    #[error(
+        "{} holds another sweep, {difference}: give another folder with --out, or delete those results with --fresh",
+        path.display()
+    )]
+    OtherSweep {
+        /// The folder that was asked for.
+        path: PathBuf,
+        /// How the sweep that is there differs, such as "of other values".
+        difference: String,
+    },
+
+    /// Another process computes a sweep in the folder.
+    #[error("another sweep is at work in {}: wait for its end, or give another folder with --out", path.display())]
+    Busy {
+        /// The folder that was asked for.
+        path: PathBuf,
+    },
+
     /// A CSV file is not a table of numbers under a header.
     #[error("{}, line {line}: {message}", path.display())]
     Csv {

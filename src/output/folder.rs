@@ -8,7 +8,7 @@ use std::process;
 use super::{OutputError, Summary};
 
 /// Folder under which runs are kept unless the user names another.
-const RUNS: &str = "runs";
+pub(crate) const RUNS: &str = "runs";
 
 /// A new, writable folder that holds all that one run leaves behind:
 ///
@@ -53,6 +53,11 @@ impl RunFolder {
             return Err(OutputError::FolderInUse { path });
         }
         Self { path }.tried()
+    }
+
+    /// The folder of an earlier run, to read what is in it; whether it is there is not asked.
+    pub fn earlier(path: PathBuf) -> Self {
+        Self { path }
     }
 
     /// Makes `parent/name`, or `parent/name-2`, `-3`, … if that exists.
@@ -170,7 +175,7 @@ pub fn write_atomic(path: &Path, text: &str) -> Result<(), OutputError> {
     })
 }
 
-fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), OutputError> {
+pub(crate) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), OutputError> {
     let mut text = serde_json::to_string_pretty(value)
         .map_err(|error| OutputError::Json { path: path.to_path_buf(), message: error.to_string() })?;
     text.push('\n');
@@ -183,7 +188,7 @@ fn temporary_name(name: &str) -> String {
 }
 
 /// A path through or onto a file fails with various kinds of error; say it in one way.
-fn cannot_create(path: &Path, error: io::Error) -> OutputError {
+pub(crate) fn cannot_create(path: &Path, error: io::Error) -> OutputError {
     let through_file = path.ancestors().any(Path::is_file);
     let error = if through_file { io::ErrorKind::NotADirectory.into() } else { error };
     OutputError::io("create folder", path)(error)
@@ -191,6 +196,13 @@ fn cannot_create(path: &Path, error: io::Error) -> OutputError {
 
 /// A name that is one valid path component on every system.
 fn file_name(name: &str) -> String {
+    // File systems allow 255 bytes; numbers and endings need some of them.
+    let clean: String = plain(name).chars().take(60).collect();
+    if clean.is_empty() { "scene".into() } else { clean }
+}
+
+/// The same without a limit to its length; it may be empty.
+pub(crate) fn plain(name: &str) -> String {
     let clean: String = name
         .trim()
         .chars()
@@ -200,9 +212,7 @@ fn file_name(name: &str) -> String {
             c => c,
         })
         .collect();
-    // File systems allow 255 bytes; numbers and endings need some of them.
-    let clean: String = clean.trim_matches('.').chars().take(60).collect();
-    if clean.is_empty() { "scene".into() } else { clean }
+    clean.trim_matches('.').to_string()
 }
 
 #[cfg(test)]

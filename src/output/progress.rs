@@ -1,5 +1,7 @@
 //! What a run shows while it computes: a bar on a terminal, a few lines elsewhere, or nothing.
 
+mod sweep;
+
 use std::fmt;
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -7,6 +9,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Elapsed, Stopwatch};
+pub use sweep::SweepProgress;
 
 /// Steps between two looks at the clock while steps are short: a look costs tens of ns.
 const STRIDE: u32 = 64;
@@ -147,10 +150,7 @@ impl Progress {
         let silence = now.duration_since(self.last_shown);
         let due = match self.shown {
             Shown::Bar(_) => silence >= BAR_PERIOD,
-            _ => {
-                let advanced = share - self.last_share >= LINE_SHARE;
-                silence >= LONGEST_SILENCE || (advanced && silence >= LINE_PERIOD)
-            }
+            _ => line_due(share - self.last_share, silence),
         };
         if !due {
             return;
@@ -189,6 +189,11 @@ impl Drop for Progress {
             bar.finish_and_clear();
         }
     }
+}
+
+/// Whether a log file should have another line after an advance by this share of the whole.
+fn line_due(advanced: f64, silence: Duration) -> bool {
+    silence >= LONGEST_SILENCE || (advanced >= LINE_SHARE && silence >= LINE_PERIOD)
 }
 
 /// Simulated time per real time: the mean over the last ten seconds or so, so that the remaining
@@ -289,7 +294,11 @@ impl fmt::Display for Clock {
 pub(crate) fn new_bar(length: u64) -> ProgressBar {
     // This module limits the rate itself, before the message is even written.
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{bar:18.cyan/dim} {percent:>3} %  {wide_msg}") {
+    with_style(bar, "{bar:18.cyan/dim} {percent:>3} %  {wide_msg}")
+}
+
+fn with_style(bar: ProgressBar, template: &str) -> ProgressBar {
+    if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("━╸─"));
     }
     bar

@@ -1,29 +1,31 @@
-//! How long something takes, on the clock and in CPU time.
+//! How long something takes, on the clock and in CPU time of its thread.
 
 use std::time::Instant;
 
-use cpu_time::ProcessTime;
+use cpu_time::ThreadTime;
 
 /// How long something took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Elapsed {
     /// Time on the clock, in seconds.
     pub wall_s: f64,
-    /// CPU time of the process, in seconds, all threads together; NaN where the system can't tell.
+    /// CPU time of the thread, in seconds; NaN where the system can't tell.
     pub cpu_s: f64,
 }
 
-/// Measures the clock and the CPU time from its start.
+/// Measures the clock and the CPU time of its thread from its start.
+///
+/// A run computes on one thread, so this is the CPU time of the run, whatever else the process does.
 #[derive(Debug, Clone, Copy)]
 pub struct Stopwatch {
     wall: Instant,
-    cpu: Option<ProcessTime>,
+    cpu: Option<ThreadTime>,
 }
 
 impl Stopwatch {
     /// Starts now.
     pub fn start() -> Self {
-        Self { wall: Instant::now(), cpu: ProcessTime::try_now().ok() }
+        Self { wall: Instant::now(), cpu: ThreadTime::try_now().ok() }
     }
 
     /// Time since the start.
@@ -55,5 +57,16 @@ mod tests {
         let stopwatch = Stopwatch::start();
         while stopwatch.wall.elapsed() < Duration::from_millis(30) {}
         assert!(stopwatch.elapsed().cpu_s > 0.0);
+    }
+
+    #[test]
+    fn work_of_other_threads_is_not_counted() {
+        let stopwatch = Stopwatch::start();
+        let work = std::thread::spawn(|| {
+            let own = Stopwatch::start();
+            while own.elapsed().cpu_s < 0.02 {}
+        });
+        work.join().unwrap();
+        assert!(stopwatch.elapsed().cpu_s < 0.02);
     }
 }

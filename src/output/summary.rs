@@ -14,6 +14,12 @@ pub struct Summary {
     /// What a human should know about it.
     #[serde(default)]
     pub message: Option<String>,
+    /// What one should know although the run went on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+    /// Rows of `history.csv`, from which one can tell whether the file is whole.
+    #[serde(default)]
+    pub rows: usize,
     /// The last value of every record, a number or an array; see [`set`](Self::set).
     #[serde(rename = "final", default)]
     pub final_values: Map<String, Value>,
@@ -23,7 +29,7 @@ pub struct Summary {
     /// The energy balance at the end of the run.
     #[serde(default)]
     pub energy: EnergyTotals,
-    /// CPU time of the process, in seconds, all threads together.
+    /// CPU time of the run, in seconds.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub cpu_s: f64,
     /// Time on the clock, in seconds.

@@ -233,17 +233,30 @@ fn push_header(text: &mut String, columns: &[Column]) {
         if i > 0 {
             text.push(',');
         }
-        // A heading stays on one line, so that a row is a line everywhere in the file.
-        let heading = column.heading().replace(['\n', '\r'], " ");
-        if heading.contains([',', '"']) {
-            text.push('"');
-            text.push_str(&heading.replace('"', "\"\""));
-            text.push('"');
-        } else {
-            text.push_str(&heading);
-        }
+        push_cell(text, &column.heading());
     }
     text.push('\n');
+}
+
+/// Writes a text between two commas. It stays on one line, so that a row is a line everywhere in the file.
+pub(crate) fn push_cell(text: &mut String, cell: &str) {
+    let cell = cell.replace(['\n', '\r'], " ");
+    if cell.contains([',', '"']) {
+        text.push('"');
+        text.push_str(&cell.replace('"', "\"\""));
+        text.push('"');
+    } else {
+        text.push_str(&cell);
+    }
+}
+
+/// Writes a number in its shortest form that reads back to the same bits.
+pub(crate) fn push_number(text: &mut String, value: f64) {
+    // Debug is the shortest round-trip form and, unlike Display, knows exponents.
+    let _ = write!(text, "{value:?}");
+    if text.ends_with(".0") {
+        text.truncate(text.len() - 2);
+    }
 }
 
 fn split_header(line: &str) -> Vec<String> {
@@ -275,11 +288,7 @@ fn push_line(text: &mut String, row: impl Iterator<Item = f64>) {
         if i > 0 {
             text.push(',');
         }
-        // Debug is the shortest round-trip form and, unlike Display, knows exponents.
-        let _ = write!(text, "{value:?}");
-        if text.ends_with(".0") {
-            text.truncate(text.len() - 2);
-        }
+        push_number(text, value);
     }
     text.push('\n');
 }

@@ -143,8 +143,9 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// The last value of every record.
+    /// The last value of every record, and the number of rows.
     pub(crate) fn finals(&self, summary: &mut Summary) {
+        summary.rows = self.table.rows();
         for f in &self.figures {
             let last = |k: usize| self.table.columns[k].values.last().copied();
             let values: Vec<f64> = f.columns.clone().filter_map(last).collect();

@@ -40,42 +40,8 @@ impl Document {
     /// # Errors
     /// If there is no such file, it is no text, or anything is wrong with it or with the overrides.
     pub fn read(path: &Path, overrides: &[String]) -> Result<Self, Fault> {
-        let name = path.display().to_string();
-        let quoted = format!("`{name}`");
-        let fault = |e: std::io::Error| match e.kind() {
-            ErrorKind::NotFound => Fault::new(format!("there is no file {quoted}")),
-            ErrorKind::PermissionDenied => Fault::new(format!("{quoted} may not be read: permission denied")),
-            _ => Fault::new(format!("{quoted} can't be read: {e}")),
-        };
-        let about = std::fs::metadata(path).map_err(fault)?;
-        if about.is_dir() {
-            return Err(Fault::new(format!("{quoted} is a directory, not a scene file")));
-        }
-        let format = match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
-            Some("toml") => Some(Format::Toml),
-            Some("json") => Some(Format::Json),
-            // a pipe has no name worth reading
-            None => None,
-            Some(other) => {
-                let message = format!("{quoted} is no scene file: `.{other}` is neither `.toml` nor `.json`");
-                return Err(Fault::new(message));
-            }
-        };
-        let mut bytes = Vec::new();
-        let file = std::fs::File::open(path).map_err(fault)?;
-        file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(fault)?;
-        if bytes.len() as u64 > LARGEST {
-            return Err(Fault::new(format!(
-                "{quoted} is larger than {} MB, which no scene is",
-                LARGEST >> 20
-            )));
-        }
-        let Some(text) = String::from_utf8(bytes).ok().filter(|text| !text.contains('\0')) else {
-            return Err(Fault::new(format!("{quoted} is not a text file (UTF-8)")));
-        };
-        let json = || text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']).starts_with('{');
-        let format = format.unwrap_or_else(|| if json() { Format::Json } else { Format::Toml });
-        Self::parse(&text, &name, format, overrides)
+        let (text, format) = read_text(path)?;
+        Self::parse(&text, &path.display().to_string(), format, overrides)
     }
 
     /// Reads a text; `name` is what messages call it.
@@ -234,4 +200,44 @@ impl Document {
     pub fn to_toml(&self) -> String {
         write::document(self.table())
     }
+}
+
+/// Reads the text of a `.toml` or `.json` file, and tells which of them it is.
+///
+/// # Errors
+/// If there is no such file, or it is no text.
+pub(crate) fn read_text(path: &Path) -> Result<(String, Format), Fault> {
+    let name = path.display().to_string();
+    let quoted = format!("`{name}`");
+    let fault = |e: std::io::Error| match e.kind() {
+        ErrorKind::NotFound => Fault::new(format!("there is no file {quoted}")),
+        ErrorKind::PermissionDenied => Fault::new(format!("{quoted} may not be read: permission denied")),
+        _ => Fault::new(format!("{quoted} can't be read: {e}")),
+    };
+    let about = std::fs::metadata(path).map_err(fault)?;
+    if about.is_dir() {
+        return Err(Fault::new(format!("{quoted} is a directory, not a scene file")));
+    }
+    let format = match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+        Some("toml") => Some(Format::Toml),
+        Some("json") => Some(Format::Json),
+        // a pipe has no name worth reading
+        None => None,
+        Some(other) => {
+            let message = format!("{quoted} is no scene file: `.{other}` is neither `.toml` nor `.json`");
+            return Err(Fault::new(message));
+        }
+    };
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(fault)?;
+    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(fault)?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(Fault::new(format!("{quoted} is larger than {} MB, which no scene is", LARGEST >> 20)));
+    }
+    let Some(text) = String::from_utf8(bytes).ok().filter(|text| !text.contains('\0')) else {
+        return Err(Fault::new(format!("{quoted} is not a text file (UTF-8)")));
+    };
+    let json = || text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']).starts_with('{');
+    let format = format.unwrap_or_else(|| if json() { Format::Json } else { Format::Toml });
+    Ok((text, format))
 }

@@ -1,0 +1,35 @@
+//! `ropewalk sweep SCENE --vary NAME=VALUES`
+
+use super::{Exit, complain, say};
+use crate::cli::SweepArgs;
+use crate::error::Error;
+use crate::output::ProgressMode;
+use crate::sweep::{Grid, SweepOptions, sweep as sweep_grid};
+use ropewalk_models::Bundled;
+
+pub(crate) fn sweep(args: SweepArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
+    let grid = Grid::new(&args.scenes, &args.overrides, &args.vary, bundled)?;
+    let progress = if args.quiet { ProgressMode::Quiet } else { ProgressMode::Auto };
+    let options = SweepOptions { out: args.out, fresh: args.fresh, jobs: args.jobs, progress };
+    let outcome = sweep_grid(&grid, &options)?;
+    if !args.quiet {
+        say(outcome.report.trim_end());
+    }
+    let (runs, complete) = outcome.runs;
+    let again = if args.fresh { "without --fresh, the same command" } else { "the same command" };
+    Ok(if outcome.interrupted {
+        complain(format!(
+            "stopped by Ctrl-C: {complete} of {runs} runs are complete, {again} computes the others"
+        ));
+        Exit::Interrupted
+    } else if outcome.failed > 0 {
+        let folder = outcome.folder.display();
+        complain(format!(
+            "error: {} of {runs} runs failed\n  = note: the table in {folder} says why; {again} tries them again",
+            outcome.failed
+        ));
+        Exit::Solver
+    } else {
+        Exit::Done
+    })
+}

@@ -1,0 +1,157 @@
+//! The pictures of a sweep: every record over time with a line for each run, and its last value over the parameter.
+
+use super::axis::Axis;
+use super::folder::SweepFolder;
+use super::grid::Grid;
+use super::results::{Recorded, Results, Row};
+use crate::output::{LinePlot, Mark, OutputError, RunFolder, Series, Table};
+use std::collections::HashMap;
+
+/// More lines than this can't be told apart.
+const MOST_LINES: usize = 24;
+/// Points of a line beyond which it is thinned at once, long histories of many runs being too much for the memory.
+const MOST_POINTS: usize = 20_000;
+
+/// Draws everything and gives the number of pictures. A picture that can't be drawn is no reason to fail.
+pub(super) fn draw(
+    folder: &SweepFolder,
+    grid: &Grid,
+    axes: &[Axis],
+    results: &Results,
+    warn: &mut dyn FnMut(&str),
+) -> usize {
+    let recorded = results.recorded();
+    let Some((time, records)) = recorded.split_first() else { return 0 };
+    let mut plots: Vec<(String, LinePlot)> = Vec::new();
+    let title = |what: &str, shown: usize, all: usize| {
+        let scenes = grid.scenes().join(" and ");
+        if shown < all { format!("{what}, {scenes}: {shown} of {all}") } else { format!("{what}, {scenes}") }
+    };
+
+    let with_history: Vec<(usize, &Row)> = results
+        .rows()
+        .filter(|(_, row)| Results::values(row, time).is_some_and(|v| v[0].is_finite()))
+        .collect();
+    let lines = chosen(&with_history);
+    let mut histories: HashMap<&str, Vec<Series>> = HashMap::new();
+    for (k, _) in &lines {
+        let run = RunFolder::earlier(folder.run(grid.name(*k)));
+        let table = match Table::read(&run.history_file()) {
+            Ok(table) => table,
+            Err(e) => {
+                warn(&e.to_string());
+                continue;
+            }
+        };
+        for c in records {
+            let Some(column) = table.columns.iter().find(|have| have.heading() == c.heading) else {
+                continue;
+            };
+            let points = table.columns[0].values.iter().copied().zip(column.values.iter().copied()).collect();
+            let line = Series::new(grid.label(*k, 0), thinned(points));
+            histories.entry(&c.heading).or_default().push(line);
+        }
+    }
+    for c in records {
+        let series = histories.remove(c.heading.as_str()).unwrap_or_default();
+        let plot = LinePlot {
+            title: title(&c.name, lines.len(), with_history.len()),
+            x_label: time.heading.clone(),
+            y_label: c.heading.clone(),
+            series,
+            ..LinePlot::default()
+        };
+        plots.push((c.name.clone(), plot));
+    }
+
+    for (c, axis) in records.iter().flat_map(|c| Some((c, axes.first()?))) {
+        let all = finals(c, grid, axis, results);
+        let series = chosen(&all);
+        let plot = LinePlot {
+            title: title(&format!("{} at the end", c.name), series.len(), all.len()),
+            x_label: axis.label(),
+            y_label: c.heading.clone(),
+            series,
+            ..LinePlot::default()
+        };
+        plots.push((format!("{}-final", c.name), plot));
+    }
+
+    let mut drawn = 0;
+    for (name, plot) in plots {
+        match folder.plot_file(&name).and_then(|path| plot.write(&path)) {
+            Ok(()) => drawn += 1,
+            // nothing to show is no fault: a run that failed at once has no history
+            Err(OutputError::EmptyPlot { .. }) => {}
+            Err(e) => warn(&e.to_string()),
+        }
+    }
+    drawn
+}
+
+/// Last values over the first parameter; runs that differ in nothing else are a line.
+fn finals(column: &Recorded, grid: &Grid, axis: &Axis, results: &Results) -> Vec<Series> {
+    let mut series: Vec<Series> = Vec::new();
+    let mut place: HashMap<String, usize> = HashMap::new();
+    for (k, row) in results.rows().filter(|(_, row)| row.is_complete()) {
+        let Some([last, ..]) = Results::values(row, column) else { continue };
+        let others = grid.label(k, 1);
+        let at = *place.entry(others.clone()).or_insert_with(|| {
+            series.push(Series::new(others, Vec::new()).with_mark(Mark::LineAndDots));
+            series.len() - 1
+        });
+        series[at].points.push((axis.numbers[grid.choice(k).1[0]], last));
+    }
+    for s in &mut series {
+        s.points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+    series
+}
+
+/// All of them, or some at equal distances if there are too many.
+fn chosen<T: Clone>(all: &[T]) -> Vec<T> {
+    let n = all.len();
+    match n <= MOST_LINES {
+        true => all.to_vec(),
+        false => (0..MOST_LINES).map(|i| all[i * (n - 1) / (MOST_LINES - 1)].clone()).collect(),
+    }
+}
+
+/// The least and the largest of so many neighbours that not too many points are left.
+fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    if points.len() <= MOST_POINTS {
+        return points;
+    }
+    let each = points.len().div_ceil(MOST_POINTS / 2);
+    let extremes = |some: &[(f64, f64)]| {
+        let low = some.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((f64::NAN, f64::NAN));
+        let high = some.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((f64::NAN, f64::NAN));
+        if low.0 <= high.0 { [low, high] } else { [high, low] }
+    };
+    points.chunks(each).flat_map(extremes).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn first_and_last_are_among_the_chosen() {
+        let all: Vec<usize> = (0..1000).collect();
+        let some = chosen(&all);
+        assert_eq!((some.len(), some[0], some[MOST_LINES - 1]), (MOST_LINES, 0, 999));
+        assert!(some.windows(2).all(|w| w[0] < w[1]));
+        assert_eq!(chosen(&all[..5]), all[..5]);
+    }
+
+    #[test]
+    fn peaks_survive_thinning() {
+        let mut points: Vec<(f64, f64)> = (0..1_000_000).map(|i| (f64::from(i), 0.0)).collect();
+        points[123_456].1 = 7.0;
+        points[654_321].1 = -7.0;
+        let few = thinned(points);
+        assert!(few.len() <= MOST_POINTS);
+        assert!(few.contains(&(123_456.0, 7.0)) && few.contains(&(654_321.0, -7.0)));
+        assert!(few.windows(2).all(|w| w[0].0 <= w[1].0));
+    }
+}
