@@ -54,6 +54,8 @@ pub struct System {
     pub values: Vec<f64>,
     jacobian: Vec<f64>,
     hessian: Vec<f64>,
+    /// For what elements scatter.
+    scratch: Vec<f64>,
     /// Calls and time of each term, then of the constraints; only filled where profiling was asked for.
     pub profile: Option<Vec<(u64, Duration)>>,
 }
@@ -224,6 +226,7 @@ impl Model {
                 width: self.width,
                 structure,
                 clique: self.cliques[k].start,
+                scratch: &mut sys.scratch,
             };
             term.add(at, &mut out);
             if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
@@ -276,6 +279,7 @@ impl Model {
             width: self.width,
             structure,
             clique: self.cliques[self.terms.len() + c].start,
+            scratch: &mut sys.scratch,
         };
         out.add_block(0, n + m, |i, j| match (i < n, j < n) {
             (true, true) => w.q * hessian[i * n + j],

@@ -193,13 +193,17 @@ impl<const M: usize> Places<M> {
 /// More lanes than this has no processor.
 const MOST_LANES: usize = 8;
 
-/// Blocks of tangents on their way out of lanes, one element after the other.
-pub(crate) struct Blocks<const N: usize>([[[f64; N]; N]; MOST_LANES]);
+/// Blocks of tangents on their way out of lanes, one element after the other; kept from call to call.
+pub(crate) struct Blocks<const N: usize>(Vec<f64>);
 
 impl<const N: usize> Blocks<N> {
-    /// Room for a batch, to be used again for the next.
-    pub fn new() -> Self {
-        Blocks([[[0.0; N]; N]; MOST_LANES])
+    pub fn take(out: &mut Assembly<'_>) -> Self {
+        let mut room = std::mem::take(out.scratch);
+        room.resize((MOST_LANES * N * N).max(room.len()), 0.0);
+        Blocks(room)
+    }
+    pub fn give_back(self, out: &mut Assembly<'_>) {
+        *out.scratch = self.0;
     }
 }
 
@@ -250,14 +254,14 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
         blocks: &mut Blocks<N>,
         out: &mut Assembly<'_>,
     ) {
-        let rows = &mut blocks.0;
-        unpack(&share.r, |l, j, r| rows[l][0][j..j + r.len()].copy_from_slice(r));
+        let rows = blocks.0.as_chunks_mut::<N>().0;
+        unpack(&share.r, |l, j, r| rows[l][j..j + r.len()].copy_from_slice(r));
         for (row, seat) in rows.iter().zip(seats) {
             match &seat.v {
-                Places::From(first) => out.add_run(*first as usize, &row[0]),
+                Places::From(first) => out.add_run(*first as usize, row),
                 Places::List(list) => {
                     for i in 0..N {
-                        out.add(list[i] as usize, row[0][i]);
+                        out.add(list[i] as usize, row[i]);
                     }
                 }
             }
@@ -266,10 +270,12 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
             return;
         }
         for i in 0..N {
-            unpack(&share.k[i], |l, j, k| rows[l][i][j..j + k.len()].copy_from_slice(k));
+            unpack(&share.k[i], |l, j, k| rows[l * N + i][j..j + k.len()].copy_from_slice(k));
         }
         for l in 0..seats.len() {
-            out.add_square(first + l, &blocks.0[l]);
+            if let Some(k) = rows[l * N..].first_chunk::<N>() {
+                out.add_square(first + l, k);
+            }
         }
     }
 }
@@ -317,7 +323,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
     fn go<R: Real>(self) {
         let w = self.out.weights();
         let tangent = self.out.wants_tangent();
-        let mut blocks = Blocks::new();
+        let mut blocks = Blocks::take(self.out);
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         let mut share = Share::zero();
         for (b, (elements, seats)) in batches.enumerate() {
@@ -333,6 +339,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
             }
             Seat::scatter(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
+        blocks.give_back(self.out);
     }
 }
 

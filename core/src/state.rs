@@ -38,6 +38,10 @@ pub struct Control {
     pub eta: f64,
     /// Convergence rate that the kept factors last showed; 0 if none was seen.
     pub theta: f64,
+    /// For how many steps yet factors are made anew at once, since kept ones didn't converge.
+    pub renew: u32,
+    /// For how many steps it was the last time.
+    pub renew_next: u32,
     /// True accelerations one and two steps back, for the predictor.
     pub a_back: [Vec<f64>; 2],
     /// How many entries of `a_back` hold.
@@ -62,7 +66,19 @@ macro_rules! clone_in_place {
     };
 }
 clone_in_place!(State { t, q, v, a, aux, lambda, modes, control });
-clone_in_place!(Control { h_last, h_next, h_cap, eta, theta, a_back, backs, h_before, order });
+clone_in_place!(Control {
+    h_last,
+    h_next,
+    h_cap,
+    eta,
+    theta,
+    renew,
+    renew_next,
+    a_back,
+    backs,
+    h_before,
+    order
+});
 
 /// Where terms and constraints are evaluated: slices into a state, or into a trial of an integrator.
 #[derive(Clone, Copy, Debug)]

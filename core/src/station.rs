@@ -417,7 +417,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     fn go<R: Real>(self) {
         let w = self.out.weights();
         let (tangent, width) = (self.out.wants_tangent(), self.out.width());
-        let mut blocks = Blocks::new();
+        let mut blocks = Blocks::take(self.out);
         self.exchange.resize::<R>(S);
         // derivatives that no law gives stay zero throughout
         let (mut loads, mut share) = ([Load::<R>::zero(); S], Share::zero());
@@ -441,6 +441,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             }
             Seat::scatter(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
+        blocks.give_back(self.out);
     }
 }
 

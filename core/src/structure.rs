@@ -78,8 +78,6 @@ struct Move {
 pub struct Structure {
     /// Number of unknowns: velocities and multipliers.
     pub n: usize,
-    /// How many of them are multipliers.
-    pub multipliers: usize,
     /// Only the upper triangle counts.
     pub symmetric: bool,
     /// Position of each unknown (velocities first, then multipliers) in the elimination order.
@@ -90,6 +88,8 @@ pub struct Structure {
     pub blocks: Vec<Block>,
     /// Storage of the diagonal entry of each unknown.
     pub diagonal: Vec<u32>,
+    /// The same for each position.
+    pub(crate) diagonal_at: Vec<u32>,
     /// Whether every block is coupled with the one before and the one behind it only.
     pub chain: bool,
     /// Runs of unknowns that follow each other in the elimination order too.
@@ -125,12 +125,12 @@ impl Structure {
         }
         let mut s = Structure {
             n,
-            multipliers: n - nv,
             symmetric,
             position,
             is_multiplier,
             blocks: Vec::with_capacity(starts.len()),
             diagonal: Vec::new(),
+            diagonal_at: Vec::new(),
             chain: false,
             moves,
             columns: Vec::new(),
@@ -142,7 +142,8 @@ impl Structure {
         for k in 0..pattern.len() {
             s.add_tiles(pattern.get(k));
         }
-        s.diagonal = (0..n).map(|i| s.slot(s.position[i], s.position[i]) as u32).collect();
+        s.diagonal_at = (0..n).map(|p| s.slot(p, p) as u32).collect();
+        s.diagonal = s.position.iter().map(|&p| s.diagonal_at[p]).collect();
         s
     }
 
@@ -289,15 +290,6 @@ impl Structure {
         }
     }
 
-    /// Sets the rows of multipliers to zero.
-    pub fn clear_multipliers(&self, x: &mut [f64]) {
-        let velocities = self.n - self.multipliers;
-        for m in self.moves.iter().filter(|m| m.unknown + m.count > velocities) {
-            let skip = velocities.saturating_sub(m.unknown);
-            x[m.position + skip..m.position + m.count].fill(0.0);
-        }
-    }
-
     /// Number of stored values.
     pub fn entries(&self) -> usize {
         self.entries
@@ -322,17 +314,19 @@ impl Structure {
     /// Every row: its position, its columns, and where its values are stored. Of symmetric matrices from the diagonal
     /// on.
     pub fn rows(&self) -> impl Iterator<Item = (usize, Columns<'_>, Range<usize>)> + '_ {
-        self.blocks.iter().flat_map(move |b| {
-            (0..b.size).map(move |i| {
-                let skip = if self.symmetric { i } else { 0 };
-                let columns = match b.run {
-                    Some(first) => Columns::From(first + skip),
-                    None => Columns::List(&self.columns[b.columns.start + skip..b.columns.end]),
-                };
-                let at = b.base + i * b.width();
-                (b.first + i, columns, at + skip..at + b.width())
-            })
-        })
+        self.blocks.iter().flat_map(move |b| (0..b.size).map(move |i| self.row(b, i)))
+    }
+
+    /// The same for row number `i` of a block.
+    #[inline(always)]
+    pub(crate) fn row(&self, b: &Block, i: usize) -> (usize, Columns<'_>, Range<usize>) {
+        let skip = if self.symmetric { i } else { 0 };
+        let columns = match b.run {
+            Some(first) => Columns::From(first + skip),
+            None => Columns::List(&self.columns[b.columns.start + skip..b.columns.end]),
+        };
+        let at = b.base + i * b.width();
+        (b.first + i, columns, at + skip..at + b.width())
     }
 
     /// `y = A x` in elimination order.
@@ -361,21 +355,6 @@ impl Structure {
             }
             y[r] += sum;
         }
-    }
-
-    /// `xᵀ A x` in elimination order.
-    pub fn form(&self, values: &[f64], x: &[f64]) -> f64 {
-        let mut total = 0.0;
-        for (r, columns, at) in self.rows() {
-            let values = &values[at];
-            let sum: f64 = match columns {
-                Columns::From(first) => values.iter().zip(&x[first..]).map(|(a, x)| a * x).sum(),
-                Columns::List(list) => values.iter().zip(list).map(|(a, &c)| a * x[c as usize]).sum(),
-            };
-            // of a symmetric matrix each entry off the diagonal stands for two
-            total += x[r] * if self.symmetric { 2.0 * sum - values[0] * x[r] } else { sum };
-        }
-        total
     }
 }
 

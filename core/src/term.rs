@@ -119,6 +119,8 @@ pub struct Assembly<'a> {
     pub(crate) structure: &'a Structure,
     /// First clique of the current term.
     pub(crate) clique: usize,
+    /// For blocks on their way out of lanes.
+    pub(crate) scratch: &'a mut Vec<f64>,
 }
 
 impl Assembly<'_> {

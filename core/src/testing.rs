@@ -36,6 +36,7 @@ pub fn dense(
             width,
             structure: &structure,
             clique: 0,
+            scratch: &mut Vec::new(),
         },
     );
     let mut unknown = vec![0; n];

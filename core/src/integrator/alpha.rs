@@ -1,6 +1,6 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
-use super::newton::{Newton, Outcome};
+use super::newton::{Newton, Outcome, Rate};
 use super::workspace::Which;
 use super::{Coefficients, Integrator, Options, StepError, StepReport, Stepping, Workspace};
 use crate::model::Model;
@@ -105,7 +105,7 @@ impl Alpha {
         // where there is no past yet, its weight is zero
         let one = if state.control.backs > 0 { &one[..n] } else { a };
         let two = if state.control.backs > 1 { &two[..n] } else { a };
-        let (new, mass) = (&work.trial.a[..n], &work.mass_diagonal[..n]);
+        let (new, mass) = (&work.trial.a[..n], &work.weight[..n]);
         let ([x1, y1, _], [x2, y2, z2]) = (past.continued(1), past.continued(2));
         let mut miss = [0.0; 3];
         for i in 0..n {
@@ -134,13 +134,13 @@ impl Alpha {
         rhs.resize(model.structure().n, 0.0);
         work.times_mass(model, &e, &mut rhs[..nv]);
         let solved = work.solve(model, Which::Iteration, &mut rhs);
-        let size = work.norm(model, &rhs[..nv]);
+        let size = work.norm(&rhs[..nv]);
         (work.trial.d, work.trial.rhs) = (e, rhs);
         solved.map_err(|source| linear(model, 0.0, source))?;
         Ok(size * (self.horizon / h) / (tolerance.min(1e-3) * model.length()))
     }
 
-    fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, eta: f64, theta: Option<f64>) {
+    fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, rate: &Rate) {
         let order = self.best_order(state, h, work);
         let c = &mut state.control;
         c.order = order;
@@ -151,8 +151,16 @@ impl Alpha {
         one.extend_from_slice(&state.a);
         c.backs = (c.backs + 1).min(2);
         c.h_last = h;
-        c.eta = eta;
-        c.theta = theta.unwrap_or(c.theta);
+        c.eta = rate.eta;
+        c.theta = rate.theta.unwrap_or(c.theta);
+        if rate.kept_failed {
+            // the next steps don't try to keep factors; each failure makes it twice as many
+            c.renew_next = (2 * c.renew_next).clamp(4, 64);
+            c.renew = c.renew_next;
+        } else {
+            c.renew_next = if c.renew == 0 { 0 } else { c.renew_next };
+            c.renew = c.renew.saturating_sub(1);
+        }
         c.h_cap = if c.h_cap > 0.0 { c.h_cap * 1.1 } else { 0.0 };
         let t = &mut work.trial;
         std::mem::swap(&mut state.q, &mut t.q);
@@ -256,22 +264,23 @@ impl Integrator for Alpha {
                 linear_constraints,
             };
             // factors that served badly last time are not tried again
-            if state.control.theta > REFRESH {
+            if state.control.theta > REFRESH || state.control.renew > 0 {
                 work.factored = None;
             }
             let why = match newton.solve(work, state.control.eta.max(0.05)) {
-                Outcome::Converged { iterations, eta, theta } => {
+                Outcome::Converged(rate) => {
+                    let iterations = rate.iterations;
                     report.h = h;
                     report.iterations = iterations;
                     let Some(tolerance) = controlled else {
-                        self.accept(state, work, h, eta, theta);
+                        self.accept(state, work, h, &rate);
                         return Ok(report);
                     };
                     let error = self.error(model, work, h, tolerance)?;
                     let grow = (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5);
                     if error <= 1.0 {
                         report.error = error;
-                        self.accept(state, work, h, eta, theta);
+                        self.accept(state, work, h, &rate);
                         // small changes aren't worth a new factorisation
                         let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
                         state.control.h_next = if cut { next.max(state.control.h_next) } else { next };

@@ -21,18 +21,24 @@ const PATIENCE: i32 = 3;
 /// step that has only one.
 const TRUST: f64 = 0.1;
 
+/// How Newton's method converged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rate {
+    pub iterations: u32,
+    /// Expected remaining error in parts of the last correction.
+    pub eta: f64,
+    /// Ratio of the last two corrections made with the same factors; zero for new factors that weren't used twice,
+    /// `None` for kept ones.
+    pub theta: Option<f64>,
+    /// Whether kept factors had to be replaced on the way.
+    pub kept_failed: bool,
+}
+
 /// What Newton's method of a trial came to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Outcome {
-    /// `theta` is the rate at which it converged, `None` after a single iteration.
-    Converged {
-        iterations: u32,
-        eta: f64,
-        theta: Option<f64>,
-    },
-    Failed {
-        why: String,
-    },
+    Converged(Rate),
+    Failed { why: String },
     Linear(SolveError),
 }
 
@@ -95,76 +101,70 @@ impl Newton<'_> {
         let beta_h2 = self.scheme.beta.max(1.0 / 12.0) * self.h * self.h;
         let floor = 4.0 * U * self.model.length();
         let stop = self.tolerance.max(floor);
-        let mut fresh = false;
         let (mut last, mut theta) = (0.0_f64, 0.0_f64);
-        let mut outcome = None;
+        // iterations with the present factors, and whether these were made here
+        let (mut since, mut fresh, mut kept_failed) = (0, false, false);
         let multiplier_scale = 1.0 / (self.scheme.beta * self.h * self.h);
         self.kinematics(work);
         for k in 0..self.max_iterations {
             let stale = work.factored != Some(self.weights());
             // an iteration that would go on for long with an old matrix gets a new one
-            let slow = k > 0 && last * theta.powi(PATIENCE) > stop;
-            let refresh = stale || self.policy == NewtonPolicy::Full || (slow && !fresh);
+            let slow = since > 1 && !fresh && last * theta.powi(PATIENCE) > stop;
+            let refresh = stale || self.policy == NewtonPolicy::Full || slow;
             if let Err(e) = self.evaluate(work, refresh) {
-                outcome = Some(Outcome::Linear(e));
-                break;
+                return Outcome::Linear(e);
             }
-            fresh = refresh || (fresh && k > 0);
+            kept_failed |= slow;
+            fresh |= refresh;
+            since = if slow { 1 } else { since + 1 };
             work.counts.newton_iterations += 1;
-            let residual = &mut work.system.residual;
+            let residual = &work.system.residual;
             if residual.iter().fold(false, |bad, r| bad | !r.is_finite()) {
-                outcome = Some(Outcome::Failed { why: "the residual is not finite".into() });
-                break;
+                return Outcome::Failed { why: "the residual is not finite".into() };
             }
-            for g in &mut residual[nv..] {
-                *g *= multiplier_scale;
-            }
-            self.model.structure().order(residual, &mut work.x);
+            let s = self.model.structure();
+            s.order(residual, &mut work.x);
             work.x.iter_mut().for_each(|x| *x = -*x);
+            for &p in &s.position[nv..] {
+                work.x[p] *= multiplier_scale;
+            }
             if let Err(e) = work.solve_ordered(self.model, Which::Iteration) {
-                outcome = Some(Outcome::Linear(e));
-                break;
+                return Outcome::Linear(e);
             }
-            let trial = &mut work.trial;
-            self.model.structure().add_restored(&work.x, &mut trial.aux, &mut trial.lambda);
+            s.add_restored(&work.x, &mut work.trial.aux, &mut work.trial.lambda);
             self.kinematics(work);
-            let size = beta_h2 * work.norm_of_solution(self.model);
+            let size = beta_h2 * work.norm_of_solution();
             if !size.is_finite() {
-                outcome = Some(Outcome::Failed { why: "the iteration left the finite numbers".into() });
-                break;
+                return Outcome::Failed { why: "the iteration left the finite numbers".into() };
             }
-            if k > 0 {
+            if since > 1 {
                 theta = size / last;
                 eta = theta / (1.0 - theta).max(1e-3);
             } else {
-                eta = eta.max(1e-16).powf(0.8);
+                // new factors in the midst of it converge at least as well as a step that begins with them
+                theta = 0.0;
+                eta = eta.clamp(1e-16, TRUST).powf(0.8);
             }
             last = size;
             // a rate that wasn't seen for some steps has to be seen again before it is trusted
-            let trusted = k > 0 || eta <= TRUST;
+            let trusted = since > 1 || eta <= TRUST;
             let done = trusted && size * eta.min(1e3) <= stop || size <= floor;
             if done && self.constraints_hold(work) {
-                // new factors have a clean slate until they are seen to converge slowly
-                let rate = if k > 0 { Some(theta) } else { fresh.then_some(0.0) };
-                outcome = Some(Outcome::Converged { iterations: k + 1, eta, theta: rate });
-                break;
+                let theta = if since > 1 { Some(theta) } else { fresh.then_some(0.0) };
+                return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed });
             }
-            if theta >= 1.0 && k > 0 {
+            if theta >= 1.0 && fresh {
                 // at the floor of rounding the iteration wanders; far from it, it diverges
-                if size <= 30.0 * floor && fresh {
-                    outcome = Some(Outcome::Converged { iterations: k + 1, eta: 1.0, theta: Some(1.0) });
-                    break;
+                if size <= 30.0 * floor {
+                    let rate = Rate { iterations: k + 1, eta: 1.0, theta: Some(1.0), kept_failed };
+                    return Outcome::Converged(rate);
                 }
-                if fresh && (theta >= 2.0 || k > 4) {
-                    outcome = Some(Outcome::Failed { why: "Newton's method diverges".into() });
-                    break;
+                if theta >= 2.0 || k > 4 {
+                    return Outcome::Failed { why: "Newton's method diverges".into() };
                 }
             }
         }
-        outcome.unwrap_or_else(|| {
-            let why = format!("{} Newton iterations were not enough", self.max_iterations);
-            Outcome::Failed { why }
-        })
+        Outcome::Failed { why: format!("{} Newton iterations were not enough", self.max_iterations) }
     }
 
     fn constraints_hold(&self, work: &mut Workspace) -> bool {

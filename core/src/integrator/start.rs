@@ -65,7 +65,7 @@ pub fn prepare(
         .map_err(|e| linear(t, e, "the initial accelerations"))?;
 
     let own = state.v.clone();
-    let scale = work.norm(model, &own) + (work.norm(model, &a) * length).sqrt();
+    let scale = work.norm(&own) + (work.norm(&a) * length).sqrt();
     if velocity > SMALL_VELOCITY * scale && !options.project {
         return Err(StepError::Inconsistent(inconsistent(model, "velocities", velocity, "m/s", state, work)));
     }
@@ -147,7 +147,7 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
             *r = -md;
         }
         work.solve(model, Which::Mass, &mut rhs)?;
-        let step = work.norm(model, &rhs[..nv]);
+        let step = work.norm(&rhs[..nv]);
         for (d, r) in d.iter_mut().zip(&rhs) {
             *d += r;
         }
@@ -156,7 +156,7 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
             return Err(SolveError::NotFinite);
         }
         if fine && step <= 10.0 * limit || step <= limit {
-            return Ok(work.norm(model, &d));
+            return Ok(work.norm(&d));
         }
     }
     Err(SolveError::NotFinite)
@@ -186,7 +186,7 @@ fn project_velocities(model: &Model, state: &mut State, work: &mut Workspace) ->
     work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
     let mut rhs = velocity_rhs(model, state, work);
     work.solve(model, Which::Mass, &mut rhs)?;
-    let size = work.norm(model, &rhs[..model.velocities()]);
+    let size = work.norm(&rhs[..model.velocities()]);
     for (v, d) in state.v.iter_mut().zip(&rhs) {
         *v += d;
     }

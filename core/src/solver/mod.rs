@@ -2,6 +2,7 @@
 //! and fall back to LU with pivoting.
 
 mod chain;
+mod check;
 mod dense;
 mod ldlt;
 mod lu;
@@ -15,7 +16,8 @@ pub use lu::Lu;
 pub use profile::Profile;
 pub use scalar::Scalar;
 
-use crate::structure::{Columns, Structure};
+use crate::structure::Structure;
+use check::Check;
 
 /// Why a linear system could not be solved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -62,9 +64,7 @@ pub struct Guard {
     use_fallback: bool,
     unchecked: bool,
     b: Vec<f64>,
-    r: Vec<f64>,
-    d: Vec<f64>,
-    sums: Vec<f64>,
+    check: Check,
     /// Factorisations so far.
     pub factorizations: u64,
     /// How often LU with pivoting had to step in.
@@ -95,17 +95,14 @@ impl Guard {
     /// A guard around a solver of one's own choice.
     pub fn with(s: &Structure, mut primary: Box<dyn LinearSolver>) -> Result<Self, SolveError> {
         primary.analyse(s)?;
-        let zero = vec![0.0; s.n];
         Ok(Guard {
             primary,
             fallback: Lu::default(),
             fallback_ready: false,
             use_fallback: false,
             unchecked: true,
-            b: zero.clone(),
-            r: zero.clone(),
-            d: zero.clone(),
-            sums: zero,
+            b: vec![0.0; s.n],
+            check: Check::new(s.n),
             factorizations: 0,
             fallbacks: 0,
         })
@@ -151,21 +148,21 @@ impl Guard {
         }
         self.b.copy_from_slice(x);
         self.raw_solve(x);
-        let mut error = self.backward_error(s, values, x);
+        let mut error = self.check.error(s, values, x, &self.b, REFINE);
         if !(error <= REFINE) && error.is_finite() {
-            let mut dx = std::mem::take(&mut self.r);
+            let mut dx = std::mem::take(&mut self.check.residual);
             self.raw_solve(&mut dx);
             for (x, d) in x.iter_mut().zip(&dx) {
                 *x -= d;
             }
-            self.r = dx;
-            error = self.backward_error(s, values, x);
+            self.check.residual = dx;
+            error = self.check.error(s, values, x, &self.b, GIVE_UP);
         }
         if !(error <= GIVE_UP) && !self.use_fallback {
             self.fall_back(s, values)?;
             x.copy_from_slice(&self.b);
             self.raw_solve(x);
-            error = self.backward_error(s, values, x);
+            error = self.check.error(s, values, x, &self.b, GIVE_UP);
         }
         self.unchecked = false;
         if error <= 1e-4 { Ok(()) } else { Err(SolveError::NotFinite) }
@@ -174,80 +171,6 @@ impl Guard {
     /// Number of negative pivots, where the solver in use knows it.
     pub fn negative_pivots(&self) -> Option<usize> {
         if self.use_fallback { None } else { self.primary.negative_pivots() }
-    }
-
-    /// Componentwise backward error `max |A x - b|ᵢ / (|A||x| + |b|)ᵢ`; leaves `A x - b` in `r`. Rows whose terms are
-    /// all rounding errors are measured against `(|A| 1)ᵢ |x|∞` instead (Arioli, Demmel & Duff 1989).
-    fn backward_error(&mut self, s: &Structure, values: &[f64], x: &[f64]) -> f64 {
-        for ((r, d), b) in self.r.iter_mut().zip(&mut self.d).zip(&self.b) {
-            *r = -b;
-            *d = b.abs();
-        }
-        for (i, columns, at) in s.rows() {
-            let values = &values[at];
-            let (mut ri, mut di) = (0.0, 0.0);
-            let xi = if s.symmetric { x[i] } else { 0.0 };
-            match columns {
-                Columns::From(first) => {
-                    let (x, r, d) = (&x[first..], &mut self.r[first..], &mut self.d[first..]);
-                    for (((a, x), r), d) in values.iter().zip(x).zip(r).zip(d) {
-                        let (right, left) = (a * x, a * xi);
-                        ri += right;
-                        di += right.abs();
-                        *r += left;
-                        *d += left.abs();
-                    }
-                }
-                Columns::List(list) => {
-                    for (a, &c) in values.iter().zip(list) {
-                        let (right, left) = (a * x[c as usize], a * xi);
-                        ri += right;
-                        di += right.abs();
-                        self.r[c as usize] += left;
-                        self.d[c as usize] += left.abs();
-                    }
-                }
-            }
-            // the diagonal has been counted on both sides
-            let twice = values[0] * xi;
-            self.r[i] += ri - twice;
-            self.d[i] += di - twice.abs();
-        }
-        let mut worst = 0.0;
-        for (r, d) in self.r.iter().zip(&self.d) {
-            // max() would swallow a NaN
-            if !(r.is_finite() && d.is_finite()) {
-                return f64::INFINITY;
-            }
-            if r.abs() > worst * d {
-                worst = r.abs() / d;
-            }
-        }
-        if worst > REFINE { self.against_norms(s, values, x) } else { worst }
-    }
-
-    /// The same, with row sums for the rows that need them.
-    fn against_norms(&mut self, s: &Structure, values: &[f64], x: &[f64]) -> f64 {
-        self.sums.fill(0.0);
-        for (i, columns, at) in s.rows() {
-            for (k, v) in values[at].iter().enumerate() {
-                let c = columns.get(k);
-                self.sums[i] += v.abs();
-                if s.symmetric && i != c {
-                    self.sums[c] += v.abs();
-                }
-            }
-        }
-        let largest = x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let mut worst = 0.0;
-        for ((r, &d), sum) in self.r.iter().zip(&self.d).zip(&self.sums) {
-            let all = sum * largest;
-            let d = if d <= 1e3 * s.n as f64 * f64::EPSILON * all { d + all } else { d };
-            if d > 0.0 && r.abs() > worst * d {
-                worst = r.abs() / d;
-            }
-        }
-        worst
     }
 }
 

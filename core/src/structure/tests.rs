@@ -29,10 +29,6 @@ fn chain_keeps_its_order_and_rows_follow_their_last_node() {
     }
     s.restore(&ordered, &mut back);
     assert_eq!(back, x);
-    s.clear_multipliers(&mut ordered);
-    for (i, &p) in s.position.iter().enumerate() {
-        assert_eq!(ordered[p], if i < 12 { x[i] } else { 0.0 });
-    }
 }
 
 #[test]
@@ -119,7 +115,6 @@ fn tiles_and_products_are_those_of_the_dense_matrix() {
             let mut y = vec![0.0; 12];
             s.multiply(&values, &x, &mut y);
             assert_eq!(y, exact);
-            assert_eq!(s.form(&values, &x), x.iter().zip(&y).map(|(x, y)| x * y).sum::<f64>());
         }
     }
 }
