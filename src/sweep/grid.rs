@@ -95,7 +95,7 @@ impl Grid {
         let (scene, values) = self.choice(k);
         let overrides = self.vary.iter().zip(&values).map(|(v, i)| format!("{}={}", v.name, v.values[*i]));
         let all: Vec<String> = self.set.iter().cloned().chain(overrides).collect();
-        self.scenes[scene].with(&all).map_err(|fault| self.from_option(fault, scene))
+        self.scenes[scene].with(&all).map_err(|fault| self.at_option(fault, scene))
     }
 
     /// What the sweep is, to be known again.
@@ -120,8 +120,8 @@ impl Grid {
         for scene in 0..self.scenes.len() {
             let build = |k: usize| {
                 let file = self.file(k)?;
-                let model = file.build().map_err(|fault| self.from_option(fault, scene))?;
-                file.records(&model).map_err(|fault| self.from_option(fault, scene))
+                let model = file.build().map_err(|fault| self.at_option(fault, scene))?;
+                file.records(&model).map_err(|fault| self.at_option(fault, scene))
             };
             let each = self.len() / self.scenes.len();
             build(scene * each)?;
@@ -142,7 +142,7 @@ impl Grid {
     }
 
     /// A fault of a varied value was not written behind `--set`; and of several scenes it says which one.
-    fn from_option(&self, mut fault: Fault, scene: usize) -> Fault {
+    fn at_option(&self, mut fault: Fault, scene: usize) -> Fault {
         if let Some(place) = &mut fault.place
             && place.span.source() > self.set.len()
         {
