@@ -204,7 +204,7 @@ fn friction_only_dissipates_and_the_power_is_complete() {
         for _ in 0..10 {
             let at = station(&mut r, 2.0);
             let f = force(&law, &at);
-            let p = Law::power(&law, 0.7, &at, f);
+            let p = Law::power(&law, 0.7, &at, &f);
             assert!(p.dissipated >= 0.0);
             approx::assert_relative_eq!(
                 p.supplied - p.dissipated,
