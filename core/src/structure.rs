@@ -329,6 +329,31 @@ impl Structure {
         (b.first + i, columns, at + skip..at + b.width())
     }
 
+    /// Sum of the absolute values in one row.
+    pub(crate) fn row_sum(&self, values: &[f64], row: usize) -> f64 {
+        let own = self.block_of(row);
+        let begin = match (self.symmetric, self.chain) {
+            (false, _) => own,
+            (true, true) => own.saturating_sub(1),
+            (true, false) => 0,
+        };
+        let mut sum = 0.0;
+        for block in &self.blocks[begin..=own] {
+            for (r, columns, at) in (0..block.size).map(|i| self.row(block, i)) {
+                if r == row {
+                    sum += values[at].iter().map(|v| v.abs()).sum::<f64>();
+                } else if self.symmetric && r < row {
+                    let k = match columns {
+                        Columns::From(first) => (row - first < at.len()).then_some(row - first),
+                        Columns::List(list) => list.binary_search(&(row as u32)).ok(),
+                    };
+                    sum += k.map_or(0.0, |k| values[at.start + k].abs());
+                }
+            }
+        }
+        sum
+    }
+
     /// `y = A x` in elimination order.
     pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         y.fill(0.0);

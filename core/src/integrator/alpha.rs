@@ -247,7 +247,7 @@ impl Integrator for Alpha {
         // a step that only fills the rest of an interval says nothing about the next
         let cut = h >= limit && state.control.h_next > limit;
         let mut report = StepReport::default();
-        let mut failures = 0;
+        let (mut failures, mut stale) = (0, false);
         loop {
             let mut aux = std::mem::take(&mut work.trial.aux_old);
             self.rescale(state, h, &mut aux);
@@ -268,7 +268,8 @@ impl Integrator for Alpha {
                 work.factored = None;
             }
             let why = match newton.solve(work, state.control.eta.max(0.05)) {
-                Outcome::Converged(rate) => {
+                Outcome::Converged(mut rate) => {
+                    rate.kept_failed |= stale;
                     let iterations = rate.iterations;
                     report.h = h;
                     report.iterations = iterations;
@@ -302,6 +303,11 @@ impl Integrator for Alpha {
                         }
                         continue;
                     }
+                }
+                Outcome::Stale => {
+                    stale = true;
+                    work.factored = None;
+                    continue;
                 }
                 Outcome::Linear(source) if h <= self.options.h_min => {
                     return Err(linear(model, state.t, source));

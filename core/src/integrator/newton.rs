@@ -38,7 +38,11 @@ pub(crate) struct Rate {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Outcome {
     Converged(Rate),
-    Failed { why: String },
+    /// It diverged with factors of an earlier step: to be repeated with new ones.
+    Stale,
+    Failed {
+        why: String,
+    },
     Linear(SolveError),
 }
 
@@ -153,7 +157,10 @@ impl Newton<'_> {
                 let theta = if since > 1 { Some(theta) } else { fresh.then_some(0.0) };
                 return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed });
             }
-            if theta >= 1.0 && fresh {
+            if theta >= 1.0 && !fresh {
+                return Outcome::Stale;
+            }
+            if theta >= 1.0 {
                 // at the floor of rounding the iteration wanders; far from it, it diverges
                 if size <= 30.0 * floor {
                     let rate = Rate { iterations: k + 1, eta: 1.0, theta: Some(1.0), kept_failed };
