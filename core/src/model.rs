@@ -32,6 +32,8 @@ pub struct Model {
     width: Width,
     /// Whether no node has an orientation, so that `q ⊕ d` is `q + d`.
     flat: bool,
+    /// Most elements along one part.
+    finest: usize,
 }
 
 /// Where a run starts: configuration and velocities as the scene gives them.
@@ -91,6 +93,7 @@ impl Model {
         }
         let symmetric = terms.iter().all(|t| t.symmetric());
         let flat = nodes.iter().all(|n| n.kind != NodeKind::Frame);
+        let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
         Model {
             nodes,
@@ -107,6 +110,7 @@ impl Model {
             length,
             width: Width::best(),
             flat,
+            finest,
         }
     }
 
@@ -174,6 +178,11 @@ impl Model {
     /// The reference length of tolerances [m].
     pub fn length(&self) -> f64 {
         self.length
+    }
+
+    /// Number of elements of the part that is divided most finely.
+    pub fn finest(&self) -> usize {
+        self.finest
     }
 
     /// Moves every node: `out = q ⊕ d`.

@@ -38,7 +38,7 @@ pub struct Control {
     pub eta: f64,
     /// Convergence rate that the kept factors last showed; 0 if none was seen.
     pub theta: f64,
-    /// For how many steps yet factors are made anew at once, since kept ones didn't converge.
+    /// For how many steps yet factors are made anew at every iteration, since kept ones didn't converge.
     pub renew: u32,
     /// For how many steps it was the last time.
     pub renew_next: u32,

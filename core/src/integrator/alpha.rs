@@ -2,7 +2,7 @@
 
 use super::newton::{Newton, Outcome, Rate};
 use super::workspace::Which;
-use super::{Coefficients, Integrator, Options, StepError, StepReport, Stepping, Workspace};
+use super::{Coefficients, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping, Workspace};
 use crate::model::Model;
 use crate::state::State;
 
@@ -17,6 +17,8 @@ pub struct Alpha {
 
 /// Convergence rate of Newton's method from which on the next step gets a new matrix.
 const REFRESH: f64 = 0.1;
+/// Elements along a cable up to which Newton's tolerance doesn't depend on their number.
+const COARSE: f64 = 64.0;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
@@ -55,7 +57,10 @@ impl Alpha {
 
     fn newton_tolerance(&self, model: &Model, h: f64) -> f64 {
         let length = model.length();
+        // on short elements, what is left of an iteration strains more, and would spoil the next prediction
+        let fine = (COARSE / model.finest().max(1) as f64).min(1.0).powi(2);
         self.options.newton_tolerance
+            * fine
             * match self.options.stepping {
                 Stepping::Fixed { .. } => (1e-3 * h * h * length).min(1e-6 * length),
                 Stepping::Controlled { tolerance } => 1e-3 * tolerance.min(1e-3) * length,
@@ -258,13 +263,18 @@ impl Integrator for Alpha {
                 state,
                 scheme: self.scheme,
                 h,
-                policy: self.options.newton,
+                // where kept factors failed, the matrix changes too much even within a step
+                policy: if stale || state.control.renew > 0 {
+                    NewtonPolicy::Full
+                } else {
+                    self.options.newton
+                },
                 max_iterations: self.options.max_iterations,
                 tolerance: self.newton_tolerance(model, h),
                 linear_constraints,
             };
             // factors that served badly last time are not tried again
-            if state.control.theta > REFRESH || state.control.renew > 0 {
+            if state.control.theta > REFRESH {
                 work.factored = None;
             }
             let why = match newton.solve(work, state.control.eta.max(0.05)) {

@@ -17,6 +17,9 @@ const U: f64 = f64::EPSILON / 2.0;
 /// Iterations with kept factors that are cheaper than new factors.
 const PATIENCE: i32 = 3;
 
+/// A step whose iteration still diverges after so many new matrices is repeated smaller.
+const MOST_RENEWALS: u32 = 3;
+
 /// Largest expected rest of the error that is believed without a second iteration. What is expected grows from step to
 /// step that has only one.
 const TRUST: f64 = 0.1;
@@ -106,20 +109,20 @@ impl Newton<'_> {
         let floor = 4.0 * U * self.model.length();
         let stop = self.tolerance.max(floor);
         let (mut last, mut theta) = (0.0_f64, 0.0_f64);
-        // iterations with the present factors, and whether these were made here
-        let (mut since, mut fresh, mut kept_failed) = (0, false, false);
+        // iterations with the present factors, and how many were made here
+        let (mut since, mut renewals, mut kept_failed) = (0, 0, false);
         let multiplier_scale = 1.0 / (self.scheme.beta * self.h * self.h);
         self.kinematics(work);
         for k in 0..self.max_iterations {
             let stale = work.factored != Some(self.weights());
-            // an iteration that would go on for long with an old matrix gets a new one
-            let slow = since > 1 && !fresh && last * theta.powi(PATIENCE) > stop;
+            // an iteration that would go on for long with its matrix gets a new one
+            let slow = since > 1 && last * theta.powi(PATIENCE) > stop;
             let refresh = stale || self.policy == NewtonPolicy::Full || slow;
             if let Err(e) = self.evaluate(work, refresh) {
                 return Outcome::Linear(e);
             }
-            kept_failed |= slow;
-            fresh |= refresh;
+            kept_failed |= slow && renewals == 0;
+            renewals += u32::from(refresh);
             since = if slow { 1 } else { since + 1 };
             work.counts.newton_iterations += 1;
             let residual = &work.system.residual;
@@ -154,20 +157,19 @@ impl Newton<'_> {
             let trusted = since > 1 || eta <= TRUST;
             let done = trusted && size * eta.min(1e3) <= stop || size <= floor;
             if done && self.constraints_hold(work) {
-                let theta = if since > 1 { Some(theta) } else { fresh.then_some(0.0) };
+                let theta = if since > 1 { Some(theta) } else { (renewals > 0).then_some(0.0) };
                 return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed });
-            }
-            if theta >= 1.0 && !fresh {
-                return Outcome::Stale;
             }
             if theta >= 1.0 {
                 // at the floor of rounding the iteration wanders; far from it, it diverges
-                if size <= 30.0 * floor {
+                if size <= 30.0 * floor && renewals > 0 {
                     let rate = Rate { iterations: k + 1, eta: 1.0, theta: Some(1.0), kept_failed };
                     return Outcome::Converged(rate);
                 }
-                if theta >= 2.0 || k > 4 {
-                    return Outcome::Failed { why: "Newton's method diverges".into() };
+                match renewals {
+                    0 => return Outcome::Stale,
+                    1..=MOST_RENEWALS => {}
+                    _ => return Outcome::Failed { why: "Newton's method diverges".into() },
                 }
             }
         }
