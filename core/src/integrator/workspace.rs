@@ -221,6 +221,14 @@ impl Workspace {
         s.multiply(values, &self.x, &mut self.y);
     }
 
+    /// `sqrt(dᵀ M d / total mass)` with this mass matrix: a length that doesn't depend on the mesh [m].
+    pub(crate) fn norm_with(&mut self, s: &Structure, mass: &[f64], d: &[f64]) -> f64 {
+        self.product(s, mass, d);
+        let sum: f64 = d.iter().zip(&s.position).map(|(d, &p)| d * self.y[p]).sum();
+        // a NaN stays a NaN; rounding may make a tiny sum negative
+        if sum < 0.0 { 0.0 } else { (sum / self.total_mass).sqrt() }
+    }
+
     /// The equation with the largest residual of the last evaluation.
     pub(crate) fn worst_equation(&self, model: &Model) -> String {
         let mut worst = (0, 0.0);

@@ -40,7 +40,8 @@ impl Stages {
         for k in 0..nv {
             self.e[k] = (self.real[k] - self.d[k]) / g;
         }
-        Ok([work.norm(&self.real[..nv]), work.norm(&self.e)])
+        // with the whole mass matrix: a lumped one would weigh the rates of slopes too much
+        Ok([&self.real[..nv], &self.e].map(|d| work.norm_with(s, &self.mass, d)))
     }
 
     /// The end of the step, left in the last stage: velocities on the constraints, and the accelerations that the
