@@ -57,6 +57,30 @@ impl NodeKind {
         }
     }
 
+    /// The velocity of the motion `q ⊕ d(t)`, whose increment changes at `rate`. For a frame the angular velocity is
+    /// `θ̇ - (1-cos φ)/φ² θ×θ̇ + (φ-sin φ)/φ³ θ×(θ×θ̇)` (Iserles, Munthe-Kaas, Nørsett & Zanna 2000, "dexp").
+    pub fn velocity(self, d: &[f64], rate: &[f64], v: &mut [f64]) {
+        v.copy_from_slice(rate);
+        if self == NodeKind::Frame {
+            let theta = [d[3], d[4], d[5]];
+            let once = cross(theta, [rate[3], rate[4], rate[5]]);
+            let twice = cross(theta, once);
+            let square = theta.iter().map(|x| x * x).sum::<f64>();
+            let angle = square.sqrt();
+            let (a, b) = if angle < 1e-2 {
+                (
+                    0.5 - square / 24.0 * (1.0 - square / 30.0),
+                    1.0 / 6.0 - square / 120.0 * (1.0 - square / 42.0),
+                )
+            } else {
+                (2.0 * (0.5 * angle).sin().powi(2) / square, (angle - angle.sin()) / (square * angle))
+            };
+            for i in 0..3 {
+                v[3 + i] += b * twice[i] - a * once[i];
+            }
+        }
+    }
+
     /// The increment `d` that leads from `from` to `to`: `to = from ⊕ d`.
     pub fn difference(self, from: &[f64], to: &[f64], d: &mut [f64]) {
         let plain = if self == NodeKind::Frame { 3 } else { from.len() };
@@ -112,11 +136,22 @@ pub fn retract(nodes: &[Node], q: &[f64], d: &[f64], out: &mut [f64]) {
     }
 }
 
+/// The velocities of every node in the motion `q ⊕ d(t)`, whose increments change at `rate`.
+pub fn velocity(nodes: &[Node], d: &[f64], rate: &[f64], v: &mut [f64]) {
+    for n in nodes {
+        n.kind.velocity(&d[n.dofs()], &rate[n.dofs()], &mut v[n.dofs()]);
+    }
+}
+
 /// The increments of every node: `to = from ⊕ d`.
 pub fn difference(nodes: &[Node], from: &[f64], to: &[f64], d: &mut [f64]) {
     for n in nodes {
         n.kind.difference(&from[n.coords()], &to[n.coords()], &mut d[n.dofs()]);
     }
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn quaternion_exp(theta: [f64; 3]) -> [f64; 4] {
@@ -165,6 +200,32 @@ mod tests {
         NodeKind::Frame.difference(&q, &to, &mut back);
         for i in 0..6 {
             approx::assert_relative_eq!(back[i], d[i], max_relative = 1e-12);
+        }
+    }
+
+    #[test]
+    fn velocity_is_the_derivative_of_the_motion() {
+        let q = [1.0, 2.0, 3.0, 0.5, -0.5, 0.5, 0.5];
+        let (d, rate) = ([0.3, -0.2, 0.1, 1.2, -0.4, 0.9], [1.0, 2.0, 3.0, -0.7, 0.8, 1.5]);
+        for size in [1.0, 1e-3, 0.0] {
+            let d = d.map(|x| size * x);
+            let place = |t: f64| {
+                let moved: [f64; 6] = std::array::from_fn(|i| d[i] + t * rate[i]);
+                let mut to = [0.0; 7];
+                NodeKind::Frame.retract(&q, &moved, &mut to);
+                to
+            };
+            let mut exact = [0.0; 6];
+            NodeKind::Frame.velocity(&d, &rate, &mut exact);
+            let now = place(0.0);
+            let v = crate::testing::difference(|t| {
+                let mut v = vec![0.0; 6];
+                NodeKind::Frame.difference(&now, &place(t), &mut v);
+                v
+            });
+            for i in 0..6 {
+                approx::assert_abs_diff_eq!(v[i], exact[i], epsilon = 1e-10);
+            }
         }
     }
 

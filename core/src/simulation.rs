@@ -2,7 +2,7 @@
 
 use crate::dense::Dense;
 use crate::integrator::{
-    Alpha, Correction, Integrator, Options, StepError, StepReport, Workspace, consistent, prepare,
+    Correction, Integrator, Options, StepError, StepReport, Workspace, consistent, prepare,
 };
 use crate::model::Model;
 use crate::record::{Audit, Sample};
@@ -81,7 +81,7 @@ pub struct Simulation {
     /// Scratch and counters.
     pub work: Workspace,
     /// The integrator.
-    pub integrator: Alpha,
+    pub integrator: Box<dyn Integrator>,
     /// What the start had to be corrected by.
     pub correction: Correction,
     /// The balance of energy.
@@ -112,13 +112,13 @@ impl Simulation {
     /// # Errors
     /// The scheme is refused, the start is too far from the constraints, or a linear system can't be solved.
     pub fn from(model: Model, mut state: State, options: &Options, duration: f64) -> Result<Self, StepError> {
-        let integrator = Alpha::new(options, &model, duration)?;
+        let integrator = options.integrator(&model, duration)?;
         let mut work = Workspace::new(&model).map_err(|source| StepError::Linear {
             t: state.t,
             source,
             unknown: "the structure of the equations".into(),
         })?;
-        let correction = prepare(&model, &mut state, &mut work, &integrator)?;
+        let correction = prepare(&model, &mut state, &mut work, integrator.as_ref())?;
         let audit = Audit::start(model.energy(&state.at()));
         let power = model.power(&state.at(), &state.lambda);
         let (previous, scratch) = (state.clone(), state.clone());
@@ -216,7 +216,7 @@ impl Simulation {
 
     /// Measures by how much the last two changes of the multipliers undid each other.
     fn measure_ringing(&mut self) {
-        if self.integrator.warning.is_none() {
+        if self.integrator.warning().is_none() {
             return;
         }
         self.change.resize(self.state.lambda.len(), 0.0);
@@ -325,7 +325,7 @@ impl Simulation {
         }
         // history doesn't reach across an event
         let modes = self.state.modes.clone();
-        prepare(&self.model, &mut self.state, &mut self.work, &self.integrator)?;
+        prepare(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
         self.state.modes = modes;
         self.state.control.h_next = 0.1 * h;
         self.previous.clone_from(&self.state);

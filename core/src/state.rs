@@ -15,7 +15,8 @@ pub struct State {
     pub v: Vec<f64>,
     /// True accelerations v̇, those that equilibrium is written in.
     pub a: Vec<f64>,
-    /// The auxiliary accelerations of the generalized-α family, which lag or lead [`State::a`].
+    /// The auxiliary accelerations of the generalized-α family, which lag or lead [`State::a`]; for Radau IIA the
+    /// accelerations as the equations of motion give them, round-off included, which [`State::a`] is smooth of.
     pub aux: Vec<f64>,
     /// Multipliers of the constraints, in the order of their rows.
     pub lambda: Vec<f64>,
@@ -50,6 +51,16 @@ pub struct Control {
     pub h_before: f64,
     /// Order of the polynomial that would have predicted the last accelerations best.
     pub order: usize,
+    /// Radau IIA: increments from the present configuration back to the start and to the first two stages of the last
+    /// step. Empty at a start.
+    #[serde(default)]
+    pub stages: [Vec<f64>; 3],
+    /// Radau IIA: multipliers of the stages of the last step.
+    #[serde(default)]
+    pub stage_lambda: [Vec<f64>; 3],
+    /// Radau IIA: estimated error of the last step over the tolerance.
+    #[serde(default)]
+    pub error: f64,
 }
 
 /// Derived `Clone` for two types whose `clone_from` must not allocate: it runs at every step.
@@ -77,7 +88,10 @@ clone_in_place!(Control {
     a_back,
     backs,
     h_before,
-    order
+    order,
+    stages,
+    stage_lambda,
+    error
 });
 
 /// Where terms and constraints are evaluated: slices into a state, or into a trial of an integrator.

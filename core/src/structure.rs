@@ -7,6 +7,7 @@
 use crate::node::Node;
 use crate::order::{Order, Rows};
 use crate::pattern::Pattern;
+use crate::solver::Scalar;
 use std::ops::Range;
 
 /// Rows that share their columns.
@@ -262,7 +263,7 @@ impl Structure {
     }
 
     /// Brings a vector (velocities, then multipliers; or velocities alone) into elimination order.
-    pub fn order(&self, x: &[f64], out: &mut [f64]) {
+    pub fn order<T: Copy>(&self, x: &[T], out: &mut [T]) {
         for m in self.moves.iter().take_while(|m| m.unknown < x.len()) {
             let count = m.count.min(x.len() - m.unknown);
             out[m.position..m.position + count].copy_from_slice(&x[m.unknown..m.unknown + count]);
@@ -270,7 +271,7 @@ impl Structure {
     }
 
     /// Brings a vector in elimination order back; `out` may hold velocities alone.
-    pub fn restore(&self, x: &[f64], out: &mut [f64]) {
+    pub fn restore<T: Copy>(&self, x: &[T], out: &mut [T]) {
         let len = out.len();
         for m in self.moves.iter().take_while(|m| m.unknown < len) {
             let count = m.count.min(len - m.unknown);
@@ -330,7 +331,7 @@ impl Structure {
     }
 
     /// Sum of the absolute values in one row.
-    pub(crate) fn row_sum(&self, values: &[f64], row: usize) -> f64 {
+    pub(crate) fn row_sum<T: Scalar>(&self, values: &[T], row: usize) -> f64 {
         let own = self.block_of(row);
         let begin = match (self.symmetric, self.chain) {
             (false, _) => own,
@@ -341,13 +342,13 @@ impl Structure {
         for block in &self.blocks[begin..=own] {
             for (r, columns, at) in (0..block.size).map(|i| self.row(block, i)) {
                 if r == row {
-                    sum += values[at].iter().map(|v| v.abs()).sum::<f64>();
+                    sum += values[at].iter().map(|v| v.size()).sum::<f64>();
                 } else if self.symmetric && r < row {
                     let k = match columns {
                         Columns::From(first) => (row - first < at.len()).then_some(row - first),
                         Columns::List(list) => list.binary_search(&(row as u32)).ok(),
                     };
-                    sum += k.map_or(0.0, |k| values[at.start + k].abs());
+                    sum += k.map_or(0.0, |k| values[at.start + k].size());
                 }
             }
         }

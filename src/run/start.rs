@@ -59,7 +59,7 @@ impl Started {
             })));
         }
         // an unsuitable scheme should not have to wait for the equilibrium
-        ropewalk_core::integrator::Alpha::new(&scene.solver, &model, run.duration)?;
+        scene.solver.integrator(&model, run.duration)?;
         let (mut state, mut flutter) = (model.state(), 0.0);
         if run.from_equilibrium {
             state.v.fill(0.0);
@@ -75,7 +75,7 @@ impl Started {
     pub(crate) fn warnings(&self, scene: &Scene) -> Vec<String> {
         let mut all = Vec::new();
         if let Started::Dynamics(s, _) = self {
-            all.extend(s.integrator.warning.clone());
+            all.extend(s.integrator.warning().map(str::to_string));
             let c = s.correction;
             if c.position > 1e-8 * s.model.length() || c.velocity > 1e-6 {
                 all.push(format!(

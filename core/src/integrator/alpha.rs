@@ -1,9 +1,11 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
 use super::newton::{Newton, Outcome, Rate};
+use super::start::settle;
 use super::workspace::Which;
 use super::{Coefficients, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping, Workspace};
 use crate::model::Model;
+use crate::solver::SolveError;
 use crate::state::State;
 
 /// Integrator of the Newmark, HHT-α and generalized-α family on index-3 equations.
@@ -11,8 +13,7 @@ pub struct Alpha {
     options: Options,
     scheme: Coefficients,
     horizon: f64,
-    /// What the user should know although the run goes on.
-    pub warning: Option<String>,
+    warning: Option<String>,
 }
 
 /// Convergence rate of Newton's method from which on the next step gets a new matrix.
@@ -41,13 +42,7 @@ impl Alpha {
             }
             warning = Some(format!("unstable scheme allowed: {why}"));
         }
-        let horizon = if options.horizon > 0.0 { options.horizon } else { duration.max(f64::MIN_POSITIVE) };
-        Ok(Alpha { options: options.clone(), scheme, horizon, warning })
-    }
-
-    /// The options that it was made with.
-    pub fn options(&self) -> &Options {
-        &self.options
+        Ok(Alpha { options: options.clone(), scheme, horizon: options.horizon(duration), warning })
     }
 
     /// Its numbers.
@@ -208,9 +203,9 @@ impl Past {
     }
 }
 
-fn linear(model: &Model, t: f64, source: crate::solver::SolveError) -> StepError {
+pub(super) fn linear(model: &Model, t: f64, source: SolveError) -> StepError {
     let unknown = match source {
-        crate::solver::SolveError::Singular(p) => model
+        SolveError::Singular(p) => model
             .structure()
             .position
             .iter()
@@ -222,6 +217,29 @@ fn linear(model: &Model, t: f64, source: crate::solver::SolveError) -> StepError
 }
 
 impl Integrator for Alpha {
+    fn options(&self) -> &Options {
+        &self.options
+    }
+
+    fn warning(&self) -> Option<&str> {
+        self.warning.as_deref()
+    }
+
+    fn filter(&self, h: f64) -> f64 {
+        self.scheme.beta * h * h
+    }
+
+    fn settle(
+        &self,
+        model: &Model,
+        state: &mut State,
+        work: &mut Workspace,
+        h: f64,
+        stiff: f64,
+    ) -> Result<(), SolveError> {
+        settle(model, state, work, &self.scheme, h, stiff)
+    }
+
     fn step(
         &mut self,
         model: &Model,
@@ -308,7 +326,7 @@ impl Integrator for Alpha {
                                 t: state.t,
                                 h,
                                 why: "the tolerance asks for a smaller step than `h_min`".into(),
-                                equation: newton.worst_equation(work),
+                                equation: work.worst_equation(model),
                             });
                         }
                         continue;
@@ -325,7 +343,7 @@ impl Integrator for Alpha {
                 Outcome::Linear(source) => source.to_string(),
                 Outcome::Failed { why } => why,
             };
-            let equation = newton.worst_equation(work);
+            let equation = work.worst_equation(model);
             report.rejected += 1;
             work.counts.rejected += 1;
             work.factored = None;

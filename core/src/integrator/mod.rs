@@ -3,12 +3,14 @@
 mod alpha;
 mod newton;
 mod options;
+mod radau;
 mod scheme;
 mod start;
 mod workspace;
 
 pub use alpha::Alpha;
 pub use options::{NewtonPolicy, Options, Stepping};
+pub use radau::Radau;
 pub use scheme::{Coefficients, Scheme};
 pub use start::{Correction, consistent, prepare};
 pub use workspace::{Counts, Workspace};
@@ -68,9 +70,36 @@ pub enum StepError {
     Scheme(String),
 }
 
-/// One step of any implicit scheme. On error the state is left as it was.
-pub trait Integrator {
-    /// Takes one step of at most `h_max` [s], fewer where error control or convergence ask for it.
+/// An implicit scheme at work. Its memory between steps is in the [`State`].
+pub trait Integrator: Send {
+    /// The options that it was made with.
+    fn options(&self) -> &Options;
+
+    /// What the user should know although the run goes on.
+    fn warning(&self) -> Option<&str> {
+        None
+    }
+
+    /// Weight of the stiffness beside the mass that filters the accelerations of a start with step `h` [s²].
+    fn filter(&self, h: f64) -> f64;
+
+    /// Fills the scheme's memory at a start with step `h`, from consistent positions and velocities and from
+    /// accelerations filtered with `stiff`, whose factors `work` still holds.
+    ///
+    /// # Errors
+    /// The accelerations can't be solved for.
+    fn settle(
+        &self,
+        model: &Model,
+        state: &mut State,
+        work: &mut Workspace,
+        h: f64,
+        stiff: f64,
+    ) -> Result<(), SolveError>;
+
+    /// One step. On error the state is left as it was.
+    ///
+    /// It takes at most `h_max` [s], less where error control or convergence ask for it.
     fn step(
         &mut self,
         model: &Model,

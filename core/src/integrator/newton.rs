@@ -196,18 +196,4 @@ impl Newton<'_> {
         work.trial.g = g;
         fine
     }
-
-    /// The equation with the largest residual of the last evaluation.
-    pub fn worst_equation(&self, work: &Workspace) -> String {
-        let mut worst = (0, 0.0);
-        for (i, r) in work.system.residual.iter().enumerate() {
-            if !r.is_finite() {
-                return self.model.unknown_name(i);
-            }
-            if r.abs() > worst.1 {
-                worst = (i, r.abs());
-            }
-        }
-        self.model.unknown_name(worst.0)
-    }
 }

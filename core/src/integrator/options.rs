@@ -1,6 +1,7 @@
 //! What a user may choose about time integration.
 
-use super::Scheme;
+use super::{Alpha, Integrator, Radau, Scheme, StepError};
+use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
 /// How the step size is chosen.
@@ -60,7 +61,7 @@ pub struct Options {
     /// Filter the accelerations of the start by the stiffness, as fine meshes need; only a textbook comparison of
     /// the bare scheme wants them raw.
     pub filter_start: bool,
-    /// Most Newton iterations of a step before it is repeated smaller.
+    /// Most Newton iterations of a step before it is repeated smaller; Radau IIA takes at most 10.
     pub max_iterations: u32,
     /// Newton tolerance as a fraction of the default; smaller is tighter.
     pub newton_tolerance: f64,
@@ -86,9 +87,29 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The integrator that they describe. `duration` is the length of the run [s], over which errors add up unless
+    /// [`Options::horizon`] says otherwise.
+    ///
+    /// # Errors
+    /// The options are wrong, or the scheme doesn't suit the model.
+    pub fn integrator(&self, model: &Model, duration: f64) -> Result<Box<dyn Integrator>, StepError> {
+        Ok(match self.scheme {
+            Scheme::RadauIia5 => Box::new(Radau::new(self, duration)?),
+            _ => Box::new(Alpha::new(self, model, duration)?),
+        })
+    }
+
+    /// The time over which errors add up [s].
+    pub(crate) fn horizon(&self, duration: f64) -> f64 {
+        if self.horizon > 0.0 { self.horizon } else { duration.max(f64::MIN_POSITIVE) }
+    }
+
     /// What is wrong with the numbers, if anything.
     pub fn check(&self) -> Result<(), String> {
-        self.scheme.coefficients()?;
+        let estimate = match self.scheme {
+            Scheme::RadauIia5 => true,
+            _ => self.scheme.coefficients()?.error_constant().abs() >= 1e-6,
+        };
         let positive = |name: &str, x: f64| {
             if x > 0.0 && x.is_finite() { Ok(()) } else { Err(format!("`{name}` must be positive, not {x}")) }
         };
@@ -106,7 +127,7 @@ impl Options {
             Stepping::Fixed { h } => positive("h", h),
             Stepping::Controlled { tolerance } => {
                 positive("tolerance", tolerance)?;
-                if self.scheme.coefficients()?.error_constant().abs() < 1e-6 {
+                if !estimate {
                     return Err("this scheme has no error estimate: choose a fixed step".into());
                 }
                 Ok(())

@@ -1,7 +1,7 @@
 //! Consistent starts: positions and velocities on the constraints, accelerations and multipliers that fit.
 
 use super::workspace::Which;
-use super::{Alpha, Coefficients, StepError, Stepping, Workspace};
+use super::{Coefficients, Integrator, StepError, Stepping, Workspace};
 use crate::model::Model;
 use crate::node::retract;
 use crate::solver::SolveError;
@@ -32,7 +32,7 @@ pub fn prepare(
     model: &Model,
     state: &mut State,
     work: &mut Workspace,
-    integrator: &Alpha,
+    integrator: &dyn Integrator,
 ) -> Result<Correction, StepError> {
     let options = integrator.options();
     let linear =
@@ -58,8 +58,7 @@ pub fn prepare(
         Stepping::Fixed { h } => h,
         Stepping::Controlled { .. } => options.h_start,
     };
-    let c = integrator.scheme();
-    let stiff = if options.filter_start { c.beta * h * h } else { 0.0 };
+    let stiff = if options.filter_start { integrator.filter(h) } else { 0.0 };
     let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
     accelerations(model, &state.at(), work, stiff, &mut a, &mut lambda)
         .map_err(|e| linear(t, e, "the initial accelerations"))?;
@@ -71,7 +70,7 @@ pub fn prepare(
     }
     state.a.copy_from_slice(&a);
     state.lambda.copy_from_slice(&lambda);
-    settle(model, state, work, c, h, stiff).map_err(|e| linear(t, e, "the initial accelerations"))?;
+    integrator.settle(model, state, work, h, stiff).map_err(|e| linear(t, e, "the initial accelerations"))?;
     // norms need the plain mass matrix again
     work.has_mass = false;
     work.ensure_mass(model, &state.at(), &state.lambda).map_err(|e| linear(t, e, "the mass matrix"))?;
@@ -231,7 +230,7 @@ fn solve_accelerations(
 
 /// Sets the auxiliary acceleration a step's lead ahead of the true one, and gives the velocity the steady offset
 /// normal to the constraints that the scheme has: multipliers then start without ringing.
-fn settle(
+pub(super) fn settle(
     model: &Model,
     state: &mut State,
     work: &mut Workspace,

@@ -1,8 +1,10 @@
 //! Scratch and caches of an integration. Dropping it changes cost, never what is accepted.
 
+use super::radau::Stages;
 use crate::model::{Model, System};
 use crate::solver::{Guard, SolveError};
 use crate::state::At;
+use crate::structure::Structure;
 use crate::term::Weights;
 use std::time::{Duration, Instant};
 
@@ -34,6 +36,8 @@ pub struct Workspace {
     /// The mass matrix and its factors with the constraints' Jacobian; made when first needed.
     pub(crate) mass: System,
     pub(crate) mass_solver: Guard,
+    /// The matrix that `mass_solver` has factored.
+    mass_factored: Vec<f64>,
     /// Whether `mass.values` holds the mass matrix of the start, for norms.
     pub(crate) has_mass: bool,
     pub(crate) total_mass: f64,
@@ -48,6 +52,8 @@ pub struct Workspace {
     /// Calls and time of factorisations and of solutions; only filled where profiling was asked for.
     pub phases: Option<[(u64, Duration); 2]>,
     pub(crate) trial: Trial,
+    /// Scratch of Radau IIA; made when first needed.
+    pub(crate) stages: Option<Box<Stages>>,
 }
 
 /// Vectors of a trial step.
@@ -76,6 +82,7 @@ impl Workspace {
             factored: None,
             mass: System::default(),
             mass_solver: Guard::new(s)?,
+            mass_factored: Vec::new(),
             has_mass: false,
             total_mass: 0.0,
             weight: zero(),
@@ -95,6 +102,7 @@ impl Workspace {
                 g: vec![0.0; model.multipliers()],
                 rhs: Vec::new(),
             },
+            stages: None,
         })
     }
 
@@ -102,6 +110,9 @@ impl Workspace {
     pub fn forget(&mut self) {
         self.factored = None;
         self.has_mass = false;
+        if let Some(stages) = &mut self.stages {
+            stages.forget();
+        }
     }
 
     /// Records the time of each term from now on.
@@ -124,11 +135,11 @@ impl Workspace {
         labels.zip(times).map(|(label, &(calls, time))| (label, calls, time)).collect()
     }
 
-    fn clock(&self) -> Option<Instant> {
+    pub(crate) fn clock(&self) -> Option<Instant> {
         self.phases.map(|_| Instant::now())
     }
 
-    fn count(&mut self, phase: usize, begin: Option<Instant>) {
+    pub(crate) fn count(&mut self, phase: usize, begin: Option<Instant>) {
         if let (Some(phases), Some(begin)) = (&mut self.phases, begin) {
             phases[phase].0 += 1;
             phases[phase].1 += begin.elapsed();
@@ -191,11 +202,45 @@ impl Workspace {
     ) -> Result<(), SolveError> {
         model.assemble(at, lambda, Some(Weights { q: stiff, v: 0.0, a: 1.0 }), &mut self.mass);
         self.has_mass = stiff == 0.0;
-        if factor {
+        // without added mass and with constraints that are linear it never changes
+        if factor && self.mass_factored != self.mass.values {
+            self.mass_factored.clear();
+            let begin = self.clock();
             self.mass_solver.factor(model.structure(), &self.mass.values)?;
+            self.count(0, begin);
             self.counts.factorizations += 1;
+            self.mass_factored.extend_from_slice(&self.mass.values);
         }
         Ok(())
+    }
+
+    /// Sets `y` to the product of a matrix and a vector of velocities, in elimination order.
+    pub(crate) fn product(&mut self, s: &Structure, values: &[f64], d: &[f64]) {
+        self.x.fill(0.0);
+        s.order(d, &mut self.x);
+        s.multiply(values, &self.x, &mut self.y);
+    }
+
+    /// `sqrt(dᵀ M d / total mass)` with this mass matrix: a length that doesn't depend on the mesh [m].
+    pub(crate) fn norm_with(&mut self, s: &Structure, mass: &[f64], d: &[f64]) -> f64 {
+        self.product(s, mass, d);
+        let sum: f64 = d.iter().zip(&s.position).map(|(d, &p)| d * self.y[p]).sum();
+        // a NaN stays a NaN; rounding may make a tiny sum negative
+        if sum < 0.0 { 0.0 } else { (sum / self.total_mass).sqrt() }
+    }
+
+    /// The equation with the largest residual of the last evaluation.
+    pub(crate) fn worst_equation(&self, model: &Model) -> String {
+        let mut worst = (0, 0.0);
+        for (i, r) in self.system.residual.iter().enumerate() {
+            if !r.is_finite() {
+                return model.unknown_name(i);
+            }
+            if r.abs() > worst.1 {
+                worst = (i, r.abs());
+            }
+        }
+        model.unknown_name(worst.0)
     }
 
     /// `M d` in the order of velocities, with the mass matrix last assembled.

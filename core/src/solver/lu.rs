@@ -1,6 +1,6 @@
 //! Sparse LU with partial pivoting, by faer: the fallback, and the general unsymmetric path.
 
-use super::{LinearSolver, SolveError};
+use super::{LinearSolver, Scalar, SolveError};
 use crate::structure::Structure;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::SupernodalThreshold;
@@ -9,19 +9,32 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Spec};
 
 /// LU with partial pivoting. Takes symmetric storage too, which it expands.
-#[derive(Default)]
-pub struct Lu {
+pub struct Lu<T = f64> {
     symbolic: Option<SymbolicLu<usize>>,
-    numeric: Option<NumericLu<usize, f64>>,
+    numeric: Option<NumericLu<usize, T>>,
     memory: Option<MemBuffer>,
     columns: Vec<usize>,
     rows: Vec<usize>,
     /// For each full entry, the stored entry that it comes from.
     source: Vec<usize>,
-    values: Vec<f64>,
+    values: Vec<T>,
 }
 
-impl LinearSolver for Lu {
+impl<T> Default for Lu<T> {
+    fn default() -> Self {
+        Lu {
+            symbolic: None,
+            numeric: None,
+            memory: None,
+            columns: Vec::new(),
+            rows: Vec::new(),
+            source: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+}
+
+impl<T: Scalar> LinearSolver<T> for Lu<T> {
     fn name(&self) -> &'static str {
         "LU with pivoting (faer)"
     }
@@ -47,7 +60,7 @@ impl LinearSolver for Lu {
         }
         self.rows = full.iter().map(|e| e.1).collect();
         self.source = full.iter().map(|e| e.2).collect();
-        self.values = vec![0.0; full.len()];
+        self.values = vec![T::default(); full.len()];
         let symbolic = factorize_symbolic_lu(
             SymbolicSparseColMatRef::new_checked(s.n, s.n, &self.columns, None, &self.rows),
             LuSymbolicParams {
@@ -58,22 +71,22 @@ impl LinearSolver for Lu {
         )
         .map_err(|_| SolveError::Memory)?;
         let need = symbolic
-            .factorize_numeric_lu_scratch::<f64>(Par::Seq, Spec::default())
-            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+            .factorize_numeric_lu_scratch::<T>(Par::Seq, Spec::default())
+            .or(symbolic.solve_in_place_scratch::<T>(1, Par::Seq));
         self.memory = Some(MemBuffer::try_new(need).map_err(|_| SolveError::Memory)?);
         self.numeric = Some(NumericLu::new());
         self.symbolic = Some(symbolic);
         Ok(())
     }
 
-    fn factor(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError> {
+    fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
         let (Some(symbolic), Some(numeric), Some(memory)) =
             (&self.symbolic, &mut self.numeric, &mut self.memory)
         else {
             return Err(SolveError::Memory);
         };
         // faer would return NaN factors without a word
-        if values.iter().any(|v| !v.is_finite()) {
+        if values.iter().any(|v| !Scalar::is_finite(*v)) {
             return Err(SolveError::NotFinite);
         }
         for (v, &p) in self.values.iter_mut().zip(&self.source) {
@@ -90,7 +103,7 @@ impl LinearSolver for Lu {
             })
     }
 
-    fn solve(&mut self, x: &mut [f64]) {
+    fn solve(&mut self, x: &mut [T]) {
         if let (Some(symbolic), Some(numeric), Some(memory)) =
             (&self.symbolic, &self.numeric, &mut self.memory)
         {

@@ -18,6 +18,7 @@ pub use scalar::Scalar;
 
 use crate::structure::Structure;
 use check::Check;
+use faer::c64;
 
 /// Why a linear system could not be solved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -57,14 +58,14 @@ pub trait LinearSolver<T: Scalar = f64>: Send {
 }
 
 /// Solves systems of one structure and never returns a bad solution unnoticed.
-pub struct Guard {
-    primary: Box<dyn LinearSolver>,
-    fallback: Lu,
+pub struct Guard<T: Scalar = f64> {
+    primary: Box<dyn LinearSolver<T>>,
+    fallback: Lu<T>,
     fallback_ready: bool,
     use_fallback: bool,
     unchecked: bool,
-    b: Vec<f64>,
-    check: Check,
+    b: Vec<T>,
+    check: Check<T>,
     /// Factorisations so far.
     pub factorizations: u64,
     /// How often LU with pivoting had to step in.
@@ -91,9 +92,25 @@ impl Guard {
         };
         Self::with(s, primary)
     }
+}
 
+impl Guard<c64> {
+    /// As [`Guard::new`], for complex matrices; faer's LDLᵀ would take a symmetric one for Hermitian.
+    pub fn complex(s: &Structure) -> Result<Self, SolveError> {
+        let primary: Box<dyn LinearSolver<c64>> = if s.chain {
+            Box::new(Chain::default())
+        } else if Profile::size(s) < 12 * s.entries() {
+            Box::new(Profile::default())
+        } else {
+            Box::new(Lu::default())
+        };
+        Self::with(s, primary)
+    }
+}
+
+impl<T: Scalar> Guard<T> {
     /// A guard around a solver of one's own choice.
-    pub fn with(s: &Structure, mut primary: Box<dyn LinearSolver>) -> Result<Self, SolveError> {
+    pub fn with(s: &Structure, mut primary: Box<dyn LinearSolver<T>>) -> Result<Self, SolveError> {
         primary.analyse(s)?;
         Ok(Guard {
             primary,
@@ -101,7 +118,7 @@ impl Guard {
             fallback_ready: false,
             use_fallback: false,
             unchecked: true,
-            b: vec![0.0; s.n],
+            b: vec![T::default(); s.n],
             check: Check::new(s.n),
             factorizations: 0,
             fallbacks: 0,
@@ -114,7 +131,7 @@ impl Guard {
     }
 
     /// Factors the matrix.
-    pub fn factor(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError> {
+    pub fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
         self.factorizations += 1;
         self.unchecked = true;
         self.use_fallback = false;
@@ -124,7 +141,7 @@ impl Guard {
         }
     }
 
-    fn fall_back(&mut self, s: &Structure, values: &[f64]) -> Result<(), SolveError> {
+    fn fall_back(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
         self.fallbacks += 1;
         if !self.fallback_ready {
             self.fallback.analyse(s)?;
@@ -135,16 +152,16 @@ impl Guard {
         Ok(())
     }
 
-    fn raw_solve(&mut self, x: &mut [f64]) {
+    fn raw_solve(&mut self, x: &mut [T]) {
         if self.use_fallback { self.fallback.solve(x) } else { self.primary.solve(x) }
     }
 
     /// Replaces `x`, holding the right-hand side, by the solution. The first solution with each factorisation is
     /// checked, refined once if need be, and taken from LU with pivoting if that doesn't help.
-    pub fn solve(&mut self, s: &Structure, values: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
+    pub fn solve(&mut self, s: &Structure, values: &[T], x: &mut [T]) -> Result<(), SolveError> {
         if !self.unchecked {
             self.raw_solve(x);
-            return if x.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(SolveError::NotFinite) };
+            return if x.iter().all(|v| Scalar::is_finite(*v)) { Ok(()) } else { Err(SolveError::NotFinite) };
         }
         self.b.copy_from_slice(x);
         self.raw_solve(x);
@@ -153,7 +170,7 @@ impl Guard {
             let mut dx = std::mem::take(&mut self.check.residual);
             self.raw_solve(&mut dx);
             for (x, d) in x.iter_mut().zip(&dx) {
-                *x -= d;
+                *x -= *d;
             }
             self.check.residual = dx;
             error = self.check.error(s, values, x, &self.b, GIVE_UP);
