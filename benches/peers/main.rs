@@ -60,7 +60,8 @@ fn run(args: &Args) -> Result<(), String> {
     report.say("# Ropewalk beside its peers\n");
     report.say(about(&peers, args.quick));
     let wanted = |name: &str| args.only.is_empty() || args.only.iter().any(|n| n == name);
-    let problems: [(&str, fn(&Peers, bool, &mut Report) -> Result<(), String>); 3] =
+    type Problem = fn(&Peers, bool, &mut Report) -> Result<(), String>;
+    let problems: [(&str, Problem); 3] =
         [("pendulum", pendulum::run), ("workprec", workprec::run), ("tow", towing::run)];
     for (_, problem) in problems.into_iter().filter(|(name, _)| wanted(name)) {
         if let Err(why) = problem(&peers, args.quick, &mut report) {
