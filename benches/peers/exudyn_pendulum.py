@@ -53,6 +53,8 @@ def settings(case):
     time.newton.useModifiedNewton = case["newton"] == "modified"
     time.newton.relativeTolerance = case["relative_tolerance"]
     time.newton.absoluteTolerance = case["absolute_tolerance"]
+    # 1: by the size of the increment instead of the residual
+    time.newton.residualMode = case.get("residual_mode", 0)
     time.generalizedAlpha.spectralRadius = case["rho_inf"]
     time.generalizedAlpha.computeInitialAccelerations = case["initial_accelerations"]
     return s
@@ -72,7 +74,7 @@ def solve(case):
     return {
         "cpu": cpu,
         "tip": [float(x) for x in system.GetNodeOutput(tip, exudyn.OutputVariableType.Position)],
-        "steps": count.currentStepIndex,
+        "steps": case["steps"],
         "iterations": count.newtonStepsCount,
         "factorizations": count.newtonJacobiCount,
     }

@@ -254,7 +254,7 @@ fn start(tow: &Tow, peers: &Peers, quick: bool, report: &mut Report) -> Result<(
             title: "Start of a tow: cost and error".into(),
             x_label: "CPU time per simulated time [ms/s]".into(),
             y_label: "largest error of the force on the ship [%]".into(),
-            series: ["ropewalk", "moordyn", "cabledyn"]
+            series: ["Ropewalk", "MoorDyn", "CableDyn"]
                 .map(cost)
                 .into_iter()
                 .filter(|s| !s.points.is_empty())
