@@ -57,8 +57,8 @@ impl Alpha {
         self.options.newton_tolerance
             * fine
             * match self.options.stepping {
-                Stepping::Fixed { .. } => (1e-3 * h * h * length).min(1e-6 * length),
-                Stepping::Controlled { tolerance } => 1e-3 * tolerance.min(1e-3) * length,
+                Stepping::Fixed { .. } => (1e-4 * h * h * length).min(1e-7 * length),
+                Stepping::Controlled { tolerance } => 1e-4 * tolerance.min(1e-3) * length,
             }
     }
 

@@ -108,6 +108,8 @@ impl Newton<'_> {
         let beta_h2 = self.scheme.beta.max(1.0 / 12.0) * self.h * self.h;
         let floor = 4.0 * U * self.model.length();
         let stop = self.tolerance.max(floor);
+        // below this, corrections wander instead of falling
+        let noise = 30.0 * floor;
         let (mut last, mut theta) = (0.0_f64, 0.0_f64);
         // iterations with the present factors, and how many were made here
         let (mut since, mut renewals, mut kept_failed) = (0, 0, false);
@@ -116,7 +118,7 @@ impl Newton<'_> {
         for k in 0..self.max_iterations {
             let stale = work.factored != Some(self.weights());
             // an iteration that would go on for long with its matrix gets a new one
-            let slow = since > 1 && last * theta.powi(PATIENCE) > stop;
+            let slow = since > 1 && last > noise && last * theta.powi(PATIENCE) > stop;
             let refresh = stale || self.policy == NewtonPolicy::Full || slow;
             if let Err(e) = self.evaluate(work, refresh) {
                 return Outcome::Linear(e);
@@ -152,17 +154,17 @@ impl Newton<'_> {
                 theta = 0.0;
                 eta = eta.clamp(1e-16, TRUST).powf(0.8);
             }
-            last = size;
+            let last_before = std::mem::replace(&mut last, size);
             // a rate that wasn't seen for some steps has to be seen again before it is trusted
             let trusted = since > 1 || eta <= TRUST;
             let done = trusted && size * eta.min(1e3) <= stop || size <= floor;
             if done && self.constraints_hold(work) {
-                let theta = if since > 1 { Some(theta) } else { (renewals > 0).then_some(0.0) };
+                let theta = if since > 1 && last_before > noise { Some(theta) } else { (renewals > 0).then_some(0.0) };
                 return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed });
             }
             if theta >= 1.0 {
                 // at the floor of rounding the iteration wanders; far from it, it diverges
-                if size <= 30.0 * floor && renewals > 0 {
+                if size <= noise && renewals > 0 {
                     let rate = Rate { iterations: k + 1, eta: 1.0, theta: Some(1.0), kept_failed };
                     return Outcome::Converged(rate);
                 }
