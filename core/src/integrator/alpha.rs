@@ -42,7 +42,7 @@ impl Alpha {
             }
             warning = Some(format!("unstable scheme allowed: {why}"));
         }
-        Ok(Alpha { options: options.clone(), scheme, horizon: options.horizon(duration), warning })
+        Ok(Alpha { options: options.clone(), scheme, horizon: options.horizon_in(duration), warning })
     }
 
     /// Its numbers.

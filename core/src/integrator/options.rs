@@ -100,7 +100,7 @@ impl Options {
     }
 
     /// The time over which errors add up [s].
-    pub(crate) fn horizon(&self, duration: f64) -> f64 {
+    pub(crate) fn horizon_in(&self, duration: f64) -> f64 {
         if self.horizon > 0.0 { self.horizon } else { duration.max(f64::MIN_POSITIVE) }
     }
 

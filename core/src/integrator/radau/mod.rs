@@ -47,7 +47,7 @@ impl Radau {
     /// The options are wrong.
     pub fn new(options: &Options, duration: f64) -> Result<Self, StepError> {
         options.check().map_err(StepError::Scheme)?;
-        Ok(Radau { options: options.clone(), horizon: options.horizon(duration) })
+        Ok(Radau { options: options.clone(), horizon: options.horizon_in(duration) })
     }
 
     /// Size of the first try, and the size that the controller would like.
