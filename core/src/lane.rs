@@ -120,17 +120,17 @@ macro_rules! lanewise {
             #[inline(always)]
             fn $f(mut self, r: Self) -> Self {
                 for i in 0..N {
-                    self.0[i] = self.0[i] $op r.0[i];
+                    self.0[i] $op r.0[i];
                 }
                 self
             }
         }
     };
 }
-lanewise!(Add, add, +);
-lanewise!(Sub, sub, -);
-lanewise!(Mul, mul, *);
-lanewise!(Div, div, /);
+lanewise!(Add, add, +=);
+lanewise!(Sub, sub, -=);
+lanewise!(Mul, mul, *=);
+lanewise!(Div, div, /=);
 
 impl<const N: usize> Neg for Pack<N> {
     type Output = Self;

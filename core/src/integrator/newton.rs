@@ -17,6 +17,9 @@ const U: f64 = f64::EPSILON / 2.0;
 /// Iterations with kept factors that are cheaper than new factors.
 const PATIENCE: i32 = 3;
 
+/// Convergence rate from which on the next steps don't try to keep factors either.
+const HOPELESS: f64 = 0.5;
+
 /// A step whose iteration still diverges after so many new matrices is repeated smaller.
 const MOST_RENEWALS: u32 = 3;
 
@@ -123,7 +126,7 @@ impl Newton<'_> {
             if let Err(e) = self.evaluate(work, refresh) {
                 return Outcome::Linear(e);
             }
-            kept_failed |= slow && renewals == 0;
+            kept_failed |= slow && renewals == 0 && theta > HOPELESS;
             renewals += u32::from(refresh);
             since = if slow { 1 } else { since + 1 };
             work.counts.newton_iterations += 1;
@@ -159,7 +162,11 @@ impl Newton<'_> {
             let trusted = since > 1 || eta <= TRUST;
             let done = trusted && size * eta.min(1e3) <= stop || size <= floor;
             if done && self.constraints_hold(work) {
-                let theta = if since > 1 && last_before > noise { Some(theta) } else { (renewals > 0).then_some(0.0) };
+                let theta = if since > 1 && last_before > noise {
+                    Some(theta)
+                } else {
+                    (renewals > 0).then_some(0.0)
+                };
                 return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed });
             }
             if theta >= 1.0 {
