@@ -23,6 +23,8 @@ pub(crate) struct Order {
     pub position: Vec<usize>,
     /// First position of each block, a node with the constraint rows behind it, and one past the last.
     pub starts: Vec<usize>,
+    /// How many of the blocks are nodes of their own; those of shared nodes follow.
+    pub own: usize,
 }
 
 impl Order {
@@ -30,9 +32,9 @@ impl Order {
         let nv = nodes.iter().map(|n| n.kind.velocities()).sum::<usize>();
         let graph = node_graph(nodes, constraints, pattern, nv);
         let natural: Vec<usize> = shared_last(nodes, (0..nodes.len()).collect());
-        let order = if is_chain(&graph, &natural) {
+        let order = if is_chain(nodes, &graph, &natural) {
             natural
-        } else if let Some(path) = path(&graph).filter(|p| is_chain(&graph, &shared_last(nodes, p.clone()))) {
+        } else if let Some(path) = path(nodes, &graph) {
             shared_last(nodes, path)
         } else {
             let degree = shared_last(nodes, minimum_degree(&graph));
@@ -74,25 +76,31 @@ fn shared_last(nodes: &[Node], order: Vec<usize>) -> Vec<usize> {
     own.into_iter().chain(shared).collect()
 }
 
-/// Whether each node is coupled with no other than the one before and the one behind it.
-fn is_chain(graph: &[Vec<u32>], order: &[usize]) -> bool {
+/// Whether each node is coupled with no other than the one before and the one behind it, and with shared ones.
+fn is_chain(nodes: &[Node], graph: &[Vec<u32>], order: &[usize]) -> bool {
     let place = places(order);
-    graph.iter().enumerate().all(|(a, g)| g.iter().all(|&b| place[a].abs_diff(place[b as usize]) <= 1))
+    let neighbours = |a: usize, b: usize| nodes[b].shared || place[a].abs_diff(place[b]) <= 1;
+    (0..nodes.len())
+        .filter(|&a| !nodes[a].shared)
+        .all(|a| graph[a].iter().all(|&b| neighbours(a, b as usize)))
 }
 
-/// Walks along every path of the graph from one of its ends; `None` if there are branches or rings.
-fn path(graph: &[Vec<u32>]) -> Option<Vec<usize>> {
+/// Walks along every path of the graph from one of its ends, then over the shared nodes; `None` if there are branches
+/// or rings.
+fn path(nodes: &[Node], graph: &[Vec<u32>]) -> Option<Vec<usize>> {
+    let others = |k: usize| graph[k].iter().map(|&b| b as usize).filter(|&b| !nodes[b].shared);
     let mut order = Vec::with_capacity(graph.len());
-    let mut seen = vec![false; graph.len()];
-    for end in (0..graph.len()).filter(|&k| graph[k].len() <= 1) {
+    let mut seen: Vec<bool> = nodes.iter().map(|n| n.shared).collect();
+    for end in (0..graph.len()).filter(|&k| others(k).count() <= 1) {
         let mut next = (!seen[end]).then_some(end);
         while let Some(k) = next {
             seen[k] = true;
             order.push(k);
-            next = graph[k].iter().map(|&b| b as usize).find(|&b| !seen[b]);
+            next = others(k).find(|&b| !seen[b]);
         }
     }
-    (order.len() == graph.len()).then_some(order)
+    order.extend((0..nodes.len()).filter(|&k| nodes[k].shared));
+    (order.len() == nodes.len() && is_chain(nodes, graph, &order)).then_some(order)
 }
 
 fn places(order: &[usize]) -> Vec<usize> {
@@ -164,5 +172,5 @@ fn positions(nodes: &[Node], constraints: &[Rows], order: &[usize], nv: usize) -
         }
         starts.push(next);
     }
-    Order { position, starts }
+    Order { position, starts, own: nodes.iter().filter(|n| !n.shared).count() }
 }

@@ -91,8 +91,10 @@ pub struct Structure {
     pub diagonal: Vec<u32>,
     /// The same for each position.
     pub(crate) diagonal_at: Vec<u32>,
-    /// Whether every block is coupled with the one before and the one behind it only.
+    /// Whether every block is coupled with the one before and the one behind it only, and with shared unknowns.
     pub chain: bool,
+    /// How many shared unknowns stand behind a chain.
+    pub border: usize,
     /// Runs of unknowns that follow each other in the elimination order too.
     moves: Vec<Move>,
     columns: Vec<u32>,
@@ -102,7 +104,7 @@ pub struct Structure {
     ends: Vec<u32>,
 }
 
-/// Largest block, and largest block with its successor, of what is solved as a chain.
+/// Largest block, and largest block with its successor, of what is solved as a chain; both with the shared unknowns.
 pub(crate) const LARGEST: usize = 16;
 const WIDEST: usize = 32;
 
@@ -110,7 +112,7 @@ impl Structure {
     /// `pattern` holds the cliques of terms and then one per constraint, whose unknowns are velocities followed by
     /// its rows (`nv + row`).
     pub(crate) fn new(nodes: &[Node], constraints: &[Rows], pattern: &Pattern, symmetric: bool) -> Self {
-        let Order { position, starts } = Order::new(nodes, constraints, pattern);
+        let Order { position, starts, own } = Order::new(nodes, constraints, pattern);
         let n = position.len();
         let nv = nodes.iter().map(|n| n.kind.velocities()).sum::<usize>();
         let mut is_multiplier = vec![false; n];
@@ -133,13 +135,14 @@ impl Structure {
             diagonal: Vec::new(),
             diagonal_at: Vec::new(),
             chain: false,
+            border: 0,
             moves,
             columns: Vec::new(),
             entries: 0,
             tiles: Vec::new(),
             ends: Vec::with_capacity(pattern.len()),
         };
-        s.add_blocks(&starts, pattern);
+        s.add_blocks(&starts, own, pattern);
         for k in 0..pattern.len() {
             s.add_tiles(pattern.get(k));
         }
@@ -148,7 +151,7 @@ impl Structure {
         s
     }
 
-    fn add_blocks(&mut self, starts: &[usize], pattern: &Pattern) {
+    fn add_blocks(&mut self, starts: &[usize], own: usize, pattern: &Pattern) {
         let mut block_of = vec![0; self.n];
         for (k, w) in starts.windows(2).enumerate() {
             block_of[w[0]..w[1]].fill(k);
@@ -170,19 +173,30 @@ impl Structure {
         couplings.dedup();
 
         let count = starts.len() - 1;
-        // the whole window of each block: from the one before, or from its own start, to the end of the next
-        let window = |b: usize| {
-            let from = if self.symmetric { starts[b] } else { starts[b.saturating_sub(1)] };
-            from..starts[(b + 2).min(count)]
+        let border = starts[own];
+        // the whole window of each block: from the one before, or from its own start, to the end of the next; shared
+        // unknowns are coupled with everything
+        let window = |b: usize| match (b < own, self.symmetric) {
+            (true, true) => starts[b]..starts[(b + 2).min(own)],
+            (true, false) => starts[b.saturating_sub(1)]..starts[(b + 2).min(own)],
+            (false, true) => starts[b]..self.n,
+            (false, false) => 0..self.n,
         };
-        self.chain = couplings.iter().all(|&(b, c)| window(b as usize).contains(&(c as usize)))
-            && (0..count).all(|b| starts[b + 1] - starts[b] <= LARGEST)
-            && (0..count).all(|b| starts[(b + 2).min(count)] - starts[b] <= WIDEST);
+        let within =
+            |&(b, c): &(u32, u32)| c as usize >= border || window(b as usize).contains(&(c as usize));
+        let width = |b: usize| starts[(b + 2).min(own)] - starts[b] + self.n - border;
+        self.chain = couplings.iter().all(within)
+            && (0..own).all(|b| starts[b + 1] - starts[b] + self.n - border <= LARGEST)
+            && (0..own).all(|b| width(b) <= WIDEST);
+        self.border = if self.chain { self.n - border } else { 0 };
         let mut rest = couplings.iter().peekable();
         for b in 0..count {
             let begin = self.columns.len();
             if self.chain {
                 self.columns.extend(window(b).map(|c| c as u32));
+                if b < own {
+                    self.columns.extend((border..self.n).map(|c| c as u32));
+                }
             } else {
                 while let Some(&(_, c)) = rest.next_if(|&&(row, _)| row as usize == b) {
                     self.columns.push(c);

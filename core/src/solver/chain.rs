@@ -1,13 +1,14 @@
 //! Block elimination along a chain, without pivoting between blocks or inside of them.
 //!
 //! Each block is eliminated in a small dense front: its own rows `[D E]` and those of the next block that it is coupled
-//! with, `[F 0]`. What is left in the corner is carried on to the next block. The usual front, two nodes of a cable
+//! with, `[F 0]`. What is left in the corner is carried on to the next block. Shared unknowns go along as a border of
+//! every front, and come last. The usual front, two nodes of a cable
 //! with six unknowns each, is unrolled and runs in vector registers; a symmetric matrix needs half of it. The order of
 //! [`Structure`] keeps this stable (multipliers follow their nodes); the [`Guard`](super::Guard) checks.
 
 use super::{LinearSolver, Scalar, SolveError};
 use crate::lane::{LaneTask, Real, Width, run};
-use crate::structure::{LARGEST, Structure};
+use crate::structure::{Block, LARGEST, Structure};
 
 /// `L U` of a chain, symmetric or not.
 #[derive(Default)]
@@ -22,29 +23,38 @@ pub struct Chain<T = f64> {
     /// Reciprocal pivots.
     inverse: Vec<T>,
     negative: usize,
+    /// Position of the first shared unknown, and storage of the entries between shared unknowns.
+    first_shared: usize,
+    corner: Vec<u32>,
 }
 
 /// The elimination of one block.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Step {
     /// Position of its first row.
     first: usize,
-    /// Its rows, and those of the next block.
+    /// Its rows, those of the next block, and those of shared unknowns.
     size: usize,
     next: usize,
-    /// Storage of its diagonal block and of the next block's rows, and the lengths of these rows.
+    border: usize,
+    /// Storage of its diagonal block and of its coupling with shared unknowns, and the length of its rows.
     at: usize,
+    at_border: usize,
     stride: usize,
+    /// The same for what the next block and the shared unknowns have in its columns, where that isn't symmetric.
     at_next: usize,
     stride_next: usize,
+    at_shared: usize,
+    stride_shared: usize,
     /// Width of its front, and where its factors are stored.
     width: Front,
     factors: usize,
 }
 
 /// Width of a front: two nodes of a cable, two rigid bodies with a spherical joint each, and the largest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Front {
+    #[default]
     Cable = 12,
     Middle = 20,
     Large = 32,
@@ -52,6 +62,16 @@ enum Front {
 
 /// What the elimination of a block leaves for the next.
 type Carried<T> = [[T; LARGEST]; LARGEST];
+
+impl Front {
+    fn of(columns: usize) -> Self {
+        match columns {
+            ..=12 => Front::Cable,
+            13..=20 => Front::Middle,
+            _ => Front::Large,
+        }
+    }
+}
 
 impl<T: Scalar> LinearSolver<T> for Chain<T> {
     fn name(&self) -> &'static str {
@@ -64,28 +84,41 @@ impl<T: Scalar> LinearSolver<T> for Chain<T> {
         }
         self.symmetric = s.symmetric;
         self.steps.clear();
+        self.first_shared = s.n - s.border;
+        let own: Vec<&Block> = s.blocks.iter().filter(|b| b.first < self.first_shared).collect();
+        let behind = s.blocks.get(own.len());
         let mut factors = 0;
-        for (k, b) in s.blocks.iter().enumerate() {
-            let next = s.blocks.get(k + 1);
-            let columns = b.size + next.map_or(0, |n| n.size);
-            let before = b.width() - columns;
-            let width = match columns {
-                ..=12 => Front::Cable,
-                13..=20 => Front::Middle,
-                _ => Front::Large,
-            };
+        for (k, b) in own.iter().enumerate() {
+            let next = own.get(k + 1);
+            let following = next.map_or(0, |n| n.size);
+            // of unsymmetric matrices, the block before stands in front
+            let before = b.width() - b.size - following - s.border;
+            let all = b.size + following + s.border;
+            let width = Front::of(all);
             self.steps.push(Step {
                 first: b.first,
                 size: b.size,
-                next: columns - b.size,
+                next: following,
+                border: s.border,
                 at: b.base + before,
+                at_border: b.base + b.width() - s.border,
                 stride: b.width(),
                 at_next: next.map_or(0, |n| n.base),
                 stride_next: next.map_or(0, |n| n.width()),
+                at_shared: behind.map_or(0, |n| n.base + b.first),
+                stride_shared: s.n,
                 width,
                 factors,
             });
             factors += b.size * width as usize;
+        }
+        let shared: Vec<usize> = (self.first_shared..s.n).collect();
+        self.corner = shared.iter().flat_map(|&r| shared.iter().map(move |&c| s.slot(r, c) as u32)).collect();
+        if s.border > 0 {
+            let width = Front::of(s.border);
+            let last = Step { first: self.first_shared, size: s.border, width, factors, ..Step::default() };
+            self.steps.push(last);
+            factors += s.border * width as usize;
         }
         self.upper = vec![T::default(); factors];
         self.lower = vec![T::default(); if s.symmetric { 0 } else { factors }];
@@ -148,10 +181,14 @@ impl<T: Scalar> Chain<T> {
         self.negative = 0;
         for k in 0..self.steps.len() {
             let s = self.steps[k];
-            match (s.width, s.size, s.next) {
+            match (s.width, s.size, s.next, s.border) {
                 // the sizes as constants, for the compiler to unroll
-                (Front::Cable, 6, 6) => {
-                    self.front::<12, FUSED>(&Step { size: 6, next: 6, ..s }, values, &mut carried)?;
+                (Front::Cable, 6, 6, 0) => {
+                    self.front::<12, FUSED>(
+                        &Step { size: 6, next: 6, border: 0, ..s },
+                        values,
+                        &mut carried,
+                    )?;
                 }
                 (Front::Cable, ..) => self.front::<12, FUSED>(&s, values, &mut carried)?,
                 (Front::Middle, ..) => self.front::<20, FUSED>(&s, values, &mut carried)?,
@@ -169,19 +206,38 @@ impl<T: Scalar> Chain<T> {
         values: &[T],
         carried: &mut Carried<T>,
     ) -> Result<(), SolveError> {
-        let (size, all) = (s.size, s.size + s.next);
+        let (size, ahead) = (s.size, s.size + s.next);
+        let all = ahead + s.border;
         let mut front = [[T::default(); W]; W];
-        for i in 0..size {
-            let row = &values[s.at + i * s.stride..][..all];
-            front[i][..all].copy_from_slice(row);
-            for j in 0..size {
-                front[i][j] += carried[i][j];
+        if s.first < self.first_shared {
+            for i in 0..size {
+                let row = &values[s.at + i * s.stride..][..ahead];
+                front[i][..ahead].copy_from_slice(row);
+                let row = &values[s.at_border + i * s.stride..][..s.border];
+                front[i][ahead..all].copy_from_slice(row);
+            }
+        } else {
+            for i in 0..size {
+                for j in 0..size {
+                    front[i][j] = values[self.corner[i * size + j] as usize];
+                }
             }
         }
         if !self.symmetric {
             for i in 0..s.next {
                 let row = &values[s.at_next + i * s.stride_next..][..size];
                 front[size + i][..size].copy_from_slice(row);
+            }
+            for i in 0..s.border {
+                let row = &values[s.at_shared + i * s.stride_shared..][..size];
+                front[ahead + i][..size].copy_from_slice(row);
+            }
+        }
+        // shared unknowns are carried on behind those of this block
+        let place = |i: usize| if i < size { i } else { i + s.next };
+        for i in 0..size + s.border {
+            for j in 0..size + s.border {
+                front[place(i)][place(j)] += carried[i][j];
             }
         }
         for p in 0..size {
@@ -213,8 +269,8 @@ impl<T: Scalar> Chain<T> {
             let upper = &mut self.upper[s.factors + p * W..][..W];
             upper[p + 1..].copy_from_slice(&row[p + 1..]);
         }
-        for i in 0..s.next {
-            for j in 0..s.next {
+        for i in 0..s.next + s.border {
+            for j in 0..s.next + s.border {
                 carried[i][j] = front[size + i][size + j];
             }
         }
@@ -224,16 +280,20 @@ impl<T: Scalar> Chain<T> {
     #[inline(always)]
     fn substitute<const FUSED: bool>(&self, x: &mut [T]) {
         for s in &self.steps {
-            match (s.width, s.size, s.next) {
-                (Front::Cable, 6, 6) => self.forward::<12, FUSED>(&Step { size: 6, next: 6, ..*s }, x),
+            match (s.width, s.size, s.next, s.border) {
+                (Front::Cable, 6, 6, 0) => {
+                    self.forward::<12, FUSED>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
+                }
                 (Front::Cable, ..) => self.forward::<12, FUSED>(s, x),
                 (Front::Middle, ..) => self.forward::<20, FUSED>(s, x),
                 (Front::Large, ..) => self.forward::<32, FUSED>(s, x),
             }
         }
         for s in self.steps.iter().rev() {
-            match (s.width, s.size, s.next) {
-                (Front::Cable, 6, 6) => self.backward::<12>(&Step { size: 6, next: 6, ..*s }, x),
+            match (s.width, s.size, s.next, s.border) {
+                (Front::Cable, 6, 6, 0) => {
+                    self.backward::<12>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
+                }
                 (Front::Cable, ..) => self.backward::<12>(s, x),
                 (Front::Middle, ..) => self.backward::<20>(s, x),
                 (Front::Large, ..) => self.backward::<32>(s, x),
@@ -243,10 +303,11 @@ impl<T: Scalar> Chain<T> {
 
     #[inline(always)]
     fn forward<const W: usize, const FUSED: bool>(&self, s: &Step, x: &mut [T]) {
-        let all = s.size + s.next;
-        let x = &mut x[s.first..s.first + all];
+        let ahead = s.size + s.next;
+        let all = ahead + s.border;
         let mut y = [T::default(); W];
-        y[..all].copy_from_slice(x);
+        y[..ahead].copy_from_slice(&x[s.first..s.first + ahead]);
+        y[ahead..all].copy_from_slice(&x[self.first_shared..self.first_shared + s.border]);
         for p in 0..s.size {
             let (row, scale) = if self.symmetric {
                 (&self.upper[s.factors + p * W..][..W], self.inverse[s.first + p])
@@ -259,19 +320,24 @@ impl<T: Scalar> Chain<T> {
                 y[j] = y[j].minus::<FUSED>(c, row[j]);
             }
         }
-        x.copy_from_slice(&y[..all]);
+        x[s.first..s.first + ahead].copy_from_slice(&y[..ahead]);
+        x[self.first_shared..self.first_shared + s.border].copy_from_slice(&y[ahead..all]);
     }
 
     #[inline(always)]
     fn backward<const W: usize>(&self, s: &Step, x: &mut [T]) {
-        let all = s.size + s.next;
-        let x = &mut x[s.first..s.first + all];
+        let ahead = s.size + s.next;
+        let (before, shared) = x.split_at_mut(self.first_shared.max(s.first + ahead));
+        let x = &mut before[s.first..s.first + ahead];
         for p in (0..s.size).rev() {
             let row = &self.upper[s.factors + p * W..][..W];
-            // the next block's share first: it doesn't wait for this block's solution
-            let ahead: T = row[s.size..all].iter().zip(&x[s.size..]).map(|(u, x)| *u * *x).sum();
+            // the shares of others first: they don't wait for this block's solution
+            let mut others: T = row[s.size..ahead].iter().zip(&x[s.size..]).map(|(u, x)| *u * *x).sum();
+            if s.border > 0 {
+                others += row[ahead..ahead + s.border].iter().zip(&*shared).map(|(u, x)| *u * *x).sum::<T>();
+            }
             let own: T = row[p + 1..s.size].iter().zip(&x[p + 1..s.size]).map(|(u, x)| *u * *x).sum();
-            x[p] = (x[p] - ahead - own) * self.inverse[s.first + p];
+            x[p] = (x[p] - others - own) * self.inverse[s.first + p];
         }
     }
 }

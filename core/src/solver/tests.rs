@@ -14,54 +14,64 @@ impl Rng {
     }
 }
 
-/// A chain of slope nodes, held at both ends, with slopes `stiff` times stiffer than positions.
-fn chain(n: usize, stiff: f64, symmetric: bool) -> (Structure, Vec<f64>) {
-    let nodes: Vec<Node> =
-        (0..n).map(|k| Node { kind: NodeKind::Slope, q: 6 * k, v: 6 * k, shared: false }).collect();
+/// A chain of slope nodes, held at both ends, with slopes `stiff` times stiffer than positions, and so many unknowns
+/// that all elements share.
+fn chain_with(n: usize, shared: usize, stiff: f64, symmetric: bool) -> (Structure, Vec<f64>) {
+    let node = |kind, v, shared| Node { kind, q: v, v, shared };
+    let mut nodes: Vec<Node> = (0..n).map(|k| node(NodeKind::Slope, 6 * k, false)).collect();
+    if shared > 0 {
+        nodes.push(node(NodeKind::Scalars(shared), 6 * n, true));
+    }
+    let nv = 6 * n + shared;
     let mut p = Pattern::default();
     for k in 0..n - 1 {
-        p.clique(6 * k..6 * k + 12);
+        p.clique((6 * k..6 * k + 12).chain(6 * n..nv));
     }
-    p.clique((0..3).chain(6 * n..6 * n + 3));
-    p.clique((6 * n - 6..6 * n - 3).chain(6 * n + 3..6 * n + 6));
+    p.clique((0..3).chain(nv..nv + 3));
+    p.clique((6 * n - 6..6 * n - 3).chain(nv + 3..nv + 6));
     let rows =
         [Rows { count: 3, nodes: vec![NodeId(0)] }, Rows { count: 3, nodes: vec![NodeId(n as u32 - 1)] }];
     let s = Structure::new(&nodes, &rows, &p, symmetric);
+    assert!(s.chain && s.border == shared);
     let mut values = vec![0.0; s.entries()];
     let mut rng = Rng(0x9E37_79B9_7F4A_7C15);
     let scale = |i: usize| if i % 6 < 3 { 1.0 } else { stiff };
-    let mut add = |clique: usize, size: usize, i: usize, j: usize, v: f64| {
-        let _ = size;
+    let mut add = |clique: usize, i: usize, j: usize, v: f64| {
         let (i, j) = (p.get(clique)[i] as usize, p.get(clique)[j] as usize);
         values[s.slot(s.position[i], s.position[j])] += v;
     };
+    let size = 12 + shared;
     for e in 0..n - 1 {
-        let a: Vec<f64> = (0..144).map(|_| rng.next()).collect();
-        for i in 0..12 {
-            for j in 0..if symmetric { i + 1 } else { 12 } {
-                let dot: f64 = (0..12).map(|k| a[12 * i + k] * a[12 * j + k]).sum();
+        let a: Vec<f64> = (0..size * size).map(|_| rng.next()).collect();
+        for i in 0..size {
+            for j in 0..if symmetric { i + 1 } else { size } {
+                let dot: f64 = (0..size).map(|k| a[size * i + k] * a[size * j + k]).sum();
                 let twist = if symmetric { 0.0 } else { 0.2 * (i as f64 - j as f64).sin() };
                 let v = dot + twist + if i == j { 0.5 } else { 0.0 };
-                add(e, 12, i, j, v * scale(i) * scale(j));
+                add(e, i, j, v * scale(i) * scale(j));
             }
         }
     }
     for clique in [n - 1, n] {
         for i in 0..3 {
-            add(clique, 6, 3 + i, i, 1.0);
+            add(clique, 3 + i, i, 1.0);
             if !symmetric {
-                add(clique, 6, i, 3 + i, 1.0);
+                add(clique, i, 3 + i, 1.0);
             }
         }
     }
     (s, values)
 }
 
+fn chain(n: usize, stiff: f64, symmetric: bool) -> (Structure, Vec<f64>) {
+    chain_with(n, 0, stiff, symmetric)
+}
+
 #[test]
 fn sparse_solvers_agree_with_the_dense_oracle() {
     for symmetric in [true, false] {
-        for stiff in [1.0, 1e3] {
-            let (s, values) = chain(12, stiff, symmetric);
+        for (stiff, shared) in [(1.0, 0), (1e3, 0), (1.0, 1), (1e3, 3)] {
+            let (s, values) = chain_with(12, shared, stiff, symmetric);
             let b: Vec<f64> = (0..s.n).map(|i| 1.0 + (i % 7) as f64).collect();
             let mut exact = b.clone();
             let mut dense = Guard::with(&s, Box::new(Dense::default())).unwrap();
