@@ -208,6 +208,9 @@ fn bare_program() -> Result<PathBuf> {
         .output()?;
     let text = String::from_utf8_lossy(&out.stdout);
     let message = |l: &str| serde_json::from_str::<serde_json::Value>(l).ok();
-    let path = text.lines().filter_map(message).find_map(|m| Some(PathBuf::from(m["executable"].as_str()?)));
+    // cargo names every program that it has at hand
+    let bare = |m: &serde_json::Value| m["target"]["name"] == "bare";
+    let mut messages = text.lines().filter_map(message).filter(bare);
+    let path = messages.find_map(|m| Some(PathBuf::from(m["executable"].as_str()?)));
     Ok(path.ok_or("cargo did not build the program `bare`")?)
 }

@@ -14,7 +14,7 @@ const PEERS: [&str; 2] = ["moordyn", "cabledyn"];
 /// Both tows.
 pub fn run(peers: &Peers, quick: bool, report: &mut Report) -> Result<(), String> {
     let tow: Tow = problem::read("tow.json")?;
-    report.say("## Tow\n");
+    report.say("\n## Tow\n");
     report.say(format!("{}, from its equilibrium at rest.\n", tow.title));
     steady(&tow, peers, quick, report)?;
     start(&tow, peers, quick, report)

@@ -58,7 +58,7 @@ impl Profile {
 
 impl<T: Scalar> LinearSolver<T> for Profile<T> {
     fn name(&self) -> &'static str {
-        "LU along the chain"
+        "LU inside the profile"
     }
 
     fn analyse(&mut self, s: &Structure) -> Result<(), SolveError> {
