@@ -1,0 +1,208 @@
+//! How stations and loads pass between elements and laws, which are compiled apart: as numbers in memory, a batch at a
+//! time.
+
+use super::{Gives, Law, Load, Station};
+use crate::lane::{LaneTask, Real, V3, Width, run};
+use crate::term::Power;
+use std::cell::RefCell;
+
+/// How many numbers make a station, and a load.
+pub(super) const STATION: usize = 19;
+pub(super) const LOAD: usize = 39;
+/// Where the derivatives stand in a load.
+const D_X: usize = 3;
+const D_SLOPE: usize = 12;
+const D_V: usize = 21;
+const D_A: usize = 30;
+
+/// Number `i` of a row of numbers over lanes.
+#[inline(always)]
+fn number<R: Real>(row: &[f64], i: usize) -> R {
+    R::read(&row[i * R::LANES..])
+}
+#[inline(always)]
+fn vector<R: Real>(row: &[f64], i: usize) -> V3<R> {
+    [number(row, i), number(row, i + 1), number(row, i + 2)]
+}
+#[inline(always)]
+fn put<R: Real, const K: usize>(row: &mut [f64], i: usize, x: &[R; K]) {
+    for k in 0..K {
+        x[k].write(&mut row[(i + k) * R::LANES..]);
+    }
+}
+/// Adds to numbers of a row if there are some, else sets them.
+#[inline(always)]
+fn add<R: Real>(row: &mut [f64], i: usize, there: bool, x: &V3<R>) {
+    let mut sum = *x;
+    if there {
+        for k in 0..3 {
+            sum[k] += number(row, i + k);
+        }
+    }
+    put(row, i, &sum);
+}
+
+#[inline(always)]
+fn add_matrix<R: Real>(row: &mut [f64], from: usize, there: bool, x: &[V3<R>; 3]) {
+    add(row, from, there, &x[0]);
+    add(row, from + 3, there, &x[1]);
+    add(row, from + 6, there, &x[2]);
+}
+
+impl<R: Real> Station<R> {
+    #[inline(always)]
+    pub(super) fn write(&self, row: &mut [f64]) {
+        put(row, 0, &self.x);
+        put(row, 3, &self.v);
+        put(row, 6, &self.a);
+        put(row, 9, &self.slope);
+        put(row, 12, &self.curve_v);
+        put(row, 15, &[self.s, self.weight, self.diameter, self.area]);
+    }
+    #[inline(always)]
+    pub(super) fn read(row: &[f64]) -> Self {
+        Station {
+            x: vector(row, 0),
+            v: vector(row, 3),
+            a: vector(row, 6),
+            slope: vector(row, 9),
+            curve_v: vector(row, 12),
+            s: number(row, 15),
+            weight: number(row, 16),
+            diameter: number(row, 17),
+            area: number(row, 18),
+        }
+    }
+}
+
+impl<R: Real> Load<R> {
+    #[inline(always)]
+    pub(super) fn read(&mut self, row: &[f64], gives: Gives) {
+        self.f = vector(row, 0);
+        let matrix = |from: usize| [vector(row, from), vector(row, from + 3), vector(row, from + 6)];
+        if gives.x {
+            self.d_x = matrix(D_X);
+        }
+        if gives.slope {
+            self.d_slope = matrix(D_SLOPE);
+        }
+        if gives.v {
+            self.d_v = matrix(D_V);
+        }
+        if gives.a {
+            self.d_a = matrix(D_A);
+        }
+    }
+}
+
+/// Stations and loads of a batch in memory, a row for each station of an element: how they pass between elements and
+/// laws, which are compiled apart.
+pub(super) struct Exchange {
+    pub stations: Vec<f64>,
+    pub loads: Vec<f64>,
+    /// Whether a law has been there, and which derivatives have been given so far.
+    pub loaded: bool,
+    pub given: Gives,
+}
+
+impl Exchange {
+    /// Makes room for elements of `count` stations.
+    pub(super) fn resize<R: Real>(&mut self, count: usize) {
+        self.stations.resize(count * STATION * R::LANES, 0.0);
+        self.loads.resize(count * LOAD * R::LANES, 0.0);
+    }
+}
+
+thread_local! {
+    // kept between calls, so that no step allocates
+    pub(super) static EXCHANGE: RefCell<Exchange> = const {
+        RefCell::new(Exchange { stations: Vec::new(), loads: Vec::new(), loaded: false, given: Gives::NOTHING })
+    };
+}
+
+/// A [`Law`] behind a virtual call that serves a whole batch.
+pub(super) trait ErasedLaw: Send + Sync {
+    fn label(&self) -> String;
+    /// Loads a batch; `width` must be that of the element's own code.
+    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange);
+    /// The power of the loads in the first `lanes` lanes of a batch.
+    fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power;
+}
+
+struct LoadAll<'a, L> {
+    law: &'a L,
+    t: f64,
+    tangent: bool,
+    x: &'a mut Exchange,
+}
+
+impl<L: Law> LoadAll<'_, L> {
+    #[inline(always)]
+    fn all<R: Real, const TANGENT: bool>(self) {
+        let (x, gives) = (self.x, if TANGENT { self.law.gives() } else { Gives::NOTHING });
+        let rows = x.stations.chunks_exact(STATION * R::LANES).zip(x.loads.chunks_exact_mut(LOAD * R::LANES));
+        for (station, out) in rows {
+            let mut load = Load::zero();
+            self.law.load::<R, TANGENT>(self.t, &Station::read(station), &mut load);
+            add(out, 0, x.loaded, &load.f);
+            if gives.x {
+                add_matrix(out, D_X, x.given.x, &load.d_x);
+            }
+            if gives.slope {
+                add_matrix(out, D_SLOPE, x.given.slope, &load.d_slope);
+            }
+            if gives.v {
+                add_matrix(out, D_V, x.given.v, &load.d_v);
+            }
+            if gives.a {
+                add_matrix(out, D_A, x.given.a, &load.d_a);
+            }
+        }
+        (x.loaded, x.given) = (true, x.given.and(gives));
+    }
+}
+
+impl<L: Law> LaneTask for LoadAll<'_, L> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        if self.tangent { self.all::<R, true>() } else { self.all::<R, false>() }
+    }
+}
+
+impl<L: Law> ErasedLaw for L {
+    fn label(&self) -> String {
+        Law::label(self)
+    }
+    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange) {
+        run(width, LoadAll { law: self, t, tangent, x });
+    }
+    fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power {
+        let mut out = Power::default();
+        run(width, PowerOf { law: self, t, x, lanes, out: &mut out });
+        out
+    }
+}
+
+struct PowerOf<'a, L> {
+    law: &'a L,
+    t: f64,
+    x: &'a Exchange,
+    lanes: usize,
+    out: &'a mut Power,
+}
+
+impl<L: Law> LaneTask for PowerOf<'_, L> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        let mut sum = Power::<R>::zero();
+        for row in self.x.stations.chunks_exact(STATION * R::LANES) {
+            let (at, mut load) = (Station::read(row), Load::zero());
+            self.law.load::<R, false>(self.t, &at, &mut load);
+            let power = self.law.power(self.t, &at, &load.f);
+            sum.dissipated = at.weight.fma(power.dissipated, sum.dissipated);
+            sum.supplied = at.weight.fma(power.supplied, sum.supplied);
+            sum.carried = at.weight.fma(power.carried, sum.carried);
+        }
+        (0..self.lanes).for_each(|l| *self.out += sum.lane(l));
+    }
+}
