@@ -2,14 +2,13 @@
 
 mod common;
 
-use common::{hose, models, pendulum, place, size, towed};
-use ropewalk_constraints::motion::StraightSpec;
-use ropewalk_constraints::{DistanceSpec, DrivingSpec, SphericalSpec};
+use common::{everything, models, pendulum, place, size, tow_start};
+use ropewalk_constraints::{DistanceSpec, SphericalSpec};
 use ropewalk_core::integrator::{Counts, Options, Scheme, StepError, StepReport, Stepping, consistent};
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Sample, Scene, Simulation, State, Water};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
-use ropewalk_forces::{DragLaw, DragSpec, GravitySpec, PointForceSpec, SpringSpec, TimeFunction};
+use ropewalk_forces::{DragSpec, GravitySpec, PointForceSpec, TimeFunction};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 
@@ -136,15 +135,7 @@ fn error_control_keeps_its_promise_on_a_pendulum() {
 #[test]
 fn error_control_keeps_its_promise_when_a_tow_starts() {
     let run = |options: &Options| {
-        let mut scene = towed([0.0; 3], [0.0, 0.0, -30.0], 10, hose(1e6, 2.0), DragLaw::Constant);
-        scene.motion(StraightSpec {
-            name: "course".into(),
-            speed: 15.0 * 1852.0 / 3600.0,
-            direction: [1.0, 0.0, 0.0],
-            start: 0.0,
-            ramp: 5.0,
-        });
-        scene.constraint(DrivingSpec::new("ship", "hose.start", "course"));
+        let scene = tow_start();
         let model = scene.build().expect("model");
         let mut state = model.state();
         let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
@@ -166,30 +157,6 @@ fn error_control_keeps_its_promise_when_a_tow_starts() {
     let alpha = Options { scheme: Scheme::default(), ..controlled(1e-6) };
     let off = distance(&run(&alpha).0, &exact);
     assert!(off < 1e-4, "generalized-alpha is {off:e} m away");
-}
-
-/// A cable in water, sprung, with a mass: everything that takes or brings energy.
-fn everything() -> Scene {
-    let section =
-        Section { diameter: 0.03, axial_damping: 1e-3, bending_damping: 1e-2, ..Section::new(2.0, 1e5, 1.0) };
-    let mut scene = Scene::new();
-    scene.water = Some(Water::default());
-    scene
-        .element(CableSpec::straight("cable", [0.0; 3], [2.0, 0.0, 0.0], 8, section))
-        .element(PointMassSpec::new("bob", "cable.end", 1.0))
-        .constraint(SphericalSpec::pin("pin", "cable.start"))
-        .force(GravitySpec::default())
-        .force(DragSpec::default())
-        .force(SpringSpec {
-            name: "spring".into(),
-            marker: "cable@1.0".into(),
-            to: [1.0, 0.5, 0.0].into(),
-            stiffness: 50.0,
-            damping: 2.0,
-            length: Some(0.3),
-            tension_only: false,
-        });
-    scene
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{models, pendulum, place, size};
+use common::{everything, models, pendulum, place, size};
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::integrator::{Options, Scheme, StepError, StepReport, Stepping};
 use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Scene, Simulation, State, Water};
@@ -128,30 +128,6 @@ fn a_failed_step_leaves_the_state_as_it_was() {
     assert!(matches!(error, StepError::NoConvergence { .. }), "{error}");
     assert!(error.to_string().contains("`cable`") && error.to_string().contains("t = 0.0"), "{error}");
     assert_eq!((s.state.q, s.state.v, s.state.t), (before.q, before.v, before.t));
-}
-
-/// A cable in water, sprung, with a mass: everything that takes or brings energy.
-fn everything() -> Scene {
-    let section =
-        Section { diameter: 0.03, axial_damping: 1e-3, bending_damping: 1e-2, ..Section::new(2.0, 1e5, 1.0) };
-    let mut scene = Scene::new();
-    scene.water = Some(Water::default());
-    scene
-        .element(CableSpec::straight("cable", [0.0; 3], [2.0, 0.0, 0.0], 8, section))
-        .element(PointMassSpec::new("bob", "cable.end", 1.0))
-        .constraint(SphericalSpec::pin("pin", "cable.start"))
-        .force(GravitySpec::default())
-        .force(DragSpec::default())
-        .force(SpringSpec {
-            name: "spring".into(),
-            marker: "cable@1.0".into(),
-            to: [1.0, 0.5, 0.0].into(),
-            stiffness: 50.0,
-            damping: 2.0,
-            length: Some(0.3),
-            tension_only: false,
-        });
-    scene
 }
 
 #[test]

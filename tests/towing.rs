@@ -2,14 +2,13 @@
 
 mod common;
 
-use common::{data, hose, law, number, place, size, towed};
+use common::{data, hose, law, number, place, size, tow_start, towed};
 use ropewalk_constraints::DrivingSpec;
 use ropewalk_constraints::motion::{CircleSpec, StraightSpec, Towards};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Scene, Simulation};
 use ropewalk_elements::Section;
-use ropewalk_forces::DragLaw;
 
 /// Nearly inextensible and limp, with a little damping against axial ringing.
 fn limp(ea: f64, ei: f64) -> Section {
@@ -88,15 +87,7 @@ fn turn_settles_at_the_reference() {
 fn error_control_keeps_its_promise_when_a_tow_starts() {
     // from hanging at rest: no shock but that of the ship
     let points = |stepping: Stepping| {
-        let mut scene = towed([0.0; 3], [0.0, 0.0, -30.0], 10, hose(1e6, 2.0), DragLaw::Constant);
-        scene.motion(StraightSpec {
-            name: "course".into(),
-            speed: 15.0 * 1852.0 / 3600.0,
-            direction: [1.0, 0.0, 0.0],
-            start: 0.0,
-            ramp: 5.0,
-        });
-        scene.constraint(DrivingSpec::new("ship", "hose.start", "course"));
+        let scene = tow_start();
         let options = Options { stepping, ..Options::default() };
         let model = scene.build().expect("model");
         let mut state = model.state();

@@ -1,12 +1,13 @@
 //! What the integration tests share: reference data and scenes that several of them use.
 #![allow(dead_code)]
 
-use ropewalk_constraints::{ClampSpec, SphericalSpec};
+use ropewalk_constraints::motion::StraightSpec;
+use ropewalk_constraints::{ClampSpec, DrivingSpec, SphericalSpec};
 use ropewalk_core::{Model, Scene, State, Water};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
-use ropewalk_elements::{CableSpec, Section};
+use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{
-    AddedMassSpec, BuoyancySpec, DragLaw, DragSpec, GravitySpec, PointForceSpec, TimeFunction,
+    AddedMassSpec, BuoyancySpec, DragLaw, DragSpec, GravitySpec, PointForceSpec, SpringSpec, TimeFunction,
 };
 use serde_json::Value;
 
@@ -145,4 +146,42 @@ impl Reference {
 /// The references of a verification case.
 pub fn case(name: &str) -> Vec<Reference> {
     serde_json::from_value(data("cases.json")[name]["reference"].clone()).expect(name)
+}
+
+/// A cable in water, sprung, with a mass: everything that takes or brings energy.
+pub fn everything() -> Scene {
+    let section =
+        Section { diameter: 0.03, axial_damping: 1e-3, bending_damping: 1e-2, ..Section::new(2.0, 1e5, 1.0) };
+    let mut scene = Scene::new();
+    scene.water = Some(Water::default());
+    scene
+        .element(CableSpec::straight("cable", [0.0; 3], [2.0, 0.0, 0.0], 8, section))
+        .element(PointMassSpec::new("bob", "cable.end", 1.0))
+        .constraint(SphericalSpec::pin("pin", "cable.start"))
+        .force(GravitySpec::default())
+        .force(DragSpec::default())
+        .force(SpringSpec {
+            name: "spring".into(),
+            marker: "cable@1.0".into(),
+            to: [1.0, 0.5, 0.0].into(),
+            stiffness: 50.0,
+            damping: 2.0,
+            length: Some(0.3),
+            tension_only: false,
+        });
+    scene
+}
+
+/// A hose that hangs at rest and is then towed away at 15 knots.
+pub fn tow_start() -> Scene {
+    let mut scene = towed([0.0; 3], [0.0, 0.0, -30.0], 10, hose(1e6, 2.0), DragLaw::Constant);
+    scene.motion(StraightSpec {
+        name: "course".into(),
+        speed: 15.0 * 1852.0 / 3600.0,
+        direction: [1.0, 0.0, 0.0],
+        start: 0.0,
+        ramp: 5.0,
+    });
+    scene.constraint(DrivingSpec::new("ship", "hose.start", "course"));
+    scene
 }

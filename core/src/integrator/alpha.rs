@@ -122,7 +122,7 @@ impl Alpha {
 
     /// Estimated error of the trial over the tolerance: `|Cq h² (a₊ - a)|`, without what the constraints and the
     /// numerical damping take away, per unit step.
-    fn error(&self, model: &Model, work: &mut Workspace, h: f64, tolerance: f64) -> Result<f64, StepError> {
+    fn error(&self, model: &Model, work: &mut Workspace, h: f64, tolerance: f64) -> Result<f64, SolveError> {
         let factor = self.scheme.error_constant() * h * h;
         let (nv, mut e, mut rhs) =
             (model.velocities(), std::mem::take(&mut work.trial.d), std::mem::take(&mut work.trial.rhs));
@@ -136,7 +136,7 @@ impl Alpha {
         let solved = work.solve(model, Which::Iteration, &mut rhs);
         let size = work.norm(&rhs[..nv]);
         (work.trial.d, work.trial.rhs) = (e, rhs);
-        solved.map_err(|source| linear(model, 0.0, source))?;
+        solved?;
         Ok(size * (self.horizon / h) / (tolerance.min(1e-3) * model.length()))
     }
 
@@ -305,7 +305,9 @@ impl Integrator for Alpha {
                         self.accept(state, work, h, &rate);
                         return Ok(report);
                     };
-                    let error = self.error(model, work, h, tolerance)?;
+                    let error = self
+                        .error(model, work, h, tolerance)
+                        .map_err(|source| linear(model, state.t, source))?;
                     let grow = (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5);
                     if error <= 1.0 {
                         report.error = error;
