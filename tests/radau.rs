@@ -204,7 +204,7 @@ impl Event for Bounce {
     fn direction(&self) -> i8 {
         -1
     }
-    fn act(&mut self, _: &Model, state: &mut State) -> Action {
+    fn act(&self, _: &Model, state: &mut State) -> Action {
         self.0.lock().expect("times").push(state.t);
         state.v[2] *= -0.8;
         Action::Restart
@@ -218,7 +218,7 @@ fn bounces_happen_when_and_where_they_should() {
     for options in [fixed(0.037), controlled(1e-4)] {
         let times = Arc::default();
         let mut s = start(&scene, &options, 2.0);
-        s.add_event(Box::new(Bounce(Arc::clone(&times))));
+        s.add_event(Bounce(Arc::clone(&times)));
         go(&mut s, 2.0);
         let (mut t, mut v) = ((2.0f64 / 9.81).sqrt(), (2.0f64 * 9.81).sqrt());
         let times = times.lock().expect("times");
@@ -244,7 +244,7 @@ impl Event for Refine {
     fn direction(&self) -> i8 {
         1
     }
-    fn act(&mut self, _: &Model, _: &mut State) -> Action {
+    fn act(&self, _: &Model, _: &mut State) -> Action {
         let mesh = (0..=24).map(|k| f64::from(k) / 24.0).collect();
         let plan: Plan = [("cable".to_string(), mesh)].into_iter().collect();
         Action::Remesh(Box::new(soft().build_on(&plan).expect("model")))
@@ -256,7 +256,7 @@ fn a_run_goes_on_with_another_mesh() {
     let run = |remesh: bool| {
         let mut s = start(&soft(), &controlled(1e-5), 0.5);
         if remesh {
-            s.add_event(Box::new(Refine(0.25)));
+            s.add_event(Refine(0.25));
         }
         go(&mut s, 0.5);
         (place(&s.model, &s.state, "cable", 1.0), s.model.nodes().len())

@@ -30,7 +30,7 @@ impl Event for Bounce {
     fn direction(&self) -> i8 {
         -1
     }
-    fn act(&mut self, _: &Model, state: &mut State) -> Action {
+    fn act(&self, _: &Model, state: &mut State) -> Action {
         self.times.lock().expect("times").push(state.t);
         state.v[2] *= -self.restitution;
         Action::Restart
@@ -44,7 +44,7 @@ fn bounces_happen_when_and_where_they_should() {
     for options in [fixed(0.037), Options::default()] {
         let times = std::sync::Arc::default();
         let mut s = Simulation::new(scene.build().expect("model"), &options, 2.0).expect("start");
-        s.add_event(Box::new(Bounce { restitution: 0.8, times: std::sync::Arc::clone(&times) }));
+        s.add_event(Bounce { restitution: 0.8, times: std::sync::Arc::clone(&times) });
         assert_eq!(s.advance(2.0, f64::INFINITY, &mut ()), Ok(End::Done));
         let (mut t, mut v) = ((2.0f64 / 9.81).sqrt(), (2.0f64 * 9.81).sqrt());
         let times = times.lock().expect("times");
@@ -77,7 +77,7 @@ impl Event for Refine {
     fn direction(&self) -> i8 {
         1
     }
-    fn act(&mut self, _: &Model, _: &mut State) -> Action {
+    fn act(&self, _: &Model, _: &mut State) -> Action {
         if self.stop {
             return Action::Stop;
         }
@@ -98,7 +98,7 @@ fn a_run_goes_on_with_another_mesh() {
             // finer towards the end, and not nested in the old mesh
             let mesh: Vec<f64> =
                 (0..=40).map(|k| 1.2 * (1.0 - (1.0 - f64::from(k) / 40.0).powf(1.2))).collect();
-            s.add_event(Box::new(Refine { at: 0.3, scene: swinging(), mesh, stop: false }));
+            s.add_event(Refine { at: 0.3, scene: swinging(), mesh, stop: false });
         }
         assert_eq!(s.advance(0.6, f64::INFINITY, &mut ()), Ok(End::Done));
         (place(&s.model, &s.state, "cable", 1.2), s.model.nodes().len())
@@ -113,7 +113,7 @@ fn a_run_goes_on_with_another_mesh() {
 #[test]
 fn an_event_ends_a_run() {
     let mut s = Simulation::new(swinging().build().expect("model"), &fixed(1e-3), 1.0).expect("start");
-    s.add_event(Box::new(Refine { at: 0.2503, scene: Scene::new(), mesh: vec![], stop: true }));
+    s.add_event(Refine { at: 0.2503, scene: Scene::new(), mesh: vec![], stop: true });
     assert_eq!(s.advance(1.0, f64::INFINITY, &mut ()), Ok(End::Stopped { by: "refine".into() }));
     assert!((s.state.t - 0.2503).abs() < 1e-12);
 }

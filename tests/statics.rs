@@ -116,6 +116,7 @@ fn cantilever_rolls_up_under_an_end_moment() {
         let mut scene = cantilever(n, 1e6, 0.0, models("L4(lob3)+T3(2)").expect("legal"));
         scene.force(PointMomentSpec {
             marker: "beam.end".into(),
+            local: false,
             moment: [0.0, 0.0, TAU * turns],
             time: linear(),
         });

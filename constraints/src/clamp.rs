@@ -1,108 +1,82 @@
-//! The direction of a cable's end held fast.
+//! The direction of a cable held fast.
 
 use crate::check::unit;
-use ropewalk_core::build::{BuildError, need};
-use ropewalk_core::{Jet, Joint, Marker, Node, NodeId, NodeKind, Place, Relation, RowKind, V3};
+use crate::connection::{Connection, Equation};
+use ropewalk_core::build::{BuildError, Builder, finite, need};
+use ropewalk_core::rotation::around;
+use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, NodeId, NodeKind, V3, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// The slope `r'` of a cable node stays along a direction fixed in space: `n_1·r' = 0`, `n_2·r' = 0`.
+/// The slope `r'` of a cable node stays along the third axis of a marker, in space or on a rigid body: it is normal to
+/// the first two, two equations.
 ///
 /// The stretch `|r'|` stays free, as the tension there asks for it. The position is not held: add a
-/// [`Spherical`](crate::Spherical). `r'` and `-r'` both satisfy the equations; the start decides which it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clamp {
-    /// Two unit vectors normal to the direction and to each other.
-    pub normals: [V3<f64>; 2],
-}
-
-impl Clamp {
-    /// Holds the slope of `node` along `direction` (of any length).
-    ///
-    /// # Errors
-    /// A node without slope; a direction without length.
-    pub fn joint(
-        name: impl Into<String>,
-        nodes: &[Node],
-        node: NodeId,
-        direction: V3<f64>,
-    ) -> Result<Joint<Self>, BuildError> {
-        let name = name.into();
-        has_slope(&name, nodes, node)?;
-        let normals = normals(unit("direction", direction)?);
-        Ok(Joint::new(name, Clamp { normals }, vec![Marker::node(node)]))
-    }
-}
-
-impl Relation for Clamp {
-    fn rows(&self) -> Vec<RowKind> {
-        vec![RowKind::Direction; 2]
-    }
-    fn linear(&self) -> bool {
-        true
-    }
-    fn g<S: Jet>(&self, _: S, at: &[Place<S>], g: &mut [S]) {
-        let p = at[0].direction;
-        for (g, n) in g.iter_mut().zip(&self.normals) {
-            *g = p[0] * n[0] + p[1] * n[1] + p[2] * n[2];
-        }
-    }
-}
-
-/// The slope `r'` of a cable node stays along a direction that is fixed to a rigid body; otherwise as [`Clamp`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BodyClamp;
-
-impl BodyClamp {
-    /// Holds the slope of `node` along `direction` of `body`, in the body's axes.
-    ///
-    /// # Errors
-    /// A node without slope; a body that isn't a frame; a direction without length.
-    pub fn joint(
-        name: impl Into<String>,
-        nodes: &[Node],
-        node: NodeId,
-        body: NodeId,
-        direction: V3<f64>,
-    ) -> Result<Joint<Self>, BuildError> {
-        let name = name.into();
-        has_slope(&name, nodes, node)?;
-        let is_body = nodes.get(body.0 as usize).is_some_and(|n| n.kind == NodeKind::Frame);
-        need(is_body, || format!("{name}: node {} isn't a rigid body", body.0))?;
-        let normals = normals(unit("direction", direction)?);
-        let on_body = |direction| Marker::Node { node: body, point: [0.0; 3], direction };
-        Ok(Joint::new(name, BodyClamp, vec![Marker::node(node), on_body(normals[0]), on_body(normals[1])]))
-    }
-}
-
-impl Relation for BodyClamp {
-    fn rows(&self) -> Vec<RowKind> {
-        vec![RowKind::Direction; 2]
-    }
-    fn g<S: Jet>(&self, _: S, at: &[Place<S>], g: &mut [S]) {
-        let p = at[0].direction;
-        for (g, normal) in g.iter_mut().zip(&at[1..]) {
-            let n = normal.direction;
-            *g = p[0] * n[0] + p[1] * n[1] + p[2] * n[2];
-        }
-    }
-}
-
-fn has_slope(name: &str, nodes: &[Node], node: NodeId) -> Result<(), BuildError> {
+/// [`spherical`](crate::spherical). `r'` and `-r'` both satisfy the equations; the start decides which it is.
+///
+/// # Errors
+/// A node without slope; a marker without axes.
+pub fn clamp(
+    name: impl Into<String>,
+    nodes: &[Node],
+    node: NodeId,
+    to: Marker,
+) -> Result<Connection, BuildError> {
+    let name = name.into();
     let kind = nodes.get(node.0 as usize).map(|n| n.kind);
     need(kind == Some(NodeKind::Slope), || {
         format!("{name}: a clamp holds the slope of a cable node, which node {} doesn't have", node.0)
-    })
+    })?;
+    let equations = vec![Equation::normal(0, 0), Equation::normal(1, 0)];
+    Connection::new(name, nodes, [to, Marker::node(node)], equations)
 }
 
-/// Two unit vectors normal to the unit vector `d` and to each other.
-fn normals(d: V3<f64>) -> [V3<f64>; 2] {
-    let cross = |a: V3<f64>, b: V3<f64>| {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    };
-    // the axis that is farthest from d
-    let least = (0..3).min_by(|&i, &j| d[i].abs().total_cmp(&d[j].abs())).unwrap_or(0);
-    let axis: V3<f64> = std::array::from_fn(|i| if i == least { 1.0 } else { 0.0 });
-    let n = cross(d, axis);
-    let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let n = n.map(|x| x / length);
-    [n, cross(d, n)]
+/// Holds the direction of a cable at a marker, in space or on a rigid body; its stretch stays free. With `spherical` a
+/// built-in end.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ClampSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker on a cable.
+    pub marker: MarkerRef,
+    /// The rigid body that holds the direction; left out, it is held in space.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The direction in space at the start; left out, that which the cable has there.
+    #[serde(default)]
+    pub direction: Option<V3<f64>>,
+}
+register_spec!(Constraint, "clamp", ClampSpec);
+
+impl ClampSpec {
+    /// Holds the direction that a cable has at the start.
+    pub fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
+        ClampSpec { name: name.into(), marker: marker.into(), to: None, direction: None }
+    }
+}
+
+#[typetag::serde(name = "clamp")]
+impl ConstraintSpec for ClampSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let marker = b.marker("marker", &self.marker)?;
+        let Some(node) = marker.on() else {
+            return Err(BuildError::at("marker", "a clamp holds a cable, not a point in space"));
+        };
+        let direction = self.direction.unwrap_or(b.place(&marker).axes[0]);
+        finite("direction", &direction)?;
+        let axes = around(unit("direction", direction)?);
+        let to = match &self.to {
+            Some(to) => b.marker("to", to)?,
+            None => Marker::ground([0.0; 3]),
+        };
+        let to = to.with_axes(b.nodes(), b.coordinates(), axes);
+        b.constraint(clamp(&self.name, b.nodes(), node, to)?)
+    }
 }

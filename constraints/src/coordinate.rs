@@ -1,60 +1,59 @@
 //! One coordinate of a point, held or driven.
 
-use crate::check::{markers, moves_linearly, unit};
-use ropewalk_core::build::{BuildError, finite};
-use ropewalk_core::{Jet, Joint, Marker, Motion, Node, Place, Relation, RowKind, V3, lift};
+use crate::check::unit;
+use crate::connection::{Connection, Equation};
+use crate::pair::pair;
+use ropewalk_core::build::{BuildError, Builder};
+use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Motion, Node, V3, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A marker stays in a plane, or in a plane that moves: `d·(x - x_0 - X(t)) = 0`, one equation.
+/// A marker stays in a plane of space through another, or in a plane that moves: `d·(x_1 - x_0 - X(t)) = 0`, one
+/// equation.
 ///
 /// Use it for: symmetry planes, a slider (two of them), a ship that holds a depth but not a course.
-#[derive(Clone, Debug)]
-pub struct Coordinate {
-    /// Unit normal of the plane, `d`.
+///
+/// # Errors
+/// A direction without length; markers as for [`spherical`](crate::spherical).
+pub fn coordinate(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+    direction: V3<f64>,
+    motion: Option<Arc<dyn Motion>>,
+) -> Result<Connection, BuildError> {
+    let direction = unit("direction", direction)?;
+    Connection::new(name, nodes, between, vec![Equation::coordinate(direction, motion)])
+}
+
+/// Holds or drives one coordinate of a marker, along a direction, and leaves the other two free.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CoordinateSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker.
+    pub marker: MarkerRef,
+    /// The direction of the coordinate.
     pub direction: V3<f64>,
-    /// A point of the plane, `x_0` [m].
-    pub start: V3<f64>,
-    /// Displacement of the plane, `X(t)`; `None` if it is at rest.
-    pub motion: Option<Arc<dyn Motion>>,
-    /// Whether the marker moves linearly with its node: it isn't beside the point of a rigid body.
-    pub linear: bool,
+    /// Name of a motion, of which the part along the direction is followed; left out, the coordinate stays.
+    #[serde(default)]
+    pub motion: Option<String>,
 }
+register_spec!(Constraint, "coordinate", CoordinateSpec);
 
-impl Coordinate {
-    /// Holds a marker in the plane through `start` with normal `direction` (of any length).
-    ///
-    /// # Errors
-    /// A direction without length; a start that isn't finite; a marker on the ground or on a node without position.
-    pub fn joint(
-        name: impl Into<String>,
-        nodes: &[Node],
-        marker: Marker,
-        direction: V3<f64>,
-        start: V3<f64>,
-        motion: Option<Arc<dyn Motion>>,
-    ) -> Result<Joint<Self>, BuildError> {
-        let name = name.into();
-        let direction = unit("direction", direction)?;
-        finite(&format!("{name}: start"), &start)?;
-        markers(&name, nodes, &[marker])?;
-        let linear = moves_linearly(nodes, &marker);
-        let range = motion.as_ref().map_or((f64::NEG_INFINITY, f64::INFINITY), |m| m.range());
-        Ok(Joint::new(name, Coordinate { direction, start, motion, linear }, vec![marker]).within(range))
+#[typetag::serde(name = "coordinate")]
+impl ConstraintSpec for CoordinateSpec {
+    fn name(&self) -> &str {
+        &self.name
     }
-}
-
-impl Relation for Coordinate {
-    fn rows(&self) -> Vec<RowKind> {
-        vec![RowKind::Position]
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
     }
-    fn linear(&self) -> bool {
-        self.linear
-    }
-    fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]) {
-        let m = self.motion.as_ref().map(|m| m.at(t.re())).unwrap_or_default();
-        g[0] = S::zero();
-        for i in 0..3 {
-            g[0] += (at[0].x[i] - self.start[i] - lift(t, [m.x[i], m.v[i], m.a[i]])) * self.direction[i];
-        }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let markers = pair(b, &self.marker, None)?;
+        let motion = self.motion.as_deref().map(|m| b.motion(m)).transpose()?;
+        b.constraint(coordinate(&self.name, b.nodes(), markers, self.direction, motion)?)
     }
 }

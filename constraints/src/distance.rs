@@ -1,43 +1,57 @@
 //! Two points at a fixed distance.
 
-use crate::check::markers;
-use ropewalk_core::build::{BuildError, positive};
-use ropewalk_core::{Jet, Joint, Marker, Node, Place, Relation, RowKind};
+use crate::connection::{Connection, Equation};
+use ropewalk_core::build::{BuildError, Builder, positive};
+use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Two markers stay at a distance: `|x_1 - x_0| - L = 0`, one equation; a massless rod with a ball at each end.
 ///
 /// The points must start at about that distance: where they coincide the rod has no direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distance {
-    /// The distance `L` [m].
-    pub length: f64,
+///
+/// # Errors
+/// A length that isn't above zero (hold the points together by [`spherical`](crate::spherical) instead); markers as
+/// for that one.
+pub fn distance(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+    length: f64,
+) -> Result<Connection, BuildError> {
+    positive("length", length)?;
+    Connection::new(name, nodes, between, vec![Equation::Distance { length }])
 }
 
-impl Distance {
-    /// The rod between two markers, one of which may be on the ground.
-    ///
-    /// # Errors
-    /// A length that isn't above zero (hold the points together by [`Spherical`](crate::Spherical) instead); markers as
-    /// for that one.
-    pub fn joint(
-        name: impl Into<String>,
-        nodes: &[Node],
-        between: [Marker; 2],
-        length: f64,
-    ) -> Result<Joint<Self>, BuildError> {
-        let name = name.into();
-        positive("length", length)?;
-        markers(&name, nodes, &between)?;
-        Ok(Joint::new(name, Distance { length }, between.to_vec()))
-    }
+/// Keeps two points at a constant distance: a rod without mass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DistanceSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// One marker.
+    pub marker: MarkerRef,
+    /// The other marker, or a point in space.
+    pub to: MarkerRef,
+    /// Distance [m]; left out, that at the start.
+    #[serde(default, deserialize_with = "quantity::optional::length")]
+    pub length: Option<f64>,
 }
+register_spec!(Constraint, "distance", DistanceSpec);
 
-impl Relation for Distance {
-    fn rows(&self) -> Vec<RowKind> {
-        vec![RowKind::Position]
+#[typetag::serde(name = "distance")]
+impl ConstraintSpec for DistanceSpec {
+    fn name(&self) -> &str {
+        &self.name
     }
-    fn g<S: Jet>(&self, _: S, at: &[Place<S>], g: &mut [S]) {
-        let d: [S; 3] = std::array::from_fn(|i| at[1].x[i] - at[0].x[i]);
-        g[0] = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt() - self.length;
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker, &self.to]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let markers = [b.marker("to", &self.to)?, b.marker("marker", &self.marker)?];
+        let [x, y] = markers.map(|m| b.place(&m).x);
+        let start = (0..3).map(|i| (y[i] - x[i]).powi(2)).sum::<f64>().sqrt();
+        let joint = distance(&self.name, b.nodes(), markers, self.length.unwrap_or(start))?;
+        b.constraint(joint)
     }
 }

@@ -1,54 +1,182 @@
-//! A point that follows a prescribed motion.
+//! Points, lengths and angles that follow a prescribed motion.
 
-use crate::check::{markers, moves_linearly};
-use ropewalk_core::build::{BuildError, finite};
-use ropewalk_core::{Jet, Joint, Marker, Motion, Node, Place, Relation, RowKind, V3, lift};
+use crate::connection::{Arrow, Connection, Equation};
+use crate::pair::{aligned, along, pair};
+use ropewalk_core::build::{BuildError, Builder};
+use ropewalk_core::rotation::IDENTITY;
+use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Motion, Node, V3, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A marker follows a motion: `x - x_0 - X(t) = 0`, three equations.
+/// A marker follows a motion in space, from where another one is: `x_1 - x_0 - X(t) = 0`, three equations, defined for
+/// as long as the motion.
 ///
 /// Use it for: the end of a hose on a moving ship, a vehicle's path. The reaction is what it takes to drive it.
-#[derive(Clone, Debug)]
-pub struct Driving {
-    /// Where the marker starts, `x_0` [m].
-    pub start: V3<f64>,
-    /// The displacement from there, `X(t)`.
-    pub motion: Arc<dyn Motion>,
-    /// Whether the marker moves linearly with its node: it isn't beside the point of a rigid body.
-    pub linear: bool,
+///
+/// # Errors
+/// As for [`spherical`](crate::spherical).
+pub fn driving(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+    motion: Arc<dyn Motion>,
+) -> Result<Connection, BuildError> {
+    let equations = IDENTITY.map(|d| Equation::coordinate(d, Some(motion.clone()))).to_vec();
+    Connection::new(name, nodes, between, equations)
 }
 
-impl Driving {
-    /// Drives a marker that starts at `start`; defined for as long as the motion.
-    ///
-    /// # Errors
-    /// A marker on the ground or on a node without position; a start that isn't finite.
-    pub fn joint(
-        name: impl Into<String>,
-        nodes: &[Node],
-        marker: Marker,
-        start: V3<f64>,
-        motion: Arc<dyn Motion>,
-    ) -> Result<Joint<Self>, BuildError> {
-        let name = name.into();
-        finite(&format!("{name}: start"), &start)?;
-        markers(&name, nodes, &[marker])?;
-        let (linear, range) = (moves_linearly(nodes, &marker), motion.range());
-        Ok(Joint::new(name, Driving { start, motion, linear }, vec![marker]).within(range))
+/// The second marker lies ahead of the first, along the first one's third axis, by `c + X(t)`: one equation.
+///
+/// `X` is the motion's first component [m]. Use it for: a hydraulic cylinder, a winch's carriage. With a
+/// [`prismatic`](crate::prismatic) joint nothing is left free.
+///
+/// # Errors
+/// As for [`spherical`](crate::spherical); a first marker without axes.
+pub fn slide(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+    start: f64,
+    motion: Arc<dyn Motion>,
+) -> Result<Connection, BuildError> {
+    let a = Arrow::Axis { of: 0, axis: 2 };
+    let equation = Equation::Dot { a, b: Arrow::Between, value: start, motion: Some(motion) };
+    Connection::new(name, nodes, between, vec![equation])
+}
+
+/// The second marker is turned against the first, about their common third axis, by the angle `φ(t)`: one equation,
+/// regular at every angle.
+///
+/// `φ` is the motion's first component [rad]. It is meant beside a [`revolute`](crate::revolute) joint; the
+/// multiplier is the driving torque.
+///
+/// # Errors
+/// As for [`spherical`](crate::spherical); markers without axes.
+pub fn rotation(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+    angle: Arc<dyn Motion>,
+) -> Result<Connection, BuildError> {
+    let (a, b) = (Arrow::Turned { of: 0, angle }, Arrow::Axis { of: 1, axis: 0 });
+    Connection::new(name, nodes, between, vec![Equation::Dot { a, b, value: 0.0, motion: None }])
+}
+
+/// Makes a marker follow a prescribed motion from where it starts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DrivingSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is driven.
+    pub marker: MarkerRef,
+    /// Name of the motion.
+    pub motion: String,
+}
+register_spec!(Constraint, "driving", DrivingSpec);
+
+impl DrivingSpec {
+    /// Makes a marker follow a motion.
+    pub fn new(name: &str, marker: impl Into<MarkerRef>, motion: &str) -> Self {
+        DrivingSpec { name: name.into(), marker: marker.into(), motion: motion.into() }
     }
 }
 
-impl Relation for Driving {
-    fn rows(&self) -> Vec<RowKind> {
-        vec![RowKind::Position; 3]
+#[typetag::serde(name = "driving")]
+impl ConstraintSpec for DrivingSpec {
+    fn name(&self) -> &str {
+        &self.name
     }
-    fn linear(&self) -> bool {
-        self.linear
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
     }
-    fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]) {
-        let m = self.motion.at(t.re());
-        for i in 0..3 {
-            g[i] = at[0].x[i] - self.start[i] - lift(t, [m.x[i], m.v[i], m.a[i]]);
-        }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let (markers, motion) = (pair(b, &self.marker, None)?, b.motion(&self.motion)?);
+        b.constraint(driving(&self.name, b.nodes(), markers, motion)?)
     }
+}
+
+/// Drives a length: the place of a marker along an axis of another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SlideSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is driven.
+    pub marker: MarkerRef,
+    /// The marker that it is driven against; left out, the point where it starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The axis in space at the start; it turns with `to`.
+    pub axis: V3<f64>,
+    /// Name of the motion, whose x component is the displacement along the axis.
+    pub motion: String,
+}
+register_spec!(Constraint, "slide", SlideSpec);
+
+#[typetag::serde(name = "slide")]
+impl ConstraintSpec for SlideSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let (markers, motion) = (pair(b, &self.marker, self.to.as_ref())?, b.motion(&self.motion)?);
+        let axes = along("axis", self.axis)?;
+        let [x, y] = markers.map(|m| b.place(&m).x);
+        let start = (0..3).map(|i| axes[2][i] * (y[i] - x[i])).sum();
+        let markers = aligned(b, markers, axes);
+        b.constraint(slide(&self.name, b.nodes(), markers, start, motion)?)
+    }
+}
+
+/// Drives an angle: the rotation of a part against another, about a common axis. Put it beside a `revolute` joint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RotationSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is driven, on a rigid body or a cable.
+    pub marker: MarkerRef,
+    /// The marker that it is driven against, on a rigid body; left out, space.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The axis in space at the start.
+    pub axis: V3<f64>,
+    /// Name of the motion, whose x component is the angle [rad].
+    pub motion: String,
+}
+register_spec!(Constraint, "rotation", RotationSpec);
+
+#[typetag::serde(name = "rotation")]
+impl ConstraintSpec for RotationSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let (markers, motion) = (pair(b, &self.marker, self.to.as_ref())?, b.motion(&self.motion)?);
+        let markers = aligned(b, markers, turned_axes(b, &markers[1], self.axis)?);
+        b.constraint(rotation(&self.name, b.nodes(), markers, motion)?)
+    }
+}
+
+/// Axes about a direction; the first is the slope of a cable, so that a cable can be turned.
+fn turned_axes(b: &Builder, driven: &Marker, axis: V3<f64>) -> Result<[V3<f64>; 3], BuildError> {
+    let axes = along("axis", axis)?;
+    if !crate::pair::on_cable(b, &[*driven, *driven]) {
+        return Ok(axes);
+    }
+    let slope = b.place(driven).axes[0];
+    let along_axis: f64 = (0..3).map(|i| slope[i] * axes[2][i]).sum();
+    let across: V3<f64> = std::array::from_fn(|i| slope[i] - along_axis * axes[2][i]);
+    let first = crate::check::unit("axis", across).map_err(|_| {
+        BuildError::at("axis", "the cable lies along the axis and can't be turned about it: it has no twist")
+    })?;
+    Ok([first, ropewalk_core::rotation::cross(&axes[2], &first), axes[2]])
 }

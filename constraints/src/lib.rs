@@ -1,19 +1,34 @@
 //! Ropewalk: constraints.
 //!
-//! Relations between markers (joints, clamps, driven points) and the motions that drive them.
+//! Joints between markers, and the motions that drive them. A joint is a list of [`Equation`]s between two markers, in
+//! closed form; a relation of another kind is written as a [`Relation`](ropewalk_core::Relation).
 
+mod breaking;
 mod check;
 mod clamp;
+mod connection;
 mod coordinate;
 mod distance;
 mod driving;
 pub mod motion;
-mod spec;
+mod pair;
+mod prismatic;
+mod revolute;
 mod spherical;
+mod universal;
+mod weld;
 
-pub use clamp::{BodyClamp, Clamp};
-pub use coordinate::Coordinate;
-pub use distance::Distance;
-pub use driving::Driving;
-pub use spec::{ClampSpec, CoordinateSpec, DistanceSpec, DrivingSpec, SphericalSpec};
-pub use spherical::Spherical;
+pub use breaking::BreakSpec;
+pub use clamp::{ClampSpec, clamp};
+pub use connection::{Arrow, Connection, Equation};
+pub use coordinate::{CoordinateSpec, coordinate};
+pub use distance::{DistanceSpec, distance};
+pub use driving::{DrivingSpec, RotationSpec, SlideSpec, driving, rotation, slide};
+pub use prismatic::{
+    CylindricalSpec, PointOnLineSpec, PointOnPlaneSpec, PrismaticSpec, cylindrical, point_on_line,
+    point_on_plane, prismatic,
+};
+pub use revolute::{RevoluteSpec, revolute};
+pub use spherical::{SphericalSpec, spherical};
+pub use universal::{PerpendicularSpec, UniversalSpec, perpendicular, universal};
+pub use weld::{WeldSpec, weld};

@@ -1,45 +1,61 @@
 //! Two points held together.
 
-use crate::check::{markers, moves_linearly};
-use ropewalk_core::build::BuildError;
-use ropewalk_core::{Jet, Joint, Marker, Node, Place, Relation, RowKind};
+use crate::connection::{Connection, Equation};
+use crate::pair::pair;
+use ropewalk_core::build::{BuildError, Builder};
+use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Two markers are at the same point: `x_1 - x_0 = 0`, three equations. Directions stay free.
 ///
 /// Use it for: pinning a cable's end to the ground or to a body, the links of a chain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Spherical {
-    /// Whether both markers move linearly with their nodes: no marker beside the point of a rigid body.
-    pub linear: bool,
+///
+/// # Errors
+/// Both on the ground or on the same node; a node without position.
+pub fn spherical(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+) -> Result<Connection, BuildError> {
+    Connection::new(name, nodes, between, Equation::coincide())
 }
 
-impl Spherical {
-    /// The joint of two markers, one of which may be on the ground.
-    ///
-    /// # Errors
-    /// Both on the ground or on the same node; a node without position.
-    pub fn joint(
-        name: impl Into<String>,
-        nodes: &[Node],
-        between: [Marker; 2],
-    ) -> Result<Joint<Self>, BuildError> {
-        let name = name.into();
-        markers(&name, nodes, &between)?;
-        let linear = between.iter().all(|m| moves_linearly(nodes, m));
-        Ok(Joint::new(name, Spherical { linear }, between.to_vec()))
+/// Holds two points together: of two parts, or of a part and space. Leaves every rotation free.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SphericalSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is held.
+    pub marker: MarkerRef,
+    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+}
+register_spec!(Constraint, "spherical", SphericalSpec);
+
+impl SphericalSpec {
+    /// Holds a marker to another or to a point in space.
+    pub fn new(name: &str, marker: impl Into<MarkerRef>, to: impl Into<MarkerRef>) -> Self {
+        SphericalSpec { name: name.into(), marker: marker.into(), to: Some(to.into()) }
+    }
+    /// Holds a marker where it starts.
+    pub fn pin(name: &str, marker: impl Into<MarkerRef>) -> Self {
+        SphericalSpec { name: name.into(), marker: marker.into(), to: None }
     }
 }
 
-impl Relation for Spherical {
-    fn rows(&self) -> Vec<RowKind> {
-        vec![RowKind::Position; 3]
+#[typetag::serde(name = "spherical")]
+impl ConstraintSpec for SphericalSpec {
+    fn name(&self) -> &str {
+        &self.name
     }
-    fn linear(&self) -> bool {
-        self.linear
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
     }
-    fn g<S: Jet>(&self, _: S, at: &[Place<S>], g: &mut [S]) {
-        for i in 0..3 {
-            g[i] = at[1].x[i] - at[0].x[i];
-        }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let markers = pair(b, &self.marker, self.to.as_ref())?;
+        b.constraint(spherical(&self.name, b.nodes(), markers)?)
     }
 }

@@ -2,12 +2,13 @@
 
 use crate::constraint::Constraint;
 use crate::marker::Marker;
-use crate::model::{Model, Start};
+use crate::model::{Model, Start, Switches};
 use crate::motion::Motion;
 use crate::node::{Node, NodeId, NodeKind};
 use crate::part::{Part, Spot, split_marker};
 use crate::pool::{Element, Pool};
 use crate::scene::Water;
+use crate::simulation::Event;
 use crate::spec::MarkerRef;
 use crate::state::At;
 use crate::station::{FieldTerm, Law, Laws, Stations};
@@ -107,6 +108,7 @@ pub struct Builder {
     /// Meshes that replace those of the specs, by part.
     meshes: HashMap<String, Vec<f64>>,
     water: Option<Water>,
+    switches: Switches,
     length: f64,
 }
 
@@ -198,6 +200,36 @@ impl Builder {
         }
         self.constraints.push(Box::new(constraint));
         Ok(())
+    }
+
+    /// Adds a mode: a number of the state that events change, at first 0. Returns its place in
+    /// [`State::modes`](crate::State::modes).
+    pub fn mode(&mut self, name: impl Into<String>) -> usize {
+        self.switches.modes.push(name.into());
+        self.start.modes.push(0.0);
+        self.start.modes.len() - 1
+    }
+
+    /// Adds an event that every run of the model watches for.
+    pub fn event(&mut self, event: impl Event + 'static) {
+        self.switches.events.push(Arc::new(event));
+    }
+
+    /// Makes a constraint let go once a mode isn't zero. Returns the number of the constraint.
+    ///
+    /// # Errors
+    /// There is no constraint of this name before, or it can let go already.
+    pub fn release(&mut self, constraint: &str, mode: usize) -> Result<usize, BuildError> {
+        let Some(c) = self.constraints.iter().position(|c| c.name() == constraint) else {
+            let names: Vec<String> = self.constraints.iter().map(|c| format!("`{}`", c.name())).collect();
+            let names = if names.is_empty() { "none".into() } else { names.join(", ") };
+            let message = format!("there is no constraint `{constraint}` above; those above are {names}");
+            return Err(BuildError::at("of", message));
+        };
+        if self.switches.released.insert(c, mode).is_some() {
+            return Err(BuildError::at("of", format!("constraint `{constraint}` is to break in two ways")));
+        }
+        Ok(c)
     }
 
     /// Adds a named part.
@@ -367,7 +399,8 @@ impl Builder {
             }
         }
         let length = if self.length > 0.0 { self.length } else { 1.0 };
-        let model = Model::new(self.nodes, terms, self.constraints, self.parts, self.start, length);
+        let model = Model::new(self.nodes, terms, self.constraints, self.parts, self.start, length)
+            .with_switches(self.switches);
         redundancy(&model)?;
         Ok(model)
     }

@@ -4,7 +4,7 @@
 //! acceleration equation come from forward differentiation of it and are exact.
 
 use crate::marker::{Jet, Marker, Place};
-use crate::node::{Node, NodeId};
+use crate::node::{Node, NodeId, NodeKind};
 use crate::state::At;
 use num_dual::{Dual2_64, Dual64, HyperDual64};
 
@@ -64,7 +64,8 @@ pub trait Constraint: Send + Sync {
     fn linear(&self) -> bool;
     /// Sets `g` and, row by row, its Jacobian by the velocities of [`Constraint::nodes`].
     fn jacobian(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]);
-    /// Sets `h = Σ λ ∂²g/∂q²`, a square matrix over the velocities of its nodes.
+    /// Sets `h = ∂(Gᵀλ)/∂q`, a square matrix over the velocities of its nodes: row by equation, column by increment. It
+    /// isn't symmetric where nodes have orientations.
     fn geometric(&self, nodes: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]);
     /// Sets `∂g/∂t` and the bias `(G v)_q v + 2 G_t v + g_tt`: the parts of ġ and g̈ that hold no unknown.
     fn rates(&self, nodes: &[Node], at: &At<'_>, rate: &mut [f64], bias: &mut [f64]);
@@ -86,6 +87,8 @@ pub struct Joint<R> {
 
 /// More rows than any joint has.
 pub(crate) const MOST_ROWS: usize = 16;
+/// More markers than any joint has.
+const MOST_MARKERS: usize = 4;
 
 impl<R: Relation> Joint<R> {
     /// Holds markers by a relation.
@@ -94,6 +97,7 @@ impl<R: Relation> Joint<R> {
         nodes.sort_unstable();
         nodes.dedup();
         let rows = relation.rows();
+        assert!(markers.len() <= MOST_MARKERS, "a relation has at most {MOST_MARKERS} markers");
         assert!(rows.len() <= MOST_ROWS, "a relation has at most {MOST_ROWS} equations");
         Joint { name: name.into(), relation, markers, nodes, rows, range: (f64::NEG_INFINITY, f64::INFINITY) }
     }
@@ -112,12 +116,12 @@ impl<R: Relation> Joint<R> {
         d: impl Fn(usize) -> S,
         out: &mut [S; MOST_ROWS],
     ) {
-        let mut places = [Place { x: [S::zero(); 3], direction: [S::zero(); 3] }; 4];
+        let mut places = [Place { x: [S::zero(); 3], axes: [[S::zero(); 3]; 3] }; MOST_MARKERS];
         for (place, marker) in places.iter_mut().zip(&self.markers) {
             let start = marker.on().map_or(0, |n| self.local_start(nodes, n));
             *place = marker.place(nodes, at.q, |i| d(start + i));
         }
-        self.relation.g(t, &places[..self.markers.len().min(4)], &mut out[..self.rows.len()]);
+        self.relation.g(t, &places[..self.markers.len().min(MOST_MARKERS)], &mut out[..self.rows.len()]);
     }
 
     fn local_start(&self, nodes: &[Node], node: NodeId) -> usize {
@@ -164,15 +168,32 @@ impl<R: Relation> Constraint for Joint<R> {
     fn geometric(&self, nodes: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
         let n = self.local_size(nodes);
         let mut out = [HyperDual64::from(0.0); MOST_ROWS];
+        let mut slope = [0.0; MOST_MARKERS * 6];
         for j in 0..n {
             for k in 0..=j {
                 let one = |on: bool| if on { 1.0 } else { 0.0 };
                 let seed = |i: usize| HyperDual64::new(0.0, one(i == j), one(i == k), 0.0);
                 self.eval(nodes, at, HyperDual64::from(at.t), seed, &mut out);
-                let sum: f64 = (0..self.rows.len()).map(|r| lambda[r] * out[r].eps1eps2).sum();
-                h[j * n + k] = sum;
-                h[k * n + j] = sum;
+                let sum = |pick: fn(&HyperDual64) -> f64| -> f64 {
+                    (0..self.rows.len()).map(|r| lambda[r] * pick(&out[r])).sum()
+                };
+                h[j * n + k] = sum(|x| x.eps1eps2);
+                h[k * n + j] = h[j * n + k];
+                slope[j] = sum(|x| x.eps1);
             }
+        }
+        // two small rotations one after the other differ from their sum by half their product
+        let mut start = 0;
+        for node in self.nodes.iter().map(|n| &nodes[n.0 as usize]) {
+            if node.kind == NodeKind::Frame {
+                for (x, y, z) in
+                    [(3, 4, 5), (4, 5, 3), (5, 3, 4)].map(|(x, y, z)| (start + x, start + y, start + z))
+                {
+                    h[z * n + y] += 0.5 * slope[x];
+                    h[y * n + z] -= 0.5 * slope[x];
+                }
+            }
+            start += node.kind.velocities();
         }
     }
 

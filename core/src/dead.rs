@@ -1,8 +1,8 @@
 //! Dead loads: forces that never change.
 
 use crate::build::{BuildError, need};
-use crate::held::Held;
-use crate::lane::V3;
+use crate::held::{Held, Pull, pull};
+use crate::lane::{V3, dot};
 use crate::marker::Marker;
 use crate::node::Node;
 use crate::pattern::Pattern;
@@ -52,6 +52,9 @@ impl DeadLoad {
     pub fn at_marker(nodes: &[Node], marker: &Marker, force: V3<f64>) -> Result<Vec<DeadEntry>, BuildError> {
         match Held::new(nodes, marker, "dead load")? {
             Held::Ground(_) => Ok(Vec::new()),
+            Held::Beside { .. } | Held::Between { .. } => {
+                Err(BuildError::new("a dead load on a body beside its node turns it, which isn't constant"))
+            }
             Held::Moves { q, v } => Ok((0..3)
                 .filter(|&i| force[i] != 0.0)
                 .map(|i| DeadEntry { dof: v + i, coordinate: q + i, value: force[i] })
@@ -73,5 +76,36 @@ impl Term for DeadLoad {
     fn energy(&self, at: &At<'_>) -> Energy {
         let work: f64 = self.entries.iter().map(|e| e.value * at.q[e.coordinate]).sum();
         Energy { potential: -work, ..Energy::default() }
+    }
+}
+
+/// A constant force in space on a point whose way back to its node changes, such as buoyancy beside the centre of mass
+/// of a rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeadPull {
+    /// A name, such as `vehicle: buoyancy`.
+    pub label: String,
+    /// Where it acts.
+    pub held: Held,
+    /// The force [N].
+    pub force: V3<f64>,
+}
+
+impl Term for DeadPull {
+    fn label(&self) -> String {
+        self.label.clone()
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        p.clique(self.held.dofs());
+    }
+    fn symmetric(&self) -> bool {
+        !matches!(self.held, Held::Beside { .. })
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        let force = Pull { f: self.force, ..Pull::default() };
+        pull(&[Held::Ground([0.0; 3]), self.held], at, &force, 0, out);
+    }
+    fn energy(&self, at: &At<'_>) -> Energy {
+        Energy { potential: -dot(&self.force, &self.held.x(at)), ..Energy::default() }
     }
 }

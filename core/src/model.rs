@@ -6,9 +6,11 @@ use crate::node::{Node, NodeId, NodeKind, retract};
 use crate::order::Rows;
 use crate::part::Part;
 use crate::pattern::Pattern;
+use crate::simulation::Event;
 use crate::state::{At, Control, State};
 use crate::structure::Structure;
 use crate::term::{Assembly, Energy, Power, Term, Weights};
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -20,6 +22,8 @@ pub struct Model {
     pub(crate) constraints: Vec<Box<dyn Constraint>>,
     pub(crate) parts: Vec<Arc<dyn Part>>,
     pub(crate) start: Start,
+    /// What can happen during a run, and which constraints end by it.
+    pub(crate) switches: Switches,
     structure: Structure,
     pattern: Pattern,
     touched: Vec<Rows>,
@@ -45,6 +49,17 @@ pub struct Start {
     pub v: Vec<f64>,
     /// Modes.
     pub modes: Vec<f64>,
+}
+
+/// What changes by events: things that happen, and constraints that let go.
+#[derive(Clone, Default)]
+pub struct Switches {
+    /// The events that the scene brings along.
+    pub events: Vec<Arc<dyn Event>>,
+    /// Names of the modes, in the order of [`State::modes`].
+    pub modes: Vec<String>,
+    /// For some constraints, by number: the mode that isn't zero once the constraint has let go.
+    pub released: BTreeMap<usize, usize>,
 }
 
 /// Residual and iteration matrix of a model, with the scratch to assemble them.
@@ -91,7 +106,11 @@ impl Model {
             rows.push(first + count);
             touched.push(Rows { count, nodes: c.nodes().to_vec() });
         }
-        let symmetric = terms.iter().all(|t| t.symmetric());
+        // the forces of a constraint on a body turn it, and rotations one after the other don't commute
+        let turns = |c: &dyn Constraint| {
+            !c.linear() && c.nodes().iter().any(|k| nodes[k.0 as usize].kind == NodeKind::Frame)
+        };
+        let symmetric = terms.iter().all(|t| t.symmetric()) && !constraints.iter().any(|c| turns(c.as_ref()));
         let flat = nodes.iter().all(|n| n.kind != NodeKind::Frame);
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
@@ -101,6 +120,7 @@ impl Model {
             constraints,
             parts,
             start,
+            switches: Switches::default(),
             structure,
             pattern,
             touched,
@@ -119,6 +139,26 @@ impl Model {
     pub fn with_width(mut self, width: Width) -> Self {
         self.width = width;
         self
+    }
+
+    /// Adds what changes by events.
+    #[must_use]
+    pub fn with_switches(mut self, switches: Switches) -> Self {
+        self.switches = switches;
+        self
+    }
+    /// The events that the scene brings along.
+    pub fn events(&self) -> &[Arc<dyn Event>] {
+        &self.switches.events
+    }
+    /// The number of a mode in [`State::modes`].
+    pub fn mode(&self, name: &str) -> Option<usize> {
+        self.switches.modes.iter().position(|m| m == name)
+    }
+    /// Whether a constraint still holds: it hasn't broken.
+    pub fn holds(&self, constraint: usize, modes: &[f64]) -> bool {
+        self.switches.released.is_empty()
+            || self.switches.released.get(&constraint).is_none_or(|&m| modes[m] == 0.0)
     }
 
     /// The state in which the scene starts: as given, not yet consistent.
@@ -266,6 +306,16 @@ impl Model {
         let m = rows.len();
         let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
         let multipliers = &lambda[rows.clone()];
+        if !self.holds(c, at.modes) {
+            // what is left are equations for its multipliers, which are zero since it let go
+            for row in rows {
+                let p = structure.position[self.velocities + row];
+                if weights.is_some() {
+                    sys.values[structure.slot(p, p)] += 1.0;
+                }
+            }
+            return;
+        }
         sys.jacobian.resize(n * m, 0.0);
         let (motion, relation) = sys.residual.split_at_mut(self.velocities);
         constraint.jacobian(&self.nodes, at, &mut relation[rows], &mut sys.jacobian);
@@ -331,6 +381,10 @@ impl Model {
     /// Values of the constraints alone.
     pub fn violations(&self, at: &At<'_>, sys: &mut System, g: &mut [f64]) {
         for (c, constraint) in self.constraints.iter().enumerate() {
+            if !self.holds(c, at.modes) {
+                g[self.rows_of(c)].fill(0.0);
+                continue;
+            }
             let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
             sys.jacobian.resize(n * constraint.rows().len(), 0.0);
             constraint.jacobian(&self.nodes, at, &mut g[self.rows_of(c)], &mut sys.jacobian);
@@ -341,7 +395,12 @@ impl Model {
     pub fn rates(&self, at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
         for (c, constraint) in self.constraints.iter().enumerate() {
             let rows = self.rows_of(c);
-            constraint.rates(&self.nodes, at, &mut rate[rows.clone()], &mut bias[rows]);
+            if self.holds(c, at.modes) {
+                constraint.rates(&self.nodes, at, &mut rate[rows.clone()], &mut bias[rows]);
+            } else {
+                rate[rows.clone()].fill(0.0);
+                bias[rows].fill(0.0);
+            }
         }
     }
 
@@ -403,7 +462,8 @@ impl Model {
         for t in &self.terms {
             p += t.power(at);
         }
-        for (c, constraint) in self.constraints.iter().enumerate() {
+        let holding = self.constraints.iter().enumerate().filter(|(c, _)| self.holds(*c, at.modes));
+        for (c, constraint) in holding {
             let (mut rate, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
             constraint.rates(&self.nodes, at, &mut rate, &mut bias);
             p.supplied += rate.iter().zip(&lambda[self.rows_of(c)]).map(|(r, l)| r * l).sum::<f64>();

@@ -3,6 +3,7 @@
 //! Integrators and Newton's method work with velocities and increments, which are plain vectors; only a node
 //! knows that an orientation isn't one. `q ⊕ Δ` is [`NodeKind::retract`].
 
+use crate::rotation::{cross, exp, log, then};
 use serde::{Deserialize, Serialize};
 
 /// What a node carries.
@@ -45,7 +46,7 @@ impl NodeKind {
             for i in 0..3 {
                 out[i] = q[i] + d[i];
             }
-            let p = quaternion_product([q[3], q[4], q[5], q[6]], quaternion_exp([d[3], d[4], d[5]]));
+            let p = then([q[3], q[4], q[5], q[6]], exp([d[3], d[4], d[5]]));
             let norm = p.iter().map(|x| x * x).sum::<f64>().sqrt();
             for i in 0..4 {
                 out[3 + i] = p[i] / norm;
@@ -63,8 +64,8 @@ impl NodeKind {
         v.copy_from_slice(rate);
         if self == NodeKind::Frame {
             let theta = [d[3], d[4], d[5]];
-            let once = cross(theta, [rate[3], rate[4], rate[5]]);
-            let twice = cross(theta, once);
+            let once = cross(&theta, &[rate[3], rate[4], rate[5]]);
+            let twice = cross(&theta, &once);
             let square = theta.iter().map(|x| x * x).sum::<f64>();
             let angle = square.sqrt();
             let (a, b) = if angle < 1e-2 {
@@ -89,14 +90,7 @@ impl NodeKind {
         }
         if self == NodeKind::Frame {
             let back = [from[3], -from[4], -from[5], -from[6]];
-            let p = quaternion_product(back, [to[3], to[4], to[5], to[6]]);
-            // the shorter way round
-            let sign = if p[0] < 0.0 { -1.0 } else { 1.0 };
-            let sine = (p[1] * p[1] + p[2] * p[2] + p[3] * p[3]).sqrt();
-            let scale = if sine < 1e-8 { 2.0 } else { 2.0 * sine.atan2(sign * p[0]) / sine };
-            for i in 0..3 {
-                d[3 + i] = sign * scale * p[1 + i];
-            }
+            d[3..6].copy_from_slice(&log(then(back, [to[3], to[4], to[5], to[6]])));
         }
     }
 }
@@ -148,26 +142,6 @@ pub fn difference(nodes: &[Node], from: &[f64], to: &[f64], d: &mut [f64]) {
     for n in nodes {
         n.kind.difference(&from[n.coords()], &to[n.coords()], &mut d[n.dofs()]);
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn quaternion_exp(theta: [f64; 3]) -> [f64; 4] {
-    let angle = theta.iter().map(|x| x * x).sum::<f64>().sqrt();
-    // sin(x/2)/x, by its series where the quotient would be 0/0
-    let s = if angle < 1e-4 { 0.5 - angle * angle / 48.0 } else { (0.5 * angle).sin() / angle };
-    [(0.5 * angle).cos(), s * theta[0], s * theta[1], s * theta[2]]
-}
-
-fn quaternion_product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
-    [
-        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
-    ]
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ pub enum Action {
 }
 
 /// A scalar function of the state whose change of sign is located in time, and what happens there.
-pub trait Event: Send {
+pub trait Event: Send + Sync {
     /// Its name in reports.
     fn name(&self) -> String;
     /// The function.
@@ -34,7 +34,7 @@ pub trait Event: Send {
         0
     }
     /// What happens there.
-    fn act(&mut self, model: &Model, state: &mut State) -> Action;
+    fn act(&self, model: &Model, state: &mut State) -> Action;
 }
 
 /// Sees every accepted step and every sample, read-only: recorders, progress bars.
@@ -70,6 +70,16 @@ pub enum End {
     },
 }
 
+/// The value of an event at the start. What has come to pass already happens at once.
+fn at_start(event: &dyn Event, model: &Model, state: &State) -> f64 {
+    let value = event.value(model, state);
+    match event.direction() {
+        1 if value >= 0.0 => -f64::MIN_POSITIVE,
+        -1 if value <= 0.0 => f64::MIN_POSITIVE,
+        _ => value,
+    }
+}
+
 /// A model in motion.
 ///
 /// Holds the model, its state, the integrator and its scratch. `advance` takes it to a time.
@@ -92,7 +102,7 @@ pub struct Simulation {
     change: Vec<f64>,
     keep_audit: bool,
     power: Power,
-    events: Vec<(Box<dyn Event>, f64)>,
+    events: Vec<(Arc<dyn Event>, f64)>,
     previous: State,
     scratch: State,
 }
@@ -122,6 +132,8 @@ impl Simulation {
         let audit = Audit::start(model.energy(&state.at()));
         let power = model.power(&state.at(), &state.lambda);
         let (previous, scratch) = (state.clone(), state.clone());
+        let events =
+            model.events().iter().map(|e| (e.clone(), at_start(e.as_ref(), &model, &state))).collect();
         Ok(Simulation {
             model: Arc::new(model),
             state,
@@ -133,7 +145,7 @@ impl Simulation {
             change: Vec::new(),
             keep_audit: true,
             power,
-            events: Vec::new(),
+            events,
             previous,
             scratch,
         })
@@ -145,9 +157,9 @@ impl Simulation {
     }
 
     /// Adds an event.
-    pub fn add_event(&mut self, event: Box<dyn Event>) {
-        let value = event.value(&self.model, &self.state);
-        self.events.push((event, value));
+    pub fn add_event(&mut self, event: impl Event + 'static) {
+        let value = at_start(&event, &self.model, &self.state);
+        self.events.push((Arc::new(event), value));
     }
 
     /// Goes on to time `end`, with a sample now and every `interval` seconds.
@@ -320,6 +332,10 @@ impl Simulation {
                     source,
                     unknown: "the structure of the new mesh".into(),
                 })?;
+                // events of the scene belong to its model; those that were added stay
+                let own = self.model.events().len();
+                let new = model.events().iter().map(|e| (e.clone(), 0.0)).collect::<Vec<_>>();
+                self.events.splice(..own, new);
                 self.model = Arc::from(model);
             }
         }

@@ -166,21 +166,24 @@ pub fn check_constraint(constraint: &dyn Constraint, nodes: &[Node], at: &At<'_>
     let numeric: Vec<Vec<f64>> = (0..n).map(|j| difference(|h| moved(0.0, &unit(j, h)))).collect();
     let mut worst = column_error(&columns, &numeric, 1.0);
 
-    let sum = |g: Vec<f64>| g.iter().zip(&lambda).map(|(g, l)| g * l).sum::<f64>();
-    let along =
-        |d: Vec<f64>| second(|x| vec![sum(moved(0.0, &d.iter().map(|d| d * x).collect::<Vec<_>>()))])[0];
-    let pair = |j: usize, k: usize, s: f64| unit(j, 1.0).iter().zip(unit(k, s)).map(|(a, b)| a + b).collect();
-    let numeric: Vec<Vec<f64>> = (0..n)
-        .map(|j| (0..n).map(|k| 0.25 * (along(pair(j, k, 1.0)) - along(pair(j, k, -1.0)))).collect())
-        .collect();
-    let columns: Vec<Vec<f64>> = h.chunks(n.max(1)).map(<[f64]>::to_vec).collect();
-    // second differences carry more noise than first ones
-    worst = worst.max(column_error(&columns, &numeric, 1e3 * largest(&g).max(0.1)));
+    let pull = |d: &[f64]| -> Vec<f64> {
+        let mut step = vec![0.0; all];
+        dofs.iter().zip(d).for_each(|(&i, &d)| step[i] += d);
+        let mut q = at.q.to_vec();
+        retract(nodes, at.q, &step, &mut q);
+        let (mut g, mut jac) = (vec![0.0; rows], vec![0.0; rows * n]);
+        constraint.jacobian(nodes, &At { q: &q, ..*at }, &mut g, &mut jac);
+        (0..n).map(|j| (0..rows).map(|r| jac[r * n + j] * lambda[r]).sum()).collect()
+    };
+    let numeric: Vec<Vec<f64>> = (0..n).map(|j| difference(|h| pull(&unit(j, h)))).collect();
+    let columns: Vec<Vec<f64>> = (0..n).map(|j| (0..n).map(|i| h[i * n + j]).collect()).collect();
+    worst = worst.max(column_error(&columns, &numeric, 1.0));
     if constraint.linear() {
         worst = worst.max(largest(&h));
     }
     worst = worst.max(column_error(&[rate], &[difference(|dt| moved(dt, &[]))], 1.0));
     let path = |dt: f64| moved(dt, &dofs.iter().map(|&i| at.v[i] * dt).collect::<Vec<_>>());
+    // second differences carry more noise than first ones
     worst.max(column_error(&[bias], &[second(path)], 1e3 * largest(&g).max(0.1)))
 }
 
@@ -326,7 +329,7 @@ mod tests {
             self.0
         }
         fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]) {
-            g[0] = at[0].x[0] * at[0].x[1] * t.sin() - at[0].direction[2];
+            g[0] = at[0].x[0] * at[0].x[1] * t.sin() - at[0].axes[0][2];
         }
     }
 
@@ -342,7 +345,8 @@ mod tests {
             modes: &[],
             relaxed: None,
         };
-        let marker = Marker::Node { node: NodeId(0), point: [0.1, 0.5, 0.2], direction: [1.0, 0.5, 0.0] };
+        let axes = crate::rotation::around([1.0, 0.5, 0.0]);
+        let marker = Marker::Node { node: NodeId(0), point: [0.1, 0.5, 0.2], axes };
         assert!(check_constraint(&Joint::new("curve", Curve(false), vec![marker]), &nodes, &at) < 1e-7);
         assert!(check_constraint(&Joint::new("curve", Curve(true), vec![marker]), &nodes, &at) > 1e-2);
     }

@@ -2,6 +2,8 @@
 
 pub mod cable;
 mod point_mass;
+pub mod rigid_body;
 
 pub use cable::{CableSpec, Section};
 pub use point_mass::{PointMass, PointMassSpec};
+pub use rigid_body::RigidBodySpec;

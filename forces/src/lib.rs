@@ -6,6 +6,7 @@
 mod added_mass;
 mod drag;
 mod line_load;
+mod moment;
 mod point;
 mod spec;
 mod spring;
@@ -14,7 +15,8 @@ mod time;
 pub use added_mass::AddedMass;
 pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
 pub use line_load::LineLoad;
-pub use point::{PointForce, PointMoment};
+pub use moment::PointMoment;
+pub use point::PointForce;
 pub use spec::{
     AddedMassSpec, BuoyancySpec, DragLaw, DragSpec, GravitySpec, LineLoadSpec, PointForceSpec,
     PointMomentSpec, SpringSpec,

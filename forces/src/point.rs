@@ -1,8 +1,9 @@
-//! Forces and moments at a point.
+//! Forces at a point.
 
 use crate::time::TimeFunction;
 use ropewalk_core::build::{BuildError, finite, need};
-use ropewalk_core::held::{Held, cross, delta, find, three};
+use ropewalk_core::held::{Held, Pull, cross, delta, dofs, find, pull, three};
+use ropewalk_core::rotation::{matrix, product, skew, times};
 use ropewalk_core::{Assembly, At, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot};
 
 /// How a point force is directed.
@@ -12,11 +13,13 @@ enum Aim {
     Dead(V3<f64>),
     /// This magnitude [N] along the slope at this coordinate.
     Follower { magnitude: f64, slope: usize },
+    /// This force [N] in the axes of a body with these first coordinate and velocity, and its moment about its node.
+    OnBody { force: V3<f64>, moment: V3<f64>, q: usize, v: usize },
 }
 
 /// A force on a marker, times a function of time.
 ///
-/// Use it for: the load at a beam's tip, a pull on a hose, the thrust of a propeller (follower).
+/// Use it for: the load at a beam's tip, a pull on a hose, the thrust of a propeller (follower, on a body).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointForce {
     /// A name, such as `tip load`.
@@ -24,17 +27,14 @@ pub struct PointForce {
     /// Factor that changes with time.
     pub time: TimeFunction,
     aim: Aim,
-    /// Indices of its first coordinate and velocity.
-    q: usize,
-    v: usize,
+    ends: [Held; 2],
 }
 
 impl PointForce {
     /// A force that keeps its direction in space [N].
     ///
     /// # Errors
-    /// A marker on ground, beside the point of a rigid body or on a node without position; a force that isn't
-    /// finite; a bad function of time.
+    /// A marker on ground or on a node without position; a force that isn't finite; a bad function of time.
     pub fn dead(
         label: impl Into<String>,
         nodes: &[Node],
@@ -42,13 +42,7 @@ impl PointForce {
         force: V3<f64>,
         time: TimeFunction,
     ) -> Result<Self, BuildError> {
-        let label = label.into();
-        finite(&label, &force)?;
-        time.check()?;
-        match Held::new(nodes, marker, &label)? {
-            Held::Ground(_) => Err(BuildError::new(format!("{label}: a force on the ground moves nothing"))),
-            Held::Moves { q, v } => Ok(PointForce { label, time, aim: Aim::Dead(force), q, v }),
-        }
+        PointForce::new(label.into(), nodes, marker, Aim::Dead(force), &force, time)
     }
 
     /// A force of given magnitude [N] along the tangent `r'/|r'|` of a cable node, whichever way it turns.
@@ -63,10 +57,41 @@ impl PointForce {
         time: TimeFunction,
     ) -> Result<Self, BuildError> {
         let label = label.into();
-        finite(&label, &[magnitude])?;
-        time.check()?;
         let n = slope_node(nodes, node, &label)?;
-        Ok(PointForce { label, time, aim: Aim::Follower { magnitude, slope: n.q + 3 }, q: n.q, v: n.v })
+        let aim = Aim::Follower { magnitude, slope: n.q + 3 };
+        PointForce::new(label, nodes, &Marker::node(node), aim, &[magnitude], time)
+    }
+
+    /// A force [N] in the axes of a rigid body, that turns with it.
+    ///
+    /// # Errors
+    /// A marker that isn't on a rigid body; a force that isn't finite; a bad function of time.
+    pub fn on_body(
+        label: impl Into<String>,
+        nodes: &[Node],
+        marker: &Marker,
+        force: V3<f64>,
+        time: TimeFunction,
+    ) -> Result<Self, BuildError> {
+        let label = label.into();
+        let (n, point) = body(nodes, marker, &label)?;
+        let aim = Aim::OnBody { force, moment: cross(&point, &force), q: n.q, v: n.v };
+        PointForce::new(label, nodes, marker, aim, &force, time)
+    }
+
+    fn new(
+        label: String,
+        nodes: &[Node],
+        marker: &Marker,
+        aim: Aim,
+        numbers: &[f64],
+        time: TimeFunction,
+    ) -> Result<Self, BuildError> {
+        finite(&label, numbers)?;
+        time.check()?;
+        let held = Held::new(nodes, marker, &label)?;
+        need(held.size() > 0, || format!("{label}: a force on the ground moves nothing"))?;
+        Ok(PointForce { label, time, aim, ends: [Held::Ground([0.0; 3]), held] })
     }
 
     /// The force at a state [N].
@@ -79,11 +104,16 @@ impl PointForce {
                 let scale = factor * magnitude / dot(&p, &p).sqrt();
                 p.map(|p| scale * p)
             }
+            Aim::OnBody { force, q, .. } => times(&matrix(&orientation(at, q)), &force).map(|f| factor * f),
         }
     }
 }
 
-fn slope_node<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Node, BuildError> {
+pub(crate) fn orientation(at: &At<'_>, q: usize) -> [f64; 4] {
+    [at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]
+}
+
+pub(crate) fn slope_node<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Node, BuildError> {
     let n = find(nodes, node, what)?;
     need(n.kind == NodeKind::Slope, || {
         format!("{what}: needs a cable node (position and slope), but node {} is {:?}", node.0, n.kind)
@@ -91,110 +121,69 @@ fn slope_node<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Nod
     Ok(n)
 }
 
+/// The node of a marker on a rigid body, and the marker's place on it.
+pub(crate) fn body<'a>(
+    nodes: &'a [Node],
+    marker: &Marker,
+    what: &str,
+) -> Result<(&'a Node, V3<f64>), BuildError> {
+    if let Marker::Node { node, point, .. } = *marker
+        && let n = find(nodes, node, what)?
+        && n.kind == NodeKind::Frame
+    {
+        return Ok((n, point));
+    }
+    Err(BuildError::new(format!("{what}: needs a marker on a rigid body")))
+}
+
 impl Term for PointForce {
     fn label(&self) -> String {
         self.label.clone()
     }
     fn pattern(&self, p: &mut Pattern) {
-        if matches!(self.aim, Aim::Follower { .. }) {
-            p.clique(self.v..self.v + 6);
+        match self.aim {
+            Aim::Dead(_) if matches!(self.ends[1], Held::Moves { .. }) => {}
+            Aim::Dead(_) => p.clique(dofs(&self.ends)),
+            Aim::Follower { .. } | Aim::OnBody { .. } => {
+                let first = self.ends[1].dof(0);
+                p.clique(first..first + 6);
+            }
         }
     }
     fn symmetric(&self) -> bool {
-        matches!(self.aim, Aim::Dead(_))
+        matches!((self.aim, self.ends[1]), (Aim::Dead(_), Held::Moves { .. }))
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let f = self.force(at);
-        for i in 0..3 {
-            out.add(self.v + i, -f[i]);
-        }
-        if let Aim::Follower { magnitude, slope } = self.aim
-            && out.wants_tangent()
-        {
-            let p = three(at.q, slope);
-            let squared = dot(&p, &p);
-            let turn = out.weights().q * self.time.at(at.t) * magnitude / squared.sqrt();
-            out.add_block(0, 6, |i, j| {
-                if i < 3 && j >= 3 { -turn * (delta(i, j - 3) - p[i] * p[j - 3] / squared) } else { 0.0 }
-            });
-        }
-    }
-    fn power(&self, at: &At<'_>) -> Power {
-        Power { supplied: dot(&self.force(at), &three(at.v, self.v)), ..Power::default() }
-    }
-}
-
-/// A moment on the cross-section of a cable, fixed in space, times a function of time.
-///
-/// The section turns with `r'`: its virtual rotation is `r' × δr' / |r'|²`, so the generalised force on `r'` is
-/// `m × r' / |r'|²`. The part of `m` along `r'` does no work: the cable has no twist. Use it for: rolling up a
-/// cantilever, a motor at a hose's end. Such a moment isn't conservative, its tangent not symmetric.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PointMoment {
-    /// A name, such as `tip moment`.
-    pub label: String,
-    /// Moment [N m].
-    pub moment: V3<f64>,
-    /// Factor that changes with time.
-    pub time: TimeFunction,
-    /// Indices of the slope's first coordinate and velocity.
-    q: usize,
-    v: usize,
-}
-
-impl PointMoment {
-    /// A moment [N m] on a cable node.
-    ///
-    /// # Errors
-    /// A node without slope; a moment that isn't finite; a bad function of time.
-    pub fn new(
-        label: impl Into<String>,
-        nodes: &[Node],
-        node: NodeId,
-        moment: V3<f64>,
-        time: TimeFunction,
-    ) -> Result<Self, BuildError> {
-        let label = label.into();
-        finite(&label, &moment)?;
-        time.check()?;
-        let n = slope_node(nodes, node, &label)?;
-        Ok(PointMoment { label, moment, time, q: n.q + 3, v: n.v + 3 })
-    }
-
-    /// The moment now, `r'`, and the generalised force on it.
-    fn now(&self, at: &At<'_>) -> (V3<f64>, V3<f64>, V3<f64>) {
-        let factor = self.time.at(at.t);
-        let m = self.moment.map(|m| factor * m);
-        let p = three(at.q, self.q);
-        let squared = dot(&p, &p);
-        (m, p, cross(&m, &p).map(|x| x / squared))
-    }
-}
-
-impl Term for PointMoment {
-    fn label(&self) -> String {
-        self.label.clone()
-    }
-    fn pattern(&self, p: &mut Pattern) {
-        p.clique(self.v..self.v + 3);
-    }
-    fn symmetric(&self) -> bool {
-        false
-    }
-    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        let (m, p, force) = self.now(at);
-        for i in 0..3 {
-            out.add(self.v + i, -force[i]);
-        }
-        if out.wants_tangent() {
-            let squared = dot(&p, &p);
-            let w = out.weights().q / squared;
-            let spin = [[0.0, -m[2], m[1]], [m[2], 0.0, -m[0]], [-m[1], m[0], 0.0]];
-            out.add_block(0, 3, |i, j| w * (2.0 * force[i] * p[j] - spin[i][j]));
+        let w = out.weights().q * self.time.at(at.t);
+        match self.aim {
+            Aim::Dead(_) if self.symmetric() => {
+                (0..3).for_each(|i| out.add(self.ends[1].dof(i), -f[i]));
+            }
+            Aim::Dead(_) => pull(&self.ends, at, &Pull { f, ..Pull::default() }, 0, out),
+            Aim::Follower { magnitude, slope } => {
+                (0..3).for_each(|i| out.add(self.ends[1].dof(i), -f[i]));
+                let p = three(at.q, slope);
+                let squared = dot(&p, &p);
+                let turn = w * magnitude / squared.sqrt();
+                out.add_block(0, 6, |i, j| {
+                    if i < 3 && j >= 3 { -turn * (delta(i, j - 3) - p[i] * p[j - 3] / squared) } else { 0.0 }
+                });
+            }
+            Aim::OnBody { force, moment, q, v } => {
+                let factor = self.time.at(at.t);
+                for i in 0..3 {
+                    out.add(v + i, -f[i]);
+                    out.add(v + 3 + i, -factor * moment[i]);
+                }
+                if out.wants_tangent() {
+                    let turn = product(&matrix(&orientation(at, q)), &skew(&force));
+                    out.add_block(0, 6, |i, j| if i < 3 && j >= 3 { w * turn[i][j - 3] } else { 0.0 });
+                }
+            }
         }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let (_, _, force) = self.now(at);
-        Power { supplied: dot(&force, &three(at.v, self.v)), ..Power::default() }
+        Power { supplied: dot(&self.force(at), &self.ends[1].velocity(at)), ..Power::default() }
     }
 }

@@ -224,7 +224,7 @@ impl ForceSpec for LineLoadSpec {
     }
 }
 
-/// A force at a marker, in a constant direction or along the cable there.
+/// A force at a marker: in a constant direction, in the axes of a rigid body, or along a cable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointForceSpec {
@@ -233,6 +233,9 @@ pub struct PointForceSpec {
     /// Force in space [N].
     #[serde(default, deserialize_with = "quantity::vec3::force")]
     pub force: V3<f64>,
+    /// Whether `force` is in the axes of the rigid body that it acts on, and turns with it.
+    #[serde(default)]
+    pub local: bool,
     /// Instead: force along the cable at the marker, towards its end [N]. It turns with the cable.
     #[serde(default, deserialize_with = "quantity::optional::force")]
     pub follower: Option<f64>,
@@ -245,7 +248,7 @@ register_spec!(Force, "point_force", PointForceSpec);
 impl PointForceSpec {
     /// A force in space.
     pub fn new(marker: impl Into<MarkerRef>, force: V3<f64>, time: TimeFunction) -> Self {
-        PointForceSpec { marker: marker.into(), force, follower: None, time }
+        PointForceSpec { marker: marker.into(), force, local: false, follower: None, time }
     }
 }
 
@@ -258,6 +261,9 @@ impl ForceSpec for PointForceSpec {
         let marker = b.marker("marker", &self.marker)?;
         let label = format!("force at {}", self.marker);
         let term = match (self.follower, marker.on()) {
+            (None, _) if self.local => {
+                PointForce::on_body(label, b.nodes(), &marker, self.force, self.time.clone())?
+            }
             (None, _) => PointForce::dead(label, b.nodes(), &marker, self.force, self.time.clone())?,
             (Some(_), _) if self.force != [0.0; 3] => {
                 return Err(BuildError::at("follower", "give `force` or `follower`, not both"));
@@ -272,7 +278,8 @@ impl ForceSpec for PointForceSpec {
     }
 }
 
-/// A moment at a marker on a cable, with constant axis. Its part along the cable is lost: a cable doesn't know twist.
+/// A moment on a rigid body or at a marker on a cable, with an axis fixed in space or, on a body, in its axes. Its part
+/// along a cable is lost: a cable doesn't know twist.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMomentSpec {
@@ -281,6 +288,9 @@ pub struct PointMomentSpec {
     /// Moment [N m].
     #[serde(deserialize_with = "quantity::vec3::moment")]
     pub moment: V3<f64>,
+    /// Whether it is in the axes of the rigid body that it acts on, and turns with it.
+    #[serde(default)]
+    pub local: bool,
     /// Factor that changes with time.
     #[serde(default)]
     pub time: TimeFunction,
@@ -295,10 +305,12 @@ impl ForceSpec for PointMomentSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let marker = b.marker("marker", &self.marker)?;
         let Some(node) = marker.on() else {
-            return Err(BuildError::at("marker", "a moment needs a marker on a cable"));
+            return Err(BuildError::at("marker", "a moment needs a marker on a rigid body or a cable"));
         };
         let label = format!("moment at {}", self.marker);
-        b.term(Box::new(PointMoment::new(label, b.nodes(), node, self.moment, self.time.clone())?));
+        let make = if self.local { PointMoment::on_body } else { PointMoment::new };
+        let term = make(label, b.nodes(), node, self.moment, self.time.clone())?;
+        b.term(Box::new(term));
         Ok(())
     }
 }

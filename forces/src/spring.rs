@@ -1,13 +1,13 @@
 //! A spring and damper between two points.
 
 use ropewalk_core::build::{BuildError, need, not_negative};
-use ropewalk_core::held::{Held, delta};
+use ropewalk_core::held::{Held, Pull as Pair, delta, dofs, pull};
 use ropewalk_core::{Assembly, At, Energy, Marker, Node, Pattern, Power, Term, V3, dot};
 
 /// A spring with a damper along the line between two markers: `F = k (l - l0) + c dl/dt`, a pull if positive.
 ///
 /// Use it for: moorings, fenders, soft attachments. With `tension_only` it goes slack below its rest length and never
-/// pushes, as a rope does. Markers may be on cable nodes, points, the own point of a rigid body, and the ground.
+/// pushes, as a rope does. Markers may be on cable nodes, points, rigid bodies, and the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
     /// A name, such as `mooring`.
@@ -41,8 +41,7 @@ impl Spring {
     /// An undamped spring between two markers; set the other fields afterwards.
     ///
     /// # Errors
-    /// Both ends on the ground or on the same node; a marker beside the point of a rigid body; negative or infinite
-    /// numbers.
+    /// Both ends on the ground or on the same node; negative or infinite numbers.
     pub fn new(
         label: impl Into<String>,
         nodes: &[Node],
@@ -81,15 +80,6 @@ impl Spring {
         }
         Pull { e, w, length, rate, force, elastic, taut: true }
     }
-
-    /// The equations of both ends with their signs, ground left out.
-    fn dofs(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.ends
-            .iter()
-            .zip([-1.0, 1.0])
-            .filter_map(|(end, sign)| end.dof().map(|v| (v, sign)))
-            .flat_map(|(v, sign)| (v..v + 3).map(move |v| (v, sign)))
-    }
 }
 
 impl Term for Spring {
@@ -97,19 +87,15 @@ impl Term for Spring {
         self.label.clone()
     }
     fn pattern(&self, p: &mut Pattern) {
-        p.clique(self.dofs().map(|(v, _)| v));
+        p.clique(dofs(&self.ends));
     }
     fn symmetric(&self) -> bool {
-        self.damping == 0.0
+        self.damping == 0.0 && !self.ends.iter().any(|e| matches!(e, Held::Beside { .. }))
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let p = self.pull(at);
-        let component = |k: usize| k % 3;
-        for (k, (v, sign)) in self.dofs().enumerate() {
-            out.add(v, sign * p.force * p.e[component(k)]);
-        }
+        let mut both = Pair { f: p.e.map(|e| -p.force * e), ..Pair::default() };
         if out.wants_tangent() && p.taut {
-            let w = out.weights();
             // F/l, which has a limit where both go to zero together
             let turn = match (p.length > 0.0, self.rest_length == 0.0) {
                 (true, _) => p.force / p.length,
@@ -117,21 +103,16 @@ impl Term for Spring {
                 (false, false) => 0.0,
             };
             let inverse = if p.length > 0.0 { 1.0 / p.length } else { 0.0 };
-            let block: [[f64; 3]; 3] = std::array::from_fn(|i| {
-                std::array::from_fn(|j| {
+            for i in 0..3 {
+                for j in 0..3 {
                     let ee = p.e[i] * p.e[j];
                     let sway = self.damping * p.e[i] * (p.w[j] - p.rate * p.e[j]) * inverse;
-                    w.q * (self.stiffness * ee + turn * (delta(i, j) - ee) + sway) + w.v * self.damping * ee
-                })
-            });
-            let mut signs = [0.0; 6];
-            let mut n = 0;
-            for (_, sign) in self.dofs() {
-                signs[n] = sign;
-                n += 1;
+                    both.by_x[i][j] = -(self.stiffness * ee + turn * (delta(i, j) - ee) + sway);
+                    both.by_v[i][j] = -self.damping * ee;
+                }
             }
-            out.add_block(0, n, |i, j| signs[i] * signs[j] * block[component(i)][component(j)]);
         }
+        pull(&self.ends, at, &both, 0, out);
     }
     fn energy(&self, at: &At<'_>) -> Energy {
         let p = self.pull(at);

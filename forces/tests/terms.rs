@@ -50,9 +50,13 @@ fn springs() -> Vec<Spring> {
     let (nodes, node) = (nodes(), Marker::node);
     let ground = Marker::ground([0.3, -4.0, 0.5]);
     let mut all = Vec::new();
-    for pair in
-        [[node(POINT), node(CABLE)], [node(OTHER), node(BODY)], [ground, node(CABLE)], [node(POINT), ground]]
-    {
+    for pair in [
+        [node(POINT), node(CABLE)],
+        [node(OTHER), node(BODY)],
+        [ground, node(CABLE)],
+        [node(POINT), ground],
+        [node(CABLE), Marker::beside(BODY, [0.3, -0.4, 0.6])],
+    ] {
         for (damping, rest_length, tension_only) in
             [(0.0, 1.0, false), (7.0, 1.0, false), (7.0, 0.1, true), (7.0, 0.0, false)]
         {
@@ -77,6 +81,13 @@ fn terms() -> Vec<Box<dyn Term>> {
         all.push(Box::new(PointForce::follower("f", &nodes, node, 12.0, harmonic()).unwrap()));
         all.push(Box::new(PointMoment::new("m", &nodes, node, force, harmonic()).unwrap()));
     }
+    let beside = Marker::beside(BODY, [0.3, -0.4, 0.6]);
+    all.push(Box::new(PointForce::dead("f", &nodes, &beside, force, harmonic()).unwrap()));
+    all.push(Box::new(PointForce::on_body("f", &nodes, &beside, force, harmonic()).unwrap()));
+    all.push(Box::new(PointMoment::new("m", &nodes, BODY, force, harmonic()).unwrap()));
+    all.push(Box::new(PointMoment::on_body("m", &nodes, BODY, force, harmonic()).unwrap()));
+    let held = ropewalk_core::held::Held::new(&nodes, &beside, "w").unwrap();
+    all.push(Box::new(ropewalk_core::DeadPull { label: "w".into(), held, force }));
     all.extend(springs().into_iter().map(|s| Box::new(s) as Box<dyn Term>));
     all
 }
@@ -206,10 +217,12 @@ fn nothing_breaks_at_rest_or_without_length() {
 #[test]
 fn what_cannot_be_loaded_is_refused() {
     let nodes = nodes();
-    let beside = Marker::Node { node: BODY, point: [1.0, 0.0, 0.0], direction: [1.0, 0.0, 0.0] };
+    let beside = Marker::beside(BODY, [1.0, 0.0, 0.0]);
     let constant = TimeFunction::Constant;
     let dead = |m: &Marker| PointForce::dead("f", &nodes, m, [1.0; 3], constant.clone());
-    assert!(dead(&beside).unwrap_err().to_string().contains("rigid body"));
+    assert!(dead(&beside).is_ok());
+    let local = |m: &Marker| PointForce::on_body("f", &nodes, m, [1.0; 3], constant.clone());
+    assert!(local(&Marker::node(CABLE)).unwrap_err().to_string().contains("rigid body"));
     assert!(dead(&Marker::ground([0.0; 3])).is_err());
     assert!(dead(&Marker::node(NUMBER)).is_err());
     assert!(dead(&Marker::node(NodeId(77))).is_err());
@@ -218,6 +231,5 @@ fn what_cannot_be_loaded_is_refused() {
     let spring = |pair| Spring::new("s", &nodes, pair, 1.0, 1.0);
     assert!(spring([Marker::ground([0.0; 3]), Marker::ground([1.0; 3])]).is_err());
     assert!(spring([Marker::node(POINT), Marker::node(POINT)]).is_err());
-    assert!(spring([Marker::node(POINT), beside]).is_err());
     assert!(Spring::new("s", &nodes, [Marker::node(POINT), Marker::node(CABLE)], f64::NAN, 1.0).is_err());
 }

@@ -2,17 +2,19 @@
 
 use super::{listed, named};
 use crate::build::BuildError;
-use crate::marker::Marker;
+use crate::constraint::RowKind;
+use crate::marker::{Marker, frame};
 use crate::model::Model;
-use crate::node::NodeId;
+use crate::node::{NodeId, NodeKind};
 use crate::record::{Column, Record, Sample};
 use crate::register_spec;
+use crate::rotation::{cross, times};
 use crate::spec::RecordSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Force of a constraint on the first of its markers that can move: columns `anchor.fx`, `.fy`, `.fz` and
-/// `.magnitude` in N.
+/// Force of a constraint on what it holds, its `marker`: columns `anchor.fx`, `.fy`, `.fz` and `.magnitude` in N. Where
+/// it holds the direction of a rigid body too, its moment about the marker as well: `.mx`, `.my`, `.mz` in N m.
 ///
 /// A rope that hangs from its anchor is pulled upwards, so `fz` is its weight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -33,6 +35,8 @@ struct Reaction {
     name: String,
     stem: String,
     of: String,
+    /// The marker on a rigid body whose direction is held.
+    body: Option<Marker>,
 }
 
 impl Record for Reaction {
@@ -43,7 +47,12 @@ impl Record for Reaction {
         self.name.clone()
     }
     fn columns(&self) -> Vec<Column> {
-        ["fx", "fy", "fz", "magnitude"].map(|i| Column::new(format!("{}.{i}", self.stem), "N")).to_vec()
+        let column = |i: &str, unit| Column::new(format!("{}.{i}", self.stem), unit);
+        let mut columns = ["fx", "fy", "fz", "magnitude"].map(|i| column(i, "N")).to_vec();
+        if self.body.is_some() {
+            columns.extend(["mx", "my", "mz"].map(|i| column(i, "N m")));
+        }
+        columns
     }
     fn needs_forces(&self) -> bool {
         true
@@ -52,6 +61,13 @@ impl Record for Reaction {
         let force = s.model.reaction(self.constraint, self.node, &s.at, s.lambda);
         let [x, y, z] = [0, 1, 2].map(|i| force.get(i).copied().unwrap_or(0.0));
         out.extend([x, y, z, (x * x + y * y + z * z).sqrt()]);
+        if let Some(marker) = &self.body {
+            let q = &s.at.q[s.model.node(self.node).coords()];
+            let (own, held) = ([q[0], q[1], q[2]], marker.now(s.model.nodes(), &s.at).x);
+            let turning = times(&frame(q), &[force[3], force[4], force[5]]);
+            let lever = cross(&[held[0] - own[0], held[1] - own[1], held[2] - own[2]], &[x, y, z]);
+            out.extend((0..3).map(|i| turning[i] - lever[i]));
+        }
     }
 }
 
@@ -65,11 +81,14 @@ impl RecordSpec for ReactionSpec {
             let message = format!("there is no constraint `{of}`; the constraints are {names}");
             return Err(BuildError::at("of", message));
         };
-        let Some(node) = all[constraint].markers().iter().find_map(Marker::on) else {
+        let held = all[constraint].markers().iter().rev().find_map(|m| m.on().map(|n| (n, *m)));
+        let Some((node, marker)) = held else {
             return Err(BuildError::at("of", format!("constraint `{of}` holds nothing that moves")));
         };
         let stem = named(&self.name, || of.to_string());
         let name = named(&self.name, || format!("{of}.reaction"));
-        Ok(Box::new(Reaction { constraint, node, name, stem, of: of.to_string() }))
+        let directed = all[constraint].rows().contains(&RowKind::Direction);
+        let body = (directed && model.node(node).kind == NodeKind::Frame).then_some(marker);
+        Ok(Box::new(Reaction { constraint, node, name, stem, of: of.to_string(), body }))
     }
 }

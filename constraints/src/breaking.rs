@@ -1,0 +1,71 @@
+//! Connections that break.
+
+use ropewalk_core::build::{BuildError, Builder, positive};
+use ropewalk_core::{
+    Action, ConstraintSpec, Event, Marker, MarkerRef, Model, State, quantity, register_spec,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Breaks a connection for good once its force reaches a limit: a shear pin, a weak link. The moment is located in
+/// time and reported.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BreakSpec {
+    /// Name, by which the event is reported.
+    pub name: String,
+    /// Name of the constraint, which stands above.
+    pub of: String,
+    /// Magnitude of its force at which it breaks [N].
+    #[serde(deserialize_with = "quantity::force")]
+    pub force: f64,
+}
+register_spec!(Constraint, "break", BreakSpec);
+
+#[typetag::serde(name = "break")]
+impl ConstraintSpec for BreakSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        Vec::new()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        positive("force", self.force)?;
+        let mode = b.mode(&self.name);
+        let constraint = b.release(&self.of, mode)?;
+        b.event(Break { name: self.name.clone(), constraint, mode, force: self.force });
+        Ok(())
+    }
+}
+
+struct Break {
+    name: String,
+    constraint: usize,
+    mode: usize,
+    force: f64,
+}
+
+impl Event for Break {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+    fn value(&self, model: &Model, state: &State) -> f64 {
+        if state.modes[self.mode] != 0.0 {
+            return -1.0;
+        }
+        let Some(node) = model.constraints()[self.constraint].markers().iter().rev().find_map(Marker::on)
+        else {
+            return -1.0;
+        };
+        let force = model.reaction(self.constraint, node, &state.at(), &state.lambda);
+        force[..3].iter().map(|f| f * f).sum::<f64>().sqrt() / self.force - 1.0
+    }
+    fn direction(&self) -> i8 {
+        1
+    }
+    fn act(&self, _: &Model, state: &mut State) -> Action {
+        state.modes[self.mode] = 1.0;
+        Action::Restart
+    }
+}

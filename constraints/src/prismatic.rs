@@ -1,0 +1,190 @@
+//! Slides along an axis.
+
+use crate::connection::{Connection, Equation};
+use crate::pair::{aligned, along, pair};
+use ropewalk_core::build::{BuildError, Builder};
+use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, V3, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The second marker slides along the third axis of the first and doesn't turn: five equations.
+///
+/// Use it for: sliders, telescopes, hydraulic cylinders.
+///
+/// # Errors
+/// As for [`spherical`](crate::spherical); a marker that isn't on a rigid body or on the ground.
+pub fn prismatic(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+) -> Result<Connection, BuildError> {
+    let mut equations = vec![Equation::in_plane(0), Equation::in_plane(1)];
+    equations.extend([(0, 1), (1, 2), (2, 0)].map(|(a, b)| Equation::normal(a, b)));
+    Connection::new(name, nodes, between, equations)
+}
+
+/// The second marker slides along the third axis of the first and turns about it: four equations.
+///
+/// Use it for: a ring on a rod, a piston.
+///
+/// # Errors
+/// As for [`prismatic`].
+pub fn cylindrical(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+) -> Result<Connection, BuildError> {
+    let equations =
+        vec![Equation::in_plane(0), Equation::in_plane(1), Equation::normal(2, 0), Equation::normal(2, 1)];
+    Connection::new(name, nodes, between, equations)
+}
+
+/// The second marker stays on the line through the first along its third axis: two equations. Every rotation is free.
+///
+/// Use it for: a bead on a wire, an eye on a guide rail; the second marker may be on a cable.
+///
+/// # Errors
+/// As for [`spherical`](crate::spherical); a first marker without axes.
+pub fn point_on_line(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+) -> Result<Connection, BuildError> {
+    Connection::new(name, nodes, between, vec![Equation::in_plane(0), Equation::in_plane(1)])
+}
+
+/// The second marker stays in the plane through the first that is normal to its third axis: one equation.
+///
+/// # Errors
+/// As for [`point_on_line`].
+pub fn point_on_plane(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+) -> Result<Connection, BuildError> {
+    Connection::new(name, nodes, between, vec![Equation::in_plane(2)])
+}
+
+/// Lets a body slide along an axis of another part, or of space, without turning.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PrismaticSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is held.
+    pub marker: MarkerRef,
+    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The axis in space at the start; it turns with the parts.
+    pub axis: V3<f64>,
+}
+register_spec!(Constraint, "prismatic", PrismaticSpec);
+
+#[typetag::serde(name = "prismatic")]
+impl ConstraintSpec for PrismaticSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let markers = pair(b, &self.marker, self.to.as_ref())?;
+        let markers = aligned(b, markers, along("axis", self.axis)?);
+        b.constraint(prismatic(&self.name, b.nodes(), markers)?)
+    }
+}
+
+/// Lets a body slide along an axis of another part, or of space, and turn about it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CylindricalSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is held.
+    pub marker: MarkerRef,
+    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The axis in space at the start; it turns with the parts.
+    pub axis: V3<f64>,
+}
+register_spec!(Constraint, "cylindrical", CylindricalSpec);
+
+#[typetag::serde(name = "cylindrical")]
+impl ConstraintSpec for CylindricalSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let markers = pair(b, &self.marker, self.to.as_ref())?;
+        let markers = aligned(b, markers, along("axis", self.axis)?);
+        b.constraint(cylindrical(&self.name, b.nodes(), markers)?)
+    }
+}
+
+/// Keeps a point on a straight line through another part, or through space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointOnLineSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is held.
+    pub marker: MarkerRef,
+    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The direction of the line in space at the start; it turns with `to`.
+    pub axis: V3<f64>,
+}
+register_spec!(Constraint, "point_on_line", PointOnLineSpec);
+
+#[typetag::serde(name = "point_on_line")]
+impl ConstraintSpec for PointOnLineSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let markers = pair(b, &self.marker, self.to.as_ref())?;
+        let markers = aligned(b, markers, along("axis", self.axis)?);
+        b.constraint(point_on_line(&self.name, b.nodes(), markers)?)
+    }
+}
+
+/// Keeps a point in a plane of another part, or of space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointOnPlaneSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is held.
+    pub marker: MarkerRef,
+    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The normal of the plane in space at the start; it turns with `to`.
+    pub axis: V3<f64>,
+}
+register_spec!(Constraint, "point_on_plane", PointOnPlaneSpec);
+
+#[typetag::serde(name = "point_on_plane")]
+impl ConstraintSpec for PointOnPlaneSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let markers = pair(b, &self.marker, self.to.as_ref())?;
+        let markers = aligned(b, markers, along("axis", self.axis)?);
+        b.constraint(point_on_plane(&self.name, b.nodes(), markers)?)
+    }
+}

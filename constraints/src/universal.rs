@@ -1,0 +1,120 @@
+//! Axes at right angles, and the universal joint that they make.
+
+use crate::connection::{Connection, Equation};
+use crate::pair::{direction, pair};
+use ropewalk_core::build::{BuildError, Builder};
+use ropewalk_core::rotation::around;
+use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, V3, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The third axes of two markers stay at right angles: `u·w = 0` ("dot-1"), one equation. Points stay free.
+///
+/// Use it for: building joints of one's own.
+///
+/// # Errors
+/// As for [`spherical`](crate::spherical); a marker without axes.
+pub fn perpendicular(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+) -> Result<Connection, BuildError> {
+    Connection::new(name, nodes, between, vec![Equation::normal(2, 2)])
+}
+
+/// Two markers are at the same point and their third axes, the arms of the cross, stay at right angles: a universal
+/// (Cardan, Hooke) joint, four equations.
+///
+/// Use it for: shafts that meet at an angle, the end of a hose that may bend but not twist.
+///
+/// # Errors
+/// As for [`perpendicular`].
+pub fn universal(
+    name: impl Into<String>,
+    nodes: &[Node],
+    between: [Marker; 2],
+) -> Result<Connection, BuildError> {
+    let mut equations = Equation::coincide();
+    equations.push(Equation::normal(2, 2));
+    Connection::new(name, nodes, between, equations)
+}
+
+/// Keeps an axis of one part at right angles to an axis of another, or of space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PerpendicularSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is held.
+    pub marker: MarkerRef,
+    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The axis of `to` in space at the start; it turns with it. Left out on a cable, which has only its own direction.
+    #[serde(default)]
+    pub axis_to: Option<V3<f64>>,
+    /// The axis of `marker` in space at the start; it turns with it. Left out on a cable.
+    #[serde(default)]
+    pub axis: Option<V3<f64>>,
+}
+register_spec!(Constraint, "perpendicular", PerpendicularSpec);
+
+#[typetag::serde(name = "perpendicular")]
+impl ConstraintSpec for PerpendicularSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let markers = pair(b, &self.marker, self.to.as_ref())?;
+        let on = direction(b, "axis_to", &markers[0], self.axis_to)?;
+        let held = direction(b, "axis", &markers[1], self.axis)?;
+        let markers = [
+            markers[0].with_axes(b.nodes(), b.coordinates(), around(on)),
+            markers[1].with_axes(b.nodes(), b.coordinates(), around(held)),
+        ];
+        b.constraint(perpendicular(&self.name, b.nodes(), markers)?)
+    }
+}
+
+/// A universal joint: holds two points together, and an axis of one part at right angles to an axis of the other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UniversalSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The marker that is held.
+    pub marker: MarkerRef,
+    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The axis of `to` in space at the start; it turns with it. Left out on a cable, which has only its own direction.
+    #[serde(default)]
+    pub axis_to: Option<V3<f64>>,
+    /// The axis of `marker` in space at the start; it turns with it. Left out on a cable.
+    #[serde(default)]
+    pub axis: Option<V3<f64>>,
+}
+register_spec!(Constraint, "universal", UniversalSpec);
+
+#[typetag::serde(name = "universal")]
+impl ConstraintSpec for UniversalSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let markers = pair(b, &self.marker, self.to.as_ref())?;
+        let on = direction(b, "axis_to", &markers[0], self.axis_to)?;
+        let held = direction(b, "axis", &markers[1], self.axis)?;
+        let markers = [
+            markers[0].with_axes(b.nodes(), b.coordinates(), around(on)),
+            markers[1].with_axes(b.nodes(), b.coordinates(), around(held)),
+        ];
+        b.constraint(universal(&self.name, b.nodes(), markers)?)
+    }
+}

@@ -1,0 +1,116 @@
+//! A rigid body as a part of a model.
+
+use ropewalk_core::held::{Held, three};
+use ropewalk_core::rotation::{cross, matrix, times};
+use ropewalk_core::{
+    At, DeadEntry, DeadLoad, DeadPull, Marker, Node, NodeId, Part, Per, Spot, Stations, Term, V3,
+};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A rigid body of a model. Places are from the centre of mass in the body's axes [m].
+pub struct BodyPart {
+    pub(crate) name: String,
+    pub(crate) node: NodeId,
+    /// First coordinate and velocity of its node.
+    pub(crate) q: usize,
+    pub(crate) v: usize,
+    pub(crate) mass: f64,
+    pub(crate) volume: f64,
+    pub(crate) origin: V3<f64>,
+    pub(crate) centre_of_volume: V3<f64>,
+    pub(crate) points: BTreeMap<String, V3<f64>>,
+    /// Ends of its hull.
+    pub(crate) hull: Option<[V3<f64>; 2]>,
+    pub(crate) stations: Option<Arc<dyn Stations>>,
+}
+
+impl BodyPart {
+    fn rotation(&self, at: &At<'_>) -> [V3<f64>; 3] {
+        matrix(&[at.q[self.q + 3], at.q[self.q + 4], at.q[self.q + 5], at.q[self.q + 6]])
+    }
+    fn place(&self, arm: &V3<f64>, at: &At<'_>) -> V3<f64> {
+        let (x, arm) = (three(at.q, self.q), times(&self.rotation(at), arm));
+        [x[0] + arm[0], x[1] + arm[1], x[2] + arm[2]]
+    }
+}
+
+impl Part for BodyPart {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn kind(&self) -> &'static str {
+        "rigid_body"
+    }
+    fn marker(&self, spot: &Spot) -> Result<Marker, String> {
+        let named = match spot {
+            Spot::Named(n) if n.is_empty() => return Ok(Marker::beside(self.node, self.origin)),
+            Spot::Named(n) if n == "com" => return Ok(Marker::node(self.node)),
+            Spot::Named(n) => self.points.get(n),
+            Spot::Along(_) => None,
+        };
+        named.map(|&point| Marker::beside(self.node, point)).ok_or_else(|| {
+            let name = &self.name;
+            let more: String = self.points.keys().map(|p| format!(", `{name}.{p}`")).collect();
+            format!("there is no such place on the body; it has `{name}`, `{name}.com`{more}; add more in `points`")
+        })
+    }
+    fn stations(&self) -> Option<Arc<dyn Stations>> {
+        self.stations.clone()
+    }
+    fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
+        let (what, amount, arm) = match per {
+            Per::Mass => ("weight", self.mass, [0.0; 3]),
+            Per::Volume => ("buoyancy", self.volume, self.centre_of_volume),
+        };
+        if amount == 0.0 {
+            return None;
+        }
+        let (label, force) = (format!("{}: {what}", self.name), load.map(|x| amount * x));
+        if arm != [0.0; 3] {
+            let held = Held::Beside { q: self.q, v: self.v, arm };
+            return Some(Box::new(DeadPull { label, held, force }));
+        }
+        let entries = (0..3)
+            .filter(|&i| load[i] != 0.0)
+            .map(|i| DeadEntry { dof: self.v + i, coordinate: self.q + i, value: force[i] })
+            .collect();
+        Some(Box::new(DeadLoad::new(label, entries).ok()?))
+    }
+    fn point(&self, _: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
+        let swing = times(&self.rotation(at), &cross(&three(at.v, self.v + 3), &self.origin));
+        let v = three(at.v, self.v);
+        Some((self.place(&self.origin, at), [v[0] + swing[0], v[1] + swing[1], v[2] + swing[2]]))
+    }
+    fn line(&self, at: &At<'_>) -> Vec<V3<f64>> {
+        match &self.hull {
+            Some(ends) => ends.iter().map(|e| self.place(e, at)).collect(),
+            None if self.points.is_empty() => Vec::new(),
+            // its points seen from its centre of mass
+            None => {
+                let centre = three(at.q, self.q);
+                std::iter::once(centre)
+                    .chain(self.points.values().flat_map(|p| [self.place(p, at), centre]))
+                    .collect()
+            }
+        }
+    }
+    fn length(&self) -> f64 {
+        let reach = |p: &V3<f64>| p.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let ends = self.hull.iter().flatten().chain(self.points.values()).chain([&self.origin]);
+        ends.map(reach).fold(0.0, f64::max)
+    }
+    fn place_of(&self, node: NodeId) -> Option<String> {
+        (node == self.node).then(String::new)
+    }
+    fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
+        if let Some((from_q, from_v)) = old.seat() {
+            let node = &nodes[self.node.0 as usize];
+            q[node.coords()].copy_from_slice(&at.q[from_q..from_q + 7]);
+            v[node.dofs()].copy_from_slice(&at.v[from_v..from_v + 6]);
+        }
+    }
+    fn seat(&self) -> Option<(usize, usize)> {
+        Some((self.q, self.v))
+    }
+}

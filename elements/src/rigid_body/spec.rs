@@ -1,0 +1,231 @@
+//! What a scene says about a rigid body.
+
+use super::part::BodyPart;
+use super::{Hull, Inertia, Shape, inertia};
+use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
+use ropewalk_core::rotation::{cross, from_bryant, matrix, times, transposed_times};
+use ropewalk_core::{ElementSpec, NodeKind, StationPool, V3, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// A rigid body with full inertia.
+///
+/// Everything on it is given in its own frame, whose origin stands at `position`. Markers: `name` (that origin),
+/// `name.com` (the centre of mass), and the `points` that the scene names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RigidBodySpec {
+    /// Name by which the rest of the scene refers to it.
+    pub name: String,
+    /// Where the origin of its frame starts [m].
+    #[serde(deserialize_with = "quantity::vec3::length")]
+    pub position: V3<f64>,
+    /// Orientation at the start as Bryant angles 1-2-3: turns about its x axis, its new y axis, its new z axis [rad].
+    #[serde(default, deserialize_with = "quantity::vec3::angle")]
+    pub angles: V3<f64>,
+    /// Velocity of the origin at the start [m/s].
+    #[serde(default, deserialize_with = "quantity::vec3::speed")]
+    pub velocity: V3<f64>,
+    /// Angular velocity at the start, in space [rad/s].
+    #[serde(default, deserialize_with = "quantity::vec3::angular_velocity")]
+    pub angular_velocity: V3<f64>,
+    /// Mass [kg]; left out, that of the `shape` with its `density`.
+    #[serde(default, deserialize_with = "quantity::optional::mass")]
+    pub mass: Option<f64>,
+    /// Density of the `shape` [kg/m³].
+    #[serde(default, deserialize_with = "quantity::optional::density")]
+    pub density: Option<f64>,
+    /// Homogeneous shape, from which the moments of inertia follow.
+    #[serde(default)]
+    pub shape: Option<Shape>,
+    /// Moments of inertia `Jxx`, `Jyy`, `Jzz` about the centre of mass [kg m²], instead of a shape.
+    #[serde(default, deserialize_with = "triple")]
+    pub inertia: Option<V3<f64>>,
+    /// Products of inertia `Jxy`, `Jxz`, `Jyz`: the other entries of the inertia matrix [kg m²].
+    #[serde(default, deserialize_with = "quantity::vec3::inertia")]
+    pub products: V3<f64>,
+    /// Centre of mass [m].
+    #[serde(default, deserialize_with = "quantity::vec3::length")]
+    pub centre: V3<f64>,
+    /// Displaced volume, for buoyancy [m³].
+    #[serde(default, deserialize_with = "quantity::volume")]
+    pub volume: f64,
+    /// Centre of the displaced volume [m]; left out, the centre of mass.
+    #[serde(default, deserialize_with = "place")]
+    pub centre_of_volume: Option<V3<f64>>,
+    /// Cylinder along which drag and added mass act; left out, they don't.
+    #[serde(default)]
+    pub hull: Option<HullSpec>,
+    /// Points by which the rest of the scene can hold it, each with its name [m].
+    #[serde(default)]
+    pub points: BTreeMap<String, Point>,
+}
+register_spec!(Element, "rigid_body", RigidBodySpec);
+
+/// A point of a body [m].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Point(#[serde(deserialize_with = "quantity::vec3::length")] pub V3<f64>);
+
+fn triple<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Option<V3<f64>>, D::Error> {
+    quantity::vec3::inertia(d).map(Some)
+}
+fn place<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Option<V3<f64>>, D::Error> {
+    quantity::vec3::length(d).map(Some)
+}
+
+/// A straight cylinder on a body, for drag and added mass.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HullSpec {
+    /// One end of its axis [m].
+    #[serde(deserialize_with = "quantity::vec3::length")]
+    pub from: V3<f64>,
+    /// The other end [m].
+    #[serde(deserialize_with = "quantity::vec3::length")]
+    pub to: V3<f64>,
+    /// Diameter [m].
+    #[serde(deserialize_with = "quantity::length")]
+    pub diameter: f64,
+}
+
+impl RigidBodySpec {
+    /// A body at rest with its frame's origin at its centre of mass, of given mass [kg] and moments of inertia [kg m²].
+    pub fn new(name: &str, position: V3<f64>, mass: f64, inertia: V3<f64>) -> Self {
+        RigidBodySpec {
+            name: name.into(),
+            position,
+            angles: [0.0; 3],
+            velocity: [0.0; 3],
+            angular_velocity: [0.0; 3],
+            mass: Some(mass),
+            density: None,
+            shape: None,
+            inertia: Some(inertia),
+            products: [0.0; 3],
+            centre: [0.0; 3],
+            volume: 0.0,
+            centre_of_volume: None,
+            hull: None,
+            points: BTreeMap::new(),
+        }
+    }
+    /// The same with another point to hold it by [m].
+    #[must_use]
+    pub fn with_point(mut self, name: &str, at: V3<f64>) -> Self {
+        self.points.insert(name.into(), Point(at));
+        self
+    }
+
+    fn properties(&self) -> Result<Inertia, BuildError> {
+        let (mass, j) = match (&self.shape, self.inertia) {
+            (Some(shape), None) => {
+                let (volume, per_mass) = shape.properties().map_err(|e| e.of("shape"))?;
+                let mass = match (self.mass, self.density) {
+                    (Some(mass), None) => positive("mass", mass)?,
+                    (None, Some(density)) => positive("density", density)? * volume,
+                    _ => {
+                        let message = "give a body with a `shape` either a `mass` or a `density`";
+                        return Err(BuildError::at("shape", message));
+                    }
+                };
+                (mass, inertia(per_mass.map(|x| mass * x), self.products)?)
+            }
+            (None, Some(moments)) => {
+                let Some(mass) = self.mass else {
+                    return Err(BuildError::at("mass", "`mass` is missing: a body without it can't move"));
+                };
+                (positive("mass", mass)?, inertia(moments, self.products)?)
+            }
+            _ => {
+                let message =
+                    "give either `inertia` (about the centre of mass) or a `shape` to work it out from";
+                return Err(BuildError::at("inertia", message));
+            }
+        };
+        Ok(Inertia { mass, inertia: j })
+    }
+}
+
+fn from(a: V3<f64>, b: V3<f64>) -> V3<f64> {
+    [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+}
+
+#[typetag::serde(name = "rigid_body")]
+impl ElementSpec for RigidBodySpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        for (name, x) in [
+            ("position", &self.position),
+            ("angles", &self.angles),
+            ("velocity", &self.velocity),
+            ("angular_velocity", &self.angular_velocity),
+            ("centre", &self.centre),
+        ] {
+            finite(name, x)?;
+        }
+        not_negative("volume", self.volume)?;
+        let inertia = self.properties()?;
+        let quaternion = from_bryant(self.angles);
+        let r = matrix(&quaternion);
+        let omega = transposed_times(&r, &self.angular_velocity);
+        // the node stands at the centre of mass
+        let (arm, swing) = (times(&r, &self.centre), times(&r, &cross(&omega, &self.centre)));
+        let (mut q, mut v) = (Vec::with_capacity(7), Vec::with_capacity(6));
+        q.extend((0..3).map(|i| self.position[i] + arm[i]));
+        q.extend(quaternion);
+        v.extend((0..3).map(|i| self.velocity[i] + swing[i]));
+        v.extend(omega);
+        let node = b.node(NodeKind::Frame, &q, &v)?;
+        b.element(inertia, &[node])?;
+
+        let mut stations = StationPool::<Hull, 7, 6, 4>::new();
+        if let Some(hull) = &self.hull {
+            finite("from", &hull.from)?;
+            finite("to", &hull.to)?;
+            positive("diameter", hull.diameter).map_err(|e| e.of("hull"))?;
+            let axis = from(hull.from, hull.to);
+            let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+            positive("length of the hull", length).map_err(|e| e.of("hull"))?;
+            let area = if self.volume > 0.0 {
+                self.volume / length
+            } else {
+                PI / 4.0 * hull.diameter * hull.diameter
+            };
+            let hull = Hull {
+                from: from(self.centre, hull.from),
+                axis,
+                length,
+                s0: 0.0,
+                diameter: hull.diameter,
+                area,
+            };
+            let fits = stations.push(b.nodes(), hull, &[node]);
+            debug_assert!(fits, "a hull sits on one frame");
+        }
+        let mut points: BTreeMap<String, V3<f64>> = BTreeMap::new();
+        for (name, point) in &self.points {
+            finite("points", &point.0)?;
+            points.insert(name.clone(), from(self.centre, point.0));
+        }
+        let n = b.nodes()[node.0 as usize];
+        b.part(Arc::new(BodyPart {
+            name: self.name.clone(),
+            node,
+            q: n.q,
+            v: n.v,
+            mass: inertia.mass,
+            volume: self.volume,
+            origin: self.centre.map(|x| -x),
+            centre_of_volume: self.centre_of_volume.map_or([0.0; 3], |c| from(self.centre, c)),
+            points,
+            hull: self.hull.map(|h| [from(self.centre, h.from), from(self.centre, h.to)]),
+            stations: self.hull.is_some().then(|| Arc::new(stations) as _),
+        }))
+    }
+}

@@ -1,0 +1,137 @@
+//! Moments at a point.
+
+use crate::point::{body, orientation, slope_node};
+use crate::time::TimeFunction;
+use ropewalk_core::build::{BuildError, finite};
+use ropewalk_core::held::{cross, three};
+use ropewalk_core::rotation::{matrix, skew, transposed_times};
+use ropewalk_core::{Assembly, At, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot};
+
+/// What a moment acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum On {
+    /// A slope at these coordinates and velocities.
+    Cable { q: usize, v: usize },
+    /// A rigid body with these first coordinate and velocity; the moment is in space, or in the body's axes.
+    Body { q: usize, v: usize, local: bool },
+}
+
+/// A moment on a rigid body or on the cross-section of a cable, times a function of time.
+///
+/// On a cable it is fixed in space. The section turns with `r'`: its virtual rotation is `r' × δr' / |r'|²`, so the
+/// generalised force on `r'` is `m × r' / |r'|²`. The part of `m` along `r'` does no work: the cable has no twist. Use it
+/// for: rolling up a cantilever, a motor on a crank. Such a moment isn't conservative, its tangent not symmetric.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointMoment {
+    /// A name, such as `tip moment`.
+    pub label: String,
+    /// Moment [N m].
+    pub moment: V3<f64>,
+    /// Factor that changes with time.
+    pub time: TimeFunction,
+    on: On,
+}
+
+impl PointMoment {
+    /// A moment [N m] fixed in space, on a cable node or a rigid body.
+    ///
+    /// # Errors
+    /// A node without slope or orientation; a moment that isn't finite; a bad function of time.
+    pub fn new(
+        label: impl Into<String>,
+        nodes: &[Node],
+        node: NodeId,
+        moment: V3<f64>,
+        time: TimeFunction,
+    ) -> Result<Self, BuildError> {
+        let label = label.into();
+        finite(&label, &moment)?;
+        time.check()?;
+        let on = if nodes.get(node.0 as usize).map(|n| n.kind) == Some(NodeKind::Frame) {
+            let (n, _) = body(nodes, &Marker::node(node), &label)?;
+            On::Body { q: n.q, v: n.v, local: false }
+        } else {
+            let n = slope_node(nodes, node, &label)?;
+            On::Cable { q: n.q + 3, v: n.v + 3 }
+        };
+        Ok(PointMoment { label, moment, time, on })
+    }
+
+    /// A moment [N m] in the axes of a rigid body, that turns with it.
+    ///
+    /// # Errors
+    /// A node that isn't a rigid body; a moment that isn't finite; a bad function of time.
+    pub fn on_body(
+        label: impl Into<String>,
+        nodes: &[Node],
+        node: NodeId,
+        moment: V3<f64>,
+        time: TimeFunction,
+    ) -> Result<Self, BuildError> {
+        let label = label.into();
+        let (n, _) = body(nodes, &Marker::node(node), &label)?;
+        let on = On::Body { q: n.q, v: n.v, local: true };
+        Ok(PointMoment { on, ..PointMoment::new(label, nodes, node, moment, time)? })
+    }
+
+    /// The moment now, and the generalised force.
+    fn now(&self, at: &At<'_>) -> (V3<f64>, V3<f64>) {
+        let factor = self.time.at(at.t);
+        let m = self.moment.map(|m| factor * m);
+        let force = match self.on {
+            On::Cable { q, .. } => {
+                let p = three(at.q, q);
+                let squared = dot(&p, &p);
+                cross(&m, &p).map(|x| x / squared)
+            }
+            On::Body { local: true, .. } => m,
+            On::Body { q, .. } => transposed_times(&matrix(&orientation(at, q)), &m),
+        };
+        (m, force)
+    }
+
+    /// First of the three equations that it stands in.
+    fn first(&self) -> usize {
+        match self.on {
+            On::Cable { v, .. } => v,
+            On::Body { v, .. } => v + 3,
+        }
+    }
+}
+
+impl Term for PointMoment {
+    fn label(&self) -> String {
+        self.label.clone()
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        p.clique(self.first()..self.first() + 3);
+    }
+    fn symmetric(&self) -> bool {
+        false
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        let (m, force) = self.now(at);
+        for i in 0..3 {
+            out.add(self.first() + i, -force[i]);
+        }
+        if !out.wants_tangent() {
+            return;
+        }
+        match self.on {
+            On::Cable { q, .. } => {
+                let p = three(at.q, q);
+                let (w, spin) = (out.weights().q / dot(&p, &p), skew(&m));
+                out.add_block(0, 3, |i, j| w * (2.0 * force[i] * p[j] - spin[i][j]));
+            }
+            On::Body { local: true, .. } => {}
+            On::Body { .. } => {
+                let (w, spin) = (out.weights().q, skew(&force));
+                out.add_block(0, 3, |i, j| -w * spin[i][j]);
+            }
+        }
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        let (_, force) = self.now(at);
+        Power { supplied: dot(&force, &three(at.v, self.first())), ..Power::default() }
+    }
+}
