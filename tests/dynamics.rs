@@ -190,6 +190,7 @@ fn spaghetti_flies_as_the_reference() {
             .force(PointForceSpec::new("rod.start", [8.0, 0.0, 0.0], triangle()))
             .force(PointMomentSpec {
                 marker: "rod.start".into(),
+                local: false,
                 moment: [0.0, 0.0, -80.0],
                 time: triangle(),
             });
