@@ -399,87 +399,9 @@ impl Builder {
             }
         }
         let length = if self.length > 0.0 { self.length } else { 1.0 };
-        let model = Model::new(self.nodes, terms, self.constraints, self.parts, self.start, length)
+        let mut model = Model::new(self.nodes, terms, self.constraints, self.parts, self.start, length)
             .with_switches(self.switches);
-        redundancy(&model)?;
+        model.redundancy = crate::redundancy::find(&model)?;
         Ok(model)
     }
-}
-
-/// Names constraints that say what others have already said, by orthogonalising the rows of their Jacobian.
-fn redundancy(model: &Model) -> Result<(), BuildError> {
-    let state = model.state();
-    // rows as (velocity, entry), orthonormal, with the constraints that they come from
-    let mut basis: Vec<(BTreeMap<usize, f64>, usize)> = Vec::new();
-    let mut by_dof: HashMap<usize, Vec<usize>> = HashMap::new();
-    for (c, constraint) in model.constraints().iter().enumerate() {
-        let dofs: Vec<usize> = constraint.nodes().iter().flat_map(|&k| model.node(k).dofs()).collect();
-        let (m, n) = (constraint.rows().len(), dofs.len());
-        let (mut g, mut jac) = (vec![0.0; m], vec![0.0; m * n]);
-        constraint.jacobian(model.nodes(), &state.at(), &mut g, &mut jac);
-        if jac.iter().chain(&g).any(|x| !x.is_finite()) {
-            let message = format!(
-                "constraint `{}` is not defined where the scene starts (two of its points coincide?)",
-                constraint.name()
-            );
-            return Err(BuildError::at(constraint.name(), message));
-        }
-        for r in 0..m {
-            let mut row: BTreeMap<usize, f64> =
-                dofs.iter().enumerate().map(|(j, &d)| (d, jac[r * n + j])).filter(|e| e.1 != 0.0).collect();
-            let size = row.values().map(|x| x * x).sum::<f64>().sqrt();
-            if size == 0.0 {
-                let message = format!(
-                    "equation {} of constraint `{}` holds nothing where the scene starts: it is singular there",
-                    r + 1,
-                    constraint.name()
-                );
-                return Err(BuildError::at(constraint.name(), message));
-            }
-            let mut blamed: Vec<usize> = Vec::new();
-            let mut seen = vec![false; basis.len()];
-            // twice, against rounding
-            for _ in 0..2 {
-                let mut queue: Vec<usize> =
-                    row.keys().filter_map(|d| by_dof.get(d)).flatten().copied().collect();
-                queue.sort_unstable();
-                queue.dedup();
-                while let Some(b) = queue.pop() {
-                    let (other, owner) = &basis[b];
-                    let dot: f64 = other.iter().filter_map(|(d, x)| row.get(d).map(|y| x * y)).sum();
-                    if dot.abs() > 1e-9 * size && !seen[b] {
-                        seen[b] = true;
-                        blamed.push(*owner);
-                    }
-                    for (d, x) in other {
-                        *row.entry(*d).or_default() -= dot * x;
-                    }
-                }
-            }
-            let left = row.values().map(|x| x * x).sum::<f64>().sqrt();
-            if left < 1e-8 * size {
-                blamed.retain(|&b| b != c);
-                blamed.sort_unstable();
-                blamed.dedup();
-                let others: Vec<String> =
-                    blamed.iter().map(|&b| format!("`{}`", model.constraints()[b].name())).collect();
-                let others = if others.is_empty() { "its own equations".into() } else { others.join(", ") };
-                let message = format!(
-                    "constraint `{}` is redundant: its equation {} already follows from {others}. Remove one of them",
-                    constraint.name(),
-                    r + 1
-                );
-                return Err(BuildError::at(constraint.name(), message));
-            }
-            for x in row.values_mut() {
-                *x /= left;
-            }
-            let id = basis.len();
-            for d in row.keys() {
-                by_dof.entry(*d).or_default().push(id);
-            }
-            basis.push((row, c));
-        }
-    }
-    Ok(())
 }

@@ -22,6 +22,7 @@ mod pool;
 pub mod quantity;
 mod record;
 pub mod records;
+mod redundancy;
 pub mod rotation;
 mod scene;
 mod simulation;
@@ -49,6 +50,7 @@ pub use pool::{Batch, Element, Local, Pool, Share};
 pub use record::{Audit, Column, Record, Sample};
 pub use scene::{Analysis, Level, Plan, Run, Scene, SceneError, Water};
 pub use simulation::{Action, End, Event, Observer, Simulation};
+pub use redundancy::Redundancy;
 pub use solver::{Chain, Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,

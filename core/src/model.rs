@@ -5,6 +5,7 @@ use crate::lane::Width;
 use crate::node::{Node, NodeId, NodeKind, retract};
 use crate::order::Rows;
 use crate::part::Part;
+use crate::redundancy::Redundancy;
 use crate::pattern::Pattern;
 use crate::simulation::Event;
 use crate::state::{At, Control, State};
@@ -24,6 +25,8 @@ pub struct Model {
     pub(crate) start: Start,
     /// What can happen during a run, and which constraints end by it.
     pub(crate) switches: Switches,
+    /// Constraints that say what others have said.
+    pub(crate) redundancy: Option<Redundancy>,
     structure: Structure,
     pattern: Pattern,
     touched: Vec<Rows>,
@@ -121,6 +124,7 @@ impl Model {
             parts,
             start,
             switches: Switches::default(),
+            redundancy: None,
             structure,
             pattern,
             touched,
@@ -150,6 +154,10 @@ impl Model {
     /// The events that the scene brings along.
     pub fn events(&self) -> &[Arc<dyn Event>] {
         &self.switches.events
+    }
+    /// Constraints that say what others have said where the model starts, if there are any.
+    pub fn redundancy(&self) -> Option<&Redundancy> {
+        self.redundancy.as_ref()
     }
     /// The number of a mode in [`State::modes`].
     pub fn mode(&self, name: &str) -> Option<usize> {
@@ -388,6 +396,28 @@ impl Model {
             let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
             sys.jacobian.resize(n * constraint.rows().len(), 0.0);
             constraint.jacobian(&self.nodes, at, &mut g[self.rows_of(c)], &mut sys.jacobian);
+        }
+    }
+
+    /// Rates of the constraints, `G v + ∂g/∂t`.
+    pub fn constraint_rates(&self, at: &At<'_>, sys: &mut System, rate: &mut [f64]) {
+        let (mut g, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            let rows = self.rows_of(c);
+            if !self.holds(c, at.modes) {
+                rate[rows].fill(0.0);
+                continue;
+            }
+            let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+            sys.jacobian.resize(n * rows.len(), 0.0);
+            constraint.jacobian(&self.nodes, at, &mut g[..rows.len()], &mut sys.jacobian);
+            constraint.rates(&self.nodes, at, &mut rate[rows.clone()], &mut bias[..rows.len()]);
+            let dofs = constraint.nodes().iter().flat_map(|&k| self.node(k).dofs());
+            for (j, dof) in dofs.enumerate() {
+                for (r, rate) in rate[rows.clone()].iter_mut().enumerate() {
+                    *rate += sys.jacobian[r * n + j] * at.v[dof];
+                }
+            }
         }
     }
 

@@ -76,6 +76,14 @@ impl Started {
         let mut all = Vec::new();
         if let Started::Dynamics(s, _) = self {
             all.extend(s.integrator.warning().map(str::to_string));
+            if let Some(r) = s.model.redundancy() {
+                all.push(format!(
+                    "{} of the equations of {} follow from the others: the motion is that without them, and forces \
+                     that could be shared out in many ways are given with the least norm",
+                    r.equations,
+                    r.constraints.iter().map(|c| format!("`{c}`")).collect::<Vec<_>>().join(", ")
+                ));
+            }
             let c = s.correction;
             if c.position > 1e-8 * s.model.length() || c.velocity > 1e-6 {
                 all.push(format!(

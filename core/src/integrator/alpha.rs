@@ -3,7 +3,7 @@
 use super::newton::{Newton, Outcome, Rate};
 use super::start::settle;
 use super::workspace::Which;
-use super::{Coefficients, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping, Workspace};
+use super::{Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping, Workspace};
 use crate::model::Model;
 use crate::solver::SolveError;
 use crate::state::State;
@@ -94,6 +94,11 @@ impl Alpha {
             }
         }
         t.lambda.copy_from_slice(&state.lambda);
+        t.shift.fill(0.0);
+    }
+
+    fn stabilised(&self, model: &Model) -> bool {
+        self.options.constraints == ConstraintForm::Ggl && model.multipliers() > 0
     }
 
     /// The order of the polynomial that would have predicted the accelerations of the trial best.
@@ -237,7 +242,7 @@ impl Integrator for Alpha {
         h: f64,
         stiff: f64,
     ) -> Result<(), SolveError> {
-        settle(model, state, work, &self.scheme, h, stiff)
+        settle(model, state, work, &self.scheme, h, stiff, !self.stabilised(model))
     }
 
     fn step(
@@ -290,6 +295,7 @@ impl Integrator for Alpha {
                 max_iterations: self.options.max_iterations,
                 tolerance: self.newton_tolerance(model, h),
                 linear_constraints,
+                stabilised: self.stabilised(model),
             };
             // factors that served badly last time are not tried again
             if state.control.theta > REFRESH {

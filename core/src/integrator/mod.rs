@@ -9,7 +9,7 @@ mod start;
 mod workspace;
 
 pub use alpha::Alpha;
-pub use options::{NewtonPolicy, Options, Stepping};
+pub use options::{ConstraintForm, NewtonPolicy, Options, Stepping};
 pub use radau::Radau;
 pub use scheme::{Coefficients, Scheme};
 pub use start::{Correction, consistent, prepare};

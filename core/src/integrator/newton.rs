@@ -4,7 +4,7 @@
 //! `δv̇ = (1-αm)/(1-αf) δa` the matrix is `[(1-αm)/(1-αf) M + γ h C + β h² K, Gᵀ; G, 0]`, whose condition doesn't
 //! grow as the step shrinks (Bottasso, Bauchau & Cardona 2007), and β = 0 is no special case.
 
-use super::workspace::Which;
+use super::workspace::{Trial, Which};
 use super::{Coefficients, NewtonPolicy, Workspace};
 use crate::model::Model;
 use crate::solver::SolveError;
@@ -63,6 +63,8 @@ pub(crate) struct Newton<'a> {
     pub tolerance: f64,
     /// Whether every constraint is linear, so that one iteration meets it.
     pub linear_constraints: bool,
+    /// Whether velocities are to meet the constraints as well.
+    pub stabilised: bool,
 }
 
 impl Newton<'_> {
@@ -87,20 +89,16 @@ impl Newton<'_> {
             v_new[i] = v[i] + (g_old * old[i] + g_new * new[i]);
             a_new[i] = m_new * new[i] + (m_old * old[i] - f_old * a[i]);
         }
+        if self.stabilised {
+            t.d.iter_mut().zip(&t.shift).for_each(|(d, shift)| *d += shift);
+        }
         self.model.retract(&self.state.q, &t.d, &mut t.q);
     }
 
     /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.
     fn evaluate(&self, work: &mut Workspace, matrix: bool) -> Result<(), SolveError> {
         let weights = self.weights();
-        let at = At {
-            t: self.state.t + self.h,
-            q: &work.trial.q,
-            v: &work.trial.v,
-            a: &work.trial.a,
-            modes: &self.state.modes,
-            relaxed: None,
-        };
+        let at = self.place(&work.trial);
         self.model.assemble(&at, &work.trial.lambda, matrix.then_some(weights), &mut work.system);
         if matrix { work.factor(self.model, weights) } else { Ok(()) }
     }
@@ -137,15 +135,28 @@ impl Newton<'_> {
             let s = self.model.structure();
             s.order(residual, &mut work.x);
             work.x.iter_mut().for_each(|x| *x = -*x);
-            for &p in &s.position[nv..] {
-                work.x[p] *= multiplier_scale;
+            if self.stabilised {
+                self.constraint_rates(work);
+                for (&p, rate) in s.position[nv..].iter().zip(&work.trial.g_rate) {
+                    work.x[p] = -rate / (self.scheme.gamma * self.h);
+                }
+            } else {
+                for &p in &s.position[nv..] {
+                    work.x[p] *= multiplier_scale;
+                }
             }
             if let Err(e) = work.solve_ordered(self.model, Which::Iteration) {
                 return Outcome::Linear(e);
             }
             s.add_restored(&work.x, &mut work.trial.aux, &mut work.trial.lambda);
+            let mut size = beta_h2 * work.norm_of_solution();
+            if self.stabilised {
+                match self.shift(work, multiplier_scale) {
+                    Ok(shift) => size += shift,
+                    Err(e) => return Outcome::Linear(e),
+                }
+            }
             self.kinematics(work);
-            let size = beta_h2 * work.norm_of_solution();
             if !size.is_finite() {
                 return Outcome::Failed { why: "the iteration left the finite numbers".into() };
             }
@@ -185,22 +196,56 @@ impl Newton<'_> {
         Outcome::Failed { why: format!("{} Newton iterations were not enough", self.max_iterations) }
     }
 
+    fn place<'a>(&'a self, trial: &'a Trial) -> At<'a> {
+        At {
+            t: self.state.t + self.h,
+            q: &trial.q,
+            v: &trial.v,
+            a: &trial.a,
+            modes: &self.state.modes,
+            relaxed: None,
+        }
+    }
+
+    /// Sets the rates of the constraints at the trial.
+    fn constraint_rates(&self, work: &mut Workspace) {
+        let mut rate = std::mem::take(&mut work.trial.g_rate);
+        self.model.constraint_rates(&self.place(&work.trial), &mut work.system, &mut rate);
+        work.trial.g_rate = rate;
+    }
+
+    /// Moves positions onto the constraints beside their motion, by the shortest way in the metric of the iteration
+    /// matrix. Gives the size of the move [m].
+    fn shift(&self, work: &mut Workspace, multiplier_scale: f64) -> Result<f64, SolveError> {
+        let (nv, s) = (self.model.velocities(), self.model.structure());
+        work.x.fill(0.0);
+        for (&p, g) in s.position[nv..].iter().zip(&work.system.residual[nv..]) {
+            work.x[p] = -g * multiplier_scale;
+        }
+        work.solve_ordered(self.model, Which::Iteration)?;
+        let scale = 1.0 / multiplier_scale;
+        for (shift, &p) in work.trial.shift.iter_mut().zip(&s.position[..nv]) {
+            *shift += scale * work.x[p];
+        }
+        Ok(scale * work.norm_of_solution())
+    }
+
     fn constraints_hold(&self, work: &mut Workspace) -> bool {
+        if self.stabilised {
+            self.constraint_rates(work);
+            let limit = 1e-9 * self.model.length();
+            let rates = work.trial.g_rate.iter().zip(self.model.row_scale());
+            if !rates.into_iter().all(|(g, s)| g.abs() <= limit * s) {
+                return false;
+            }
+        }
         if self.linear_constraints {
             return true;
         }
         let length = self.model.length();
         let limit = (1e-10 * length).max(8.0 * U * length);
         let mut g = std::mem::take(&mut work.trial.g);
-        let at = At {
-            t: self.state.t + self.h,
-            q: &work.trial.q,
-            v: &work.trial.v,
-            a: &work.trial.a,
-            modes: &self.state.modes,
-            relaxed: None,
-        };
-        self.model.violations(&at, &mut work.system, &mut g);
+        self.model.violations(&self.place(&work.trial), &mut work.system, &mut g);
         let fine = g.iter().zip(self.model.row_scale()).all(|(g, s)| g.abs() <= limit * s);
         work.trial.g = g;
         fine

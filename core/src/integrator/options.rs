@@ -32,6 +32,18 @@ pub enum NewtonPolicy {
     Full,
 }
 
+/// In which form constraints are met.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ConstraintForm {
+    /// Positions meet them exactly, velocities to the order of the scheme ("index 3").
+    #[default]
+    Positions,
+    /// Positions and velocities both meet them exactly: the stabilised form of Gear, Gupta & Leimkuhler (1985). For long
+    /// runs; it costs a second solution per iteration.
+    Ggl,
+}
+
 /// Options of time integration. The defaults suit cables from 8 to 8192 elements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -42,6 +54,8 @@ pub struct Options {
     pub stepping: Stepping,
     /// When the iteration matrix is computed anew.
     pub newton: NewtonPolicy,
+    /// In which form constraints are met; Radau IIA meets both positions and velocities in any case.
+    pub constraints: ConstraintForm,
     /// Accept a scheme that is unstable on constrained systems, with a warning.
     pub allow_unstable: bool,
     /// Largest step [s].
@@ -73,6 +87,7 @@ impl Default for Options {
             scheme: Scheme::default(),
             stepping: Stepping::Controlled { tolerance: 1e-4 },
             newton: NewtonPolicy::default(),
+            constraints: ConstraintForm::default(),
             allow_unstable: false,
             h_max: 1.0,
             h_min: 1e-10,

@@ -229,7 +229,8 @@ fn solve_accelerations(
 }
 
 /// Sets the auxiliary acceleration a step's lead ahead of the true one, and gives the velocity the steady offset
-/// normal to the constraints that the scheme has: multipliers then start without ringing.
+/// normal to the constraints that the scheme has: multipliers then start without ringing. Without `offset` velocities
+/// stay on the constraints.
 pub(super) fn settle(
     model: &Model,
     state: &mut State,
@@ -237,6 +238,7 @@ pub(super) fn settle(
     c: &Coefficients,
     h: f64,
     stiff: f64,
+    offset: bool,
 ) -> Result<(), SolveError> {
     let nv = model.velocities();
     let e = 1e-2 * h;
@@ -251,7 +253,7 @@ pub(super) fn settle(
     for i in 0..nv {
         state.aux[i] = state.a[i] + c.lead() * h * jerk[i];
     }
-    if model.multipliers() > 0 {
+    if offset && model.multipliers() > 0 {
         work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
         let mut rhs = vec![0.0; nv];
         rhs.extend(times_jacobian(model, work, &jerk));

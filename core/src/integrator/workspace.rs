@@ -2,6 +2,7 @@
 
 use super::radau::Stages;
 use crate::model::{Model, System};
+use crate::redundancy::Softening;
 use crate::solver::{Guard, SolveError};
 use crate::state::At;
 use crate::structure::Structure;
@@ -51,6 +52,9 @@ pub struct Workspace {
     pub counts: Counts,
     /// Calls and time of factorisations and of solutions; only filled where profiling was asked for.
     pub phases: Option<[(u64, Duration); 2]>,
+    /// What makes the matrix regular although constraints are redundant; `None` where they aren't.
+    pub(crate) softening: Option<Softening>,
+    correction: Vec<f64>,
     pub(crate) trial: Trial,
     /// Scratch of Radau IIA; made when first needed.
     pub(crate) stages: Option<Box<Stages>>,
@@ -66,7 +70,11 @@ pub(crate) struct Trial {
     pub aux_old: Vec<f64>,
     pub lambda: Vec<f64>,
     pub d: Vec<f64>,
+    /// What positions are moved by beside their motion, to meet the constraints: of the stabilised form.
+    pub shift: Vec<f64>,
+    /// Values of the constraints, and their rates.
     pub g: Vec<f64>,
+    pub g_rate: Vec<f64>,
     pub rhs: Vec<f64>,
 }
 
@@ -91,6 +99,8 @@ impl Workspace {
             y: vec![0.0; s.n],
             counts: Counts::default(),
             phases: None,
+            softening: model.redundancy().map(|_| Softening::new(model)),
+            correction: Vec::new(),
             trial: Trial {
                 q: model.start.q.clone(),
                 v: zero(),
@@ -99,7 +109,9 @@ impl Workspace {
                 aux_old: zero(),
                 lambda: vec![0.0; model.multipliers()],
                 d: zero(),
+                shift: zero(),
                 g: vec![0.0; model.multipliers()],
+                g_rate: vec![0.0; model.multipliers()],
                 rhs: Vec::new(),
             },
             stages: None,
@@ -152,6 +164,42 @@ impl Workspace {
         s.order(rhs, &mut self.x);
         self.solve_ordered(model, which)?;
         s.restore(&self.x, rhs);
+        match self.softening.take() {
+            Some(softening) => {
+                let refined = self.refine(model, which, &softening, rhs);
+                self.softening = Some(softening);
+                refined
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Removes what the small diagonal has changed of a solution.
+    fn refine(
+        &mut self,
+        model: &Model,
+        which: Which,
+        softening: &Softening,
+        solution: &mut [f64],
+    ) -> Result<(), SolveError> {
+        let (s, nv) = (model.structure(), model.velocities());
+        let mut d = std::mem::take(&mut self.correction);
+        d.clear();
+        d.extend_from_slice(solution);
+        for _ in 0..2 {
+            d[..nv].fill(0.0);
+            let values = match which {
+                Which::Iteration => &self.system.values,
+                Which::Mass => &self.mass.values,
+            };
+            softening.times(values, &mut d[nv..]);
+            d.iter_mut().for_each(|d| *d = -*d);
+            s.order(&d, &mut self.x);
+            self.solve_ordered(model, which)?;
+            s.restore(&self.x, &mut d);
+            solution.iter_mut().zip(&d).for_each(|(x, d)| *x += d);
+        }
+        self.correction = d;
         Ok(())
     }
 
@@ -172,6 +220,9 @@ impl Workspace {
     /// The matrix is singular or not finite.
     pub fn factor(&mut self, model: &Model, weights: Weights) -> Result<(), SolveError> {
         self.factored = None;
+        if let Some(softening) = &self.softening {
+            softening.apply(&mut self.system.values);
+        }
         let begin = self.clock();
         self.solver.factor(model.structure(), &self.system.values)?;
         self.count(0, begin);
@@ -202,6 +253,9 @@ impl Workspace {
     ) -> Result<(), SolveError> {
         model.assemble(at, lambda, Some(Weights { q: stiff, v: 0.0, a: 1.0 }), &mut self.mass);
         self.has_mass = stiff == 0.0;
+        if let (true, Some(softening)) = (factor, &self.softening) {
+            softening.apply(&mut self.mass.values);
+        }
         // without added mass and with constraints that are linear it never changes
         if factor && self.mass_factored != self.mass.values {
             self.mass_factored.clear();

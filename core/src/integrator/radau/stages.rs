@@ -204,6 +204,9 @@ impl Stages {
             work.system.values[i] = self.stiffness[i];
             self.values[i] = self.stiffness[i].into();
         }
+        if let Some(softening) = &work.softening {
+            softening.apply(&mut self.values);
+        }
         work.factor(model, Weights { q: g * g, v: g, a: 1.0 })?;
         let begin = work.clock();
         self.solver.factor(s, &self.values)?;

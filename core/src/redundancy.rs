@@ -1,0 +1,221 @@
+//! Constraints that say what others have said, and how equations with them are solved.
+//!
+//! A door on two hinges, a planar loop in space: the Jacobian `G` of the constraints loses rank, and the multipliers
+//! are no longer unique. The matrix gets a small negative diagonal, `[A, Gᵀ; G, -E]`, with which it is regular. As long
+//! as the right-hand side is consistent, repeated solution converges to that of the true system, with the multipliers
+//! of least norm (in the metric `E`): the iteration of Newton's method does that by itself.
+
+use crate::build::BuildError;
+use crate::model::Model;
+use crate::solver::{Guard, Scalar};
+use crate::state::At;
+use std::collections::BTreeSet;
+
+/// Diagonal of the multipliers relative to the size of `G A⁻¹ Gᵀ`, equation by equation.
+const SOFT: f64 = 1e-9;
+/// The same where only the rank is asked for.
+const RANK: f64 = 1e-11;
+/// Entries of a vector that the constraints can't resist, relative to those of the vector that it is projected from;
+/// below, it is taken for rounding.
+const NOTHING: f64 = 1e-6;
+
+/// Which constraints are redundant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Redundancy {
+    /// Equations that could be left out.
+    pub equations: usize,
+    /// Names of the constraints that take part.
+    pub constraints: Vec<String>,
+}
+
+/// Where the entries of the constraints stand in the matrix.
+#[derive(Default)]
+pub(crate) struct Softening {
+    rows: Vec<Row>,
+}
+
+struct Row {
+    /// The diagonal entry of the multiplier.
+    own: usize,
+    /// Entries of the Jacobian, each with the diagonal entry of its velocity.
+    entries: Vec<(usize, usize)>,
+}
+
+impl Softening {
+    pub fn new(model: &Model) -> Self {
+        let s = model.structure();
+        let mut rows = Vec::with_capacity(model.multipliers());
+        for (c, constraint) in model.constraints().iter().enumerate() {
+            for row in model.rows_of(c) {
+                let p = s.position[model.velocities() + row];
+                let dofs = constraint.nodes().iter().flat_map(|&k| model.node(k).dofs());
+                let entries = dofs.map(|d| (s.slot(p, s.position[d]), s.diagonal[d] as usize)).collect();
+                rows.push(Row { own: s.diagonal_at[p] as usize, entries });
+            }
+        }
+        Softening { rows }
+    }
+
+    /// Subtracts the small diagonal from an assembled matrix.
+    pub fn apply<T: Scalar>(&self, values: &mut [T]) {
+        self.apply_scaled(values, SOFT);
+    }
+
+    fn apply_scaled<T: Scalar>(&self, values: &mut [T], scale: f64) {
+        for row in &self.rows {
+            let sum: f64 = row
+                .entries
+                .iter()
+                .map(|&(g, a)| (values[g].size().powi(2), values[a].size()))
+                .filter(|(g, _)| *g > 0.0)
+                .map(|(g, a)| g / a.max(f64::MIN_POSITIVE))
+                .sum();
+            if sum > 0.0 && sum.is_finite() {
+                values[row.own] -= T::from(scale * sum);
+            }
+        }
+    }
+
+    /// Multiplies multipliers by `E`, as the matrix holds it.
+    pub fn times(&self, values: &[f64], lambda: &mut [f64]) {
+        for (l, row) in lambda.iter_mut().zip(&self.rows) {
+            // positive entries are those of constraints that have let go
+            *l *= (-values[row.own]).max(0.0);
+        }
+    }
+}
+
+/// Finds redundant constraints where a model starts, by projecting random vectors onto what the constraints can't
+/// resist.
+///
+/// # Errors
+/// A constraint that isn't defined or holds nothing at the start; constraints that contradict each other.
+pub(crate) fn find(model: &Model) -> Result<Option<Redundancy>, BuildError> {
+    let m = model.multipliers();
+    if m == 0 {
+        return Ok(None);
+    }
+    let (state, s, nv) = (model.state(), model.structure(), model.velocities());
+    let still = vec![0.0; nv];
+    let at = At { v: &still, ..state.at() };
+    let mut values = vec![0.0; s.entries()];
+    // translations weigh one, turns the square of the model's size
+    let square = model.length().powi(2);
+    for node in model.nodes() {
+        for (k, d) in node.dofs().enumerate() {
+            values[s.diagonal[d] as usize] = if k < 3 { 1.0 } else { square };
+        }
+    }
+    let mut g = vec![0.0; m];
+    for (c, constraint) in model.constraints().iter().enumerate() {
+        let dofs: Vec<usize> = constraint.nodes().iter().flat_map(|&k| model.node(k).dofs()).collect();
+        let (rows, n) = (model.rows_of(c), dofs.len());
+        let mut jac = vec![0.0; rows.len() * n];
+        constraint.jacobian(model.nodes(), &at, &mut g[rows.clone()], &mut jac);
+        if jac.iter().chain(&g[rows.clone()]).any(|x| !x.is_finite()) {
+            let message = format!(
+                "constraint `{}` is not defined where the scene starts (two of its points coincide?)",
+                constraint.name()
+            );
+            return Err(BuildError::at(constraint.name(), message));
+        }
+        for (r, row) in rows.enumerate() {
+            if jac[r * n..(r + 1) * n].iter().all(|&x| x == 0.0) {
+                let message = format!(
+                    "equation {} of constraint `{}` holds nothing where the scene starts: it is singular there",
+                    r + 1,
+                    constraint.name()
+                );
+                return Err(BuildError::at(constraint.name(), message));
+            }
+            let p = s.position[nv + row];
+            for (j, &d) in dofs.iter().enumerate() {
+                values[s.slot(p, s.position[d])] = jac[r * n + j];
+            }
+            if !s.symmetric {
+                for (j, &d) in dofs.iter().enumerate() {
+                    values[s.slot(s.position[d], p)] = jac[r * n + j];
+                }
+            }
+        }
+    }
+    let softening = Softening::new(model);
+    softening.apply_scaled(&mut values, RANK);
+    let failed = |_| BuildError::new("the constraints can't be analysed: their equations are not finite");
+    let mut solver = Guard::new(s).map_err(failed)?;
+    solver.factor(s, &values).map_err(failed)?;
+    // the part of a vector that no motion of the model changes: E (G A⁻¹ Gᵀ + E)⁻¹ z
+    let mut x = vec![0.0; s.n];
+    let mut left = |z: &[f64]| -> Result<Vec<f64>, BuildError> {
+        let mut rhs = vec![0.0; s.n];
+        rhs[nv..].copy_from_slice(z);
+        s.order(&rhs, &mut x);
+        solver.solve(s, &values, &mut x).map_err(failed)?;
+        s.restore(&x, &mut rhs);
+        let mut part = rhs.split_off(nv);
+        softening.times(&values, &mut part);
+        Ok(part.into_iter().map(|x| -x).collect())
+    };
+
+    let (mut basis, mut rows) = (Vec::<Vec<f64>>::new(), BTreeSet::new());
+    let mut seed = 1u64;
+    while basis.len() < m {
+        let z: Vec<f64> = (0..m)
+            .map(|_| {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                0.5 + (seed >> 11) as f64 / (1_u64 << 53) as f64
+            })
+            .collect();
+        let mut y = left(&z)?;
+        if y.iter().all(|y| y.abs() <= NOTHING) {
+            break;
+        }
+        let size = norm(&y);
+        for b in &basis {
+            let along: f64 = b.iter().zip(&y).map(|(b, y)| b * y).sum();
+            y.iter_mut().zip(b).for_each(|(y, b)| *y -= along * b);
+        }
+        let new = norm(&y);
+        if new <= 1e-4 * size {
+            break;
+        }
+        y.iter_mut().for_each(|y| *y /= new);
+        rows.extend((0..m).filter(|&r| y[r].abs() > 10.0 * NOTHING));
+        basis.push(y);
+    }
+    if basis.is_empty() {
+        return Ok(None);
+    }
+
+    let owners = |keep: &dyn Fn(usize) -> bool| -> Vec<String> {
+        let all = model.constraints().iter().enumerate();
+        all.filter(|(c, _)| model.rows_of(*c).any(keep)).map(|(_, c)| c.name().to_string()).collect()
+    };
+    let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
+    model.rates(&at, &mut rate, &mut bias);
+    for (what, values, limit) in [
+        ("ask for different positions", &g, 1e-5 * model.length()),
+        ("prescribe different velocities", &rate, 1e-6 * largest(&rate)),
+        ("prescribe different accelerations", &bias, 1e-6 * largest(&bias)),
+    ] {
+        let conflict = left(values)?;
+        if conflict.iter().any(|x| x.abs() > limit && *x != 0.0) {
+            let names = owners(&|r| conflict[r].abs() > limit);
+            let message = format!(
+                "the constraints {} contradict each other: they hold the same parts twice and {what}. Remove one of \
+                 them or correct it",
+                names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
+            );
+            return Err(BuildError::at(names.last().cloned().unwrap_or_default(), message));
+        }
+    }
+    Ok(Some(Redundancy { equations: basis.len(), constraints: owners(&|r| rows.contains(&r)) }))
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m, x| m.max(x.abs()))
+}
