@@ -48,9 +48,9 @@ pub use part::{Part, Per, Quantity, Spot, split_marker};
 pub use pattern::Pattern;
 pub use pool::{Batch, Element, Local, Pool, Share};
 pub use record::{Audit, Column, Record, Sample};
+pub use redundancy::Redundancy;
 pub use scene::{Analysis, Level, Plan, Run, Scene, SceneError, Water};
 pub use simulation::{Action, End, Event, Observer, Simulation};
-pub use redundancy::Redundancy;
 pub use solver::{Chain, Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,

@@ -9,10 +9,12 @@ use crate::build::BuildError;
 use crate::model::Model;
 use crate::solver::{Guard, Scalar};
 use crate::state::At;
+use crate::structure::Structure;
 use std::collections::BTreeSet;
 
-/// Diagonal of the multipliers relative to the size of `G A⁻¹ Gᵀ`, equation by equation.
-const SOFT: f64 = 1e-9;
+/// Diagonal of the multipliers relative to the size of `G A⁻¹ Gᵀ`, equation by equation. Larger ones get in the way
+/// where a mechanism passes a singular position: a four-bar linkage stops at 1e-6.
+const SOFT: f64 = 1e-12;
 /// The same where only the rank is asked for.
 const RANK: f64 = 1e-11;
 /// Entries of a vector that the constraints can't resist, relative to those of the vector that it is projected from;
@@ -42,8 +44,7 @@ struct Row {
 }
 
 impl Softening {
-    pub fn new(model: &Model) -> Self {
-        let s = model.structure();
+    pub fn new(model: &Model, s: &Structure) -> Self {
         let mut rows = Vec::with_capacity(model.multipliers());
         for (c, constraint) in model.constraints().iter().enumerate() {
             for row in model.rows_of(c) {
@@ -82,6 +83,20 @@ impl Softening {
             // positive entries are those of constraints that have let go
             *l *= (-values[row.own]).max(0.0);
         }
+    }
+}
+
+impl std::fmt::Display for Redundancy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        const MOST: usize = 6;
+        let names =
+            self.constraints.iter().take(MOST).map(|c| format!("`{c}`")).collect::<Vec<_>>().join(", ");
+        let more = match self.constraints.len().saturating_sub(MOST) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let equations = if self.equations == 1 { "equation follows" } else { "equations follow" };
+        write!(f, "{} of the {equations} from the others: {names}{more}", self.equations)
     }
 }
 
@@ -139,7 +154,7 @@ pub(crate) fn find(model: &Model) -> Result<Option<Redundancy>, BuildError> {
             }
         }
     }
-    let softening = Softening::new(model);
+    let softening = Softening::new(model, s);
     softening.apply_scaled(&mut values, RANK);
     let failed = |_| BuildError::new("the constraints can't be analysed: their equations are not finite");
     let mut solver = Guard::new(s).map_err(failed)?;

@@ -78,10 +78,8 @@ impl Started {
             all.extend(s.integrator.warning().map(str::to_string));
             if let Some(r) = s.model.redundancy() {
                 all.push(format!(
-                    "{} of the equations of {} follow from the others: the motion is that without them, and forces \
-                     that could be shared out in many ways are given with the least norm",
-                    r.equations,
-                    r.constraints.iter().map(|c| format!("`{c}`")).collect::<Vec<_>>().join(", ")
+                    "redundant constraints: {r}. The motion is that without them; forces that could be shared out in \
+                     many ways are given with the least norm"
                 ));
             }
             let c = s.correction;

@@ -3,7 +3,10 @@
 use super::newton::{Newton, Outcome, Rate};
 use super::start::settle;
 use super::workspace::Which;
-use super::{Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping, Workspace};
+use super::{
+    Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping,
+    Workspace,
+};
 use crate::model::Model;
 use crate::solver::SolveError;
 use crate::state::State;
@@ -208,6 +211,15 @@ impl Past {
     }
 }
 
+/// Whether velocities change within the step by half of what they are, although they hardly did in the step before: no
+/// smooth motion does that. Steps with error control see it by themselves.
+fn jumps(state: &State, work: &Workspace) -> bool {
+    let change = work.norm_of(|i| work.trial.v[i] - state.v[i]);
+    let (before, after) = (work.norm(&state.v), work.norm(&work.trial.v));
+    let last = state.control.h_last;
+    last > 0.0 && last * work.norm(&state.a) < 0.05 * before && change > 0.5 * before.max(after)
+}
+
 pub(super) fn linear(model: &Model, t: f64, source: SolveError) -> StepError {
     let unknown = match source {
         SolveError::Singular(p) => model
@@ -307,42 +319,56 @@ impl Integrator for Alpha {
                     let iterations = rate.iterations;
                     report.h = h;
                     report.iterations = iterations;
-                    let Some(tolerance) = controlled else {
-                        self.accept(state, work, h, &rate);
-                        return Ok(report);
-                    };
-                    let error = self
-                        .error(model, work, h, tolerance)
-                        .map_err(|source| linear(model, state.t, source))?;
-                    let grow = (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5);
-                    if error <= 1.0 {
-                        report.error = error;
-                        self.accept(state, work, h, &rate);
-                        // small changes aren't worth a new factorisation
-                        let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
-                        state.control.h_next = if cut { next.max(state.control.h_next) } else { next };
-                        return Ok(report);
-                    }
-                    if error.is_nan() {
-                        "the error estimate is not a number".to_string()
-                    } else {
-                        report.rejected += 1;
-                        work.counts.rejected += 1;
-                        h *= grow.min(0.9);
-                        if h < self.options.h_min {
-                            return Err(StepError::NoConvergence {
-                                t: state.t,
-                                h,
-                                why: "the tolerance asks for a smaller step than `h_min`".into(),
-                                equation: work.worst_equation(model),
-                            });
+                    match controlled {
+                        None if linear_constraints || !jumps(state, work) => {
+                            self.accept(state, work, h, &rate);
+                            return Ok(report);
                         }
-                        continue;
+                        None => {
+                            "velocities jump: a mechanism leaves its branch, or an impact is shorter than `h`"
+                                .into()
+                        }
+                        Some(tolerance) => {
+                            let error = self
+                                .error(model, work, h, tolerance)
+                                .map_err(|source| linear(model, state.t, source))?;
+                            let grow = (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5);
+                            if error <= 1.0 {
+                                report.error = error;
+                                self.accept(state, work, h, &rate);
+                                // small changes aren't worth a new factorisation
+                                let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
+                                state.control.h_next =
+                                    if cut { next.max(state.control.h_next) } else { next };
+                                return Ok(report);
+                            }
+                            if error.is_nan() {
+                                "the error estimate is not a number".to_string()
+                            } else {
+                                report.rejected += 1;
+                                work.counts.rejected += 1;
+                                h *= grow.min(0.9);
+                                if h < self.options.h_min {
+                                    return Err(StepError::NoConvergence {
+                                        t: state.t,
+                                        h,
+                                        why: "the tolerance asks for a smaller step than `h_min`".into(),
+                                        equation: work.worst_equation(model),
+                                    });
+                                }
+                                continue;
+                            }
+                        }
                     }
                 }
                 Outcome::Stale => {
                     stale = true;
                     work.factored = None;
+                    continue;
+                }
+                // where the constraints are dependent for a moment, they are solved like redundant ones from here on
+                Outcome::Linear(_) if work.softening.is_none() && model.multipliers() > 0 => {
+                    work.soften(model);
                     continue;
                 }
                 Outcome::Linear(source) if h <= self.options.h_min => {

@@ -99,7 +99,7 @@ impl Workspace {
             y: vec![0.0; s.n],
             counts: Counts::default(),
             phases: None,
-            softening: model.redundancy().map(|_| Softening::new(model)),
+            softening: model.redundancy().map(|_| Softening::new(model, s)),
             correction: Vec::new(),
             trial: Trial {
                 q: model.start.q.clone(),
@@ -125,6 +125,12 @@ impl Workspace {
         if let Some(stages) = &mut self.stages {
             stages.forget();
         }
+    }
+
+    /// From now on constraints are solved as if some were redundant.
+    pub(crate) fn soften(&mut self, model: &Model) {
+        self.softening = Some(Softening::new(model, model.structure()));
+        self.forget();
     }
 
     /// Records the time of each term from now on.
@@ -309,6 +315,12 @@ impl Workspace {
     /// `sqrt(dᵀ M d / total mass)` with the lumped mass matrix: a length that doesn't depend on the mesh [m].
     pub(crate) fn norm(&self, d: &[f64]) -> f64 {
         (weighted_square(&self.weight, d) / self.total_mass).sqrt()
+    }
+
+    /// The same of a vector that is nowhere stored.
+    pub(crate) fn norm_of(&self, d: impl Fn(usize) -> f64) -> f64 {
+        let sum: f64 = self.weight.iter().enumerate().map(|(i, w)| w * d(i) * d(i)).sum();
+        (sum / self.total_mass).sqrt()
     }
 
     /// The same for the velocities of the solution in `x`.

@@ -14,6 +14,7 @@ pub use stability::Disturbance;
 use crate::build::{BuildError, positive};
 use crate::model::{Model, System};
 use crate::motion::SteadyFrame;
+use crate::redundancy::Softening;
 use crate::solver::{Guard, Profile, SolveError};
 use crate::state::State;
 use crate::structure::Structure;
@@ -110,6 +111,8 @@ pub struct Statics<'a> {
     frame: Option<SteadyFrame>,
     structure: Structure,
     solver: Guard,
+    /// Where constraints are redundant.
+    softening: Option<Softening>,
     system: System,
     damping: System,
     mass: System,
@@ -150,6 +153,7 @@ impl<'a> Statics<'a> {
             model,
             options: options.clone(),
             frame,
+            softening: model.redundancy().map(|_| Softening::new(model, &structure)),
             structure,
             solver,
             system: System::default(),

@@ -90,6 +90,9 @@ impl Statics<'_> {
                 values[p] = if constrains { k } else { c.beta * h * h * k + c.gamma * h * d + c.mass() * m };
             }
         }
+        if let Some(softening) = &self.softening {
+            softening.apply(&mut values);
+        }
         let mut solver = Guard::new(&self.structure)?;
         solver.factor(&self.structure, &values)?;
 

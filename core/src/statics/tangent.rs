@@ -36,6 +36,9 @@ impl Statics<'_> {
     ) -> Result<Trial, SolveError> {
         self.assemble(state, q, lambda, relaxed, false);
         self.brace();
+        if let Some(softening) = &self.softening {
+            softening.apply(&mut self.system.values);
+        }
         self.solver.factor(&self.structure, &self.system.values)?;
         let negative = self.solver.negative_pivots().is_none_or(|n| n != self.model.multipliers());
         let s = &self.structure;
