@@ -385,11 +385,30 @@ impl Builder {
         })
     }
 
+    /// The longest part, or the size of the mechanism that rigid bodies make [m].
+    fn size(&self) -> f64 {
+        let mut length = self.length;
+        if self.nodes.iter().any(|n| n.kind == NodeKind::Frame) {
+            let place = |n: &Node, i: usize| self.start.q[n.q + i];
+            let points = || self.nodes.iter().filter(|n| n.kind.velocities() >= 3);
+            let square: f64 = (0..3)
+                .map(|i| {
+                    let most = points().map(|n| place(n, i)).fold(f64::NEG_INFINITY, f64::max);
+                    let least = points().map(|n| place(n, i)).fold(f64::INFINITY, f64::min);
+                    (most - least).powi(2)
+                })
+                .sum();
+            length = length.max(square.sqrt());
+        }
+        if length > 0.0 { length } else { 1.0 }
+    }
+
     /// Makes the model.
     pub fn finish(mut self) -> Result<Model, BuildError> {
         if self.nodes.is_empty() {
             return Err(BuildError::new("the scene is empty: add at least one element"));
         }
+        let length = self.size();
         let mut terms: Vec<Box<dyn Term>> = self.pools.into_iter().map(|(_, p)| p.into_term()).collect();
         terms.append(&mut self.terms);
         for (k, laws) in self.laws {
@@ -398,7 +417,6 @@ impl Builder {
                 terms.push(Box::new(FieldTerm { part: part.name().to_string(), stations, laws }));
             }
         }
-        let length = if self.length > 0.0 { self.length } else { 1.0 };
         let mut model = Model::new(self.nodes, terms, self.constraints, self.parts, self.start, length)
             .with_switches(self.switches);
         model.redundancy = crate::redundancy::find(&model)?;

@@ -36,6 +36,7 @@ pub struct Model {
     /// Cliques of each term, then of each constraint.
     cliques: Vec<Range<usize>>,
     length: f64,
+    rounding: f64,
     width: Width,
     /// Whether no node has an orientation, so that `q ⊕ d` is `q + d`.
     flat: bool,
@@ -81,7 +82,8 @@ pub struct System {
 }
 
 impl Model {
-    /// Puts a model together. `length` is the reference length of tolerances: that of the longest cable.
+    /// Puts a model together. `length` is the reference length of tolerances: that of the longest cable, or the size of a
+    /// mechanism.
     pub fn new(
         nodes: Vec<Node>,
         terms: Vec<Box<dyn Term>>,
@@ -115,6 +117,9 @@ impl Model {
         };
         let symmetric = terms.iter().all(|t| t.symmetric()) && !constraints.iter().any(|c| turns(c.as_ref()));
         let flat = nodes.iter().all(|n| n.kind != NodeKind::Frame);
+        let positions =
+            nodes.iter().filter(|n| n.kind.velocities() >= 3).flat_map(|n| &start.q[n.q..n.q + 3]);
+        let farthest = positions.fold(length, |m, x| m.max(x.abs()));
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
         Model {
@@ -132,6 +137,7 @@ impl Model {
             rows,
             cliques,
             length,
+            rounding: 0.5 * f64::EPSILON * farthest,
             width: Width::best(),
             flat,
             finest,
@@ -226,6 +232,11 @@ impl Model {
     /// The reference length of tolerances [m].
     pub fn length(&self) -> f64 {
         self.length
+    }
+
+    /// What rounding makes of positions [m]: their unit in the last place, where the model starts.
+    pub fn rounding(&self) -> f64 {
+        self.rounding
     }
 
     /// Number of elements of the part that is divided most finely.
@@ -332,28 +343,15 @@ impl Model {
             motion[dof] += (0..m).map(|r| sys.jacobian[r * n + j] * multipliers[r]).sum::<f64>();
         }
         let Some(w) = weights else { return };
-        sys.hessian.resize(n * n, 0.0);
-        if constraint.linear() || w.q == 0.0 {
-            sys.hessian.fill(0.0);
-        } else {
+        let curved = !constraint.linear() && w.q != 0.0;
+        if curved {
+            sys.hessian.resize(n * n, 0.0);
             constraint.geometric(&self.nodes, at, multipliers, &mut sys.hessian);
+            sys.hessian[..n * n].iter_mut().for_each(|h| *h *= w.q);
         }
-        let (jacobian, hessian) = (&sys.jacobian, &sys.hessian);
-        let mut out = Assembly {
-            residual: motion,
-            values: Some(&mut sys.values),
-            weights: w,
-            width: self.width,
-            structure,
-            clique: self.cliques[self.terms.len() + c].start,
-            scratch: &mut sys.scratch,
-        };
-        out.add_block(0, n + m, |i, j| match (i < n, j < n) {
-            (true, true) => w.q * hessian[i * n + j],
-            (false, true) => jacobian[(i - n) * n + j],
-            (true, false) => jacobian[(j - n) * n + i],
-            (false, false) => 0.0,
-        });
+        let hessian = curved.then_some(&sys.hessian[..]);
+        let clique = self.cliques[self.terms.len() + c].start;
+        structure.add_constraint(clique, [n, m], hessian, &sys.jacobian, &mut sys.values);
     }
 
     /// Adds `ρ GᵀG` to an assembled matrix and `ρ Gᵀg` to its residual. For each row `ρ = scale / |G row|²`.

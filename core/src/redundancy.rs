@@ -16,10 +16,10 @@ use std::collections::BTreeSet;
 /// where a mechanism passes a singular position: a four-bar linkage stops at 1e-6.
 const SOFT: f64 = 1e-12;
 /// The same where only the rank is asked for.
-const RANK: f64 = 1e-11;
+const RANK: f64 = 1e-12;
 /// Entries of a vector that the constraints can't resist, relative to those of the vector that it is projected from;
 /// below, it is taken for rounding.
-const NOTHING: f64 = 1e-6;
+const NOTHING: f64 = 1e-3;
 
 /// Which constraints are redundant.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -195,7 +195,7 @@ pub(crate) fn find(model: &Model) -> Result<Option<Redundancy>, BuildError> {
             break;
         }
         y.iter_mut().for_each(|y| *y /= new);
-        rows.extend((0..m).filter(|&r| y[r].abs() > 10.0 * NOTHING));
+        rows.extend((0..m).filter(|&r| y[r].abs() > NOTHING));
         basis.push(y);
     }
     if basis.is_empty() {

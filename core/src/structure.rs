@@ -326,6 +326,40 @@ impl Structure {
         &self.tiles[begin as usize..self.ends[clique] as usize]
     }
 
+    /// Adds the block of a constraint: `[H, Gᵀ; G, 0]` with `n` velocities and `m` multipliers, both matrices row by row.
+    pub(crate) fn add_constraint(
+        &self,
+        clique: usize,
+        [n, m]: [usize; 2],
+        h: Option<&[f64]>,
+        g: &[f64],
+        values: &mut [f64],
+    ) {
+        for t in self.tiles(clique) {
+            let (first, columns) = (t.column as usize, t.columns as usize);
+            let own = first.min(n)..(first + columns).min(n);
+            for i in 0..t.rows as usize {
+                let row = t.row as usize + i;
+                let to = &mut values[t.at as usize + i * t.stride as usize..][..columns];
+                let (velocities, multipliers) = to.split_at_mut(own.len());
+                if row >= n {
+                    let g = &g[(row - n) * n..][own.clone()];
+                    velocities.iter_mut().zip(g).for_each(|(to, g)| *to += g);
+                    continue;
+                }
+                if let Some(h) = h {
+                    let h = &h[row * n..][own.clone()];
+                    velocities.iter_mut().zip(h).for_each(|(to, h)| *to += h);
+                }
+                let from = first.max(n) - n;
+                for (k, to) in multipliers.iter_mut().enumerate() {
+                    debug_assert!(from + k < m);
+                    *to += g[(from + k) * n + row];
+                }
+            }
+        }
+    }
+
     /// Every row: its position, its columns, and where its values are stored. Of symmetric matrices from the diagonal
     /// on.
     pub fn rows(&self) -> impl Iterator<Item = (usize, Columns<'_>, Range<usize>)> + '_ {

@@ -1,7 +1,7 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
 use super::newton::{Newton, Outcome, Rate};
-use super::start::settle;
+use super::start::{restart, settle};
 use super::workspace::Which;
 use super::{
     Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping,
@@ -388,6 +388,12 @@ impl Integrator for Alpha {
             }
             state.control.h_cap = 0.7 * h;
             h = smaller;
+            if failures == 2 && !linear_constraints && controlled.is_none() {
+                // velocities that meet the constraints only to the order of the old step would swing ever wilder
+                let cap = state.control.h_cap;
+                restart(model, state, work, self, h, true)?;
+                state.control.h_cap = cap;
+            }
         }
     }
 }

@@ -11,9 +11,6 @@ use crate::solver::SolveError;
 use crate::state::{At, State};
 use crate::term::Weights;
 
-/// Unit round-off.
-const U: f64 = f64::EPSILON / 2.0;
-
 /// Iterations with kept factors that are cheaper than new factors.
 const PATIENCE: i32 = 3;
 
@@ -107,7 +104,7 @@ impl Newton<'_> {
     pub fn solve(&self, work: &mut Workspace, mut eta: f64) -> Outcome {
         let nv = self.model.velocities();
         let beta_h2 = self.scheme.beta.max(1.0 / 12.0) * self.h * self.h;
-        let floor = 4.0 * U * self.model.length();
+        let floor = 4.0 * self.model.rounding();
         let stop = self.tolerance.max(floor);
         // below this, corrections wander instead of falling
         let noise = 30.0 * floor;
@@ -243,7 +240,7 @@ impl Newton<'_> {
             return true;
         }
         let length = self.model.length();
-        let limit = (1e-10 * length).max(8.0 * U * length);
+        let limit = (1e-10 * length).max(8.0 * self.model.rounding());
         let mut g = std::mem::take(&mut work.trial.g);
         self.model.violations(&self.place(&work.trial), &mut work.system, &mut g);
         let fine = g.iter().zip(self.model.row_scale()).all(|(g, s)| g.abs() <= limit * s);

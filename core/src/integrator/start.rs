@@ -35,6 +35,23 @@ pub fn prepare(
     integrator: &dyn Integrator,
 ) -> Result<Correction, StepError> {
     let options = integrator.options();
+    let h = match options.stepping {
+        Stepping::Fixed { h } => h,
+        Stepping::Controlled { .. } => options.h_start,
+    };
+    restart(model, state, work, integrator, h, options.project)
+}
+
+/// The same for a first step `h`, in the midst of a run too; `lenient` accepts every correction.
+pub(super) fn restart(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+    integrator: &dyn Integrator,
+    h: f64,
+    lenient: bool,
+) -> Result<Correction, StepError> {
+    let options = integrator.options();
     let linear =
         |t: f64, source: SolveError, what: &str| StepError::Linear { t, source, unknown: what.into() };
     work.forget();
@@ -48,16 +65,12 @@ pub fn prepare(
     let position = project_positions(model, state, work)
         .map_err(|e| linear(t, e, "the constraints: are some redundant or impossible to meet?"))?;
     let length = model.length();
-    if position > SMALL * length && !options.project {
+    if position > SMALL * length && !lenient {
         return Err(StepError::Inconsistent(inconsistent(model, "positions", position, "m", state, work)));
     }
     let velocity = project_velocities(model, state, work)
         .map_err(|e| linear(t, e, "the constraints: are some redundant?"))?;
 
-    let h = match options.stepping {
-        Stepping::Fixed { h } => h,
-        Stepping::Controlled { .. } => options.h_start,
-    };
     let stiff = if options.filter_start { integrator.filter(h) } else { 0.0 };
     let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
     accelerations(model, &state.at(), work, stiff, &mut a, &mut lambda)
@@ -65,7 +78,7 @@ pub fn prepare(
 
     let own = state.v.clone();
     let scale = work.norm(&own) + (work.norm(&a) * length).sqrt();
-    if velocity > SMALL_VELOCITY * scale && !options.project {
+    if velocity > SMALL_VELOCITY * scale && !lenient {
         return Err(StepError::Inconsistent(inconsistent(model, "velocities", velocity, "m/s", state, work)));
     }
     state.a.copy_from_slice(&a);
@@ -134,7 +147,7 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
     }
     let start = state.q.clone();
     let (mut d, mut md) = (vec![0.0; nv], vec![0.0; nv]);
-    let limit = 1e-14 * model.length();
+    let limit = 100.0 * model.rounding();
     for _ in 0..50 {
         work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
         let g = &work.mass.residual[nv..];

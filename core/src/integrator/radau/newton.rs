@@ -14,9 +14,6 @@ use crate::solver::SolveError;
 use crate::state::State;
 use faer::c64;
 
-/// Unit round-off.
-const U: f64 = f64::EPSILON / 2.0;
-
 /// How the iteration ended well.
 pub(super) struct Converged {
     pub iterations: u32,
@@ -52,7 +49,7 @@ pub(super) struct Newton<'a> {
 
 impl Newton<'_> {
     pub fn solve(&self, work: &mut Workspace, s: &mut Stages) -> Result<Converged, Failure> {
-        let floor = 4.0 * U * self.model.length();
+        let floor = 4.0 * self.model.rounding();
         let stop = self.tolerance.max(floor);
         let control = &self.state.control;
         let mut eta = if control.h_last > 0.0 { control.eta.max(1e-3).powf(0.8) } else { 1.0 };
@@ -165,7 +162,7 @@ impl Newton<'_> {
             return true;
         }
         let length = self.model.length();
-        let limit = (1e-10 * length).min(self.tolerance).max(8.0 * U * length);
+        let limit = (1e-10 * length).min(self.tolerance).max(8.0 * self.model.rounding());
         let mut g = std::mem::take(&mut s.rate);
         let fine = (0..3).all(|i| {
             self.model.violations(&s.at(self.state, self.h, i), &mut work.system, &mut g);
