@@ -103,6 +103,11 @@ impl Equation {
     }
 }
 
+fn is_coincidence(equations: &[Equation]) -> bool {
+    let axis = |i: usize, e: &Equation| matches!(e, Equation::Along { direction, motion: None } if *direction == unit_axis(i));
+    equations.len() == 3 && equations.iter().enumerate().all(|(i, e)| axis(i, e))
+}
+
 fn unit_axis(i: usize) -> V3<f64> {
     ropewalk_core::rotation::IDENTITY[i]
 }
@@ -117,6 +122,8 @@ pub struct Connection {
     rows: Vec<RowKind>,
     range: (f64, f64),
     linear: bool,
+    /// Whether it only holds two points together, which chains do by the thousand.
+    coincide: bool,
 }
 
 /// More unknowns than two nodes have.
@@ -180,7 +187,8 @@ impl Connection {
             range = (range.0.max(a), range.1.min(b));
         }
         let rows = equations.iter().map(Equation::kind).collect();
-        let mut c = Connection { name, equations, markers, nodes: on, rows, range, linear: false };
+        let coincide = is_coincidence(&equations);
+        let mut c = Connection { name, equations, markers, nodes: on, rows, range, linear: false, coincide };
         c.check_axes(nodes)?;
         c.linear = c.equations.iter().all(|e| c.is_linear(nodes, e));
         Ok(c)
@@ -241,6 +249,37 @@ impl Connection {
             Equation::Along { .. } => degree(&Arrow::Between) <= 1,
             Equation::Dot { a, b, .. } => degree(a) + degree(b) <= 1,
             Equation::Distance { .. } => false,
+        }
+    }
+
+    /// The two points of a joint that only holds them together: sign, first unknown, position, and on a body its
+    /// rotation and the arm.
+    #[inline(always)]
+    fn points(
+        &self,
+        nodes: &[Node],
+        at: &At<'_>,
+        mut see: impl FnMut(f64, usize, V3<f64>, Option<(M3, V3<f64>)>),
+    ) {
+        let mut start = 0;
+        for (marker, sign) in self.markers.iter().zip([-1.0, 1.0]) {
+            match *marker {
+                Marker::Ground { point, .. } => see(sign, usize::MAX, point, None),
+                Marker::Node { node, point, .. } => {
+                    let n = &nodes[node.0 as usize];
+                    let q = &at.q[n.q..];
+                    let mut x = [q[0], q[1], q[2]];
+                    let mut turning = None;
+                    if n.kind == NodeKind::Frame && point != [0.0; 3] {
+                        let r = matrix(&[q[3], q[4], q[5], q[6]]);
+                        let arm = times(&r, &point);
+                        (0..3).for_each(|i| x[i] += arm[i]);
+                        turning = Some((r, point));
+                    }
+                    see(sign, start, x, turning);
+                    start += n.kind.velocities();
+                }
+            }
         }
     }
 
@@ -456,8 +495,27 @@ impl Constraint for Connection {
     }
 
     fn jacobian(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
-        let (ends, n) = (self.ends(nodes, at), self.size(nodes));
+        let n = self.size(nodes);
         jac.fill(0.0);
+        if self.coincide {
+            g.fill(0.0);
+            self.points(nodes, at, |sign, start, x, turning| {
+                for i in 0..3 {
+                    g[i] += sign * x[i];
+                    if start == usize::MAX {
+                        continue;
+                    }
+                    let row = &mut jac[i * n + start..(i + 1) * n];
+                    row[i] = sign;
+                    if let Some((r, arm)) = &turning {
+                        let turn = cross(arm, &r[i]);
+                        (0..3).for_each(|k| row[3 + k] = sign * turn[k]);
+                    }
+                }
+            });
+            return;
+        }
+        let ends = self.ends(nodes, at);
         let d = value(&Arrow::Between, &ends, at.t);
         for ((equation, g), row) in self.equations.iter().zip(g).zip(jac.chunks_exact_mut(n)) {
             match equation {
@@ -482,8 +540,21 @@ impl Constraint for Connection {
     }
 
     fn geometric(&self, nodes: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
-        let (ends, n) = (self.ends(nodes, at), self.size(nodes));
+        let n = self.size(nodes);
         h.fill(0.0);
+        if self.coincide {
+            self.points(nodes, at, |sign, start, _, turning| {
+                if let Some((r, arm)) = &turning {
+                    let force = transposed_times(r, &[lambda[0], lambda[1], lambda[2]]);
+                    let k = product(&skew(arm), &skew(&force));
+                    for i in 0..3 {
+                        (0..3).for_each(|j| h[(start + 3 + i) * n + start + 3 + j] = sign * k[i][j]);
+                    }
+                }
+            });
+            return;
+        }
+        let ends = self.ends(nodes, at);
         let d = value(&Arrow::Between, &ends, at.t);
         // the forces of all equations in space come as one
         let mut force = [0.0; 3];

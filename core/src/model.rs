@@ -338,9 +338,14 @@ impl Model {
         sys.jacobian.resize(n * m, 0.0);
         let (motion, relation) = sys.residual.split_at_mut(self.velocities);
         constraint.jacobian(&self.nodes, at, &mut relation[rows], &mut sys.jacobian);
-        let dofs = constraint.nodes().iter().flat_map(|&k| self.node(k).dofs());
-        for (j, dof) in dofs.enumerate() {
-            motion[dof] += (0..m).map(|r| sys.jacobian[r * n + j] * multipliers[r]).sum::<f64>();
+        for (row, &l) in sys.jacobian.chunks_exact(n).zip(multipliers) {
+            let mut row = row;
+            for &k in constraint.nodes() {
+                let dofs = self.node(k).dofs();
+                let (own, rest) = row.split_at(dofs.len());
+                motion[dofs].iter_mut().zip(own).for_each(|(f, g)| *f += l * g);
+                row = rest;
+            }
         }
         let Some(w) = weights else { return };
         let curved = !constraint.linear() && w.q != 0.0;
