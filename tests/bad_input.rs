@@ -251,7 +251,7 @@ fn contradictions_are_named() {
             "[[motions]]\ntype = \"turn\"",
             again,
             "[[constraints]]",
-            &["`hook` is redundant", "from `again`", "Remove one"],
+            &["`again`, `hook` contradict each other", "prescribe different velocities", "Remove one"],
         ),
         (
             "t = [0, 0.1, 0.5] # sway",

@@ -202,9 +202,18 @@ pub(crate) fn find(model: &Model) -> Result<Option<Redundancy>, BuildError> {
         return Ok(None);
     }
 
-    let owners = |keep: &dyn Fn(usize) -> bool| -> Vec<String> {
-        let all = model.constraints().iter().enumerate();
-        all.filter(|(c, _)| model.rows_of(*c).any(keep)).map(|(_, c)| c.name().to_string()).collect()
+    let owners = |keep: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        let all = 0..model.constraints().len();
+        all.filter(|&c| model.rows_of(c).any(keep)).collect()
+    };
+    let contradiction = |who: &[usize], what: &str| {
+        let names: Vec<&str> = who.iter().map(|&c| model.constraints()[c].name()).collect();
+        let message = format!(
+            "the constraints {} contradict each other: they hold the same parts twice and {what}. Remove one of them or \
+             correct it",
+            names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
+        );
+        BuildError::at(names.last().copied().unwrap_or_default(), message)
     };
     let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
     model.rates(&at, &mut rate, &mut bias);
@@ -214,17 +223,28 @@ pub(crate) fn find(model: &Model) -> Result<Option<Redundancy>, BuildError> {
         ("prescribe different accelerations", &bias, 1e-6 * largest(&bias)),
     ] {
         let conflict = left(values)?;
-        if conflict.iter().any(|x| x.abs() > limit && *x != 0.0) {
-            let names = owners(&|r| conflict[r].abs() > limit);
-            let message = format!(
-                "the constraints {} contradict each other: they hold the same parts twice and {what}. Remove one of \
-                 them or correct it",
-                names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
-            );
-            return Err(BuildError::at(names.last().cloned().unwrap_or_default(), message));
+        let who = owners(&|r| conflict[r].abs() > limit);
+        if !who.is_empty() {
+            return Err(contradiction(&who, what));
         }
     }
-    Ok(Some(Redundancy { equations: basis.len(), constraints: owners(&|r| rows.contains(&r)) }))
+    // what is linear stays redundant, so motions can be compared ahead of time
+    let mut t = 1e-2;
+    while t < 1e6 {
+        model.rates(&At { t, ..at }, &mut rate, &mut bias);
+        let limit = 1e-6 * largest(&rate);
+        if limit > 0.0 {
+            let conflict = left(&rate)?;
+            let who = owners(&|r| conflict[r].abs() > limit);
+            if !who.is_empty() && who.iter().all(|&c| model.constraints()[c].linear()) {
+                return Err(contradiction(&who, &format!("prescribe different velocities at t = {t:.3} s")));
+            }
+        }
+        t *= 1.5;
+    }
+    let constraints = owners(&|r| rows.contains(&r));
+    let constraints = constraints.iter().map(|&c| model.constraints()[c].name().to_string()).collect();
+    Ok(Some(Redundancy { equations: basis.len(), constraints }))
 }
 
 fn norm(x: &[f64]) -> f64 {
