@@ -3,6 +3,7 @@
 //! Integrators and Newton's method work with velocities and increments, which are plain vectors; only a node
 //! knows that an orientation isn't one. `q ⊕ Δ` is [`NodeKind::retract`].
 
+use crate::lane::V3;
 use crate::rotation::{cross, exp, log, then};
 use serde::{Deserialize, Serialize};
 
@@ -79,6 +80,47 @@ impl NodeKind {
             for i in 0..3 {
                 v[3 + i] += b * twice[i] - a * once[i];
             }
+        }
+    }
+
+    /// First and second time derivatives of the increment in a motion `q ⊕ d(t)` with these velocities and accelerations:
+    /// undoes [`NodeKind::velocity`] and its derivative. For rotations by less than a whole turn.
+    pub fn rates(self, d: &[f64], v: &[f64], a: &[f64], first: &mut [f64], second: &mut [f64]) {
+        first.copy_from_slice(v);
+        second.copy_from_slice(a);
+        if self == NodeKind::Frame {
+            let [d, v, a] = [d, v, a].map(|x| [x[3], x[4], x[5]]);
+            let square = d.iter().map(|x| x * x).sum::<f64>();
+            let angle = square.sqrt();
+            // ω = ḋ - A d×ḋ + B d×(d×ḋ); C of its inverse, and Ȧ and Ḃ per d·ḋ
+            let [b, c, a_dot, b_dot] = if angle < 1e-2 {
+                [
+                    1.0 / 6.0 - square / 120.0,
+                    1.0 / 12.0 + square / 720.0,
+                    -1.0 / 12.0 + square / 180.0,
+                    -1.0 / 60.0 + square / 1260.0,
+                ]
+            } else {
+                let (sin, cos) = angle.sin_cos();
+                [
+                    (angle - sin) / (square * angle),
+                    (1.0 - 0.5 * angle / (0.5 * angle).tan()) / square,
+                    (angle * sin - 2.0 * (1.0 - cos)) / (square * square),
+                    (3.0 * sin - angle * (2.0 + cos)) / (square * square * angle),
+                ]
+            };
+            let back = |x: V3<f64>| -> V3<f64> {
+                let once = cross(&d, &x);
+                let twice = cross(&d, &once);
+                std::array::from_fn(|i| x[i] + 0.5 * once[i] + c * twice[i])
+            };
+            let rate = back(v);
+            let along: f64 = (0..3).map(|i| d[i] * rate[i]).sum();
+            let once = cross(&d, &rate);
+            let (twice, mixed) = (cross(&d, &once), cross(&rate, &once));
+            let bent = |i: usize| along * (b_dot * twice[i] - a_dot * once[i]) + b * mixed[i];
+            first[3..6].copy_from_slice(&rate);
+            second[3..6].copy_from_slice(&back(std::array::from_fn(|i| a[i] - bent(i))));
         }
     }
 
@@ -199,6 +241,30 @@ mod tests {
             });
             for i in 0..6 {
                 approx::assert_abs_diff_eq!(v[i], exact[i], epsilon = 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn rates_undo_the_velocity_and_its_derivative() {
+        let (d, rate, bend) = ([0.3, -0.2, 0.1, 1.2, -0.4, 0.9], [1.0, 2.0, 3.0, -0.7, 0.8, 1.5], [0.4; 6]);
+        for size in [1.0, 1e-3, 0.0] {
+            let velocity = |t: f64| {
+                let d: [f64; 6] = std::array::from_fn(|i| size * d[i] + t * rate[i] + 0.5 * t * t * bend[i]);
+                let mut v = vec![0.0; 6];
+                NodeKind::Frame.velocity(
+                    &d,
+                    &std::array::from_fn::<_, 6, _>(|i| rate[i] + t * bend[i]),
+                    &mut v,
+                );
+                v
+            };
+            let (v, a) = (velocity(0.0), crate::testing::difference(velocity));
+            let (mut first, mut second) = ([0.0; 6], [0.0; 6]);
+            NodeKind::Frame.rates(&d.map(|x| size * x), &v, &a, &mut first, &mut second);
+            for i in 0..6 {
+                approx::assert_abs_diff_eq!(first[i], rate[i], epsilon = 1e-12);
+                approx::assert_abs_diff_eq!(second[i], bend[i], epsilon = 1e-9);
             }
         }
     }

@@ -339,6 +339,8 @@ impl Simulation {
                 self.model = Arc::from(model);
             }
         }
+        // where the function stands after it has passed zero
+        let passed = self.events.get(k).map_or(0.0, |e| e.1);
         // history doesn't reach across an event
         let modes = self.state.modes.clone();
         prepare(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
@@ -349,6 +351,12 @@ impl Simulation {
         self.power = self.model.power(&self.state.at(), &self.state.lambda);
         for (event, value) in &mut self.events {
             *value = event.value(&self.model, &self.state);
+        }
+        // meeting the constraints again may have moved the state back by a hair: it mustn't pass twice
+        if let Some((_, value)) = self.events.get_mut(k)
+            && *value * passed < 0.0
+        {
+            *value = passed;
         }
         Ok(None)
     }
