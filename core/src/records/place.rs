@@ -29,6 +29,10 @@ impl Spotted {
         let (name, spot) = split_marker(of).map_err(|e| BuildError::at("of", format!("`{of}`: {e}")))?;
         let part = part(model, name)?;
         match spot {
+            // where there is a node or a body, its acceleration is known to the last term
+            Spot::Along(s) if part.marker(&Spot::Along(s)).is_ok() => {
+                part.marker(&spot).map(Self::Marker).map_err(|e| BuildError::at("of", e))
+            }
             Spot::Along(s) if part.point(s, &model.state().at()).is_some() => Ok(Self::Along(part, s)),
             Spot::Along(s) => Err(off(part.as_ref(), "of", s)),
             named => part
