@@ -20,7 +20,7 @@ impl<'a> Dense<'a> {
         Dense { model, from, to, d }
     }
 
-    /// Sets time, positions, velocities, accelerations and multipliers of `out` to those at time `t` of the step.
+    /// Sets time, positions, velocities, both accelerations and multipliers of `out` to those at time `t` of the step.
     pub fn at(&self, t: f64, out: &mut State) {
         let (a, b) = (self.from, self.to);
         let h = b.t - a.t;
@@ -45,6 +45,7 @@ impl<'a> Dense<'a> {
                 + dv1 * b.v[i]
                 + h * (da0 * a.a[i] + da1 * b.a[i]);
             out.a[i] = a.a[i] + x * (b.a[i] - a.a[i]);
+            out.aux[i] = a.aux[i] + x * (b.aux[i] - a.aux[i]);
         }
         for i in 0..out.lambda.len() {
             out.lambda[i] = a.lambda[i] + x * (b.lambda[i] - a.lambda[i]);

@@ -13,7 +13,8 @@ use std::sync::Arc;
 
 /// What an event does once its time is located.
 pub enum Action {
-    /// Nothing: it was only of interest.
+    /// Nothing that forces feel at once: it was only of interest, or what it started sets in smoothly. The step ends
+    /// there, and the integrator goes on with its memory.
     Continue,
     /// The state (a mode, a velocity) was changed: the integrator starts anew from it.
     Restart,
@@ -322,7 +323,10 @@ impl Simulation {
         observer.event(&self.events[k].0.name(), self.state.t);
         let h = self.state.control.h_last;
         match self.events[k].0.act(&self.model, &mut self.state) {
-            Action::Continue => {}
+            Action::Continue => {
+                self.resume();
+                return Ok(None);
+            }
             Action::Stop => return Ok(Some(End::Stopped { by: self.events[k].0.name() })),
             Action::Restart => {}
             Action::Remesh(model) => {
@@ -344,12 +348,17 @@ impl Simulation {
         prepare(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
         self.state.modes = modes;
         self.state.control.h_next = 0.1 * h;
+        self.resume();
+        Ok(None)
+    }
+
+    /// Goes on from a state that an event has seen.
+    fn resume(&mut self) {
         self.previous.clone_from(&self.state);
         self.scratch.clone_from(&self.state);
         self.power = self.model.power(&self.state.at(), &self.state.lambda);
         for (event, value) in &mut self.events {
             *value = event.value(&self.model, &self.state);
         }
-        Ok(None)
     }
 }

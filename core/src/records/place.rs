@@ -5,6 +5,7 @@ use crate::build::BuildError;
 use crate::lane::V3;
 use crate::marker::Marker;
 use crate::model::Model;
+use crate::node::{NodeId, NodeKind};
 use crate::part::{Part, Spot, split_marker};
 use crate::quantity;
 use crate::record::Sample;
@@ -67,6 +68,19 @@ impl Spotted {
                 part.point(*arc, &At { v: s.at.a, ..s.at }).map_or([f64::NAN; 3], |(_, a)| a)
             }
         }
+    }
+}
+
+/// The rigid body of a marker: its node, and what it is called.
+pub(super) fn body(model: &Model, field: &'static str, of: &str) -> Result<(NodeId, String), BuildError> {
+    let (name, spot) = split_marker(of).map_err(|e| BuildError::at(field, format!("`{of}`: {e}")))?;
+    let part = part(model, name).map_err(|e| e.of(field))?;
+    let marker = part.marker(&spot).map_err(|e| BuildError::at(field, format!("`{of}`: {e}")))?;
+    match marker.on() {
+        Some(node) if model.node(node).kind == NodeKind::Frame => {
+            Ok((node, of.chars().filter(|c| !c.is_whitespace()).collect()))
+        }
+        _ => Err(BuildError::at(field, format!("`{of}` is not on a rigid body: it doesn't turn"))),
     }
 }
 
