@@ -13,10 +13,10 @@ mod released;
 mod turning;
 
 pub use along::AlongSpec;
-pub use driving::{DrivingCheckSpec, SpaceAxis};
+pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
-pub use place::Station as RecordPlace;
+pub use place::{SpaceAxis, Station as RecordPlace};
 pub use reaction::{ReactionPart, ReactionSpec};
 pub use released::ReleasedSpec;
 pub use turning::{AngularVelocitySpec, OrientationSpec, SeenFrom};

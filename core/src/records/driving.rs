@@ -1,5 +1,6 @@
 //! How well a driven marker follows the motion that is imposed on it.
 
+use super::place::{SpaceAxis, all_axes, check_axes};
 use super::{listed, named};
 use crate::build::BuildError;
 use crate::marker::Marker;
@@ -10,22 +11,6 @@ use crate::spec::RecordSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// An axis of space.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SpaceAxis {
-    /// x
-    X,
-    /// y
-    Y,
-    /// z
-    Z,
-}
-
-fn all() -> Vec<SpaceAxis> {
-    vec![SpaceAxis::X, SpaceAxis::Y, SpaceAxis::Z]
-}
-
 /// A driving constraint against the motion that it imposes: columns `ship.imposed_x` and `ship.actual_x` in m, the same
 /// of velocities, `ship.imposed_vx` and `ship.actual_vx` in m/s, and `ship.difference`, the distance between where the
 /// marker is and where it should be, in m.
@@ -35,7 +20,7 @@ pub struct DrivingCheckSpec {
     /// Name of the driving constraint.
     pub of: String,
     /// The axes of space that are recorded; left out, all three.
-    #[serde(default = "all")]
+    #[serde(default = "all_axes")]
     pub axes: Vec<SpaceAxis>,
     /// Name in results; left out, that of the constraint and `.check`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -67,7 +52,7 @@ impl Record for Check {
         let mut add = |name: &str, unit| columns.push(Column::new(format!("{}.{name}", self.stem), unit));
         for (prefix, unit) in [("", "m"), ("v", "m/s")] {
             for axis in &self.axes {
-                let letter = ["x", "y", "z"][*axis as usize];
+                let letter = axis.letter();
                 add(&format!("imposed_{prefix}{letter}"), unit);
                 add(&format!("actual_{prefix}{letter}"), unit);
             }
@@ -107,9 +92,7 @@ impl RecordSpec for DrivingCheckSpec {
             let message = format!("there is no driving constraint `{of}`; the driving ones are {names}");
             return Err(BuildError::at("of", message));
         };
-        if self.axes.is_empty() || (1..self.axes.len()).any(|k| self.axes[..k].contains(&self.axes[k])) {
-            return Err(BuildError::at("axes", "`axes` must name one to three different axes"));
-        }
+        check_axes(&self.axes)?;
         let held = constraints[constraint].markers();
         let name = named(&self.name, || format!("{of}.check"));
         let title = named(&self.title, || format!("Driving constraint {of} against the imposed motion"));

@@ -84,6 +84,36 @@ pub(super) fn body(model: &Model, field: &'static str, of: &str) -> Result<(Node
     }
 }
 
+/// An axis of space or of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, serde::Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SpaceAxis {
+    /// x
+    X,
+    /// y
+    Y,
+    /// z
+    Z,
+}
+
+impl SpaceAxis {
+    pub(super) fn letter(self) -> &'static str {
+        ["x", "y", "z"][self as usize]
+    }
+}
+
+pub(super) fn all_axes() -> Vec<SpaceAxis> {
+    vec![SpaceAxis::X, SpaceAxis::Y, SpaceAxis::Z]
+}
+
+/// Refuses no axes, and the same one twice.
+pub(super) fn check_axes(axes: &[SpaceAxis]) -> Result<(), BuildError> {
+    if axes.is_empty() || (1..axes.len()).any(|k| axes[..k].contains(&axes[k])) {
+        return Err(BuildError::at("axes", "`axes` must name one to three different axes"));
+    }
+    Ok(())
+}
+
 /// The part of this name.
 pub(super) fn part(model: &Model, name: &str) -> Result<Arc<dyn Part>, BuildError> {
     model.part(name).cloned().ok_or_else(|| {

@@ -1,7 +1,7 @@
 //! Angular velocity and orientation of a rigid body.
 
 use super::named;
-use super::place::body;
+use super::place::{SpaceAxis, all_axes, body, check_axes};
 use crate::build::BuildError;
 use crate::model::Model;
 use crate::node::NodeId;
@@ -21,6 +21,8 @@ pub enum SeenFrom {
     Space,
     /// Those of the body itself.
     Body,
+    /// Those of the body that it is relative to.
+    To,
 }
 
 /// Angular velocity of a rigid body: columns `crank.wx`, `.wy` and `.wz` in rad/s.
@@ -33,9 +35,12 @@ pub struct AngularVelocitySpec {
     /// speed of the joint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<String>,
-    /// The axes that it is given in: `space` or those of the `body`.
+    /// The axes that it is given in: of `space`, of the `body`, or of the body `to` which it is relative.
     #[serde(default)]
-    pub axes: SeenFrom,
+    pub frame: SeenFrom,
+    /// The components that are recorded; left out, all three.
+    #[serde(default = "all_axes")]
+    pub axes: Vec<SpaceAxis>,
     /// Name in results; left out, that of the body and `.angular_velocity`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
@@ -68,7 +73,8 @@ register_spec!(Record, "orientation", OrientationSpec);
 struct Turning {
     node: NodeId,
     to: Option<NodeId>,
-    axes: SeenFrom,
+    frame: SeenFrom,
+    axes: Vec<SpaceAxis>,
     name: String,
     stem: String,
     title: String,
@@ -93,7 +99,8 @@ impl Record for Turning {
         self.name.clone()
     }
     fn columns(&self) -> Vec<Column> {
-        ["wx", "wy", "wz"].map(|i| Column::new(format!("{}.{i}", self.stem), "rad/s")).to_vec()
+        let column = |a: &SpaceAxis| Column::new(format!("{}.w{}", self.stem, a.letter()), "rad/s");
+        self.axes.iter().map(column).collect()
     }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
         let mut w = angular_velocity(s, self.node);
@@ -101,10 +108,15 @@ impl Record for Turning {
             let other = angular_velocity(s, to);
             w = std::array::from_fn(|i| w[i] - other[i]);
         }
-        if self.axes == SeenFrom::Body {
-            w = transposed_times(&matrix(&quaternion(s, self.node)), &w);
+        let seen_from = match self.frame {
+            SeenFrom::Space => None,
+            SeenFrom::Body => Some(self.node),
+            SeenFrom::To => self.to,
+        };
+        if let Some(node) = seen_from {
+            w = transposed_times(&matrix(&quaternion(s, node)), &w);
         }
-        out.extend(w);
+        out.extend(self.axes.iter().map(|a| w[*a as usize]));
     }
 }
 
@@ -112,6 +124,10 @@ impl Record for Turning {
 impl RecordSpec for AngularVelocitySpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
         let (node, of) = body(model, "of", &self.of)?;
+        check_axes(&self.axes)?;
+        if self.frame == SeenFrom::To && self.to.is_none() {
+            return Err(BuildError::at("frame", "`frame = \"to\"` needs the body `to` which it is relative"));
+        }
         let to = self.to.as_deref().map(|to| body(model, "to", to)).transpose()?;
         let stem = named(&self.name, || of.clone());
         let name = named(&self.name, || format!("{of}.angular_velocity"));
@@ -119,7 +135,15 @@ impl RecordSpec for AngularVelocitySpec {
             Some((_, to)) => format!("Angular velocity of {of} relative to {to}"),
             None => format!("Angular velocity of {of}"),
         });
-        Ok(Box::new(Turning { node, to: to.map(|t| t.0), axes: self.axes, name, stem, title }))
+        Ok(Box::new(Turning {
+            node,
+            to: to.map(|t| t.0),
+            frame: self.frame,
+            axes: self.axes.clone(),
+            name,
+            stem,
+            title,
+        }))
     }
 }
 
