@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::scene::{Document, Fault, Format, did_you_mean, quoted, read_text};
 use ropewalk_core::{Model, Record, Scene, SceneError, SpecKind};
 use ropewalk_models::{Bundled, bundled};
-use std::path::{Path, is_separator};
+use std::path::{Path, PathBuf, is_separator};
 
 /// Reads a scene: a bundled one by its name, or a `.toml` or `.json` file.
 ///
@@ -25,6 +25,8 @@ pub(crate) struct SceneText {
     /// What messages call it.
     label: String,
     format: Format,
+    /// Where the files that it names are, if it is a file itself.
+    folder: Option<PathBuf>,
 }
 
 impl SceneText {
@@ -35,7 +37,7 @@ impl SceneText {
         if !(scene.contains(is_separator) || lower.ends_with(".toml") || lower.ends_with(".json")) {
             if let Some(b) = bundled.iter().find(|b| b.name == scene) {
                 let (name, text) = (b.name.to_string(), b.text.to_string());
-                return Ok(Self { label: name.clone(), name, text, format: Format::Toml });
+                return Ok(Self { label: name.clone(), name, text, format: Format::Toml, folder: None });
             }
             if !path.exists() {
                 return Err(unknown(scene, bundled));
@@ -43,12 +45,16 @@ impl SceneText {
         }
         let name = path.file_stem().map_or_else(|| scene.to_string(), |s| s.to_string_lossy().into_owned());
         let (text, format) = read_text(path)?;
-        Ok(Self { name, text, label: path.display().to_string(), format })
+        let folder = path.parent().map(Path::to_path_buf);
+        Ok(Self { name, text, label: path.display().to_string(), format, folder })
     }
 
     /// The scene with these parameters, each `name=value`.
     pub(crate) fn with(&self, overrides: &[String]) -> Result<SceneFile, Fault> {
-        let document = Document::parse(&self.text, &self.label, self.format, overrides)?;
+        let mut document = Document::parse(&self.text, &self.label, self.format, overrides)?;
+        if let Some(folder) = &self.folder {
+            document.files_from(folder);
+        }
         SceneFile::of(document, self.name.clone())
     }
 }

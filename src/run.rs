@@ -5,6 +5,7 @@ mod pictures;
 mod recorder;
 mod report;
 mod start;
+mod tables;
 
 pub use manifest::Manifest;
 pub(crate) use recorder::{Recorder, records};
@@ -86,10 +87,14 @@ pub(crate) fn run_showing(
         warn(&format!("parameter `{name}` is not used by the scene"));
     }
 
+    let mut recorder = Recorder::new(scene, records);
+    if let Err(message) = tables::check(scene, &recorder.table) {
+        return Err(file.document().fault_at("run.tables", message).into());
+    }
+
     let is_new = options.out.as_ref().is_none_or(|out| !out.exists());
     let folder = RunFolder::create(options.out.clone(), file.name())?;
     let stopwatch = Stopwatch::start();
-    let mut recorder = Recorder::new(scene, records);
     let mut started = match Started::new(scene, model) {
         Err(e) if e.is_input() => {
             if is_new {
@@ -162,10 +167,11 @@ pub(crate) fn run_showing(
     }
     recorder.finals(&mut summary);
     let pictures = pictures::draw(&folder, file.title(), &recorder, warn);
+    let tables = tables::write(&folder, &recorder, warn);
     summary.warnings = warnings;
     // last of all: who finds a summary finds everything
     folder.write_summary(&summary)?;
-    let report = report::report(file, &summary, &recorder, &folder, &pictures);
+    let report = report::report(file, &summary, &recorder, &folder, &pictures, &tables);
     Ok(Outcome { folder, summary, history: recorder.table, pictures, report })
 }
 

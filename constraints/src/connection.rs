@@ -493,6 +493,12 @@ impl Constraint for Connection {
     fn range(&self) -> (f64, f64) {
         self.range
     }
+    fn imposes(&self) -> Option<&dyn Motion> {
+        self.equations.iter().find_map(|e| match e {
+            Equation::Along { motion, .. } => motion.as_deref(),
+            _ => None,
+        })
+    }
 
     fn jacobian(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
         let n = self.size(nodes);

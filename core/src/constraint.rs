@@ -4,6 +4,7 @@
 //! acceleration equation come from forward differentiation of it and are exact.
 
 use crate::marker::{Jet, Marker, Place};
+use crate::motion::Motion;
 use crate::node::{Node, NodeId, NodeKind};
 use crate::state::At;
 use num_dual::{Dual2_64, Dual64, HyperDual64};
@@ -69,6 +70,10 @@ pub trait Constraint: Send + Sync {
     fn geometric(&self, nodes: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]);
     /// Sets `∂g/∂t` and the bias `(G v)_q v + 2 G_t v + g_tt`: the parts of ġ and g̈ that hold no unknown.
     fn rates(&self, nodes: &[Node], at: &At<'_>, rate: &mut [f64], bias: &mut [f64]);
+    /// The displacement that it imposes on its last marker as seen from its first, if it does that.
+    fn imposes(&self) -> Option<&dyn Motion> {
+        None
+    }
     /// First and last time for which it is defined.
     fn range(&self) -> (f64, f64) {
         (f64::NEG_INFINITY, f64::INFINITY)

@@ -30,7 +30,7 @@ impl<'a> Dense<'a> {
         Dense { model, from, to, d, v, a }
     }
 
-    /// Sets time, positions, velocities, accelerations and multipliers of `out` to those at time `t` of the step.
+    /// Sets time, positions, velocities, both accelerations and multipliers of `out` to those at time `t` of the step.
     pub fn at(&self, t: f64, out: &mut State) {
         let (a, b) = (self.from, self.to);
         let h = b.t - a.t;
@@ -56,6 +56,7 @@ impl<'a> Dense<'a> {
                 + dv1 * v_end
                 + h * (da0 * a.a[i] + da1 * a_end);
             out.a[i] = a.a[i] + x * (b.a[i] - a.a[i]);
+            out.aux[i] = a.aux[i] + x * (b.aux[i] - a.aux[i]);
         }
         out.v.copy_from_slice(&rate);
         velocity(self.model.nodes(), &d, &rate, &mut out.v);

@@ -49,7 +49,7 @@ pub use pattern::Pattern;
 pub use pool::{Batch, Element, Local, Pool, Share};
 pub use record::{Audit, Column, Record, Sample};
 pub use redundancy::Redundancy;
-pub use scene::{Analysis, Level, Plan, Run, Scene, SceneError, Water};
+pub use scene::{Analysis, Level, Plan, Run, Scene, SceneError, ShapeTitles, TableSpec, Water};
 pub use simulation::{Action, End, Event, Observer, Simulation};
 pub use solver::{Chain, Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
 pub use spec::{

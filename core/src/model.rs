@@ -165,6 +165,10 @@ impl Model {
     pub fn redundancy(&self) -> Option<&Redundancy> {
         self.redundancy.as_ref()
     }
+    /// Names of the modes, in the order of [`State::modes`].
+    pub fn modes(&self) -> &[String] {
+        &self.switches.modes
+    }
     /// The number of a mode in [`State::modes`].
     pub fn mode(&self, name: &str) -> Option<usize> {
         self.switches.modes.iter().position(|m| m == name)

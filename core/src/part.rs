@@ -86,9 +86,9 @@ pub trait Part: Send + Sync {
     /// Lays its nodes evenly along the straight line between its ends, as the start of another search for
     /// equilibrium. Parts that can't be laid wrong do nothing.
     fn straighten(&self, _q: &mut [f64]) {}
-    /// First coordinate and velocity of its node, if it has only one.
-    fn seat(&self) -> Option<(usize, usize)> {
-        None
+    /// First coordinate and velocity of each of its own nodes, in order.
+    fn seats(&self) -> Vec<(usize, usize)> {
+        Vec::new()
     }
     /// Its state carried over to this part of another model, where the mesh may differ: sets the coordinates and
     /// velocities of this part's nodes by interpolation of `old`.

@@ -1,19 +1,25 @@
-//! The records that come with Ropewalk: motion of a point, tension and the like along a cable, reaction of a
-//! constraint, balance of energy.
+//! The records that come with Ropewalk: motion of a point and turning of a body, tension and the like along a cable,
+//! reaction of a constraint and how well it follows its motion, what has let go, balance of energy.
 //!
 //! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
 
 mod along;
+mod driving;
 mod energy;
 mod motion;
 mod place;
 mod reaction;
+mod released;
+mod turning;
 
 pub use along::AlongSpec;
+pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
-pub use place::Station as RecordPlace;
-pub use reaction::ReactionSpec;
+pub use place::{SpaceAxis, Station as RecordPlace};
+pub use reaction::{ReactionPart, ReactionSpec};
+pub use released::ReleasedSpec;
+pub use turning::{AngularVelocitySpec, OrientationSpec, SeenFrom};
 
 /// `` `a`, `b` ``, or what is said instead if there is nothing.
 fn listed<'a>(names: impl Iterator<Item = &'a str>, none: &str) -> String {

@@ -106,6 +106,38 @@ pub struct Run {
     pub audit: bool,
     /// Number of snapshots in the pictures of shapes.
     pub snapshots: usize,
+    /// Titles of the pictures of shapes; left out, that of the scene.
+    pub shape_titles: ShapeTitles,
+    /// Tables of a few columns of the history, each a CSV file of its own.
+    pub tables: Vec<TableSpec>,
+}
+
+/// Titles of the pictures of shapes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ShapeTitles {
+    /// From the side: x and z.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side: Option<String>,
+    /// From above: x and y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub top: Option<String>,
+    /// From the end: y and z.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub end: Option<String>,
+}
+
+/// Some columns of the history as a table of their own: `tables/NAME.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TableSpec {
+    /// Name of its file, without ending.
+    pub name: String,
+    /// Names of its columns in the history; time comes first of its own accord.
+    pub columns: Vec<String>,
+    /// Time from row to row, a multiple of `output` [s]; left out, every row of the history.
+    #[serde(default, deserialize_with = "crate::quantity::time")]
+    pub every: f64,
 }
 
 impl Default for Run {
@@ -118,6 +150,8 @@ impl Default for Run {
             from_equilibrium: false,
             audit: true,
             snapshots: 9,
+            shape_titles: ShapeTitles::default(),
+            tables: Vec::new(),
         }
     }
 }
@@ -143,6 +177,14 @@ impl Run {
         if self.snapshots > 10_000 {
             let message = format!("`snapshots` must be at most 10000, not {}", self.snapshots);
             return Err(BuildError::at("run.snapshots", message));
+        }
+        for table in &self.tables {
+            crate::build::not_negative("every", table.every).map_err(|e| e.of("run.tables"))?;
+            let named = !table.name.is_empty() && !table.name.contains(['/', '\\']);
+            if !named || self.tables.iter().filter(|t| t.name == table.name).count() > 1 {
+                let message = format!("`{}` can't be the name of a table, or two have it", table.name);
+                return Err(BuildError::at("run.tables", message));
+            }
         }
         Ok(())
     }

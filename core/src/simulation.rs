@@ -13,7 +13,8 @@ use std::sync::Arc;
 
 /// What an event does once its time is located.
 pub enum Action {
-    /// Nothing: it was only of interest.
+    /// Nothing that forces feel at once: it was only of interest, or what it started sets in smoothly. The step ends
+    /// there, and the integrator goes on with its memory.
     Continue,
     /// The state (a mode, a velocity) was changed: the integrator starts anew from it.
     Restart,
@@ -322,7 +323,19 @@ impl Simulation {
         observer.event(&self.events[k].0.name(), self.state.t);
         let h = self.state.control.h_last;
         match self.events[k].0.act(&self.model, &mut self.state) {
-            Action::Continue => {}
+            Action::Continue => {
+                // the step has become shorter, and what was predicted from it doesn't fit any more
+                let control = &mut self.state.control;
+                control.h_last = self.state.t - self.previous.t;
+                (control.backs, control.order) = (0, 0);
+                control.stages[0].clear();
+                let short = if h > 0.0 { control.h_last / h } else { 1.0 };
+                for (aux, a) in self.state.aux.iter_mut().zip(&self.state.a) {
+                    *aux = a + short * (*aux - a);
+                }
+                self.resume();
+                return Ok(None);
+            }
             Action::Stop => return Ok(Some(End::Stopped { by: self.events[k].0.name() })),
             Action::Restart => {}
             Action::Remesh(model) => {
@@ -346,12 +359,7 @@ impl Simulation {
         prepare(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
         self.state.modes = modes;
         self.state.control.h_next = 0.1 * h;
-        self.previous.clone_from(&self.state);
-        self.scratch.clone_from(&self.state);
-        self.power = self.model.power(&self.state.at(), &self.state.lambda);
-        for (event, value) in &mut self.events {
-            *value = event.value(&self.model, &self.state);
-        }
+        self.resume();
         // meeting the constraints again may have moved the state back by a hair: it mustn't pass twice
         if let Some((_, value)) = self.events.get_mut(k)
             && *value * passed < 0.0
@@ -359,5 +367,15 @@ impl Simulation {
             *value = passed;
         }
         Ok(None)
+    }
+
+    /// Goes on from a state that an event has seen.
+    fn resume(&mut self) {
+        self.previous.clone_from(&self.state);
+        self.scratch.clone_from(&self.state);
+        self.power = self.model.power(&self.state.at(), &self.state.lambda);
+        for (event, value) in &mut self.events {
+            *value = event.value(&self.model, &self.state);
+        }
     }
 }

@@ -272,6 +272,9 @@ impl Part for Body {
     fn place_of(&self, node: NodeId) -> Option<String> {
         (self.own && node == self.node).then(String::new)
     }
+    fn seats(&self) -> Vec<(usize, usize)> {
+        if self.own { vec![(self.q, self.v)] } else { Vec::new() }
+    }
     fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
         if let (true, Some((x, dx))) = (self.own, old.point(0.0, at)) {
             let node = &nodes[self.node.0 as usize];

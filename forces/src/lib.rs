@@ -1,10 +1,11 @@
 //! Ropewalk: forces.
 //!
 //! Distributed loads are laws on stations (drag, added mass, line loads); what acts at a point or between two points
-//! is a term (point forces and moments, springs).
+//! is a term (point forces and moments, springs, bushings, latches).
 
 mod added_mass;
 mod drag;
+mod latch;
 mod line_load;
 mod moment;
 mod point;
@@ -14,6 +15,7 @@ mod time;
 
 pub use added_mass::AddedMass;
 pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
+pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
 pub use line_load::LineLoad;
 pub use moment::PointMoment;
 pub use point::PointForce;

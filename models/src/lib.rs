@@ -21,7 +21,8 @@ macro_rules! scenes {
 
 /// All bundled scenes, by name.
 pub fn bundled() -> &'static [Bundled] {
-    const ALL: &[Bundled] = scenes!["cantilever", "catenary", "hose-straight", "hose-turn", "pendulum"];
+    const ALL: &[Bundled] =
+        scenes!["cantilever", "catenary", "hose-straight", "hose-turn", "pendulum", "shear-pin"];
     ALL
 }
 

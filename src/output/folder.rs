@@ -117,6 +117,16 @@ impl RunFolder {
         Ok(plots.join(format!("{}.svg", file_name(name))))
     }
 
+    /// `tables/<name>.csv`; the folder is made if needed.
+    ///
+    /// # Errors
+    /// A folder `tables` that can't be made.
+    pub fn table_file(&self, name: &str) -> Result<PathBuf, OutputError> {
+        let tables = self.path.join("tables");
+        fs::create_dir_all(&tables).map_err(|error| cannot_create(&tables, error))?;
+        Ok(tables.join(format!("{}.csv", file_name(name))))
+    }
+
     /// Writes the scene text.
     ///
     /// # Errors

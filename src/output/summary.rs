@@ -17,6 +17,9 @@ pub struct Summary {
     /// What one should know although the run went on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// Events of the run: what broke or let go, and when.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<Happened>,
     /// Rows of `history.csv`, from which one can tell whether the file is whole.
     #[serde(default)]
     pub rows: usize,
@@ -51,6 +54,15 @@ impl Summary {
     pub fn set(&mut self, record: impl Into<String>, value: impl Into<Value>) {
         self.final_values.insert(record.into(), value.into());
     }
+}
+
+/// An event of a run.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Happened {
+    /// What it was.
+    pub name: String,
+    /// When it was, located between two steps [s].
+    pub t: f64,
 }
 
 /// How much work a run was.

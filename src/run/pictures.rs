@@ -26,12 +26,14 @@ pub(crate) fn draw(
         }
     }
     for plane in planes(&recorder.shapes) {
-        let (name, from) = match plane {
-            Plane::Top => ("shape_top", "from above"),
-            Plane::SideX => ("shape_side", "from the side"),
-            Plane::SideY => ("shape_end", "from the end"),
+        let titles = &recorder.scene.run.shape_titles;
+        let (name, from, given) = match plane {
+            Plane::Top => ("shape_top", "from above", &titles.top),
+            Plane::SideX => ("shape_side", "from the side", &titles.side),
+            Plane::SideY => ("shape_end", "from the end", &titles.end),
         };
-        let plot = ShapePlot::of_positions(format!("{title}, {from}"), plane, &recorder.shapes);
+        let title = given.clone().unwrap_or_else(|| format!("{title}, {from}"));
+        let plot = ShapePlot::of_positions(title, plane, &recorder.shapes);
         let written = folder.plot_file(name).and_then(|path| plot.write(&path));
         keep(name.to_string(), written);
     }

@@ -2,7 +2,7 @@
 
 use super::start::Ending;
 use crate::error::Error;
-use crate::output::{self, Interrupt, Progress, Summary, Table, TableWriter};
+use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{
     Analysis, At, BuildError, Model, Observer, Record, Sample, Scene, SceneError, SpecKind, State, V3,
@@ -19,7 +19,7 @@ pub(crate) struct Figure {
 
 /// Sees every step and sample of a run.
 pub(crate) struct Recorder<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     records: Vec<Box<dyn Record>>,
     needs_forces: bool,
     /// Address of the model that the records are bound to.
@@ -41,6 +41,8 @@ pub(crate) struct Recorder<'a> {
     due: Vec<f64>,
     /// Why it stopped the run.
     pub stop: Option<Ending>,
+    /// What happened and when.
+    pub events: Vec<Happened>,
 }
 
 /// The records of a scene, each with a name of its own.
@@ -100,6 +102,7 @@ impl<'a> Recorder<'a> {
             shapes: Vec::new(),
             due: due.collect(),
             stop: None,
+            events: Vec::new(),
         }
     }
 
@@ -143,8 +146,9 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// The last value of every record, and the number of rows.
+    /// The last value of every record, what happened, and the number of rows.
     pub(crate) fn finals(&self, summary: &mut Summary) {
+        summary.events.clone_from(&self.events);
         summary.rows = self.table.rows();
         for f in &self.figures {
             let last = |k: usize| self.table.columns[k].values.last().copied();
@@ -187,6 +191,9 @@ impl Observer for Recorder<'_> {
     }
     fn needs_forces(&self) -> bool {
         self.needs_forces
+    }
+    fn event(&mut self, name: &str, t: f64) {
+        self.events.push(Happened { name: name.into(), t });
     }
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         let recorded = self.record(sample);

@@ -1,7 +1,7 @@
 //! What is said on the terminal when a run has ended.
 
 use super::Recorder;
-use crate::output::{RunFolder, Summary, number, rough};
+use crate::output::{Happened, RunFolder, Summary, number, rough};
 use crate::read::SceneFile;
 use ropewalk_core::Analysis;
 use std::fmt::Write;
@@ -13,6 +13,7 @@ pub(crate) fn report(
     recorder: &Recorder<'_>,
     folder: &RunFolder,
     pictures: &[String],
+    tables: &[String],
 ) -> String {
     let mut out = format!("{}\n", file.title());
     let mut line = |what: &str, text: String| _ = writeln!(out, "  {what:<9} {text}");
@@ -55,6 +56,16 @@ pub(crate) fn report(
             ),
         );
     }
+    for (k, (name, times)) in by_name(&summary.events).into_iter().enumerate() {
+        let when = match times.as_slice() {
+            [one] => format!("at t = {} s", number(*one)),
+            [first, .., last] => {
+                format!("{} times from t = {} s to {} s", times.len(), number(*first), number(*last))
+            }
+            [] => continue,
+        };
+        line(if k == 0 { "events" } else { "" }, format!("{name} {when}"));
+    }
     let wide = recorder.figures.iter().map(|f| f.name.chars().count()).max().unwrap_or(0);
     for (k, f) in recorder.figures.iter().enumerate() {
         let columns = &recorder.table.columns[f.columns.clone()];
@@ -72,8 +83,23 @@ pub(crate) fn report(
         }
     }
     line("folder", folder.path().display().to_string());
+    if !tables.is_empty() {
+        line("tables", tables.iter().map(|t| format!("tables/{t}.csv")).collect::<Vec<_>>().join(", "));
+    }
     if !pictures.is_empty() {
         line("pictures", pictures.iter().map(|p| format!("plots/{p}.svg")).collect::<Vec<_>>().join(", "));
     }
     out
+}
+
+/// The times of each kind of event, in the order in which they came first.
+fn by_name(events: &[Happened]) -> Vec<(&str, Vec<f64>)> {
+    let mut all: Vec<(&str, Vec<f64>)> = Vec::new();
+    for e in events {
+        match all.iter_mut().find(|(name, _)| *name == e.name) {
+            Some((_, times)) => times.push(e.t),
+            None => all.push((&e.name, vec![e.t])),
+        }
+    }
+    all
 }

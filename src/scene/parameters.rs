@@ -11,6 +11,12 @@
 //!
 //! A text that is `$` and a name stands for the parameter's value, whatever that is: a number, a list, a table. `$$` at
 //! the beginning of a text is a literal dollar sign. There is no arithmetic.
+//!
+//! A table with `choose` stands for one of its other values, that under the name that `choose` has:
+//!
+//! ```toml
+//! duration = { choose = "$speed", "25 kn" = "4 s", "15 kn" = "6 s", otherwise = "20 s" }
+//! ```
 
 use super::fault::{Fault, did_you_mean, expected, quoted};
 use super::source::{Sources, Span};
@@ -21,6 +27,10 @@ use std::fmt::Write;
 
 /// The table that declares parameters.
 pub(super) const TABLE: &str = "parameters";
+
+/// What makes a table stand for one of its values, and the one that it stands for if no other fits.
+const CHOOSE: &str = "choose";
+const OTHERWISE: &str = "otherwise";
 
 /// Fields of a parameter that is written as a table.
 const FIELDS: [&str; 2] = ["default", "description"];
@@ -213,6 +223,10 @@ impl Resolver<'_> {
 
     fn inside(&mut self, value: &mut Value) -> Result<(), Fault> {
         match &mut value.kind {
+            Kind::Table(table) if table.get(CHOOSE).is_some() => {
+                *value = self.chosen(std::mem::take(table), value.span)?;
+                Ok(())
+            }
             Kind::Table(table) => self.table(table),
             Kind::Array(list) => {
                 for (i, value) in list.iter_mut().enumerate() {
@@ -235,6 +249,31 @@ impl Resolver<'_> {
             }
             _ => Ok(()),
         }
+    }
+
+    /// The value of a table with `choose`.
+    fn chosen(&mut self, mut table: Table, span: Span) -> Result<Value, Fault> {
+        let Some((key, mut by)) = table.remove(CHOOSE) else {
+            return Err(self.fault("nothing to choose", span));
+        };
+        self.value(&mut by)?;
+        let plain = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
+        let wanted = match &by.kind {
+            Kind::String(text) => text.clone(),
+            Kind::Integer(x) => x.to_string(),
+            Kind::Float(x) => x.to_string(),
+            Kind::Bool(x) => x.to_string(),
+            _ => return Err(self.fault("`choose` takes a text or a number", key.span)),
+        };
+        let names: Vec<String> = table.iter().map(|(key, _)| key.name.clone()).collect();
+        let fits = names.iter().find(|n| plain(n) == plain(&wanted)).map_or(OTHERWISE, String::as_str);
+        let Some((_, mut value)) = table.remove(fits) else {
+            let message = format!("there is nothing to choose for {}, {}", quoted(&wanted), expected(&names));
+            let help = format!("add it, or `{OTHERWISE}` for all that isn't named");
+            return Err(self.fault(message, key.span).with_help(help));
+        };
+        self.value(&mut value)?;
+        Ok(value)
     }
 
     fn used(&mut self, name: &str, span: Span) -> Result<Value, Fault> {

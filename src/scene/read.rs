@@ -87,6 +87,11 @@ impl Document {
         self.table().get(name).filter(|value| value.kind != Kind::Null)
     }
 
+    /// Makes the paths of files that the scene names, under the key `file`, start from this folder.
+    pub fn files_from(&mut self, folder: &Path) {
+        files_from(&mut self.root, folder);
+    }
+
     /// What stands at a path like `elements[2].section`, if anything does.
     #[must_use]
     pub fn find(&self, path: &str) -> Option<&Value> {
@@ -199,6 +204,24 @@ impl Document {
     #[must_use]
     pub fn to_toml(&self) -> String {
         write::document(self.table())
+    }
+}
+
+fn files_from(value: &mut Value, folder: &Path) {
+    match &mut value.kind {
+        Kind::Table(table) => {
+            for (key, value) in &mut table.0 {
+                match &mut value.kind {
+                    Kind::String(path) if key.name == "file" => {
+                        let whole = folder.join(&*path);
+                        *path = std::path::absolute(&whole).unwrap_or(whole).display().to_string();
+                    }
+                    _ => files_from(value, folder),
+                }
+            }
+        }
+        Kind::Array(list) => list.iter_mut().for_each(|value| files_from(value, folder)),
+        _ => {}
     }
 }
 

@@ -7,6 +7,9 @@ use std::f64::consts::TAU;
 
 /// `X = S(u) A sin(2π f (t - start) + phase)`, faded in by the quintic smooth step `S` of `u = (t - start) / ramp`.
 ///
+/// Without ramp it is `A (sin(2π f t + phase) - sin(phase))` from the first moment on, and what it drives must start with
+/// that velocity.
+///
 /// Use it for: heave and surge of a ship, shaking tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Harmonic {
@@ -22,7 +25,7 @@ impl Harmonic {
     /// `start + ramp` on.
     ///
     /// # Errors
-    /// A frequency or ramp that isn't above zero, numbers that aren't finite.
+    /// A frequency that isn't above zero, a ramp below zero, a later start without ramp, numbers that aren't finite.
     pub fn new(
         amplitude: V3<f64>,
         frequency: f64,
@@ -34,23 +37,28 @@ impl Harmonic {
         finite("phase", &[phase])?;
         finite("start", &[start])?;
         positive("frequency", frequency)?;
-        positive("ramp", ramp)?;
+        if ramp != 0.0 || start != 0.0 {
+            positive("ramp", ramp)?;
+        }
         Ok(Harmonic { amplitude, frequency, phase, start, ramp })
     }
 }
 
 impl Motion for Harmonic {
     fn at(&self, t: f64) -> Moving {
-        let dt = t - self.start;
+        let (dt, w) = (t - self.start, TAU * self.frequency);
+        let along = |f: f64| self.amplitude.map(|a| f * a);
+        if self.ramp == 0.0 {
+            let (sin, cos) = (w * t + self.phase).sin_cos();
+            return Moving { x: along(sin - self.phase.sin()), v: along(w * cos), a: along(-w * w * sin) };
+        }
         if dt <= 0.0 {
             return Moving::default();
         }
         let u = dt / self.ramp;
         let [_, s, s1] = step(u);
         let (s1, s2) = (s1 / self.ramp, step_second(u) / (self.ramp * self.ramp));
-        let w = TAU * self.frequency;
         let (sin, cos) = (w * dt + self.phase).sin_cos();
-        let along = |f: f64| self.amplitude.map(|a| f * a);
         Moving {
             x: along(s * sin),
             v: along(s1 * sin + s * w * cos),

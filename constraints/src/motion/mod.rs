@@ -1,7 +1,8 @@
 //! Motions that drive constraints: what ships and vehicles do.
 //!
 //! All have two continuous derivatives from rest on, and are at rest at displacement zero before they start (a
-//! [`Table`] is what its rows say, and only for their time).
+//! [`Table`] or [`SpeedTable`] is what its rows say, and only for their time; what spins or swings without a ramp does so
+//! from the first moment on).
 
 mod circle;
 mod harmonic;
@@ -9,7 +10,10 @@ mod plane;
 mod rest;
 mod smooth;
 mod spec;
+mod speed;
+mod spin;
 mod straight;
+mod swing;
 mod table;
 mod turn;
 
@@ -18,6 +22,9 @@ pub use harmonic::Harmonic;
 pub use plane::Side;
 pub use rest::Rest;
 pub use spec::{CircleSpec, HarmonicSpec, RestSpec, StraightSpec, TableEnds, TableSpec, Towards, TurnSpec};
+pub use speed::{SpeedTable, SpeedTableSpec};
+pub use spin::{Spin, SpinSpec};
 pub use straight::Straight;
+pub use swing::SwingSpec;
 pub use table::{Ends, Table};
 pub use turn::{Manoeuvre, Turn};

@@ -192,7 +192,7 @@ pub struct HarmonicSpec {
     /// Time at which it starts [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
-    /// Time in which the amplitude rises [s].
+    /// Time in which the amplitude rises [s]; 0 for what swings from the first moment on and starts with that velocity.
     #[serde(default = "ramp", deserialize_with = "quantity::time")]
     pub ramp: f64,
 }

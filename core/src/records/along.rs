@@ -25,6 +25,9 @@ pub struct AlongSpec {
     /// Name in results; left out, cable, place and quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
+    /// Title of its pictures; left out, what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
 }
 
 register_spec!(Record, "along", AlongSpec);
@@ -43,13 +46,12 @@ struct Along {
     what: Quantity,
     s: f64,
     name: String,
-    place: String,
+    title: String,
 }
 
 impl Record for Along {
     fn title(&self) -> String {
-        let word = word(self.what);
-        format!("{}{} of {}", word[..1].to_uppercase(), &word[1..], self.place)
+        self.title.clone()
     }
     fn name(&self) -> String {
         self.name.clone()
@@ -80,6 +82,10 @@ impl RecordSpec for AlongSpec {
         }
         let place = format!("{}{}", part.name(), self.at);
         let name = named(&self.name, || format!("{place}.{}", word(self.what)));
-        Ok(Box::new(Along { part, what: self.what, s, name, place }))
+        let title = named(&self.title, || {
+            let word = word(self.what);
+            format!("{}{} of {place}", word[..1].to_uppercase(), &word[1..])
+        });
+        Ok(Box::new(Along { part, what: self.what, s, name, title }))
     }
 }

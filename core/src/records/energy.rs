@@ -19,22 +19,28 @@ pub struct EnergySpec {
     /// Name in results; left out, `energy`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
+    /// Title of its pictures; left out, what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
 }
 
 register_spec!(Record, "energy", EnergySpec);
 
-struct Balance(String);
+struct Balance {
+    name: String,
+    title: String,
+}
 
 impl Record for Balance {
     fn title(&self) -> String {
-        "Balance of energy".into()
+        self.title.clone()
     }
     fn name(&self) -> String {
-        self.0.clone()
+        self.name.clone()
     }
     fn columns(&self) -> Vec<Column> {
         ["kinetic", "potential", "supplied", "dissipated", "imbalance"]
-            .map(|i| Column::new(format!("{}.{i}", self.0), "J"))
+            .map(|i| Column::new(format!("{}.{i}", self.name), "J"))
             .to_vec()
     }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
@@ -47,6 +53,7 @@ impl Record for Balance {
 #[typetag::serde(name = "energy")]
 impl RecordSpec for EnergySpec {
     fn build(&self, _: &Model) -> Result<Box<dyn Record>, BuildError> {
-        Ok(Box::new(Balance(named(&self.name, || "energy".into()))))
+        let name = named(&self.name, || "energy".into());
+        Ok(Box::new(Balance { name, title: named(&self.title, || "Balance of energy".into()) }))
     }
 }

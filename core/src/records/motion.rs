@@ -20,6 +20,9 @@ pub struct PositionSpec {
     /// Name in results; left out, that of the point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
+    /// Title of its pictures; left out, what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
 }
 
 /// Velocity of a point: columns `hose.end.vx`, `.vy` and `.vz` in m/s.
@@ -31,6 +34,9 @@ pub struct VelocitySpec {
     /// Name in results; left out, that of the point and `.velocity`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
+    /// Title of its pictures; left out, what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
 }
 
 /// Acceleration of a point: columns `hose.end.ax`, `.ay` and `.az` in m/s².
@@ -44,6 +50,9 @@ pub struct AccelerationSpec {
     /// Name in results; left out, that of the point and `.acceleration`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
+    /// Title of its pictures; left out, what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
 }
 
 register_spec!(Record, "position", PositionSpec);
@@ -63,14 +72,14 @@ struct Motion {
     name: String,
     /// What columns begin with.
     stem: String,
-    of: String,
+    title: String,
 }
 
 impl Motion {
     fn boxed(
         model: &Model,
         of: &str,
-        name: &Option<String>,
+        (name, title): (&Option<String>, &Option<String>),
         order: Order,
     ) -> Result<Box<dyn Record>, BuildError> {
         let point = Spotted::find(model, of)?;
@@ -81,7 +90,15 @@ impl Motion {
             Order::Velocity => format!("{of}.velocity"),
             Order::Acceleration => format!("{of}.acceleration"),
         });
-        Ok(Box::new(Motion { point, order, name, stem, of }))
+        let title = named(title, || {
+            let what = match order {
+                Order::Position => "Position",
+                Order::Velocity => "Velocity",
+                Order::Acceleration => "Acceleration",
+            };
+            format!("{what} of {of}")
+        });
+        Ok(Box::new(Motion { point, order, name, stem, title }))
     }
 
     fn value(&self, s: &Sample<'_>) -> V3<f64> {
@@ -95,12 +112,7 @@ impl Motion {
 
 impl Record for Motion {
     fn title(&self) -> String {
-        let what = match self.order {
-            Order::Position => "Position",
-            Order::Velocity => "Velocity",
-            Order::Acceleration => "Acceleration",
-        };
-        format!("{what} of {}", self.of)
+        self.title.clone()
     }
     fn name(&self) -> String {
         self.name.clone()
@@ -124,20 +136,20 @@ impl Record for Motion {
 #[typetag::serde(name = "position")]
 impl RecordSpec for PositionSpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
-        Motion::boxed(model, &self.of, &self.name, Order::Position)
+        Motion::boxed(model, &self.of, (&self.name, &self.title), Order::Position)
     }
 }
 
 #[typetag::serde(name = "velocity")]
 impl RecordSpec for VelocitySpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
-        Motion::boxed(model, &self.of, &self.name, Order::Velocity)
+        Motion::boxed(model, &self.of, (&self.name, &self.title), Order::Velocity)
     }
 }
 
 #[typetag::serde(name = "acceleration")]
 impl RecordSpec for AccelerationSpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
-        Motion::boxed(model, &self.of, &self.name, Order::Acceleration)
+        Motion::boxed(model, &self.of, (&self.name, &self.title), Order::Acceleration)
     }
 }

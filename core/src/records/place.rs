@@ -5,6 +5,7 @@ use crate::build::BuildError;
 use crate::lane::V3;
 use crate::marker::Marker;
 use crate::model::Model;
+use crate::node::{NodeId, NodeKind};
 use crate::part::{Part, Spot, split_marker};
 use crate::quantity;
 use crate::record::Sample;
@@ -29,6 +30,10 @@ impl Spotted {
         let (name, spot) = split_marker(of).map_err(|e| BuildError::at("of", format!("`{of}`: {e}")))?;
         let part = part(model, name)?;
         match spot {
+            // where there is a node or a body, its acceleration is known to the last term
+            Spot::Along(s) if part.marker(&Spot::Along(s)).is_ok() => {
+                part.marker(&spot).map(Self::Marker).map_err(|e| BuildError::at("of", e))
+            }
             Spot::Along(s) if part.point(s, &model.state().at()).is_some() => Ok(Self::Along(part, s)),
             Spot::Along(s) => Err(off(part.as_ref(), "of", s)),
             named => part
@@ -64,6 +69,49 @@ impl Spotted {
             }
         }
     }
+}
+
+/// The rigid body of a marker: its node, and what it is called.
+pub(super) fn body(model: &Model, field: &'static str, of: &str) -> Result<(NodeId, String), BuildError> {
+    let (name, spot) = split_marker(of).map_err(|e| BuildError::at(field, format!("`{of}`: {e}")))?;
+    let part = part(model, name).map_err(|e| e.of(field))?;
+    let marker = part.marker(&spot).map_err(|e| BuildError::at(field, format!("`{of}`: {e}")))?;
+    match marker.on() {
+        Some(node) if model.node(node).kind == NodeKind::Frame => {
+            Ok((node, of.chars().filter(|c| !c.is_whitespace()).collect()))
+        }
+        _ => Err(BuildError::at(field, format!("`{of}` is not on a rigid body: it doesn't turn"))),
+    }
+}
+
+/// An axis of space or of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, serde::Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SpaceAxis {
+    /// x
+    X,
+    /// y
+    Y,
+    /// z
+    Z,
+}
+
+impl SpaceAxis {
+    pub(super) fn letter(self) -> &'static str {
+        ["x", "y", "z"][self as usize]
+    }
+}
+
+pub(super) fn all_axes() -> Vec<SpaceAxis> {
+    vec![SpaceAxis::X, SpaceAxis::Y, SpaceAxis::Z]
+}
+
+/// Refuses no axes, and the same one twice.
+pub(super) fn check_axes(axes: &[SpaceAxis]) -> Result<(), BuildError> {
+    if axes.is_empty() || (1..axes.len()).any(|k| axes[..k].contains(&axes[k])) {
+        return Err(BuildError::at("axes", "`axes` must name one to three different axes"));
+    }
+    Ok(())
 }
 
 /// The part of this name.

@@ -15,7 +15,6 @@ pub mod longitudinal;
 mod model;
 mod output;
 mod part;
-mod path;
 pub mod quadrature;
 pub mod reduced;
 mod relaxed;
@@ -41,7 +40,6 @@ pub use model::{
 };
 pub use output::{Reading, read};
 pub use part::CablePart;
-pub use path::Path;
 pub use quadrature::{Full, LockingFree};
 pub use rest::{AxialRest, BendingRest, Rest, RestLanes, push_rest};
 pub use spec::{CableSpec, Section, StressFree};

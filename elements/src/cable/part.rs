@@ -162,6 +162,10 @@ impl Part for CablePart {
         Some(format!("at {:.4} m", self.mesh[k]))
     }
 
+    fn seats(&self) -> Vec<(usize, usize)> {
+        self.seats.clone()
+    }
+
     fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
         for (k, &id) in self.nodes.iter().enumerate() {
             let node = &nodes[id.0 as usize];

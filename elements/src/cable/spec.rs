@@ -3,9 +3,9 @@
 use super::damping::{push_axial_damping, push_bending_damping};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::{CablePart, mesh};
-use super::path::Path;
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
+use crate::path::Path;
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
 use ropewalk_core::{Element, ElementSpec, NodeId, NodeKind, StationPool, V3, quantity, register_spec};
 use schemars::JsonSchema;
@@ -97,10 +97,10 @@ pub struct CableSpec {
     /// Name by which the rest of the scene refers to it.
     pub name: String,
     /// Points along which it is laid, from start to end [m]: straight lines between them.
-    #[serde(default, deserialize_with = "points")]
+    #[serde(default, deserialize_with = "crate::path::points")]
     pub points: Vec<V3<f64>>,
     /// Points of a smooth curve along which it is laid [m], instead of `points`.
-    #[serde(default, deserialize_with = "points")]
+    #[serde(default, deserialize_with = "crate::path::points")]
     pub curve: Vec<V3<f64>>,
     /// Unstretched length [m]; left out, that of the path. A different length is spread evenly over the path.
     #[serde(default, deserialize_with = "quantity::optional::length")]
@@ -134,12 +134,6 @@ pub struct CableSpec {
 }
 
 register_spec!(Element, "cable", CableSpec);
-
-fn points<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Vec<V3<f64>>, D::Error> {
-    #[derive(Deserialize)]
-    struct One(#[serde(deserialize_with = "quantity::vec3::length")] V3<f64>);
-    Ok(Vec::<One>::deserialize(d)?.into_iter().map(|p| p.0).collect())
-}
 
 impl CableSpec {
     /// A cable laid straight between two points, with the default models.

@@ -104,13 +104,13 @@ impl Part for BodyPart {
         (node == self.node).then(String::new)
     }
     fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
-        if let Some((from_q, from_v)) = old.seat() {
+        if let Some(&(from_q, from_v)) = old.seats().first() {
             let node = &nodes[self.node.0 as usize];
             q[node.coords()].copy_from_slice(&at.q[from_q..from_q + 7]);
             v[node.dofs()].copy_from_slice(&at.v[from_v..from_v + 6]);
         }
     }
-    fn seat(&self) -> Option<(usize, usize)> {
-        Some((self.q, self.v))
+    fn seats(&self) -> Vec<(usize, usize)> {
+        vec![(self.q, self.v)]
     }
 }
