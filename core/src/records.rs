@@ -1,16 +1,18 @@
 //! The records that come with Ropewalk: motion of a point, tension and the like along a cable, reaction of a
-//! constraint, balance of energy.
+//! constraint, force of a contact or spring, balance of energy.
 //!
 //! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
 
 mod along;
 mod energy;
+mod force;
 mod motion;
 mod place;
 mod reaction;
 
 pub use along::AlongSpec;
 pub use energy::EnergySpec;
+pub use force::ForceRecordSpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
 pub use place::Station as RecordPlace;
 pub use reaction::ReactionSpec;

@@ -4,6 +4,8 @@
 //! is a term (point forces and moments, springs).
 
 mod added_mass;
+#[cfg(feature = "contact")]
+pub mod contact;
 mod drag;
 mod line_load;
 mod moment;
