@@ -42,6 +42,8 @@ pub struct Model {
     flat: bool,
     /// Most elements along one part.
     finest: usize,
+    /// The terms that see something ahead.
+    watchful: Vec<usize>,
 }
 
 /// Where a run starts: configuration and velocities as the scene gives them.
@@ -121,6 +123,7 @@ impl Model {
             nodes.iter().filter(|n| n.kind.velocities() >= 3).flat_map(|n| &start.q[n.q..n.q + 3]);
         let farthest = positions.fold(length, |m, x| m.max(x.abs()));
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
+        let watchful = (0..terms.len()).filter(|&k| terms[k].foresees()).collect();
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
         Model {
             nodes,
@@ -141,6 +144,7 @@ impl Model {
             width: Width::best(),
             flat,
             finest,
+            watchful,
         }
     }
 
@@ -482,6 +486,11 @@ impl Model {
             Some(part) => format!("{part}, {what}"),
             None => format!("node {k}, {what}"),
         }
+    }
+
+    /// The longest step from here that leaps over nothing that a term has ahead [s].
+    pub fn horizon(&self, at: &At<'_>) -> f64 {
+        self.watchful.iter().map(|&k| self.terms[k].horizon(at)).fold(f64::INFINITY, f64::min)
     }
 
     /// Kinetic and potential energy of all terms.

@@ -1,5 +1,6 @@
 //! Parts: what a scene names, and what forces, constraints and records ask of it.
 
+use crate::held::Held;
 use crate::lane::V3;
 use crate::marker::Marker;
 use crate::node::{Node, NodeId};
@@ -45,6 +46,19 @@ impl Quantity {
     }
 }
 
+/// A ball on a part by which it touches shapes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// Its centre. On a rigid body always [`Held::Beside`], so that it turns with it.
+    pub held: Held,
+    /// Its radius [m]; 0 if the part has none.
+    pub radius: f64,
+    /// The length of the part that it stands for [m]; 0 for a compact part, which it stands for as a whole.
+    pub length: f64,
+    /// Where on the part it is, as unstretched arc length [m].
+    pub s: f64,
+}
+
 /// A named part of a model: a cable, a point mass, a rigid body.
 pub trait Part: Send + Sync {
     /// Its name in the scene.
@@ -56,6 +70,10 @@ pub trait Part: Send + Sync {
     /// The points where distributed loads act, if it has any.
     fn stations(&self) -> Option<Arc<dyn Stations>> {
         None
+    }
+    /// The balls by which it touches shapes, about `per_element` on each element of a cable; none if it has no size.
+    fn contact_points(&self, _per_element: usize) -> Vec<ContactPoint> {
+        Vec::new()
     }
     /// The term of a load in a constant direction, proportional to mass or displaced volume.
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>>;

@@ -287,6 +287,7 @@ kinds! {
     ANGULAR_ACCELERATION angular_acceleration: "an angular acceleration", (0, 0, -2, 1) !true, "rad/s^2", "2 deg/s^2";
     CURVATURE curvature: "a curvature", (0, -1, 0, 0), "1/m", "0.5 rad/m";
     SPEED speed: "a speed", (0, 1, -1, 0), "m/s", "25 kn";
+    TIME_PER_LENGTH time_per_length: "a time per length", (0, -1, 1, 0), "s/m", "0.3 s/m";
     ACCELERATION acceleration: "an acceleration", (0, 1, -2, 0), "m/s^2", "9.81 m/s^2";
     MASS mass: "a mass", (1, 0, 0, 0), "kg", "1.5 t";
     MASS_PER_LENGTH mass_per_length: "a mass per length", (1, -1, 0, 0), "kg/m", "0.5 kg/m";
@@ -296,6 +297,7 @@ kinds! {
     FORCE force: "a force", (1, 1, -2, 0), "N", "1.2 kN";
     FORCE_PER_LENGTH force_per_length: "a force per length", (1, 0, -2, 0), "N/m", "20 N/m";
     PRESSURE pressure: "a pressure", (1, -1, -2, 0), "Pa", "210 GPa";
+    STIFFNESS_PER_LENGTH stiffness_per_length: "a stiffness per length", (1, -1, -2, 0), "N/m^2", "2 MN/m^2";
     VISCOSITY viscosity: "a viscosity", (1, -1, -1, 0), "Pa s", "1.2e-3 Pa s";
     MOMENT moment: "a moment", (1, 2, -2, 0), "N m", "15 kN m";
     POWER power: "a power", (1, 2, -3, 0), "W", "30 kW";

@@ -1,11 +1,13 @@
 //! The records that come with Ropewalk: motion of a point and turning of a body, tension and the like along a cable,
-//! reaction of a constraint and how well it follows its motion, what has let go, balance of energy.
+//! reaction of a constraint and how well it follows its motion, force of a contact or spring, what has let go, balance of
+//! energy.
 //!
 //! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
 
 mod along;
 mod driving;
 mod energy;
+mod force;
 mod motion;
 mod place;
 mod reaction;
@@ -15,6 +17,7 @@ mod turning;
 pub use along::AlongSpec;
 pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
+pub use force::ForceRecordSpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
 pub use place::{SpaceAxis, Station as RecordPlace};
 pub use reaction::{ReactionPart, ReactionSpec};

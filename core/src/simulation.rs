@@ -2,7 +2,7 @@
 
 use crate::dense::Dense;
 use crate::integrator::{
-    Correction, Integrator, Options, StepError, StepReport, Workspace, consistent, prepare,
+    Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, consistent, prepare,
 };
 use crate::model::Model;
 use crate::record::{Audit, Sample};
@@ -185,7 +185,10 @@ impl Simulation {
         next += 1;
         while self.state.t < end && !same(self.state.t, end) {
             self.previous.clone_from(&self.state);
-            let left = end - self.state.t;
+            let mut left = end - self.state.t;
+            if let Stepping::Controlled { .. } = self.integrator.options().stepping {
+                left = left.min(self.model.horizon(&self.state.at()));
+            }
             let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left)?;
             if same(self.state.t, end) {
                 self.state.t = end;

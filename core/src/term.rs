@@ -2,6 +2,7 @@
 
 use crate::lane::{Real, Width};
 use crate::pattern::Pattern;
+use crate::record::Column;
 use crate::state::At;
 use crate::structure::Structure;
 use std::ops::AddAssign;
@@ -108,6 +109,21 @@ pub trait Term: Send + Sync {
     fn power(&self, _at: &At<'_>) -> Power {
         Power::default()
     }
+    /// Whether it has something ahead that a long step could miss: only then [`Term::horizon`] is asked.
+    fn foresees(&self) -> bool {
+        false
+    }
+    /// The longest step from here that is sure not to leap over what it has ahead, such as a shape that a point flies
+    /// towards [s]. Error control takes no longer one; fixed steps are left alone.
+    fn horizon(&self, _at: &At<'_>) -> f64 {
+        f64::INFINITY
+    }
+    /// What a record of type `force` shows of it; names are put behind that of the record.
+    fn columns(&self) -> Vec<Column> {
+        Vec::new()
+    }
+    /// Appends the values of [`Term::columns`].
+    fn observe(&self, _at: &At<'_>, _out: &mut Vec<f64>) {}
 }
 
 /// Where the terms add: the residual and, if wanted, the entries of the iteration matrix.

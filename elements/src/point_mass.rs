@@ -1,10 +1,10 @@
 //! A compact body at the end of a line.
 
 use ropewalk_core::build::{BuildError, Builder, finite, need, not_negative, positive};
-use ropewalk_core::held::{delta, find, three};
+use ropewalk_core::held::{Held, delta, find, three};
 use ropewalk_core::{
-    Assembly, At, Current, DeadEntry, DeadLoad, ElementSpec, Energy, Marker, MarkerRef, Node, NodeId,
-    NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, dot, quantity, register_spec,
+    Assembly, At, ContactPoint, Current, DeadEntry, DeadLoad, ElementSpec, Energy, Marker, MarkerRef, Node,
+    NodeId, NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, dot, quantity, register_spec,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -247,6 +247,10 @@ impl Part for Body {
             Spot::Named(n) if n.is_empty() => Ok(Marker::node(self.node)),
             _ => Err(format!("a point mass has only one place: `{}`", self.spec.name)),
         }
+    }
+    fn contact_points(&self, _: usize) -> Vec<ContactPoint> {
+        let held = Held::Moves { q: self.q, v: self.v };
+        vec![ContactPoint { held, radius: 0.0, length: 0.0, s: 0.0 }]
     }
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
         let (what, amount) = match per {

@@ -4,6 +4,8 @@
 //! is a term (point forces and moments, springs, bushings, latches).
 
 mod added_mass;
+#[cfg(feature = "contact")]
+pub mod contact;
 mod drag;
 mod latch;
 mod line_load;

@@ -2,7 +2,7 @@
 
 use ropewalk_core::build::{BuildError, need, not_negative};
 use ropewalk_core::held::{Held, Pull as Pair, delta, dofs, pull};
-use ropewalk_core::{Assembly, At, Energy, Marker, Node, Pattern, Power, Term, V3, dot};
+use ropewalk_core::{Assembly, At, Column, Energy, Marker, Node, Pattern, Power, Term, V3, dot};
 
 /// A spring with a damper along the line between two markers: `F = k (l - l0) + c dl/dt`, a pull if positive.
 ///
@@ -124,5 +124,11 @@ impl Term for Spring {
     fn power(&self, at: &At<'_>) -> Power {
         let p = self.pull(at);
         Power { dissipated: (p.force - p.elastic) * p.rate, ..Power::default() }
+    }
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::new("tension", "N")]
+    }
+    fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
+        out.push(self.force(at));
     }
 }

@@ -225,6 +225,7 @@ impl ElementSpec for RigidBodySpec {
             centre_of_volume: self.centre_of_volume.map_or([0.0; 3], |c| from(self.centre, c)),
             points,
             hull: self.hull.map(|h| [from(self.centre, h.from), from(self.centre, h.to)]),
+            diameter: self.hull.map_or(0.0, |h| h.diameter),
             stations: self.hull.is_some().then(|| Arc::new(stations) as _),
         }))
     }

@@ -1,0 +1,178 @@
+//! How hard a shape pushes back, and how it brakes what slides on it.
+
+use ropewalk_core::V3;
+use ropewalk_core::build::{BuildError, not_negative, positive};
+use ropewalk_core::dot;
+use ropewalk_core::held::delta;
+use ropewalk_core::quantity;
+use ropewalk_core::rotation::M3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What happens to the damped force when a point leaves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Leaving {
+    /// The contact ends where the force has fallen to zero: a shape never pulls.
+    #[default]
+    Force,
+    /// The contact ends where the depth has fallen to zero; just before, the damper pulls.
+    Depth,
+}
+
+/// What a contact loses along its normal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Damping {
+    /// Nothing.
+    #[default]
+    None,
+    /// `F = F_e (1 + 3/2 α ḋ)` with the elastic force `F_e` and the rate of the depth `ḋ` (Hunt & Crossley 1975): the
+    /// force begins and ends at zero, and for slow impacts the restitution is `1 - α v`.
+    HuntCrossley(
+        /// `α` [s/m].
+        #[serde(deserialize_with = "quantity::time_per_length")]
+        f64,
+    ),
+    /// `F = F_e + k τ ḋ`: a linear damper (Kelvin & Voigt). The force jumps when a point arrives.
+    KelvinVoigt {
+        /// `τ`, the damping over the stiffness [s].
+        #[serde(deserialize_with = "quantity::time")]
+        time: f64,
+        /// Where the contact ends.
+        #[serde(default)]
+        until: Leaving,
+    },
+}
+
+/// The numbers of a contact, for all of its points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactLaw {
+    /// Exponent `p` of the elastic force `k d^p` of the depth `d` in metres: 1, or 1.5 as between balls (Hertz).
+    pub exponent: f64,
+    /// What it loses along the normal.
+    pub damping: Damping,
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// Speed of slip from which on friction has its full force [m/s]; below, it grows smoothly from zero.
+    pub slip_speed: f64,
+}
+
+impl Default for ContactLaw {
+    fn default() -> Self {
+        ContactLaw { exponent: 1.0, damping: Damping::None, friction: 0.0, slip_speed: 1e-4 }
+    }
+}
+
+/// The force along the normal, with its derivatives.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Normal {
+    /// The force [N].
+    pub force: f64,
+    /// `∂F/∂d` [N/m]
+    pub by_depth: f64,
+    /// `∂F/∂ḋ` [N s/m]
+    pub by_rate: f64,
+    /// Its elastic part [N].
+    pub elastic: f64,
+}
+
+/// Friction over the force along the normal, with its derivative by the slip velocity.
+pub(crate) struct Friction {
+    /// `μ g(|t|/v_s) t / v_s`
+    pub pull: V3<f64>,
+    /// `∂pull/∂t` [s/m]
+    pub by_slip: M3,
+    /// `μ g / v_s`, by which a slip normal to the present one changes it [s/m].
+    pub across: f64,
+}
+
+impl ContactLaw {
+    /// Checks its numbers.
+    ///
+    /// # Errors
+    /// Negative or infinite numbers, an exponent below 1 (whose stiffness has no bound), a slip speed of zero.
+    pub fn check(&self) -> Result<(), BuildError> {
+        if !(1.0..=4.0).contains(&self.exponent) {
+            let message = format!("`exponent` must be from 1 to 4, but is {}", self.exponent);
+            return Err(BuildError::at("exponent", message));
+        }
+        match self.damping {
+            Damping::None => {}
+            Damping::HuntCrossley(x) | Damping::KelvinVoigt { time: x, .. } => {
+                not_negative("damping", x)?;
+            }
+        }
+        not_negative("friction", self.friction)?;
+        positive("slip_speed", self.slip_speed)?;
+        Ok(())
+    }
+
+    /// Whether it is the gradient of an energy: no friction, no damping.
+    pub(crate) fn conservative(&self) -> bool {
+        self.damping == Damping::None && self.friction == 0.0
+    }
+
+    /// `d^p` and `d^(p-1)`
+    fn powers(&self, depth: f64) -> (f64, f64) {
+        let less = if self.exponent == 1.0 {
+            1.0
+        } else if self.exponent == 1.5 {
+            depth.sqrt()
+        } else {
+            depth.powf(self.exponent - 1.0)
+        };
+        (less * depth, less)
+    }
+
+    /// The force along the normal at a positive depth [m] that grows at `rate` [m/s].
+    #[inline]
+    pub(crate) fn normal(&self, k: f64, depth: f64, rate: f64) -> Normal {
+        let (whole, less) = self.powers(depth);
+        let (elastic, stiff) = (k * whole, self.exponent * k * less);
+        let released = Normal { elastic, ..Normal::default() };
+        match self.damping {
+            Damping::None => Normal { force: elastic, by_depth: stiff, by_rate: 0.0, elastic },
+            Damping::HuntCrossley(alpha) => {
+                let factor = 1.0 + 1.5 * alpha * rate;
+                if factor <= 0.0 {
+                    return released;
+                }
+                let by_rate = 1.5 * alpha * elastic;
+                Normal { force: elastic * factor, by_depth: stiff * factor, by_rate, elastic }
+            }
+            Damping::KelvinVoigt { time, until } => {
+                let force = elastic + k * time * rate;
+                if force <= 0.0 && until == Leaving::Force {
+                    return released;
+                }
+                Normal { force, by_depth: stiff, by_rate: k * time, elastic }
+            }
+        }
+    }
+
+    /// The energy stored at a positive depth [J].
+    pub(crate) fn stored(&self, k: f64, depth: f64) -> f64 {
+        k * self.powers(depth).0 * depth / (self.exponent + 1.0)
+    }
+
+    /// Coulomb's friction at the slip velocity `t` [m/s], regularised: `g(z) z` is `(3z - z³)/2` up to 1 and 1 beyond,
+    /// so friction and its derivative have no jump and full slip has the full force.
+    #[inline]
+    pub(crate) fn friction(&self, t: &V3<f64>) -> Friction {
+        let square = dot(t, t) / (self.slip_speed * self.slip_speed);
+        let scale = self.friction / self.slip_speed;
+        // g, and g'(z)/z
+        let (g, bend) = if square < 1.0 {
+            (0.5 * (3.0 - square), -1.0)
+        } else {
+            let inverse = 1.0 / square.sqrt();
+            (inverse, -inverse * inverse * inverse)
+        };
+        let across = scale * g;
+        let bend = scale * bend / (self.slip_speed * self.slip_speed);
+        let by_slip =
+            std::array::from_fn(|i| std::array::from_fn(|j| across * delta(i, j) + bend * t[i] * t[j]));
+        Friction { pull: t.map(|t| across * t), by_slip, across }
+    }
+}

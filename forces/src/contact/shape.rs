@@ -1,0 +1,207 @@
+//! Shapes that points touch: distance, normal and curvature in closed form; meshes by their triangles.
+
+use super::mesh::Mesh;
+use ropewalk_core::rotation::{around, cross};
+use ropewalk_core::{V3, dot};
+use std::sync::Arc;
+
+/// A shape in axes of its own, with its middle at the origin.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// All below z = 0.
+    Plane,
+    /// A ball.
+    Ball {
+        /// Radius [m].
+        radius: f64,
+    },
+    /// A cylinder along z.
+    Cylinder {
+        /// Radius [m].
+        radius: f64,
+        /// Half of its length [m]; may be infinite.
+        half: f64,
+    },
+    /// A round hole along z, through a wall without end.
+    Tube {
+        /// Inner radius [m].
+        radius: f64,
+        /// Half of its length [m]; may be infinite.
+        half: f64,
+    },
+    /// A cuboid.
+    Cuboid {
+        /// Half of its edges [m].
+        half: V3<f64>,
+    },
+    /// A surface of triangles.
+    Mesh(Arc<Mesh>),
+}
+
+/// How far a point is from a surface, and how the surface lies there.
+#[derive(Clone, Copy, Debug)]
+pub struct Gap {
+    /// Distance, negative inside [m].
+    pub distance: f64,
+    /// Its gradient: a unit vector, outwards.
+    pub normal: V3<f64>,
+    /// The derivative of the normal: curvatures [1/m], each along a unit vector normal to it.
+    pub bends: [(f64, V3<f64>); 2],
+}
+
+const FLAT: (f64, V3<f64>) = (0.0, [0.0; 3]);
+
+impl Gap {
+    /// A flat surface.
+    pub(crate) fn flat(distance: f64, normal: V3<f64>) -> Self {
+        Gap { distance, normal, bends: [FLAT; 2] }
+    }
+    /// Around a corner: all points of the same distance are a ball.
+    pub(crate) fn round(distance: f64, normal: V3<f64>, curvature: f64) -> Self {
+        let [a, b, _] = around(normal);
+        Gap { distance, normal, bends: [(curvature, a), (curvature, b)] }
+    }
+    /// `H w`: how the normal turns when the point moves by `w`.
+    #[inline]
+    pub fn turn(&self, w: &V3<f64>) -> V3<f64> {
+        let [(a, x), (b, y)] = &self.bends;
+        let (a, b) = (a * dot(x, w), b * dot(y, w));
+        std::array::from_fn(|i| a * x[i] + b * y[i])
+    }
+    /// All directions turned.
+    pub(crate) fn turned(self, by: impl Fn(&V3<f64>) -> V3<f64>) -> Self {
+        let turned = |(k, x): &(f64, V3<f64>)| if *k == 0.0 { FLAT } else { (*k, by(x)) };
+        Gap {
+            distance: self.distance,
+            normal: by(&self.normal),
+            bends: [turned(&self.bends[0]), turned(&self.bends[1])],
+        }
+    }
+}
+
+impl Shape {
+    /// The surface as seen from a point, if it is nearer than `reach` [m].
+    #[inline]
+    pub fn gap(&self, x: &V3<f64>, reach: f64) -> Option<Gap> {
+        match self {
+            Shape::Plane => (x[2] < reach).then(|| Gap::flat(x[2], [0.0, 0.0, 1.0])),
+            Shape::Ball { radius } => {
+                let square = dot(x, x);
+                if square >= (radius + reach) * (radius + reach) {
+                    return None;
+                }
+                let length = square.sqrt();
+                // at the centre any direction leads out
+                if length == 0.0 {
+                    return Some(Gap::flat(-radius, [0.0, 0.0, 1.0]));
+                }
+                Some(Gap::round(length - radius, x.map(|x| x / length), 1.0 / length))
+            }
+            Shape::Cylinder { radius, half } => {
+                let far = radius + reach;
+                if x[2].abs() - half >= reach || x[0] * x[0] + x[1] * x[1] >= far * far {
+                    return None;
+                }
+                revolved(x, *radius, *half, 1.0, reach)
+            }
+            Shape::Tube { radius, half } => {
+                let near = radius - reach;
+                if x[2].abs() - half >= reach || near > 0.0 && x[0] * x[0] + x[1] * x[1] <= near * near {
+                    return None;
+                }
+                revolved(x, *radius, *half, -1.0, reach)
+            }
+            Shape::Cuboid { half } => cuboid(x, half, reach),
+            Shape::Mesh(mesh) => mesh.gap(x, reach),
+        }
+    }
+
+    /// A distance that the surface is at least away, as cheap as can be: the true one, but of a mesh that is far away.
+    pub(crate) fn at_least(&self, x: &V3<f64>) -> Option<Gap> {
+        match self {
+            Shape::Mesh(mesh) => mesh.at_least(x),
+            shape => shape.gap(x, f64::INFINITY),
+        }
+    }
+
+    /// Whether another part of the surface can come nearer than the nearest one now by going along it.
+    pub(crate) fn concave(&self) -> bool {
+        matches!(self, Shape::Mesh(_))
+    }
+
+    /// A size that points shouldn't pass over in a step [m]; infinite if there is none.
+    pub fn is_finite(&self) -> bool {
+        !matches!(self, Shape::Plane | Shape::Tube { .. })
+    }
+}
+
+/// A solid of revolution about z: within the radius (`side` 1) or beyond it (`side` -1), as long as twice `half`.
+#[inline]
+fn revolved(x: &V3<f64>, radius: f64, half: f64, side: f64, reach: f64) -> Option<Gap> {
+    let rho = (x[0] * x[0] + x[1] * x[1]).sqrt();
+    let (out, beyond) = (side * (rho - radius), x[2].abs() - half);
+    // on the axis any direction leads out
+    let inverse = if rho > 0.0 { 1.0 / rho } else { 0.0 };
+    let radial = if rho > 0.0 { [x[0] * inverse, x[1] * inverse, 0.0] } else { [1.0, 0.0, 0.0] };
+    let round = [-radial[1], radial[0], 0.0];
+    let end = x[2].signum();
+    if out > 0.0 && beyond > 0.0 {
+        let distance = (out * out + beyond * beyond).sqrt();
+        if distance >= reach {
+            return None;
+        }
+        let (a, b) = (side * out / distance, end * beyond / distance);
+        let normal = [a * radial[0], a * radial[1], b];
+        // along the profile, and around the axis
+        let profile = [-b * radial[0], -b * radial[1], a];
+        return Some(Gap { distance, normal, bends: [(1.0 / distance, profile), (a * inverse, round)] });
+    }
+    if out >= beyond {
+        let normal = [side * radial[0], side * radial[1], 0.0];
+        Some(Gap { distance: out, normal, bends: [(side * inverse, round), FLAT] })
+    } else {
+        Some(Gap::flat(beyond, [0.0, 0.0, end]))
+    }
+    .filter(|g| g.distance < reach)
+}
+
+fn cuboid(x: &V3<f64>, half: &V3<f64>, reach: f64) -> Option<Gap> {
+    let over: V3<f64> = std::array::from_fn(|i| x[i].abs() - half[i]);
+    if over.iter().any(|o| *o >= reach) {
+        return None;
+    }
+    let side: V3<f64> = x.map(f64::signum);
+    let beyond: V3<f64> = over.map(|o| o.max(0.0));
+    let outside: Vec3Count = Vec3Count::of(&beyond);
+    if outside.count <= 1 {
+        let i = (0..3).fold(0, |m, i| if over[i] > over[m] { i } else { m });
+        let mut normal = [0.0; 3];
+        normal[i] = side[i];
+        return Some(Gap::flat(over[i], normal));
+    }
+    let distance = dot(&beyond, &beyond).sqrt();
+    if distance >= reach {
+        return None;
+    }
+    let normal = std::array::from_fn(|i| side[i] * beyond[i] / distance);
+    if outside.count == 3 {
+        return Some(Gap::round(distance, normal, 1.0 / distance));
+    }
+    let mut edge = [0.0; 3];
+    edge[outside.zero] = 1.0;
+    Some(Gap { distance, normal, bends: [(1.0 / distance, cross(&edge, &normal)), FLAT] })
+}
+
+/// How many numbers are positive, and the last that isn't.
+struct Vec3Count {
+    count: usize,
+    zero: usize,
+}
+
+impl Vec3Count {
+    fn of(x: &V3<f64>) -> Self {
+        let count = x.iter().filter(|x| **x > 0.0).count();
+        let zero = x.iter().rposition(|x| *x <= 0.0).unwrap_or(0);
+        Vec3Count { count, zero }
+    }
+}

@@ -1,0 +1,311 @@
+//! Contact: distances, tangents, energies.
+
+mod random;
+
+use random::Random;
+use ropewalk_core::held::Held;
+use ropewalk_core::rotation::{around, exp, from_bryant, matrix, times};
+use ropewalk_core::testing::{check_tangent, dense, difference};
+use ropewalk_core::{At, ContactPoint, Marker, Node, NodeId, NodeKind, Term, V3, Weights, Width};
+use ropewalk_forces::contact::{Contact, ContactLaw, Damping, Leaving, Mesh, Shape};
+use std::sync::Arc;
+
+const RADIUS: f64 = 0.4;
+
+/// A point, two nodes of a cable, a body that touches and one that carries the shape.
+fn nodes() -> Vec<Node> {
+    let mut all: Vec<Node> = Vec::new();
+    for kind in [NodeKind::Point, NodeKind::Slope, NodeKind::Slope, NodeKind::Frame, NodeKind::Frame] {
+        let (q, v) = all.last().map_or((0, 0), |n| (n.coords().end, n.dofs().end));
+        all.push(Node { kind, q, v, shared: false });
+    }
+    all
+}
+
+const SEAT: usize = 4;
+
+struct Numbers {
+    q: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+}
+
+impl Numbers {
+    fn new(r: &mut Random) -> Self {
+        let nodes = nodes();
+        let (n, m) = (nodes[SEAT].coords().end, nodes[SEAT].dofs().end);
+        let mut s = Numbers { q: r.list(n, 1.0), v: r.list(m, 1.0), a: r.list(m, 1.0) };
+        for k in [3, 4] {
+            s.q[nodes[k].q + 3..nodes[k].q + 7].copy_from_slice(&exp(r.vector(2.0)));
+        }
+        s
+    }
+    fn at(&self) -> At<'_> {
+        At { t: 0.0, q: &self.q, v: &self.v, a: &self.a, modes: &[], relaxed: None }
+    }
+    fn axes(&self) -> [V3<f64>; 3] {
+        let q = nodes()[SEAT].q;
+        matrix(&[self.q[q + 3], self.q[q + 4], self.q[q + 5], self.q[q + 6]])
+    }
+}
+
+fn cube() -> Shape {
+    let corner = |k: u32| [0, 1, 2].map(|i| if k >> i & 1 == 1 { 0.6 } else { -0.6 });
+    Shape::Mesh(Arc::new(Mesh::hull(&(0..8).map(corner).collect::<Vec<_>>()).unwrap()))
+}
+
+fn shapes() -> Vec<Shape> {
+    vec![
+        Shape::Plane,
+        Shape::Ball { radius: 0.7 },
+        Shape::Cylinder { radius: 0.7, half: f64::INFINITY },
+        Shape::Cylinder { radius: 0.7, half: 0.5 },
+        Shape::Tube { radius: 0.9, half: f64::INFINITY },
+        Shape::Tube { radius: 0.9, half: 0.5 },
+        Shape::Cuboid { half: [0.5, 0.6, 0.7] },
+        cube(),
+    ]
+}
+
+/// A point that is as far from the shape as asked for, found by going along the normal.
+fn near(shape: &Shape, distance: f64, r: &mut Random) -> V3<f64> {
+    let mut x = r.vector(1.2);
+    for _ in 0..50 {
+        let gap = shape.gap(&x, f64::INFINITY).unwrap();
+        let left = distance - gap.distance;
+        (0..3).for_each(|i| x[i] += left * gap.normal[i]);
+    }
+    x
+}
+
+/// The balls that touch, one at a time, and the vectors of coordinates that move with them.
+fn balls(r: &mut Random) -> Vec<(ContactPoint, Vec<usize>)> {
+    let nodes = nodes();
+    let point = |held, length| ContactPoint { held, radius: RADIUS, length, s: 0.0 };
+    let [a, b] = [nodes[1], nodes[2]];
+    let between = Held::Between {
+        q: [a.q, a.q + 3, b.q, b.q + 3],
+        v: [a.v, a.v + 3, b.v, b.v + 3],
+        weight: [0.7, 0.2, 0.3, -0.1],
+    };
+    let beside = Held::Beside { q: nodes[3].q, v: nodes[3].v, arm: r.vector(0.5) };
+    vec![
+        (point(Held::Moves { q: 0, v: 0 }, 0.0), vec![0]),
+        (point(between, 2.0), vec![a.q, b.q]),
+        (point(beside, 0.0), vec![nodes[3].q]),
+    ]
+}
+
+/// Every shape, on the ground and on a body, touched by every ball, with the state in which it is.
+fn scenes(law: ContactLaw, mut see: impl FnMut(&Contact, &Numbers, &str)) {
+    let nodes = nodes();
+    let mut r = Random(7);
+    for shape in shapes() {
+        for body in [false, true] {
+            let (origin, axes) = (r.vector(0.5), around(r.vector(1.0)));
+            let marker = if body {
+                Marker::Node { node: NodeId(SEAT as u32), point: origin, axes }
+            } else {
+                Marker::Ground { point: origin, axes }
+            };
+            for (ball, moves) in balls(&mut r) {
+                let mut s = Numbers::new(&mut r);
+                let y = near(&shape, 0.6 * RADIUS, &mut r);
+                // from the shape's axes to space
+                let local: V3<f64> =
+                    std::array::from_fn(|i| origin[i] + (0..3).map(|k| axes[k][i] * y[k]).sum::<f64>());
+                let seat = nodes[SEAT].q;
+                let x = if body {
+                    let turned = times(&s.axes(), &local);
+                    std::array::from_fn(|i| s.q[seat + i] + turned[i])
+                } else {
+                    local
+                };
+                let now = ball.held.x(&s.at());
+                for q in &moves {
+                    (0..3).for_each(|i| s.q[q + i] += x[i] - now[i]);
+                }
+                let contact =
+                    Contact::new("c", &nodes, shape.clone(), &marker, &[ball], [80.0, 60.0], law).unwrap();
+                let depth = contact.depths(&s.at()).next().unwrap().expect("touches");
+                assert!((depth - 0.4 * RADIUS).abs() < 1e-9, "{shape:?}: {depth}");
+                let what = format!("{shape:?}, on a body: {body}, {:?}, {law:?}", ball.held);
+                see(&contact, &s, &what);
+            }
+        }
+    }
+}
+
+fn laws() -> Vec<ContactLaw> {
+    let plain = ContactLaw::default();
+    vec![
+        plain,
+        ContactLaw { exponent: 1.5, ..plain },
+        ContactLaw { damping: Damping::HuntCrossley(0.2), ..plain },
+        ContactLaw { damping: Damping::KelvinVoigt { time: 0.05, until: Leaving::Depth }, ..plain },
+        // slip below and above the speed of full friction
+        ContactLaw { friction: 0.4, slip_speed: 30.0, ..plain },
+        ContactLaw { friction: 0.4, slip_speed: 0.05, ..plain },
+        ContactLaw { friction: 0.4, slip_speed: 30.0, exponent: 1.5, damping: Damping::HuntCrossley(0.2) },
+    ]
+}
+
+#[test]
+fn tangents_are_exact_for_every_shape_ball_and_law() {
+    for law in laws() {
+        scenes(law, |contact, s, what| {
+            let error = check_tangent(contact, &nodes(), &s.at(), Width::One);
+            assert!(error < 1e-7, "{error:e}: {what}");
+        });
+    }
+}
+
+#[test]
+fn distances_have_unit_gradients_and_the_curvature_that_they_say() {
+    let mut r = Random(3);
+    for shape in shapes() {
+        for _ in 0..200 {
+            let x = r.vector(1.3);
+            let Some(gap) = shape.gap(&x, f64::INFINITY) else { panic!("{shape:?}") };
+            let moved = |i: usize, h: f64| {
+                let mut x = x;
+                x[i] += h;
+                shape.gap(&x, f64::INFINITY).unwrap()
+            };
+            // a kink of the distance between two sides is no place for differences
+            let kink = (0..3).any(|i| {
+                let (a, b) = (moved(i, -1e-3), moved(i, 1e-3));
+                a.bends.map(|k| k.0 == 0.0) != b.bends.map(|k| k.0 == 0.0)
+                    || (0..3).any(|k| (a.normal[k] - b.normal[k]).abs() > 0.1)
+            });
+            if kink {
+                continue;
+            }
+            for i in 0..3 {
+                let by = difference(|h| {
+                    let g = moved(i, h);
+                    vec![g.distance, g.normal[0], g.normal[1], g.normal[2]]
+                });
+                let mut e = [0.0; 3];
+                e[i] = 1.0;
+                let turn = gap.turn(&e);
+                assert!((by[0] - gap.normal[i]).abs() < 1e-8, "{shape:?} at {x:?}: {by:?}, {gap:?}");
+                for k in 0..3 {
+                    assert!((by[1 + k] - turn[k]).abs() < 1e-6, "{shape:?} at {x:?}: {by:?}, {turn:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_hull_is_the_cuboid_that_it_encloses() {
+    let (hull, cuboid) = (cube(), Shape::Cuboid { half: [0.6; 3] });
+    let mut r = Random(5);
+    for _ in 0..500 {
+        let x = r.list(3, 1.2);
+        let x = [x[0], x[1], x[2]];
+        let (a, b) = (hull.gap(&x, f64::INFINITY).unwrap(), cuboid.gap(&x, f64::INFINITY).unwrap());
+        assert!((a.distance - b.distance).abs() < 1e-12, "{x:?}: {a:?}, {b:?}");
+        for i in 0..3 {
+            assert!((a.normal[i] - b.normal[i]).abs() < 1e-9, "{x:?}: {a:?}, {b:?}");
+        }
+    }
+}
+
+#[test]
+fn power_and_energy_add_up_to_what_the_force_does() {
+    // the generalised force times the velocities is the loss of the energy stored and what is dissipated
+    for law in laws() {
+        scenes(law, |contact, s, what| {
+            let nodes = nodes();
+            let at = s.at();
+            let (r, _) = dense(contact, &nodes, &at, Weights::default(), Width::One);
+            let work: f64 = r.iter().zip(&s.v).map(|(r, v)| r * v).sum();
+            let stored = difference(|h| {
+                let mut q = s.q.clone();
+                let d: Vec<f64> = s.v.iter().map(|v| h * v).collect();
+                ropewalk_core::retract(&nodes, &s.q, &d, &mut q);
+                vec![contact.energy(&At { q: &q, ..at }).potential]
+            })[0];
+            let lost = contact.power(&at).dissipated;
+            let size = work.abs().max(stored.abs()).max(1.0);
+            assert!((work - stored - lost).abs() < 1e-8 * size, "{work} is not {stored} + {lost}: {what}");
+            if law.friction > 0.0 && law.damping == Damping::None {
+                assert!(lost > 0.0, "{what}");
+            }
+        });
+    }
+}
+
+#[test]
+fn both_sides_get_opposite_forces_and_moments() {
+    let law = ContactLaw { friction: 0.3, slip_speed: 0.1, ..ContactLaw::default() };
+    scenes(law, |contact, s, what| {
+        let nodes = nodes();
+        let (r, _) = dense(contact, &nodes, &s.at(), Weights::default(), Width::One);
+        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+        for n in &nodes {
+            let f = [r[n.v], r[n.v + 1], r[n.v + 2]];
+            let arm = [s.q[n.q], s.q[n.q + 1], s.q[n.q + 2]];
+            let lever = ropewalk_core::held::cross(&arm, &f);
+            let own: V3<f64> = match n.kind {
+                NodeKind::Frame => {
+                    let q = &s.q[n.q + 3..n.q + 7];
+                    times(&matrix(&[q[0], q[1], q[2], q[3]]), &[r[n.v + 3], r[n.v + 4], r[n.v + 5]])
+                }
+                NodeKind::Slope => {
+                    let slope = [s.q[n.q + 3], s.q[n.q + 4], s.q[n.q + 5]];
+                    ropewalk_core::held::cross(&slope, &[r[n.v + 3], r[n.v + 4], r[n.v + 5]])
+                }
+                _ => [0.0; 3],
+            };
+            for i in 0..3 {
+                force[i] += f[i];
+                moment[i] += lever[i] + own[i];
+            }
+        }
+        if what.contains("on a body: true") {
+            assert!(force.iter().chain(&moment).all(|x| x.abs() < 1e-10), "{force:?} {moment:?} {what}");
+        } else {
+            assert!(force.iter().any(|x| x.abs() > 1.0), "{what}");
+        }
+    });
+}
+
+#[test]
+fn a_ball_that_flies_towards_a_shape_sees_it_in_time() {
+    // a point at rest in space before a cuboid that comes closer and turns
+    let mut r = Random(11);
+    let nodes = nodes();
+    for shape in shapes() {
+        for _ in 0..20 {
+            let mut s = Numbers::new(&mut r);
+            let marker = Marker::Node {
+                node: NodeId(SEAT as u32),
+                point: [0.0; 3],
+                axes: matrix(&from_bryant([0.0; 3])),
+            };
+            let y = near(&shape, if matches!(shape, Shape::Tube { .. }) { 0.7 } else { 2.0 }, &mut r);
+            let x = times(&s.axes(), &y);
+            let seat = nodes[SEAT];
+            (0..3).for_each(|i| s.q[i] = s.q[seat.q + i] + x[i]);
+            let ball = ContactPoint { held: Held::Moves { q: 0, v: 0 }, radius: 0.05, length: 0.0, s: 0.0 };
+            let law = ContactLaw::default();
+            let c = Contact::new("c", &nodes, shape.clone(), &marker, &[ball], [1.0; 2], law).unwrap();
+            let h = c.horizon(&s.at());
+            if !h.is_finite() {
+                continue;
+            }
+            // along the motion with constant accelerations it isn't touched before
+            for k in 1..100 {
+                let t = 0.99 * h.min(0.2) * k as f64 / 100.0;
+                let mut q = s.q.clone();
+                let d: Vec<f64> = s.v.iter().zip(&s.a).map(|(v, a)| v * t + 0.5 * a * t * t).collect();
+                ropewalk_core::retract(&nodes, &s.q, &d, &mut q);
+                let depth = c.depths(&At { q: &q, ..s.at() }).next().unwrap().unwrap_or(0.0);
+                assert!(depth < 0.5 * 0.05, "{shape:?}: {depth} after {t} of {h}");
+            }
+        }
+    }
+}
