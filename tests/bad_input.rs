@@ -11,6 +11,9 @@ use std::time::{Duration, Instant};
 /// A scene with nearly every field that takes a number.
 const FULL: &str = include_str!("data/full.toml");
 
+/// A scene of rigid bodies and joints.
+const BODIES: &str = include_str!("data/bodies.toml");
+
 /// Runs a scene that is wrong and checks what must be so whatever is wrong.
 #[track_caller]
 fn refuse(folder: &Path, arguments: &[&str]) -> Said {
@@ -65,11 +68,13 @@ fn numbers(line: &str) -> Vec<(usize, usize)> {
 }
 
 #[test]
-fn the_scene_is_right_otherwise() {
+fn the_scenes_are_right_otherwise() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("full.toml"), FULL).unwrap();
-    let said = run(folder.path(), &["run", "full.toml", "--quiet"]);
-    assert_eq!((said.code, said.stderr.as_str()), (Some(0), ""));
+    for (name, scene) in [("full.toml", FULL), ("bodies.toml", BODIES)] {
+        fs::write(folder.path().join(name), scene).unwrap();
+        let said = run(folder.path(), &["run", name, "--quiet"]);
+        assert_eq!((said.code, said.stderr.as_str()), (Some(0), ""));
+    }
 }
 
 #[test]
@@ -92,16 +97,24 @@ fn no_number_may_be_infinite_or_none() {
     assert!(count > 400, "{count}");
 }
 
-/// Checks changes of the full scene: what is replaced by what, the text that the message points at, and what it says.
-fn cases(cases: &[(&str, &str, &str, &[&str])]) {
+/// What is replaced by what, the text that the message points at, and what it says.
+type Change<'a> = (&'a str, &'a str, &'a str, &'a [&'a str]);
+
+/// Checks changes of the full scene.
+fn cases(cases: &[Change<'_>]) {
+    changes(FULL, cases);
+}
+
+/// Checks changes of a scene.
+fn changes(scene: &str, cases: &[Change<'_>]) {
     let folder = tempfile::tempdir().unwrap();
     let mut wrong = String::new();
     for (old, new, marked, holds) in cases {
-        assert_eq!(FULL.matches(old).count(), 1, "{old:?}");
-        let said = refuse_scene(folder.path(), &FULL.replace(old, new));
+        assert_eq!(scene.matches(old).count(), 1, "{old:?}");
+        let said = refuse_scene(folder.path(), &scene.replace(old, new));
         let (line, text) = place(&said);
         // a part as a whole is marked at its head, anything else in what was changed
-        let first = FULL[..FULL.find(old).unwrap()].matches('\n').count() + 1;
+        let first = scene[..scene.find(old).unwrap()].matches('\n').count() + 1;
         let there = (first..=first + new.matches('\n').count()).contains(&line) || marked.starts_with("[[");
         if text != *marked || !there || holds.iter().any(|h| !said.stderr.contains(h)) {
             wrong += &format!(
@@ -325,6 +338,50 @@ fn parameters_from_outside_are_checked_as_well() {
         said.refused(&[holds]);
         assert!(!folder.path().join("out").exists());
     }
+}
+
+#[test]
+fn bodies_that_cannot_be_are_refused() {
+    changes(
+        BODIES,
+        &[
+            ("mass = 2 # crank", "", "[[elements]]", &["`mass` is missing"]),
+            ("mass = 2 # crank", "mass = 0", "0", &["`mass` must be positive"]),
+            ("mass = 2 # crank", "mass = \"2 m\"", "\"2 m\"", &["is a length, expected a mass"]),
+            ("[0.01, 0.02, 0.025] # crank", "[0.01, 0.02, 0.04]", "[0.01, 0.02, 0.04]", &["exceeds the sum"]),
+            ("[0.01, 0.02, 0.025] # crank", "[0, 0.02, 0.02]", "[0, 0.02, 0.02]", &["must be positive"]),
+            ("inertia = [0.01, 0.02, 0.025] # crank", "", "[[elements]]", &["`inertia`", "`shape`"]),
+            ("density = 7850", "", "[[elements]]", &["`mass` or a `density`"]),
+            ("density = 7850", "density = -1", "-1", &["`density` must be positive"]),
+            ("density = 7850", "density = 7850\nmass = 1", "{ cylinder = { length = 0.5, radius = 0.02 } }", &["either a `mass` or a `density`"]),
+            ("radius = 0.02 } } # link", "radius = 0 } }", "{ cylinder = { length = 0.5, radius = 0 } }", &["`radius` must be positive"]),
+            ("radius = 0.02 } } # link", "radius = 0.02, inner = 0.02 } }", "{ cylinder = { length = 0.5, radius = 0.02, inner = 0.02 } }", &["`inner` must be"]),
+            ("cuboid = { edges", "cube = { edges", "cube", &["`cube`", "`cuboid`"]),
+            ("mass = 3 # plate", "mass = 3\ninertia = [1, 1, 1]", "[1, 1, 1]", &["either `inertia`", "or a `shape`"]),
+        ],
+    );
+}
+
+#[test]
+fn joints_that_hold_nothing_are_refused() {
+    changes(
+        BODIES,
+        &[
+            ("to = \"crank.pin\"", "to = \"link.end\"", "[[constraints]]", &["same body", "nothing to join"]),
+            ("to = \"crank.pin\"", "to = \"crank.pim\"", "\"crank.pim\"", &["no such place", "`crank.pin`", "`points`"]),
+            ("to = \"crank.pin\"", "to = \"crank@0.3\"", "\"crank@0.3\"", &["no such place", "`crank.com`"]),
+            ("to = \"crank.pin\"", "to = \"crunk.pin\"", "\"crunk.pin\"", &["no part `crunk`", "`crank`"]),
+            ("to = \"crank.pin\"", "to = \"bob\"", "[[constraints]]", &["is a point, which has no axis to hold"]),
+            ("axis = [0, 0, 1] # bearing", "axis = [0, 0, 0]", "[0, 0, 0]", &["`axis` has no length"]),
+            ("axis = [0, 0, 1] # cross", "axis = [0, 0, 0]", "[0, 0, 0]", &["`axis` has no length"]),
+            ("axis = [0, 0, 1] # cross", "", "[[constraints]]", &["`axis` is missing"]),
+            ("axis = [1, 0, 0] # guide", "axis = [0, 0]", "[0, 0]", &["three entries"]),
+            ("of = \"cross\"", "of = \"gross\"", "\"gross\"", &["no constraint `gross`", "`bearing`, `cross`, `guide`"]),
+            ("force = 1000", "force = 0", "0", &["`force` must be positive"]),
+            ("axis = [0, 0, 1] # cross", "axis = [0, 1, 0]", "[[constraints]]", &["cross"]),
+            ("to = [0, 0, 0] # bearing", "to = [0, 0, 0.5]", "[[constraints]]", &["bearing", "project = true"]),
+        ],
+    );
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod mechanisms;
 use mechanisms::{
     Angle, G, Stand, Worst, attitude, case, chain, controlled, door, drive, energy, fixed, for_output,
     four_bars, go, heading, hooke, largest, listed, minus, radau, reaction, rod, slider_crank, squeezer,
-    squeezer_angles, start, time_of, whereabouts,
+    squeezer_angles, start, tight, time_of, whereabouts,
 };
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, RotationSpec, SphericalSpec};
 use ropewalk_core::rotation::matrix;
@@ -121,7 +121,7 @@ fn driven_rod_asks_for_torque_and_reaction_as_the_closed_form() {
 fn multipliers_of_a_driven_rod_converge_and_do_not_ring() {
     let mut errors = Vec::new();
     for k in 0..4 {
-        let mut s = start(&driven_rod(), &fixed(4e-3 / 2f64.powi(k)), 1.5);
+        let mut s = start(&driven_rod(), &tight(4e-3 / 2f64.powi(k)), 1.5);
         let mut worst = 0.0_f64;
         for r in case("driven_rod_inverse_dynamics") {
             let t = time_of(&r.quantity).expect("time");
@@ -299,10 +299,8 @@ fn arm_is_spun_up_as_the_reference() {
             let x = whereabouts(&s.model, &s.state, "arm.end")[0];
             let (sin, cos) = Angle::SpinUp(6.0, 15.0).at(t).x[0].sin_cos();
             let u = [cos * x[0] + sin * x[1] - 10.0, cos * x[1] - sin * x[0]];
-            let bands = [2e-4, 2e-3];
-            for (k, want) in r.numbers().into_iter().enumerate() {
-                worst.see(&r.quantity, u[k], want, bands[k]);
-            }
+            let got = if r.quantity.contains("along") { u[0] } else { u[1] };
+            worst.see(&r.quantity, got, r.number(), r.tolerance);
         }
         worst.within_tolerance(name, &s);
     }
@@ -390,4 +388,21 @@ fn samples_between_steps_are_accurate() {
 #[test]
 fn constraints_hold_at_three_levels() {
     let _ = (heading as fn(_, _, _) -> _, RotationSpec::clone as fn(&_) -> _);
+}
+
+#[test]
+fn zz_newton() {
+    use ropewalk_core::integrator::Options;
+    for (tol, nt) in [(1e-5, 1.0), (1e-5, 0.01), (1e-6, 1.0), (1e-6, 0.1), (1e-6, 0.01), (1e-6, 0.001)] {
+        let o = Options { newton_tolerance: nt, ..controlled(tol) };
+        let mut s = start(&chain(2, 1.0, 1.0), &o, 10.0);
+        let e0 = energy(&s.model, &s.state);
+        go(&mut s, 10.0);
+        let x = whereabouts(&s.model, &s.state, "rod1.end")[0];
+        println!(
+            "{tol:e} {nt:e}: energy {:.1e} J, tip {x:.4?} of [-1.6559, -0.5284], {:?}",
+            energy(&s.model, &s.state) - e0,
+            s.work.counts
+        );
+    }
 }
