@@ -160,7 +160,7 @@ fn squeezer_closes_as_the_test_set() {
         let first = all.iter().find(|r| r.quantity.starts_with("initial")).expect("accelerations");
         let start = for_output(&mut s);
         let turn = |k: &str| {
-            let (_, v) = s.model.part(k).and_then(|p| p.seat()).expect("body");
+            let (_, v) = s.model.part(k).and_then(|p| p.seats().first().copied()).expect("body");
             start.a[v + 5]
         };
         let want = first.numbers();
