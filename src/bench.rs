@@ -1,6 +1,6 @@
 //! What computing costs on the machine at hand: the measurements behind `ropewalk bench` and `cargo bench`.
 //!
-//! One problem for all of them, a [`Pendulum`], dry or in water. A [`FullIteration`] is what Newton's method repeats
+//! One problem for all of them, a [`Pendulum`], dry or in water; and a chain of rigid [`Links`]. A [`FullIteration`] is what Newton's method repeats
 //! (force, exact tangent, assembly, factors, solution), [`Steps`] what a run repeats; [`measure`] times both by the
 //! shortest of many short samples, which is what a busy machine disturbs least.
 //!
@@ -19,5 +19,5 @@ pub mod measure;
 mod problem;
 pub(crate) mod report;
 
-pub use problem::{FullIteration, Pendulum, Steps, models};
+pub use problem::{FullIteration, Links, Pendulum, Steps, models};
 pub use report::{Cost, Memory, Report, Share, StepCost, VariantCost};

@@ -353,11 +353,31 @@ fn bodies_that_cannot_be_are_refused() {
             ("inertia = [0.01, 0.02, 0.025] # crank", "", "[[elements]]", &["`inertia`", "`shape`"]),
             ("density = 7850", "", "[[elements]]", &["`mass` or a `density`"]),
             ("density = 7850", "density = -1", "-1", &["`density` must be positive"]),
-            ("density = 7850", "density = 7850\nmass = 1", "{ cylinder = { length = 0.5, radius = 0.02 } }", &["either a `mass` or a `density`"]),
-            ("radius = 0.02 } } # link", "radius = 0 } }", "{ cylinder = { length = 0.5, radius = 0 } }", &["`radius` must be positive"]),
-            ("radius = 0.02 } } # link", "radius = 0.02, inner = 0.02 } }", "{ cylinder = { length = 0.5, radius = 0.02, inner = 0.02 } }", &["`inner` must be"]),
+            (
+                "density = 7850",
+                "density = 7850\nmass = 1",
+                "{ cylinder = { length = 0.5, radius = 0.02 } }",
+                &["either a `mass` or a `density`"],
+            ),
+            (
+                "radius = 0.02 } } # link",
+                "radius = 0 } }",
+                "{ cylinder = { length = 0.5, radius = 0 } }",
+                &["`radius` must be positive"],
+            ),
+            (
+                "radius = 0.02 } } # link",
+                "radius = 0.02, inner = 0.02 } }",
+                "{ cylinder = { length = 0.5, radius = 0.02, inner = 0.02 } }",
+                &["`inner` must be"],
+            ),
             ("cuboid = { edges", "cube = { edges", "cube", &["`cube`", "`cuboid`"]),
-            ("mass = 3 # plate", "mass = 3\ninertia = [1, 1, 1]", "[1, 1, 1]", &["either `inertia`", "or a `shape`"]),
+            (
+                "mass = 3 # plate",
+                "mass = 3\ninertia = [1, 1, 1]",
+                "[1, 1, 1]",
+                &["either `inertia`", "or a `shape`"],
+            ),
         ],
     );
 }
@@ -368,18 +388,38 @@ fn joints_that_hold_nothing_are_refused() {
         BODIES,
         &[
             ("to = \"crank.pin\"", "to = \"link.end\"", "[[constraints]]", &["same body", "nothing to join"]),
-            ("to = \"crank.pin\"", "to = \"crank.pim\"", "\"crank.pim\"", &["no such place", "`crank.pin`", "`points`"]),
+            (
+                "to = \"crank.pin\"",
+                "to = \"crank.pim\"",
+                "\"crank.pim\"",
+                &["no such place", "`crank.pin`", "`points`"],
+            ),
             ("to = \"crank.pin\"", "to = \"crank@0.3\"", "\"crank@0.3\"", &["no such place", "`crank.com`"]),
             ("to = \"crank.pin\"", "to = \"crunk.pin\"", "\"crunk.pin\"", &["no part `crunk`", "`crank`"]),
-            ("to = \"crank.pin\"", "to = \"bob\"", "[[constraints]]", &["is a point, which has no axis to hold"]),
+            (
+                "to = \"crank.pin\"",
+                "to = \"bob\"",
+                "[[constraints]]",
+                &["is a point, which has no axis to hold"],
+            ),
             ("axis = [0, 0, 1] # bearing", "axis = [0, 0, 0]", "[0, 0, 0]", &["`axis` has no length"]),
             ("axis = [0, 0, 1] # cross", "axis = [0, 0, 0]", "[0, 0, 0]", &["`axis` has no length"]),
             ("axis = [0, 0, 1] # cross", "", "[[constraints]]", &["`axis` is missing"]),
             ("axis = [1, 0, 0] # guide", "axis = [0, 0]", "[0, 0]", &["three entries"]),
-            ("of = \"cross\"", "of = \"gross\"", "\"gross\"", &["no constraint `gross`", "`bearing`, `cross`, `guide`"]),
+            (
+                "of = \"cross\"",
+                "of = \"gross\"",
+                "\"gross\"",
+                &["no constraint `gross`", "`bearing`, `cross`, `guide`"],
+            ),
             ("force = 1000", "force = 0", "0", &["`force` must be positive"]),
             ("axis = [0, 0, 1] # cross", "axis = [0, 1, 0]", "[[constraints]]", &["cross"]),
-            ("to = [0, 0, 0] # bearing", "to = [0, 0, 0.5]", "[[constraints]]", &["bearing", "project = true"]),
+            (
+                "to = [0, 0, 0] # bearing",
+                "to = [0, 0, 0.5]",
+                "[[constraints]]",
+                &["bearing", "project = true"],
+            ),
         ],
     );
 }

@@ -50,7 +50,13 @@ fn joints_of_every_kind() -> Scene {
     scene.constraints.append(&mut other.constraints);
     scene.motions.append(&mut other.motions);
     scene
-        .element(CableSpec::straight("cable", [0.0, 2.0, 0.0], [1.0, 2.0, 0.0], 4, Section::new(1.0, 2e3, 0.5)))
+        .element(CableSpec::straight(
+            "cable",
+            [0.0, 2.0, 0.0],
+            [1.0, 2.0, 0.0],
+            4,
+            Section::new(1.0, 2e3, 0.5),
+        ))
         .constraint(SphericalSpec::pin("ball", "cable.start"));
     scene
 }
@@ -201,7 +207,8 @@ fn momentum_of_a_floating_system_stays() {
 
 /// Everything with a tangent of its own in one scene: bodies in water, joints, cables, springs, a mass, loads.
 fn everything() -> Scene {
-    let section = Section { diameter: 0.03, axial_damping: 1e-3, bending_damping: 1e-2, ..Section::new(2.0, 1e3, 1.0) };
+    let section =
+        Section { diameter: 0.03, axial_damping: 1e-3, bending_damping: 1e-2, ..Section::new(2.0, 1e3, 1.0) };
     let hull = RigidBodySpec {
         mass: None,
         inertia: None,
@@ -237,7 +244,10 @@ fn everything() -> Scene {
         .force(BuoyancySpec::default())
         .force(DragSpec::default())
         .force(AddedMassSpec::default())
-        .force(PointForceSpec { local: true, ..PointForceSpec::new("drum.rim", [3.0, 1.0, 0.0], TimeFunction::Constant) })
+        .force(PointForceSpec {
+            local: true,
+            ..PointForceSpec::new("drum.rim", [3.0, 1.0, 0.0], TimeFunction::Constant)
+        })
         .force(SpringSpec {
             name: "spring".into(),
             marker: "drum.rim".into(),
@@ -440,9 +450,10 @@ fn energies(scene: &Scene, options: &Options, duration: f64) -> [f64; 3] {
 
 /// Energy of two mechanisms without damping, with little numerical damping.
 fn energy_stays(duration: f64, h: f64) {
-    for (name, scene, range) in
-        [("double pendulum", chain(2, 1.0, 1.0), 4.0 * 9.81), ("four bars", four_bars(2, false), 2.0 * 5.0 * 9.81)]
-    {
+    for (name, scene, range) in [
+        ("double pendulum", chain(2, 1.0, 1.0), 4.0 * 9.81),
+        ("four bars", four_bars(2, false), 2.0 * 5.0 * 9.81),
+    ] {
         let scheme = Scheme::GeneralizedAlpha { rho_inf: 0.99 };
         let run = |h: f64| energies(&scene, &Options { scheme, ..tight(h) }, duration);
         let (coarse, fine) = (run(h), run(0.5 * h));

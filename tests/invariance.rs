@@ -33,7 +33,9 @@ fn stands(name: &str, run: impl Fn(&Stand) -> (Vec<V3<f64>>, u64, u64)) {
         for turn in turns() {
             let (seen, n, k) = run(&Stand { turn, shift });
             let off = largest(plain.iter().zip(&seen).flat_map(|(a, b)| minus(*a, *b))) / size;
-            println!("{name}, moved by {shift:?}: {off:.1e}, {n} and {k} instead of {steps} and {iterations}");
+            println!(
+                "{name}, moved by {shift:?}: {off:.1e}, {n} and {k} instead of {steps} and {iterations}"
+            );
             assert!(off < limit, "{name}, {turn:?}, {shift:?}: {off:e}");
             assert!(n.abs_diff(steps) <= 1 && k.abs_diff(iterations) <= 1 + steps, "{name}: {n} {k}");
         }
@@ -194,7 +196,8 @@ fn cable_between_bodies_does_not_care_which_end_it_begins_at() {
         let mut s = start(&mixed(swapped), &tight(5e-4), 0.5);
         go(&mut s, 0.5);
         let middle = place(&s.model, &s.state, "cable", 0.5);
-        [whereabouts(&s.model, &s.state, "arm.tip"), whereabouts(&s.model, &s.state, "bob"), [middle; 2]].concat()
+        [whereabouts(&s.model, &s.state, "arm.tip"), whereabouts(&s.model, &s.state, "bob"), [middle; 2]]
+            .concat()
     };
     let (a, b) = (run(false), run(true));
     let off = largest(a.iter().zip(&b).flat_map(|(a, b)| minus(*a, *b)));

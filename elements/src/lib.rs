@@ -10,4 +10,4 @@ pub use cable::{CableSpec, Section};
 pub use path::Path;
 pub use point_mass::{PointMass, PointMassSpec};
 pub use rigid_body::RigidBodySpec;
-pub use rigid_chain::RigidChainSpec;
+pub use rigid_chain::{LinkSection, RigidChainSpec};

@@ -1,6 +1,6 @@
 //! Times by the shortest of many short samples, and peak memory.
 
-use super::{Cost, FullIteration, Memory, Pendulum, Share, StepCost, Steps, VariantCost};
+use super::{Cost, FullIteration, Links, Memory, Pendulum, Share, StepCost, Steps, VariantCost};
 use crate::error::Error;
 use ropewalk_core::Width;
 use ropewalk_elements::cable::CableModel;
@@ -34,9 +34,9 @@ pub fn shortest(budget: Duration, mut call: impl FnMut() -> Result<(), Error>) -
     Ok(best)
 }
 
-/// A pendulum that is measured in rounds: a machine that is busy in one may be quiet in the next.
+/// A pendulum or a chain of links that is measured in rounds: a machine that is busy in one may be quiet in the next.
 pub struct Meter {
-    problem: Pendulum,
+    elements: usize,
     iteration: FullIteration,
     steps: Steps,
     full: f64,
@@ -52,16 +52,33 @@ impl Meter {
     /// # Errors
     /// A pendulum that can't be built.
     pub fn new(problem: &Pendulum, width: Width) -> Result<Self, Error> {
-        Ok(Meter {
-            problem: *problem,
-            iteration: FullIteration::new(problem, width)?,
-            steps: Steps::new(problem, width)?,
+        let iteration = FullIteration::new(problem, width)?;
+        Ok(Meter::of(problem.elements, iteration, Steps::new(problem, width)?))
+    }
+
+    /// The same for a chain of links, whose iteration is measured in the midst of its fall.
+    ///
+    /// # Errors
+    /// A chain that can't be built.
+    pub fn links(problem: &Links, width: Width) -> Result<Self, Error> {
+        let mut steps = Steps::links(problem, width)?;
+        steps.run(100)?;
+        let model = problem.scene().build()?.with_width(width);
+        let iteration = FullIteration::at(model, steps.state().clone())?;
+        Ok(Meter::of(problem.links, iteration, steps))
+    }
+
+    fn of(elements: usize, iteration: FullIteration, steps: Steps) -> Self {
+        Meter {
+            elements,
+            iteration,
+            steps,
             full: f64::INFINITY,
             residual: f64::INFINITY,
             solution: f64::INFINITY,
             phases: Vec::new(),
             step: f64::INFINITY,
-        })
+        }
     }
 
     /// Measures everything once more, in about this time.
@@ -116,12 +133,12 @@ impl Meter {
 
     /// Steps in a sample.
     fn count(&self) -> usize {
-        (100_000 / self.problem.elements).clamp(20, 500)
+        (100_000 / self.elements).clamp(20, 500)
     }
 
     /// The shortest times so far.
     pub fn cost(&self) -> Cost {
-        let us = 1e6 / self.problem.elements as f64;
+        let us = 1e6 / self.elements as f64;
         let share = |(label, s): &(String, f64)| Share { label: label.clone(), us: us * s };
         let mut phases: Vec<Share> = self.phases.iter().map(share).collect();
         // the last phase is the solution with its check; without the check it was timed by itself
@@ -134,7 +151,7 @@ impl Meter {
         phases.push(Share { label: "rest".into(), us: (us * self.full - known).max(0.0) });
         let (count, counts) = (self.count() as f64, self.steps.work.counts);
         Cost {
-            elements: self.problem.elements,
+            elements: self.elements,
             iteration: us * self.full,
             residual: us * self.residual,
             phases,

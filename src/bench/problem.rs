@@ -5,7 +5,7 @@ use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::integrator::{Alpha, Integrator, Options, StepError, Stepping, Workspace, prepare};
 use ropewalk_core::{Model, Scene, SolveError, State, V3, Water, Weights, Width};
 use ropewalk_elements::cable::{CableModel, Integration, LongitudinalModel, TransverseModel, legal};
-use ropewalk_elements::{CableSpec, Section};
+use ropewalk_elements::{CableSpec, LinkSection, RigidChainSpec, Section};
 use ropewalk_forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec};
 
 /// Step of the fixed-step measurements [s].
@@ -91,6 +91,28 @@ impl Pendulum {
     }
 }
 
+/// A chain of rigid links of 0.5 m and 0.25 kg, pinned at one end and released horizontally in gravity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Links {
+    /// Number of links.
+    pub links: usize,
+}
+
+impl Links {
+    /// The scene as it is released.
+    pub fn scene(&self) -> Scene {
+        let end = [0.5 * self.links as f64, 0.0, 0.0];
+        let chain =
+            RigidChainSpec::new("chain", vec![[0.0; 3], end], self.links, LinkSection::new(0.5, 0.02));
+        let mut scene = Scene::new();
+        scene
+            .element(chain)
+            .constraint(SphericalSpec::pin("pin", "chain.start"))
+            .force(GravitySpec { g: [0.0, -9.81, 0.0], on: Vec::new() });
+        scene
+    }
+}
+
 /// Every legal pair of stiffness models with each quadrature, the default first. Closed forms come once: quadrature
 /// makes no difference to them.
 pub fn models() -> Vec<CableModel> {
@@ -144,6 +166,14 @@ impl FullIteration {
         state.v = turned(&state.q);
         state.a = turned(&state.v);
         state.lambda.fill(1.0);
+        Self::at(model, state)
+    }
+
+    /// Any model in any state; weights are those of a step of 1 ms.
+    ///
+    /// # Errors
+    /// Not enough memory for the structure of its equations.
+    pub fn at(model: Model, state: State) -> Result<Self, Error> {
         let c = Options::default().scheme.coefficients().map_err(StepError::Scheme)?;
         let weights = Weights { q: c.beta * STEP * STEP, v: c.gamma * STEP, a: c.mass() };
         let work = Workspace::new(&model).map_err(unsolved)?;
@@ -206,6 +236,15 @@ pub struct Steps {
 }
 
 impl Steps {
+    /// Makes the start of a chain of links consistent.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn links(problem: &Links, width: Width) -> Result<Self, Error> {
+        let options = Options { stepping: Stepping::Fixed { h: STEP }, ..Options::default() };
+        Self::of(problem.scene().build()?.with_width(width), &options)
+    }
+
     /// Makes the start consistent.
     ///
     /// # Errors

@@ -18,6 +18,8 @@ pub struct Report {
     pub dry: Vec<Cost>,
     /// The same in water.
     pub water: Vec<Cost>,
+    /// A chain of rigid links, by their number.
+    pub links: Vec<Cost>,
     /// The stiffness models.
     pub variants: Vec<VariantCost>,
     /// Peak memory, where it is known.
@@ -185,7 +187,7 @@ impl Report {
     /// One number a row: what, which mesh, how much.
     pub fn csv(&self) -> String {
         let mut out = String::from("what,elements,quantity,value [us per element]\n");
-        for (what, costs) in [("dry", &self.dry), ("water", &self.water)] {
+        for (what, costs) in [("dry", &self.dry), ("water", &self.water), ("links", &self.links)] {
             for (label, values) in times(costs) {
                 for (c, x) in costs.iter().zip(values) {
                     _ = writeln!(out, "{what},{},{},{x}", c.elements, quoted(label.trim()));
@@ -215,6 +217,7 @@ impl Report {
                 line("iteration, in water", &self.water, |c| c.iteration),
                 line("step, dry", &self.dry, |c| c.step.us),
                 line("step, in water", &self.water, |c| c.step.us),
+                line("step, rigid links", &self.links, |c| c.step.us),
             ],
             log_x: true,
             ..LinePlot::default()

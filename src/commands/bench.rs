@@ -2,7 +2,7 @@
 
 use super::{Exit, say};
 use crate::bench::measure::{Meter, VariantMeter, memory};
-use crate::bench::{Cost, Pendulum, Report, models, report};
+use crate::bench::{Cost, Links, Pendulum, Report, models, report};
 use crate::error::Error;
 use crate::output::{OutputError, RunFolder, new_bar, write_atomic};
 use crate::scene::Fault;
@@ -63,9 +63,9 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, Error> {
 
     let models = models();
     // a stiffness model has fewer numbers than a mesh
-    let share = args.seconds / ((2.0 * meshes.len() as f64 + 0.3 * models.len() as f64) * f64::from(ROUNDS));
+    let share = args.seconds / ((3.0 * meshes.len() as f64 + 0.3 * models.len() as f64) * f64::from(ROUNDS));
     let budget = Duration::from_secs_f64(share);
-    let bar = new_bar(u64::from(ROUNDS) * (2 * meshes.len() + models.len()) as u64);
+    let bar = new_bar(u64::from(ROUNDS) * (3 * meshes.len() + models.len()) as u64);
     let show = |text: String| {
         if !args.json {
             bar.suspend(|| say(text));
@@ -80,9 +80,8 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, Error> {
     ));
     bar.set_message("memory");
     let memory = memory(meshes.last().copied().unwrap_or(0), width)?;
-    let costs = |title: &str, water: bool| {
-        let meter = |n: &usize| Meter::new(&Pendulum { water, ..Pendulum::new(*n) }, width);
-        let mut meters = meshes.iter().map(meter).collect::<Result<Vec<_>, _>>()?;
+    let costs = |title: &str, meter: &dyn Fn(usize) -> Result<Meter, Error>| {
+        let mut meters = meshes.iter().map(|n| meter(*n)).collect::<Result<Vec<_>, _>>()?;
         for _ in 0..ROUNDS {
             for (meter, n) in meters.iter_mut().zip(&meshes) {
                 bar.set_message(format!("{title}: {n} elements"));
@@ -94,8 +93,11 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, Error> {
         show(report::costs(title, &costs));
         Ok::<_, Error>(costs)
     };
-    let dry = costs("pendulum in air, gravity", false)?;
-    let water = costs("pendulum in water, gravity, buoyancy, drag, added mass", true)?;
+    let dry = costs("pendulum in air, gravity", &|n| Meter::new(&Pendulum::new(n), width))?;
+    let water = costs("pendulum in water, gravity, buoyancy, drag, added mass", &|n| {
+        Meter::new(&Pendulum::new(n).in_water(), width)
+    })?;
+    let links = costs("chain of rigid links, gravity", &|links| Meter::links(&Links { links }, width))?;
 
     let mesh = meshes.iter().copied().filter(|n| *n <= COMPARED).max().unwrap_or(COMPARED);
     let meter = |m| VariantMeter::new(m, mesh, width);
@@ -120,6 +122,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, Error> {
         lanes: width.lanes(),
         dry,
         water,
+        links,
         variants,
         memory,
     };

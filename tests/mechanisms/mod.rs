@@ -107,7 +107,8 @@ pub fn whereabouts(model: &Model, state: &State, marker: &str) -> [V3<f64>; 2] {
 /// Orientation of a body, and its angular velocity in its own axes.
 #[track_caller]
 pub fn attitude(model: &Model, state: &State, body: &str) -> ([f64; 4], V3<f64>) {
-    let (q, v) = model.part(body).and_then(|p| p.seats().first().copied()).unwrap_or_else(|| panic!("no body {body}"));
+    let (q, v) =
+        model.part(body).and_then(|p| p.seats().first().copied()).unwrap_or_else(|| panic!("no body {body}"));
     let (q, v) = (&state.q[q..], &state.v[v..]);
     ([q[3], q[4], q[5], q[6]], [v[3], v[4], v[5]])
 }
