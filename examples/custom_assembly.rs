@@ -43,14 +43,8 @@ pub(crate) fn main() -> Result<(), Error> {
         .force(BuoyancySpec::default())
         .force(DragSpec::default())
         .force(AddedMassSpec::default())
-        .record(PositionSpec { of: "sinker".into(), name: None, title: None })
-        .record(AlongSpec {
-            of: "line".into(),
-            what: Quantity::Tension,
-            at: RecordPlace::End,
-            name: None,
-            title: None,
-        })
+        .record(PositionSpec::new("sinker"))
+        .record(AlongSpec::new("line", Quantity::Tension, RecordPlace::End))
         .record(EnergySpec::default());
     scene.run.duration = 20.0;
     scene.run.output = 0.05;

@@ -177,10 +177,9 @@ fn shapes_have_the_moments_of_the_tables() {
     assert!((j[0] - 4.0).abs() < 1e-8);
     let (_, j) = Shape::Sphere { radius: 3.0 }.properties().unwrap();
     assert!(j.iter().all(|j| (j - 3.6).abs() < 1e-14));
-    assert_eq!(
-        Shape::Cuboid { edges: [6.0, 2.0, 4.0] }.properties().unwrap(),
-        (48.0, [20.0 / 12.0, 52.0 / 12.0, 40.0 / 12.0])
-    );
+    let (volume, j) = Shape::Cuboid { edges: [6.0, 2.0, 4.0] }.properties().unwrap();
+    assert_eq!(volume, 48.0);
+    assert!(j.iter().zip([20.0, 52.0, 40.0]).all(|(j, x)| (j - x / 12.0).abs() < 1e-14));
 }
 
 #[test]

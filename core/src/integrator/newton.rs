@@ -239,8 +239,9 @@ impl Newton<'_> {
         if self.linear_constraints {
             return true;
         }
-        let length = self.model.length();
-        let limit = (1e-10 * length).max(8.0 * self.model.rounding());
+        // what is left of them shakes the multipliers by its square of the step
+        let (most, least) = (1e-10 * self.model.length(), 8.0 * self.model.rounding());
+        let limit = (10.0 * self.tolerance).min(most).max(least);
         let mut g = std::mem::take(&mut work.trial.g);
         self.model.violations(&self.place(&work.trial), &mut work.system, &mut g);
         let fine = g.iter().zip(self.model.row_scale()).all(|(g, s)| g.abs() <= limit * s);

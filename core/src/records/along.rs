@@ -30,6 +30,13 @@ pub struct AlongSpec {
     pub title: Option<String>,
 }
 
+impl AlongSpec {
+    /// Something at a place along a part, under its own name.
+    pub fn new(of: &str, what: Quantity, at: Station) -> Self {
+        AlongSpec { of: of.into(), what, at, name: None, title: None }
+    }
+}
+
 register_spec!(Record, "along", AlongSpec);
 
 fn word(what: Quantity) -> &'static str {

@@ -55,6 +55,13 @@ pub struct AccelerationSpec {
     pub title: Option<String>,
 }
 
+impl PositionSpec {
+    /// The position of a point, under its own name.
+    pub fn new(of: &str) -> Self {
+        PositionSpec { of: of.into(), name: None, title: None }
+    }
+}
+
 register_spec!(Record, "position", PositionSpec);
 register_spec!(Record, "velocity", VelocitySpec);
 register_spec!(Record, "acceleration", AccelerationSpec);
