@@ -17,7 +17,8 @@ use std::fs;
 
 /// A short hose of few links, otherwise the bundled model.
 fn short(speed: &str, more: &[&str]) -> SceneFile {
-    let mut overrides = vec![format!("speed={speed}"), "length=3 m".into(), "links=30".into()];
+    let mut overrides =
+        vec![format!("speed={speed}"), "length=3 m".into(), "links=30".into(), "centre=hose.link15".into()];
     overrides.extend(more.iter().map(ToString::to_string));
     SceneFile::open("shear-pin", &overrides, bundled()).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -46,7 +47,7 @@ fn a_latch_holds_until_its_limit_and_the_energy_is_accounted_for() {
     latch.fade = 1e-3;
     scene.force(latch).record(ReleasedSpec { of: "seat".into(), name: None, title: None });
     scene.run.duration = 0.2;
-    scene.run.output = 1e-3;
+    scene.run.output = 1e-4;
     let history = simulate(&scene).unwrap_or_else(|e| panic!("{e}"));
     let (pull, gone) = (load(&history), history.column("seat.released").expect("released"));
     let held = pull.iter().zip(gone).filter(|(_, gone)| **gone == 0.0).map(|(f, _)| *f);
@@ -81,7 +82,7 @@ fn a_straight_hose_at_speed_pulls_with_its_tangential_drag() {
 fn pulled_off_steadily_the_load_is_the_flux_of_momentum() {
     let (m, v, w, step) = (0.861, 6.0, 0.15, 0.01);
     // folds across the pull, one behind the other: each takes up two links
-    let links = 60;
+    let links = 120;
     let mut points = vec![[0.0; 3]];
     for k in 1..=links {
         let side = if k % 2 == 0 { 0.0 } else { w };
@@ -92,7 +93,13 @@ fn pulled_off_steadily_the_load_is_the_flux_of_momentum() {
     let mut scene = Scene::new();
     scene
         .element(RigidChainSpec::new("hose", points, links, section))
-        .motion(StraightSpec { name: "run".into(), speed: v, direction: [1.0, 0.0, 0.0], start: 0.0, ramp: 0.05 })
+        .motion(StraightSpec {
+            name: "run".into(),
+            speed: v,
+            direction: [1.0, 0.0, 0.0],
+            start: 0.0,
+            ramp: 0.05,
+        })
         .constraint(DrivingSpec::new("pull", "hose.start", "run"))
         .force(LatchSpec::new("seat", &["hose"], 1e4, 20.0, 0.5))
         .record(ReactionSpec { of: "pull".into(), what: ReactionPart::Force, name: None, title: None })
@@ -109,14 +116,21 @@ fn pulled_off_steadily_the_load_is_the_flux_of_momentum() {
     let gone = history.column("seat.released").expect("released");
     // over a whole number of folds, once the straight part has settled
     let at = |n: f64| gone.iter().position(|g| *g >= n).expect("released");
-    let (a, b) = (at(16.0), at(52.0));
+    let (a, b) = (at(20.0), at(116.0));
     let work: f64 = (a..b).map(|k| 0.5 * (f[k] + f[k + 1]) * (t[k + 1] - t[k])).sum();
     let mean = work / (t[b] - t[a]);
     let exact = m * rate * v;
-    println!("mean pull {mean:.2} N of {exact:.2} N, {} of {links} links gone, {:?}", gone[gone.len() - 1], history.counts);
+    println!(
+        "mean pull {mean:.2} N of {exact:.2} N, {} of {links} links gone, {:?}",
+        gone[gone.len() - 1],
+        history.counts
+    );
     let imbalance = history.last("energy.imbalance").expect("imbalance").abs();
     let lost = history.last("energy.dissipated").expect("dissipated");
-    println!("dissipated {lost:.2} J, imbalance {imbalance:.2e} J, supplied {:?}", history.last("energy.supplied"));
+    println!(
+        "dissipated {lost:.2} J, imbalance {imbalance:.2e} J, supplied {:?}",
+        history.last("energy.supplied")
+    );
     approx::assert_relative_eq!(mean, exact, max_relative = 0.01);
 }
 
@@ -142,13 +156,14 @@ fn a_pin_breaks_at_its_strength_at_a_time_that_is_located() {
         .record(ReleasedSpec { of: "shear".into(), name: None, title: None });
     scene.run.duration = 0.8;
     scene.run.output = 1e-3;
+    scene.solver.stepping = Stepping::Fixed { h: 1e-3 };
     let history = simulate(&scene).unwrap_or_else(|e| panic!("{e}"));
     let gone = history.column("shear").or(history.column("shear.released")).expect("released");
     let k = gone.iter().position(|g| *g > 0.0).expect("broken");
     let t = history.times()[k];
     println!("broken by {t} s");
-    // the slope of the table's cubics is that of the parabola to a few parts in a hundred
-    assert!((t - 0.5).abs() < 0.03, "{t}");
+    // the slope of the table's cubics is that of the parabola to a few parts in a thousand
+    assert!((t - 0.5).abs() < 0.01, "{t}");
     let pull = history.column("pin.magnitude").expect("pull");
     assert!(pull[k + 1..].iter().all(|f| *f == 0.0), "{:?}", &pull[k..k + 4]);
     assert!(pull[k - 2] > 0.95 * mass * (g + 5.0));
@@ -164,17 +179,20 @@ fn every_picture_of_the_model_shows_what_it_names() {
     ];
     for (speed, numbers) in figures {
         // the slower ones needn't go all the way
-        let more: &[&str] = if speed == "25 kn" { &[] } else { &["length=0.8 m", "links=8"] };
+        let more: &[&str] =
+            if speed == "25 kn" { &[] } else { &["length=0.8 m", "links=8", "centre=hose.link4"] };
         let file = short(speed, more);
         let folder = tempfile::tempdir().unwrap();
         let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
         let mut said = Vec::new();
-        let outcome = ropewalk::run(&file, &options, &mut |w| said.push(w.to_string())).unwrap_or_else(|e| panic!("{e}"));
+        let outcome = ropewalk::run(&file, &options, &mut |w| said.push(w.to_string()))
+            .unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(outcome.summary.status, "stopped", "{:?} {said:?}", outcome.summary.message);
         assert_eq!(outcome.summary.message.as_deref(), Some("stopped by spool"));
         let plot = |name: &str| {
             let path = folder.path().join(format!("run/plots/{name}.svg"));
-            fs::read_to_string(&path).unwrap_or_else(|e| panic!("{name}: {e}; there are {:?}", outcome.pictures))
+            fs::read_to_string(&path)
+                .unwrap_or_else(|e| panic!("{name}: {e}; there are {:?}", outcome.pictures))
         };
         let pictures = [
             ("pin", "magnitude [N]", 0),
@@ -214,7 +232,8 @@ fn every_picture_of_the_model_shows_what_it_names() {
         ] {
             let values = &history.column(column).unwrap_or_else(|| panic!("no {column}")).values;
             assert!(values.iter().all(|x| x.is_finite()), "{column}");
-            let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+            let (low, high) =
+                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
             println!("{speed}: {column} from {low:.4} to {high:.4}");
             assert!(high - low > least, "{speed}: {column} only goes from {low} to {high}");
         }
@@ -222,8 +241,7 @@ fn every_picture_of_the_model_shows_what_it_names() {
         assert!(difference.iter().all(|d| *d < 1e-9), "the vehicle leaves its course");
         // all links were released, one after the other, and the energy is accounted for
         let links = if speed == "25 kn" { 30 } else { 8 };
-        assert_eq!(outcome.summary.final_values["spool.released"], links as f64 - 0.0);
-        assert!(outcome.summary.events.iter().all(|e| e.name == "spool"));
+        assert_eq!(outcome.summary.events.iter().filter(|e| e.name == "spool").count(), links);
         let e = &outcome.summary.energy;
         println!("{speed}: supplied {:.2} J, imbalance {:.3} J", e.supplied, e.imbalance);
         assert!(e.imbalance.abs() < 0.02 * e.supplied.abs(), "{e:?}");
@@ -236,15 +254,16 @@ fn every_picture_of_the_model_shows_what_it_names() {
 
 #[test]
 fn a_weak_pin_shears_during_the_launch() {
-    let file = short("25 kn", &["pin_strength=120 N", "length=1 m", "links=10"]);
+    let file = short("25 kn", &["pin_strength=60 N", "length=1 m", "links=10", "centre=hose.link5"]);
     let folder = tempfile::tempdir().unwrap();
     let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
     let outcome = ropewalk::run(&file, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
     let event = outcome.summary.events.iter().find(|e| e.name == "shear").expect("the pin shears");
     assert!(outcome.report.contains("shear at t = "), "{}", outcome.report);
-    let (t, f) = (&outcome.history.columns[0].values, &outcome.history.column("pin.magnitude").unwrap().values);
+    let (t, f) =
+        (&outcome.history.columns[0].values, &outcome.history.column("pin.magnitude").unwrap().values);
     for (t, f) in t.iter().zip(f) {
-        let good = if *t > event.t { *f == 0.0 } else { *f < 121.0 };
+        let good = if *t > event.t { *f == 0.0 } else { *f < 60.5 };
         assert!(good, "{f} N at {t} s, sheared at {} s", event.t);
     }
 }

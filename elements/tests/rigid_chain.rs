@@ -70,7 +70,11 @@ fn a_chain_on_a_spool_meets_its_joints_and_weighs_what_it_should() {
     assert_eq!(line.len(), 61);
     // the potential of the weight is that of the links at their centres
     let height: f64 = line.windows(2).map(|w| 0.5 * (w[0][2] + w[1][2])).sum();
-    approx::assert_relative_eq!(weight.energy(&state.at()).potential, 0.05 * 10.0 * height, max_relative = 1e-12);
+    approx::assert_relative_eq!(
+        weight.energy(&state.at()).potential,
+        0.05 * 10.0 * height,
+        max_relative = 1e-12
+    );
     // a point between joints is on its link
     let (x, _) = part.point(0.25, &state.at()).unwrap();
     for i in 0..3 {

@@ -132,8 +132,7 @@ impl Wrench for Bushing {
             std::array::from_fn(|i| -(s.d[i] * self.stiffness[i]) - s.rate[i] * self.damping[i]);
         let gradient: V3<S> = std::array::from_fn(|i| s.phi[i] * self.rotational_stiffness[i]);
         let elastic = as_moment(&s.phi, &gradient);
-        let moment: V3<S> =
-            std::array::from_fn(|i| -elastic[i] - s.spin[i] * self.rotational_damping[i]);
+        let moment: V3<S> = std::array::from_fn(|i| -elastic[i] - s.spin[i] * self.rotational_damping[i]);
         let r = matrix(&pose[0].axes);
         (times(&r, &force), times(&r, &moment))
     }

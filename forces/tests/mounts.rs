@@ -50,7 +50,8 @@ fn frames() -> [Marker; 2] {
 
 fn bushings() -> Vec<Bushing> {
     let [a, b] = frames();
-    let ground = Marker::Ground { point: [0.2, 0.1, -0.3], axes: [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]] };
+    let ground =
+        Marker::Ground { point: [0.2, 0.1, -0.3], axes: [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]] };
     [[a, b], [ground, b], [a, ground]]
         .map(|pair| {
             let mut bushing = Bushing::new("mount", &nodes(), pair).unwrap();
@@ -70,8 +71,10 @@ fn latches() -> Vec<Latch> {
     let floor = Floor { point: [0.0, 0.0, 3.0], normal: [0.0, 0.6, 0.8], stiffness: 300.0 };
     let seats = |ends: [[Held; 2]; 3]| (0..3).map(|mode| Seat { ends: ends[mode], mode }).collect::<Vec<_>>();
     let mut all = Vec::new();
-    for seats in [seats([[ground, point], [on, point], [ground, body]]), seats([[on, body], [ground, body], [on, point]])]
-    {
+    for seats in [
+        seats([[ground, point], [on, point], [ground, body]]),
+        seats([[on, body], [ground, body], [on, point]]),
+    ] {
         for floor in [None, Some(floor)] {
             all.push(Latch {
                 label: "latch".into(),
@@ -139,7 +142,11 @@ fn what_is_taken_is_stored_or_dissipated() {
             let (taken, stored) = (taken(&**term, &s), energy_rate(&**term, &s));
             let lost = term.power(&s.at()).dissipated;
             let size = taken.abs() + stored.abs() + lost.abs();
-            assert!((taken - stored - lost).abs() < 1e-7 * size, "{} ({k}): {taken} {stored} {lost}", term.label());
+            assert!(
+                (taken - stored - lost).abs() < 1e-7 * size,
+                "{} ({k}): {taken} {stored} {lost}",
+                term.label()
+            );
         }
     }
 }

@@ -52,15 +52,16 @@ pub(crate) fn quaternion_product<S: Jet>(a: &[S; 4], b: &[S; 4]) -> [S; 4] {
 impl Mount {
     fn new(nodes: &[Node], marker: &Marker, what: &str) -> Result<Self, BuildError> {
         // rows of axes are the axes: the columns of the matrix that turns the frame into space
-        let turned = |axes: &[V3<f64>; 3]| {
-            from_matrix(&std::array::from_fn(|i| std::array::from_fn(|j| axes[j][i])))
-        };
+        let turned =
+            |axes: &[V3<f64>; 3]| from_matrix(&std::array::from_fn(|i| std::array::from_fn(|j| axes[j][i])));
         match marker {
             Marker::Ground { point, axes } => Ok(Mount { body: None, point: *point, axes: turned(axes) }),
             Marker::Node { node, point, axes } => {
                 let n = find(nodes, *node, what)?;
                 need(n.kind == NodeKind::Frame, || {
-                    format!("{what}: it needs rigid bodies or points in space, which have axes; use a `spring` on others")
+                    format!(
+                        "{what}: it needs rigid bodies or points in space, which have axes; use a `spring` on others"
+                    )
                 })?;
                 Ok(Mount { body: Some((n.q, n.v)), point: *point, axes: turned(axes) })
             }
@@ -110,12 +111,7 @@ impl Frames {
         self.0.iter().filter_map(|m| m.body).flat_map(|(_, v)| v..v + 6)
     }
 
-    fn poses<S: Jet>(
-        &self,
-        at: &At<'_>,
-        d: impl Fn(usize) -> S,
-        v: impl Fn(usize) -> S,
-    ) -> [Pose<S>; 2] {
+    fn poses<S: Jet>(&self, at: &At<'_>, d: impl Fn(usize) -> S, v: impl Fn(usize) -> S) -> [Pose<S>; 2] {
         let second = if self.0[0].body.is_some() { 6 } else { 0 };
         let first = self.0[0].pose(at.q, &d, &v);
         [first, self.0[1].pose(at.q, |i| d(second + i), |i| v(second + i))]
