@@ -4,6 +4,7 @@
 //! is a term (point forces and moments, springs, bushings, latches).
 
 mod added_mass;
+mod bushing;
 #[cfg(feature = "contact")]
 pub mod contact;
 mod drag;
@@ -16,6 +17,7 @@ mod spring;
 mod time;
 
 pub use added_mass::AddedMass;
+pub use bushing::{Bushing, BushingSpec, RotationalSpring, RotationalSpringSpec};
 pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
 pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
 pub use line_load::LineLoad;

@@ -165,3 +165,23 @@ fn parameters_that_multiply_or_nest_without_end_are_stopped() {
         parse(&format!("parameters.a = '{}'\nx = [{uses}]", large.as_str().unwrap()), &[]).unwrap_err();
     assert!(fault.message.contains("grow beyond all measure"), "{fault}");
 }
+
+#[test]
+fn a_value_is_chosen_by_another() {
+    let text = |s: &str| Kind::String(s.to_string());
+    let scene = "parameters.v = '25 kn'\nx = { choose = '$v', '25 kn' = '$a', '15kn' = 'b', otherwise = 'c' }\n\
+                 parameters.a = 'fast'";
+    assert_eq!(value(scene, &[]), text("fast"));
+    assert_eq!(value(scene, &["v=25kn"]), text("fast"));
+    assert_eq!(value(scene, &["v=15 kn"]), text("b"));
+    assert_eq!(value(scene, &["v=3"]), text("c"));
+    // parameters choose too, by numbers as well
+    let scene = "parameters.n = 3\nparameters.m.default = { choose = '$n', 3 = 1, 4 = 2 }\nx = '$m'";
+    assert_eq!(value(scene, &[]), Kind::Integer(1));
+    assert_eq!(value(scene, &["n=4"]), Kind::Integer(2));
+    let fault = parse(scene, &["n=5"]).unwrap_err();
+    assert!(fault.message.contains("nothing to choose for `5`, expected"), "{fault}");
+    assert_eq!(fault.help.as_deref(), Some("add it, or `otherwise` for all that isn't named"));
+    let fault = parse("x = { choose = [1], a = 2 }", &[]).unwrap_err();
+    assert!(fault.message.contains("takes a text or a number"), "{fault}");
+}

@@ -1,0 +1,137 @@
+//! What a scene says about bushings and torsion springs.
+
+use super::{Bushing, RotationalSpring};
+use ropewalk_core::build::{BuildError, Builder, finite, not_negative};
+use ropewalk_core::rotation::{IDENTITY, M3, around, cross};
+use ropewalk_core::{ForceSpec, Marker, MarkerRef, V3, dot, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A spring and damper in all directions between two rigid bodies, or one and space: a rubber mount, a soft joint. Without
+/// force as the bodies stand at the start; rotations count up to half a turn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BushingSpec {
+    /// Name.
+    pub name: String,
+    /// The marker that is held.
+    pub marker: MarkerRef,
+    /// What holds it, whose axes the numbers belong to: a marker on a rigid body, or a point in space; left out, the
+    /// point where the marker starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// Direction in space at the start of the first of these axes; left out, with `axis_y`, the axes of space.
+    #[serde(default)]
+    pub axis_x: Option<V3<f64>>,
+    /// Direction in space at the start of the second, at right angles to the first.
+    #[serde(default)]
+    pub axis_y: Option<V3<f64>>,
+    /// Stiffness along each axis [N/m].
+    #[serde(default, deserialize_with = "quantity::vec3::spring_stiffness")]
+    pub stiffness: V3<f64>,
+    /// Damping along each axis [N s/m].
+    #[serde(default, deserialize_with = "quantity::vec3::damping")]
+    pub damping: V3<f64>,
+    /// Stiffness about each axis [N m/rad].
+    #[serde(default, deserialize_with = "quantity::vec3::rotational_stiffness")]
+    pub rotational_stiffness: V3<f64>,
+    /// Damping about each axis [N m s/rad].
+    #[serde(default, deserialize_with = "quantity::vec3::rotational_damping")]
+    pub rotational_damping: V3<f64>,
+}
+register_spec!(Force, "bushing", BushingSpec);
+
+/// Both markers, the holding one first, with the same axes in space at the start.
+fn pair(
+    b: &Builder,
+    marker: &MarkerRef,
+    to: Option<&MarkerRef>,
+    axes: M3,
+) -> Result<[Marker; 2], BuildError> {
+    let held = b.marker("marker", marker)?;
+    let holds = match to {
+        Some(to) => b.marker("to", to)?,
+        None => Marker::ground(b.place(&held).x),
+    };
+    Ok([holds, held].map(|m| m.with_axes(b.nodes(), b.coordinates(), axes)))
+}
+
+fn unit(field: &str, d: V3<f64>) -> Result<V3<f64>, BuildError> {
+    finite(field, &d)?;
+    let size = dot(&d, &d).sqrt();
+    if size > 0.0 {
+        Ok(d.map(|x| x / size))
+    } else {
+        Err(BuildError::at(field, format!("`{field}` must have a length")))
+    }
+}
+
+#[typetag::serde(name = "bushing")]
+impl ForceSpec for BushingSpec {
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let axes = match (self.axis_x, self.axis_y) {
+            (None, None) => IDENTITY,
+            (Some(x), Some(y)) => {
+                let (x, y) = (unit("axis_x", x)?, unit("axis_y", y)?);
+                if dot(&x, &y).abs() > 1e-6 {
+                    return Err(BuildError::at("axis_y", "`axis_y` must be at right angles to `axis_x`"));
+                }
+                [x, y, cross(&x, &y)]
+            }
+            _ => return Err(BuildError::at("axis_x", "give both `axis_x` and `axis_y`, or neither")),
+        };
+        let markers = pair(b, &self.marker, self.to.as_ref(), axes)?;
+        let mut bushing = Bushing::new(&self.name, b.nodes(), markers)?;
+        bushing.stiffness = self.stiffness;
+        bushing.damping = self.damping;
+        bushing.rotational_stiffness = self.rotational_stiffness;
+        bushing.rotational_damping = self.rotational_damping;
+        bushing.check()?;
+        b.term(Box::new(bushing));
+        Ok(())
+    }
+}
+
+/// A torsion spring and damper about an axis, beside a `revolute` joint; angles count up to half a turn from the one
+/// without moment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RotationalSpringSpec {
+    /// Name.
+    pub name: String,
+    /// The marker on the body that is turned.
+    pub marker: MarkerRef,
+    /// The body that it is turned against; left out, space.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// The axis in space at the start.
+    pub axis: V3<f64>,
+    /// Stiffness [N m/rad].
+    #[serde(default, deserialize_with = "quantity::rotational_stiffness")]
+    pub stiffness: f64,
+    /// Damping [N m s/rad].
+    #[serde(default, deserialize_with = "quantity::rotational_damping")]
+    pub damping: f64,
+    /// Angle without moment, from where the bodies stand at the start [rad].
+    #[serde(default, deserialize_with = "quantity::angle")]
+    pub angle: f64,
+}
+register_spec!(Force, "rotational_spring", RotationalSpringSpec);
+
+#[typetag::serde(name = "rotational_spring")]
+impl ForceSpec for RotationalSpringSpec {
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let axes = around(unit("axis", self.axis)?);
+        let markers = pair(b, &self.marker, self.to.as_ref(), axes)?;
+        let mut spring = RotationalSpring::new(&self.name, b.nodes(), markers, self.stiffness, self.angle)?;
+        spring.damping = not_negative("damping", self.damping)?;
+        b.term(Box::new(spring));
+        Ok(())
+    }
+}
