@@ -111,7 +111,7 @@ fn bounces_of_the_case() {
     let touches = seen.zeros(|(_, z, _)| z - R);
     near(touches[1].0 - touches[0].0, 0.003_147_856_817_011_378_3, 0.01);
     let turns = seen.zeros(|(_, _, v)| v);
-    let (low, high): (Vec<_>, Vec<_>) = turns.iter().partition(|p| p.1 < R);
+    let (low, high): (Vec<_>, Vec<_>) = turns.into_iter().partition(|p| p.1 < R);
     near(R - low[0].1, 0.003_141_917_315_546_516_5, 0.005);
     near((high[9].0 - high[0].0) / 9.0, 0.641_698_713_631_112_3, 1e-4);
     let apex = high[9].1 - R;
