@@ -128,11 +128,6 @@ impl Shape {
     pub(crate) fn concave(&self) -> bool {
         matches!(self, Shape::Mesh(_))
     }
-
-    /// A size that points shouldn't pass over in a step [m]; infinite if there is none.
-    pub fn is_finite(&self) -> bool {
-        !matches!(self, Shape::Plane | Shape::Tube { .. })
-    }
 }
 
 /// A solid of revolution about z: within the radius (`side` 1) or beyond it (`side` -1), as long as twice `half`.
@@ -172,8 +167,8 @@ fn cuboid(x: &V3<f64>, half: &V3<f64>, reach: f64) -> Option<Gap> {
     }
     let side: V3<f64> = x.map(f64::signum);
     let beyond: V3<f64> = over.map(|o| o.max(0.0));
-    let outside: Vec3Count = Vec3Count::of(&beyond);
-    if outside.count <= 1 {
+    let outside = beyond.iter().filter(|b| **b > 0.0).count();
+    if outside <= 1 {
         let i = (0..3).fold(0, |m, i| if over[i] > over[m] { i } else { m });
         let mut normal = [0.0; 3];
         normal[i] = side[i];
@@ -184,24 +179,10 @@ fn cuboid(x: &V3<f64>, half: &V3<f64>, reach: f64) -> Option<Gap> {
         return None;
     }
     let normal = std::array::from_fn(|i| side[i] * beyond[i] / distance);
-    if outside.count == 3 {
+    if outside == 3 {
         return Some(Gap::round(distance, normal, 1.0 / distance));
     }
-    let mut edge = [0.0; 3];
-    edge[outside.zero] = 1.0;
+    // along the edge, where it isn't beyond
+    let edge = beyond.map(|b| if b > 0.0 { 0.0 } else { 1.0 });
     Some(Gap { distance, normal, bends: [(1.0 / distance, cross(&edge, &normal)), FLAT] })
-}
-
-/// How many numbers are positive, and the last that isn't.
-struct Vec3Count {
-    count: usize,
-    zero: usize,
-}
-
-impl Vec3Count {
-    fn of(x: &V3<f64>) -> Self {
-        let count = x.iter().filter(|x| **x > 0.0).count();
-        let zero = x.iter().rposition(|x| *x <= 0.0).unwrap_or(0);
-        Vec3Count { count, zero }
-    }
 }

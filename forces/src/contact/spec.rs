@@ -9,7 +9,7 @@ use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
 use ropewalk_core::held::Held;
 use ropewalk_core::rotation::{IDENTITY, M3, around, from_bryant, matrix};
 use ropewalk_core::{
-    At, ContactPoint, ForceSpec, Marker, MarkerRef, NodeKind, V3, dot, quantity, register_spec, split_marker,
+    At, ContactPoint, ForceSpec, Marker, MarkerRef, NodeKind, V3, dot, quantity, register_spec,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -235,8 +235,6 @@ impl ContactSpec {
         if all.is_empty() {
             return Err(BuildError::new("there is nothing in the scene that could touch this shape"));
         }
-        let scene_of =
-            |name: &str| split_marker(name.trim_matches('`')).map_or(String::new(), |p| p.0.to_string());
         for (name, p) in &mut all {
             if let Some(radius) = self.radius {
                 p.radius = radius;
@@ -252,9 +250,8 @@ impl ContactSpec {
                 false => ("stiffness", self.stiffness),
             };
             if k == 0.0 {
-                let part = scene_of(name.split(" at ").next().unwrap_or(name));
                 let what = if p.length > 0.0 { "along its length" } else { "by a single point" };
-                let message = format!("`{part}` touches {what}, which needs a `{field}` above zero");
+                let message = format!("{name} touches {what}, which needs a `{field}` above zero");
                 return Err(BuildError::at(field, message));
             }
         }

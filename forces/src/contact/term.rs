@@ -341,7 +341,8 @@ impl Term for Contact {
             if block.any {
                 let n = self.balls[group.start].held.size() + if self.seat == Seat::Ground { 0 } else { 6 };
                 out.add_block(clique, n, |i, j| block.k[i][j]);
-                block = Block { k: [[0.0; MOST]; MOST], any: false };
+                block.k[..n].iter_mut().for_each(|row| row[..n].fill(0.0));
+                block.any = false;
             }
         }
     }
