@@ -3,7 +3,7 @@
 mod common;
 mod mechanisms;
 
-use common::{models, place, size};
+use common::size;
 use mechanisms::{
     Stand, chain, energy, fixed, for_output, four_bars, go, gravity, hooke, largest, listed, slider_crank,
     start, tight,
@@ -427,7 +427,6 @@ fn cable_at_rest_stays_at_rest() {
     println!("{} steps: {fastest:.1e} m/s, {grown:.1e} J of {e0:.1} J", s.work.counts.steps);
     // of a speed of 10 m/s that it could have
     assert!(fastest <= 1e-7 && grown < 1e-9 * e0.abs(), "{fastest:e} {grown:e}");
-    let _ = (models, place);
 }
 
 /// Largest departure of the energy over a run, its trend over the run by a line of least squares, and the largest
