@@ -7,15 +7,16 @@ use mechanisms::{
     G, Stand, Worst, attitude, case, controlled, dzhanibekov, energy, fixed, for_output, go, heading,
     largest, listed, minus, radau, reaction, rod_pendulum, start, tight, time_of,
 };
+use ropewalk_core::integrator::Options;
 use ropewalk_core::rotation::{matrix, times};
-use ropewalk_core::{Action, Event, Model, Scene, Simulation, State, V3};
+use ropewalk_core::{Action, End, Event, Model, Scene, Simulation, State, V3};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, Mutex};
 
-/// Notes the state whenever a function of it passes zero.
+/// Ends the run when a function of the state passes zero after a time.
 struct Crossing<F> {
     f: F,
-    seen: Arc<Mutex<Vec<State>>>,
+    after: f64,
 }
 
 impl<F: Fn(&Model, &State) -> f64 + Send + Sync> Event for Crossing<F> {
@@ -23,34 +24,69 @@ impl<F: Fn(&Model, &State) -> f64 + Send + Sync> Event for Crossing<F> {
         "crossing".into()
     }
     fn value(&self, model: &Model, state: &State) -> f64 {
-        (self.f)(model, state)
+        if state.t < self.after { f64::NAN } else { (self.f)(model, state) }
+    }
+    fn act(&self, _: &Model, _: &mut State) -> Action {
+        Action::Stop
+    }
+}
+
+/// The run where a function of the state first passes zero after a time.
+fn crossing(
+    scene: &Scene,
+    options: &Options,
+    f: impl Fn(&Model, &State) -> f64 + Send + Sync + 'static,
+    after: f64,
+) -> Simulation {
+    let mut s = start(scene, options, 50.0);
+    s.add_event(Crossing { f, after });
+    let end = s.advance(50.0, f64::INFINITY, &mut ()).unwrap_or_else(|e| panic!("{e}"));
+    assert_ne!(end, End::Done, "it never passes");
+    s
+}
+
+/// What an event only looks at goes on as before.
+struct Look {
+    seen: Arc<Mutex<Vec<f64>>>,
+}
+
+impl Event for Look {
+    fn name(&self) -> String {
+        "look".into()
+    }
+    fn value(&self, model: &Model, state: &State) -> f64 {
+        lean(model, state).sin()
     }
     fn act(&self, _: &Model, state: &mut State) -> Action {
-        self.seen.lock().unwrap().push(state.clone());
+        self.seen.lock().unwrap().push(state.t);
         Action::Continue
     }
 }
 
-fn watch(
-    s: &mut Simulation,
-    f: impl Fn(&Model, &State) -> f64 + Send + Sync + 'static,
-) -> Arc<Mutex<Vec<State>>> {
+#[test]
+fn an_event_passes_once() {
+    let mut s = start(&rod_pendulum(1.0, 1.0, 1.0), &fixed(1e-3), 10.0);
     let seen = Arc::new(Mutex::new(Vec::new()));
-    s.add_event(Crossing { f, seen: seen.clone() });
-    seen
+    s.add_event(Look { seen: seen.clone() });
+    go(&mut s, 10.0);
+    // period of a rod that swings by 1 rad: 2π √(2L/3g) times 4K/2π of the mathematical pendulum
+    let times = seen.lock().unwrap().clone();
+    let half: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    let period = 2.0 * PI * (2.0 / 3.0 / G).sqrt() * 1.066_329_0;
+    let off = largest(half.iter().map(|t| t - 0.5 * period));
+    assert!(times.len() == (2.0 * 10.0 / period + 0.5) as usize && off < 1e-3, "{times:?} {off:e}");
 }
 
 /// Steps by which each case is run: as a user would, and in fixed ones.
-fn ways(h: f64, tolerance: f64) -> [(&'static str, ropewalk_core::integrator::Options); 3] {
-    [("fixed", fixed(h)), ("controlled", controlled(tolerance)), ("radau", radau(0.1 * tolerance))]
+fn ways(h: f64, tolerance: f64, high: f64) -> [(&'static str, Options); 3] {
+    [("fixed", fixed(h)), ("controlled", controlled(tolerance)), ("radau", radau(high))]
 }
 
 #[test]
 fn free_body_flips_as_the_closed_form() {
-    for (name, options) in ways(2e-3, 1e-5) {
+    for (name, options) in ways(2e-3, 1e-5, 1e-8) {
         let mut s = start(&dzhanibekov(&Stand::UPRIGHT), &options, 50.0);
         let mut worst = Worst::default();
-        let flips = watch(&mut s, |model, state| attitude(model, state, "wing nut").1[1]);
         for r in case("free_rigid_body_dzhanibekov") {
             let Some(t) = time_of(&r.quantity) else { continue };
             go(&mut s, t);
@@ -63,10 +99,13 @@ fn free_body_flips_as_the_closed_form() {
                 (0..4).for_each(|i| worst.see(&r.quantity, sign * q[i], want[i], r.tolerance));
             }
         }
-        let times: Vec<f64> = flips.lock().unwrap().iter().map(|s| s.t).collect();
-        assert_eq!(times.len(), 4, "{times:?}");
         let all = case("free_rigid_body_dzhanibekov");
         let (interval, first) = (&all[0], &all[1]);
+        let middle = |model: &Model, state: &State| attitude(model, state, "wing nut").1[1];
+        let mut times = Vec::new();
+        for after in [0.0, 10.0, 22.0] {
+            times.push(crossing(&dzhanibekov(&Stand::UPRIGHT), &options, middle, after).state.t);
+        }
         for t in times.windows(2).map(|w| w[1] - w[0]) {
             worst.see(&interval.quantity, t / interval.number(), 1.0, interval.tolerance);
         }
@@ -82,30 +121,43 @@ fn lean(model: &Model, state: &State) -> f64 {
 
 #[test]
 fn rod_falls_from_the_top_as_the_closed_form() {
-    for (name, options) in ways(5e-4, 1e-5) {
+    for (name, options) in ways(8e-5, 1e-5, 1e-7) {
         let mut s = start(&rod_pendulum(1.0, 1.0, PI - 1e-3), &options, 10.0);
         let mut worst = Worst::default();
-        let bottom = watch(&mut s, |model, state| lean(model, state).sin());
         let all = case("rod_pendulum_near_separatrix");
         for r in &all {
             let Some(t) = time_of(&r.quantity) else { continue };
             go(&mut s, t);
             worst.see_angle(&r.quantity, lean(&s.model, &s.state), r.number(), r.tolerance);
         }
-        go(&mut s, 10.0);
-        // it passes the bottom, and hardly not the top: half a period from one passage to the next
-        let seen: Vec<State> = bottom.lock().unwrap().clone();
-        assert_eq!(seen.len(), 2, "{:?}", seen.iter().map(|s| s.t).collect::<Vec<_>>());
-        worst.see(&all[0].quantity, 2.0 * (seen[1].t - seen[0].t), all[0].number(), all[0].tolerance);
-        worst.see(&all[1].quantity, seen[0].t, all[1].number(), all[1].tolerance);
-        s.state = seen[0].clone();
-        let state = for_output(&mut s);
+        // half a period from one passage of the bottom to the next
+        let scene = rod_pendulum(1.0, 1.0, PI - 1e-3);
+        let bottom = |model: &Model, state: &State| lean(model, state).sin();
+        let [mut first, second] = [0.5, 5.0].map(|after| crossing(&scene, &options, bottom, after));
+        let period = 2.0 * (second.state.t - first.state.t);
+        worst.see(&all[0].quantity, period, all[0].number(), all[0].tolerance);
+        worst.see(&all[1].quantity, first.state.t, all[1].number(), all[1].tolerance);
+        let state = for_output(&mut first);
         let omega = attitude(&s.model, &state, "rod").1[2].abs();
         worst.see(&all[2].quantity, omega, all[2].number(), all[2].tolerance);
         let force = common::size(reaction(&s.model, &state, "pivot")[0]);
         worst.see(&all[3].quantity, force, all[3].number(), all[3].tolerance);
         worst.within_tolerance(name, &s);
     }
+}
+
+#[test]
+#[ignore = "an event whose action is to continue starts the integrator anew from the interpolated state"]
+fn an_event_that_only_looks_changes_nothing() {
+    let run = |look: bool| {
+        let mut s = start(&rod_pendulum(1.0, 1.0, 1.0), &fixed(1e-2), 10.0);
+        if look {
+            s.add_event(Look { seen: Arc::default() });
+        }
+        go(&mut s, 10.0);
+        s.state.q
+    };
+    assert_eq!(run(true), run(false));
 }
 
 /// Angular momentum in space of the body that flips.
@@ -118,14 +170,18 @@ fn momentum_in_space(s: &Simulation) -> V3<f64> {
 fn flip_for(steps: usize, h: f64) {
     let mut s = start(&dzhanibekov(&Stand::UPRIGHT), &fixed(h), steps as f64 * h);
     let h0 = [0.01, 4.0, 0.0];
-    let flips = watch(&mut s, |model, state| attitude(model, state, "wing nut").1[1]);
-    let (mut norm, mut drifts) = (0.0_f64, Vec::new());
+    let (mut norm, mut drifts, mut flips) = (0.0_f64, Vec::new(), Vec::new());
     let blocks = 10;
     for k in 1..=blocks {
         let mut drift = 0.0_f64;
         for _ in 0..20 {
-            let t = s.state.t + steps as f64 * h / f64::from(20 * blocks);
-            go(&mut s, t);
+            for _ in 0..steps / (20 * blocks as usize) {
+                let (t, before) = (s.state.t, s.state.v[4]);
+                go(&mut s, t + h);
+                if before * s.state.v[4] < 0.0 {
+                    flips.push(t + h * before / (before - s.state.v[4]));
+                }
+            }
             let q = attitude(&s.model, &s.state, "wing nut").0;
             norm = norm.max((q.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs());
             drift = drift.max(common::size(minus(momentum_in_space(&s), h0)) / 4.0);
@@ -134,14 +190,14 @@ fn flip_for(steps: usize, h: f64) {
             drifts.push(drift);
         }
     }
-    let times: Vec<f64> = flips.lock().unwrap().iter().map(|s| s.t).collect();
-    let intervals: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    // the zeros of the middle component, between the steps that it changes sign in
+    let intervals: Vec<f64> = flips.windows(2).map(|w| w[1] - w[0]).collect();
     let off = largest(intervals.iter().map(|t| t / 11.578_025_604_304_525 - 1.0));
     println!(
         "{steps} steps of {h} s: norm off by {norm:.1e}, momentum by {} in the first and last tenth, {} \
          flips, their interval off by {off:.1e}",
         listed(&drifts),
-        times.len()
+        flips.len()
     );
     assert!(norm <= 1e-12 && off < 1e-2, "{norm:e} {off:e}");
     assert!(drifts[1] < 1e-8 || drifts[1] < 4.0 * drifts[0], "{drifts:?}");
@@ -236,30 +292,4 @@ fn door_at_rest_stays_at_rest() {
         common::size(weight)
     );
     assert!(fastest <= 1e-8 && grown.abs() < 1e-8 && common::size(weight) < 1e-8 * 20.0 * G);
-}
-
-#[test]
-fn zz_radau_order() {
-    use ropewalk_core::integrator::{Options, Scheme};
-    let run = |scheme, h: f64| {
-        let o = Options { scheme, newton_tolerance: 1e-3, ..fixed(h) };
-        let mut s = start(&dzhanibekov(&Stand::UPRIGHT), &o, 5.0);
-        go(&mut s, 5.0);
-        let (q, w) = attitude(&s.model, &s.state, "wing nut");
-        let wq = [0.2636649877312161, -0.08832750822090958, -0.8895787690241582, 0.36239293486165824];
-        let ww = [1.3845432575557282, 1.4433086876884558, -0.799345572336735];
-        let sign = (0..4).map(|i| q[i] * wq[i]).sum::<f64>().signum();
-        println!(
-            "{scheme:?} h={h}: q {:.2e} w {:.2e} {:?}",
-            largest((0..4).map(|i| sign * q[i] - wq[i])),
-            largest((0..3).map(|i| w[i] - ww[i])),
-            s.work.counts
-        );
-    };
-    for k in 0..7 {
-        run(Scheme::RadauIia5, 0.2 / 2f64.powi(k));
-    }
-    for k in 0..4 {
-        run(Scheme::default(), 0.01 / 2f64.powi(k));
-    }
 }

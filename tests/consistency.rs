@@ -3,7 +3,7 @@
 mod common;
 mod mechanisms;
 
-use common::{models, place, size};
+use common::size;
 use mechanisms::{
     Stand, chain, energy, fixed, for_output, four_bars, go, gravity, hooke, largest, listed, slider_crank,
     start, tight,
@@ -87,6 +87,7 @@ fn level_run(options: &Options, end: f64) -> (Vec<[f64; 3]>, f64) {
 
 fn constraints_hold(steps: u32) {
     let h = 2e-4;
+    let length = joints_of_every_kind().build().expect("model").length();
     let mut velocity = Vec::new();
     for h in [4.0 * h, 2.0 * h, h] {
         let (all, a) = level_run(&fixed(h), h * f64::from(steps));
@@ -96,7 +97,7 @@ fn constraints_hold(steps: u32) {
             worst(0),
             listed(&all.iter().map(|l| l[1]).collect::<Vec<_>>())
         );
-        assert!(worst(0) <= 1e-10 && a <= 1e-7, "{:e} {a:e}", worst(0));
+        assert!(worst(0) <= 1e-10 * length && a <= 1e-7, "{:e} {a:e}", worst(0));
         // no growth in time beyond what the speed of the mechanism makes of it
         assert!(all[9][1] < 3.0 * all[..5].iter().fold(0.0, |m: f64, l| m.max(l[1])), "{all:?}");
         velocity.push(worst(1));
@@ -109,7 +110,7 @@ fn constraints_hold(steps: u32) {
     let (all, a) = level_run(&ggl, h * f64::from(steps));
     let worst = |i: usize| largest(all.iter().map(|l| l[i]));
     println!("stabilised: positions {:.1e}, velocities {:.1e}, accelerations {a:.1e}", worst(0), worst(1));
-    assert!(worst(0) <= 1e-10 && worst(1) <= 1e-8 && a <= 1e-7);
+    assert!(worst(0) <= 1e-10 * length && worst(1) <= 1e-8 && a <= 1e-7);
 }
 
 #[test]
@@ -188,7 +189,7 @@ fn momenta(model: &Model, state: &State) -> [V3<f64>; 2] {
 fn momentum_of_a_floating_system_stays() {
     let mut drifts = Vec::new();
     for h in [4e-3, 2e-3, 1e-3] {
-        let mut s = start(&floating(), &tight(h), 2.0);
+        let mut s = start(&floating(), &Options { project: true, ..tight(h) }, 2.0);
         let [p0, l0] = momenta(&s.model, &s.state);
         let mut off = [0.0_f64; 2];
         for k in 1..=20 {
@@ -373,7 +374,7 @@ fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
 /// An implicit step from a stirred state: with the exact tangent, digits double.
 #[test]
 fn newton_converges_quadratically() {
-    let mut s = Stirred::new(&everything(), 0.03);
+    let mut s = Stirred::new(&everything(), 0.003);
     let (nv, h) = (s.model.velocities(), 0.02);
     let mut logs: Vec<f64> = Vec::new();
     for _ in 0..12 {
@@ -395,9 +396,10 @@ fn newton_converges_quadratically() {
     }
     println!("corrections {}", listed(&logs));
     // the last that aren't rounding
-    let seen: Vec<f64> = logs.iter().filter(|x| **x > 1e-13 && **x < 0.1).map(|x| x.ln()).collect();
-    let ratios: Vec<f64> = seen.windows(2).map(|w| w[1] / w[0]).collect();
-    assert!(ratios.len() >= 2 && ratios[ratios.len() - 2..].iter().all(|r| *r >= 1.7), "{logs:?} {ratios:?}");
+    let seen: Vec<f64> = logs.iter().copied().filter(|x| *x > 1e-14 && *x < 0.1).collect();
+    let last = &seen[seen.len() - 3..];
+    let orders: Vec<f64> = last.windows(2).map(|w| w[1].ln() / w[0].ln()).collect();
+    assert!(orders.iter().all(|r| *r >= 1.7), "{logs:?} {orders:?}");
 }
 
 #[test]
@@ -427,7 +429,6 @@ fn cable_at_rest_stays_at_rest() {
     println!("{} steps: {fastest:.1e} m/s, {grown:.1e} J of {e0:.1} J", s.work.counts.steps);
     // of a speed of 10 m/s that it could have
     assert!(fastest <= 1e-7 && grown < 1e-9 * e0.abs(), "{fastest:e} {grown:e}");
-    let _ = (models, place);
 }
 
 /// Largest departure of the energy over a run, its trend over the run by a line of least squares, and the largest

@@ -6,7 +6,7 @@ mod mechanisms;
 
 use common::{models, place};
 use mechanisms::{
-    Stand, attitude, dzhanibekov, fixed, go, gravity, largest, minus, pointing, slider_crank, squeezer,
+    Stand, attitude, dzhanibekov, go, gravity, largest, minus, pointing, slider_crank, squeezer,
     squeezer_angles, start, tight, whereabouts,
 };
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};
@@ -203,5 +203,4 @@ fn cable_between_bodies_does_not_care_which_end_it_begins_at() {
     let off = largest(a.iter().zip(&b).flat_map(|(a, b)| minus(*a, *b)));
     println!("{off:.1e}");
     assert!(off < 1e-9, "{off:e}");
-    let _ = fixed;
 }

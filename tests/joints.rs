@@ -4,11 +4,12 @@ mod common;
 mod mechanisms;
 
 use mechanisms::{
-    Angle, G, Stand, Worst, attitude, case, chain, controlled, door, drive, energy, fixed, for_output,
-    four_bars, go, heading, hooke, largest, listed, minus, radau, reaction, rod, slider_crank, squeezer,
+    Angle, G, Stand, Worst, attitude, careful, case, chain, controlled, door, drive, energy, fixed,
+    for_output, four_bars, go, hooke, largest, listed, minus, radau, reaction, rod, slider_crank, squeezer,
     squeezer_angles, start, tight, time_of, whereabouts,
 };
-use ropewalk_constraints::{ClampSpec, RevoluteSpec, RotationSpec, SphericalSpec};
+use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};
+use ropewalk_core::integrator::{ConstraintForm, Options};
 use ropewalk_core::rotation::matrix;
 use ropewalk_core::{Observer, Sample, Scene, Simulation, State, V3, dot};
 use ropewalk_elements::{CableSpec, RigidBodySpec, Section};
@@ -17,8 +18,7 @@ use std::ops::ControlFlow;
 #[test]
 fn slider_crank_runs_as_the_reference() {
     for (name, axial) in [("universal joint", 4e-4), ("zero axial inertia", 1e-9)] {
-        for (how, options) in
-            [("fixed", fixed(2e-4)), ("controlled", controlled(1e-5)), ("radau", radau(1e-6))]
+        for (how, options) in [("fixed", fixed(2e-4)), ("controlled", careful(2e-6)), ("radau", radau(1e-6))]
         {
             let mut s = start(&slider_crank(axial, &Stand::UPRIGHT, false), &options, 5.0);
             let (e0, mut worst) = (energy(&s.model, &s.state), Worst::default());
@@ -153,14 +153,18 @@ fn multipliers_of_a_driven_rod_converge_and_do_not_ring() {
 #[test]
 fn squeezer_closes_as_the_test_set() {
     let order = [0, 1, 2, 3, 4, 5, 6];
-    for (name, options) in [("fixed", fixed(5e-7)), ("controlled", controlled(1e-5)), ("radau", radau(1e-6))]
-    {
-        let mut s = start(&squeezer(&order, false), &options, 0.03);
+    for (name, options) in [
+        ("fixed", fixed(2e-6)),
+        ("hinges with all equations", fixed(2e-6)),
+        ("controlled", careful(1e-6)),
+        ("radau", radau(1e-6)),
+    ] {
+        let mut s = start(&squeezer(&order, name == "hinges with all equations"), &options, 0.03);
         let (mut worst, all) = (Worst::default(), case("a03_andrews_squeezer"));
         let first = all.iter().find(|r| r.quantity.starts_with("initial")).expect("accelerations");
         let start = for_output(&mut s);
         let turn = |k: &str| {
-            let (_, v) = s.model.part(k).and_then(|p| p.seats().first().copied()).expect("body");
+            let (_, v) = s.model.part(k).expect("body").seats()[0];
             start.a[v + 5]
         };
         let want = first.numbers();
@@ -192,9 +196,19 @@ fn squeezer_closes_as_the_test_set() {
 fn door_swings_as_the_closed_form() {
     for (name, options) in [("fixed", fixed(5e-4)), ("controlled", controlled(1e-5)), ("radau", radau(1e-6))]
     {
-        let (scene, axes) = door(std::f64::consts::FRAC_PI_2, 1);
-        swing(name, start(&scene, &options, 5.0), axes);
+        // redundant equations under Radau IIA: see below
+        for hinges in 1..=if name == "radau" { 1 } else { 2 } {
+            let (scene, axes) = door(std::f64::consts::FRAC_PI_2, hinges);
+            swing(&format!("{name}, {hinges} hinges"), start(&scene, &options, 5.0), axes);
+        }
     }
+}
+
+#[test]
+#[ignore = "Radau IIA stops at 4.5 s: its error estimate doesn't fall with the step"]
+fn door_on_two_hinges_swings_with_radau() {
+    let (scene, axes) = door(std::f64::consts::FRAC_PI_2, 2);
+    swing("radau, 2 hinges", start(&scene, &radau(1e-6), 5.0), axes);
 }
 
 /// Compares a door with the references.
@@ -228,8 +242,7 @@ fn swing(name: &str, mut s: Simulation, axes: [V3<f64>; 3]) {
 
 #[test]
 fn double_pendulum_follows_the_reference_until_chaos() {
-    for (name, options) in [("fixed", fixed(1e-4)), ("controlled", controlled(1e-6)), ("radau", radau(1e-7))]
-    {
+    for (name, options) in [("fixed", fixed(1e-4)), ("controlled", careful(3e-7)), ("radau", radau(1e-7))] {
         let mut s = start(&chain(2, 1.0, 1.0), &options, 10.0);
         let (e0, mut worst) = (energy(&s.model, &s.state), Worst::default());
         for r in case("double_pendulum_chaotic") {
@@ -246,7 +259,7 @@ fn double_pendulum_follows_the_reference_until_chaos() {
 
 #[test]
 fn chain_of_ten_falls_as_the_reference() {
-    for (name, options) in [("fixed", fixed(2e-4)), ("controlled", controlled(1e-5)), ("radau", radau(1e-6))]
+    for (name, options) in [("fixed", fixed(2e-4)), ("controlled", controlled(1e-6)), ("radau", radau(1e-6))]
     {
         let mut s = start(&chain(10, 0.1, 0.1), &options, 1.0);
         let mut worst = Worst::default();
@@ -308,9 +321,20 @@ fn arm_is_spun_up_as_the_reference() {
 
 #[test]
 fn four_bars_turn_through_their_singular_positions() {
-    for (n, end) in [(2, 10.0), (40, 2.0)] {
-        let mut s = start(&four_bars(n, false), &fixed(1e-3), end);
+    for (n, redundant, h, end) in
+        [(2, false, 1e-3, 10.0), (2, true, 5e-4, 10.0), (40, false, 1e-3, 1.0), (40, true, 1e-3, 1.0)]
+    {
+        let mut s = start(&four_bars(n, redundant), &fixed(h), end);
         turn_over(n, end, &mut s);
+    }
+}
+
+#[test]
+#[ignore = "twenty thousand steps of 81 bodies"]
+fn forty_bars_turn_through_their_singular_positions_for_long() {
+    for (redundant, h) in [(false, 5e-4), (true, 5e-4)] {
+        let mut s = start(&four_bars(40, redundant), &fixed(h), 20.0);
+        turn_over(40, 20.0, &mut s);
     }
 }
 
@@ -366,13 +390,23 @@ fn samples_between_steps_are_accurate() {
         (seen.0, s.work.counts)
     };
     let (exact, _) = run(radau(1e-9), 0.05);
-    for (name, options, bounds) in [
-        ("fixed", fixed(3e-3), [0.0; 3]),
-        ("fixed", fixed(1.5e-3), [0.0; 3]),
-        ("controlled", controlled(1e-4), [0.0; 3]),
-        ("radau", radau(1e-6), [0.0; 3]),
+    for (name, options) in [
+        ("fixed", fixed(3e-3)),
+        ("stabilised", Options { constraints: ConstraintForm::Ggl, ..fixed(3e-3) }),
+        ("controlled", controlled(1e-4)),
+        ("radau", radau(1e-6)),
     ] {
-        // steps end at samples of 0.05 s only if there are as many of them
+        // where steps end
+        let mut at_steps = [0.0_f64; 3];
+        let mut s = start(&scene, &options, 1.0);
+        for exact in &exact {
+            go(&mut s, exact.0);
+            let state = for_output(&mut s);
+            let [x, v] = whereabouts(&s.model, &state, "rod.end");
+            let force = reaction(&s.model, &state, "spherical")[0];
+            let off = [minus(exact.1, x), minus(exact.2, v), minus(exact.3, force)];
+            (0..3).for_each(|i| at_steps[i] = at_steps[i].max(largest(off[i])));
+        }
         let (got, counts) = run(options, 0.05 / 7.0);
         let mut e = [0.0_f64; 3];
         for (exact, got) in exact.iter().zip(got.iter().step_by(7)) {
@@ -381,28 +415,20 @@ fn samples_between_steps_are_accurate() {
             e[1] = e[1].max(largest(minus(exact.2, got.2)));
             e[2] = e[2].max(largest(minus(exact.3, got.3)));
         }
-        println!("{name}: {} {bounds:?} {counts:?}", listed(&e));
+        println!("{name}: {}, where steps end {}, {counts:?}", listed(&e), listed(&at_steps));
+        assert!((0..3).all(|i| e[i] <= 3.0 * at_steps[i]), "{name}: {e:?} {at_steps:?}");
     }
 }
-
 #[test]
-fn constraints_hold_at_three_levels() {
-    let _ = (heading as fn(_, _, _) -> _, RotationSpec::clone as fn(&_) -> _);
-}
-
-#[test]
-fn zz_newton() {
-    use ropewalk_core::integrator::Options;
-    for (tol, nt) in [(1e-5, 1.0), (1e-5, 0.01), (1e-6, 1.0), (1e-6, 0.1), (1e-6, 0.01), (1e-6, 0.001)] {
-        let o = Options { newton_tolerance: nt, ..controlled(tol) };
-        let mut s = start(&chain(2, 1.0, 1.0), &o, 10.0);
+#[ignore = "Newton's tolerance under error control leaves errors in velocities that the estimate doesn't see"]
+fn error_control_keeps_the_energy_of_a_double_pendulum() {
+    let change = |options: &Options| {
+        let mut s = start(&chain(2, 1.0, 1.0), options, 10.0);
         let e0 = energy(&s.model, &s.state);
         go(&mut s, 10.0);
-        let x = whereabouts(&s.model, &s.state, "rod1.end")[0];
-        println!(
-            "{tol:e} {nt:e}: energy {:.1e} J, tip {x:.4?} of [-1.6559, -0.5284], {:?}",
-            energy(&s.model, &s.state) - e0,
-            s.work.counts
-        );
-    }
+        (energy(&s.model, &s.state) - e0, s.work.counts)
+    };
+    let (loose, tight) = (change(&controlled(1e-6)), change(&careful(1e-6)));
+    println!("{loose:?}, tighter {tight:?}");
+    assert!(loose.0.abs() < 3.0 * tight.0.abs(), "{loose:?} {tight:?}");
 }

@@ -39,6 +39,20 @@ pub fn universal(
     Connection::new(name, nodes, between, equations)
 }
 
+/// Refuses axes that are closer to parallel than to a right angle: where they are parallel the equation is singular.
+fn crossed(what: &str, a: V3<f64>, b: V3<f64>) -> Result<(), BuildError> {
+    let dot = |a: &V3<f64>, b: &V3<f64>| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+    let cosine = dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt();
+    if cosine.abs() < std::f64::consts::FRAC_1_SQRT_2 {
+        return Ok(());
+    }
+    let message = format!(
+        "the axes of a {what} must start at 90°, but are at {:.1}°: correct `axis` or `axis_to`",
+        cosine.clamp(-1.0, 1.0).acos().to_degrees()
+    );
+    Err(BuildError::new(message))
+}
+
 /// Keeps an axis of one part at right angles to an axis of another, or of space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -75,6 +89,7 @@ impl ConstraintSpec for PerpendicularSpec {
             markers[0].with_axes(b.nodes(), b.coordinates(), around(on)),
             markers[1].with_axes(b.nodes(), b.coordinates(), around(held)),
         ];
+        crossed("right angle", on, held)?;
         b.constraint(perpendicular(&self.name, b.nodes(), markers)?)
     }
 }
@@ -115,6 +130,7 @@ impl ConstraintSpec for UniversalSpec {
             markers[0].with_axes(b.nodes(), b.coordinates(), around(on)),
             markers[1].with_axes(b.nodes(), b.coordinates(), around(held)),
         ];
+        crossed("universal joint", on, held)?;
         b.constraint(universal(&self.name, b.nodes(), markers)?)
     }
 }

@@ -263,6 +263,12 @@ impl Model {
         }
     }
 
+    /// The largest rotation of a body among these increments [rad].
+    pub fn turn(&self, d: &[f64]) -> f64 {
+        let bodies = self.nodes.iter().filter(|n| !self.flat && n.kind == NodeKind::Frame);
+        bodies.map(|n| d[n.v + 3..n.v + 6].iter().map(|x| x * x).sum::<f64>()).fold(0.0, f64::max).sqrt()
+    }
+
     /// Evaluates the residual `[r + Gᵀλ; g]` into `sys` and, with weights, the iteration matrix
     /// `[w.q (∂r/∂q + ∂(Gᵀλ)/∂q) + w.v ∂r/∂v + w.a ∂r/∂v̇, Gᵀ; G, 0]`.
     pub fn assemble(&self, at: &At<'_>, lambda: &[f64], weights: Option<Weights>, sys: &mut System) {

@@ -132,6 +132,7 @@ impl Alpha {
     /// numerical damping take away, per unit step.
     fn error(&self, model: &Model, work: &mut Workspace, h: f64, tolerance: f64) -> Result<f64, SolveError> {
         let factor = self.scheme.error_constant() * h * h;
+        let turn = model.turn(&work.trial.d);
         let (nv, mut e, mut rhs) =
             (model.velocities(), std::mem::take(&mut work.trial.d), std::mem::take(&mut work.trial.rhs));
         let t = &work.trial;
@@ -145,7 +146,9 @@ impl Alpha {
         let size = work.norm(&rhs[..nv]);
         (work.trial.d, work.trial.rhs) = (e, rhs);
         solved?;
-        Ok(size * (self.horizon / h) / (tolerance.min(1e-3) * model.length()))
+        let error = size * (self.horizon / h) / (tolerance.min(1e-3) * model.length());
+        // a body that is driven has no error, but a larger turn may end on another branch of its joint
+        Ok(if turn > 1.0 { error + turn * turn } else { error })
     }
 
     fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, rate: &Rate) {

@@ -119,6 +119,11 @@ impl Radau {
             let [q, v] = s.errors(model, state, work, h)?;
             // max() would swallow a NaN
             error = if q >= time * v { q } else { time * v } / (tolerance * length);
+            // a body that is driven has no error, but a larger turn may end on another branch of its joint
+            let turn = model.turn(&s.z[2]);
+            if turn > 1.0 {
+                error += turn.powi(4);
+            }
             if !error.is_finite() {
                 return Err(Failure::Newton("the error estimate is not finite".into()));
             }
