@@ -314,7 +314,9 @@ impl Integrator for Alpha {
                         self.accept(state, work, h, &rate);
                         // small changes aren't worth a new factorisation
                         let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
-                        state.control.h_next = if cut { next.max(state.control.h_next) } else { next };
+                        let said_nothing = cut && report.rejected == 0;
+                        state.control.h_next =
+                            if said_nothing { next.max(state.control.h_next) } else { next };
                         return Ok(report);
                     }
                     if error.is_nan() {
