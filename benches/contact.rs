@@ -19,22 +19,21 @@ const ELEMENTS: usize = 200;
 const RADIUS: f64 = 0.5;
 const DIAMETER: f64 = 0.02;
 const TURNS: f64 = 4.0;
-const CASES: [&str; 5] = ["without", "far", "smooth", "rough", "turning"];
+const PITCH: f64 = 1.2 * DIAMETER;
+const CASES: [&str; 6] = ["without", "far", "smooth", "damped", "rough", "turning"];
 
-/// A cable in a helix around the drum, held at both ends.
+/// A cable in a helix around the drum, held at both ends and tight: all of it presses on the drum.
 fn scene(case: &str) -> Result<Scene> {
     let n = 400;
-    let mut cable = CableSpec::straight(
-        "cable",
-        [0.0; 3],
-        [1.0, 0.0, 0.0],
-        ELEMENTS,
-        Section { diameter: DIAMETER, ..Section::new(0.5, 1e5, 0.1) },
-    );
+    let (ea, stiffness, tension) = (1e5, 1e6, 100.0);
+    let length = TURNS * (TAU * RADIUS).hypot(PITCH);
+    let section = Section { diameter: DIAMETER, axial_damping: 1e-3, ..Section::new(0.5, ea, 0.1) };
+    let mut cable = CableSpec::straight("cable", [0.0; 3], [1.0, 0.0, 0.0], ELEMENTS, section)
+        .unstretched(length / (1.0 + tension / ea));
     cable.points = Vec::new();
     cable.curve = (0..=n)
         .map(|k| TURNS * f64::from(k) / f64::from(n))
-        .map(|t| [RADIUS * (TAU * t).cos(), 1.2 * DIAMETER * t, RADIUS * (TAU * t).sin()])
+        .map(|t| [RADIUS * (TAU * t).cos(), PITCH * t, RADIUS * (TAU * t).sin()])
         .collect();
     let mut scene = Scene::new();
     scene
@@ -45,7 +44,7 @@ fn scene(case: &str) -> Result<Scene> {
     let shape = ShapeSpec::Cylinder { axis: [0.0, 1.0, 0.0], radius: RADIUS - 0.5 * DIAMETER, length: None };
     let mut contact = ContactSpec {
         on: vec!["cable".into()],
-        stiffness_per_length: 1e6,
+        stiffness_per_length: stiffness,
         damping: Damping::HuntCrossley(0.3),
         ..ContactSpec::new("drum", shape)
     };
@@ -53,6 +52,7 @@ fn scene(case: &str) -> Result<Scene> {
         "without" => return Ok(scene),
         "smooth" => contact.damping = Damping::None,
         "far" => contact.marker = MarkerRef::Point([0.0, 0.0, -100.0]),
+        "damped" => {}
         "rough" => contact.friction = 0.3,
         "turning" => {
             contact.friction = 0.3;
@@ -94,8 +94,9 @@ fn main() -> Result<()> {
         let begin = Instant::now();
         s.advance(0.2, f64::INFINITY, &mut ())?;
         let (time, counts) = (begin.elapsed().as_secs_f64(), s.work.counts);
-        let step = 1e6 * time / f64::from(counts.steps as u32);
-        println!("{case:>8}: {step:7.1} µs per step, {counts:?}");
+        let per = |n: u64| 1e6 * time / n as f64;
+        let (step, iteration) = (per(counts.steps), per(counts.newton_iterations));
+        println!("{case:>8}: {step:7.1} µs per step, {iteration:7.1} µs per iteration, {counts:?}");
     }
     // one evaluation of all points
     for case in ["far", "rough"] {

@@ -23,6 +23,8 @@ pub struct Alpha {
 const REFRESH: f64 = 0.1;
 /// Elements along a cable up to which Newton's tolerance doesn't depend on their number.
 const COARSE: f64 = 64.0;
+/// Largest rotation of a body in a fixed step [rad]: from a quarter turn on a driven joint may end on another branch.
+const MOST_TURN: f64 = 1.5;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
@@ -151,6 +153,37 @@ impl Alpha {
         Ok(if turn > 1.0 { error + turn * turn } else { error })
     }
 
+    /// Whether a trial that converged is to be accepted.
+    fn judge(
+        &self,
+        model: &Model,
+        state: &State,
+        work: &mut Workspace,
+        h: f64,
+        linear_constraints: bool,
+    ) -> Result<Verdict, StepError> {
+        let bad = |why: &str| Ok(Verdict::Bad { why: why.into() });
+        match self.options.stepping {
+            Stepping::Fixed { .. } if linear_constraints => Ok(Verdict::Good { error: 0.0 }),
+            Stepping::Fixed { .. } if model.turn(&work.trial.d) > MOST_TURN => {
+                bad("a body turns too far in one step: it may end on another branch of its joint")
+            }
+            Stepping::Fixed { .. } if jumps(state, work) => {
+                bad("velocities jump: a mechanism leaves its branch, or an impact is shorter than `h`")
+            }
+            Stepping::Fixed { .. } => Ok(Verdict::Good { error: 0.0 }),
+            Stepping::Controlled { tolerance } => {
+                let error =
+                    self.error(model, work, h, tolerance).map_err(|source| linear(model, state.t, source))?;
+                match error {
+                    e if e <= 1.0 => Ok(Verdict::Good { error }),
+                    e if e.is_nan() => bad("the error estimate is not a number"),
+                    _ => Ok(Verdict::TooLarge { error }),
+                }
+            }
+        }
+    }
+
     fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, rate: &Rate) {
         let order = self.best_order(state, h, work);
         let c = &mut state.control;
@@ -182,6 +215,21 @@ impl Alpha {
         state.t += h;
         work.counts.steps += 1;
     }
+}
+
+/// What a trial step that converged is worth.
+enum Verdict {
+    /// To be accepted, with this estimated error over the tolerance.
+    Good { error: f64 },
+    /// To be repeated with a smaller step.
+    TooLarge { error: f64 },
+    /// To be repeated like one that didn't converge.
+    Bad { why: String },
+}
+
+/// By how much the step may grow after one with this error over the tolerance.
+fn growth(error: f64) -> f64 {
+    (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5)
 }
 
 /// The times of the accelerations that are kept, before the present one.
@@ -270,10 +318,7 @@ impl Integrator for Alpha {
         work.ensure_mass(model, &state.at(), &state.lambda)
             .map_err(|source| linear(model, state.t, source))?;
         let linear_constraints = model.constraints().iter().all(|c| c.linear());
-        let controlled = match self.options.stepping {
-            Stepping::Controlled { tolerance } => Some(tolerance),
-            Stepping::Fixed { .. } => None,
-        };
+        let controlled = matches!(self.options.stepping, Stepping::Controlled { .. });
         let limit = h_max.min(self.options.h_max);
         let mut h = match self.options.stepping {
             Stepping::Fixed { h } => {
@@ -322,46 +367,35 @@ impl Integrator for Alpha {
                     let iterations = rate.iterations;
                     report.h = h;
                     report.iterations = iterations;
-                    match controlled {
-                        None if linear_constraints || !jumps(state, work) => {
+                    match self.judge(model, state, work, h, linear_constraints)? {
+                        Verdict::Good { error } => {
+                            report.error = error;
                             self.accept(state, work, h, &rate);
+                            if controlled {
+                                // small changes aren't worth a new factorisation
+                                let grow = growth(error);
+                                let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
+                                let said_nothing = cut && report.rejected == 0;
+                                state.control.h_next =
+                                    if said_nothing { next.max(state.control.h_next) } else { next };
+                            }
                             return Ok(report);
                         }
-                        None => {
-                            "velocities jump: a mechanism leaves its branch, or an impact is shorter than `h`"
-                                .into()
-                        }
-                        Some(tolerance) => {
-                            let error = self
-                                .error(model, work, h, tolerance)
-                                .map_err(|source| linear(model, state.t, source))?;
-                            let grow = (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5);
-                            if error <= 1.0 {
-                                report.error = error;
-                                self.accept(state, work, h, &rate);
-                                // small changes aren't worth a new factorisation
-                                let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
-                                state.control.h_next =
-                                    if cut { next.max(state.control.h_next) } else { next };
-                                return Ok(report);
+                        Verdict::TooLarge { error } => {
+                            report.rejected += 1;
+                            work.counts.rejected += 1;
+                            h *= growth(error).min(0.9);
+                            if h < self.options.h_min {
+                                return Err(StepError::NoConvergence {
+                                    t: state.t,
+                                    h,
+                                    why: "the tolerance asks for a smaller step than `h_min`".into(),
+                                    equation: work.worst_equation(model),
+                                });
                             }
-                            if error.is_nan() {
-                                "the error estimate is not a number".to_string()
-                            } else {
-                                report.rejected += 1;
-                                work.counts.rejected += 1;
-                                h *= grow.min(0.9);
-                                if h < self.options.h_min {
-                                    return Err(StepError::NoConvergence {
-                                        t: state.t,
-                                        h,
-                                        why: "the tolerance asks for a smaller step than `h_min`".into(),
-                                        equation: work.worst_equation(model),
-                                    });
-                                }
-                                continue;
-                            }
+                            continue;
                         }
+                        Verdict::Bad { why } => why,
                     }
                 }
                 Outcome::Stale => {
@@ -397,7 +431,7 @@ impl Integrator for Alpha {
             }
             state.control.h_cap = 0.7 * h;
             h = smaller;
-            if failures == 2 && !linear_constraints && controlled.is_none() {
+            if failures == 2 && !linear_constraints && !controlled {
                 // velocities that meet the constraints only to the order of the old step would swing ever wilder
                 let cap = state.control.h_cap;
                 restart(model, state, work, self, h, true)?;
