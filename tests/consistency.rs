@@ -466,7 +466,9 @@ fn energy_stays(duration: f64, h: f64) {
             coarse[2],
             coarse[0] / fine[0]
         );
-        assert!(coarse[0] <= 1e-3 * range, "{name}: {coarse:?}");
+        let ratio = coarse[0] / fine[0];
+        assert!(coarse[0] <= 1e-3 * range && coarse[1] <= coarse[2], "{name}: {coarse:?}");
+        assert!((3.3..=4.7).contains(&ratio), "{name}: {coarse:?} {fine:?}");
     }
 }
 
