@@ -688,10 +688,19 @@ fn a_scene_file_has_contact_and_shows_its_force() {
         radius = "5 cm"
         stiffness = 1e6
         damping = { kelvin_voigt = { time = "0.1 ms", until = "depth" } }
+        [[forces]]
+        type = "contact"
+        name = "rock"
+        shape = { mesh = { file = "rock.stl", unit = "1 cm", angles = ["30 deg", 0, 0] } }
+        marker = [0, 0, 1]
+        radius = "5 cm"
+        stiffness = 1e6
         [[records]]
         type = "force"
         of = "ground"
     "#;
+    let (corners, triangles) = cube(0.5);
+    fs::write(folder.path().join("rock.stl"), ascii(&corners, &triangles)).unwrap();
     fs::write(&file, text).unwrap();
     let scene = ropewalk::read(&file).unwrap_or_else(|e| panic!("{e}"));
     let history = ropewalk::simulate(&scene).unwrap_or_else(|e| panic!("{e}"));

@@ -215,7 +215,7 @@ impl Mesh {
     }
 
     /// How far a point is from the box around the mesh, squared, and the way from there.
-    fn from_box(&self, x: &V3<f64>) -> (f64, V3<f64>) {
+    fn outside_box(&self, x: &V3<f64>) -> (f64, V3<f64>) {
         let way: V3<f64> = std::array::from_fn(|i| x[i] - x[i].clamp(self.least[i], self.most[i]));
         (dot(&way, &way), way)
     }
@@ -223,7 +223,7 @@ impl Mesh {
     /// The surface as seen from a point, if it is nearer than `reach`. Inside the box around it, it is found however
     /// far away.
     pub(crate) fn gap(&self, x: &V3<f64>, reach: f64) -> Option<Gap> {
-        let (square, _) = self.from_box(x);
+        let (square, _) = self.outside_box(x);
         if !(square < reach * reach) {
             return None;
         }
@@ -259,7 +259,7 @@ impl Mesh {
 
     /// As [`Mesh::gap`] where the point is in the box around it; else the distance to that box.
     pub(crate) fn at_least(&self, x: &V3<f64>) -> Option<Gap> {
-        let (square, way) = self.from_box(x);
+        let (square, way) = self.outside_box(x);
         if square > 0.0 {
             let distance = square.sqrt();
             return Some(Gap::flat(distance, way.map(|w| w / distance)));
