@@ -37,6 +37,8 @@ pub struct Model {
     cliques: Vec<Range<usize>>,
     length: f64,
     rounding: f64,
+    /// Whether some constraints are not linear.
+    mechanism: bool,
     width: Width,
     /// Whether no node has an orientation, so that `q ⊕ d` is `q + d`.
     flat: bool,
@@ -125,6 +127,7 @@ impl Model {
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
         let watchful = (0..terms.len()).filter(|&k| terms[k].foresees()).collect();
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
+        let mechanism = constraints.iter().any(|c| !c.linear());
         Model {
             nodes,
             terms,
@@ -140,6 +143,7 @@ impl Model {
             rows,
             cliques,
             length,
+            mechanism,
             rounding: 0.5 * f64::EPSILON * farthest,
             width: Width::best(),
             flat,
@@ -245,6 +249,11 @@ impl Model {
     /// What rounding makes of positions [m]: their unit in the last place, where the model starts.
     pub fn rounding(&self) -> f64 {
         self.rounding
+    }
+
+    /// Whether some constraints are not linear: then one iteration doesn't meet them.
+    pub fn is_mechanism(&self) -> bool {
+        self.mechanism
     }
 
     /// Number of elements of the part that is divided most finely.

@@ -63,7 +63,11 @@ impl Alpha {
             * fine
             * match self.options.stepping {
                 Stepping::Fixed { .. } => (1e-4 * h * h * length).min(1e-7 * length),
-                Stepping::Controlled { tolerance } => 1e-4 * tolerance.min(1e-3) * length,
+                // what is left in velocities adds up in a mechanism, which has nothing that takes it away
+                Stepping::Controlled { tolerance } => {
+                    let steps = if model.is_mechanism() { (10.0 * h / self.horizon).min(1.0) } else { 1.0 };
+                    1e-4 * steps * tolerance.min(1e-3) * length
+                }
             }
     }
 
@@ -317,7 +321,7 @@ impl Integrator for Alpha {
     ) -> Result<StepReport, StepError> {
         work.ensure_mass(model, &state.at(), &state.lambda)
             .map_err(|source| linear(model, state.t, source))?;
-        let linear_constraints = model.constraints().iter().all(|c| c.linear());
+        let linear_constraints = !model.is_mechanism();
         let controlled = matches!(self.options.stepping, Stepping::Controlled { .. });
         let limit = h_max.min(self.options.h_max);
         let mut h = match self.options.stepping {
