@@ -111,7 +111,7 @@ impl Radau {
             policy: self.options.newton,
             max_iterations: self.options.max_iterations.min(MOST_ITERATIONS),
             tolerance: self.options.newton_tolerance * 0.03 * tolerance * length * (h / time).min(1.0),
-            linear_constraints: model.constraints().iter().all(|c| c.linear()),
+            linear_constraints: !model.is_mechanism(),
         };
         let converged = newton.solve(work, s)?;
         let mut error = 0.0;
