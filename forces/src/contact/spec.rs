@@ -70,7 +70,7 @@ pub enum ShapeSpec {
     },
     /// Triangles from a file.
     Mesh {
-        /// An STL or OBJ file, its path as seen from the scene file.
+        /// An STL or OBJ file, found from where the program is started.
         file: PathBuf,
         /// Size of the file's unit of length [m]: 0.001 where it is in millimetres.
         #[serde(default = "one", deserialize_with = "quantity::length")]
