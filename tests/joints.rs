@@ -358,7 +358,9 @@ fn turn_over(n: usize, end: f64, s: &mut Simulation) {
 }
 
 /// Collects what records get to see.
-struct Seen(Vec<(f64, V3<f64>, V3<f64>, V3<f64>)>);
+/// Time, position, velocity, force.
+type Instant = (f64, V3<f64>, V3<f64>, V3<f64>);
+struct Seen(Vec<Instant>);
 impl Observer for Seen {
     fn needs_forces(&self) -> bool {
         true
