@@ -364,7 +364,11 @@ impl ForceSpec for ContactSpec {
             Marker::Ground { point, .. } => Marker::Ground { point, axes },
             Marker::Node { node, point, .. } => Marker::Node { node, point, axes },
         };
-        let own = marker.on().map(|n| b.nodes()[n.0 as usize]).map(|n| (n.q, n.v));
+        let carrier = marker.on().map(|n| b.nodes()[n.0 as usize]);
+        if carrier.is_some_and(|n| n.kind != NodeKind::Frame) {
+            return Err(BuildError::at("marker", "a shape can only be on the ground or on a rigid body"));
+        }
+        let own = carrier.map(|n| (n.q, n.v));
         let points = self.points(b, own)?;
         let balls: Vec<ContactPoint> = points.iter().map(|p| p.1).collect();
         let stiffness = [self.stiffness, self.stiffness_per_length];
