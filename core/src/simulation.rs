@@ -2,7 +2,7 @@
 
 use crate::dense::Dense;
 use crate::integrator::{
-    Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, consistent, prepare,
+    Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, consistent, prepare, restart,
 };
 use crate::model::Model;
 use crate::record::{Audit, Sample};
@@ -325,6 +325,7 @@ impl Simulation {
     fn fire(&mut self, k: usize, observer: &mut dyn Observer) -> Result<Option<End>, StepError> {
         observer.event(&self.events[k].0.name(), self.state.t);
         let h = self.state.control.h_last;
+        let modes = self.state.modes.clone();
         match self.events[k].0.act(&self.model, &mut self.state) {
             Action::Continue => {
                 // the step has become shorter, and what was predicted from it doesn't fit any more
@@ -336,7 +337,7 @@ impl Simulation {
                 for (aux, a) in self.state.aux.iter_mut().zip(&self.state.a) {
                     *aux = a + short * (*aux - a);
                 }
-                self.resume();
+                self.resume(k, modes != self.state.modes);
                 return Ok(None);
             }
             Action::Stop => return Ok(Some(End::Stopped { by: self.events[k].0.name() })),
@@ -355,30 +356,31 @@ impl Simulation {
                 self.model = Arc::from(model);
             }
         }
-        // where the function stands after it has passed zero
-        let passed = self.events.get(k).map_or(0.0, |e| e.1);
         // history doesn't reach across an event
-        let modes = self.state.modes.clone();
-        prepare(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
-        self.state.modes = modes;
+        let (changed, now) = (modes != self.state.modes, self.state.modes.clone());
+        restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
+        self.state.modes = now;
         self.state.control.h_next = 0.1 * h;
-        self.resume();
-        // meeting the constraints again may have moved the state back by a hair: it mustn't pass twice
-        if let Some((_, value)) = self.events.get_mut(k)
-            && *value * passed < 0.0
-        {
-            *value = passed;
-        }
+        self.resume(k, changed);
         Ok(None)
     }
 
-    /// Goes on from a state that an event has seen.
-    fn resume(&mut self) {
+    /// Goes on from a state that event `k` has seen; `changed` says that it has changed a mode.
+    fn resume(&mut self, k: usize, changed: bool) {
         self.previous.clone_from(&self.state);
         self.scratch.clone_from(&self.state);
         self.power = self.model.power(&self.state.at(), &self.state.lambda);
-        for (event, value) in &mut self.events {
-            *value = event.value(&self.model, &self.state);
+        for (j, (event, value)) in self.events.iter_mut().enumerate() {
+            let (before, now) = (*value, event.value(&self.model, &self.state));
+            *value = match (j == k, changed) {
+                // the next of many that one event stands for may be due at once
+                (true, true) => at_start(event.as_ref(), &self.model, &self.state),
+                // meeting the constraints again may have moved the state back by a hair: it mustn't pass twice
+                (true, false) if now * before < 0.0 => before,
+                // what this has set off happens in the next step
+                (false, _) if now * before < 0.0 => before.signum() * f64::MIN_POSITIVE,
+                _ => now,
+            };
         }
     }
 }

@@ -102,7 +102,7 @@ fn bad_chains_are_refused_with_the_remedy() {
         (&|c| c.length = None, "give its `turns` or the chain's `length`"),
         (&|c| c.spool = None, "ends after 5 of 60 links"),
         (&|c| c.points.clear(), "needs `points` or `curve`"),
-        (&|c| c.points[1] = [-0.5, 0.0, 0.0], "its radius"),
+        (&|c| c.points[1] = [-0.5, 0.0, 0.0], "a spool of radius 0.000 m"),
     ] {
         let message = told(change);
         assert!(message.contains(words), "{message}");

@@ -1,7 +1,7 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
 use super::newton::{Newton, Outcome, Rate};
-use super::start::{restart, settle};
+use super::start::{anew, settle};
 use super::workspace::Which;
 use super::{
     Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping,
@@ -438,7 +438,7 @@ impl Integrator for Alpha {
             if failures == 2 && !linear_constraints && !controlled {
                 // velocities that meet the constraints only to the order of the old step would swing ever wilder
                 let cap = state.control.h_cap;
-                restart(model, state, work, self, h, true)?;
+                anew(model, state, work, self, h, true)?;
                 state.control.h_cap = cap;
             }
         }

@@ -12,6 +12,7 @@ pub use alpha::Alpha;
 pub use options::{ConstraintForm, NewtonPolicy, Options, Stepping};
 pub use radau::Radau;
 pub use scheme::{Coefficients, Scheme};
+pub(crate) use start::restart;
 pub use start::{Correction, consistent, prepare};
 pub use workspace::{Counts, Workspace};
 

@@ -34,16 +34,32 @@ pub fn prepare(
     work: &mut Workspace,
     integrator: &dyn Integrator,
 ) -> Result<Correction, StepError> {
-    let options = integrator.options();
-    let h = match options.stepping {
-        Stepping::Fixed { h } => h,
-        Stepping::Controlled { .. } => options.h_start,
-    };
-    restart(model, state, work, integrator, h, options.project)
+    let lenient = integrator.options().project;
+    anew(model, state, work, integrator, first_step(integrator), lenient)
 }
 
-/// The same for a first step `h`, in the midst of a run too; `lenient` accepts every correction.
-pub(super) fn restart(
+/// The same in the midst of a run, where velocities meet the constraints only to the order of the scheme.
+///
+/// # Errors
+/// A linear system can't be solved.
+pub(crate) fn restart(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+    integrator: &dyn Integrator,
+) -> Result<Correction, StepError> {
+    anew(model, state, work, integrator, first_step(integrator), true)
+}
+
+fn first_step(integrator: &dyn Integrator) -> f64 {
+    match integrator.options().stepping {
+        Stepping::Fixed { h } => h,
+        Stepping::Controlled { .. } => integrator.options().h_start,
+    }
+}
+
+/// The same for a first step `h`; `lenient` accepts every correction.
+pub(super) fn anew(
     model: &Model,
     state: &mut State,
     work: &mut Workspace,
