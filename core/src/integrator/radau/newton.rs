@@ -54,7 +54,7 @@ impl Newton<'_> {
         let control = &self.state.control;
         let mut eta = if control.h_last > 0.0 { control.eta.max(1e-3).powf(0.8) } else { 1.0 };
         let mut theta = control.theta;
-        s.predict(self.state, self.h);
+        s.predict(self.state, self.h, self.model.redundancy().is_some());
         s.kinematics(self.model, self.state, self.h);
         let full = self.policy == NewtonPolicy::Full;
         let mut fresh = full || !s.factored_for(self.h) || theta > 0.1;
@@ -99,7 +99,7 @@ impl Newton<'_> {
             }
             if hopeless || (theta > 0.5 && !fresh) {
                 if theta >= 1.0 {
-                    s.predict(self.state, self.h);
+                    s.predict(self.state, self.h, self.model.redundancy().is_some());
                     s.kinematics(self.model, self.state, self.h);
                 }
                 s.differentiate(self.model, work, self.state, self.h)?;

@@ -110,8 +110,10 @@ impl Stages {
         }
     }
 
-    /// Continues the polynomials of the last step, or the motion with constant acceleration at a start.
-    pub(super) fn predict(&mut self, state: &State, h: f64) {
+    /// Continues the polynomials of the last step, or the motion with constant acceleration at a start. With `redundant`
+    /// constraints multipliers start from the last ones: nothing would correct what a polynomial makes of their rounding
+    /// where forces can be shared out in many ways.
+    pub(super) fn predict(&mut self, state: &State, h: f64, redundant: bool) {
         let c = &state.control;
         let ratio = h / c.h_last;
         // a step that is so much larger has nothing to continue
@@ -132,7 +134,7 @@ impl Stages {
             for (k, z) in self.z[i].iter_mut().enumerate() {
                 *z = w0 * p[k] + w1 * q[k] + w2 * r[k];
             }
-            let [w0, w1, w2] = continuation(C, x);
+            let [w0, w1, w2] = if redundant { [0.0, 0.0, 1.0] } else { continuation(C, x) };
             let [p, q, r] = &c.stage_lambda;
             for (k, l) in self.lambda[i].iter_mut().enumerate() {
                 *l = w0 * p[k] + w1 * q[k] + w2 * r[k];
