@@ -332,7 +332,9 @@ fn four_bars_turn_through_their_singular_positions() {
 #[ignore = "twenty thousand steps of 81 bodies"]
 fn forty_bars_turn_through_their_singular_positions_for_long() {
     for (redundant, h) in [(false, 5e-4), (true, 5e-4)] {
-        let mut s = start(&four_bars(40, redundant), &fixed(h), 20.0);
+        // what Newton's method leaves by default adds up to eight tolerances in 20 s
+        let options = Options { newton_tolerance: 1e-2, ..fixed(h) };
+        let mut s = start(&four_bars(40, redundant), &options, 20.0);
         turn_over(40, 20.0, &mut s);
     }
 }
