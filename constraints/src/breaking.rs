@@ -59,7 +59,7 @@ impl Event for Break {
             return -1.0;
         };
         let force = model.reaction(self.constraint, node, &state.at(), &state.lambda);
-        force[..3].iter().map(|f| f * f).sum::<f64>().sqrt() / self.force - 1.0
+        force.iter().take(3).map(|f| f * f).sum::<f64>().sqrt() / self.force - 1.0
     }
     fn direction(&self) -> i8 {
         1

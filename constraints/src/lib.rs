@@ -17,6 +17,7 @@ mod revolute;
 mod spherical;
 mod universal;
 mod weld;
+pub mod winch;
 
 pub use breaking::BreakSpec;
 pub use clamp::{ClampSpec, clamp};
@@ -32,3 +33,4 @@ pub use revolute::{RevoluteSpec, revolute};
 pub use spherical::{SphericalSpec, spherical};
 pub use universal::{PerpendicularSpec, UniversalSpec, perpendicular, universal};
 pub use weld::{WeldSpec, weld};
+pub use winch::WinchSpec;

@@ -1,6 +1,7 @@
 //! The builder: turns specs into a model and owns the names.
 
 use crate::constraint::Constraint;
+use crate::feed::{Feed, Front};
 use crate::marker::Marker;
 use crate::model::{Model, Start, Switches};
 use crate::motion::Motion;
@@ -76,6 +77,17 @@ pub fn need(holds: bool, message: impl FnOnce() -> String) -> Result<(), BuildEr
     if holds { Ok(()) } else { Err(BuildError::new(message())) }
 }
 
+/// Part and end of a marker at an end of a cable.
+fn end_of(marker: &MarkerRef) -> Result<(&str, usize), BuildError> {
+    let ends = "material flows through an end of a cable: name one, like `hose.start` or `hose.end`";
+    let MarkerRef::Name(name) = marker else { return Err(BuildError::at("marker", ends)) };
+    match split_marker(name).map_err(|e| BuildError::at("marker", format!("marker `{name}`: {e}")))? {
+        (part, Spot::Named(end)) if end == "start" => Ok((part, 0)),
+        (part, Spot::Named(end)) if end == "end" => Ok((part, 1)),
+        _ => Err(BuildError::at("marker", format!("{marker}: {ends}"))),
+    }
+}
+
 trait AnyPool: Term {
     fn as_any(&mut self) -> &mut dyn Any;
     fn into_term(self: Box<Self>) -> Box<dyn Term>;
@@ -107,6 +119,8 @@ pub struct Builder {
     pins: HashMap<String, Vec<f64>>,
     /// Meshes that replace those of the specs, by part.
     meshes: HashMap<String, Vec<f64>>,
+    /// What flows through the ends of cables, by part: at its start, at its end.
+    feeds: HashMap<String, [Option<Feed>; 2]>,
     water: Option<Water>,
     switches: Switches,
     length: f64,
@@ -309,6 +323,49 @@ impl Builder {
         pins.sort_by(f64::total_cmp);
         pins.dedup();
         pins
+    }
+
+    /// Notes that material flows through an end of a cable.
+    pub(crate) fn feed(&mut self, marker: &MarkerRef, feed: Feed) -> Result<(), BuildError> {
+        let (part, end) = end_of(marker)?;
+        match self.feeds.entry(part.to_string()).or_default()[end].replace(feed) {
+            None => Ok(()),
+            Some(_) => Err(BuildError::at("marker", format!("two winches feed at {marker}"))),
+        }
+    }
+
+    /// What flows through the start and the end of a cable.
+    pub fn feeding(&self, part: &str) -> [Option<Feed>; 2] {
+        self.feeds.get(part).copied().unwrap_or_default()
+    }
+
+    /// The front at an end of a cable that feeds.
+    ///
+    /// # Errors
+    /// The marker isn't an end of a cable.
+    pub fn front(&self, marker: &MarkerRef) -> Result<Front, BuildError> {
+        let (name, end) = end_of(marker)?;
+        let (_, part) = self.find(name, "marker")?;
+        part.front(end).ok_or_else(|| {
+            let message = format!("material can flow through the ends of a cable, but `{name}` is a {}", part.kind());
+            BuildError::at("marker", message)
+        })
+    }
+
+    /// The cable at an end of which material flows.
+    ///
+    /// # Errors
+    /// As for [`Builder::front`].
+    pub fn feeding_part(&self, marker: &MarkerRef) -> Result<Arc<dyn Part>, BuildError> {
+        Ok(self.find(end_of(marker)?.0, "marker")?.1)
+    }
+
+    /// Starts the run with an end of a cable feeding at this rate of its material coordinate [m/s].
+    pub fn start_feeding(&mut self, marker: &MarkerRef, rate: f64) -> Result<(), BuildError> {
+        let (name, end) = end_of(marker)?;
+        let (_, part) = self.find(name, "marker")?;
+        part.start_feeding(end, rate, &self.start.q, &mut self.start.v);
+        Ok(())
     }
 
     /// Replaces the mesh of a part.

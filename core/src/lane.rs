@@ -5,6 +5,10 @@
 //! kernel calls must be `#[inline(always)]`, closures in hot places avoided: the processor features of the door
 //! reach only what is inlined behind it.
 
+mod dual;
+
+pub use dual::Dual;
+
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// Three components of a vector in space.

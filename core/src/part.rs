@@ -1,5 +1,6 @@
 //! Parts: what a scene names, and what forces, constraints and records ask of it.
 
+use crate::feed::Front;
 use crate::held::Held;
 use crate::lane::V3;
 use crate::marker::Marker;
@@ -67,6 +68,10 @@ pub trait Part: Send + Sync {
     fn kind(&self) -> &'static str;
     /// A marker at a named place: `start`, `end`, an arc length like `12.5`. The error says which places there are.
     fn marker(&self, place: &Spot) -> Result<Marker, String>;
+    /// The point that a record watches there; more than can be held, where material flows past.
+    fn watched(&self, place: &Spot) -> Result<Marker, String> {
+        self.marker(place)
+    }
     /// The points where distributed loads act, if it has any.
     fn stations(&self) -> Option<Arc<dyn Stations>> {
         None
@@ -95,6 +100,17 @@ pub trait Part: Send + Sync {
     }
     /// Unstretched length, or size [m].
     fn length(&self) -> f64;
+    /// Unstretched length now [m]: what winches have fed out included.
+    fn length_now(&self, _at: &At<'_>) -> f64 {
+        self.length()
+    }
+    /// The front at an end that feeds: 0 the start, 1 the end.
+    fn front(&self, _end: usize) -> Option<Front> {
+        None
+    }
+    /// Sets velocities `v` such that an end feeds at this rate of its material coordinate [m/s] while the material keeps
+    /// the velocity that it has.
+    fn start_feeding(&self, _end: usize, _rate: f64, _q: &[f64], _v: &mut [f64]) {}
     /// Where on the part a node is, for messages; `None` if it isn't on it.
     fn place_of(&self, node: NodeId) -> Option<String>;
     /// Its material points where nodes are, by unstretched arc length.
@@ -120,12 +136,20 @@ pub enum Spot {
     Named(String),
     /// `hose@12.5m`: an unstretched arc length [m].
     Along(f64),
+    /// `hose@50%`: a share of its unstretched length.
+    Share(f64),
 }
 
 /// Splits `hose.end`, `hose@12.5 m` or `hose` into part and place.
 pub fn split_marker(text: &str) -> Result<(&str, Spot), String> {
     if let Some((part, along)) = text.split_once('@') {
         let along = along.trim();
+        if let Some(share) = along.strip_suffix('%') {
+            return match share.trim().parse::<f64>() {
+                Ok(share) if (0.0..=100.0).contains(&share) => Ok((part.trim(), Spot::Share(share / 100.0))),
+                _ => Err(format!("`{along}` is not a share between 0% and 100%")),
+            };
+        }
         let s = along.parse().or_else(|_| crate::quantity::kind::LENGTH.parse(along))?;
         return Ok((part.trim(), Spot::Along(s)));
     }

@@ -42,6 +42,11 @@ impl<R: Real, const N: usize> Share<R, N> {
 pub struct Batch<'a, E>(pub(crate) &'a [E]);
 
 impl<E> Batch<'_, E> {
+    /// The element in the first lane, for types that have but one.
+    #[inline(always)]
+    pub fn first(&self) -> &E {
+        &self.0[0]
+    }
     /// The number `f(element)` of each lane's element.
     #[inline(always)]
     pub fn get<R: Real>(&self, f: impl Fn(&E) -> f64) -> R {

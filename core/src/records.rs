@@ -7,6 +7,7 @@
 mod along;
 mod driving;
 mod energy;
+mod feeding;
 mod force;
 mod motion;
 mod place;
@@ -17,6 +18,7 @@ mod turning;
 pub use along::AlongSpec;
 pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
+pub use feeding::FeedingSpec;
 pub use force::ForceRecordSpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
 pub use place::{SpaceAxis, Station as RecordPlace};

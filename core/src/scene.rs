@@ -299,6 +299,11 @@ impl Scene {
         for f in &self.forces {
             b.pin(&f.markers());
         }
+        for (k, c) in self.constraints.iter().enumerate() {
+            if let Some((marker, feed)) = c.feeds() {
+                b.feed(marker, feed).map_err(of(SpecKind::Constraint, k))?;
+            }
+        }
         for (k, e) in self.elements.iter().enumerate() {
             e.build(&mut b).map_err(of(SpecKind::Element, k))?;
         }

@@ -5,6 +5,7 @@
 //! [`register_spec!`](crate::register_spec), so that `list` and `describe` can show it.
 
 use crate::build::{BuildError, Builder};
+use crate::feed::Feed;
 use crate::lane::V3;
 use crate::motion::Motion;
 use crate::record::Record;
@@ -34,6 +35,10 @@ pub trait ConstraintSpec: Debug + Send + Sync {
     fn name(&self) -> &str;
     /// The markers that it holds; a cable puts a node where one is.
     fn markers(&self) -> Vec<&MarkerRef>;
+    /// The end of a cable that material flows through by it, and how.
+    fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
+        None
+    }
     /// Adds its equations.
     fn build(&self, b: &mut Builder) -> Result<(), BuildError>;
 }

@@ -20,7 +20,8 @@ pub struct AlongSpec {
     pub of: String,
     /// What is recorded: tension [N], strain, curvature [1/m] or moment [N m].
     pub what: Quantity,
-    /// Where: `start`, `end` or an unstretched arc length [m].
+    /// Where: `start`, `end`, an unstretched arc length from the start as it is now [m], or a share of the length like
+    /// `50 %`.
     pub at: Station,
     /// Name in results; left out, cable, place and quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -51,7 +52,7 @@ fn word(what: Quantity) -> &'static str {
 struct Along {
     part: Arc<dyn Part>,
     what: Quantity,
-    s: f64,
+    place: Station,
     name: String,
     title: String,
 }
@@ -67,7 +68,7 @@ impl Record for Along {
         vec![Column::new(&self.name, self.what.unit())]
     }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
-        out.push(self.part.observe(self.what, self.s, &s.at).unwrap_or(f64::NAN));
+        out.push(self.part.observe(self.what, self.place.now(self.part.as_ref(), &s.at), &s.at).unwrap_or(f64::NAN));
     }
 }
 
@@ -93,6 +94,6 @@ impl RecordSpec for AlongSpec {
             let word = word(self.what);
             format!("{}{} of {place}", word[..1].to_uppercase(), &word[1..])
         });
-        Ok(Box::new(Along { part, what: self.what, s, name, title }))
+        Ok(Box::new(Along { part, what: self.what, place: self.at, name, title }))
     }
 }

@@ -20,8 +20,8 @@ use std::sync::Arc;
 pub(super) enum Spotted {
     /// A named place, which is a point of a node.
     Marker(Marker),
-    /// An arc length [m] of a part, whether there is a node or not.
-    Along(Arc<dyn Part>, f64),
+    /// A place along a part, whether there is a node or not.
+    Along(Arc<dyn Part>, Station),
 }
 
 impl Spotted {
@@ -31,11 +31,16 @@ impl Spotted {
         let part = part(model, name)?;
         match spot {
             // where there is a node or a body, its acceleration is known to the last term
-            Spot::Along(s) if part.marker(&Spot::Along(s)).is_ok() => {
-                part.marker(&spot).map(Self::Marker).map_err(|e| BuildError::at("of", e))
+            Spot::Along(_) | Spot::Share(_) if part.watched(&spot).is_ok() => {
+                part.watched(&spot).map(Self::Marker).map_err(|e| BuildError::at("of", e))
             }
-            Spot::Along(s) if part.point(s, &model.state().at()).is_some() => Ok(Self::Along(part, s)),
+            Spot::Along(s) if part.point(s, &model.state().at()).is_some() => {
+                Ok(Self::Along(part, Station::At(s)))
+            }
             Spot::Along(s) => Err(off(part.as_ref(), "of", s)),
+            Spot::Share(s) if part.point(0.0, &model.state().at()).is_some() => {
+                Ok(Self::Along(part, Station::Share(s)))
+            }
             named => part
                 .marker(&named)
                 .map(Self::Marker)
@@ -47,7 +52,9 @@ impl Spotted {
     pub(super) fn position(&self, s: &Sample<'_>) -> V3<f64> {
         match self {
             Self::Marker(m) => m.now(s.model.nodes(), &s.at).x,
-            Self::Along(part, arc) => part.point(*arc, &s.at).map_or([f64::NAN; 3], |(x, _)| x),
+            Self::Along(part, place) => {
+                part.point(place.now(part.as_ref(), &s.at), &s.at).map_or([f64::NAN; 3], |(x, _)| x)
+            }
         }
     }
 
@@ -55,7 +62,9 @@ impl Spotted {
     pub(super) fn velocity(&self, s: &Sample<'_>) -> V3<f64> {
         match self {
             Self::Marker(m) => m.velocity(s.model.nodes(), &s.at),
-            Self::Along(part, arc) => part.point(*arc, &s.at).map_or([f64::NAN; 3], |(_, v)| v),
+            Self::Along(part, place) => {
+                part.point(place.now(part.as_ref(), &s.at), &s.at).map_or([f64::NAN; 3], |(_, v)| v)
+            }
         }
     }
 
@@ -64,8 +73,9 @@ impl Spotted {
         match self {
             Self::Marker(m) => m.acceleration(s.model.nodes(), &s.at),
             // a point is a linear function of its nodes' coordinates: accelerations go the way of velocities
-            Self::Along(part, arc) => {
-                part.point(*arc, &At { v: s.at.a, ..s.at }).map_or([f64::NAN; 3], |(_, a)| a)
+            Self::Along(part, place) => {
+                let at = At { v: s.at.a, ..s.at };
+                part.point(place.now(part.as_ref(), &s.at), &at).map_or([f64::NAN; 3], |(_, a)| a)
             }
         }
     }
@@ -128,7 +138,8 @@ pub(super) fn off(part: &dyn Part, field: &'static str, s: f64) -> BuildError {
     BuildError::at(field, format!("`{name}` has no point at arc length {s} m: it goes from 0 to {length} m"))
 }
 
-/// A place along a cable: `"start"`, `"end"`, or an unstretched arc length like `"12.5 m"`.
+/// A place along a cable: `"start"`, `"end"`, an unstretched arc length from the start like `"12.5 m"`, or a share of the
+/// length like `"50 %"`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Station {
@@ -139,6 +150,13 @@ pub enum Station {
     /// At an unstretched arc length [m].
     #[serde(untagged)]
     At(f64),
+    /// At a share of the length.
+    #[serde(untagged, serialize_with = "percent")]
+    Share(f64),
+}
+
+fn percent<S: serde::Serializer>(share: &f64, s: S) -> Result<S::Ok, S::Error> {
+    s.collect_str(&format_args!("{} %", 100.0 * share))
 }
 
 impl Station {
@@ -148,7 +166,12 @@ impl Station {
             Station::Start => 0.0,
             Station::End => length,
             Station::At(s) => s,
+            Station::Share(share) => share * length,
         }
+    }
+    /// Its arc length on a part as that is now [m].
+    pub fn now(self, part: &dyn Part, at: &At<'_>) -> f64 {
+        self.on(part.length_now(at))
     }
 }
 
@@ -158,6 +181,7 @@ impl fmt::Display for Station {
             Station::Start => f.write_str(".start"),
             Station::End => f.write_str(".end"),
             Station::At(s) => write!(f, "@{s}m"),
+            Station::Share(share) => write!(f, "@{}%", 100.0 * share),
         }
     }
 }
@@ -168,12 +192,16 @@ impl<'de> Deserialize<'de> for Station {
         impl Visitor<'_> for Either {
             type Value = Station;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("\"start\", \"end\" or an arc length like \"12.5 m\"")
+                f.write_str("\"start\", \"end\", an arc length like \"12.5 m\" or a share like \"50 %\"")
             }
             fn visit_str<E: de::Error>(self, text: &str) -> Result<Station, E> {
                 match text.trim() {
                     "start" => Ok(Station::Start),
                     "end" => Ok(Station::End),
+                    s if s.ends_with('%') => match s.trim_end_matches('%').trim().parse::<f64>() {
+                        Ok(share) if (0.0..=100.0).contains(&share) => Ok(Station::Share(share / 100.0)),
+                        _ => Err(E::custom(format!("`{s}` is not a share between 0 % and 100 %"))),
+                    },
                     s if s.starts_with(|c: char| c.is_alphabetic()) => {
                         Err(E::invalid_value(de::Unexpected::Str(s), &self))
                     }

@@ -6,6 +6,7 @@
 
 mod damping;
 mod element;
+pub mod flow;
 mod l1;
 mod l1n;
 mod l2;

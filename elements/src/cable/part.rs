@@ -1,14 +1,16 @@
 //! A cable as a part of a model: its markers, its stations, what can be observed along it.
 
+use super::flow::{Line, push};
 use super::output::read;
-use super::shape::{hermite, hermite_slope};
+use super::shape::{hermite, hermite_slope, natural, second};
 use super::spec::Section;
 use super::{CableModel, CableParams};
 use ropewalk_core::held::Held;
 use ropewalk_core::{
-    At, ContactPoint, DeadEntry, DeadLoad, Marker, Node, NodeId, Part, Per, Quantity, Spot, Stations, Term,
+    At, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Node, NodeId, Part, Per, Quantity, Spot, Stations, Term,
     V3,
 };
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A cable of a model.
@@ -21,6 +23,10 @@ pub struct CablePart {
     pub(crate) mesh: Vec<f64>,
     pub(crate) section: Section,
     pub(crate) stations: Arc<dyn Stations>,
+    /// How its nodes move along its material, if an end feeds.
+    pub(crate) line: Option<Line>,
+    /// The nodes of the model up to its own.
+    pub(crate) all: Vec<Node>,
     pub(crate) model: CableModel,
     /// The stress-free shape of each element, where it isn't straight and unstretched.
     pub(crate) rest: Option<Vec<[f64; 12]>>,
@@ -29,16 +35,31 @@ pub struct CablePart {
 }
 
 impl CablePart {
-    /// The element that holds arc length `s`, and the place inside it.
-    fn locate(&self, s: f64) -> Option<(usize, f64, f64)> {
-        let end = self.length();
+    /// The element that holds arc length `s` in a mesh, and the place inside it.
+    fn locate(mesh: &[f64], s: f64) -> Option<(usize, f64, f64)> {
+        let (start, end) = (mesh[0], mesh[mesh.len() - 1]);
+        let slack = 1e-9 * (end - start);
         // records at the ends shouldn't fail for rounding
-        if !(s >= -1e-9 * end && s <= end * (1.0 + 1e-9)) {
+        if !(s >= start - slack && s <= end + slack) {
             return None;
         }
-        let k = self.mesh.partition_point(|&x| x <= s).clamp(1, self.mesh.len() - 1) - 1;
-        let l = self.mesh[k + 1] - self.mesh[k];
-        Some((k, l, ((s - self.mesh[k]) / l).clamp(0.0, 1.0)))
+        let k = mesh.partition_point(|&x| x <= s).clamp(1, mesh.len() - 1) - 1;
+        let l = mesh[k + 1] - mesh[k];
+        Some((k, l, ((s - mesh[k]) / l).clamp(0.0, 1.0)))
+    }
+
+    /// Material coordinates of the nodes [m].
+    fn material(&self, q: &[f64]) -> Cow<'_, [f64]> {
+        match &self.line {
+            None => Cow::Borrowed(&self.mesh),
+            Some(line) => Cow::Owned((0..self.mesh.len()).map(|k| line.p(k, q)).collect()),
+        }
+    }
+
+    /// The element at arc length `s` from the start, and the place inside it.
+    fn find(&self, s: f64, q: &[f64]) -> Option<(usize, f64, f64)> {
+        let mesh = self.material(q);
+        Self::locate(&mesh, mesh[0] + s)
     }
 
     fn dofs(&self, k: usize, q: &[f64]) -> [f64; 12] {
@@ -49,6 +70,16 @@ impl CablePart {
     fn velocities(&self, k: usize, v: &[f64]) -> [f64; 12] {
         let (a, b) = (self.seats[k].1, self.seats[k + 1].1);
         std::array::from_fn(|i| if i < 6 { v[a + i] } else { v[b + i - 6] })
+    }
+
+    /// Second derivative of the curve at an end of element `k`: at its start, or at its end.
+    fn bend(&self, k: usize, at_start: bool, q: &[f64]) -> Option<V3<f64>> {
+        if k + 1 >= self.mesh.len() {
+            return None;
+        }
+        let mesh = self.material(q);
+        let (l, e) = (mesh[k + 1] - mesh[k], natural(&self.dofs(k, q), 1.0 / (mesh[k + 1] - mesh[k])));
+        Some(second(if at_start { &[-4.0, -2.0] } else { &[2.0, 4.0] }, 1.0 / l, &e))
     }
 
     fn places(&self) -> String {
@@ -88,8 +119,36 @@ impl Part for CablePart {
         "cable"
     }
     fn length(&self) -> f64 {
-        self.mesh[self.mesh.len() - 1]
+        self.mesh[self.mesh.len() - 1] - self.mesh[0]
     }
+    fn length_now(&self, at: &At<'_>) -> f64 {
+        match &self.line {
+            None => self.length(),
+            Some(line) => line.p(self.mesh.len() - 1, at.q) - line.p(0, at.q),
+        }
+    }
+    fn front(&self, end: usize) -> Option<Front> {
+        self.line.as_ref()?.fronts.iter().find(|(at, _)| *at == end).map(|(_, front)| *front)
+    }
+
+    fn start_feeding(&self, end: usize, rate: f64, q: &[f64], v: &mut [f64]) {
+        let (Some(line), Some(front)) = (&self.line, self.front(end)) else { return };
+        let before: Vec<f64> = (0..self.mesh.len()).map(|k| line.rate(k, v)).collect();
+        v[front.v] = rate;
+        for (k, before) in before.into_iter().enumerate() {
+            let change = line.rate(k, v) - before;
+            let (q0, v0) = self.seats[k];
+            // the slope's own rate is that of the curve on both sides of the node
+            let sides = [k.checked_sub(1), Some(k)];
+            let bends: Vec<V3<f64>> =
+                sides.iter().flatten().filter_map(|&e| self.bend(e, e == k, q)).collect();
+            for i in 0..3 {
+                v[v0 + i] += change * q[q0 + 3 + i];
+                v[v0 + 3 + i] += change * bends.iter().map(|b| b[i]).sum::<f64>() / bends.len().max(1) as f64;
+            }
+        }
+    }
+
     fn mesh(&self) -> &[f64] {
         &self.mesh
     }
@@ -101,6 +160,11 @@ impl Part for CablePart {
             Spot::Named(n) if n == "end" => Ok(Marker::node(self.nodes[end])),
             Spot::Named(n) if n.is_empty() => Err(format!("say where on the cable: {}", self.places())),
             Spot::Named(n) => Err(format!("a cable has no place `{n}`; it has {}", self.places())),
+            Spot::Along(_) | Spot::Share(_) if self.line.is_some() => Err(format!(
+                "material flows past this place of `{}`: hold on to `{0}.start` or `{0}.end`",
+                self.name
+            )),
+            Spot::Share(s) => self.marker(&Spot::Along(s * self.length())),
             Spot::Along(s) => {
                 let k = self.mesh.iter().position(|x| (x - s).abs() <= 1e-9 * self.length());
                 match k {
@@ -114,6 +178,15 @@ impl Part for CablePart {
         }
     }
 
+    fn watched(&self, spot: &Spot) -> Result<Marker, String> {
+        if let (Some(_), Spot::Share(share)) = (&self.line, spot) {
+            let s = self.mesh[0] + share * self.length();
+            let k = self.mesh.iter().position(|x| (x - s).abs() <= 1e-9 * self.length());
+            return k.map(|k| Marker::node(self.nodes[k])).ok_or_else(|| "there is no node".into());
+        }
+        self.marker(spot)
+    }
+
     fn stations(&self) -> Option<Arc<dyn Stations>> {
         Some(self.stations.clone())
     }
@@ -121,6 +194,10 @@ impl Part for CablePart {
     /// Points of the Gauss–Lobatto rule, which take the uniform weight of a cable up without bending it; those at the
     /// nodes are shared by both elements.
     fn contact_points(&self, per_element: usize) -> Vec<ContactPoint> {
+        if self.line.is_some() {
+            // its balls would have to be born and swallowed with its elements
+            return Vec::new();
+        }
         let rule = lobatto(per_element);
         let radius = 0.5 * self.section.diameter;
         let last = self.mesh.len() - 1;
@@ -161,8 +238,9 @@ impl Part for CablePart {
         if density == 0.0 {
             return None;
         }
+        let flows = |k: usize| self.line.as_ref().is_some_and(|line| line.flows(k));
         let mut entries = Vec::new();
-        for k in 0..self.mesh.len() - 1 {
+        for k in (0..self.mesh.len() - 1).filter(|&k| !flows(k)) {
             let l = self.mesh[k + 1] - self.mesh[k];
             let share = [0.5 * l, l * l / 12.0, 0.5 * l, -l * l / 12.0];
             for (n, share) in share.iter().enumerate() {
@@ -177,12 +255,14 @@ impl Part for CablePart {
                 }
             }
         }
-        let load = DeadLoad::new(format!("{}: {what}", self.name), entries).ok()?;
-        Some(Box::new(load))
+        let dead = DeadLoad::new(format!("{}: {what}", self.name), entries).ok()?;
+        let Some(line) = &self.line else { return Some(Box::new(dead)) };
+        let flowing = push::weight(&self.all, line, &self.nodes, load.map(|x| density * x))?;
+        Some(Box::new(push::Weight { dead, flowing }))
     }
 
     fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {
-        let (k, l, xi) = self.locate(s)?;
+        let (k, l, xi) = self.find(s, at.q)?;
         let s = &self.section;
         let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
         let rest = self.rest.as_ref().map(|r| &r[k]);
@@ -196,7 +276,7 @@ impl Part for CablePart {
     }
 
     fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
-        let (k, l, xi) = self.locate(s)?;
+        let (k, l, xi) = self.find(s, at.q)?;
         let c = hermite::<f64>(xi, l);
         Some((interpolate(c, &self.dofs(k, at.q)), interpolate(c, &self.velocities(k, at.v))))
     }
@@ -204,9 +284,10 @@ impl Part for CablePart {
     fn line(&self, at: &At<'_>) -> Vec<V3<f64>> {
         let elements = self.mesh.len() - 1;
         let per = (200 / elements).clamp(1, 8);
+        let mesh = self.material(at.q);
         let mut points = Vec::with_capacity(elements * per + 1);
         for k in 0..elements {
-            let l = self.mesh[k + 1] - self.mesh[k];
+            let l = mesh[k + 1] - mesh[k];
             let e = self.dofs(k, at.q);
             let last = if k + 1 == elements { per } else { per - 1 };
             points.extend((0..=last).map(|i| interpolate(hermite::<f64>(i as f64 / per as f64, l), &e)));
@@ -215,6 +296,11 @@ impl Part for CablePart {
     }
 
     fn place_of(&self, node: NodeId) -> Option<String> {
+        if let Some(line) = &self.line
+            && let Some((end, _)) = line.fronts.iter().find(|(_, f)| f.node == node)
+        {
+            return Some(format!("what is fed at its {}", ["start", "end"][*end]));
+        }
         let k = self.nodes.iter().position(|&n| n == node)?;
         Some(format!("at {:.4} m", self.mesh[k]))
     }
@@ -254,7 +340,7 @@ impl Part for CablePart {
     }
 
     fn slope(&self, s: f64, x: &[f64], coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {
-        let (k, l, xi) = self.locate(s)?;
+        let (k, l, xi) = Self::locate(&self.mesh, s)?;
         let e = if coordinates { self.dofs(k, x) } else { self.velocities(k, x) };
         Some((interpolate(hermite::<f64>(xi, l), &e), interpolate(hermite_slope::<f64>(xi, 1.0 / l), &e)))
     }

@@ -2,12 +2,16 @@
 
 use super::damping::{push_axial_damping, push_bending_damping};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
+use super::flow::push::{self, Piece};
+use super::flow::Line;
 use super::part::{CablePart, mesh};
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
 use crate::path::Path;
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
-use ropewalk_core::{Element, ElementSpec, NodeId, NodeKind, StationPool, V3, quantity, register_spec};
+use ropewalk_core::{
+    Element, ElementSpec, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, quantity, register_spec,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -182,6 +186,46 @@ impl CableSpec {
 }
 
 impl CableSpec {
+    /// The fronts at the ends that feed, and how the mesh follows them.
+    fn line(
+        &self,
+        b: &mut Builder,
+        model: CableModel,
+        length: f64,
+        mesh: &[f64],
+        nodes: &[NodeId],
+        feeding: [Option<Feed>; 2],
+    ) -> Result<Line, BuildError> {
+        push::check(model)?;
+        if self.stress_free == StressFree::AsLaid || self.strain != 0.0 || self.curvature != 0.0 {
+            let message = "what a winch feeds must be free of stress when straight and unstretched: leave out \
+                           `stress_free`, `strain` and `curvature`";
+            return Err(BuildError::at("stress_free", message));
+        }
+        let mut fronts = Vec::new();
+        for (end, _) in feeding.iter().enumerate().filter(|(_, f)| f.is_some()) {
+            let at = if end == 0 { 0 } else { mesh.len() - 1 };
+            let node = b.node(NodeKind::Scalars(1), &[mesh[at]], &[0.0])?;
+            b.share(node);
+            let (own, there) = (b.nodes()[node.0 as usize], b.nodes()[nodes[at].0 as usize]);
+            fronts.push((
+                end,
+                Front {
+                    node,
+                    q: own.q,
+                    v: own.v,
+                    sign: if end == 0 { -1.0 } else { 1.0 },
+                    home: if end == 0 { 0.0 } else { length },
+                    end: nodes[at],
+                    end_q: there.q,
+                    end_v: there.v,
+                    rho_a: self.section.mass + self.section.flooded,
+                },
+            ));
+        }
+        Ok(Line::new(mesh, fronts, feeding.map(|f| f.is_some_and(|f| f.element.is_some()))))
+    }
+
     /// Damping and a stress-free shape of one element, where the scene asks for them.
     fn extras(
         &self,
@@ -209,6 +253,24 @@ impl CableSpec {
         }
         Ok(())
     }
+}
+
+/// The stations of a cable that is at rest on its material.
+fn stations(
+    all: &[Node],
+    mesh: &[f64],
+    nodes: &[NodeId],
+    s: &Section,
+) -> Result<Arc<dyn Stations>, BuildError> {
+    let mut stations = StationPool::<CableStations, 12, 12, 4>::new();
+    for k in 0..mesh.len() - 1 {
+        let (l, s0) = (mesh[k + 1] - mesh[k], mesh[k]);
+        let element = CableStations { l, s0, diameter: s.diameter, area: s.displaced_area() };
+        if !stations.push(all, element, &[nodes[k], nodes[k + 1]]) {
+            return Err(BuildError::new("the stations of the cable don't fit its nodes"));
+        }
+    }
+    Ok(Arc::new(stations))
 }
 
 struct Pools<'a> {
@@ -250,14 +312,17 @@ impl ElementSpec for CableSpec {
             Some(m) => m.to_vec(),
             None => mesh(length, self.elements, &pins),
         };
-        if mesh.len() < 2 || mesh[0] != 0.0 || mesh.windows(2).any(|w| !(w[1] > w[0])) {
+        let feeding = b.feeding(&self.name);
+        let feeds = feeding.iter().any(Option::is_some);
+        if mesh.len() < 2 || (mesh[0] != 0.0 && !feeds) || mesh.windows(2).any(|w| !(w[1] > w[0])) {
             return Err(BuildError::new("a mesh must start at 0 and ascend"));
         }
 
         let mut nodes = Vec::with_capacity(mesh.len());
         let mut seats = Vec::with_capacity(mesh.len());
         for &at in &mesh {
-            let (x, t) = path.at(at * stretch);
+            // a cable that has fed since it was laid gets its true shape from the state before
+            let (x, t) = path.at((at * stretch).clamp(0.0, path.length()));
             let q = [x[0], x[1], x[2], t[0] * stretch, t[1] * stretch, t[2] * stretch];
             let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0];
             let node = b.node(NodeKind::Slope, &q, &v)?;
@@ -270,36 +335,45 @@ impl ElementSpec for CableSpec {
             transverse: self.transverse,
             integration: self.integration,
         };
+        let line = if feeds { Some(self.line(b, model, length, &mesh, &nodes, feeding)?) } else { None };
+        let flows = |k: usize| line.as_ref().filter(|line| line.flows(k));
         let all = b.coordinates();
         let dofs = |k: usize| -> [f64; 12] {
             let (a, c): (usize, usize) = (seats[k].0, seats[k + 1].0);
             std::array::from_fn(|i| if i < 6 { all[a + i] } else { all[c + i - 6] })
         };
         let shapes: Vec<[f64; 12]> = (0..mesh.len() - 1).map(dofs).collect();
-        let mut pools = Pools { builder: b, result: Ok(()) };
+        let params = |k: usize| CableParams {
+            l: mesh[k + 1] - mesh[k],
+            ea: s.ea,
+            ei: s.ei,
+            rho_a: s.mass + s.flooded,
+        };
         for k in 0..mesh.len() - 1 {
-            let on = [nodes[k], nodes[k + 1]];
-            let params =
-                CableParams { l: mesh[k + 1] - mesh[k], ea: s.ea, ei: s.ei, rho_a: s.mass + s.flooded };
+            let Some(line) = flows(k) else { continue };
+            params(k).check().map_err(BuildError::new)?;
+            push::push(b, model, params(k), s, &Piece { line, k, on: [nodes[k], nodes[k + 1]] })?;
+        }
+        let mut pools = Pools { builder: b, result: Ok(()) };
+        for k in (0..mesh.len() - 1).filter(|&k| flows(k).is_none()) {
+            let (on, params) = ([nodes[k], nodes[k + 1]], params(k));
             push_cable(&mut pools, model, params, &on).map_err(BuildError::new)?;
             self.extras(&mut pools, model, params, &on, &shapes[k])?;
         }
         pools.result?;
-        let mut stations = StationPool::<CableStations, 12, 12, 4>::new();
-        for k in 0..mesh.len() - 1 {
-            let (l, s0) = (mesh[k + 1] - mesh[k], mesh[k]);
-            let element = CableStations { l, s0, diameter: s.diameter, area: s.displaced_area() };
-            if !stations.push(b.nodes(), element, &[nodes[k], nodes[k + 1]]) {
-                return Err(BuildError::new("the stations of the cable don't fit its nodes"));
-            }
-        }
+        let stations = match &line {
+            Some(line) => push::stations(b.nodes(), line, &nodes, s)?,
+            None => stations(b.nodes(), &mesh, &nodes, s)?,
+        };
         b.part(Arc::new(CablePart {
             name: self.name.clone(),
             nodes,
             seats,
             mesh,
             section: s.clone(),
-            stations: Arc::new(stations),
+            stations,
+            all: if line.is_some() { b.nodes().to_vec() } else { Vec::new() },
+            line,
             model,
             rest: (self.stress_free == StressFree::AsLaid).then_some(shapes),
             offset: (self.strain, self.curvature),

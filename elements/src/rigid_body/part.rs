@@ -50,7 +50,7 @@ impl Part for BodyPart {
             Spot::Named(n) if n.is_empty() => return Ok(Marker::beside(self.node, self.origin)),
             Spot::Named(n) if n == "com" => return Ok(Marker::node(self.node)),
             Spot::Named(n) => self.points.get(n),
-            Spot::Along(_) => None,
+            Spot::Along(_) | Spot::Share(_) => None,
         };
         named.map(|&point| Marker::beside(self.node, point)).ok_or_else(|| {
             let name = &self.name;

@@ -67,6 +67,7 @@ impl Part for ChainPart {
                 .and_then(|k| k.parse::<usize>().ok())
                 .and_then(|k| self.nodes.get(k.checked_sub(1)?))
                 .map(|&node| Marker::node(node)),
+            Spot::Share(share) => return self.marker(&Spot::Along(share * self.length())),
             Spot::Along(s) => {
                 self.locate(*s).map(|(k, ahead)| Marker::beside(self.nodes[k], [ahead, 0.0, 0.0]))
             }

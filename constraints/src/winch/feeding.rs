@@ -1,0 +1,54 @@
+//! Feeding at a prescribed speed.
+
+use ropewalk_core::{At, Constraint, Front, Marker, Motion, Node, NodeId, RowKind};
+use std::sync::Arc;
+
+/// The length fed out at an end of a cable follows a motion: `X(t) - fed = 0`, one equation.
+///
+/// `X` is the motion's first component [m]. The multiplier is what the winch pulls with, tension times stretch [N].
+#[derive(Clone, Debug)]
+pub struct Feeding {
+    name: String,
+    front: Front,
+    nodes: [NodeId; 1],
+    motion: Arc<dyn Motion>,
+}
+
+impl Feeding {
+    /// Feeds by this motion.
+    pub fn new(name: impl Into<String>, front: Front, motion: Arc<dyn Motion>) -> Self {
+        Feeding { name: name.into(), front, nodes: [front.node], motion }
+    }
+}
+
+impl Constraint for Feeding {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn rows(&self) -> &[RowKind] {
+        &[RowKind::Position]
+    }
+    fn markers(&self) -> &[Marker] {
+        &[]
+    }
+    fn nodes(&self) -> &[NodeId] {
+        &self.nodes
+    }
+    fn linear(&self) -> bool {
+        true
+    }
+    fn jacobian(&self, _: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
+        g[0] = self.front.fed(at) - self.motion.at(at.t).x[0];
+        jac[0] = self.front.sign;
+    }
+    fn geometric(&self, _: &[Node], _: &At<'_>, _: &[f64], h: &mut [f64]) {
+        h[0] = 0.0;
+    }
+    fn rates(&self, _: &[Node], at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
+        let moving = self.motion.at(at.t);
+        (rate[0], bias[0]) = (-moving.v[0], -moving.a[0]);
+    }
+    fn range(&self) -> (f64, f64) {
+        self.motion.range()
+    }
+}

@@ -1,0 +1,11 @@
+//! Winches: ends of cables that feed out and reel in.
+
+mod feeding;
+mod limit;
+mod pull;
+mod spec;
+
+pub use feeding::Feeding;
+pub use limit::{Limit, Side};
+pub use pull::Pull;
+pub use spec::WinchSpec;

@@ -1,0 +1,125 @@
+//! Feeding under a force: tension, brake, the inertia of a drum.
+
+use ropewalk_core::{Assembly, At, Column, Energy, Front, Pattern, Power, Term};
+
+/// What a winch that isn't driven pulls with, as force on the front: `P |r'|` with
+/// `P = tension + brake u/√(u² + slip²) + damping u + pile`, and `inertia u̇` of its drum; `u` is the speed at which it
+/// feeds out.
+///
+/// A brake is dry friction, so below its force the end creeps at a part of `slip`. Cable picked up from a pile at rest
+/// has to be set moving, which takes `ρA u²` for `u > 0` (without rebound; a drum that turns with the cable takes none).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pull {
+    /// Name of the winch.
+    pub name: String,
+    /// The end that feeds.
+    pub front: Front,
+    /// Constant part [N].
+    pub tension: f64,
+    /// Friction of the brake [N].
+    pub brake: f64,
+    /// Speed below which the brake creeps [m/s].
+    pub slip: f64,
+    /// Resistance per speed [N s/m].
+    pub damping: f64,
+    /// Inertia of the drum over the square of its radius [kg].
+    pub inertia: f64,
+    /// Whether the cable is picked up from rest.
+    pub pile: bool,
+}
+
+impl Pull {
+    /// The pull, and its derivative by the speed of feeding.
+    fn pull(&self, u: f64) -> (f64, f64) {
+        let root = (u * u + self.slip * self.slip).sqrt();
+        let rho = if self.pile && u > 0.0 { self.front.rho_a } else { 0.0 };
+        (
+            self.tension + self.brake * u / root + self.damping * u + rho * u * u,
+            self.brake * self.slip * self.slip / (root * root * root) + self.damping + 2.0 * rho * u,
+        )
+    }
+    fn slope(&self, at: &At<'_>) -> [f64; 3] {
+        std::array::from_fn(|i| at.q[self.front.end_q + 3 + i])
+    }
+}
+
+impl Term for Pull {
+    fn label(&self) -> String {
+        self.name.clone()
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        p.clique([self.front.v].into_iter().chain((3..6).map(|i| self.front.end_v + i)));
+    }
+    fn symmetric(&self) -> bool {
+        false
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        let (front, slope) = (&self.front, self.slope(at));
+        let (stretch, (pull, by_u)) = (front.stretch(at), self.pull(front.rate(at)));
+        // feeding out moves the front by its sign, and the pull resists that
+        out.add(front.v, front.sign * pull * stretch + self.inertia * at.a[front.v]);
+        let w = out.weights();
+        out.add_block(0, 4, |i, j| match (i, j) {
+            (0, 0) => w.v * by_u * stretch + w.a * self.inertia,
+            (0, j) => w.q * front.sign * pull * slope[j - 1] / stretch,
+            _ => 0.0,
+        });
+    }
+    fn energy(&self, at: &At<'_>) -> Energy {
+        let u = self.front.rate(at);
+        Energy { kinetic: 0.5 * self.inertia * u * u, ..Energy::default() }
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        let (u, stretch) = (self.front.rate(at), self.front.stretch(at));
+        let given = self.tension * u * stretch;
+        Power { supplied: -given, dissipated: self.pull(u).0 * u * stretch - given, ..Power::default() }
+    }
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::new(format!("{}.pull", self.name), "N")]
+    }
+    fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
+        out.push(self.pull(self.front.rate(at)).0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ropewalk_core::testing::check_tangent;
+    use ropewalk_core::{Node, NodeId, NodeKind, Width};
+
+    #[test]
+    fn tangent_agrees_with_differences_for_both_directions() {
+        let nodes = [
+            Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false },
+            Node { kind: NodeKind::Scalars(1), q: 6, v: 6, shared: true },
+        ];
+        for (sign, rate) in [(-1.0, 0.7), (-1.0, -0.4), (1.0, 0.3)] {
+            let front = Front {
+                node: NodeId(1),
+                q: 6,
+                v: 6,
+                sign,
+                home: 0.0,
+                end: NodeId(0),
+                end_q: 0,
+                end_v: 0,
+                rho_a: 1.3,
+            };
+            let pull = Pull {
+                name: "drum".into(),
+                front,
+                tension: 4.0,
+                brake: 3.0,
+                slip: 0.5,
+                damping: 0.7,
+                inertia: 2.0,
+                pile: true,
+            };
+            let q = [0.1, 0.2, 0.3, 0.9, 0.5, -0.4, 0.8];
+            let (v, a) = ([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, rate], [0.3; 7]);
+            let at = At { t: 0.0, q: &q, v: &v, a: &a, modes: &[], relaxed: None };
+            assert!(check_tangent(&pull, &nodes, &at, Width::One) < 1e-8);
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! `type = "winch"`.
+
+use super::{Feeding, Limit, Pull, Side};
+use crate::motion::Straight;
+use ropewalk_core::build::{BuildError, Builder, not_negative, positive};
+use ropewalk_core::{ConstraintSpec, Feed, MarkerRef, Motion, Moving, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+fn ramp() -> f64 {
+    1.0
+}
+fn slip() -> f64 {
+    1e-3
+}
+fn rest() -> f64 {
+    f64::INFINITY
+}
+
+/// Feeds out and reels in cable at one of its ends: the cable's length changes, with the right mass, momentum and drag.
+///
+/// Where that end is in space is told by another constraint, such as `spherical` or `driving`. Prescribe the speed by
+/// `speed` or by `motion`; or leave the end free and give what holds it back: `tension`, `brake`, `damping`, `inertia`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WinchSpec {
+    /// Name, by which records and events refer to it.
+    pub name: String,
+    /// The end of the cable: `hose.start` or `hose.end`.
+    pub marker: MarkerRef,
+    /// Speed at which it feeds out after the ramp [m/s]; negative reels in.
+    #[serde(default, deserialize_with = "quantity::optional::speed", skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+    /// Time at which it starts [s].
+    #[serde(default, deserialize_with = "quantity::time")]
+    pub start: f64,
+    /// Time in which the speed rises, and falls at the stop [s].
+    #[serde(default = "ramp", deserialize_with = "quantity::time")]
+    pub ramp: f64,
+    /// Time at which it begins to slow down again [s]; left out, it goes on.
+    #[serde(default, deserialize_with = "quantity::optional::time", skip_serializing_if = "Option::is_none")]
+    pub stop: Option<f64>,
+    /// Name of a motion whose x component is the length fed out, instead of `speed`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
+    /// Tension that holds the end back where the speed isn't prescribed [N].
+    #[serde(default, deserialize_with = "quantity::optional::force", skip_serializing_if = "Option::is_none")]
+    pub tension: Option<f64>,
+    /// Dry friction of a brake [N].
+    #[serde(default, deserialize_with = "quantity::force")]
+    pub brake: f64,
+    /// Speed below which the brake creeps instead of sticking [m/s].
+    #[serde(default = "slip", deserialize_with = "quantity::speed")]
+    pub slip: f64,
+    /// Resistance per speed [N s/m].
+    #[serde(default, deserialize_with = "quantity::damping")]
+    pub damping: f64,
+    /// Inertia of the drum over the square of its radius [kg].
+    #[serde(default, deserialize_with = "quantity::mass")]
+    pub inertia: f64,
+    /// Whether cable is picked up from a pile at rest, and not from a drum that turns with it.
+    #[serde(default)]
+    pub pile: bool,
+    /// Length on the spool at the start [m]: once it is fed out, the run ends. Left out, there is always more.
+    #[serde(default = "rest", deserialize_with = "quantity::length", skip_serializing_if = "is_infinite")]
+    pub stock: f64,
+    /// Shortest length that the cable is reeled in to [m], where the run ends; left out, a twentieth of its length at
+    /// the start.
+    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    pub shortest: Option<f64>,
+    /// Length of elements [m] that are born and swallowed at this end; left out, all elements of the cable grow and
+    /// shrink together, which is smoother and does for a change of length up to ten times or so.
+    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    pub element: Option<f64>,
+}
+register_spec!(Constraint, "winch", WinchSpec);
+
+fn is_infinite(x: &f64) -> bool {
+    x.is_infinite()
+}
+
+/// A speed that rises, and falls again later.
+#[derive(Clone, Debug)]
+struct Haul {
+    rise: Straight,
+    fall: Option<Straight>,
+}
+
+impl Motion for Haul {
+    fn at(&self, t: f64) -> Moving {
+        let mut x = self.rise.at(t);
+        if let Some(fall) = &self.fall {
+            let less = fall.at(t);
+            (x.x[0], x.v[0], x.a[0]) = (x.x[0] - less.x[0], x.v[0] - less.v[0], x.a[0] - less.a[0]);
+        }
+        x
+    }
+}
+
+impl WinchSpec {
+    /// A winch that feeds out at a speed [m/s]; a negative one reels in.
+    pub fn speed(name: &str, marker: impl Into<MarkerRef>, speed: f64) -> Self {
+        WinchSpec { speed: Some(speed), ..Self::new(name, marker) }
+    }
+    /// A winch that feeds by a motion.
+    pub fn motion(name: &str, marker: impl Into<MarkerRef>, motion: &str) -> Self {
+        WinchSpec { motion: Some(motion.into()), ..Self::new(name, marker) }
+    }
+    /// A winch that gives way to any tension above this one [N].
+    pub fn tension(name: &str, marker: impl Into<MarkerRef>, tension: f64) -> Self {
+        WinchSpec { tension: Some(tension), ..Self::new(name, marker) }
+    }
+    fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
+        WinchSpec {
+            name: name.into(),
+            marker: marker.into(),
+            speed: None,
+            start: 0.0,
+            ramp: ramp(),
+            stop: None,
+            motion: None,
+            tension: None,
+            brake: 0.0,
+            slip: slip(),
+            damping: 0.0,
+            inertia: 0.0,
+            pile: false,
+            stock: rest(),
+            shortest: None,
+            element: None,
+        }
+    }
+
+    /// Where its length is prescribed: the length fed out as a motion.
+    fn prescribed(&self, b: &Builder) -> Result<Option<Arc<dyn Motion>>, BuildError> {
+        let free = self.tension.is_some() || self.brake != 0.0 || self.damping != 0.0 || self.inertia != 0.0;
+        match (self.speed, &self.motion) {
+            (Some(_), Some(_)) => Err(BuildError::at("motion", "give `speed` or `motion`, not both")),
+            (Some(_), None) | (None, Some(_)) if free || self.pile => Err(BuildError::at(
+                if self.tension.is_some() { "tension" } else { "brake" },
+                "the speed of this winch is prescribed, so its tension is a result: leave out `tension`, `brake`, \
+                 `damping`, `inertia` and `pile`, or the speed. To prescribe both, let the other end of the cable \
+                 lift off from a package (`lift_off`)",
+            )),
+            (Some(speed), None) => {
+                let ahead = [1.0, 0.0, 0.0];
+                let rise = Straight::new(ahead, speed, self.start, self.ramp)?;
+                let fall = match self.stop {
+                    Some(stop) if stop < self.start + self.ramp => {
+                        let message = format!("it would stop at {stop} s, before its speed has risen");
+                        return Err(BuildError::at("stop", message));
+                    }
+                    Some(stop) => Some(Straight::new(ahead, speed, stop, self.ramp)?),
+                    None => None,
+                };
+                Ok(Some(Arc::new(Haul { rise, fall })))
+            }
+            (None, Some(motion)) => b.motion(motion).map(Some),
+            (None, None) if free => Ok(None),
+            (None, None) => Err(BuildError::at(
+                "name",
+                "say how this winch feeds: `speed` or `motion`, or what holds it back: `tension`, `brake`, `damping`",
+            )),
+        }
+    }
+}
+
+#[typetag::serde(name = "winch")]
+impl ConstraintSpec for WinchSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
+    }
+    fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
+        Some((&self.marker, Feed { element: self.element }))
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        for (name, x) in [("brake", self.brake), ("damping", self.damping), ("inertia", self.inertia)] {
+            not_negative(name, x)?;
+        }
+        positive("slip", self.slip)?;
+        let (front, part) = (b.front(&self.marker)?, b.feeding_part(&self.marker)?);
+        match self.prescribed(b)? {
+            Some(motion) => {
+                let start = motion.at(0.0);
+                if start.x[0] != 0.0 {
+                    let message = format!("the motion has fed out {} m before the run begins", start.x[0]);
+                    return Err(BuildError::at("motion", message));
+                }
+                b.start_feeding(&self.marker, front.sign * start.v[0])?;
+                b.constraint(Feeding::new(&self.name, front, motion))?;
+            }
+            None => b.term(Box::new(Pull {
+                name: self.name.clone(),
+                front,
+                tension: ropewalk_core::build::finite("tension", &[self.tension.unwrap_or(0.0)])
+                    .map(|()| self.tension.unwrap_or(0.0))?,
+                brake: self.brake,
+                slip: self.slip,
+                damping: self.damping,
+                inertia: self.inertia,
+                pile: self.pile,
+            })),
+        }
+        let limit = |side, length| Limit {
+            name: self.name.clone(),
+            front,
+            part: part.name().to_string(),
+            side,
+            length,
+        };
+        if self.stock.is_finite() {
+            b.event(limit(Side::Empty, positive("stock", self.stock)?));
+        }
+        let whole = part.length();
+        let shortest = positive("shortest", self.shortest.unwrap_or(0.05 * whole))?;
+        if shortest >= whole {
+            let message = format!("the cable is {whole} m long at the start, and `shortest` must be less");
+            return Err(BuildError::at("shortest", message));
+        }
+        b.event(limit(Side::Short, shortest));
+        Ok(())
+    }
+}

@@ -1,0 +1,148 @@
+//! Damping of a flowing cable: at the rates of its material.
+
+use super::embedding::{Embedding, Grid};
+use super::for_fronts;
+use super::rule::close;
+use super::transport::{Transport, nodal};
+use crate::cable::damping::{AxialDamping, BendingDamping};
+use crate::cable::longitudinal::Longitudinal;
+use crate::cable::quadrature::Quadrature;
+use crate::cable::transverse::Transverse;
+use super::element::nodal_dual;
+use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, V3, Weights};
+
+/// A force of an element on its own material, which needs coordinates, velocities of the material, and the length.
+pub trait Material: Element<12, 12> {
+    /// Its numbers over lanes, `get` being the way to those of each lane's element.
+    fn numbers<R: Real>(get: impl Fn(fn(&Self) -> f64) -> R) -> Self::Lanes<R>;
+    /// The same numbers for another length of the element.
+    fn at_length<R: Real>(p: &Self::Lanes<R>, l: R) -> Self::Lanes<R>;
+    /// The same numbers with derivatives of nothing.
+    fn lift<R: Real>(p: &Self::Lanes<R>, l: Dual<R>) -> Self::Lanes<Dual<R>>;
+}
+
+impl<L: Longitudinal, Q: Quadrature> Material for AxialDamping<L, Q> {
+    #[inline(always)]
+    fn numbers<R: Real>(get: impl Fn(fn(&Self) -> f64) -> R) -> [R; 2] {
+        [get(|e| e.l), get(|e| e.eta_ea)]
+    }
+    #[inline(always)]
+    fn at_length<R: Real>(p: &[R; 2], l: R) -> [R; 2] {
+        [l, p[1]]
+    }
+    #[inline(always)]
+    fn lift<R: Real>(p: &[R; 2], l: Dual<R>) -> [Dual<R>; 2] {
+        [l, Dual::constant(p[1])]
+    }
+}
+impl<T: Transverse, Q: Quadrature> Material for BendingDamping<T, Q> {
+    #[inline(always)]
+    fn numbers<R: Real>(get: impl Fn(fn(&Self) -> f64) -> R) -> [R; 3] {
+        [get(|e| e.l), get(|e| e.eta_ei), get(|e| e.kappa_0)]
+    }
+    #[inline(always)]
+    fn at_length<R: Real>(p: &[R; 3], l: R) -> [R; 3] {
+        [l, p[1], p[2]]
+    }
+    #[inline(always)]
+    fn lift<R: Real>(p: &[R; 3], l: Dual<R>) -> [Dual<R>; 3] {
+        [l, Dual::constant(p[1]), Dual::constant(p[2])]
+    }
+}
+
+/// A damping `D` of a cable element through which material flows.
+#[derive(Clone, Copy, Debug)]
+pub struct FlowDamping<D, const F: usize> {
+    /// The damping, for an element at rest.
+    pub damping: D,
+    /// Embedding of the element.
+    pub by: Embedding<F>,
+}
+
+/// The state of the material as an element at rest would see it.
+#[inline(always)]
+fn still<R: Real, const N: usize>(g: &Grid<R>, x: &Local<R, N, N>) -> Local<R, 12, 12> {
+    let v = Transport::new(g, &nodal(&x.q), &nodal(&x.v), &nodal(&x.a)).v;
+    state(&nodal(&x.q), &v)
+}
+
+#[inline(always)]
+fn state<R: Real>(e: &[V3<R>; 4], ed: &[V3<R>; 4]) -> Local<R, 12, 12> {
+    let zero = [R::zero(); 12];
+    let mut x = Local { q: zero, v: zero, a: zero, last: zero, relaxed: None };
+    for i in 0..12 {
+        x.q[i] = e[i / 3][i % 3];
+        x.v[i] = ed[i / 3][i % 3];
+    }
+    x
+}
+
+macro_rules! element {
+    ($fronts:literal, $size:literal) => {
+        impl<D: Material> Element<$size, $size> for FlowDamping<D, $fronts> {
+            type Lanes<R: Real> = (D::Lanes<R>, Embedding<$fronts, R>);
+            const SYMMETRIC: bool = false;
+            const WIDE: bool = $fronts == 1;
+
+            fn label() -> String {
+                format!("{} of a flowing cable", D::label())
+            }
+            #[inline(always)]
+            fn lanes<R: Real>(b: &Batch<'_, Self>) -> Self::Lanes<R> {
+                let damping = D::numbers(|f| b.get(|e| f(&e.damping)));
+                (damping, Embedding::lanes(|f, j| b.get(|e| f(&e.by, j))))
+            }
+            #[inline(always)]
+            fn add<R: Real, const TANGENT: bool>(
+                (p, by): &Self::Lanes<R>,
+                x: &Local<R, $size, $size>,
+                w: &Weights,
+                out: &mut Share<R, $size>,
+            ) {
+                let g = Grid::new(by, x);
+                let (p_now, still) = (D::at_length(p, g.l), still(&g, x));
+                let mut own = Share::<R, 12>::zero();
+                D::add::<R, TANGENT>(&p_now, &still, w, &mut own);
+                let f = nodal(&own.r);
+                for i in 0..12 {
+                    out.r[i] += own.r[i];
+                }
+                let mut d_f = [f; $fronts];
+                if TANGENT {
+                    // the velocity of the material depends on the dofs as well: v = ė - P e
+                    let mut by_v = Share::<R, 12>::zero();
+                    D::add::<R, true>(&p_now, &still, &Weights { q: 0.0, v: w.q, a: 0.0 }, &mut by_v);
+                    let (p4, _) = Transport::matrices(&g);
+                    for i in 0..12 {
+                        for j in 0..4 {
+                            for c in 0..3 {
+                                let mut k = own.k[i][3 * j + c];
+                                for n in 0..4 {
+                                    k -= by_v.k[i][3 * n + c] * p4[n][j];
+                                }
+                                out.k[i][3 * j + c] += k;
+                            }
+                        }
+                    }
+                    let (e, ed) = (nodal_dual(&nodal(&x.q)), nodal_dual(&nodal(&x.v)));
+                    for k in 0..$fronts {
+                        let g = g.towards(by, k, w);
+                        let v = Transport::new(&g, &e, &ed, &ed).v;
+                        let mut own = Share::<Dual<R>, 12>::zero();
+                        D::add::<Dual<R>, false>(&D::lift(p, g.l), &state(&e, &v), w, &mut own);
+                        for i in 0..12 {
+                            d_f[k][i / 3][i % 3] = own.r[i].eps;
+                        }
+                    }
+                }
+                close::<R, $fronts, $size, TANGENT>(by, &g, &x.q, &f, &d_f, w, out);
+            }
+            #[inline(always)]
+            fn power<R: Real>((p, by): &Self::Lanes<R>, x: &Local<R, $size, $size>) -> Power<R> {
+                let g = Grid::new(by, x);
+                D::power(&D::at_length(p, g.l), &still(&g, x))
+            }
+        }
+    };
+}
+for_fronts!((1, 13), (2, 14); element);

@@ -1,0 +1,125 @@
+//! Open ends of a flowing cable: the strain energy of what passes them.
+
+use super::embedding::{Embedding, Grid};
+use super::for_fronts;
+use crate::cable::element::CableParams;
+use crate::cable::longitudinal::{Longitudinal, axial_energy};
+use crate::cable::quadrature::{Point, Quadrature, Rule};
+use crate::cable::shape::natural;
+use crate::cable::transverse::{Transverse, bending_energy};
+use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, Weights};
+use std::marker::PhantomData;
+
+/// The "rule" of one point at the start of an element.
+#[derive(Clone, Copy, Debug)]
+struct AtStart;
+impl Quadrature for AtStart {
+    const LABEL: &'static str = "start";
+    const POINTS: &'static [Point] = &[Point::new(0.0, 1.0)];
+}
+/// The same at its end.
+#[derive(Clone, Copy, Debug)]
+struct AtEnd;
+impl Quadrature for AtEnd {
+    const LABEL: &'static str = "end";
+    const POINTS: &'static [Point] = &[Point::new(1.0, 1.0)];
+}
+
+/// An open end of a line: material that passes it takes its strain energy `W` per length along, so `+W` acts on the
+/// front at the start, `-W` on that at the end. What is left then on the front is `T |r'|`.
+#[derive(Clone, Copy, Debug)]
+pub struct FlowEnd<L, T, Q, const F: usize> {
+    /// What the cable is made of.
+    pub params: CableParams,
+    /// Embedding of the element at the end.
+    pub by: Embedding<F>,
+    /// Which end of the line it is: 0 its start, 1 its end.
+    pub end: usize,
+    /// The front there, among those of the line.
+    pub front: usize,
+    models: PhantomData<(L, T, Q)>,
+}
+
+impl<L: Longitudinal, T: Transverse, Q: Rule, const F: usize> FlowEnd<L, T, Q, F> {
+    /// The open end of this element.
+    pub fn new(params: CableParams, by: Embedding<F>, end: usize, front: usize) -> Self {
+        FlowEnd { params, by, end, front, models: PhantomData }
+    }
+}
+
+/// Strain energy per length at an end.
+#[inline(always)]
+fn density<L: Longitudinal, T: Transverse, R: Real>(ea: R, ei: R, e: &[R; 12], l: R, end: usize) -> R {
+    let il = R::of(1.0) / l;
+    let (q, one) = (natural(e, il), R::of(1.0));
+    if end == 0 {
+        axial_energy::<L, AtStart, R>(ea, &q) + bending_energy::<T, AtStart, R>(ei, one, il, &q)
+    } else {
+        axial_energy::<L, AtEnd, R>(ea, &q) + bending_energy::<T, AtEnd, R>(ei, one, il, &q)
+    }
+}
+
+macro_rules! element {
+    ($fronts:literal, $size:literal) => {
+        impl<L: Longitudinal, T: Transverse, Q: Rule> Element<$size, $size> for FlowEnd<L, T, Q, $fronts> {
+            /// One at each end of a line.
+            type Lanes<R: Real> = Self;
+            const SYMMETRIC: bool = false;
+            const WIDE: bool = false;
+
+            fn label() -> String {
+                format!("open end {}+{}", L::LABEL, T::LABEL)
+            }
+            #[inline(always)]
+            fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self {
+                *batch.first()
+            }
+            #[inline(always)]
+            fn add<R: Real, const TANGENT: bool>(
+                p: &Self,
+                x: &Local<R, $size, $size>,
+                w: &Weights,
+                out: &mut Share<R, $size>,
+            ) {
+                let by = p.by.spread::<R>();
+                let (g, row) = (Grid::new(&by, x), 12 + p.front);
+                let sign = R::of(if p.end == 0 { 1.0 } else { -1.0 });
+                let (ea, ei) = (R::of(p.params.ea), R::of(p.params.ei));
+                let mut e = [R::zero(); 12];
+                e.copy_from_slice(&x.q[..12]);
+                out.r[row] += sign * density::<L, T, R>(ea, ei, &e, g.l, p.end);
+                if !TANGENT {
+                    return;
+                }
+                let s = sign * R::of(w.q);
+                let derivative = |j: usize| {
+                    let mut e = Dual::constants(&e);
+                    let mut l = Dual::constant(g.l);
+                    match e.get_mut(j) {
+                        Some(e) => e.eps = R::of(1.0),
+                        None => l.eps = R::of(1.0),
+                    }
+                    density::<L, T, Dual<R>>(Dual::constant(ea), Dual::constant(ei), &e, l, p.end).eps
+                };
+                for j in 0..12 {
+                    out.k[row][j] += s * derivative(j);
+                }
+                let by_l = derivative(12);
+                for m in 0..$fronts {
+                    out.k[row][12 + m] += s * by_l * (by.by[m][1] - by.by[m][0]);
+                }
+            }
+            #[inline(always)]
+            fn power<R: Real>(p: &Self, x: &Local<R, $size, $size>) -> Power<R> {
+                let g = Grid::new(&p.by.spread::<R>(), x);
+                let mut e = [R::zero(); 12];
+                e.copy_from_slice(&x.q[..12]);
+                let (ea, ei) = (R::of(p.params.ea), R::of(p.params.ei));
+                let w = density::<L, T, R>(ea, ei, &e, g.l, p.end);
+                let carried = if p.end == 0 { -(w * g.pd[0]) } else { w * g.pd[1] };
+                Power { carried, ..Power::zero() }
+            }
+        }
+    };
+}
+for_fronts!((1, 13), (2, 14); element);

@@ -1,0 +1,90 @@
+//! A cable whose ends feed, as a whole: its fronts, and how its nodes follow them.
+
+use super::embedding::Embedding;
+use ropewalk_core::Front;
+
+/// How one node follows the fronts of its line: `p = fixed + Σ by_k π_k`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Follows {
+    /// What doesn't move [m].
+    pub fixed: f64,
+    /// Share of each front.
+    pub by: [f64; 2],
+}
+
+/// The material coordinates of a cable whose ends feed.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Its fronts, with the end of the cable at which each is: 0 the start, 1 the end.
+    pub fronts: Vec<(usize, Front)>,
+    /// Its nodes.
+    pub nodes: Vec<Follows>,
+    /// Whether elements are born and swallowed at the ends, the rest staying on its material.
+    pub zone: [bool; 2],
+}
+
+impl Line {
+    /// A line with these material coordinates at the nodes. Where an end has a zone, only its own node moves with its
+    /// front; else all nodes share the movement evenly.
+    pub fn new(mesh: &[f64], fronts: Vec<(usize, Front)>, zone: [bool; 2]) -> Self {
+        let (first, last) = (mesh[0], mesh[mesh.len() - 1]);
+        let end = mesh.len() - 1;
+        let nodes = (0..mesh.len())
+            .map(|i| {
+                let share = (mesh[i] - first) / (last - first);
+                let mut node = Follows { fixed: 0.0, by: [0.0; 2] };
+                let mut moved = 0.0;
+                for (k, (at, front)) in fronts.iter().enumerate() {
+                    let own = if *at == 0 { 0 } else { end };
+                    node.by[k] = match zone[*at] {
+                        true if i == own => 1.0,
+                        true => 0.0,
+                        false if *at == 0 => 1.0 - share,
+                        false => share,
+                    };
+                    // a node at an end that doesn't feed, or that has a zone, doesn't follow the other
+                    if i != own && (i == 0 || i == end) {
+                        node.by[k] = 0.0;
+                    }
+                    moved += node.by[k] * if *at == 0 { first } else { last };
+                    debug_assert!(front.sign == if *at == 0 { -1.0 } else { 1.0 });
+                }
+                // what is a front's alone follows it to the last bit
+                node.fixed = if node.by[..fronts.len()].contains(&1.0) { 0.0 } else { mesh[i] - moved };
+                node
+            })
+            .collect();
+        Line { fronts, nodes, zone }
+    }
+
+    fn sum(&self, k: usize, fixed: f64, x: impl Fn(&Front) -> f64) -> f64 {
+        let by = &self.nodes[k].by;
+        self.fronts.iter().zip(by).fold(fixed, |p, ((_, f), by)| p + by * x(f))
+    }
+    /// Material coordinate of a node [m].
+    pub fn p(&self, k: usize, q: &[f64]) -> f64 {
+        self.sum(k, self.nodes[k].fixed, |f| q[f.q])
+    }
+    /// Its rate [m/s].
+    pub fn rate(&self, k: usize, v: &[f64]) -> f64 {
+        self.sum(k, 0.0, |f| v[f.v])
+    }
+    /// Whether material flows through the element behind node `k`.
+    pub fn flows(&self, k: usize) -> bool {
+        [k, k + 1].iter().any(|&i| self.nodes[i].by[..self.fronts.len()].iter().any(|&b| b != 0.0))
+    }
+    /// Embedding of the element behind node `k`; `F` is the number of fronts.
+    pub fn embedding<const F: usize>(&self, k: usize) -> Embedding<F> {
+        let (a, b) = (&self.nodes[k], &self.nodes[k + 1]);
+        Embedding { fixed: [a.fixed, b.fixed], by: std::array::from_fn(|f| [a.by[f], b.by[f]]) }
+    }
+    /// By how much the feeding of each front makes material run along the element behind node `k`.
+    pub fn slip<const F: usize>(&self, k: usize) -> [f64; F] {
+        let share = (k as f64 + 0.5) / (self.nodes.len() - 1) as f64;
+        std::array::from_fn(|f| match (F, self.fronts[f].0) {
+            (1, _) => 1.0,
+            (_, 0) => 1.0 - share,
+            _ => share,
+        })
+    }
+}

@@ -1,0 +1,164 @@
+//! Puts the elements of a flowing cable into a model.
+
+use super::line::Line;
+use super::{FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight};
+use crate::cable::model::{CableModel, LongitudinalModel, WithModels, with_models};
+use crate::cable::spec::Section;
+use crate::cable::longitudinal::Longitudinal;
+use crate::cable::quadrature::Rule;
+use crate::cable::transverse::Transverse;
+use crate::cable::{AxialDamping, BendingDamping, CableParams};
+use ropewalk_core::build::{BuildError, Builder};
+use ropewalk_core::{
+    Assembly, At, DeadLoad, Energy, Node, NodeId, Pattern, Pool, Power, StationPool, Stations, Term, V3,
+};
+use std::sync::Arc;
+
+/// Refuses what material can't flow through.
+pub(crate) fn check(model: CableModel) -> Result<(), BuildError> {
+    if model.longitudinal == LongitudinalModel::L1n {
+        let message = "L1n has no strain energy that material could carry along: take L1, L2, L3 or L4 where a cable \
+                       feeds";
+        return Err(BuildError::at("longitudinal", message));
+    }
+    Ok(())
+}
+
+/// An element of a line and the nodes on which it stands.
+pub(crate) struct Piece<'a> {
+    /// The line.
+    pub line: &'a Line,
+    /// The node before the element.
+    pub k: usize,
+    /// The element's own nodes; those of the fronts follow.
+    pub on: [NodeId; 2],
+}
+
+impl Piece<'_> {
+    fn nodes(&self) -> Vec<NodeId> {
+        self.on.iter().copied().chain(self.line.fronts.iter().map(|(_, f)| f.node)).collect()
+    }
+}
+
+struct Push<'a, 'b> {
+    b: &'a mut Builder,
+    params: CableParams,
+    section: &'a Section,
+    piece: &'a Piece<'b>,
+}
+
+macro_rules! push {
+    ($self:ident, $fronts:literal, $L:ident, $T:ident, $Q:ident) => {{
+        let (line, k) = ($self.piece.line, $self.piece.k);
+        let (nodes, by, s) = ($self.piece.nodes(), line.embedding::<$fronts>(k), $self.section);
+        let last = line.nodes.len() - 2;
+        $self.b.element(FlowCable::<$L, $T, $Q, $fronts>::new($self.params, by), &nodes)?;
+        for (front, &(end, _)) in line.fronts.iter().enumerate() {
+            if k == if end == 0 { 0 } else { last } {
+                let open = FlowEnd::<$L, $T, $Q, $fronts>::new($self.params, by, end, front);
+                $self.b.element(open, &nodes)?;
+            }
+        }
+        if s.axial_damping > 0.0 {
+            let damping = AxialDamping::<$L, <$Q as Rule>::Axial>::new($self.params.l, s.axial_damping * s.ea);
+            $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
+        }
+        if s.bending_damping > 0.0 && s.ei > 0.0 {
+            let damping =
+                BendingDamping::<$T, <$Q as Rule>::Bending>::new($self.params.l, s.bending_damping * s.ei);
+            $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
+        }
+        Ok(())
+    }};
+}
+
+impl WithModels for Push<'_, '_> {
+    type Output = Result<(), BuildError>;
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> Self::Output {
+        if self.piece.line.fronts.len() == 1 { push!(self, 1, L, T, Q) } else { push!(self, 2, L, T, Q) }
+    }
+}
+
+/// Pushes elasticity, inertia and damping of an element through which material flows.
+pub(crate) fn push(
+    b: &mut Builder,
+    model: CableModel,
+    params: CableParams,
+    section: &Section,
+    piece: &Piece<'_>,
+) -> Result<(), BuildError> {
+    with_models(model, Push { b, params, section, piece }).map_err(BuildError::new)?
+}
+
+/// The stations of all elements of a line.
+pub(crate) fn stations(
+    all: &[Node],
+    line: &Line,
+    nodes: &[NodeId],
+    section: &Section,
+) -> Result<Arc<dyn Stations>, BuildError> {
+    macro_rules! stations {
+        ($fronts:literal, $size:literal) => {{
+            let mut pool = StationPool::<FlowStations<$fronts>, $size, $size, 4>::new();
+            for k in 0..nodes.len() - 1 {
+                let (by, slip) = (line.embedding(k), line.slip(k));
+                let (diameter, area) = (section.diameter, section.displaced_area());
+                let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
+                if !pool.push(all, FlowStations { by, slip, diameter, area }, &piece.nodes()) {
+                    return Err(BuildError::new("the stations of the cable don't fit its nodes"));
+                }
+            }
+            Ok(Arc::new(pool))
+        }};
+    }
+    if line.fronts.len() == 1 { stations!(1, 13) } else { stations!(2, 14) }
+}
+
+/// Weight or buoyancy of a cable of which some elements only are at rest on their material.
+pub(crate) struct Weight {
+    /// Of those that are, worked out once.
+    pub dead: DeadLoad,
+    /// Of those that material flows through.
+    pub flowing: Box<dyn Term>,
+}
+
+impl Term for Weight {
+    fn label(&self) -> String {
+        self.dead.label()
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        self.flowing.pattern(p);
+    }
+    fn symmetric(&self) -> bool {
+        false
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        self.dead.add(at, out);
+        self.flowing.add(at, out);
+    }
+    fn energy(&self, at: &At<'_>) -> Energy {
+        let mut energy = self.dead.energy(at);
+        energy += self.flowing.energy(at);
+        energy
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        self.flowing.power(at)
+    }
+}
+
+/// The weight of the elements of a line through which material flows, `load` being a force per length [N/m].
+pub(crate) fn weight(all: &[Node], line: &Line, nodes: &[NodeId], load: V3<f64>) -> Option<Box<dyn Term>> {
+    macro_rules! weight {
+        ($fronts:literal, $size:literal) => {{
+            let mut pool = Pool::<FlowWeight<$fronts>, $size, $size>::new();
+            for k in (0..nodes.len() - 1).filter(|&k| line.flows(k)) {
+                let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
+                if !pool.push(all, FlowWeight { load, by: line.embedding(k) }, &piece.nodes()) {
+                    return None;
+                }
+            }
+            Some(Box::new(pool))
+        }};
+    }
+    if line.fronts.len() == 1 { weight!(1, 13) } else { weight!(2, 14) }
+}
