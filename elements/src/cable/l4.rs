@@ -13,6 +13,7 @@ pub struct L4;
 
 impl Longitudinal for L4 {
     const LABEL: &'static str = "L4";
+    const USUAL: bool = true;
     type Strain<R: Real> = Stretch<R>;
     #[inline(always)]
     fn strain<R: Real>(q: &Natural<R>, at: &Point) -> Stretch<R> {

@@ -15,6 +15,8 @@ pub trait Longitudinal: Copy + Send + Sync + 'static {
     const LABEL: &'static str;
     /// Whether force is the derivative of an energy, and the tangent therefore symmetric.
     const SYMMETRIC: bool = true;
+    /// Whether it is the usual choice: elements of which many kinds are compiled have wide copies for the usual ones only.
+    const USUAL: bool = false;
     /// Strain with its derivatives.
     type Strain<R: Real>: Strain<R>;
     /// Axial force per stress `EA ε`, as the force goes with the stretch and the stress with the strain.

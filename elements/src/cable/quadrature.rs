@@ -89,6 +89,8 @@ rule!(
 pub trait Rule: Copy + Send + Sync + 'static {
     /// Name, for labels.
     const LABEL: &'static str;
+    /// Whether it is the usual choice; see [`Longitudinal::USUAL`](super::longitudinal::Longitudinal::USUAL).
+    const USUAL: bool = false;
     /// For the longitudinal part.
     type Axial: Quadrature;
     /// For the transverse part.
@@ -112,6 +114,7 @@ impl Rule for Full {
 pub struct LockingFree;
 impl Rule for LockingFree {
     const LABEL: &'static str = "locking-free";
+    const USUAL: bool = true;
     type Axial = Lobatto3;
     type Bending = Gauss2;
 }

@@ -12,6 +12,7 @@ pub struct T3;
 
 impl Transverse for T3 {
     const LABEL: &'static str = "T3";
+    const USUAL: bool = true;
     #[inline(always)]
     fn square<R: Real>(i: &Invariants<R>) -> Square<R> {
         let ia = R::of(1.0) / i.a;

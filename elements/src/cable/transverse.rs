@@ -13,6 +13,8 @@ use ropewalk_core::{Real, V3, dot};
 pub trait Transverse: Copy + Send + Sync + 'static {
     /// Short name, for labels.
     const LABEL: &'static str;
+    /// Whether it is the usual choice; see [`Longitudinal::USUAL`](super::longitudinal::Longitudinal::USUAL).
+    const USUAL: bool = false;
     /// κ² and its derivatives.
     fn square<R: Real>(i: &Invariants<R>) -> Square<R>;
     /// Adds the bending force, and with `TANGENT` its derivative; `il = 1/L`.

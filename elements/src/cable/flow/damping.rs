@@ -82,7 +82,7 @@ macro_rules! element {
         impl<D: Material> Element<$size, $size> for FlowDamping<D, $fronts> {
             type Lanes<R: Real> = (D::Lanes<R>, Embedding<$fronts, R>);
             const SYMMETRIC: bool = false;
-            const WIDE: bool = $fronts == 1;
+            const WIDE: bool = false;
 
             fn label() -> String {
                 format!("{} of a flowing cable", D::label())

@@ -206,6 +206,7 @@ macro_rules! element {
         impl<L: Longitudinal, T: Transverse, Q: Rule> Element<$size, $size> for FlowCable<L, T, Q, $fronts> {
             type Lanes<R: Real> = FlowLanes<$fronts, R>;
             const SYMMETRIC: bool = false;
+            const WIDE: bool = $fronts == 1 && L::USUAL && T::USUAL && Q::USUAL;
 
             fn label() -> String {
                 format!("flowing cable {}+{} {}", L::LABEL, T::LABEL, Q::LABEL)
