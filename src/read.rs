@@ -5,6 +5,7 @@ use crate::scene::{Document, Fault, Format, did_you_mean, quoted, read_text};
 use ropewalk_core::{Model, Record, Scene, SceneError, SpecKind};
 use ropewalk_models::{Bundled, bundled};
 use std::path::{Path, PathBuf, is_separator};
+use std::sync::Arc;
 
 /// Reads a scene: a bundled one by its name, or a `.toml` or `.json` file.
 ///
@@ -188,8 +189,12 @@ impl SceneFile {
 }
 
 /// The list of a scene that holds this kind of part.
-fn parts<T: serde::de::DeserializeOwned>(d: &mut Document, kind: SpecKind) -> Result<Vec<T>, Fault> {
-    Ok(d.take_list(kind.list())?.into_iter().map(|(part, _)| part).collect())
+fn parts<T: ?Sized>(d: &mut Document, kind: SpecKind) -> Result<Vec<Arc<T>>, Fault>
+where
+    Box<T>: serde::de::DeserializeOwned,
+{
+    let all: Vec<(Box<T>, _)> = d.take_list(kind.list())?;
+    Ok(all.into_iter().map(|(part, _)| part.into()).collect())
 }
 
 fn unknown(scene: &str, bundled: &[Bundled]) -> Fault {

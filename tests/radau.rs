@@ -246,7 +246,7 @@ impl Event for Refine {
     }
     fn act(&self, _: &Model, _: &mut State) -> Action {
         let mesh = (0..=24).map(|k| f64::from(k) / 24.0).collect();
-        let plan: Plan = [("cable".to_string(), mesh)].into_iter().collect();
+        let plan: Plan = [("cable".to_string(), mesh.into())].into_iter().collect();
         Action::Remesh(Box::new(soft().build_on(&plan).expect("model")))
     }
 }

@@ -81,7 +81,7 @@ impl Event for Refine {
         if self.stop {
             return Action::Stop;
         }
-        let plan: Plan = [("cable".to_string(), self.mesh.clone())].into_iter().collect();
+        let plan: Plan = [("cable".to_string(), self.mesh.clone().into())].into_iter().collect();
         Action::Remesh(Box::new(self.scene.build_on(&plan).expect("model")))
     }
 }

@@ -111,7 +111,8 @@ fn top_tension_of_a_ramp_holds_the_acceleration() {
         let winch = WinchSpec { ramp: 2.0, ..WinchSpec::speed("winch", "rope.start", 2.0) };
         let scene = hanging(l0, 4, section, winch, g);
         let mut s = hang(&scene, &fixed(2e-3), ea, m * g, l0);
-        let motion = ropewalk_constraints::motion::Straight::new([1.0, 0.0, 0.0], 2.0, 0.0, 2.0).expect("ramp");
+        let motion =
+            ropewalk_constraints::motion::Straight::new([1.0, 0.0, 0.0], 2.0, 0.0, 2.0).expect("ramp");
         let mut worst = 0.0_f64;
         for k in 1..=100 {
             go(&mut s, 0.03 * k as f64);
@@ -252,7 +253,8 @@ fn pendulum_of_changing_length() {
 
 #[test]
 fn feeding_is_prescribed_by_a_constraint() {
-    let scene = hanging(2.0, 3, Section::new(1.0, 1e5, 0.0), WinchSpec::speed("winch", "rope.start", 1.0), 9.81);
+    let scene =
+        hanging(2.0, 3, Section::new(1.0, 1e5, 0.0), WinchSpec::speed("winch", "rope.start", 1.0), 9.81);
     let model = scene.build().expect("model");
     let part = model.part("rope").expect("rope");
     let front = part.front(0).expect("a front");
@@ -261,4 +263,98 @@ fn feeding_is_prescribed_by_a_constraint() {
     let state = model.state();
     let at = ropewalk_core::At { t: 0.4, ..state.at() };
     assert!(ropewalk_core::testing::check_constraint(&feeding, model.nodes(), &at) < 1e-8);
+}
+
+/// Watches the mesh change.
+#[derive(Default)]
+struct Meshes(Vec<ropewalk_core::Remeshed>, f64);
+impl ropewalk_core::Observer for Meshes {
+    fn remeshed(&mut self, report: &ropewalk_core::Remeshed) {
+        self.0.push(report.clone());
+    }
+    fn needs_forces(&self) -> bool {
+        true
+    }
+    fn sample(&mut self, s: &ropewalk_core::Sample<'_>) -> std::ops::ControlFlow<()> {
+        let all = s.model.constraints();
+        let c = all.iter().position(|c| c.name() == "eyelet").expect("the eyelet");
+        self.1 = s.model.reaction(c, all[c].nodes()[0], &s.at, s.lambda)[2];
+        std::ops::ControlFlow::Continue(())
+    }
+}
+
+/// Feeds out from `l0` by `way` at 1 m/s and back again.
+fn out_and_back(l0: f64, way: f64, element: Option<f64>, eta: f64, elements: usize) -> Scene {
+    let mut section = Section::new(1.0, 1e6, 0.0);
+    section.axial_damping = eta;
+    let winch = WinchSpec { element, ..WinchSpec::motion("winch", "rope.start", "haul") };
+    let mut scene = hanging(l0, elements, section, winch, 9.81);
+    let turn = way + 2.0;
+    scene.motion(ropewalk_constraints::motion::SpeedTableSpec {
+        name: "haul".into(),
+        direction: [1.0, 0.0, 0.0],
+        file: None,
+        t: vec![0.0, 2.0, way, turn, turn + 2.0, turn + 4.0, 2.0 * way + 4.0, 2.0 * way + 6.0],
+        v: vec![0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0, 0.0],
+    });
+    scene
+}
+
+#[test]
+fn cable_is_paid_out_and_reeled_in_with_the_right_tension() {
+    for (element, elements) in [(None, 10), (Some(0.5), 3)] {
+        let (l0, way, ea, w) = (1.5, 8.0, 1e6, 9.81);
+        let scene = out_and_back(l0, way, element, 0.01, elements);
+        let damped = ropewalk_core::integrator::Scheme::GeneralizedAlpha { rho_inf: 0.5 };
+        let options = Options { scheme: damped, ..fixed(0.01) };
+        let mut s = hang(&scene, &options, ea, w, l0);
+        let motion = ropewalk_core::MotionSpec::build(&ropewalk_constraints::motion::SpeedTableSpec {
+            name: "haul".into(),
+            direction: [1.0, 0.0, 0.0],
+            file: None,
+            t: vec![0.0, 2.0, way, 10.0, 12.0, 14.0, 20.0, 22.0],
+            v: vec![0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0, 0.0],
+        })
+        .expect("motion");
+        let mut meshes = Meshes::default();
+        let (mut worst, mut tip) = (0.0_f64, 0.0_f64);
+        for k in 1..=215 {
+            let t = 0.1 * k as f64;
+            let end = s.advance(t, f64::INFINITY, &mut meshes).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(end, End::Done, "at {} s", s.state.t);
+            let now = motion.at(t);
+            let l = l0 + now.x[0];
+            let top = (w - now.a[0]) * l;
+            let error = (meshes.1 - top) / top;
+            if error.abs() > worst {
+                eprintln!("{t} {error:.2e} {:.2e}", (reaction(&s) - top) / top);
+            }
+            worst = worst.max(error.abs());
+            eprintln!(
+                "{t:.2} steps {} rejected {:?}  err {error:.2e} {:.2e}",
+                s.work.counts.steps,
+                s.work.counts,
+                (reaction(&s) - top) / top
+            );
+            let part = s.model.part("rope").expect("rope");
+            let at = s.state.at();
+            assert!((part.length_now(&at) - l).abs() < 1e-9, "length at {t} s");
+            let (x, _) = part.point(l, &at).expect("the end");
+            tip = tip.max((x[2] + l + w * l * l / (2.0 * ea)).abs());
+        }
+        eprintln!(
+            "{element:?}: tension {worst:.1e}, tip {tip:.1e}, {} changes, {} steps",
+            meshes.0.len(),
+            s.work.counts.steps
+        );
+        for m in &meshes.0 {
+            eprintln!("{m:?}");
+        }
+        eprintln!("{:?} {:e}", s.audit, s.audit.imbalance());
+        assert!(worst < 5e-3 && tip < 1e-2, "{element:?}: {worst:e}, {tip:e}");
+    }
+}
+
+fn controlled(tolerance: f64) -> Options {
+    Options { stepping: Stepping::Controlled { tolerance }, ..Options::default() }
 }

@@ -8,6 +8,7 @@ use crate::motion::Motion;
 use crate::node::{Node, NodeId, NodeKind};
 use crate::part::{Part, Spot, split_marker};
 use crate::pool::{Element, Pool};
+use crate::remesh::Mesh;
 use crate::scene::Water;
 use crate::simulation::Event;
 use crate::spec::MarkerRef;
@@ -118,7 +119,7 @@ pub struct Builder {
     /// Arc lengths at which a cable needs a node, by part.
     pins: HashMap<String, Vec<f64>>,
     /// Meshes that replace those of the specs, by part.
-    meshes: HashMap<String, Vec<f64>>,
+    meshes: HashMap<String, Mesh>,
     /// What flows through the ends of cables, by part: at its start, at its end.
     feeds: HashMap<String, [Option<Feed>; 2]>,
     water: Option<Water>,
@@ -347,7 +348,8 @@ impl Builder {
         let (name, end) = end_of(marker)?;
         let (_, part) = self.find(name, "marker")?;
         part.front(end).ok_or_else(|| {
-            let message = format!("material can flow through the ends of a cable, but `{name}` is a {}", part.kind());
+            let message =
+                format!("material can flow through the ends of a cable, but `{name}` is a {}", part.kind());
             BuildError::at("marker", message)
         })
     }
@@ -369,13 +371,18 @@ impl Builder {
     }
 
     /// Replaces the mesh of a part.
-    pub(crate) fn remesh(&mut self, part: &str, mesh: Vec<f64>) {
+    pub(crate) fn remesh(&mut self, part: &str, mesh: Mesh) {
         self.meshes.insert(part.to_string(), mesh);
     }
 
     /// The mesh that replaces that of a part's spec, if there is one.
-    pub fn mesh(&self, part: &str) -> Option<&[f64]> {
-        self.meshes.get(part).map(Vec::as_slice)
+    pub fn mesh(&self, part: &str) -> Option<&Mesh> {
+        self.meshes.get(part)
+    }
+
+    /// Whether meshes change while the model runs.
+    pub(crate) fn changes(&self) -> bool {
+        self.feeds.values().flatten().flatten().any(|f| f.element.is_some())
     }
 
     /// Makes a law act on the stations of parts; all parts that have stations if none is named.

@@ -74,6 +74,16 @@ pub trait Constraint: Send + Sync {
     fn imposes(&self) -> Option<&dyn Motion> {
         None
     }
+    /// The coordinate that it prescribes, if it does nothing else: its place and that of its velocity. Integrators then
+    /// take coordinate, velocity and acceleration from [`Constraint::prescribed`] instead of following the coordinate,
+    /// which would make accelerations ring.
+    fn prescribes(&self) -> Option<(usize, usize)> {
+        None
+    }
+    /// That coordinate, its velocity and its acceleration at time `t`.
+    fn prescribed(&self, _t: f64) -> [f64; 3] {
+        [f64::NAN; 3]
+    }
     /// First and last time for which it is defined.
     fn range(&self) -> (f64, f64) {
         (f64::NEG_INFINITY, f64::INFINITY)

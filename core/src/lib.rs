@@ -24,6 +24,7 @@ pub mod quantity;
 mod record;
 pub mod records;
 mod redundancy;
+mod remesh;
 pub mod rotation;
 mod scene;
 mod simulation;
@@ -51,7 +52,8 @@ pub use pattern::Pattern;
 pub use pool::{Batch, Element, Local, Pool, Share};
 pub use record::{Audit, Column, Record, Sample};
 pub use redundancy::Redundancy;
-pub use scene::{Analysis, Level, Plan, Run, Scene, SceneError, ShapeTitles, TableSpec, Water};
+pub use remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
+pub use scene::{Analysis, Level, Run, Scene, SceneError, ShapeTitles, TableSpec, Water};
 pub use simulation::{Action, End, Event, Observer, Simulation};
 pub use solver::{Chain, Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
 pub use spec::{

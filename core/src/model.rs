@@ -7,6 +7,8 @@ use crate::order::Rows;
 use crate::part::Part;
 use crate::pattern::Pattern;
 use crate::redundancy::Redundancy;
+use crate::remesh::Plan;
+use crate::scene::{Scene, SceneError};
 use crate::simulation::Event;
 use crate::state::{At, Control, State};
 use crate::structure::Structure;
@@ -27,6 +29,8 @@ pub struct Model {
     pub(crate) switches: Switches,
     /// Constraints that say what others have said.
     pub(crate) redundancy: Option<Redundancy>,
+    /// The scene that it was built of, if its mesh changes while it runs.
+    pub(crate) recipe: Option<Arc<Scene>>,
     structure: Structure,
     pattern: Pattern,
     touched: Vec<Rows>,
@@ -46,6 +50,8 @@ pub struct Model {
     finest: usize,
     /// The terms that see something ahead.
     watchful: Vec<usize>,
+    /// The constraints that prescribe a coordinate, and its places.
+    driven: Vec<(usize, usize, usize)>,
 }
 
 /// Where a run starts: configuration and velocities as the scene gives them.
@@ -127,6 +133,8 @@ impl Model {
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
         let watchful = (0..terms.len()).filter(|&k| terms[k].foresees()).collect();
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
+        let driven = constraints.iter().enumerate();
+        let driven = driven.filter_map(|(c, own)| own.prescribes().map(|(q, v)| (c, q, v))).collect();
         let mechanism = constraints.iter().any(|c| !c.linear());
         Model {
             nodes,
@@ -136,6 +144,7 @@ impl Model {
             start,
             switches: Switches::default(),
             redundancy: None,
+            recipe: None,
             structure,
             pattern,
             touched,
@@ -149,6 +158,7 @@ impl Model {
             flat,
             finest,
             watchful,
+            driven,
         }
     }
 
@@ -269,6 +279,24 @@ impl Model {
             }
         } else {
             retract(&self.nodes, q, d, out);
+        }
+    }
+
+    /// Sets the coordinates that motions prescribe, with their velocities and accelerations at time `t`.
+    pub(crate) fn drive(&self, t: f64, modes: &[f64], q: &mut [f64], v: &mut [f64], a: &mut [f64]) {
+        for &(c, at_q, at_v) in &self.driven {
+            if self.holds(c, modes) {
+                [q[at_q], v[at_v], a[at_v]] = self.constraints[c].prescribed(t);
+            }
+        }
+    }
+
+    /// Leaves out what a vector of velocities has of prescribed coordinates.
+    pub(crate) fn without_driven(&self, modes: &[f64], x: &mut [f64]) {
+        for &(c, _, at) in &self.driven {
+            if self.holds(c, modes) {
+                x[at] = 0.0;
+            }
         }
     }
 
@@ -530,6 +558,19 @@ impl Model {
             p.supplied += rate.iter().zip(&lambda[self.rows_of(c)]).map(|(r, l)| r * l).sum::<f64>();
         }
         p
+    }
+
+    /// The same scene on other meshes.
+    ///
+    /// # Errors
+    /// The mesh of this model never changes, or the new one can't be built.
+    pub fn remesh(&self, plan: &Plan) -> Result<Model, SceneError> {
+        let none = || SceneError {
+            spec: None,
+            error: crate::BuildError::new("this model doesn't know its scene: no winch of it makes elements"),
+        };
+        let model = self.recipe.as_ref().ok_or_else(none)?.build_on(plan)?;
+        Ok(model.with_width(self.width))
     }
 
     /// A state of another model of the same scene brought over to this one: each part interpolates its own. The

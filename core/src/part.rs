@@ -5,6 +5,7 @@ use crate::held::Held;
 use crate::lane::V3;
 use crate::marker::Marker;
 use crate::node::{Node, NodeId};
+use crate::remesh::{Change, Mesh};
 use crate::state::At;
 use crate::station::Stations;
 use crate::term::Term;
@@ -123,6 +124,17 @@ pub trait Part: Send + Sync {
     /// First coordinate and velocity of each of its own nodes, in order.
     fn seats(&self) -> Vec<(usize, usize)> {
         Vec::new()
+    }
+    /// Length of the element at an end [m]: 0 the start, 1 the end.
+    fn end_element(&self, _end: usize, _at: &At<'_>) -> Option<f64> {
+        None
+    }
+    /// Its mesh after a change, with the state that it goes on from; nothing where the mesh of its spec does.
+    ///
+    /// # Errors
+    /// The change can't be made.
+    fn remesh(&self, _change: Change, _at: &At<'_>) -> Result<Option<Mesh>, String> {
+        Ok(None)
     }
     /// Its state carried over to this part of another model, where the mesh may differ: sets the coordinates and
     /// velocities of this part's nodes by interpolation of `old`.

@@ -29,6 +29,9 @@ pub struct Audit {
     pub carried: f64,
     /// Energy dissipated since the start [J].
     pub dissipated: f64,
+    /// Energy that changes of the mesh have added since the start [J].
+    #[serde(default)]
+    pub remeshed: f64,
     /// Energy at the start [J].
     pub initial: f64,
     /// Largest energy or work that occurred, to compare the imbalance with [J].
@@ -62,7 +65,8 @@ impl Audit {
     /// What the balance misses: energy gained beyond what was supplied and not dissipated [J]. Numerical damping
     /// makes it negative.
     pub fn imbalance(&self) -> f64 {
-        self.kinetic + self.potential - self.initial - self.supplied - self.carried + self.dissipated
+        self.kinetic + self.potential - self.initial - self.supplied - self.carried - self.remeshed
+            + self.dissipated
     }
 }
 

@@ -6,10 +6,11 @@ use crate::integrator::Options;
 use crate::model::Model;
 use crate::motion::SteadyFrame;
 use crate::record::Record;
+use crate::remesh::Plan;
 use crate::spec::{ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
 use crate::statics::StaticsOptions;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -190,8 +191,9 @@ impl Run {
     }
 }
 
-/// A scene: lists of specs, and options. Build a [`Model`] of it, or run it with `ropewalk::simulate`.
-#[derive(Debug, Default)]
+/// A scene: lists of specs, and options. Build a [`Model`] of it, or run it with `ropewalk::simulate`. A clone shares the
+/// specs.
+#[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// One line that says what it shows.
     pub title: String,
@@ -200,15 +202,15 @@ pub struct Scene {
     /// The water, if there is any.
     pub water: Option<Water>,
     /// Cables, bodies, masses.
-    pub elements: Vec<Box<dyn ElementSpec>>,
+    pub elements: Vec<Arc<dyn ElementSpec>>,
     /// What holds them.
-    pub constraints: Vec<Box<dyn ConstraintSpec>>,
+    pub constraints: Vec<Arc<dyn ConstraintSpec>>,
     /// What acts on them.
-    pub forces: Vec<Box<dyn ForceSpec>>,
+    pub forces: Vec<Arc<dyn ForceSpec>>,
     /// Prescribed motions, by name.
-    pub motions: Vec<Box<dyn MotionSpec>>,
+    pub motions: Vec<Arc<dyn MotionSpec>>,
     /// Outputs.
-    pub records: Vec<Box<dyn RecordSpec>>,
+    pub records: Vec<Arc<dyn RecordSpec>>,
     /// What is run and how long.
     pub run: Run,
     /// How it is integrated.
@@ -227,9 +229,6 @@ pub struct SceneError {
     pub error: BuildError,
 }
 
-/// New meshes: for each named part the unstretched arc lengths of its nodes.
-pub type Plan = BTreeMap<String, Vec<f64>>;
-
 impl Scene {
     /// An empty scene.
     pub fn new() -> Self {
@@ -238,27 +237,27 @@ impl Scene {
 
     /// Adds an element.
     pub fn element(&mut self, spec: impl ElementSpec + 'static) -> &mut Self {
-        self.elements.push(Box::new(spec));
+        self.elements.push(Arc::new(spec));
         self
     }
     /// Adds a constraint.
     pub fn constraint(&mut self, spec: impl ConstraintSpec + 'static) -> &mut Self {
-        self.constraints.push(Box::new(spec));
+        self.constraints.push(Arc::new(spec));
         self
     }
     /// Adds a force.
     pub fn force(&mut self, spec: impl ForceSpec + 'static) -> &mut Self {
-        self.forces.push(Box::new(spec));
+        self.forces.push(Arc::new(spec));
         self
     }
     /// Adds a motion.
     pub fn motion(&mut self, spec: impl MotionSpec + 'static) -> &mut Self {
-        self.motions.push(Box::new(spec));
+        self.motions.push(Arc::new(spec));
         self
     }
     /// Adds a record.
     pub fn record(&mut self, spec: impl RecordSpec + 'static) -> &mut Self {
-        self.records.push(Box::new(spec));
+        self.records.push(Arc::new(spec));
         self
     }
 
@@ -316,7 +315,11 @@ impl Scene {
         self.run.check().map_err(whole)?;
         self.statics.check().map_err(whole)?;
         self.solver.check().map_err(|e| whole(BuildError::new(e)))?;
-        let model = b.finish().map_err(whole)?;
+        let changes = b.changes();
+        let mut model = b.finish().map_err(whole)?;
+        if changes {
+            model.recipe = Some(Arc::new(self.clone()));
+        }
         for c in model.constraints() {
             let ((first, last), name) = (c.range(), c.name());
             if first > 0.0 {

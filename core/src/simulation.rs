@@ -5,9 +5,11 @@ use crate::integrator::{
     Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, consistent, prepare, restart,
 };
 use crate::model::Model;
+use crate::part::Quantity;
 use crate::record::{Audit, Sample};
+use crate::remesh::Remeshed;
 use crate::state::State;
-use crate::term::Power;
+use crate::term::{Energy, Power};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -22,6 +24,8 @@ pub enum Action {
     Remesh(Box<Model>),
     /// The run is over.
     Stop,
+    /// What should have happened can't, for this reason: the run ends with an error.
+    Fail(String),
 }
 
 /// A scalar function of the state whose change of sign is located in time, and what happens there.
@@ -36,6 +40,10 @@ pub trait Event: Send + Sync {
     }
     /// What happens there.
     fn act(&self, model: &Model, state: &mut State) -> Action;
+    /// The part whose mesh it changes, and at which end, for the report.
+    fn remeshes(&self) -> Option<(&str, usize)> {
+        None
+    }
 }
 
 /// Sees every accepted step and every sample, read-only: recorders, progress bars.
@@ -54,6 +62,8 @@ pub trait Observer {
     }
     /// An event was located.
     fn event(&mut self, _name: &str, _t: f64) {}
+    /// The mesh has changed.
+    fn remeshed(&mut self, _report: &Remeshed) {}
 }
 
 /// An observer that looks away.
@@ -341,8 +351,13 @@ impl Simulation {
                 return Ok(None);
             }
             Action::Stop => return Ok(Some(End::Stopped { by: self.events[k].0.name() })),
+            Action::Fail(why) => {
+                return Err(StepError::Event { t: self.state.t, event: self.events[k].0.name(), why });
+            }
             Action::Restart => {}
             Action::Remesh(model) => {
+                let event = self.events[k].0.clone();
+                let before = self.measure(event.as_ref());
                 self.state = model.carry(&self.model, &self.state);
                 self.work = Workspace::new(&model).map_err(|source| StepError::Linear {
                     t: self.state.t,
@@ -354,6 +369,7 @@ impl Simulation {
                 let new = model.events().iter().map(|e| (e.clone(), 0.0)).collect::<Vec<_>>();
                 self.events.splice(..own, new);
                 self.model = Arc::from(model);
+                self.report(event.as_ref(), before, observer);
             }
         }
         // history doesn't reach across an event
@@ -363,6 +379,30 @@ impl Simulation {
         self.state.control.h_next = 0.1 * h;
         self.resume(k, changed);
         Ok(None)
+    }
+
+    /// Energy, momentum, and the tension where an event changes the mesh.
+    fn measure(&mut self, event: &dyn Event) -> (Energy, [f64; 3], f64) {
+        let (model, at) = (&self.model, self.state.at());
+        let tension = event.remeshes().and_then(|(name, end)| {
+            let part = model.part(name)?;
+            part.observe(Quantity::Tension, if end == 0 { 0.0 } else { part.length_now(&at) }, &at)
+        });
+        (model.energy(&at), self.work.momentum(model, &self.state), tension.unwrap_or(f64::NAN))
+    }
+
+    fn report(&mut self, event: &dyn Event, before: (Energy, [f64; 3], f64), observer: &mut dyn Observer) {
+        let after = self.measure(event);
+        let report = Remeshed {
+            name: event.name(),
+            t: self.state.t,
+            kinetic: after.0.kinetic - before.0.kinetic,
+            potential: after.0.potential - before.0.potential,
+            momentum: std::array::from_fn(|i| after.1[i] - before.1[i]),
+            tension: [before.2, after.2],
+        };
+        self.audit.remeshed += report.kinetic + report.potential;
+        observer.remeshed(&report);
     }
 
     /// Goes on from a state that event `k` has seen; `changed` says that it has changed a mode.

@@ -48,6 +48,13 @@ impl Constraint for Feeding {
         let moving = self.motion.at(at.t);
         (rate[0], bias[0]) = (-moving.v[0], -moving.a[0]);
     }
+    fn prescribes(&self) -> Option<(usize, usize)> {
+        Some((self.front.q, self.front.v))
+    }
+    fn prescribed(&self, t: f64) -> [f64; 3] {
+        let (moving, sign) = (self.motion.at(t), self.front.sign);
+        [self.front.home + sign * moving.x[0], sign * moving.v[0], sign * moving.a[0]]
+    }
     fn range(&self) -> (f64, f64) {
         self.motion.range()
     }

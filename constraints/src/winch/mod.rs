@@ -4,8 +4,10 @@ mod feeding;
 mod limit;
 mod pull;
 mod spec;
+mod zone;
 
 pub use feeding::Feeding;
 pub use limit::{Limit, Side};
 pub use pull::Pull;
 pub use spec::WinchSpec;
+pub use zone::Zone;

@@ -1,6 +1,6 @@
 //! `type = "winch"`.
 
-use super::{Feeding, Limit, Pull, Side};
+use super::{Feeding, Limit, Pull, Side, Zone};
 use crate::motion::Straight;
 use ropewalk_core::build::{BuildError, Builder, not_negative, positive};
 use ropewalk_core::{ConstraintSpec, Feed, MarkerRef, Motion, Moving, quantity, register_spec};
@@ -13,6 +13,9 @@ fn ramp() -> f64 {
 }
 fn slip() -> f64 {
     1e-3
+}
+fn release() -> f64 {
+    0.1
 }
 fn rest() -> f64 {
     f64::INFINITY
@@ -30,7 +33,11 @@ pub struct WinchSpec {
     /// The end of the cable: `hose.start` or `hose.end`.
     pub marker: MarkerRef,
     /// Speed at which it feeds out after the ramp [m/s]; negative reels in.
-    #[serde(default, deserialize_with = "quantity::optional::speed", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::speed",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub speed: Option<f64>,
     /// Time at which it starts [s].
     #[serde(default, deserialize_with = "quantity::time")]
@@ -45,7 +52,11 @@ pub struct WinchSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
     /// Tension that holds the end back where the speed isn't prescribed [N].
-    #[serde(default, deserialize_with = "quantity::optional::force", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::force",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub tension: Option<f64>,
     /// Dry friction of a brake [N].
     #[serde(default, deserialize_with = "quantity::force")]
@@ -66,13 +77,24 @@ pub struct WinchSpec {
     #[serde(default = "rest", deserialize_with = "quantity::length", skip_serializing_if = "is_infinite")]
     pub stock: f64,
     /// Shortest length that the cable is reeled in to [m], where the run ends; left out, a twentieth of its length at
-    /// the start.
-    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    /// the start, or two elements.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub shortest: Option<f64>,
     /// Length of elements [m] that are born and swallowed at this end; left out, all elements of the cable grow and
     /// shrink together, which is smoother and does for a change of length up to ten times or so.
-    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub element: Option<f64>,
+    /// Time in which the strain fades that keeps the tension from jumping when an element is born or swallowed [s].
+    #[serde(default = "release", deserialize_with = "quantity::time")]
+    pub release: f64,
 }
 register_spec!(Constraint, "winch", WinchSpec);
 
@@ -129,6 +151,7 @@ impl WinchSpec {
             stock: rest(),
             shortest: None,
             element: None,
+            release: release(),
         }
     }
 
@@ -216,12 +239,39 @@ impl ConstraintSpec for WinchSpec {
             b.event(limit(Side::Empty, positive("stock", self.stock)?));
         }
         let whole = part.length();
-        let shortest = positive("shortest", self.shortest.unwrap_or(0.05 * whole))?;
+        // an element can't be swallowed by the last one
+        let least = self.element.map_or(0.05 * whole, |e| (2.0 * e).max(0.05 * whole));
+        let shortest = positive("shortest", self.shortest.unwrap_or(least))?;
         if shortest >= whole {
             let message = format!("the cable is {whole} m long at the start, and `shortest` must be less");
             return Err(BuildError::at("shortest", message));
         }
         b.event(limit(Side::Short, shortest));
+        if let Some(element) = self.element {
+            let (element, release) = (positive("element", element)?, positive("release", self.release)?);
+            if element > 0.5 * whole {
+                let message = format!(
+                    "the cable is {whole} m long at the start: take elements of at most half of that"
+                );
+                return Err(BuildError::at("element", message));
+            }
+            if self.shortest.is_some_and(|s| s < 2.0 * element) {
+                let message = format!(
+                    "elements of {element} m leave no cable shorter than two of them, but `shortest` does"
+                );
+                return Err(BuildError::at("shortest", message));
+            }
+            for grows in [true, false] {
+                b.event(Zone {
+                    winch: self.name.clone(),
+                    part: part.name().to_string(),
+                    end: usize::from(front.sign > 0.0),
+                    element,
+                    release,
+                    grows,
+                });
+            }
+        }
         Ok(())
     }
 }

@@ -136,7 +136,14 @@ impl Alpha {
 
     /// Estimated error of the trial over the tolerance: `|Cq h² (a₊ - a)|`, without what the constraints and the
     /// numerical damping take away, per unit step.
-    fn error(&self, model: &Model, work: &mut Workspace, h: f64, tolerance: f64) -> Result<f64, SolveError> {
+    fn error(
+        &self,
+        model: &Model,
+        modes: &[f64],
+        work: &mut Workspace,
+        h: f64,
+        tolerance: f64,
+    ) -> Result<f64, SolveError> {
         let factor = self.scheme.error_constant() * h * h;
         let turn = model.turn(&work.trial.d);
         let (nv, mut e, mut rhs) =
@@ -145,6 +152,8 @@ impl Alpha {
         for (e, (new, old)) in e.iter_mut().zip(t.aux.iter().zip(&t.aux_old)) {
             *e = factor * self.scheme.mass() * (new - old);
         }
+        // what is prescribed has no error
+        model.without_driven(modes, &mut e);
         rhs.clear();
         rhs.resize(model.structure().n, 0.0);
         work.times_mass(model, &e, &mut rhs[..nv]);
@@ -177,8 +186,9 @@ impl Alpha {
             }
             Stepping::Fixed { .. } => Ok(Verdict::Good { error: 0.0 }),
             Stepping::Controlled { tolerance } => {
-                let error =
-                    self.error(model, work, h, tolerance).map_err(|source| linear(model, state.t, source))?;
+                let error = self
+                    .error(model, &state.modes, work, h, tolerance)
+                    .map_err(|source| linear(model, state.t, source))?;
                 match error {
                     e if e <= 1.0 => Ok(Verdict::Good { error }),
                     e if e.is_nan() => bad("the error estimate is not a number"),

@@ -63,6 +63,16 @@ pub enum StepError {
         /// The unknown at the pivot.
         unknown: String,
     },
+    /// An event can't do what it should.
+    #[error("at t = {t:.6} s, {event}: {why}")]
+    Event {
+        /// Time [s].
+        t: f64,
+        /// Which event.
+        event: String,
+        /// Why not.
+        why: String,
+    },
     /// The start is not on the constraints and is too far away to be corrected without asking.
     #[error("{0}")]
     Inconsistent(String),

@@ -90,6 +90,7 @@ impl Newton<'_> {
             t.d.iter_mut().zip(&t.shift).for_each(|(d, shift)| *d += shift);
         }
         self.model.retract(&self.state.q, &t.d, &mut t.q);
+        self.model.drive(self.state.t + h, &self.state.modes, &mut t.q, &mut t.v, &mut t.a);
     }
 
     /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.

@@ -2,9 +2,10 @@
 
 use super::radau::Stages;
 use crate::model::{Model, System};
+use crate::node::NodeKind;
 use crate::redundancy::Softening;
 use crate::solver::{Guard, SolveError};
-use crate::state::At;
+use crate::state::{At, State};
 use crate::structure::Structure;
 use crate::term::Weights;
 use std::time::{Duration, Instant};
@@ -310,6 +311,18 @@ impl Workspace {
         s.order(d, &mut self.x);
         s.multiply(&self.mass.values, &self.x, &mut self.y);
         s.restore(&self.y, out);
+    }
+
+    /// Momentum of the whole model [kg m/s]; NaN where the mass matrix can't be had.
+    pub(crate) fn momentum(&mut self, model: &Model, state: &State) -> [f64; 3] {
+        if self.assemble_mass(model, &state.at(), &state.lambda, 0.0, false).is_err() {
+            return [f64::NAN; 3];
+        }
+        let mut all = vec![0.0; model.structure().n];
+        self.times_mass(model, &state.v, &mut all);
+        // the equations of positions are those that a displacement of everything does work on
+        let moving = model.nodes().iter().filter(|n| !matches!(n.kind, NodeKind::Scalars(_)));
+        moving.fold([0.0; 3], |sum, n| std::array::from_fn(|i| sum[i] + all[n.v + i]))
     }
 
     /// `sqrt(dᵀ M d / total mass)` with the lumped mass matrix: a length that doesn't depend on the mesh [m].

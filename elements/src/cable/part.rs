@@ -1,5 +1,6 @@
 //! A cable as a part of a model: its markers, its stations, what can be observed along it.
 
+use super::flow::change::{self, Snapshot};
 use super::flow::{Line, push};
 use super::output::read;
 use super::shape::{hermite, hermite_slope, natural, second};
@@ -7,8 +8,8 @@ use super::spec::Section;
 use super::{CableModel, CableParams};
 use ropewalk_core::held::Held;
 use ropewalk_core::{
-    At, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Node, NodeId, Part, Per, Quantity, Spot, Stations, Term,
-    V3,
+    At, Change, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Mesh, MeshState, Node, NodeId, Part, Per,
+    Prestrain, Quantity, Spot, Stations, Term, V3,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -25,6 +26,12 @@ pub struct CablePart {
     pub(crate) stations: Arc<dyn Stations>,
     /// How its nodes move along its material, if an end feeds.
     pub(crate) line: Option<Line>,
+    /// Length at the start of the run [m], where an end feeds.
+    pub(crate) laid: f64,
+    /// Whether it goes on from a state that it was given.
+    pub(crate) carried: bool,
+    /// Strain that fades out, of elements that were born.
+    pub(crate) prestrain: Vec<Prestrain>,
     /// The nodes of the model up to its own.
     pub(crate) all: Vec<Node>,
     pub(crate) model: CableModel,
@@ -70,6 +77,40 @@ impl CablePart {
     fn velocities(&self, k: usize, v: &[f64]) -> [f64; 12] {
         let (a, b) = (self.seats[k].1, self.seats[k + 1].1);
         std::array::from_fn(|i| if i < 6 { v[a + i] } else { v[b + i - 6] })
+    }
+
+    /// What is left of the strain of element `k` that fades out.
+    fn fading(&self, k: usize, xi: f64, t: f64) -> f64 {
+        let own = self.prestrain.iter().filter(|p| p.element == k);
+        own.map(|p| match change::points(self.model) {
+            Ok(points) => p.left(t).0 * change::interpolate(&points, &p.strain, xi),
+            Err(_) => 0.0,
+        })
+        .sum()
+    }
+
+    /// The state of a line, node by node.
+    fn snapshot(&self, line: &Line, at: &At<'_>) -> Result<Snapshot, String> {
+        let three = |x: &[f64], i: usize| [x[i], x[i + 1], x[i + 2]];
+        let nodes = 0..self.mesh.len();
+        let mut snapshot = Snapshot {
+            p: nodes.clone().map(|k| line.p(k, at.q)).collect(),
+            pd: nodes.clone().map(|k| line.rate(k, at.v)).collect(),
+            r: self.seats.iter().map(|s| three(at.q, s.0)).collect(),
+            s: self.seats.iter().map(|s| three(at.q, s.0 + 3)).collect(),
+            rd: self.seats.iter().map(|s| three(at.v, s.1)).collect(),
+            sd: self.seats.iter().map(|s| three(at.v, s.1 + 3)).collect(),
+            stress: Vec::new(),
+        };
+        for k in 0..self.mesh.len() - 1 {
+            let mut stress = change::strains(self.model, &snapshot.dofs(k), snapshot.l(k))?;
+            for p in self.prestrain.iter().filter(|p| p.element == k) {
+                let left = p.left(at.t).0;
+                stress.iter_mut().zip(&p.strain).for_each(|(s, p)| *s -= left * p);
+            }
+            snapshot.stress.push(stress);
+        }
+        Ok(snapshot)
     }
 
     /// Second derivative of the curve at an end of element `k`: at its start, or at its end.
@@ -119,7 +160,8 @@ impl Part for CablePart {
         "cable"
     }
     fn length(&self) -> f64 {
-        self.mesh[self.mesh.len() - 1] - self.mesh[0]
+        // tolerances go by it, so that it doesn't change with the mesh
+        if self.line.is_some() { self.laid } else { self.mesh[self.mesh.len() - 1] }
     }
     fn length_now(&self, at: &At<'_>) -> f64 {
         match &self.line {
@@ -133,6 +175,9 @@ impl Part for CablePart {
 
     fn start_feeding(&self, end: usize, rate: f64, q: &[f64], v: &mut [f64]) {
         let (Some(line), Some(front)) = (&self.line, self.front(end)) else { return };
+        if self.carried {
+            return;
+        }
         let before: Vec<f64> = (0..self.mesh.len()).map(|k| line.rate(k, v)).collect();
         v[front.v] = rate;
         for (k, before) in before.into_iter().enumerate() {
@@ -180,8 +225,10 @@ impl Part for CablePart {
 
     fn watched(&self, spot: &Spot) -> Result<Marker, String> {
         if let (Some(_), Spot::Share(share)) = (&self.line, spot) {
-            let s = self.mesh[0] + share * self.length();
-            let k = self.mesh.iter().position(|x| (x - s).abs() <= 1e-9 * self.length());
+            let (from, to) = (self.mesh[0], self.mesh[self.mesh.len() - 1]);
+            let s = from + share * (to - from);
+            let evenly = self.line.as_ref().is_some_and(|line| line.zone == [false; 2]);
+            let k = self.mesh.iter().position(|x| evenly && (x - s).abs() <= 1e-9 * (to - from));
             return k.map(|k| Marker::node(self.nodes[k])).ok_or_else(|| "there is no node".into());
         }
         self.marker(spot)
@@ -268,7 +315,7 @@ impl Part for CablePart {
         let rest = self.rest.as_ref().map(|r| &r[k]);
         let r = read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()?;
         Some(match what {
-            Quantity::Tension => r.tension - s.ea * self.offset.0,
+            Quantity::Tension => r.tension - s.ea * (self.offset.0 + self.fading(k, xi, at.t)),
             Quantity::Strain => r.strain,
             Quantity::Curvature => r.curvature,
             Quantity::Moment => r.moment - s.ei * self.offset.1,
@@ -295,6 +342,52 @@ impl Part for CablePart {
         points
     }
 
+    fn end_element(&self, end: usize, at: &At<'_>) -> Option<f64> {
+        let (line, last) = (self.line.as_ref()?, self.mesh.len() - 1);
+        let k = if end == 0 { 0 } else { last - 1 };
+        Some(line.p(k + 1, at.q) - line.p(k, at.q))
+    }
+
+    fn remesh(&self, what: Change, at: &At<'_>) -> Result<Option<Mesh>, String> {
+        let Some(line) = &self.line else { return Ok(None) };
+        let (mut new, last) = (self.snapshot(line, at)?, self.mesh.len() - 1);
+        // elements whose strain goes on fading, by their new numbers, and those that are new
+        let mut fading: Vec<Prestrain> =
+            self.prestrain.iter().filter(|p| p.left(at.t).0 > 0.0).cloned().collect();
+        let mut born: Vec<(usize, Vec<f64>)> = Vec::new();
+        let mut time = 0.0;
+        match what {
+            Change::None => {}
+            Change::Split { end, keep, release } => {
+                let k = if end == 0 { 0 } else { last - 1 };
+                let p = if end == 0 { new.p[1] - keep } else { new.p[last - 1] + keep };
+                fading.retain(|p| p.element != k);
+                fading.iter_mut().filter(|p| p.element > k).for_each(|p| p.element += 1);
+                let [a, b] = new.split(k, p, self.model)?;
+                (born, time) = (vec![(k, a), (k + 1, b)], release);
+            }
+            Change::Merge { end, release } => {
+                if last < 2 {
+                    return Err("there is but one element left, which can't be merged".into());
+                }
+                let k = if end == 0 { 1 } else { last - 1 };
+                fading.retain(|p| p.element + 1 != k && p.element != k);
+                fading.iter_mut().filter(|p| p.element >= k).for_each(|p| p.element -= 1);
+                (born, time) = (vec![(k - 1, new.merge(k, end, self.model)?)], release);
+            }
+        }
+        for (element, stress) in born {
+            let strain = new.prestrain(element, &stress, self.model)?;
+            fading.push(Prestrain { element, strain, since: at.t, release: time });
+        }
+        let both = |a: &[V3<f64>], b: &[V3<f64>]| -> Vec<Vec<f64>> {
+            a.iter().zip(b).map(|(a, b)| [*a, *b].concat()).collect()
+        };
+        let fronts = new.rates(line);
+        let state = MeshState { q: both(&new.r, &new.s), v: both(&new.rd, &new.sd), fronts };
+        Ok(Some(Mesh { nodes: new.p, state: Some(state), prestrain: fading }))
+    }
+
     fn place_of(&self, node: NodeId) -> Option<String> {
         if let Some(line) = &self.line
             && let Some((end, _)) = line.fronts.iter().find(|(_, f)| f.node == node)
@@ -310,6 +403,9 @@ impl Part for CablePart {
     }
 
     fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
+        if self.carried {
+            return;
+        }
         for (k, &id) in self.nodes.iter().enumerate() {
             let node = &nodes[id.0 as usize];
             if let Some((x, dx)) = old.slope(self.mesh[k], at.q, true) {

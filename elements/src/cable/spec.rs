@@ -1,16 +1,17 @@
 //! `type = "cable"`: what a scene says about a cable.
 
 use super::damping::{push_axial_damping, push_bending_damping};
-use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
-use super::flow::push::{self, Piece};
 use super::flow::Line;
+use super::flow::push::{self, Piece};
+use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::{CablePart, mesh};
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
 use crate::path::Path;
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
 use ropewalk_core::{
-    Element, ElementSpec, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, quantity, register_spec,
+    Element, ElementSpec, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, quantity,
+    register_spec,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -195,6 +196,7 @@ impl CableSpec {
         mesh: &[f64],
         nodes: &[NodeId],
         feeding: [Option<Feed>; 2],
+        rates: [f64; 2],
     ) -> Result<Line, BuildError> {
         push::check(model)?;
         if self.stress_free == StressFree::AsLaid || self.strain != 0.0 || self.curvature != 0.0 {
@@ -205,7 +207,7 @@ impl CableSpec {
         let mut fronts = Vec::new();
         for (end, _) in feeding.iter().enumerate().filter(|(_, f)| f.is_some()) {
             let at = if end == 0 { 0 } else { mesh.len() - 1 };
-            let node = b.node(NodeKind::Scalars(1), &[mesh[at]], &[0.0])?;
+            let node = b.node(NodeKind::Scalars(1), &[mesh[at]], &[rates[end]])?;
             b.share(node);
             let (own, there) = (b.nodes()[node.0 as usize], b.nodes()[nodes[at].0 as usize]);
             fronts.push((
@@ -308,8 +310,9 @@ impl ElementSpec for CableSpec {
         let mut pins = b.pins(&self.name);
         pins.extend(path.corners().iter().map(|c| c / stretch));
         pins.sort_by(f64::total_cmp);
-        let mesh = match b.mesh(&self.name) {
-            Some(m) => m.to_vec(),
+        let given = b.mesh(&self.name).cloned();
+        let mesh = match &given {
+            Some(m) => m.nodes.clone(),
             None => mesh(length, self.elements, &pins),
         };
         let feeding = b.feeding(&self.name);
@@ -320,12 +323,16 @@ impl ElementSpec for CableSpec {
 
         let mut nodes = Vec::with_capacity(mesh.len());
         let mut seats = Vec::with_capacity(mesh.len());
-        for &at in &mesh {
+        let state = given.as_ref().and_then(|m| m.state.as_ref());
+        for (k, &at) in mesh.iter().enumerate() {
             // a cable that has fed since it was laid gets its true shape from the state before
             let (x, t) = path.at((at * stretch).clamp(0.0, path.length()));
             let q = [x[0], x[1], x[2], t[0] * stretch, t[1] * stretch, t[2] * stretch];
             let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0];
-            let node = b.node(NodeKind::Slope, &q, &v)?;
+            let node = match state {
+                Some(state) => b.node(NodeKind::Slope, &state.q[k], &state.v[k])?,
+                None => b.node(NodeKind::Slope, &q, &v)?,
+            };
             nodes.push(node);
             let n = &b.nodes()[node.0 as usize];
             seats.push((n.q, n.v));
@@ -335,7 +342,9 @@ impl ElementSpec for CableSpec {
             transverse: self.transverse,
             integration: self.integration,
         };
-        let line = if feeds { Some(self.line(b, model, length, &mesh, &nodes, feeding)?) } else { None };
+        let rates = state.map_or([0.0; 2], |s| s.fronts);
+        let line =
+            if feeds { Some(self.line(b, model, length, &mesh, &nodes, feeding, rates)?) } else { None };
         let flows = |k: usize| line.as_ref().filter(|line| line.flows(k));
         let all = b.coordinates();
         let dofs = |k: usize| -> [f64; 12] {
@@ -365,7 +374,18 @@ impl ElementSpec for CableSpec {
             Some(line) => push::stations(b.nodes(), line, &nodes, s)?,
             None => stations(b.nodes(), &mesh, &nodes, s)?,
         };
+        let prestrain = given.as_ref().map_or_else(Vec::new, |m| m.prestrain.clone());
+        if let Some(line) = &line {
+            for strain in &prestrain {
+                let k = strain.element;
+                let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
+                push::fading(b, model, strain, s, &self.name, &piece)?;
+            }
+        }
         b.part(Arc::new(CablePart {
+            laid: length,
+            carried: state.is_some(),
+            prestrain,
             name: self.name.clone(),
             nodes,
             seats,

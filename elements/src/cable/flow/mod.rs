@@ -12,11 +12,13 @@
 //! The equations are d'Alembert's principle at fixed material points, so no flux stands at the ends; the elastic
 //! energy of what passes an open end does ([`FlowEnd`]). There is no `m V²` in the tension of a hanging cable.
 
+pub(super) mod change;
 mod damping;
 mod element;
 mod embedding;
 mod end;
 mod line;
+pub(super) mod prestrain;
 pub(super) mod push;
 mod rule;
 mod stations;

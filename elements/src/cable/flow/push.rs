@@ -1,16 +1,19 @@
 //! Puts the elements of a flowing cable into a model.
 
+use super::embedding::Embedding;
 use super::line::Line;
+use super::prestrain::{self, Place};
 use super::{FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight};
-use crate::cable::model::{CableModel, LongitudinalModel, WithModels, with_models};
-use crate::cable::spec::Section;
 use crate::cable::longitudinal::Longitudinal;
+use crate::cable::model::{CableModel, LongitudinalModel, WithModels, with_models};
 use crate::cable::quadrature::Rule;
+use crate::cable::spec::Section;
 use crate::cable::transverse::Transverse;
 use crate::cable::{AxialDamping, BendingDamping, CableParams};
 use ropewalk_core::build::{BuildError, Builder};
 use ropewalk_core::{
-    Assembly, At, DeadLoad, Energy, Node, NodeId, Pattern, Pool, Power, StationPool, Stations, Term, V3,
+    Assembly, At, DeadLoad, Energy, Node, NodeId, Pattern, Pool, Power, Prestrain, StationPool, Stations,
+    Term, V3,
 };
 use std::sync::Arc;
 
@@ -60,7 +63,8 @@ macro_rules! push {
             }
         }
         if s.axial_damping > 0.0 {
-            let damping = AxialDamping::<$L, <$Q as Rule>::Axial>::new($self.params.l, s.axial_damping * s.ea);
+            let damping =
+                AxialDamping::<$L, <$Q as Rule>::Axial>::new($self.params.l, s.axial_damping * s.ea);
             $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
         }
         if s.bending_damping > 0.0 && s.ei > 0.0 {
@@ -88,6 +92,35 @@ pub(crate) fn push(
     piece: &Piece<'_>,
 ) -> Result<(), BuildError> {
     with_models(model, Push { b, params, section, piece }).map_err(BuildError::new)?
+}
+
+/// Adds the strain of an element that fades out.
+pub(crate) fn fading(
+    b: &mut Builder,
+    model: CableModel,
+    strain: &Prestrain,
+    section: &Section,
+    name: &str,
+    piece: &Piece<'_>,
+) -> Result<(), BuildError> {
+    let (line, k) = (piece.line, piece.k);
+    let nodes: Vec<Node> = piece.nodes().iter().map(|n| b.nodes()[n.0 as usize]).collect();
+    let last = line.nodes.len() - 2;
+    let end = line.fronts.iter().enumerate().map(|(f, (end, _))| (*end, f));
+    let mut by = Embedding { fixed: [line.nodes[k].fixed, line.nodes[k + 1].fixed], by: [[0.0; 2]; 2] };
+    for f in 0..line.fronts.len() {
+        by.by[f] = [line.nodes[k].by[f], line.nodes[k + 1].by[f]];
+    }
+    let place = Place {
+        label: format!("{name}: prestrain"),
+        ea: section.ea,
+        q: nodes.iter().flat_map(Node::coords).collect(),
+        v: nodes.iter().flat_map(Node::dofs).collect(),
+        by,
+        end: end.into_iter().find(|&(end, _)| k == if end == 0 { 0 } else { last }),
+    };
+    b.term(prestrain::fading(model, strain.clone(), place).map_err(BuildError::new)?);
+    Ok(())
 }
 
 /// The stations of all elements of a line.
