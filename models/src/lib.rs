@@ -1,4 +1,7 @@
-//! The cases that come with Ropewalk: scene files, compiled into the program.
+//! The cases that come with Ropewalk: scene files, compiled into the program; and solvers of their own kind for single
+//! problems.
+
+pub mod unwinding;
 
 /// A scene that is known by its name.
 ///
