@@ -5,12 +5,11 @@ use super::problem::{Eyelet, LiftOff, Rule, Unwinding};
 use super::state::{Column, Now, Rates, State, length, minus, plus};
 use ropewalk_core::{V3, dot};
 
-/// Curvature vector at an end where the cable is held along the unit vector `d`, which points inwards: from the two
-/// nearest nodes, of second order.
-fn held(x: [&V3<f64>; 3], d: &V3<f64>, ell: f64) -> V3<f64> {
-    let near = plus(&minus(x[1], x[0]), -ell, d);
-    let far = plus(&minus(x[2], x[0]), -2.0 * ell, d);
-    [0, 1, 2].map(|i| (8.0 * near[i] - far[i]) / (2.0 * ell * ell))
+/// Curvature vector at an end where the cable is held along the unit vector `d`, which points inwards: the second
+/// difference with the node beyond that the fourth difference uses. With it the bending moment at the end is of second
+/// order (a one-sided difference of the nodes would be of first only, as these obey the fourth difference).
+fn held(end: &V3<f64>, next: &V3<f64>, d: &V3<f64>, ell: f64) -> V3<f64> {
+    plus(&minus(next, end), -ell, d).map(|k| 2.0 * k / (ell * ell))
 }
 
 impl Unwinding {
@@ -20,11 +19,9 @@ impl Unwinding {
         let ell = y.length[0] / n as f64;
         match (j, self.through, self.lift_off) {
             (0, Eyelet::Hinged, _) => [0.0; 3],
-            (0, Eyelet::Guided(d), _) => held([&y.x[0], &y.x[1], &y.x[2]], &d, ell),
+            (0, Eyelet::Guided(d), _) => held(&y.x[0], &y.x[1], &d, ell),
             (j, _, LiftOff::Free) if j == n => [0.0; 3],
-            (j, _, LiftOff::Tangent) if j == n => {
-                held([&y.x[n], &y.x[n - 1], &y.x[n - 2]], &now.clamp.map(|d| -d), ell)
-            }
+            (j, _, LiftOff::Tangent) if j == n => held(&y.x[n], &y.x[n - 1], &now.clamp.map(|d| -d), ell),
             _ => [0, 1, 2].map(|i| (y.x[j + 1][i] - 2.0 * y.x[j][i] + y.x[j - 1][i]) / (ell * ell)),
         }
     }
@@ -52,13 +49,18 @@ impl Unwinding {
     pub(super) fn tensions(&self, y: &State, now: &Now) -> [f64; 2] {
         let n = y.segments();
         let half = 0.5 * y.length[0] / n as f64;
+        // T + EI κ²/2 at the middle of the segment, with the mean of κ², less EI κ²/2 at the end and `surplus`: the end's
+        // own curvature drops out
         let end = |lambda: f64, j: usize, next: usize, way: f64| {
-            lambda
-                + 0.25 * self.bend2(y, now, j)
-                + 0.75 * self.bend2(y, now, next)
-                + way * self.slope_of_tension(y, now, j)
+            lambda + 0.75 * self.bend2(y, now, next) + way * self.slope_of_tension(y, now, j)
         };
         [end(y.lambda[0], 0, 1, -half), end(y.lambda[n - 1], n, n - 1, half)]
+    }
+
+    /// What a held end adds to the multiplier of its segment: the node beyond the end is off the curve by `κ² ℓ³/4` along
+    /// the cable, so that the fourth difference has a part `EI κ²/4ℓ` along it, which nothing else feels.
+    fn surplus(&self, y: &State, now: &Now, j: usize) -> f64 {
+        0.25 * self.bend2(y, now, j)
     }
 
     /// Whether the rule needs the peeled length as an unknown.
@@ -81,18 +83,14 @@ impl Unwinding {
                 // over the weight of the momentum rows
                 let scale = self.cable.mass / energy;
                 out.rhs[4 * n - 3] = -scale * (0.5 * ei * dot(&jump, &jump) - energy);
-                let by = |w: f64| jump.map(|k| scale * ei * k * w / (2.0 * ell * ell));
-                for (node, w) in [(n - 1, 8.0), (n - 2, -1.0)] {
-                    let by = by(w);
-                    (0..3).for_each(|i| out.add(4 * n - 3, 4 * (node - 1) + 1 + i, rates.x * by[i]));
-                }
+                let by = jump.map(|k| scale * ei * k * 2.0 / (ell * ell));
+                (0..3).for_each(|i| out.add(4 * n - 3, 4 * (n - 2) + 1 + i, rates.x * by[i]));
                 // by the length, the lift-off point and the direction there; the path's third derivative is left out
                 let d_ell = column.length[0] / n as f64;
                 let kappa = self.curvature(y, now, n);
                 let change = [0, 1, 2].map(|i| {
-                    let far = -2.0 * kappa[i] * d_ell / ell;
-                    far + (-7.0 * column.end[0][i] + 6.0 * (d_ell * now.clamp[i] + ell * column.clamp[i]))
-                        / (2.0 * ell * ell)
+                    let moved = d_ell * now.clamp[i] + ell * column.clamp[i] - column.end[0][i];
+                    2.0 * (moved / ell - kappa[i] * d_ell) / ell
                 });
                 out.add(4 * n - 3, 4 * n - 3, scale * ei * dot(&jump, &change));
             }
@@ -117,21 +115,14 @@ impl Unwinding {
         out.add(row, 0, 1.0);
         let r = column.length[0] / len;
         let mut by_length = 0.0;
-        let mut bent = |k: V3<f64>, weight: f64, nodes: [f64; 2], held: f64| {
-            let by = k.map(|k| 2.0 * ei * weight * k / (ell * ell));
-            for (node, w) in nodes.iter().enumerate() {
+        if ei > 0.0 {
+            // by the curvature at the first inner node
+            let k = self.curvature(y, now, 1);
+            let by = k.map(|k| 1.5 * ei * k / (ell * ell));
+            for (node, w) in [-2.0, 1.0].into_iter().enumerate() {
                 (0..3).for_each(|i| out.add(row, 4 * node + 1 + i, rates.x * w * by[i]));
             }
-            // `held`: the part of the curvature that grows with the length through the direction at the eyelet
-            by_length += -4.0 * ei * weight * dot(&k, &k) * r + held * r * ell;
-        };
-        if ei > 0.0 {
-            bent(self.curvature(y, now, 1), 0.75, [-2.0, 1.0], 0.0);
-            if let Eyelet::Guided(d) = self.through {
-                let k = self.curvature(y, now, 0);
-                let by = 2.0 * ei * 0.25 * dot(&k, &d) / (ell * ell);
-                bent(k, 0.25, [4.0, -0.5], -3.0 * by);
-            }
+            by_length -= 3.0 * ei * dot(&k, &k) * r;
         }
         // half a segment's load: the direction there is that of the first segment
         let slope = minus(&y.x[1], &y.x[0]).map(|d| d / ell);
@@ -186,8 +177,13 @@ impl Unwinding {
 
     /// The tension at the middle of every segment [N]: `λ + EI κ²`.
     pub(super) fn tension(&self, y: &State, now: &Now) -> Vec<f64> {
-        (0..y.segments())
-            .map(|j| y.lambda[j] + 0.5 * (self.bend2(y, now, j) + self.bend2(y, now, j + 1)))
+        let n = y.segments();
+        (0..n)
+            .map(|j| {
+                let ends = if j == 0 { self.surplus(y, now, 0) } else { 0.0 }
+                    + if j + 1 == n { self.surplus(y, now, n) } else { 0.0 };
+                y.lambda[j] + 0.5 * (self.bend2(y, now, j) + self.bend2(y, now, j + 1)) - ends
+            })
             .collect()
     }
 }
