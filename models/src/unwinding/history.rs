@@ -98,7 +98,7 @@ impl Unwinding {
     ///
     /// # Errors
     /// Data, steps or times that make no sense.
-    pub fn run(&self, start: State, stepping: Stepping, plan: &Plan) -> Result<History, BuildError> {
+    pub fn run(&self, mut start: State, stepping: Stepping, plan: &Plan) -> Result<History, BuildError> {
         self.check()?;
         stepping.check()?;
         positive("every", plan.every)?;
@@ -110,6 +110,9 @@ impl Unwinding {
         let Some(now) = self.now(start.t, start.peeled[0]) else {
             return Err(BuildError::at("peeled", "the package is empty at the start"));
         };
+        if self.cable.bending > 0.0 {
+            self.accelerate(&mut start, &now, stepping.h)?;
+        }
         let begin = start.t;
         let mut watch = Watch::default();
         let mut newmark = Newmark::new(self, stepping, start, now);

@@ -65,7 +65,7 @@ impl Unwinding {
         }
         y.x[0] = self.eyelet;
         self.consistent(&mut y, &now)?;
-        self.accelerate(&mut y, &now)?;
+        self.accelerate(&mut y, &now, 0.0)?;
         Ok(y)
     }
 
@@ -95,7 +95,7 @@ impl Unwinding {
             x,
         };
         self.consistent(&mut y, &now)?;
-        self.accelerate(&mut y, &now)?;
+        self.accelerate(&mut y, &now, 0.0)?;
         Ok(y)
     }
 

@@ -139,7 +139,7 @@ impl Unwinding {
             );
             return Err(BuildError::at("feed", message));
         }
-        self.accelerate(&mut y, &now)?;
+        self.accelerate(&mut y, &now, 0.0)?;
         Ok(y)
     }
 
