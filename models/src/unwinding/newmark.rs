@@ -218,9 +218,6 @@ impl<'a> Newmark<'a> {
             if moved <= close || (iteration > 1 && moved <= 1e-7 * y.length[0] && moved < 1e-3 * last) {
                 return self.accept(y, fed);
             }
-            if std::env::var("DBG").is_ok() {
-                eprintln!("t {t:.6} h {h:.2e} it {iteration} moved {moved:.3e} at {worst}");
-            }
             last = moved;
         }
         Err(Failed::Newton { why: "Newton's method still moves it", row: worst })
@@ -251,29 +248,25 @@ impl Unwinding {
         let mut system = self.system(scalar);
         y.peeled[2] = now.speed[1];
         y.length[2] = 0.0;
-        // linear in what it solves for; a second round would take `h` for nothing
-        {
-            now.hold(y);
-            let column = now.by_peeled(y, 0.0, 0.0, 1.0);
-            self.assemble(y, now, &rates, scalar.then_some(&column), [0.0, 0.0, 1.0], &mut system);
-            if scalar {
-                self.find(y, now, &rates, &column, &mut system);
-            }
-            system.solve().map_err(|_| {
-                BuildError::new(
-                    "the accelerations at the start can't be found: a straight cable of fixed length between fixed \
-                     ends has no definite tension. Start from a slack or curved shape, or give the tension",
-                )
-            })?;
-            let d = &system.rhs;
-            for j in 1..n {
-                (0..3).for_each(|i| y.a[j][i] += d[4 * (j - 1) + 1 + i]);
-            }
-            (0..n).for_each(|j| y.lambda[j] += d[4 * j]);
-            if scalar {
-                y.peeled[2] += d[4 * n - 3];
-                y.length[2] = y.peeled[2] - now.speed[1];
-            }
+        now.hold(y);
+        let column = now.by_peeled(y, 0.0, 0.0, 1.0);
+        self.assemble(y, now, &rates, scalar.then_some(&column), [0.0, 0.0, 1.0], &mut system);
+        if scalar {
+            self.find(y, now, &rates, &column, &mut system);
+        }
+        let solved = system.solve();
+        let d = &system.rhs;
+        if solved.is_err() || d.iter().any(|x| !x.is_finite()) {
+            let message = "the accelerations at the start can't be found: give another shape at the start";
+            return Err(BuildError::at("points", message));
+        }
+        for j in 1..n {
+            y.a[j] = [0, 1, 2].map(|i| d[4 * (j - 1) + 1 + i]);
+        }
+        (0..n).for_each(|j| y.lambda[j] = d[4 * j]);
+        if scalar {
+            y.peeled[2] += d[4 * n - 3];
+            y.length[2] = y.peeled[2] - now.speed[1];
         }
         now.hold(y);
         Ok(())

@@ -1,6 +1,6 @@
 //! Consistent starts: a shape divided into segments of equal length, with velocities and accelerations.
 
-use super::problem::Unwinding;
+use super::problem::{Rule, Unwinding};
 use super::state::{Now, State, length, minus, plus};
 use ropewalk_core::build::{BuildError, finite};
 use ropewalk_core::{V3, dot};
@@ -40,6 +40,12 @@ impl Unwinding {
                     format!("the shape at the start ends {away} m away from the {what} at {place:?}");
                 return Err(BuildError::at("points", message));
             }
+        }
+        let distance = length(&minus(&now.lay.x, &self.eyelet));
+        if self.rule == Rule::Length && !(total > distance * (1.0 + 1e-9)) {
+            let message = "a straight cable of fixed length between its ends has no definite tension: start from a \
+                           slack or curved shape, or let the tension at the eyelet be given";
+            return Err(BuildError::at("points", message));
         }
         let speed = now.speed[0];
         let axis = self.path.axis();

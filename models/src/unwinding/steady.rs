@@ -10,7 +10,7 @@ use super::start::cross;
 use super::state::{Column, M3, Now, Rates, State, identity, length, minus, plus, product};
 use super::{Rule, history::Shape};
 use ropewalk_core::build::BuildError;
-use ropewalk_core::{V3, dot};
+use ropewalk_core::{Current, V3, dot};
 
 /// A steady balloon.
 #[derive(Clone, Debug)]
@@ -84,7 +84,8 @@ impl Member {
 
 impl Unwinding {
     /// The steady balloon with a tension at the eyelet [N] when the cable is drawn at a speed [m/s] and `peeled` [m] have
-    /// been peeled. The lift-off point turns about the axis and stays at its height; the eyelet lies on the axis.
+    /// been peeled. The lift-off point turns about the axis and stays at its height; the eyelet lies on the axis. A cable that is neither
+    /// drawn nor heavy is straight, or bent by the package alone.
     ///
     /// # Errors
     /// See [`SteadyError`].
@@ -110,6 +111,17 @@ impl Unwinding {
                 format!("a steady balloon needs the eyelet on the axis, but it is {off} m beside it");
             return Err(BuildError::at("eyelet", message).into());
         }
+        let across = |x: &V3<f64>| length(&plus(x, -dot(x, &axis), &axis)) > 1e-12 * length(x);
+        let still = |u: &Current| match u {
+            Current::Still => true,
+            Current::Uniform(u) => !across(u),
+            _ => false,
+        };
+        if across(&self.weight) || self.drag.as_ref().is_some_and(|d| !still(&d.current)) {
+            let message = "weight or current across the axis shakes the balloon as it turns: none is steady; take \
+                           them along the axis, or none";
+            return Err(BuildError::at("weight", message).into());
+        }
         let frame = Frame { problem: &hinged, now, spin };
         let mut found = frame.follow(tension)?;
         let mut problem = &hinged;
@@ -119,6 +131,7 @@ impl Unwinding {
         }
         let lift_tension = problem.tensions(&found.y, &now)[1];
         let shape = problem.shape(&found.y, &now);
+        found.y.peeled[0] = peeled;
         Ok(Balloon { shape, tension: found.tension, lift_tension, spin: rate, peeled, state: found.y })
     }
 
@@ -181,6 +194,9 @@ impl Frame<'_> {
     fn follow(&self, tension: f64) -> Result<Member, SteadyError> {
         let straight = length(&minus(&self.now.lay.x, &self.problem.eyelet));
         let mut last = self.first(tension, straight)?;
+        if last.tension == tension {
+            return Ok(last);
+        }
         let mut before: Option<Member> = None;
         let (mut factor, floor) = (1.4_f64, 1.0005);
         loop {
@@ -213,34 +229,43 @@ impl Frame<'_> {
     }
 
     fn first(&self, tension: f64, straight: f64) -> Result<Member, SteadyError> {
-        let (problem, n) = (self.problem, self.problem.segments);
+        let problem = self.problem;
         let cable = &problem.cable;
-        let (end, begin) = (self.now.lay.x, problem.eyelet);
         let fast = self.now.speed[0].max(length(&self.spin) * straight);
         let drag = problem.drag.as_ref().map_or(0.0, |d| 0.6 * d.density * cable.diameter * fast * fast);
         let load = drag + length(&problem.weight) + cable.mass * fast * fast / straight;
+        if load == 0.0 {
+            return self.straight(tension).ok_or(SteadyError::Lost {
+                tension,
+                reached: tension,
+                length: straight,
+            });
+        }
         let mut high = 20.0 * tension.max(load * straight);
         for _ in 0..8 {
-            let node = |j: usize| plus(&begin, j as f64 / n as f64, &minus(&end, &begin));
-            let y = State {
-                t: 0.0,
-                x: (0..=n).map(node).collect(),
-                v: vec![[0.0; 3]; n + 1],
-                a: vec![[0.0; 3]; n + 1],
-                lambda: vec![high; n],
-                peeled: [0.0, self.now.speed[0], 0.0],
-                length: [straight, 0.0, 0.0],
-            };
-            if let Some(member) = self.settle(y, Some(high)) {
-                // without any load the cable is straight at every tension, and there is no family
-                if member.length() - straight > 1e-13 * straight {
-                    return Ok(member);
-                }
+            if let Some(member) = self.straight(high).filter(|m| m.length() - straight > 1e-13 * straight) {
+                return Ok(member);
             }
             high *= 4.0;
         }
-        let message = "no nearly straight balloon was found: is there speed or weight at all?";
+        let message = "no nearly straight balloon was found; give more segments, or another speed";
         Err(BuildError::at("speed", message).into())
+    }
+
+    /// The member with a tension, looked for from a straight line.
+    fn straight(&self, tension: f64) -> Option<Member> {
+        let (n, begin) = (self.problem.segments, self.problem.eyelet);
+        let way = minus(&self.now.lay.x, &begin);
+        let y = State {
+            t: 0.0,
+            x: (0..=n).map(|j| plus(&begin, j as f64 / n as f64, &way)).collect(),
+            v: vec![[0.0; 3]; n + 1],
+            a: vec![[0.0; 3]; n + 1],
+            lambda: vec![tension; n],
+            peeled: [0.0, self.now.speed[0], 0.0],
+            length: [length(&way), 0.0, 0.0],
+        };
+        self.settle(y, Some(tension))
     }
 
     /// The member with this tension between two with a higher and a lower one.
@@ -343,7 +368,7 @@ impl Frame<'_> {
                     y.v[j] = cross(&self.spin, &minus(&y.x[j], &problem.eyelet));
                     y.a[j] = cross(&self.spin, &y.v[j]);
                 }
-                let tension = problem.tensions(&y, &self.now)[0];
+                let tension = tension.unwrap_or_else(|| problem.tensions(&y, &self.now)[0]);
                 return Some(Member { y, tension });
             }
             last = moved;
