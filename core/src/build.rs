@@ -347,7 +347,8 @@ impl Builder {
         let (name, end) = end_of(marker)?;
         let (_, part) = self.find(name, "marker")?;
         part.front(end).ok_or_else(|| {
-            let message = format!("material can flow through the ends of a cable, but `{name}` is a {}", part.kind());
+            let message =
+                format!("material can flow through the ends of a cable, but `{name}` is a {}", part.kind());
             BuildError::at("marker", message)
         })
     }

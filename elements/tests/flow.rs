@@ -2,12 +2,10 @@
 
 use ropewalk_core::testing::{check_tangent, dense, difference};
 use ropewalk_core::{
-    At, Dual, Element, FieldTerm, Laws, Load, Node, NodeId, NodeKind, Pool, Real, Station, StationPool,
-    Term, Weights, Width,
+    At, Dual, Element, FieldTerm, Laws, Load, Node, NodeId, NodeKind, Pool, Real, Station, StationPool, Term,
+    Weights, Width,
 };
-use ropewalk_elements::cable::flow::{
-    Embedding, FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight,
-};
+use ropewalk_elements::cable::flow::{Embedding, FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight};
 use ropewalk_elements::cable::{
     AxialDamping, BendingDamping, CableParams, Full, L1, L2, L3, L4, LockingFree, T1, T3,
 };

@@ -30,7 +30,11 @@ pub struct WinchSpec {
     /// The end of the cable: `hose.start` or `hose.end`.
     pub marker: MarkerRef,
     /// Speed at which it feeds out after the ramp [m/s]; negative reels in.
-    #[serde(default, deserialize_with = "quantity::optional::speed", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::speed",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub speed: Option<f64>,
     /// Time at which it starts [s].
     #[serde(default, deserialize_with = "quantity::time")]
@@ -45,7 +49,11 @@ pub struct WinchSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
     /// Tension that holds the end back where the speed isn't prescribed [N].
-    #[serde(default, deserialize_with = "quantity::optional::force", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::force",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub tension: Option<f64>,
     /// Dry friction of a brake [N].
     #[serde(default, deserialize_with = "quantity::force")]
@@ -67,11 +75,19 @@ pub struct WinchSpec {
     pub stock: f64,
     /// Shortest length that the cable is reeled in to [m], where the run ends; left out, a twentieth of its length at
     /// the start.
-    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub shortest: Option<f64>,
     /// Length of elements [m] that are born and swallowed at this end; left out, all elements of the cable grow and
     /// shrink together, which is smoother and does for a change of length up to ten times or so.
-    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub element: Option<f64>,
 }
 register_spec!(Constraint, "winch", WinchSpec);

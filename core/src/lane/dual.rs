@@ -123,10 +123,7 @@ impl<R: Real> Real for Dual<R> {
     }
     #[inline(always)]
     fn if_gt(self, limit: Self, yes: Self, no: Self) -> Self {
-        Dual {
-            re: self.re.if_gt(limit.re, yes.re, no.re),
-            eps: self.re.if_gt(limit.re, yes.eps, no.eps),
-        }
+        Dual { re: self.re.if_gt(limit.re, yes.re, no.re), eps: self.re.if_gt(limit.re, yes.eps, no.eps) }
     }
 }
 

@@ -68,7 +68,11 @@ impl Record for Along {
         vec![Column::new(&self.name, self.what.unit())]
     }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
-        out.push(self.part.observe(self.what, self.place.now(self.part.as_ref(), &s.at), &s.at).unwrap_or(f64::NAN));
+        out.push(
+            self.part
+                .observe(self.what, self.place.now(self.part.as_ref(), &s.at), &s.at)
+                .unwrap_or(f64::NAN),
+        );
     }
 }
 

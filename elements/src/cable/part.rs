@@ -7,8 +7,8 @@ use super::spec::Section;
 use super::{CableModel, CableParams};
 use ropewalk_core::held::Held;
 use ropewalk_core::{
-    At, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Node, NodeId, Part, Per, Quantity, Spot, Stations, Term,
-    V3,
+    At, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Node, NodeId, Part, Per, Quantity, Spot, Stations,
+    Term, V3,
 };
 use std::borrow::Cow;
 use std::sync::Arc;

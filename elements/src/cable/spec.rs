@@ -1,16 +1,17 @@
 //! `type = "cable"`: what a scene says about a cable.
 
 use super::damping::{push_axial_damping, push_bending_damping};
-use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
-use super::flow::push::{self, Piece};
 use super::flow::Line;
+use super::flow::push::{self, Piece};
+use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::{CablePart, mesh};
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
 use crate::path::Path;
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
 use ropewalk_core::{
-    Element, ElementSpec, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, quantity, register_spec,
+    Element, ElementSpec, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, quantity,
+    register_spec,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -70,9 +70,9 @@ pub struct History {
     /// Why it ended before its time, if it did.
     pub stopped: Option<Stopped>,
     /// Newton iterations, and how often a step was halved.
-    pub iterations: usize,
+    pub iterations: u64,
     /// See `iterations`.
-    pub halvings: usize,
+    pub halvings: u64,
 }
 
 /// What is kept of a run.
@@ -93,30 +93,84 @@ impl History {
     }
 }
 
+/// A run that is moved on piece by piece.
+pub struct Running {
+    problem: Unwinding,
+    newmark: Newmark,
+    watch: Watch,
+}
+
+impl Running {
+    /// A run from a state, which may go on to `t_end` [s].
+    ///
+    /// # Errors
+    /// Data, steps or times that make no sense.
+    pub fn new(
+        problem: Unwinding,
+        mut start: State,
+        stepping: Stepping,
+        t_end: f64,
+    ) -> Result<Self, BuildError> {
+        problem.check()?;
+        stepping.check()?;
+        let (from, to) = problem.feed.range();
+        if start.t < from || t_end > to {
+            let message = format!("the motion that draws the cable is defined from {from} to {to} s only");
+            return Err(BuildError::at("feed", message));
+        }
+        let Some(now) = problem.now(start.t, start.peeled[0]) else {
+            return Err(BuildError::at("peeled", "the package is empty at the start"));
+        };
+        if problem.cable.bending > 0.0 {
+            problem.accelerate(&mut start, &now, stepping.h)?;
+        }
+        let newmark = Newmark::new(&problem, stepping, start, now);
+        Ok(Running { problem, newmark, watch: Watch::default() })
+    }
+
+    /// Goes on to a time [s].
+    ///
+    /// # Errors
+    /// Why it can't; the state is that of the last step that could be taken.
+    pub fn advance(&mut self, t: f64) -> Result<(), Stopped> {
+        let Running { problem, newmark, watch } = self;
+        newmark.advance(problem, t, |y, now| {
+            watch.see(problem, y, now, &problem.tension(y, now), problem.tensions(y, now)[1]);
+        })
+    }
+
+    /// The time [s].
+    pub fn t(&self) -> f64 {
+        self.newmark.y.t
+    }
+    /// What is known of the instant.
+    pub fn row(&self) -> Row {
+        self.problem.row(&self.newmark.y, &self.newmark.now)
+    }
+    /// The cable.
+    pub fn shape(&self) -> Shape {
+        self.problem.shape(&self.newmark.y, &self.newmark.now)
+    }
+    /// What was the matter so far.
+    pub fn conditions(&self) -> &[Condition] {
+        &self.watch.all
+    }
+    /// Steps, Newton iterations and halvings so far.
+    pub fn work(&self) -> [u64; 3] {
+        [self.newmark.steps, self.newmark.iterations, self.newmark.halvings]
+    }
+}
+
 impl Unwinding {
     /// Runs from a state. What stops it before its time is told in the history, with all that was computed until then.
     ///
     /// # Errors
     /// Data, steps or times that make no sense.
-    pub fn run(&self, mut start: State, stepping: Stepping, plan: &Plan) -> Result<History, BuildError> {
-        self.check()?;
-        stepping.check()?;
+    pub fn run(&self, start: State, stepping: Stepping, plan: &Plan) -> Result<History, BuildError> {
         positive("every", plan.every)?;
-        let (from, to) = self.feed.range();
-        if start.t < from || plan.t_end > to {
-            let message = format!("the motion that draws the cable is defined from {from} to {to} s only");
-            return Err(BuildError::at("feed", message));
-        }
-        let Some(now) = self.now(start.t, start.peeled[0]) else {
-            return Err(BuildError::at("peeled", "the package is empty at the start"));
-        };
-        if self.cable.bending > 0.0 {
-            self.accelerate(&mut start, &now, stepping.h)?;
-        }
         let begin = start.t;
-        let mut watch = Watch::default();
-        let mut newmark = Newmark::new(self, stepping, start, now);
-        let mut rows = vec![self.row(&newmark.y, &newmark.now)];
+        let mut running = Running::new(self.clone(), start, stepping, plan.t_end)?;
+        let mut rows = vec![running.row()];
         let mut shapes = Vec::new();
         let mut waiting = plan.shapes.iter().copied().peekable();
         let mut stopped = None;
@@ -124,27 +178,23 @@ impl Unwinding {
         for k in 1..=count {
             let next = (begin + k as f64 * plan.every).min(plan.t_end);
             while let Some(at) = waiting.next_if(|at| *at <= next) {
-                stopped = newmark.advance(at, |y, now| self.watch(&mut watch, y, now)).err();
+                stopped = running.advance(at).err();
                 if stopped.is_some() {
                     break;
                 }
-                shapes.push(self.shape(&newmark.y, &newmark.now));
+                shapes.push(running.shape());
             }
             if stopped.is_none() {
-                stopped = newmark.advance(next, |y, now| self.watch(&mut watch, y, now)).err();
+                stopped = running.advance(next).err();
             }
             if stopped.is_some() {
-                shapes.push(self.shape(&newmark.y, &newmark.now));
+                shapes.push(running.shape());
                 break;
             }
-            rows.push(self.row(&newmark.y, &newmark.now));
+            rows.push(running.row());
         }
-        let (iterations, halvings) = (newmark.iterations, newmark.halvings);
-        Ok(History { rows, shapes, conditions: watch.all, state: newmark.y, stopped, iterations, halvings })
-    }
-
-    fn watch(&self, watch: &mut Watch, y: &State, now: &Now) {
-        watch.see(self, y, now, &self.tension(y, now), self.tensions(y, now)[1]);
+        let Newmark { y: state, iterations, halvings, .. } = running.newmark;
+        Ok(History { rows, shapes, conditions: running.watch.all, state, stopped, iterations, halvings })
     }
 
     /// The cable of a state.

@@ -43,7 +43,7 @@ mod steady;
 mod tests;
 
 pub use conditions::{Condition, Kind};
-pub use history::{History, Plan, Row, Shape};
+pub use history::{History, Plan, Row, Running, Shape};
 pub use newmark::{Stepping, Stopped};
 pub use path::{Guide, Path, Ring};
 pub use problem::{Cable, Eyelet, LiftOff, Pull, Rule, Unwinding};

@@ -74,17 +74,17 @@ enum Failed {
 }
 
 /// Steps a state on.
-pub(super) struct Newmark<'a> {
-    problem: &'a Unwinding,
+pub(super) struct Newmark {
     stepping: Stepping,
     system: Bordered,
     pub y: State,
     pub now: Now,
     /// Free length less peeled plus drawn length: never changes.
     offset: f64,
-    /// Newton iterations so far, and halvings.
-    pub iterations: usize,
-    pub halvings: usize,
+    /// Steps so far, Newton iterations, and halvings.
+    pub steps: u64,
+    pub iterations: u64,
+    pub halvings: u64,
 }
 
 const MOST_ITERATIONS: usize = 12;
@@ -93,22 +93,28 @@ const CLOSE: f64 = 1e-11;
 /// Decay of constraint errors per step: `ω h` of Baumgarte's terms.
 const PACE: f64 = 1.0;
 
-impl<'a> Newmark<'a> {
-    pub fn new(problem: &'a Unwinding, stepping: Stepping, y: State, now: Now) -> Self {
+impl Newmark {
+    pub fn new(problem: &Unwinding, stepping: Stepping, y: State, now: Now) -> Self {
         let offset = y.length[0] - y.peeled[0] + problem.feed.at(y.t).x[0];
         let system = problem.system(problem.scalar());
-        Newmark { problem, stepping, system, y, now, offset, iterations: 0, halvings: 0 }
+        Newmark { stepping, system, y, now, offset, steps: 0, iterations: 0, halvings: 0 }
     }
 
     /// Advances to `t_end` with equal steps of at most `h`, halved where they must be. `seen` is called after each.
-    pub fn advance(&mut self, t_end: f64, mut seen: impl FnMut(&State, &Now)) -> Result<(), Stopped> {
+    pub fn advance(
+        &mut self,
+        problem: &Unwinding,
+        t_end: f64,
+        mut seen: impl FnMut(&State, &Now),
+    ) -> Result<(), Stopped> {
         let mut h = self.stepping.h;
         while self.y.t < t_end - 1e-9 * self.stepping.h {
             let left = t_end - self.y.t;
             let count = (left / h * (1.0 - 1e-9)).ceil().max(1.0);
             let try_h = left / count;
-            match self.attempt(try_h) {
+            match self.attempt(problem, try_h) {
                 Ok(()) => {
+                    self.steps += 1;
                     seen(&self.y, &self.now);
                     h = (2.0 * h).min(self.stepping.h);
                 }
@@ -118,17 +124,17 @@ impl<'a> Newmark<'a> {
                     h = 0.5 * try_h;
                 }
                 Err(Failed::Empty) => {
-                    let (t, wound) = (self.y.t, self.problem.path.wound());
+                    let (t, wound) = (self.y.t, problem.path.wound());
                     return Err(Stopped::Empty { t, wound });
                 }
-                Err(Failed::Newton { why, row }) => return Err(self.blame(try_h, why, row)),
+                Err(Failed::Newton { why, row }) => return Err(self.blame(problem, try_h, why, row)),
             }
         }
         Ok(())
     }
 
-    fn blame(&self, h: f64, why: &'static str, row: usize) -> Stopped {
-        let (n, t, len) = (self.problem.segments, self.y.t, self.y.length[0]);
+    fn blame(&self, problem: &Unwinding, h: f64, why: &'static str, row: usize) -> Stopped {
+        let (n, t, len) = (problem.segments, self.y.t, self.y.length[0]);
         let ell = len / n as f64;
         if !(len > 0.1 * ell) {
             return Stopped::Taut { t };
@@ -142,15 +148,15 @@ impl<'a> Newmark<'a> {
     }
 
     /// One step of `h`; on failure the state is as before.
-    fn attempt(&mut self, h: f64) -> Result<(), Failed> {
+    fn attempt(&mut self, problem: &Unwinding, h: f64) -> Result<(), Failed> {
         let gamma = 0.5 + self.stepping.damping;
         let beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
         let (g1, g2) = (gamma / (beta * h), 1.0 / (beta * h * h));
         let old = &self.y;
         let n = old.segments();
         let t = old.t + h;
-        let fed = self.problem.feed.at(t);
-        let scalar = self.problem.scalar();
+        let fed = problem.feed.at(t);
+        let scalar = problem.scalar();
         let mut y = old.clone();
         y.t = t;
         // constant acceleration over the step, which fits Newmark's formulas
@@ -171,16 +177,16 @@ impl<'a> Newmark<'a> {
         let mut worst = 0;
         for iteration in 0..MOST_ITERATIONS {
             self.iterations += 1;
-            let Some(now) = self.problem.now(t, y.peeled[0]) else { return Err(Failed::Empty) };
+            let Some(now) = problem.now(t, y.peeled[0]) else { return Err(Failed::Empty) };
             now.hold(&mut y);
             y.length = [self.offset + y.peeled[0] - fed.x[0], y.peeled[1] - fed.v[0], y.peeled[2] - fed.a[0]];
             if !(y.length[0] > 0.0) {
                 return Err(Failed::Newton { why: "no length is left", row: 0 });
             }
             let column = if scalar { now.by_peeled(&y, 1.0, g1, g2) } else { Column::default() };
-            self.problem.assemble(&y, &now, &rates, scalar.then_some(&column), form, &mut self.system);
+            problem.assemble(&y, &now, &rates, scalar.then_some(&column), form, &mut self.system);
             if scalar {
-                self.problem.find(&y, &now, &rates, &column, &mut self.system);
+                problem.find(&y, &now, &rates, &column, &mut self.system);
             }
             if let Err(Singular(row)) = self.system.solve() {
                 return Err(Failed::Newton { why: "there is no pivot", row });
@@ -216,15 +222,20 @@ impl<'a> Newmark<'a> {
             }
             // a last step from within the square root of the tolerance is exact to rounding
             if moved <= close || (iteration > 1 && moved <= 1e-7 * y.length[0] && moved < 1e-3 * last) {
-                return self.accept(y, fed);
+                return self.accept(problem, y, fed);
             }
             last = moved;
         }
         Err(Failed::Newton { why: "Newton's method still moves it", row: worst })
     }
 
-    fn accept(&mut self, mut y: State, fed: ropewalk_core::Moving) -> Result<(), Failed> {
-        let Some(now) = self.problem.now(y.t, y.peeled[0]) else { return Err(Failed::Empty) };
+    fn accept(
+        &mut self,
+        problem: &Unwinding,
+        mut y: State,
+        fed: ropewalk_core::Moving,
+    ) -> Result<(), Failed> {
+        let Some(now) = problem.now(y.t, y.peeled[0]) else { return Err(Failed::Empty) };
         now.hold(&mut y);
         y.length = [self.offset + y.peeled[0] - fed.x[0], y.peeled[1] - fed.v[0], y.peeled[2] - fed.a[0]];
         (self.y, self.now) = (y, now);

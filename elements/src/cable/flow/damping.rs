@@ -1,5 +1,6 @@
 //! Damping of a flowing cable: at the rates of its material.
 
+use super::element::nodal_dual;
 use super::embedding::{Embedding, Grid};
 use super::for_fronts;
 use super::rule::close;
@@ -8,7 +9,6 @@ use crate::cable::damping::{AxialDamping, BendingDamping};
 use crate::cable::longitudinal::Longitudinal;
 use crate::cable::quadrature::Quadrature;
 use crate::cable::transverse::Transverse;
-use super::element::nodal_dual;
 use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, V3, Weights};
 
 /// A force of an element on its own material, which needs coordinates, velocities of the material, and the length.

@@ -1,9 +1,9 @@
 //! The cable element through which material flows: elastic force and inertia.
 
 use super::embedding::{Embedding, Grid};
+use super::for_fronts;
 use super::rule::close;
 use super::transport::{Row, Transport, nodal};
-use super::for_fronts;
 use crate::cable::element::{CableParams, mass};
 use crate::cable::longitudinal::{Longitudinal, add_axial, axial_energy};
 use crate::cable::quadrature::Rule;
@@ -174,8 +174,7 @@ fn add_elastic<
         let mut force = Share::<Dual<R>, 12>::zero();
         local.spread_force::<true>(il, &mut force);
         let twice = Dual::new(l, Dual::constant(R::of(1.0)));
-        let energy =
-            strain_energy::<L, T, Q, Dual<Dual<R>>>(&lift(&params), &Dual::constants(&fixed), twice);
+        let energy = strain_energy::<L, T, Q, Dual<Dual<R>>>(&lift(&params), &Dual::constants(&fixed), twice);
         for k in 0..F {
             let grows = p.by.by[k][1] - p.by.by[k][0];
             out.r[12 + k] += grows * energy.re.eps;
@@ -252,9 +251,8 @@ macro_rules! element {
             fn power<R: Real>(p: &Self::Lanes<R>, x: &Local<R, $size, $size>) -> Power<R> {
                 let g = Grid::new(&p.by, x);
                 let v = Transport::new(&g, &nodal(&x.q), &nodal(&x.v), &nodal(&x.a)).v;
-                let carried = R::of(0.5)
-                    * p.params.rho_a
-                    * (g.pd[1] * dot(&v[2], &v[2]) - g.pd[0] * dot(&v[0], &v[0]));
+                let carried =
+                    R::of(0.5) * p.params.rho_a * (g.pd[1] * dot(&v[2], &v[2]) - g.pd[0] * dot(&v[0], &v[0]));
                 Power { carried, ..Power::zero() }
             }
         }

@@ -2,10 +2,10 @@
 
 use super::line::Line;
 use super::{FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight};
-use crate::cable::model::{CableModel, LongitudinalModel, WithModels, with_models};
-use crate::cable::spec::Section;
 use crate::cable::longitudinal::Longitudinal;
+use crate::cable::model::{CableModel, LongitudinalModel, WithModels, with_models};
 use crate::cable::quadrature::Rule;
+use crate::cable::spec::Section;
 use crate::cable::transverse::Transverse;
 use crate::cable::{AxialDamping, BendingDamping, CableParams};
 use ropewalk_core::build::{BuildError, Builder};
@@ -60,7 +60,8 @@ macro_rules! push {
             }
         }
         if s.axial_damping > 0.0 {
-            let damping = AxialDamping::<$L, <$Q as Rule>::Axial>::new($self.params.l, s.axial_damping * s.ea);
+            let damping =
+                AxialDamping::<$L, <$Q as Rule>::Axial>::new($self.params.l, s.axial_damping * s.ea);
             $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
         }
         if s.bending_damping > 0.0 && s.ei > 0.0 {
