@@ -24,8 +24,15 @@ macro_rules! scenes {
 
 /// All bundled scenes, by name.
 pub fn bundled() -> &'static [Bundled] {
-    const ALL: &[Bundled] =
-        scenes!["cantilever", "catenary", "hose-straight", "hose-turn", "pendulum", "shear-pin"];
+    const ALL: &[Bundled] = scenes![
+        "cantilever",
+        "catenary",
+        "hose-straight",
+        "hose-turn",
+        "pendulum",
+        "shear-pin",
+        "unwinding-paper"
+    ];
     ALL
 }
 

@@ -5,7 +5,8 @@ use ropewalk_constraints::{Package, PackageSpec};
 use ropewalk_core::{Motion, Moving, V3};
 use ropewalk_forces::{Drag, NormalLaw, TangentialLaw, TimeFunction};
 use ropewalk_models::unwinding::{
-    Cable, History, Kind, LiftOff, Plan, Pull, Ring, Row, Rule, SteadyError, Stepping, Stopped, Unwinding,
+    Cable, Eyelet, History, Kind, LiftOff, Plan, Pull, Ring, Row, Rule, SteadyError, Stepping, Stopped,
+    Unwinding,
 };
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -334,6 +335,60 @@ fn a_cable_that_is_held_tangent_starts_from_rest() {
     let steady = p.steady(5.0 * KNOT, last.tension, last.peeled).unwrap();
     assert!((last.length / steady.shape.length - 1.0).abs() < 1e-3);
     assert!((last.lift_curvature / steady.shape.curvature[40] - 1.0).abs() < 1e-2);
+}
+
+/// Without drag, `T + EI κ²/2 + m Ω² ρ²/2` is the same all along the cable.
+#[test]
+fn a_guided_balloon_keeps_its_first_integral() {
+    let case = named(stiff(), "bend_nodrag_15kn");
+    let spread = |n: usize| {
+        let mut p = problem(&case, n);
+        p.through = Eyelet::Guided([0.0, 0.0, 1.0]);
+        let b = p.steady(15.0 * KNOT, 0.5, 0.0).unwrap();
+        let (shape, bending) = (&b.shape, p.cable.bending);
+        // along the axis in the eyelet: the first segment turns off it by half of its curvature
+        let angle = 0.5 * shape.length / n as f64 * shape.curvature[0];
+        assert!(shape.curvature[0] > 5.0);
+        assert!((shape.x[1][2] / (shape.length / n as f64) - angle.cos()).abs() < 1e-3);
+        let energy = |j: usize, tension: f64| {
+            let r2 = shape.x[j][0].powi(2) + shape.x[j][1].powi(2);
+            tension + 0.5 * bending * shape.curvature[j].powi(2) + 0.5 * p.cable.mass * (b.spin * b.spin) * r2
+        };
+        let whole = energy(0, b.tension);
+        // between the segments on both sides
+        let inner = (1..n).map(|j| energy(j, 0.5 * (shape.tension[j - 1] + shape.tension[j])));
+        let ends = energy(n, b.lift_tension);
+        inner.chain([ends]).fold(0.0_f64, |m, e| m.max((e / whole - 1.0).abs()))
+    };
+    let (coarse, fine) = (spread(40), spread(80));
+    assert!(fine < 5e-3 && (1.6..2.4).contains(&order(coarse, fine)), "{coarse} {fine}");
+}
+
+#[test]
+fn a_cable_that_sticks_peels_at_its_energy() {
+    let case = named(stiff(), "low_bend_const_5kn_a");
+    let mut p = problem(&case, 40);
+    let balloon = p.steady(number(&case, "V"), 0.15, 0.0).unwrap();
+    // the energy that the balloon of this tension peels at
+    let x = &balloon.shape.x;
+    let ell = balloon.shape.length / 40.0;
+    let clamp = [0, 1, 2].map(|i| case["params"]["tL"][i].as_f64().unwrap());
+    let jump: f64 = (0..3)
+        .map(|i| {
+            let wound = if i == 0 { -1.0 / 0.06 } else { 0.0 };
+            (2.0 * (x[39][i] - x[40][i] + ell * clamp[i]) / (ell * ell) - wound).powi(2)
+        })
+        .sum();
+    let energy = 0.5 * p.cable.bending * jump;
+    p.rule = Rule::Peel(energy);
+    let turn = TAU / number(&case, "Om");
+    let plan = Plan { t_end: turn, every: 0.05 * turn, shapes: vec![] };
+    let start = p.start_steady(&balloon).unwrap();
+    let h = p.run(start, Stepping { damping: 0.05, ..Stepping::new(turn / 200.0) }, &plan).unwrap();
+    assert!(h.stopped.is_none(), "{:?}", h.stopped);
+    let last = h.rows[h.rows.len() - 1];
+    assert!((last.length / balloon.shape.length - 1.0).abs() < 1e-3, "{}", last.length);
+    assert!((last.tension / 0.15 - 1.0).abs() < 1e-2, "{}", last.tension);
 }
 
 #[test]

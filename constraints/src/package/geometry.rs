@@ -147,14 +147,14 @@ impl Package {
         let over = piece.turns_over && self.angle(&piece, sigma - piece.sigma) > self.half;
         piece.layer + usize::from(over)
     }
-    /// How deep a point lies in the wound cable [m]: above zero where a free cable would touch it. `sigma` is the
-    /// length peeled by then.
-    pub fn depth(&self, x: &V3<f64>, sigma: f64) -> f64 {
+    /// How deep a point lies in the wound cable [m]: above zero where a free cable would touch it. `lift_off` is the
+    /// lift-off point, which tells the radius of the layer that lies bare.
+    pub fn depth(&self, x: &V3<f64>, lift_off: &V3<f64>) -> f64 {
         let [radius, along] = self.cylindrical(x);
         if !(along >= 0.0 && along <= self.spec.length) {
             return f64::NEG_INFINITY;
         }
-        let wall = self.spec.radius + self.spec.growth() * self.layer(sigma) as f64;
+        let [wall, _] = self.cylindrical(lift_off);
         if self.spec.side == Side::Inner { radius - wall } else { wall - radius }
     }
 

@@ -87,7 +87,7 @@ impl Watch {
         let lowest = (0..n).fold(0, |k, j| if tension[j] < tension[k] { j } else { k });
         self.holds(Kind::Subcritical, y.t, tension[lowest] - critical, 0.0, (lowest as f64 + 0.5) * ell);
 
-        let depth = |j: usize| problem.path.depth(&y.x[j], y.peeled[0]);
+        let depth = |j: usize| problem.path.depth(&y.x[j], &y.x[n]);
         // the lift-off point itself lies on the package; a hundredth of the diameter is none to speak of
         let deepest = (1..n).fold(1, |k, j| if depth(j) > depth(k) { j } else { k });
         let allowed = 0.01 * problem.cable.diameter;

@@ -9,6 +9,16 @@
 //! on nodes at fixed shares of the free length. Nothing of it is shared with the finite elements of Ropewalk but the
 //! laws of drag, the motions and the geometry of the package: two formulations of one physics that can be compared.
 //!
+//! - The tension comes from the differentiated constraint of every segment, the discrete form of the elliptic tension
+//!   equation; Baumgarte's terms keep the lengths, so that nothing drifts. Marching the tangential equation from the
+//!   eyelet is left as a check ([`Row::marching`]).
+//! - Everything is of second order in the mesh, and in time without numerical damping. A few nodes must lie in the
+//!   boundary layers, whose length is `√(EI/T)`.
+//! - Where bending stiffness, a tangent lift-off and a given tension come together, the tension hardly feels how fast
+//!   the cable is peeled; then a little numerical damping (0.05) keeps the lift-off point from trembling.
+//! - Speed and tension both given: the lift-off point is free. If the free length is given instead, the tension is an
+//!   output. Under a tension that is too low or negative the run goes on and says so ([`Condition`]).
+//!
 //! ```
 //! use ropewalk_constraints::{Package, PackageSpec, motion::Straight};
 //! use ropewalk_models::unwinding::{Cable, Plan, Pull, Rule, Stepping, Unwinding};
@@ -36,6 +46,7 @@ mod history;
 mod newmark;
 mod path;
 mod problem;
+mod spec;
 mod start;
 mod state;
 mod steady;
@@ -47,5 +58,6 @@ pub use history::{History, Plan, Row, Running, Shape};
 pub use newmark::{Stepping, Stopped};
 pub use path::{Guide, Path, Ring};
 pub use problem::{Cable, Eyelet, LiftOff, Pull, Rule, Unwinding};
+pub use spec::{RuleSpec, UnwindingSpec};
 pub use state::State;
 pub use steady::{Balloon, SteadyError};

@@ -16,8 +16,8 @@ pub trait Path: Send + Sync + Debug {
     fn axis(&self) -> V3<f64>;
     /// Distance of a point from the axis, and its way along it [m].
     fn cylindrical(&self, x: &V3<f64>) -> [f64; 2];
-    /// How deep a point lies in the wound cable [m]; below zero outside.
-    fn depth(&self, _x: &V3<f64>, _sigma: f64) -> f64 {
+    /// How deep a point lies in the wound cable [m] while the cable lifts off at a point; below zero outside.
+    fn depth(&self, _x: &V3<f64>, _lift_off: &V3<f64>) -> f64 {
         f64::NEG_INFINITY
     }
     /// Length that can be peeled [m].
@@ -36,8 +36,8 @@ impl Path for Package {
     fn cylindrical(&self, x: &V3<f64>) -> [f64; 2] {
         self.cylindrical(x)
     }
-    fn depth(&self, x: &V3<f64>, sigma: f64) -> f64 {
-        self.depth(x, sigma)
+    fn depth(&self, x: &V3<f64>, lift_off: &V3<f64>) -> f64 {
+        self.depth(x, lift_off)
     }
     fn wound(&self) -> f64 {
         self.wound()
@@ -76,7 +76,7 @@ impl Path for Ring {
     fn cylindrical(&self, x: &V3<f64>) -> [f64; 2] {
         [x[0].hypot(x[1]), x[2]]
     }
-    fn depth(&self, x: &V3<f64>, _sigma: f64) -> f64 {
+    fn depth(&self, x: &V3<f64>, _lift_off: &V3<f64>) -> f64 {
         if self.inner { x[0].hypot(x[1]) - self.radius } else { f64::NEG_INFINITY }
     }
 }
