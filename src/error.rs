@@ -18,6 +18,9 @@ pub enum Error {
     /// A step could not be taken.
     #[error("error: {0}")]
     Step(#[from] StepError),
+    /// A process could not go on.
+    #[error("error: {0}")]
+    Process(String),
     /// An equilibrium was not found.
     #[error("error: {0}")]
     Statics(#[from] StaticsError),
@@ -33,7 +36,7 @@ impl Error {
         match self {
             Error::File(_) | Error::Scene(_) | Error::Output(_) => true,
             Error::Step(e) => matches!(e, StepError::Scheme(_) | StepError::Inconsistent(_)),
-            Error::Statics(_) => false,
+            Error::Statics(_) | Error::Process(_) => false,
         }
     }
 }

@@ -101,6 +101,7 @@ impl SceneFile {
             forces: parts(d, SpecKind::Force)?,
             motions: parts(d, SpecKind::Motion)?,
             records: parts(d, SpecKind::Record)?,
+            processes: parts(d, SpecKind::Process)?,
         };
         document.finish()?;
         Ok(SceneFile { name, document, scene })

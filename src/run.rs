@@ -179,6 +179,7 @@ pub(crate) fn run_showing(
 fn at_section(file: &SceneFile, e: Error) -> Error {
     match e {
         Error::Step(e) => Error::File(file.at_solver(e.to_string())),
+        Error::Scene(e) => Error::File(file.fault(&e)),
         e => e,
     }
 }

@@ -11,6 +11,7 @@ mod coordinate;
 mod distance;
 mod driving;
 pub mod motion;
+pub mod package;
 mod pair;
 mod prismatic;
 mod revolute;
@@ -25,6 +26,7 @@ pub use connection::{Arrow, Connection, Equation};
 pub use coordinate::{CoordinateSpec, coordinate};
 pub use distance::{DistanceSpec, distance};
 pub use driving::{DrivingSpec, RotationSpec, SlideSpec, driving, rotation, slide};
+pub use package::{Package, PackageSpec};
 pub use prismatic::{
     CylindricalSpec, PointOnLineSpec, PointOnPlaneSpec, PrismaticSpec, cylindrical, point_on_line,
     point_on_plane, prismatic,

@@ -3,13 +3,15 @@
 use crate::build::{BuildError, Builder};
 use crate::current::Current;
 use crate::integrator::Options;
-use crate::model::Model;
+use crate::model::{Model, Start};
 use crate::motion::SteadyFrame;
+use crate::process::{Process, ProcessSpec, Surroundings};
 use crate::record::Record;
 use crate::remesh::Plan;
 use crate::spec::{ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
 use crate::statics::StaticsOptions;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
@@ -211,6 +213,8 @@ pub struct Scene {
     pub motions: Vec<Arc<dyn MotionSpec>>,
     /// Outputs.
     pub records: Vec<Arc<dyn RecordSpec>>,
+    /// A problem with equations of its own; then it is the only one, and there are no elements.
+    pub processes: Vec<Arc<dyn ProcessSpec>>,
     /// What is run and how long.
     pub run: Run,
     /// How it is integrated.
@@ -261,6 +265,50 @@ impl Scene {
         self
     }
 
+    /// Sets a process up.
+    pub fn process(&mut self, spec: impl ProcessSpec + 'static) -> &mut Self {
+        self.processes.push(Arc::new(spec));
+        self
+    }
+
+    /// The process of the scene at its start, if it is one of a process.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with the spec that it belongs to; a process beside elements or another one.
+    pub fn start_process(&self) -> Result<Option<Box<dyn Process>>, SceneError> {
+        let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
+        let whole = |error: BuildError| SceneError { spec: None, error };
+        let Some(spec) = self.processes.first() else { return Ok(None) };
+        let message = "a process is a problem of its own: a scene holds one, and no elements, constraints, forces or \
+                       records beside it";
+        let others = [
+            (SpecKind::Process, self.processes.len() - 1, 1),
+            (SpecKind::Element, self.elements.len(), 0),
+            (SpecKind::Constraint, self.constraints.len(), 0),
+            (SpecKind::Force, self.forces.len(), 0),
+            (SpecKind::Record, self.records.len(), 0),
+        ];
+        if let Some((kind, _, k)) = others.into_iter().find(|(_, count, _)| *count > 0) {
+            return Err(of(kind, k)(BuildError::new(message)));
+        }
+        if self.run.analysis != Analysis::Dynamics || self.run.from_equilibrium {
+            let message = "a process runs in time from the start that it is given itself";
+            return Err(whole(BuildError::at("run", message)));
+        }
+        self.water.as_ref().map_or(Ok(()), Water::check).map_err(whole)?;
+        self.run.check().map_err(whole)?;
+        let mut motions = BTreeMap::new();
+        for (k, m) in self.motions.iter().enumerate() {
+            let motion = m.build().map_err(of(SpecKind::Motion, k))?;
+            if motions.insert(m.name().to_string(), motion).is_some() {
+                let message = format!("there are two motions named `{}`", m.name());
+                return Err(of(SpecKind::Motion, k)(BuildError::at("name", message)));
+            }
+        }
+        let around = Surroundings { water: self.water.clone(), motions, duration: self.run.duration };
+        spec.build(&around).map(Some).map_err(of(SpecKind::Process, 0))
+    }
+
     /// Builds the model.
     ///
     /// # Errors
@@ -275,6 +323,11 @@ impl Scene {
     /// # Errors
     /// As [`Scene::build`].
     pub fn build_on(&self, plan: &Plan) -> Result<Model, SceneError> {
+        if !self.processes.is_empty() {
+            // what there is to build is in the process
+            self.start_process()?;
+            return Ok(Model::new(Vec::new(), Vec::new(), Vec::new(), Vec::new(), Start::default(), 1.0));
+        }
         let mut b = Builder::new();
         let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
         let whole = |error: BuildError| {

@@ -83,6 +83,8 @@ pub enum SpecKind {
     Motion,
     /// [`RecordSpec`].
     Record,
+    /// [`ProcessSpec`](crate::ProcessSpec).
+    Process,
 }
 
 impl SpecKind {
@@ -94,6 +96,7 @@ impl SpecKind {
             SpecKind::Force => "forces",
             SpecKind::Motion => "motions",
             SpecKind::Record => "records",
+            SpecKind::Process => "processes",
         }
     }
 }

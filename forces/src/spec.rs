@@ -5,7 +5,7 @@ use crate::{
     TimeFunction,
 };
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
-use ropewalk_core::{ForceSpec, MarkerRef, Per, V3, quantity, register_spec};
+use ropewalk_core::{ForceSpec, MarkerRef, Per, V3, Water, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -141,12 +141,14 @@ impl Default for DragSpec {
     }
 }
 
-#[typetag::serde(name = "drag")]
-impl ForceSpec for DragSpec {
-    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+impl DragSpec {
+    /// The law in this water.
+    ///
+    /// # Errors
+    /// Numbers that make no sense.
+    pub fn law(&self, water: &Water) -> Result<Drag, BuildError> {
         not_negative("cn", self.cn)?;
         not_negative("ct", self.ct)?;
-        let water = b.water()?.clone();
         let normal = match self.normal {
             DragLaw::Constant => NormalLaw::Constant(self.cn),
             DragLaw::ChooCasarella => NormalLaw::ChooCasarella,
@@ -160,6 +162,14 @@ impl ForceSpec for DragSpec {
         drag.per = if self.stretched { PerLength::Stretched } else { PerLength::Unstretched };
         drag.blend = self.blend;
         drag.check()?;
+        Ok(drag)
+    }
+}
+
+#[typetag::serde(name = "drag")]
+impl ForceSpec for DragSpec {
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let drag = self.law(b.water()?)?;
         b.load(&self.on, drag)
     }
 }

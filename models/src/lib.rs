@@ -1,4 +1,7 @@
-//! The cases that come with Ropewalk: scene files, compiled into the program.
+//! The cases that come with Ropewalk: scene files, compiled into the program; and solvers of their own kind for single
+//! problems.
+
+pub mod unwinding;
 
 /// A scene that is known by its name.
 ///
@@ -21,8 +24,15 @@ macro_rules! scenes {
 
 /// All bundled scenes, by name.
 pub fn bundled() -> &'static [Bundled] {
-    const ALL: &[Bundled] =
-        scenes!["cantilever", "catenary", "hose-straight", "hose-turn", "pendulum", "shear-pin"];
+    const ALL: &[Bundled] = scenes![
+        "cantilever",
+        "catenary",
+        "hose-straight",
+        "hose-turn",
+        "pendulum",
+        "shear-pin",
+        "unwinding-paper"
+    ];
     ALL
 }
 

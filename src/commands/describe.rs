@@ -69,7 +69,7 @@ fn scene(document: &Document, name: &str) -> Result<String, Fault> {
             out.push('\n');
         }
     }
-    for list in ["elements", "constraints", "forces", "motions", "records"] {
+    for list in ["elements", "constraints", "forces", "motions", "records", "processes"] {
         let Some(Kind::Array(parts)) = document.get(list).map(|v| &v.kind) else { continue };
         if !parts.is_empty() {
             out += &format!("\n{list}\n");

@@ -7,8 +7,14 @@ use ropewalk_core::{SpecKind, registered};
 use ropewalk_models::Bundled;
 
 /// The kinds of types, in the order of a scene file.
-const KINDS: [SpecKind; 5] =
-    [SpecKind::Element, SpecKind::Constraint, SpecKind::Force, SpecKind::Motion, SpecKind::Record];
+const KINDS: [SpecKind; 6] = [
+    SpecKind::Element,
+    SpecKind::Constraint,
+    SpecKind::Force,
+    SpecKind::Motion,
+    SpecKind::Record,
+    SpecKind::Process,
+];
 
 pub(crate) fn list(bundled: &[Bundled]) -> Result<Exit, Error> {
     let mut out = String::new();

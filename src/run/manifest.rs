@@ -45,16 +45,23 @@ impl Manifest {
     pub fn new(file: &SceneFile, model: &Model) -> Result<Self, Fault> {
         let s = model.structure();
         let solver = Guard::new(s).map_err(|e| Fault::new(e.to_string()))?.name();
-        let records = file.records(model)?;
+        let records = file.records(model)?.iter().flat_map(|r| r.columns()).collect::<Vec<_>>();
+        let processes = &file.scene().processes;
+        let channels = processes.iter().flat_map(|p| p.channels()).flat_map(|c| c.columns);
         Ok(Manifest {
             title: file.title().to_string(),
             ropewalk: env!("CARGO_PKG_VERSION"),
             analysis: file.scene().run.analysis,
-            parts: model.parts().iter().map(|p| (p.name().to_string(), p.kind())).collect(),
+            parts: model
+                .parts()
+                .iter()
+                .map(|p| (p.name().to_string(), p.kind()))
+                .chain(processes.iter().map(|p| (p.name().to_string(), p.typetag_name())))
+                .collect(),
             terms: model.terms().iter().map(|t| t.label()).collect(),
             constraints: model.constraints().iter().map(|c| (c.name().to_string(), c.rows().len())).collect(),
-            records: records.iter().flat_map(|r| r.columns()).map(|c| c.name).collect(),
-            unknowns: model.velocities(),
+            records: records.into_iter().chain(channels).map(|c| c.name).collect(),
+            unknowns: model.velocities() + processes.iter().map(|p| p.unknowns()).sum::<usize>(),
             multipliers: model.multipliers(),
             non_zeros: s.entries(),
             symmetric: s.symmetric,

@@ -5,7 +5,8 @@ use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{
-    Analysis, At, BuildError, Model, Observer, Record, Sample, Scene, SceneError, SpecKind, State, V3,
+    Analysis, At, BuildError, Channel, Model, Observer, Process, Record, Sample, Scene, SceneError, SpecKind,
+    State, V3,
 };
 use std::collections::HashSet;
 use std::ops::ControlFlow;
@@ -74,15 +75,18 @@ impl<'a> Recorder<'a> {
         if scene.run.analysis == Analysis::Statics {
             table.columns = vec![output::Column::new("load factor", "")];
         }
+        let of_records =
+            records.iter().map(|r| Channel { name: r.name(), title: r.title(), columns: r.columns() });
+        let channels = of_records.chain(scene.processes.iter().flat_map(|p| p.channels()));
         let mut figures = Vec::new();
-        for record in &records {
+        for Channel { name, title, columns } in channels {
             let first = table.columns.len();
-            for c in record.columns() {
+            for c in columns {
                 let unit = if c.unit == "1" { String::new() } else { c.unit };
                 table.columns.push(output::Column::new(c.name, unit));
             }
             let columns = first..table.columns.len();
-            figures.push(Figure { name: record.name(), title: record.title(), columns });
+            figures.push(Figure { name, title, columns });
         }
         let n = scene.run.snapshots;
         let last = n.saturating_sub(1).max(1);
@@ -123,17 +127,39 @@ impl<'a> Recorder<'a> {
         for record in &self.records {
             record.sample(s, &mut self.row);
         }
+        self.keep(s.at.t, || lines(s.model, &s.at))
+    }
+
+    /// Takes a row of a process, which made a step of `h` since the last.
+    pub(crate) fn process(&mut self, process: &dyn Process, h: f64) -> ControlFlow<()> {
+        let t = process.t();
+        if let Some(progress) = &mut self.progress {
+            progress.step(t, h, 0);
+        }
+        if self.interrupt.is_some_and(Interrupt::requested) {
+            self.stop = Some(Ending::Interrupted);
+            return ControlFlow::Break(());
+        }
+        self.row.clear();
+        self.row.push(t);
+        process.sample(&mut self.row);
+        let kept = self.keep(t, || process.line());
+        self.go_on(kept)
+    }
+
+    /// Keeps the row, and the shape if one is due.
+    fn keep(&mut self, t: f64, lines: impl FnOnce() -> Vec<V3<f64>>) -> Result<(), Error> {
         self.table.push_row(&self.row)?;
         if let Some(writer) = &mut self.writer {
             writer.push(&self.row)?;
         }
         // an instant that is off by rounding is the right one
-        let now = s.at.t + 1e-9 * self.scene.run.duration;
+        let now = t + 1e-9 * self.scene.run.duration;
         if self.due.last().is_some_and(|due| *due <= now) {
             while self.due.last().is_some_and(|due| *due <= now) {
                 self.due.pop();
             }
-            self.shapes.push((s.at.t, lines(s.model, &s.at)));
+            self.shapes.push((t, lines()));
         }
         Ok(())
     }
@@ -141,7 +167,7 @@ impl<'a> Recorder<'a> {
     /// Keeps the shape in which the run ended, unless it is there already.
     pub(crate) fn last_shape(&mut self, model: &Model, state: &State) {
         let missing = self.shapes.last().is_some_and(|(t, _)| *t < state.t);
-        if missing && !self.due.is_empty() {
+        if missing && !self.due.is_empty() && self.scene.processes.is_empty() {
             self.shapes.push((state.t, lines(model, &state.at())));
         }
     }

@@ -42,7 +42,7 @@ pub(crate) fn report(
         _ = write!(time, ": {} x real time", rough(t / summary.wall_s));
     }
     line("time", time);
-    if file.scene().run.audit && !statics {
+    if file.scene().run.audit && !statics && file.scene().processes.is_empty() {
         let e = &summary.energy;
         line(
             "energy",

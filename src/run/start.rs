@@ -5,7 +5,9 @@ use crate::error::Error;
 use crate::output::{Counts, ProfileEntry};
 use ropewalk_core::integrator::{StepError, StepReport};
 use ropewalk_core::statics::Statics;
-use ropewalk_core::{Analysis, Audit, End, Model, Observer, Sample, Scene, Simulation, SolveError, State};
+use ropewalk_core::{
+    Analysis, Audit, End, Model, Observer, Process, Sample, Scene, Simulation, SolveError, State,
+};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -39,24 +41,19 @@ pub(crate) enum Started {
     Dynamics(Box<Simulation>, Flutter),
     /// Equilibria while time runs as the load factor.
     Statics(Box<Done>),
+    /// A problem of its own, beside a model without anything in it.
+    Process(Box<dyn Process>, Box<Done>),
 }
 
 impl Started {
     /// Brings the model to its start.
     pub(crate) fn new(scene: &Scene, model: Model) -> Result<Self, Error> {
         let run = &scene.run;
+        if let Some(process) = scene.start_process()? {
+            return Ok(Started::Process(process, Box::new(Done::at_rest(model))));
+        }
         if run.analysis == Analysis::Statics {
-            let mut state = model.state();
-            state.v.fill(0.0);
-            let audit = Audit::start(model.energy(&state.at()));
-            let counts = Counts::default();
-            return Ok(Started::Statics(Box::new(Done {
-                model: Arc::new(model),
-                state,
-                audit,
-                counts,
-                flutter: 0.0,
-            })));
+            return Ok(Started::Statics(Box::new(Done::at_rest(model))));
         }
         // an unsuitable scheme should not have to wait for the equilibrium
         scene.solver.integrator(&model, run.duration)?;
@@ -98,26 +95,26 @@ impl Started {
     }
 
     /// What only the run could tell: equilibria that aren't stable, multipliers that ring.
-    pub(crate) fn afterthought(&self) -> Option<String> {
-        if let Started::Dynamics(s, _) = self
-            && s.ringing > 0.0
-        {
-            return Some(format!(
-                "the multipliers rang: from step to step they swung by up to {:.1e} of their size",
-                s.ringing
-            ));
-        }
-        let rate = match self {
+    pub(crate) fn afterthought(&self) -> Vec<String> {
+        let flutter = match self {
+            Started::Process(process, _) => return process.warnings(),
+            Started::Dynamics(s, _) if s.ringing > 0.0 => {
+                return vec![format!(
+                    "the multipliers rang: from step to step they swung by up to {:.1e} of their size",
+                    s.ringing
+                )];
+            }
             Started::Dynamics(_, flutter) => *flutter,
             Started::Statics(done) => done.flutter,
         };
-        (rate > 0.0).then(|| {
+        let unstable = || {
             format!(
                 "the equilibrium is not stable: small disturbances swing ever wider, e-fold in {:.2} s. In motion it \
                  will flutter",
-                1.0 / rate
+                1.0 / flutter
             )
-        })
+        };
+        (flutter > 0.0).then(unstable).into_iter().collect()
     }
 
     /// Measures the time of every term from now on.
@@ -146,6 +143,7 @@ impl Started {
                 s.advance(scene.run.duration, scene.run.interval(), recorder).map_err(Error::from)
             }
             Started::Statics(path) => path.go(scene, recorder),
+            Started::Process(process, _) => through(process.as_mut(), scene, recorder),
         };
         match (end, recorder.stop.take()) {
             (_, Some(error)) => error,
@@ -159,21 +157,50 @@ impl Started {
     pub(crate) fn done(self) -> Done {
         match self {
             Started::Statics(done) => *done,
+            Started::Process(process, done) => Done { counts: counts(process.counts()), ..*done },
             Started::Dynamics(s, _) => {
-                let c = s.work.counts;
-                let counts = Counts {
-                    steps: c.steps,
-                    rejected: c.rejected,
-                    newton_iterations: c.newton_iterations,
-                    factorizations: c.factorizations,
-                };
+                let counts = counts(s.work.counts);
                 Done { model: s.model, state: s.state, audit: s.audit, counts, flutter: 0.0 }
             }
         }
     }
 }
 
+/// Moves a process on from row to row of the history.
+fn through(process: &mut dyn Process, scene: &Scene, recorder: &mut Recorder<'_>) -> Result<End, Error> {
+    let rows = (scene.run.duration / scene.run.interval() * (1.0 - 1e-12)).ceil();
+    for k in 0..=rows as u64 {
+        let t = (k as f64 * scene.run.interval()).min(scene.run.duration);
+        let (before, done) = (process.t(), process.advance(t));
+        // what could be computed on the way is kept
+        if recorder.process(process, process.t() - before).is_break() {
+            return Ok(End::Stopped { by: "observer".into() });
+        }
+        if let Some(by) = done.map_err(Error::Process)? {
+            return Ok(End::Stopped { by });
+        }
+    }
+    Ok(End::Done)
+}
+
+fn counts(c: ropewalk_core::integrator::Counts) -> Counts {
+    Counts {
+        steps: c.steps,
+        rejected: c.rejected,
+        newton_iterations: c.newton_iterations,
+        factorizations: c.factorizations,
+    }
+}
+
 impl Done {
+    /// A model that doesn't move, as it was laid.
+    fn at_rest(model: Model) -> Self {
+        let mut state = model.state();
+        state.v.fill(0.0);
+        let audit = Audit::start(model.energy(&state.at()));
+        Done { model: Arc::new(model), state, audit, counts: Counts::default(), flutter: 0.0 }
+    }
+
     /// One equilibrium after the other; each starts from the one before.
     fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>) -> Result<End, Error> {
         let mut search =

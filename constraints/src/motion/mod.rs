@@ -8,7 +8,7 @@ mod circle;
 mod harmonic;
 mod plane;
 mod rest;
-mod smooth;
+pub(crate) mod smooth;
 mod spec;
 mod speed;
 mod spin;

@@ -1,0 +1,282 @@
+//! What a scene says about unwinding.
+
+use super::history::Running;
+use super::newmark::{Stepping, Stopped};
+use super::problem::{Cable, Eyelet, LiftOff, Pull, Rule, Unwinding};
+use super::steady::SteadyError;
+use ropewalk_constraints::package::{Package, PackageSpec};
+use ropewalk_core::build::{BuildError, finite, positive};
+use ropewalk_core::integrator::Counts;
+use ropewalk_core::{
+    Channel, Column, Process, ProcessSpec, Surroundings, V3, Water, dot, quantity, register_spec,
+};
+use ropewalk_forces::{AddedMass, DragSpec, TimeFunction};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// What finds the lift-off point while the cable is drawn at a given speed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum RuleSpec {
+    /// The tension at the eyelet is given, and the lift-off point moves as the balloon demands.
+    Tension {
+        /// Tension without speed [N].
+        #[serde(deserialize_with = "quantity::force")]
+        rest: f64,
+        /// Tension per square of the speed [kg/m].
+        #[serde(default, deserialize_with = "quantity::mass_per_length")]
+        per_speed2: f64,
+        /// Factor of `rest` that changes with time.
+        #[serde(default)]
+        time: TimeFunction,
+    },
+    /// The free length stays as it was at the start; the tension is an output.
+    Length {
+        /// Tension at the eyelet of the steady balloon to start from [N].
+        #[serde(deserialize_with = "quantity::force")]
+        start: f64,
+    },
+    /// The cable sticks to the package and peels at a given energy.
+    Peel {
+        /// Energy per length: `EI |κ - κ_w|²/2` at the lift-off point, with the curvatures of the free and of the wound
+        /// cable [N].
+        #[serde(deserialize_with = "quantity::force")]
+        energy: f64,
+        /// Tension at the eyelet of the steady balloon to start from [N].
+        #[serde(deserialize_with = "quantity::force")]
+        start: f64,
+    },
+}
+
+fn segments() -> usize {
+    40
+}
+fn step() -> f64 {
+    1e-4
+}
+
+/// A cable that is drawn from a package through an eyelet, by finite differences: an inextensible cable, Newmark's method
+/// and a tension that comes from the constraint. It shares no equation with the elements of type `cable`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UnwindingSpec {
+    /// Name, with which the columns of the history begin.
+    pub name: String,
+    /// Mass per length [kg/m].
+    #[serde(deserialize_with = "quantity::mass_per_length")]
+    pub mass: f64,
+    /// Bending stiffness [N m^2]; left out, the cable is flexible.
+    #[serde(default, deserialize_with = "quantity::bending_stiffness")]
+    pub bending: f64,
+    /// The package that it is wound on, with its diameter and the radius to which it may be bent.
+    pub package: PackageSpec,
+    /// Position of the eyelet [m].
+    #[serde(default, deserialize_with = "quantity::vec3::length")]
+    pub eyelet: V3<f64>,
+    /// Whether the eyelet holds the cable along the axis of the package; needs bending stiffness to matter.
+    #[serde(default)]
+    pub guided: bool,
+    /// Whether the cable is tangent to the wound layer where it lifts off; needs bending stiffness.
+    #[serde(default)]
+    pub tangent: bool,
+    /// Motion that draws the cable: its way along x is the length drawn through the eyelet.
+    pub motion: String,
+    /// What finds the lift-off point.
+    pub rule: RuleSpec,
+    /// Shape at the start, at rest: points from the eyelet to the lift-off point [m]. Left out, the steady balloon of the
+    /// speed and the tension at the start; without speed and weight, a straight line.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<V3<f64>>,
+    /// Drag of the water; left out, none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drag: Option<DragSpec>,
+    /// Coefficient of the water that the cable carries along across its axis; left out, 0.
+    #[serde(default, deserialize_with = "quantity::number")]
+    pub added_mass: f64,
+    /// Acceleration of gravity [m/s^2], for weight and buoyancy; left out, none.
+    #[serde(default, deserialize_with = "quantity::vec3::acceleration")]
+    pub gravity: V3<f64>,
+    /// Into how many segments the free cable is divided.
+    #[serde(default = "segments")]
+    pub segments: usize,
+    /// Time step [s].
+    #[serde(default = "step", deserialize_with = "quantity::time")]
+    pub step: f64,
+    /// Numerical damping of Newmark's method; left out, 0.05 with bending stiffness and 0 without.
+    #[serde(default, deserialize_with = "quantity::optional::number")]
+    pub damping: Option<f64>,
+}
+register_spec!(Process, "unwinding", UnwindingSpec);
+
+impl UnwindingSpec {
+    /// The problem.
+    ///
+    /// # Errors
+    /// Data that make no sense.
+    pub fn problem(&self, around: &Surroundings) -> Result<Unwinding, BuildError> {
+        let package = Package::new(&self.package).map_err(|e| match e.field.as_deref() {
+            // the number stands in the package as well
+            Some("pitch") if self.package.pitch.is_none() => e.of("diameter"),
+            _ => e,
+        })?;
+        let (axis, diameter) = (package.axis(), self.package.diameter);
+        let limit = self.package.bend_limit.filter(|r| *r > 0.0).map_or(f64::INFINITY, |r| 1.0 / r);
+        positive("mass", self.mass)?;
+        finite("gravity", &self.gravity)?;
+        let cable = Cable { mass: self.mass, diameter, bending: self.bending, curvature_limit: limit };
+        let feed = around.motion("motion", &self.motion)?;
+        let rule = match &self.rule {
+            RuleSpec::Tension { rest, per_speed2, time } => {
+                time.check()?;
+                Rule::Tension(Pull { rest: *rest, time: time.clone(), per_speed2: *per_speed2 })
+            }
+            RuleSpec::Length { .. } => Rule::Length,
+            RuleSpec::Peel { energy, .. } => Rule::Peel(*energy),
+        };
+        let towards =
+            [0, 1, 2].map(|i| self.package.origin[i] + 0.5 * self.package.length * axis[i] - self.eyelet[i]);
+        let mut p = Unwinding::new(cable, Arc::new(package), feed, rule, self.segments);
+        p.eyelet = self.eyelet;
+        if self.guided {
+            let sign = if dot(&towards, &axis) < 0.0 { -1.0 } else { 1.0 };
+            p.through = Eyelet::Guided(axis.map(|a| sign * a));
+        }
+        if self.tangent {
+            p.lift_off = LiftOff::Tangent;
+        }
+        let water = || {
+            let message = "drag, added mass and buoyancy need a [water] section in the scene";
+            around.water.as_ref().ok_or_else(|| BuildError::new(message))
+        };
+        if let Some(drag) = &self.drag {
+            if !drag.on.is_empty() {
+                return Err(BuildError::at("on", "there is one cable only: leave `on` out"));
+            }
+            p.drag = Some(drag.law(water()?)?);
+        }
+        if self.added_mass != 0.0 {
+            p.added_mass = Some(AddedMass::new(water()?.density, self.added_mass)?);
+        }
+        let displaced =
+            around.water.as_ref().map_or(0.0, |w: &Water| w.density * PI / 4.0 * diameter * diameter);
+        p.weight = self.gravity.map(|g| (self.mass - displaced) * g);
+        p.check()?;
+        Ok(p)
+    }
+
+    /// The numbers of the time stepping.
+    pub fn stepping(&self) -> Stepping {
+        let damping = self.damping.unwrap_or(if self.bending > 0.0 { 0.05 } else { 0.0 });
+        Stepping { damping, ..Stepping::new(self.step) }
+    }
+
+    /// Names of the channels with title, labels of the columns and their unit.
+    fn outputs(&self) -> Vec<(&'static str, &'static str, &'static [&'static str], &'static str)> {
+        let mut all: Vec<(_, _, &'static [&'static str], _)> = vec![
+            ("tension", "Tension at the ends", &["eyelet", "lift"], "N"),
+            ("length", "Free length and length peeled", &["free", "peeled"], "m"),
+            ("speed", "Speed of drawing and of peeling", &["drawn", "peeled"], "m/s"),
+            ("lift", "Lift-off point", &["x", "y", "z"], "m"),
+            ("radius", "Largest distance from the axis", &["radius"], "m"),
+            ("centre", "Centre node", &["x", "y", "z"], "m"),
+            ("acceleration", "Acceleration of the centre node", &["x", "y", "z"], "m/s^2"),
+        ];
+        if self.drag.is_some() {
+            all.push((
+                "drag",
+                "Drag coefficient along the cable",
+                &["quarter", "half", "three_quarters"],
+                "1",
+            ));
+        }
+        if self.bending > 0.0 {
+            all.push(("curvature", "Curvature at the lift-off point", &["lift"], "1/m"));
+        }
+        all
+    }
+}
+
+#[typetag::serde(name = "unwinding")]
+impl ProcessSpec for UnwindingSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn channels(&self) -> Vec<Channel> {
+        let name = &self.name;
+        let channel = |(what, title, labels, unit): (&str, &str, &[&str], &str)| Channel {
+            title: title.to_string(),
+            name: format!("{name}.{what}"),
+            columns: labels.iter().map(|l| Column::new(format!("{name}.{what}.{l}"), unit)).collect(),
+        };
+        self.outputs().into_iter().map(channel).collect()
+    }
+    fn unknowns(&self) -> usize {
+        4 * self.segments - 3 + usize::from(!matches!(self.rule, RuleSpec::Length { .. }))
+    }
+    fn build(&self, around: &Surroundings) -> Result<Box<dyn Process>, BuildError> {
+        let problem = self.problem(around)?;
+        let [speed, _] = problem.speed(0.0);
+        let start = if self.points.is_empty() {
+            let tension = match (&self.rule, &problem.rule) {
+                (_, Rule::Tension(pull)) => pull.at(0.0, speed),
+                (RuleSpec::Length { start } | RuleSpec::Peel { start, .. }, _) => *start,
+                (RuleSpec::Tension { .. }, _) => 0.0,
+            };
+            let balloon = problem.steady(speed, tension, 0.0).map_err(|e| match e {
+                SteadyError::Input(e) => e,
+                e => BuildError::at("rule", format!("at the start: {e}")),
+            })?;
+            problem.start_steady(&balloon)?
+        } else {
+            problem.start(&self.points, 0.0, 0.0)?
+        };
+        let running = Running::new(problem, start, self.stepping(), around.duration)
+            .map_err(|e| if e.field.as_deref() == Some("feed") { e.of("motion") } else { e })?;
+        Ok(Box::new(Unwound { running, drag: self.drag.is_some(), bending: self.bending > 0.0 }))
+    }
+}
+
+struct Unwound {
+    running: Running,
+    drag: bool,
+    bending: bool,
+}
+
+impl Process for Unwound {
+    fn t(&self) -> f64 {
+        self.running.t()
+    }
+    fn advance(&mut self, t: f64) -> Result<Option<String>, String> {
+        match self.running.advance(t) {
+            Ok(()) => Ok(None),
+            Err(Stopped::Empty { .. }) => Ok(Some("the package: it is empty".into())),
+            Err(e) => Err(e.to_string()),
+        }
+    }
+    fn sample(&self, out: &mut Vec<f64>) {
+        let r = self.running.row();
+        out.extend([r.tension, r.lift_tension, r.length, r.peeled, r.speed, r.peel_speed]);
+        out.extend(r.lift_off);
+        out.push(r.radius);
+        out.extend(r.centre[0]);
+        out.extend(r.centre[2]);
+        if self.drag {
+            out.extend(r.drag);
+        }
+        if self.bending {
+            out.push(r.lift_curvature);
+        }
+    }
+    fn line(&self) -> Vec<V3<f64>> {
+        self.running.shape().x
+    }
+    fn counts(&self) -> Counts {
+        let [steps, newton_iterations, rejected] = self.running.work();
+        Counts { steps, newton_iterations, rejected, factorizations: newton_iterations, ..Counts::default() }
+    }
+    fn warnings(&self) -> Vec<String> {
+        self.running.conditions().iter().map(ToString::to_string).collect()
+    }
+}
