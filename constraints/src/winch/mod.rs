@@ -1,12 +1,15 @@
 //! Winches: ends of cables that feed out and reel in.
 
+mod conditions;
 mod feeding;
+mod lift_off;
 mod limit;
 mod pull;
 mod spec;
 mod zone;
 
 pub use feeding::Feeding;
+pub use lift_off::{LiftOff, LiftOffSpec};
 pub use limit::{Limit, Side};
 pub use pull::Pull;
 pub use spec::WinchSpec;

@@ -1,0 +1,238 @@
+//! Where a cable lifts off from a package.
+
+use super::{Limit, Side};
+use crate::package::{Lay, Package, PackageSpec};
+use ropewalk_core::build::{BuildError, Builder};
+use ropewalk_core::rotation::cross;
+use ropewalk_core::{
+    At, Constraint, ConstraintSpec, Front, Marker, MarkerRef, Node, NodeId, RowKind, V3, dot, register_spec,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The end of a cable is where its package has it: `r - H(σ) = 0`, with the length `σ` that has been fed out there; three
+/// equations. With `tangent` the cable goes on along the wound layer, `r' ∥ H'(σ)`, two more.
+///
+/// Cable that is wound is at rest. What peels it is told by the winch at the same end: a speed, or a force.
+#[derive(Clone, Debug)]
+pub struct LiftOff {
+    name: String,
+    front: Front,
+    marker: [Marker; 1],
+    nodes: [NodeId; 2],
+    package: Arc<Package>,
+    tangent: bool,
+}
+
+const ROWS: [RowKind; 5] =
+    [RowKind::Position, RowKind::Position, RowKind::Position, RowKind::Direction, RowKind::Direction];
+
+impl LiftOff {
+    /// Lifts off at this end.
+    pub fn new(name: impl Into<String>, front: Front, package: Arc<Package>, tangent: bool) -> Self {
+        let (marker, nodes) = ([Marker::node(front.end)], [front.end, front.node]);
+        LiftOff { name: name.into(), front, marker, nodes, package, tangent }
+    }
+
+    /// The lift-off point now; beyond the end of the cable it goes straight on, so that the run gets to see the end.
+    fn lay(&self, sigma: f64) -> Lay {
+        let end = self.package.wound();
+        let at = |sigma: f64| {
+            let none = [f64::NAN; 3];
+            self.package.at(sigma).unwrap_or(Lay { x: none, tangent: none, curvature: none })
+        };
+        if sigma > end {
+            let last = at(end);
+            let x = std::array::from_fn(|i| last.x[i] + (sigma - end) * last.tangent[i]);
+            return Lay { x, curvature: [0.0; 3], ..last };
+        }
+        at(sigma)
+    }
+
+    /// How the curvature changes; by differences, since a package has two continuous derivatives only.
+    fn twist(&self, sigma: f64) -> V3<f64> {
+        let h = 1e-4 * self.package.spec().radius;
+        let (a, b) = (self.lay(sigma - h).curvature, self.lay(sigma + h).curvature);
+        std::array::from_fn(|i| (b[i] - a[i]) / (2.0 * h))
+    }
+
+    fn slope(&self, x: &[f64], at: usize) -> V3<f64> {
+        std::array::from_fn(|i| x[at + 3 + i])
+    }
+
+    /// Derivatives of the two equations of direction, by `r'`, and by `σ` of that: `d_1 = a - (a·h) h`, `d_2 = h × a` for the
+    /// axis `a`.
+    fn directions(&self, lay: &Lay) -> [[V3<f64>; 2]; 2] {
+        let (a, h, k) = (self.package.axis(), lay.tangent, lay.curvature);
+        let (along, change) = (dot(&a, &h), dot(&a, &k));
+        [
+            [std::array::from_fn(|i| a[i] - along * h[i]), cross(&h, &a)],
+            [std::array::from_fn(|i| -change * h[i] - along * k[i]), cross(&k, &a)],
+        ]
+    }
+
+    /// Second derivatives of all equations by `σ`.
+    fn seconds(&self, sigma: f64, lay: &Lay, slope: &V3<f64>) -> [f64; 5] {
+        let mut out = [0.0; 5];
+        for i in 0..3 {
+            out[i] = -lay.curvature[i];
+        }
+        if self.tangent {
+            let (a, h, k, t) = (self.package.axis(), lay.tangent, lay.curvature, self.twist(sigma));
+            out[3] = -dot(&a, &t) * dot(&h, slope)
+                - 2.0 * dot(&a, &k) * dot(&k, slope)
+                - dot(&a, &h) * dot(&t, slope);
+            out[4] = dot(&cross(&t, &a), slope);
+        }
+        out
+    }
+}
+
+impl Constraint for LiftOff {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn rows(&self) -> &[RowKind] {
+        if self.tangent { &ROWS } else { &ROWS[..3] }
+    }
+    fn markers(&self) -> &[Marker] {
+        &self.marker
+    }
+    fn nodes(&self) -> &[NodeId] {
+        &self.nodes
+    }
+    fn linear(&self) -> bool {
+        false
+    }
+    fn jacobian(&self, _: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
+        let (sigma, sign) = (self.front.fed(at), self.front.sign);
+        let lay = self.lay(sigma);
+        jac.fill(0.0);
+        for i in 0..3 {
+            g[i] = at.q[self.front.end_q + i] - lay.x[i];
+            jac[7 * i + i] = 1.0;
+            jac[7 * i + 6] = -sign * lay.tangent[i];
+        }
+        if self.tangent {
+            let slope = self.slope(at.q, self.front.end_q);
+            let [d, by_sigma] = self.directions(&lay);
+            for r in 0..2 {
+                g[3 + r] = dot(&d[r], &slope);
+                jac[7 * (3 + r) + 3..7 * (3 + r) + 6].copy_from_slice(&d[r]);
+                jac[7 * (3 + r) + 6] = sign * dot(&by_sigma[r], &slope);
+            }
+        }
+    }
+    fn geometric(&self, _: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
+        let (sigma, sign) = (self.front.fed(at), self.front.sign);
+        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.front.end_q));
+        h.fill(0.0);
+        let seconds = self.seconds(sigma, &lay, &slope);
+        h[7 * 6 + 6] = seconds.iter().zip(lambda).map(|(s, l)| s * l).sum();
+        if self.tangent {
+            let [_, by_sigma] = self.directions(&lay);
+            for i in 0..3 {
+                let mixed = sign * (lambda[3] * by_sigma[0][i] + lambda[4] * by_sigma[1][i]);
+                h[7 * (3 + i) + 6] = mixed;
+                h[7 * 6 + 3 + i] = mixed;
+            }
+        }
+    }
+    fn rates(&self, _: &[Node], at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
+        let (sigma, u) = (self.front.fed(at), self.front.rate(at));
+        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.front.end_q));
+        rate.fill(0.0);
+        let seconds = self.seconds(sigma, &lay, &slope);
+        for (bias, second) in bias.iter_mut().zip(seconds) {
+            *bias = second * u * u;
+        }
+        if self.tangent {
+            let (turning, [_, by_sigma]) = (self.slope(at.v, self.front.end_v), self.directions(&lay));
+            for r in 0..2 {
+                bias[3 + r] += 2.0 * u * dot(&by_sigma[r], &turning);
+            }
+        }
+    }
+}
+
+/// Lets an end of a cable lift off from a package: the lift-off point runs round the package as cable is peeled.
+///
+/// A `winch` at the same end says what peels it: `speed` or `motion`, or `tension` for what the package holds it back with.
+/// Where the cable goes to is told by an eyelet at the other end: a `spherical` constraint and a winch of its own. Reports
+/// what happens on the way: a tension below what keeps the cable taut, contact with the package, too much bending.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LiftOffSpec {
+    /// Name, by which records ask for its reaction.
+    pub name: String,
+    /// The end of the cable that is wound: `fibre.end` or `fibre.start`.
+    pub marker: MarkerRef,
+    /// The package.
+    pub package: PackageSpec,
+    /// Whether the cable is tangent to the wound layer where it lifts off; needs bending stiffness.
+    #[serde(default)]
+    pub tangent: bool,
+}
+register_spec!(Constraint, "lift_off", LiftOffSpec);
+
+#[typetag::serde(name = "lift_off")]
+impl ConstraintSpec for LiftOffSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let package = Arc::new(self.package.build()?);
+        let front = b.front(&self.marker)?;
+        let part = b.feeding_part(&self.marker)?;
+        b.event(Limit {
+            name: self.name.clone(),
+            front,
+            part: part.name().to_string(),
+            side: Side::Empty,
+            length: package.wound(),
+        });
+        super::conditions::watch(b, &self.name, part.name(), front, &package);
+        b.constraint(LiftOff::new(&self.name, front, package, self.tangent))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ropewalk_core::NodeKind;
+    use ropewalk_core::testing::check_constraint;
+
+    #[test]
+    fn derivatives_agree_with_differences() {
+        let nodes = [
+            Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false },
+            Node { kind: NodeKind::Scalars(1), q: 6, v: 6, shared: true },
+        ];
+        let package = Arc::new(PackageSpec::new(0.06, 0.2, 0.009).build().unwrap());
+        for (sign, p) in [(-1.0, -0.9), (1.0, 1.3)] {
+            let front = Front {
+                node: NodeId(1),
+                q: 6,
+                v: 6,
+                sign,
+                home: 0.2 * sign,
+                end: NodeId(0),
+                end_q: 0,
+                end_v: 0,
+                rho_a: 1.0,
+            };
+            let q = [0.1, 0.05, 0.3, 0.9, 0.5, -0.4, p];
+            let v = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
+            let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], modes: &[], relaxed: None };
+            for tangent in [false, true] {
+                let off = LiftOff::new("off", front, package.clone(), tangent);
+                let error = check_constraint(&off, &nodes, &at);
+                assert!(error < 1e-5, "{sign}, tangent {tangent}: {error:e}");
+            }
+        }
+    }
+}
