@@ -213,7 +213,7 @@ mod tests {
             Node { kind: NodeKind::Scalars(1), q: 6, v: 6, shared: true },
         ];
         let package = Arc::new(PackageSpec::new(0.06, 0.2, 0.009).build().unwrap());
-        for (sign, p) in [(-1.0, -0.9), (1.0, 1.3)] {
+        for (sign, p) in [(-1.0, -0.9), (1.0, 1.3), (1.0, 0.2)] {
             let front = Front {
                 node: NodeId(1),
                 q: 6,
