@@ -333,6 +333,34 @@ fn statics_lays_a_cable_on_the_floor() {
 }
 
 #[test]
+fn fixed_steps_pass_from_slip_to_stick() {
+    // a block, in steps in which friction could turn it round hundreds of times the slip speed over
+    let mut scene = Scene::new();
+    scene
+        .element(ball([0.0, 0.0, R - G / 1e6], [2.0, 0.0, 0.0]))
+        .force(GravitySpec::default())
+        .force(ContactSpec { friction: 0.3, ..floor(1e6) });
+    let mut s = start(&scene, &fixed(5e-3), 1.0);
+    go(&mut s, 1.0, &mut ());
+    near(s.state.q[0], 0.679_578_661_230_037_4, 0.01);
+    assert!(s.state.v[0].abs() < 1e-4, "{}", s.state.v[0]);
+    assert_eq!(s.work.counts.rejected, 0, "{:?}", s.work.counts);
+
+    // a rope that is let go over a drum, slipping here and sticking there
+    let section = Section { diameter: 0.02, axial_damping: 1e-3, ..Section::new(1.0, 1e6, 0.5) };
+    let mut scene = Scene::new();
+    scene
+        .element(rope(over(0.51, 1.0, 1.2), 100, section))
+        .force(GravitySpec::default())
+        .force(ContactSpec { friction: 0.3, damping: Damping::HuntCrossley(0.3), ..drum(0.5, 1e6) });
+    let mut s = start(&scene, &fixed(1e-3), 0.2);
+    go(&mut s, 0.2, &mut ());
+    let counts = s.work.counts;
+    println!("{counts:?}");
+    assert!(counts.rejected <= 4 && counts.newton_iterations <= 10 * 200, "{counts:?}");
+}
+
+#[test]
 fn a_drum_turns_with_the_rope_that_it_carries() {
     // Atwood's machine with a heavy pulley and a light rope that sticks
     let (radius, d, m, rho) = (0.2, 0.004, [1.2, 1.0], 0.05);

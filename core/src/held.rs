@@ -86,6 +86,7 @@ impl Held {
         }
     }
     /// Its position [m].
+    #[inline]
     pub fn x(&self, at: &At<'_>) -> V3<f64> {
         match *self {
             Held::Ground(x) => x,
@@ -95,6 +96,7 @@ impl Held {
         }
     }
     /// Its velocity [m/s].
+    #[inline]
     pub fn velocity(&self, at: &At<'_>) -> V3<f64> {
         match *self {
             Held::Ground(_) => [0.0; 3],
@@ -107,6 +109,7 @@ impl Held {
         }
     }
     /// Number of unknowns that move it.
+    #[inline]
     pub fn size(&self) -> usize {
         match self {
             Held::Ground(_) => 0,
@@ -116,6 +119,7 @@ impl Held {
         }
     }
     /// Index of the unknown number `k` that moves it.
+    #[inline]
     pub fn dof(&self, k: usize) -> usize {
         match *self {
             Held::Ground(_) => usize::MAX,

@@ -64,7 +64,7 @@ pub use spec::{
 pub use state::{At, Control, Relaxation, Relaxed, State};
 pub use station::{FieldTerm, Gives, Law, Laws, Load, Station, StationElement, StationPool, Stations};
 pub use structure::{Block, Columns, Structure};
-pub use term::{Assembly, Energy, Power, Term, Weights};
+pub use term::{Assembly, Energy, Leap, Power, Term, Weights};
 
 #[doc(hidden)]
 pub use inventory;

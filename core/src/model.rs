@@ -12,7 +12,7 @@ use crate::scene::{Scene, SceneError};
 use crate::simulation::Event;
 use crate::state::{At, Control, State};
 use crate::structure::Structure;
-use crate::term::{Assembly, Energy, Power, Term, Weights};
+use crate::term::{Assembly, Energy, Leap, Power, Term, Weights};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -52,6 +52,8 @@ pub struct Model {
     watchful: Vec<usize>,
     /// The constraints that prescribe a coordinate, and its places.
     driven: Vec<(usize, usize, usize)>,
+    /// Whether a term has a kink in velocities.
+    kinked: bool,
 }
 
 /// Where a run starts: configuration and velocities as the scene gives them.
@@ -87,6 +89,8 @@ pub struct System {
     hessian: Vec<f64>,
     /// For what elements scatter.
     scratch: Vec<f64>,
+    /// Whether a term was only approximated.
+    pub(crate) approximate: bool,
     /// Calls and time of each term, then of the constraints; only filled where profiling was asked for.
     pub profile: Option<Vec<(u64, Duration)>>,
 }
@@ -132,6 +136,7 @@ impl Model {
         let farthest = positions.fold(length, |m, x| m.max(x.abs()));
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
         let watchful = (0..terms.len()).filter(|&k| terms[k].foresees()).collect();
+        let kinked = terms.iter().any(|t| t.kinked());
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
         let driven = constraints.iter().enumerate();
         let driven = driven.filter_map(|(c, own)| own.prescribes().map(|(q, v)| (c, q, v))).collect();
@@ -159,6 +164,7 @@ impl Model {
             finest,
             watchful,
             driven,
+            kinked,
         }
     }
 
@@ -312,6 +318,23 @@ impl Model {
         self.assemble_in(&self.structure, at, lambda, weights, sys);
     }
 
+    /// Whether a term has a kink in velocities.
+    pub(crate) fn kinked(&self) -> bool {
+        self.kinked
+    }
+
+    /// As [`Model::assemble`], for an iteration that comes from these velocities.
+    pub(crate) fn assemble_from(
+        &self,
+        leap: Option<Leap<'_>>,
+        at: &At<'_>,
+        lambda: &[f64],
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
+        self.assemble_all(&self.structure, leap, at, lambda, weights, sys);
+    }
+
     /// The structure with both triangles stored, for analyses whose matrix is unsymmetric though no term is.
     pub fn unsymmetric_structure(&self) -> Structure {
         Structure::new(&self.nodes, &self.touched, &self.pattern, false)
@@ -326,7 +349,20 @@ impl Model {
         weights: Option<Weights>,
         sys: &mut System,
     ) {
+        self.assemble_all(structure, None, at, lambda, weights, sys);
+    }
+
+    fn assemble_all(
+        &self,
+        structure: &Structure,
+        leap: Option<Leap<'_>>,
+        at: &At<'_>,
+        lambda: &[f64],
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
         let nv = self.velocities;
+        sys.approximate = false;
         sys.residual.resize(self.structure.n, 0.0);
         sys.residual.fill(0.0);
         if weights.is_some() {
@@ -346,6 +382,8 @@ impl Model {
                 structure,
                 clique: self.cliques[k].start,
                 scratch: &mut sys.scratch,
+                leap,
+                approximate: &mut sys.approximate,
             };
             term.add(at, &mut out);
             if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {

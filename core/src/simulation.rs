@@ -15,8 +15,8 @@ use std::sync::Arc;
 
 /// What an event does once its time is located.
 pub enum Action {
-    /// Nothing that forces feel at once: it was only of interest, or what it started sets in smoothly. The step ends
-    /// there, and the integrator goes on with its memory.
+    /// Nothing that forces feel at once. If it changed a mode, what it started sets in smoothly: the step ends there, and
+    /// the integrator goes on with its memory. If it changed none, it was only of interest, and the step stays as it is.
     Continue,
     /// The state (a mode, a velocity) was changed: the integrator starts anew from it.
     Restart,
@@ -79,6 +79,16 @@ pub enum End {
         /// Who stopped it.
         by: String,
     },
+}
+
+/// An event that has changed something.
+struct Fired {
+    event: usize,
+    action: Action,
+    /// The state as it left it.
+    after: State,
+    /// Whether it changed a mode.
+    changed: bool,
 }
 
 /// The value of an event at the start. What has come to pass already happens at once.
@@ -186,9 +196,13 @@ impl Simulation {
         let start = self.state.t;
         let mut next = 0u64;
         let sample_time = |k: u64| start + interval * k as f64;
-        // times that differ by less than this are the same: no step of the size of rounding
-        let same =
-            |a: f64, b: f64| (a - b).abs() <= 1e-9 * interval.min(end - start) + 4.0 * f64::EPSILON * b.abs();
+        // times that differ by less than this are the same: no step of the size of rounding. To call them so mustn't move
+        // what is driven
+        let short = match self.integrator.options().stepping {
+            Stepping::Fixed { h } => interval.min(end - start).min(1e5 * h),
+            Stepping::Controlled { .. } => interval.min(end - start),
+        };
+        let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * short + 4.0 * f64::EPSILON * b.abs();
         if self.sample(observer, None)?.is_break() {
             return Ok(End::Stopped { by: "observer".into() });
         }
@@ -203,7 +217,7 @@ impl Simulation {
             if same(self.state.t, end) {
                 self.state.t = end;
             }
-            let fired = self.locate();
+            let fired = self.locate(observer);
             self.account();
             self.measure_ringing();
             if observer.step(&self.model, &self.state, &report).is_break() {
@@ -219,8 +233,8 @@ impl Simulation {
                 }
                 next += 1;
             }
-            if let Some(k) = fired
-                && let Some(end) = self.fire(k, observer)?
+            if let Some(fired) = fired
+                && let Some(end) = self.fire(fired, observer)?
             {
                 return Ok(end);
             }
@@ -286,12 +300,11 @@ impl Simulation {
         Ok(observer.sample(&sample))
     }
 
-    /// Finds the first event inside the last step and moves the state there.
-    fn locate(&mut self) -> Option<usize> {
+    /// The first event inside the last step after a time, and when it comes.
+    fn next_event(&mut self, from: f64) -> Option<(usize, f64)> {
         let mut first: Option<(usize, f64)> = None;
-        for k in 0..self.events.len() {
-            let (event, before) = (&self.events[k].0, self.events[k].1);
-            let after = event.value(&self.model, &self.state);
+        for (k, (event, before)) in self.events.iter().enumerate() {
+            let (before, after) = (*before, event.value(&self.model, &self.state));
             let crossed = match event.direction() {
                 1 => before < 0.0 && after >= 0.0,
                 -1 => before > 0.0 && after <= 0.0,
@@ -301,7 +314,7 @@ impl Simulation {
                 continue;
             }
             let dense = Dense::new(&self.model, &self.previous, &self.state);
-            let (mut low, mut high) = (self.previous.t, self.state.t);
+            let (mut low, mut high) = (from, self.state.t);
             let tolerance = 4.0 * f64::EPSILON * high.abs() + 1e-12 * (high - low);
             while high - low > tolerance {
                 let mid = 0.5 * (low + high);
@@ -316,27 +329,45 @@ impl Simulation {
                 first = Some((k, high));
             }
         }
-        let fired = match first {
-            Some((k, t)) => {
-                Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
-                let control = self.state.control.clone();
-                std::mem::swap(&mut self.state, &mut self.scratch);
-                self.state.control = control;
-                Some(k)
-            }
-            None => None,
-        };
-        for k in 0..self.events.len() {
-            self.events[k].1 = self.events[k].0.value(&self.model, &self.state);
-        }
-        fired
+        first
     }
 
-    fn fire(&mut self, k: usize, observer: &mut dyn Observer) -> Result<Option<End>, StepError> {
+    /// Lets the events inside the last step act, one after the other, up to the first that changes something: the state
+    /// moves to just before it.
+    fn locate(&mut self, observer: &mut dyn Observer) -> Option<Fired> {
+        let mut from = self.previous.t;
+        while let Some((event, t)) = self.next_event(from) {
+            Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+            self.scratch.control.clone_from(&self.state.control);
+            for (k, (other, value)) in self.events.iter_mut().enumerate() {
+                let (before, now) = (*value, other.value(&self.model, &self.scratch));
+                // what came at the same instant is still due
+                let due = k != event && now * before < 0.0;
+                *value = if due { before.signum() * f64::MIN_POSITIVE } else { now };
+            }
+            let mut after = self.scratch.clone();
+            let action = self.events[event].0.act(&self.model, &mut after);
+            let changed = after.modes != self.scratch.modes;
+            if !changed && matches!(action, Action::Continue) {
+                observer.event(&self.events[event].0.name(), t);
+                from = t;
+                continue;
+            }
+            std::mem::swap(&mut self.state, &mut self.scratch);
+            return Some(Fired { event, action, after, changed });
+        }
+        for (event, value) in &mut self.events {
+            *value = event.value(&self.model, &self.state);
+        }
+        None
+    }
+
+    fn fire(&mut self, fired: Fired, observer: &mut dyn Observer) -> Result<Option<End>, StepError> {
+        let Fired { event: k, action, after, changed } = fired;
         observer.event(&self.events[k].0.name(), self.state.t);
         let h = self.state.control.h_last;
-        let modes = self.state.modes.clone();
-        match self.events[k].0.act(&self.model, &mut self.state) {
+        self.state = after;
+        match action {
             Action::Continue => {
                 // the step has become shorter, and what was predicted from it doesn't fit any more
                 let control = &mut self.state.control;
@@ -347,7 +378,7 @@ impl Simulation {
                 for (aux, a) in self.state.aux.iter_mut().zip(&self.state.a) {
                     *aux = a + short * (*aux - a);
                 }
-                self.resume(k, modes != self.state.modes);
+                self.resume(k, changed);
                 return Ok(None);
             }
             Action::Stop => return Ok(Some(End::Stopped { by: self.events[k].0.name() })),
@@ -373,7 +404,7 @@ impl Simulation {
             }
         }
         // history doesn't reach across an event
-        let (changed, now) = (modes != self.state.modes, self.state.modes.clone());
+        let now = self.state.modes.clone();
         restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
         self.state.modes = now;
         self.state.control.h_next = 0.1 * h;

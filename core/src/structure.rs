@@ -105,7 +105,7 @@ pub struct Structure {
 }
 
 /// Largest block, and largest block with its successor, of what is solved as a chain; both with the shared unknowns.
-pub(crate) const LARGEST: usize = 16;
+pub(crate) const LARGEST: usize = 24;
 const WIDEST: usize = 32;
 
 impl Structure {

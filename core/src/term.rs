@@ -118,12 +118,29 @@ pub trait Term: Send + Sync {
     fn horizon(&self, _at: &At<'_>) -> f64 {
         f64::INFINITY
     }
+    /// Whether its force has a kink in velocities that a step may leap over, such as dry friction between slip and stick:
+    /// only then does [`Assembly::leap`] say anything.
+    fn kinked(&self) -> bool {
+        false
+    }
     /// What a record of type `force` shows of it; names are put behind that of the record.
     fn columns(&self) -> Vec<Column> {
         Vec::new()
     }
     /// Appends the values of [`Term::columns`].
     fn observe(&self, _at: &At<'_>, _out: &mut Vec<f64>) {}
+}
+
+/// Velocities that an evaluation of Newton's method comes from.
+///
+/// Where a kink lies between them and the present ones, the tangent on this side of it says nothing about the other: a
+/// term may then add the force that leads to the kink instead of its own, and say so with [`Assembly::approximates`].
+#[derive(Clone, Copy, Debug)]
+pub struct Leap<'a> {
+    /// The velocities before [m/s].
+    pub v: &'a [f64],
+    /// Whether they are those at the start of the step, and the present ones predicted; else both are iterates.
+    pub predicted: bool,
 }
 
 /// Where the terms add: the residual and, if wanted, the entries of the iteration matrix.
@@ -137,6 +154,9 @@ pub struct Assembly<'a> {
     pub(crate) clique: usize,
     /// For blocks on their way out of lanes.
     pub(crate) scratch: &'a mut Vec<f64>,
+    /// What a term with kinks is told, and whether it took its force for another.
+    pub(crate) leap: Option<Leap<'a>>,
+    pub(crate) approximate: &'a mut bool,
 }
 
 impl Assembly<'_> {
@@ -149,6 +169,15 @@ impl Assembly<'_> {
     #[inline(always)]
     pub fn weights(&self) -> Weights {
         self.weights
+    }
+    /// What this evaluation comes from, where that is worth knowing.
+    #[inline(always)]
+    pub fn leap(&self) -> Option<Leap<'_>> {
+        self.leap
+    }
+    /// Says that a force was only approximated: what follows from it is no solution yet.
+    pub fn approximates(&mut self) {
+        *self.approximate = true;
     }
     /// The number of lanes to work with.
     pub fn width(&self) -> Width {
@@ -181,9 +210,9 @@ impl Assembly<'_> {
             }
         }
     }
-    /// The same for a block in memory.
+    /// The same for a block in memory, of which the first rows and columns count.
     #[inline(always)]
-    pub(crate) fn add_square<const N: usize>(&mut self, clique: usize, k: &[[f64; N]; N]) {
+    pub fn add_square<const N: usize>(&mut self, clique: usize, k: &[[f64; N]; N]) {
         let Some(values) = self.values.as_deref_mut() else { return };
         for t in self.structure.tiles(self.clique + clique) {
             let rows = &k[t.row as usize..][..t.rows as usize];

@@ -37,6 +37,8 @@ pub fn dense(
             structure: &structure,
             clique: 0,
             scratch: &mut Vec::new(),
+            leap: None,
+            approximate: &mut false,
         },
     );
     let mut unknown = vec![0; n];

@@ -1,6 +1,7 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
 use super::newton::{Newton, Outcome, Rate};
+use super::options::fixed_step;
 use super::start::{anew, settle};
 use super::workspace::Which;
 use super::{
@@ -337,7 +338,7 @@ impl Integrator for Alpha {
         let mut h = match self.options.stepping {
             Stepping::Fixed { h } => {
                 let cap = if state.control.h_cap > 0.0 { state.control.h_cap } else { f64::INFINITY };
-                h.min(h_max).min(cap)
+                fixed_step(h, h_max).min(cap)
             }
             Stepping::Controlled { .. } => {
                 let wish =
@@ -370,6 +371,9 @@ impl Integrator for Alpha {
                 tolerance: self.newton_tolerance(model, h),
                 linear_constraints,
                 stabilised: self.stabilised(model),
+                // a step that leaps over the instant at which a point sticks ends so stiff that the estimate of its error
+                // is blind: error control has to find that instant
+                leaps: !controlled,
             };
             // factors that served badly last time are not tried again
             if state.control.theta > REFRESH {

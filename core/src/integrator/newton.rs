@@ -9,7 +9,7 @@ use super::{Coefficients, NewtonPolicy, Workspace};
 use crate::model::Model;
 use crate::solver::SolveError;
 use crate::state::{At, State};
-use crate::term::Weights;
+use crate::term::{Leap, Weights};
 
 /// Iterations with kept factors that are cheaper than new factors.
 const PATIENCE: i32 = 3;
@@ -19,6 +19,9 @@ const HOPELESS: f64 = 0.5;
 
 /// A step whose iteration still diverges after so many new matrices is repeated smaller.
 const MOST_RENEWALS: u32 = 3;
+
+/// The same where forces were approximated at kinks, which renews the matrix every time.
+const MOST_AT_KINKS: u32 = 10;
 
 /// Largest expected rest of the error that is believed without a second iteration. What is expected grows from step to
 /// step that has only one.
@@ -62,6 +65,8 @@ pub(crate) struct Newton<'a> {
     pub linear_constraints: bool,
     /// Whether velocities are to meet the constraints as well.
     pub stabilised: bool,
+    /// Whether terms with kinks are told what an iteration comes from.
+    pub leaps: bool,
 }
 
 impl Newton<'_> {
@@ -94,10 +99,10 @@ impl Newton<'_> {
     }
 
     /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.
-    fn evaluate(&self, work: &mut Workspace, matrix: bool) -> Result<(), SolveError> {
+    fn evaluate(&self, work: &mut Workspace, matrix: bool, leap: Option<Leap<'_>>) -> Result<(), SolveError> {
         let weights = self.weights();
         let at = self.place(&work.trial);
-        self.model.assemble(&at, &work.trial.lambda, matrix.then_some(weights), &mut work.system);
+        self.model.assemble_from(leap, &at, &work.trial.lambda, matrix.then_some(weights), &mut work.system);
         if matrix { work.factor(self.model, weights) } else { Ok(()) }
     }
 
@@ -113,18 +118,38 @@ impl Newton<'_> {
         // iterations with the present factors, and how many were made here
         let (mut since, mut renewals, mut kept_failed) = (0, 0, false);
         let multiplier_scale = 1.0 / (self.scheme.beta * self.h * self.h);
+        let kinks = self.leaps && self.model.kinked();
+        let (mut approximate, mut approximated) = (false, false);
         self.kinematics(work);
         for k in 0..self.max_iterations {
             let stale = work.factored != Some(self.weights());
             // an iteration that would go on for long with its matrix gets a new one
-            let slow = since > 1 && last > noise && last * theta.powi(PATIENCE) > stop;
-            let refresh = stale || self.policy == NewtonPolicy::Full || slow;
-            if let Err(e) = self.evaluate(work, refresh) {
+            let slow = !approximated && since > 1 && last > noise && last * theta.powi(PATIENCE) > stop;
+            let refresh = stale || self.policy == NewtonPolicy::Full || slow || approximated;
+            let refresh = refresh || k == 0 && work.trial.kinked;
+            let before = std::mem::take(&mut work.trial.v_before);
+            let leap = match k {
+                _ if !kinks => None,
+                0 => Some(Leap { v: &self.state.v, predicted: true }),
+                // every other time, so that what was held back can let go
+                k if k % 2 == 0 && refresh => Some(Leap { v: &before, predicted: false }),
+                _ => None,
+            };
+            let result = self.evaluate(work, refresh, leap);
+            work.trial.v_before = before;
+            if let Err(e) = result {
                 return Outcome::Linear(e);
+            }
+            // behind a kink, corrections say nothing about convergence
+            let behind = std::mem::replace(&mut approximate, work.system.approximate);
+            if kinks {
+                work.trial.v_before.copy_from_slice(&work.trial.v);
+                work.trial.kinked = if k == 0 { approximate } else { work.trial.kinked };
+                approximated |= approximate;
             }
             kept_failed |= slow && renewals == 0 && theta > HOPELESS;
             renewals += u32::from(refresh);
-            since = if slow { 1 } else { since + 1 };
+            since = if slow || approximate || behind { 1 } else { since + 1 };
             work.counts.newton_iterations += 1;
             let residual = &work.system.residual;
             if residual.iter().fold(false, |bad, r| bad | !r.is_finite()) {
@@ -170,7 +195,7 @@ impl Newton<'_> {
             // a rate that wasn't seen for some steps has to be seen again before it is trusted
             let trusted = since > 1 || eta <= TRUST;
             let done = trusted && size * eta.min(1e3) <= stop || size <= floor;
-            if done && self.constraints_hold(work) {
+            if done && !approximate && self.constraints_hold(work) {
                 let theta = if since > 1 && last_before > noise {
                     Some(theta)
                 } else {
@@ -187,6 +212,7 @@ impl Newton<'_> {
                 match renewals {
                     0 => return Outcome::Stale,
                     1..=MOST_RENEWALS => {}
+                    ..MOST_AT_KINKS if approximated => {}
                     _ => return Outcome::Failed { why: "Newton's method diverges".into() },
                 }
             }

@@ -21,6 +21,14 @@ pub enum Stepping {
     },
 }
 
+/// By how much of itself a fixed step grows to end where it has to, rather than leave a rest behind.
+const STRETCH: f64 = 1e-3;
+
+/// The fixed step `h` where at most `h_max` is left.
+pub(super) fn fixed_step(h: f64, h_max: f64) -> f64 {
+    if h_max <= (1.0 + STRETCH) * h { h_max } else { h }
+}
+
 /// When the iteration matrix is computed anew.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -77,6 +77,10 @@ pub(crate) struct Trial {
     pub g: Vec<f64>,
     pub g_rate: Vec<f64>,
     pub rhs: Vec<f64>,
+    /// Velocities of the iteration before, for terms with kinks.
+    pub v_before: Vec<f64>,
+    /// Whether the last step began by approximating forces at kinks.
+    pub kinked: bool,
 }
 
 impl Workspace {
@@ -114,6 +118,8 @@ impl Workspace {
                 g: vec![0.0; model.multipliers()],
                 g_rate: vec![0.0; model.multipliers()],
                 rhs: Vec::new(),
+                v_before: zero(),
+                kinked: false,
             },
             stages: None,
         })

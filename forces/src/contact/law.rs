@@ -156,14 +156,30 @@ impl ContactLaw {
         k * self.powers(depth).0 * depth / (self.exponent + 1.0)
     }
 
+    /// Whether a point whose slip was `was` and is `now` [m/s] may have stopped in between: predicted from the start of a
+    /// step where it stuck or that it would leave the other way, or reached by an iteration that turned it round. The
+    /// tangent of slip knows nothing of the force that would hold it.
+    pub(crate) fn may_stick(&self, was: &V3<f64>, now: &V3<f64>, predicted: bool) -> bool {
+        let (stuck, turned) = (dot(was, was) < self.slip_speed * self.slip_speed, dot(was, now) <= 0.0);
+        turned && (predicted || self.slips(was)) || predicted && stuck
+    }
+
+    /// Whether a slip is so fast that the force that holds a point hardly grows with it.
+    pub(crate) fn slips(&self, t: &V3<f64>) -> bool {
+        dot(t, t) > 0.5 * self.slip_speed * self.slip_speed
+    }
+
     /// Coulomb's friction at the slip velocity `t` [m/s], regularised: `g(z) z` is `(3z - z³)/2` up to 1 and 1 beyond,
-    /// so friction and its derivative have no jump and full slip has the full force.
+    /// so friction and its derivative have no jump and full slip has the full force. Of a point that is `held` it goes on
+    /// as it begins, without end.
     #[inline]
-    pub(crate) fn friction(&self, t: &V3<f64>) -> Friction {
+    pub(crate) fn friction(&self, t: &V3<f64>, held: bool) -> Friction {
         let square = dot(t, t) / (self.slip_speed * self.slip_speed);
         let scale = self.friction / self.slip_speed;
         // g, and g'(z)/z
-        let (g, bend) = if square < 1.0 {
+        let (g, bend) = if held {
+            (1.5, 0.0)
+        } else if square < 1.0 {
             (0.5 * (3.0 - square), -1.0)
         } else {
             let inverse = 1.0 / square.sqrt();

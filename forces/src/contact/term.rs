@@ -7,7 +7,7 @@ use ropewalk_core::build::{BuildError, need, positive};
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{IDENTITY, M3, cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Column, ContactPoint, Energy, Marker, Node, NodeKind, Pattern, Power, Term, V3, dot,
+    Assembly, At, Column, ContactPoint, Energy, Leap, Marker, Node, NodeKind, Pattern, Power, Term, V3, dot,
 };
 use std::ops::Range;
 
@@ -178,6 +178,23 @@ impl Contact {
         Some((Touch::new(&self.law, gap, ball.radius, ball.k, &u), pair))
     }
 
+    /// Whether a ball that slips now may have stopped on the way.
+    fn may_stick(&self, ball: &Ball, touch: &Touch, leap: Leap<'_>, at: &At<'_>) -> bool {
+        let before = At { v: leap.v, ..*at };
+        let was = match (self.seat, ball.held) {
+            (Seat::Ground, Held::Moves { .. } | Held::Between { .. }) => {
+                let (u, n) = (ball.held.velocity(&before), &touch.gap.normal);
+                let approach = dot(&u, n);
+                std::array::from_fn(|i| u[i] - approach * n[i])
+            }
+            _ => match self.touch(ball, &self.frame(&before), &before) {
+                Some((was, _)) => was.slip,
+                None => return false,
+            },
+        };
+        self.law.may_stick(&was, &touch.slip, leap.predicted)
+    }
+
     fn each(&self, at: &At<'_>, mut see: impl FnMut(&Ball, &Touch, &Frame)) {
         let frame = self.frame(at);
         for ball in &self.balls {
@@ -246,10 +263,12 @@ impl Block {
         self.any = true;
         let weights = weights(held);
         for (a, wa) in weights.iter().enumerate().filter(|w| *w.1 != 0.0) {
-            for (b, wb) in weights.iter().enumerate() {
-                for i in 0..3 {
+            for (b, wb) in weights.iter().enumerate().filter(|w| *w.1 != 0.0) {
+                let w = wa * wb;
+                for (row, d) in self.k[3 * a..3 * a + 3].iter_mut().zip(d) {
+                    let row = &mut row[3 * b..3 * b + 3];
                     for j in 0..3 {
-                        self.k[3 * a + i][3 * b + j] -= wa * wb * d[i][j];
+                        row[j] -= w * d[j];
                     }
                 }
             }
@@ -314,7 +333,26 @@ impl Term for Contact {
         let mut block = Block { k: [[0.0; MOST]; MOST], any: false };
         for (clique, group) in self.groups.iter().enumerate() {
             for ball in &self.balls[group.clone()] {
-                let Some((touch, pair)) = self.touch(ball, &frame, at) else { continue };
+                let Some((mut touch, pair)) = self.touch(ball, &frame, at) else { continue };
+                if let Some(leap) = out.leap()
+                    && self.law.slips(&touch.slip)
+                    && self.may_stick(ball, &touch, leap, at)
+                {
+                    touch.hold(&self.law);
+                    out.approximates();
+                }
+                if self.seat == Seat::Ground && pair.carrier.is_none() {
+                    for (a, w) in weights(&ball.held).iter().enumerate().filter(|w| *w.1 != 0.0) {
+                        (0..3).for_each(|i| out.add(ball.held.dof(3 * a + i), -w * touch.f[i]));
+                    }
+                    if out.wants_tangent() {
+                        let [x, v] = touch.slopes(&self.law, ball.k);
+                        let d =
+                            std::array::from_fn(|i| std::array::from_fn(|j| w.q * x[i][j] + w.v * v[i][j]));
+                        block.add_point(&ball.held, &d);
+                    }
+                    continue;
+                }
                 let forces = pair.forces(&touch);
                 if pair.carrier.is_some() {
                     (0..6).for_each(|i| out.add(ball.held.dof(i), -forces[i]));
@@ -330,17 +368,11 @@ impl Term for Contact {
                     continue;
                 }
                 let slopes = touch.slopes(&self.law, ball.k);
-                if self.seat == Seat::Ground && pair.carrier.is_none() {
-                    let [x, v] = slopes;
-                    let d = std::array::from_fn(|i| std::array::from_fn(|j| w.q * x[i][j] + w.v * v[i][j]));
-                    block.add_point(&ball.held, &d);
-                } else {
-                    block.add_pair(&ball.held, &pair.derivative(&touch, &slopes, w));
-                }
+                block.add_pair(&ball.held, &pair.derivative(&touch, &slopes, w));
             }
             if block.any {
                 let n = self.balls[group.start].held.size() + if self.seat == Seat::Ground { 0 } else { 6 };
-                out.add_block(clique, n, |i, j| block.k[i][j]);
+                out.add_square(clique, &block.k);
                 block.k[..n].iter_mut().for_each(|row| row[..n].fill(0.0));
                 block.any = false;
             }
@@ -360,6 +392,9 @@ impl Term for Contact {
     }
     fn foresees(&self) -> bool {
         true
+    }
+    fn kinked(&self) -> bool {
+        self.law.friction > 0.0
     }
     fn horizon(&self, at: &At<'_>) -> f64 {
         let frame = self.frame(at);

@@ -20,6 +20,8 @@ pub(crate) struct Touch {
     pub slip: V3<f64>,
     /// Friction over normal force.
     pub pull: V3<f64>,
+    /// Whether friction is that of a point that is held, however fast it slips.
+    pub held: bool,
 }
 
 fn add(a: &V3<f64>, b: &V3<f64>) -> V3<f64> {
@@ -46,10 +48,17 @@ impl Touch {
         let depth = radius - gap.distance;
         let normal = law.normal(k, depth, -approach);
         let slip = minus(u, &scaled(approach, n));
-        let pull = if law.friction > 0.0 { law.friction(&slip).pull } else { [0.0; 3] };
+        let pull = if law.friction > 0.0 { law.friction(&slip, false).pull } else { [0.0; 3] };
         let f = std::array::from_fn(|i| normal.force * (n[i] - pull[i]));
         let (force, elastic) = (normal.force, normal.elastic);
-        Touch { gap, f, normal: force, elastic, depth, rate: -approach, slip, pull }
+        Touch { gap, f, normal: force, elastic, depth, rate: -approach, slip, pull, held: false }
+    }
+
+    /// Takes friction for that of a point that is held.
+    pub fn hold(&mut self, law: &ContactLaw) {
+        self.held = true;
+        self.pull = law.friction(&self.slip, true).pull;
+        self.f = std::array::from_fn(|i| self.normal * (self.gap.normal[i] - self.pull[i]));
     }
 
     /// The derivative of the force: with `F(d, ḋ)` along the normal `n`, friction `-F p(t)`, `∂n/∂s = H`:
@@ -79,7 +88,7 @@ impl Touch {
             }
         }
         if law.friction > 0.0 {
-            let p = law.friction(&self.slip);
+            let p = law.friction(&self.slip, self.held);
             // ∂t/∂s = -(n ⊗ H u + (u·n) H), ∂t/∂u = I - n ⊗ n
             for i in 0..3 {
                 for j in 0..3 {

@@ -13,6 +13,7 @@ mod tableau;
 pub(crate) use stages::Stages;
 
 use super::alpha::linear;
+use super::options::fixed_step;
 use super::{Integrator, Options, StepError, StepReport, Stepping, Workspace};
 use crate::integrator::workspace::Which;
 use crate::model::Model;
@@ -57,8 +58,7 @@ impl Radau {
         match self.options.stepping {
             Stepping::Fixed { h } => {
                 let h = h.min(cap);
-                // no sliver at the end
-                (if h_max < h * (1.0 + 1e-6) { h_max } else { h }, h)
+                (fixed_step(h, h_max), h)
             }
             Stepping::Controlled { .. } => {
                 let wish = if c.h_next > 0.0 { c.h_next } else { self.options.h_start };
