@@ -31,6 +31,7 @@ pub fn bundled() -> &'static [Bundled] {
         "hose-turn",
         "pendulum",
         "shear-pin",
+        "unwinding",
         "unwinding-paper"
     ];
     ALL

@@ -3,7 +3,7 @@
 use ropewalk_core::{Assembly, At, Column, Energy, Front, Pattern, Power, Term};
 
 /// What a winch that isn't driven pulls with, as force on the front: `P |r'|` with
-/// `P = tension + brake u/√(u² + slip²) + damping u + pile`, and `inertia u̇` of its drum; `u` is the speed at which it
+/// `P = tension + brake u/√(u² + slip²) + damping u + per_speed2 u² + pile`, and `inertia u̇` of its drum; `u` is the speed at which it
 /// feeds out.
 ///
 /// A brake is dry friction, so below its force the end creeps at a part of `slip`. Cable picked up from a pile at rest
@@ -22,6 +22,8 @@ pub struct Pull {
     pub slip: f64,
     /// Resistance per speed [N s/m].
     pub damping: f64,
+    /// Tension by the square of the speed, whichever way it feeds [kg/m].
+    pub per_speed2: f64,
     /// Inertia of the drum over the square of its radius [kg].
     pub inertia: f64,
     /// Whether the cable is picked up from rest.
@@ -32,7 +34,7 @@ impl Pull {
     /// The pull, and its derivative by the speed of feeding.
     fn pull(&self, u: f64) -> (f64, f64) {
         let root = (u * u + self.slip * self.slip).sqrt();
-        let rho = if self.pile && u > 0.0 { self.front.rho_a } else { 0.0 };
+        let rho = self.per_speed2 + if self.pile && u > 0.0 { self.front.rho_a } else { 0.0 };
         (
             self.tension + self.brake * u / root + self.damping * u + rho * u * u,
             self.brake * self.slip * self.slip / (root * root * root) + self.damping + 2.0 * rho * u,
@@ -71,7 +73,7 @@ impl Term for Pull {
     }
     fn power(&self, at: &At<'_>) -> Power {
         let (u, stretch) = (self.front.rate(at), self.front.stretch(at));
-        let given = self.tension * u * stretch;
+        let given = (self.tension + self.per_speed2 * u * u) * u * stretch;
         Power { supplied: -given, dissipated: self.pull(u).0 * u * stretch - given, ..Power::default() }
     }
     fn columns(&self) -> Vec<Column> {
@@ -113,6 +115,7 @@ mod tests {
                 brake: 3.0,
                 slip: 0.5,
                 damping: 0.7,
+                per_speed2: 0.4,
                 inertia: 2.0,
                 pile: true,
             };

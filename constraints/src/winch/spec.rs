@@ -67,6 +67,9 @@ pub struct WinchSpec {
     /// Resistance per speed [N s/m].
     #[serde(default, deserialize_with = "quantity::damping")]
     pub damping: f64,
+    /// Tension by the square of the speed, besides `tension` [kg/m]: what is measured at an eyelet often goes by it.
+    #[serde(default, deserialize_with = "quantity::mass_per_length")]
+    pub per_speed2: f64,
     /// Inertia of the drum over the square of its radius [kg].
     #[serde(default, deserialize_with = "quantity::mass")]
     pub inertia: f64,
@@ -146,6 +149,7 @@ impl WinchSpec {
             brake: 0.0,
             slip: slip(),
             damping: 0.0,
+            per_speed2: 0.0,
             inertia: 0.0,
             pile: false,
             stock: rest(),
@@ -224,6 +228,7 @@ impl ConstraintSpec for WinchSpec {
                 brake: self.brake,
                 slip: self.slip,
                 damping: self.damping,
+                per_speed2: self.per_speed2,
                 inertia: self.inertia,
                 pile: self.pile,
             })),

@@ -164,10 +164,15 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
     let start = state.q.clone();
     let (mut d, mut md) = (vec![0.0; nv], vec![0.0; nv]);
     let limit = 100.0 * model.rounding();
+    let mut last = f64::INFINITY;
     for _ in 0..50 {
         work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
         let g = &work.mass.residual[nv..];
         let fine = g.iter().zip(model.row_scale()).all(|(g, s)| g.abs() <= limit * s);
+        // on the constraints what is left of the way is rounding, which no system can be solved for
+        if fine && last <= 1e-10 * model.length() {
+            return Ok(work.norm(&d));
+        }
         let mut rhs: Vec<f64> = vec![0.0; nv];
         rhs.extend(g.iter().map(|g| -g));
         work.times_mass(model, &d, &mut md);
@@ -183,9 +188,10 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
         if !step.is_finite() {
             return Err(SolveError::NotFinite);
         }
-        if fine && step <= 10.0 * limit || step <= limit {
+        if step <= limit {
             return Ok(work.norm(&d));
         }
+        last = step;
     }
     Err(SolveError::NotFinite)
 }
