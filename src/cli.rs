@@ -72,6 +72,15 @@ enum Command {
         (a row for each run), plots/*.svg (over all runs) and runs/NAME (what `ropewalk run` leaves behind).\n\
         The same command again computes only what is missing, failed or was interrupted.")]
     Sweep(SweepArgs),
+    /// Vibration modes about the equilibrium of a scene: frequencies, damping, and a picture of each shape
+    #[command(after_help = "Examples:\n  \
+        ropewalk modes scene.toml               the 20 lowest\n  \
+        ropewalk modes scene.toml --count 6 --set tension='2 kN'\n\n\
+        A scene in balance as it is laid vibrates about that; else the equilibrium is searched: of a run in time the one\n\
+        at its start, of a statics scene the end of its load path, relative to its frame if it names one. Unstable\n\
+        equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
+        The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
+    Modes(commands::modes::ModesArgs),
     /// List the bundled scenes and the types that a scene can use
     List,
     /// Explain a scene, a type, or a section of a scene file
@@ -168,6 +177,7 @@ pub fn main_from(
             commands::run::run(&scene, out, profile, quiet, bundled)
         }
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
+        Command::Modes(args) => commands::modes::modes(&args, bundled),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),

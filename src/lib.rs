@@ -20,6 +20,7 @@ pub mod bench;
 pub mod cli;
 mod commands;
 mod error;
+mod modes;
 pub mod output;
 mod read;
 mod run;
@@ -34,6 +35,7 @@ pub use ropewalk_forces as forces;
 pub use ropewalk_models as models;
 
 pub use error::Error;
+pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use read::{SceneFile, read};
 pub use ropewalk_core::integrator::Options;
 pub use ropewalk_core::{

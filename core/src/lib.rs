@@ -14,6 +14,7 @@ pub mod integrator;
 mod lane;
 mod marker;
 mod model;
+pub mod modes;
 mod motion;
 mod node;
 mod order;
