@@ -50,7 +50,8 @@ impl Mode {
     /// Damping ratio `-Re λ / |λ|`: 0 undamped, 1 and no frequency if it creeps back without swinging.
     pub fn damping_ratio(&self) -> f64 {
         let size = self.growth.hypot(self.omega);
-        if size > 0.0 { -self.growth / size } else { 0.0 }
+        // `0 -`, not `-`: no minus before a zero
+        if size > 0.0 { (0.0 - self.growth) / size } else { 0.0 }
     }
     /// Whether a small disturbance grows this way, by more than what may be rounding.
     pub fn is_unstable(&self) -> bool {
