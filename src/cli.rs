@@ -16,6 +16,7 @@
 //! ```
 
 use crate::commands::{self, Exit};
+use crate::run::Every;
 use clap::{Parser, Subcommand};
 use ropewalk_models::Bundled;
 use std::ffi::OsString;
@@ -59,6 +60,27 @@ enum Command {
         /// Measure the time of every term
         #[arg(long)]
         profile: bool,
+        /// Write a checkpoint every so often, such as `60s` or `500 steps`, from which `resume` goes on
+        #[arg(long, value_name = "EVERY")]
+        checkpoint: Option<Every>,
+        /// Say nothing but errors and warnings
+        #[arg(long, short)]
+        quiet: bool,
+    },
+    /// Go on with a run that was interrupted or killed, from its last checkpoint
+    #[command(after_help = "Examples:\n  \
+        ropewalk run scene.toml --checkpoint 60s\n  \
+        ropewalk resume runs/scene\n\n\
+        The results are those of a run with the same checkpoints that was never stopped, to the last digit. A checkpoint\n\
+        makes the run drop kept factors, so one without any may differ in rounding. `--checkpoint '500 steps'` writes\n\
+        the same ones on every run, `60s` when the clock says so.")]
+    Resume {
+        /// Folder of the run
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Write checkpoints at another interval from now on
+        #[arg(long, value_name = "EVERY")]
+        checkpoint: Option<Every>,
         /// Say nothing but errors and warnings
         #[arg(long, short)]
         quiet: bool,
@@ -173,9 +195,10 @@ pub fn main_from(
         }
     };
     let done = match cli.command {
-        Command::Run { scene, out, profile, quiet } => {
-            commands::run::run(&scene, out, profile, quiet, bundled)
+        Command::Run { scene, out, profile, checkpoint, quiet } => {
+            commands::run::run(&scene, out, profile, checkpoint, quiet, bundled)
         }
+        Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
         Command::List => commands::list::list(bundled),

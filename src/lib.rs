@@ -42,7 +42,7 @@ pub use ropewalk_core::{
     BuildError, Builder, MarkerRef, Model, Run, Scene, SceneError, Simulation, State, Water,
 };
 pub use ropewalk_models::{Bundled, bundled};
-pub use run::{Manifest, Outcome, RunOptions, run};
+pub use run::{Every, Manifest, Outcome, RunOptions, resume, run};
 pub use simulate::{History, simulate};
 
 /// The program of the README must compile and run.

@@ -221,12 +221,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`Simulation::advance`].
-    pub fn go_on(
-        &mut self,
-        end: f64,
-        interval: f64,
-        observer: &mut dyn Observer,
-    ) -> Result<End, StepError> {
+    pub fn go_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
         let (start, mut next) = self.sampled;
         let sample_time = |k: u64| start + interval * k as f64;
         // times that differ by less than this are the same: no step of the size of rounding. To call them so mustn't move
