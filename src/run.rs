@@ -117,7 +117,15 @@ pub(crate) fn run_showing(
                 warnings.say("checkpoints are for runs in time: of this load path none are written");
             }
             (_, Some(every)) => {
-                let saver = Saver::new(&folder, every, started, &warnings.all, Elapsed::default(), stopwatch);
+                let saver = Saver::new(
+                    &folder,
+                    file.name(),
+                    every,
+                    started,
+                    &warnings.all,
+                    Elapsed::default(),
+                    stopwatch,
+                );
                 recorder.saver = Some(saver?);
             }
             (_, None) => {}
@@ -136,7 +144,7 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let folder = RunFolder::earlier(options.out.clone().unwrap_or_default());
     let saved = checkpoint::read(&folder)?;
     let path = folder.scene_file();
-    let file = SceneFile::open(&path.display().to_string(), &[], &[])?;
+    let file = SceneFile::open(&path.display().to_string(), &[], &[])?.named(&saved.name);
     let stopwatch = Stopwatch::start();
     let started = Started::resumed(&file, &saved)?;
     let Started::Dynamics(simulation, _) = &started else { unreachable!("only runs in time are resumed") };
@@ -145,7 +153,8 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let warnings = Warnings { all: saved.warnings.to_vec(), tell: warn };
     let before = Elapsed { cpu_s: saved.cpu_s, wall_s: saved.wall_s };
     let every = options.checkpoint.unwrap_or(saved.every);
-    recorder.saver = Some(Saver::new(&folder, every, &started, &warnings.all, before, stopwatch)?);
+    recorder.saver =
+        Some(Saver::new(&folder, &saved.name, every, &started, &warnings.all, before, stopwatch)?);
     recorder.writer = Some(TableWriter::resume(&folder.history_file(), &recorder.table)?);
     let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
     recorder.progress = Some(Progress::new(t, end, options.progress));

@@ -22,12 +22,7 @@ struct Keeper {
 }
 
 impl Observer for Keeper {
-    fn step(
-        &mut self,
-        _: &Model,
-        _: &State,
-        _: &ropewalk_core::integrator::StepReport,
-    ) -> ControlFlow<()> {
+    fn step(&mut self, _: &Model, _: &State, _: &ropewalk_core::integrator::StepReport) -> ControlFlow<()> {
         self.steps += 1;
         ControlFlow::Continue(())
     }
@@ -70,6 +65,7 @@ fn same_from_checkpoint(scene: &Scene, options: &Options, every: u64, keep: u64)
     assert_eq!(again.samples, keeper.samples, "samples after the checkpoint differ");
     assert_eq!(rest.state, whole.state);
     assert_eq!((rest.audit, rest.work.counts), (whole.audit, whole.work.counts));
+    println!("{} steps, checkpoint after {steps}, modes {:?}", whole.work.counts.steps, whole.state.modes.iter().filter(|m| **m != 0.0).count());
     whole.work.counts.steps
 }
 
@@ -98,9 +94,9 @@ fn pendulum_goes_on_to_the_last_bit_with_every_scheme() {
 
 #[test]
 fn hose_behind_a_turning_ship_goes_on_to_the_last_bit() {
-    let scene = bundled("hose-turn", 4.0);
+    let scene = bundled("hose-turn", 70.0);
     let options = scene.solver.clone();
-    println!("{} steps", same_from_checkpoint(&scene, &options, 30, 2));
+    println!("{} steps", same_from_checkpoint(&scene, &options, 10, 3));
 }
 
 #[test]
@@ -116,13 +112,14 @@ fn checkpoint_of_another_model_is_refused() {
     let mut s = Simulation::new(one.build().expect("model"), &one.solver, 0.2).expect("start");
     s.advance(0.1, 0.05, &mut ()).expect("run");
     let checkpoint = s.checkpoint().expect("checkpoint");
-    let e = Simulation::restore(other.build().expect("model"), &other.solver, 0.2, checkpoint).err().expect("refused");
+    let e = Simulation::restore(other.build().expect("model"), &other.solver, 0.2, checkpoint)
+        .err()
+        .expect("refused");
     assert!(matches!(&e, Unfit::Other(_)), "{e}");
 }
 
 /// A cable that swings and is let go of while it does: long enough to be killed on its way.
 const SWING: &str = r#"
-title = "A swing"
 [run]
 duration = "1 s"
 output = "0.01 s"
@@ -164,7 +161,10 @@ fn killed_run_is_resumed_and_leaves_the_results_of_one_that_was_not() {
 
     // killed at several moments, the last of them while it is resumed
     let mut seen = None;
-    for (k, words) in [&[&start[..], &["killed"]].concat()[..], &["resume", "killed"], &["resume", "killed"]].iter().enumerate() {
+    for (k, words) in [&[&start[..], &["killed"]].concat()[..], &["resume", "killed"], &["resume", "killed"]]
+        .iter()
+        .enumerate()
+    {
         let mut child = program(here, words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         let begin = Instant::now();
         let stamp = || fs::read(here.join("killed/checkpoint")).ok();
@@ -182,8 +182,16 @@ fn killed_run_is_resumed_and_leaves_the_results_of_one_that_was_not() {
     }
     let done = run(here, &["resume", "killed"]);
     assert_eq!(done.code, Some(0), "{done:?}");
-    for file in ["history.csv", "tables/ends.csv", "scene.toml", "manifest.json", "plots/rope.end.svg", "plots/shape_side.svg"] {
-        let bytes = |run: &str| fs::read(here.join(run).join(file)).unwrap_or_else(|e| panic!("{run}/{file}: {e}"));
+    for file in [
+        "history.csv",
+        "tables/ends.csv",
+        "scene.toml",
+        "manifest.json",
+        "plots/rope.end.svg",
+        "plots/shape_side.svg",
+    ] {
+        let bytes =
+            |run: &str| fs::read(here.join(run).join(file)).unwrap_or_else(|e| panic!("{run}/{file}: {e}"));
         assert!(bytes("whole") == bytes("killed"), "{file} differs");
     }
     let summary = |run: &str| -> serde_json::Value {

@@ -1,11 +1,12 @@
 //! Vibration modes against closed forms and published frequencies.
 
 mod common;
+mod program;
 
 use common::{Reference, data};
 use ropewalk::{ModesOptions, modes};
 use ropewalk_constraints::motion::SpinSpec;
-use ropewalk_constraints::{ClampSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec};
+use ropewalk_constraints::{ClampSpec, DistanceSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec};
 use ropewalk_core::modes::Mode;
 use ropewalk_core::{Analysis, ConstraintSpec, Scene, SteadyFrame};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
@@ -348,4 +349,98 @@ fn what_has_no_modes_is_refused_with_the_reason() {
     scene.constraints.pop();
     scene.constraint(WeldSpec { name: "glue".into(), marker: "wheel".into(), to: None });
     assert!(told(&scene, &ModesOptions::default()).contains("nothing can move"));
+}
+
+#[test]
+fn conical_pendulums_nod_at_their_frequency() {
+    // a small change of the cone's angle: ω² = Ω² (1 + 3 cos²θ), for a slender rod too
+    let (turn, g) = (5.0_f64, 9.81);
+    let nod = |cos: f64| turn * (1.0 + 3.0 * cos * cos).sqrt();
+    let spinning = |mut scene: Scene| {
+        scene.force(GravitySpec::default());
+        scene.run.analysis = Analysis::Statics;
+        scene.run.frame = Some(SteadyFrame { omega: [0.0, 0.0, turn], ..SteadyFrame::default() });
+        let options = ModesOptions { count: 4, ..ModesOptions::default() };
+        let found = modes(&scene, &options).unwrap_or_else(|e| panic!("{e}"));
+        assert!(found.search.is_none(), "as laid it rides with the frame");
+        let swinging: Vec<Mode> = found.modes.into_iter().filter(|m| !m.rigid).collect();
+        assert_eq!(swinging.len(), 1, "{swinging:?}");
+        swinging[0].omega
+    };
+    let cos = g / (turn * turn);
+    let sin = (1.0 - cos * cos).sqrt();
+    let mut bob = Scene::new();
+    bob.element(PointMassSpec::new("bob", [sin, 0.0, -cos], 2.0)).constraint(DistanceSpec {
+        name: "string".into(),
+        marker: "bob".into(),
+        to: [0.0; 3].into(),
+        length: None,
+    });
+    close("bob on a string", spinning(bob), nod(cos), 1e-8);
+
+    let axial = 1e-7;
+    let cos = 0.5 * g / ((1.0 / 3.0 - axial) * turn * turn);
+    let sin = (1.0 - cos * cos).sqrt();
+    let mut rod = Scene::new();
+    let body = RigidBodySpec::new("rod", [0.5 * sin, 0.0, -0.5 * cos], 1.0, [1.0 / 12.0, 1.0 / 12.0, axial]);
+    rod.element(
+        RigidBodySpec { angles: [0.0, -sin.atan2(cos), 0.0], ..body }.with_point("eye", [0.0, 0.0, 0.5]),
+    )
+    .constraint(SphericalSpec::pin("hook", "rod.eye"));
+    close("rod", spinning(rod), nod(cos), 1e-5);
+}
+
+const STRING: &str = r#"
+title = "A taut string"
+[parameters]
+n = 12
+[[elements]]
+type = "cable"
+name = "string"
+points = [[0, 0, 0], [10.01, 0, 0]]
+length = 10
+elements = "$n"
+section = { mass = 1.5, ea = 1e6, ei = 50, bending_damping = 0.4 }
+[[constraints]]
+type = "spherical"
+name = "left"
+marker = "string.start"
+[[constraints]]
+type = "spherical"
+name = "right"
+marker = "string.end"
+"#;
+
+#[test]
+fn program_shows_the_modes_and_leaves_tables_and_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("string.toml"), STRING).unwrap();
+    let said = program::run(here, &["modes", "string.toml", "--count", "6", "--set", "n=8"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert!(said.stdout.contains("8.12") && said.stdout.contains("string at"), "{}", said.stdout);
+    let out = here.join("runs/string-modes");
+    let table = std::fs::read_to_string(out.join("tables/modes.csv")).unwrap();
+    let rows: Vec<Vec<f64>> =
+        table.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 6);
+    for row in &rows {
+        // bending damping c: ζ = c k⁴ / (2 ω ρA), with k the wave number of the pinned string
+        let n = ((row[0] + 1.0) / 2.0).floor();
+        let (k, omega) = (n * PI / 10.0, row[2] / (1.0 - row[3] * row[3]).sqrt());
+        close("ratio", row[3], 0.4 * 50.0 * k.powi(4) / (2.0 * omega * 1.5), 1e-2);
+    }
+    for k in 1..=6 {
+        let svg = std::fs::read_to_string(out.join(format!("plots/mode-{k:02}.svg"))).unwrap();
+        assert!(svg.contains("equilibrium") && svg.contains("one way") && !svg.contains("NaN"), "{svg}");
+    }
+    assert!(out.join("scene.toml").exists() && out.join("manifest.json").exists());
+
+    let loose = STRING.split("[[constraints]]").next().unwrap();
+    std::fs::write(here.join("falling.toml"), format!("{loose}\n[[forces]]\ntype = \"gravity\"\n")).unwrap();
+    let said = program::run(here, &["modes", "falling.toml", "--quiet"]);
+    assert_eq!(said.code, Some(3), "{said:?}");
+    assert!(said.stderr.contains("no equilibrium") && !here.join("runs/falling-modes").exists(), "{said:?}");
+    program::run(here, &["modes", "string.toml", "--at", "9 s"])
+        .refused(&["`--at` must be between 0 and 1 s"]);
 }

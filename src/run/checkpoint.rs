@@ -49,6 +49,8 @@ impl FromStr for Every {
 pub(crate) struct Saved<'a> {
     /// The checksum of `scene.toml`.
     pub scene: u32,
+    /// What the scene was called.
+    pub name: Cow<'a, str>,
     pub every: Every,
     pub simulation: Checkpoint,
     pub table: Cow<'a, Table>,
@@ -65,6 +67,7 @@ pub(crate) struct Saved<'a> {
 pub(crate) struct Saver {
     path: PathBuf,
     scene: u32,
+    name: String,
     every: Every,
     warnings: Vec<String>,
     flutter: f64,
@@ -84,6 +87,7 @@ impl Saver {
     /// Prepares checkpoints of a run in this folder that goes on from `started`.
     pub(crate) fn new(
         folder: &RunFolder,
+        name: &str,
         every: Every,
         started: &Started,
         warnings: &[String],
@@ -97,6 +101,7 @@ impl Saver {
         Ok(Saver {
             path: folder.checkpoint_file(),
             scene: scene_checksum(folder)?,
+            name: name.to_string(),
             every,
             warnings: warnings.to_vec(),
             flutter,
@@ -126,6 +131,7 @@ impl Saver {
         let elapsed = self.stopwatch.elapsed();
         let saved = Saved {
             scene: self.scene,
+            name: Cow::Borrowed(&self.name),
             every: self.every,
             simulation,
             table: Cow::Borrowed(&recorder.table),
