@@ -65,7 +65,6 @@ fn same_from_checkpoint(scene: &Scene, options: &Options, every: u64, keep: u64)
     assert_eq!(again.samples, keeper.samples, "samples after the checkpoint differ");
     assert_eq!(rest.state, whole.state);
     assert_eq!((rest.audit, rest.work.counts), (whole.audit, whole.work.counts));
-    println!("{} steps, checkpoint after {steps}, modes {:?}", whole.work.counts.steps, whole.state.modes.iter().filter(|m| **m != 0.0).count());
     whole.work.counts.steps
 }
 

@@ -166,7 +166,8 @@ fn raw(p: &mut Pencil, rate: [f64; 2], scale: f64, vector: [Vec<f64>; 2]) -> Res
     let a: Vec<f64> = both().map(|(r, i)| cos * r + sin * i).collect();
     let b: Vec<f64> = both().map(|(r, i)| cos * i - sin * r).collect();
     // rounding moves a double zero by its root
-    let free = [&a, &b].iter().map(|x| p.energy(x)).all(|(k, noise)| k.abs() <= super::ZERO * noise);
+    let [(k_a, n_a), (k_b, n_b)] = [p.energy(&a), p.energy(&b)];
+    let free = k_a.abs() + k_b.abs() <= super::ZERO * (n_a + n_b);
     let rigid = free && size(rate) <= 1e-6 * scale;
 
     // what is left of the equations, as a displacement against the shape
