@@ -122,6 +122,9 @@ pub fn write_modes(
 }
 
 fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'_>) -> Result<Modal, Error> {
+    if model.velocities() == 0 {
+        return Err(ModesError::Held.into());
+    }
     let run = &scene.run;
     let end = if run.analysis == Analysis::Statics { run.duration } else { 0.0 };
     let time = options.time.unwrap_or(end);

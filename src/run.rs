@@ -113,8 +113,8 @@ pub(crate) fn run_showing(
     if let Ok(started) = &started {
         started.warnings(scene).iter().for_each(|w| warnings.say(w));
         match (started, options.checkpoint) {
-            (Started::Statics(_), Some(_)) => {
-                warnings.say("checkpoints are for runs in time: of this load path none are written");
+            (Started::Statics(_) | Started::Process(..), Some(_)) => {
+                warnings.say("no checkpoints are written: they are for runs in time of elements and bodies");
             }
             (_, Some(every)) => {
                 let saver = Saver::new(
