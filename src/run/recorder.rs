@@ -6,8 +6,8 @@ use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{
-    Analysis, At, BuildError, Channel, Checkpoint, Model, Observer, Process, Record, Sample, Scene, SceneError, SpecKind,
-    State, V3,
+    Analysis, At, BuildError, Channel, Checkpoint, Model, Observer, Process, Record, Sample, Scene,
+    SceneError, SpecKind, State, V3,
 };
 use std::collections::HashSet;
 use std::ops::ControlFlow;
