@@ -16,6 +16,7 @@
 //! ```
 
 use crate::commands::{self, Exit};
+use crate::run::Every;
 use clap::{Parser, Subcommand};
 use ropewalk_models::Bundled;
 use std::ffi::OsString;
@@ -59,6 +60,27 @@ enum Command {
         /// Measure the time of every term
         #[arg(long)]
         profile: bool,
+        /// Write a checkpoint every so often, such as `60s` or `500 steps`, from which `resume` goes on
+        #[arg(long, value_name = "EVERY")]
+        checkpoint: Option<Every>,
+        /// Say nothing but errors and warnings
+        #[arg(long, short)]
+        quiet: bool,
+    },
+    /// Go on with a run that was interrupted or killed, from its last checkpoint
+    #[command(after_help = "Examples:\n  \
+        ropewalk run scene.toml --checkpoint 60s\n  \
+        ropewalk resume runs/scene\n\n\
+        The results are those of a run with the same checkpoints that was never stopped, to the last digit. A checkpoint\n\
+        makes the run drop kept factors, so one without any may differ in rounding. `--checkpoint '500 steps'` writes\n\
+        the same ones on every run, `60s` when the clock says so.")]
+    Resume {
+        /// Folder of the run
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Write checkpoints at another interval from now on
+        #[arg(long, value_name = "EVERY")]
+        checkpoint: Option<Every>,
         /// Say nothing but errors and warnings
         #[arg(long, short)]
         quiet: bool,
@@ -72,6 +94,15 @@ enum Command {
         (a row for each run), plots/*.svg (over all runs) and runs/NAME (what `ropewalk run` leaves behind).\n\
         The same command again computes only what is missing, failed or was interrupted.")]
     Sweep(SweepArgs),
+    /// Vibration modes about the equilibrium of a scene: frequencies, damping, and a picture of each shape
+    #[command(after_help = "Examples:\n  \
+        ropewalk modes scene.toml               the 20 lowest\n  \
+        ropewalk modes scene.toml --count 6 --set tension='2 kN'\n\n\
+        A scene in balance as it is laid vibrates about that; else the equilibrium is searched: of a run in time the one\n\
+        at its start, of a statics scene the end of its load path, relative to its frame if it names one. Unstable\n\
+        equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
+        The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
+    Modes(commands::modes::ModesArgs),
     /// List the bundled scenes and the types that a scene can use
     List,
     /// Explain a scene, a type, or a section of a scene file
@@ -164,10 +195,12 @@ pub fn main_from(
         }
     };
     let done = match cli.command {
-        Command::Run { scene, out, profile, quiet } => {
-            commands::run::run(&scene, out, profile, quiet, bundled)
+        Command::Run { scene, out, profile, checkpoint, quiet } => {
+            commands::run::run(&scene, out, profile, checkpoint, quiet, bundled)
         }
+        Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
+        Command::Modes(args) => commands::modes::modes(&args, bundled),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),

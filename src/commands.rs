@@ -4,6 +4,8 @@ pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod describe;
 pub(crate) mod list;
+pub(crate) mod modes;
+pub(crate) mod resume;
 pub(crate) mod run;
 mod schema;
 pub(crate) mod sweep;

@@ -4,6 +4,7 @@ use crate::output::OutputError;
 use crate::scene::Fault;
 use ropewalk_core::SceneError;
 use ropewalk_core::integrator::StepError;
+use ropewalk_core::modes::ModesError;
 use ropewalk_core::statics::StaticsError;
 
 /// Why there are no results.
@@ -24,6 +25,9 @@ pub enum Error {
     /// An equilibrium was not found.
     #[error("error: {0}")]
     Statics(#[from] StaticsError),
+    /// The vibration modes could not be found.
+    #[error("error: {0}")]
+    Modes(#[from] ModesError),
     /// Results could not be written.
     #[error("error: {0}")]
     Output(#[from] OutputError),
@@ -37,6 +41,10 @@ impl Error {
             Error::File(_) | Error::Scene(_) | Error::Output(_) => true,
             Error::Step(e) => matches!(e, StepError::Scheme(_) | StepError::Inconsistent(_)),
             Error::Statics(_) | Error::Process(_) => false,
+            Error::Modes(e) => matches!(
+                e,
+                ModesError::Massless { .. } | ModesError::Moving { .. } | ModesError::Held | ModesError::None
+            ),
         }
     }
 }

@@ -20,6 +20,7 @@ pub mod bench;
 pub mod cli;
 mod commands;
 mod error;
+mod modes;
 pub mod output;
 mod read;
 mod run;
@@ -34,13 +35,14 @@ pub use ropewalk_forces as forces;
 pub use ropewalk_models as models;
 
 pub use error::Error;
+pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use read::{SceneFile, read};
 pub use ropewalk_core::integrator::Options;
 pub use ropewalk_core::{
     BuildError, Builder, MarkerRef, Model, Run, Scene, SceneError, Simulation, State, Water,
 };
 pub use ropewalk_models::{Bundled, bundled};
-pub use run::{Manifest, Outcome, RunOptions, run};
+pub use run::{Every, Manifest, Outcome, RunOptions, resume, run};
 pub use simulate::{History, simulate};
 
 /// The program of the README must compile and run.

@@ -17,6 +17,7 @@ mod summary;
 mod table;
 
 pub use error::OutputError;
+pub(crate) use folder::write_durable;
 pub(crate) use folder::{RUNS, cannot_create, plain, write_json};
 pub use folder::{RunFolder, write_atomic};
 pub use interrupt::Interrupt;

@@ -107,6 +107,11 @@ impl SceneFile {
         Ok(SceneFile { name, document, scene })
     }
 
+    /// The same under another name: of a scene that was copied into the folder of a run.
+    pub(crate) fn named(self, name: &str) -> Self {
+        SceneFile { name: name.to_string(), ..self }
+    }
+
     /// Its bundled name, or that of its file without ending.
     pub fn name(&self) -> &str {
         &self.name

@@ -1,5 +1,6 @@
 //! A run: a scene, computed into a folder of its own.
 
+mod checkpoint;
 mod manifest;
 mod pictures;
 mod recorder;
@@ -7,17 +8,19 @@ mod report;
 mod start;
 mod tables;
 
+pub use checkpoint::Every;
 pub use manifest::Manifest;
 pub(crate) use recorder::{Recorder, records};
 pub(crate) use start::{Ending, Started};
 
 use crate::error::Error;
 use crate::output::{
-    EnergyTotals, Interrupt, OutputError, ProfileEntry, Progress, ProgressMode, RunFolder, Stopwatch,
-    Summary, Table, TableWriter,
+    Elapsed, EnergyTotals, Interrupt, OutputError, ProfileEntry, Progress, ProgressMode, RunFolder,
+    Stopwatch, Summary, Table, TableWriter,
 };
 use crate::read::SceneFile;
 use crate::scene::Fault;
+use checkpoint::Saver;
 use ropewalk_core::{Analysis, Audit};
 use std::path::PathBuf;
 
@@ -30,6 +33,8 @@ pub struct RunOptions {
     pub profile: bool,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// When to write checkpoints, from which [`resume`] goes on; without it, none.
+    pub checkpoint: Option<Every>,
 }
 
 /// How a run ended and where its results are.
@@ -69,11 +74,7 @@ pub(crate) fn run_showing(
     progress: &dyn Fn(f64) -> Progress,
     warn: &mut dyn FnMut(&str),
 ) -> Result<Outcome, Error> {
-    let mut warnings = Vec::new();
-    let warn = &mut |text: &str| {
-        warnings.push(text.to_string());
-        warn(text);
-    };
+    let mut warnings = Warnings { all: Vec::new(), tell: warn };
     let scene = file.scene();
     let model = file.build()?;
     let records = file.records(&model)?;
@@ -84,7 +85,7 @@ pub(crate) fn run_showing(
         return Err(file.document().fault_at("run.output", message).into());
     }
     for name in file.document().unused_parameters() {
-        warn(&format!("parameter `{name}` is not used by the scene"));
+        warnings.say(&format!("parameter `{name}` is not used by the scene"));
     }
 
     let mut recorder = Recorder::new(scene, records);
@@ -95,7 +96,7 @@ pub(crate) fn run_showing(
     let is_new = options.out.as_ref().is_none_or(|out| !out.exists());
     let folder = RunFolder::create(options.out.clone(), file.name())?;
     let stopwatch = Stopwatch::start();
-    let mut started = match Started::new(scene, model) {
+    let started = match Started::new(scene, model) {
         Err(e) if e.is_input() => {
             if is_new {
                 // best effort, and it only removes a folder that is empty
@@ -109,70 +110,161 @@ pub(crate) fn run_showing(
     folder.write_manifest(&manifest)?;
     recorder.writer = Some(TableWriter::create(&folder.history_file(), &recorder.table)?);
     recorder.progress = Some(progress(scene.run.duration));
-    match Interrupt::install() {
-        Ok(interrupt) => recorder.interrupt = Some(interrupt),
-        Err(e) => warn(&e.to_string()),
-    }
-
-    let mut profile = None;
-    let ending = match &mut started {
-        Err(_) => None,
-        Ok(started) => {
-            started.warnings(scene).iter().for_each(|w| warn(w));
-            if options.profile {
-                started.profile();
+    if let Ok(started) = &started {
+        started.warnings(scene).iter().for_each(|w| warnings.say(w));
+        match (started, options.checkpoint) {
+            (Started::Statics(_) | Started::Process(..), Some(_)) => {
+                warnings.say("no checkpoints are written: they are for runs in time of elements and bodies");
             }
-            let clock = std::time::Instant::now();
-            let ending = started.go(scene, &mut recorder);
-            started.afterthought().iter().for_each(|w| warn(w));
-            if options.profile {
-                profile = Some(shares(started.times(), clock.elapsed().as_secs_f64()));
+            (_, Some(every)) => {
+                let saver = Saver::new(
+                    &folder,
+                    file.name(),
+                    every,
+                    started,
+                    &warnings.all,
+                    Elapsed::default(),
+                    stopwatch,
+                );
+                recorder.saver = Some(saver?);
             }
-            Some(ending)
+            (_, None) => {}
         }
-    };
-    let elapsed = match recorder.progress.take() {
-        Some(progress) => {
+    }
+    let course = Course { file, folder, recorder, stopwatch, before: Elapsed::default(), resumed: false };
+    course.complete(started, options.profile, warnings)
+}
+
+/// Goes on with the run in the folder `options.out`, from its last checkpoint. What it recorded after that is computed
+/// again. Checkpoints go on as before unless the options say otherwise.
+///
+/// # Errors
+/// There is no checkpoint, or it belongs to another scene or another version of the program.
+pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcome, Error> {
+    let folder = RunFolder::earlier(options.out.clone().unwrap_or_default());
+    let saved = checkpoint::read(&folder)?;
+    let path = folder.scene_file();
+    let file = SceneFile::open(&path.display().to_string(), &[], &[])?.named(&saved.name);
+    let stopwatch = Stopwatch::start();
+    let started = Started::resumed(&file, &saved)?;
+    let Started::Dynamics(simulation, _) = &started else { unreachable!("only runs in time are resumed") };
+    let mut recorder = Recorder::new(file.scene(), file.records(&simulation.model)?);
+    recorder.take_up(&saved).map_err(Fault::new)?;
+    let warnings = Warnings { all: saved.warnings.to_vec(), tell: warn };
+    let before = Elapsed { cpu_s: saved.cpu_s, wall_s: saved.wall_s };
+    let every = options.checkpoint.unwrap_or(saved.every);
+    recorder.saver =
+        Some(Saver::new(&folder, &saved.name, every, &started, &warnings.all, before, stopwatch)?);
+    recorder.writer = Some(TableWriter::resume(&folder.history_file(), &recorder.table)?);
+    let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
+    recorder.progress = Some(Progress::new(t, end, options.progress));
+    let course = Course { file: &file, folder, recorder, stopwatch, before, resumed: true };
+    course.complete(Ok(started), options.profile, warnings)
+}
+
+/// Warnings are said at once and kept for the summary.
+struct Warnings<'w> {
+    all: Vec<String>,
+    tell: &'w mut dyn FnMut(&str),
+}
+
+impl Warnings<'_> {
+    fn say(&mut self, text: &str) {
+        self.all.push(text.to_string());
+        (self.tell)(text);
+    }
+}
+
+/// A run from where everything is ready for it to where everything is written.
+struct Course<'a> {
+    file: &'a SceneFile,
+    folder: RunFolder,
+    recorder: Recorder<'a>,
+    stopwatch: Stopwatch,
+    /// What was spent on it before it was resumed.
+    before: Elapsed,
+    resumed: bool,
+}
+
+impl Course<'_> {
+    fn complete(
+        self,
+        mut started: Result<Started, Error>,
+        measure: bool,
+        mut warnings: Warnings<'_>,
+    ) -> Result<Outcome, Error> {
+        let Course { file, folder, mut recorder, stopwatch, before, resumed } = self;
+        match Interrupt::install() {
+            Ok(interrupt) => recorder.interrupt = Some(interrupt),
+            Err(e) => warnings.say(&e.to_string()),
+        }
+        let mut profile = None;
+        let ending = match &mut started {
+            Err(_) => None,
+            Ok(started) => {
+                if measure {
+                    started.profile();
+                }
+                let clock = std::time::Instant::now();
+                let ending = started.go(file.scene(), &mut recorder, resumed);
+                started.afterthought().iter().for_each(|w| warnings.say(w));
+                if measure {
+                    profile = Some(shares(started.times(), clock.elapsed().as_secs_f64()));
+                }
+                Some(ending)
+            }
+        };
+        if let Some(progress) = recorder.progress.take() {
             progress.finish("");
-            stopwatch.elapsed()
         }
-        None => stopwatch.elapsed(),
-    };
-
-    let mut summary = Summary { cpu_s: elapsed.cpu_s, wall_s: elapsed.wall_s, profile, ..Summary::default() };
-    let ending = match (started, ending) {
-        (Ok(started), ending) => {
-            let done = started.done();
-            recorder.last_shape(&done.model, &done.state);
-            (summary.counts, summary.energy) = (done.counts, energy(&done.audit));
-            ending.unwrap_or(Ending::Finished)
+        let elapsed = stopwatch.elapsed();
+        if let Some(e) = recorder.saver.as_mut().and_then(|s| s.trouble.take()) {
+            warnings.say(&format!("the last checkpoint is older than it should be: {e}"));
         }
-        (Err(e), _) => Ending::Failed(e),
-    };
-    let word = match &ending {
-        Ending::Finished => "finished",
-        Ending::Stopped(_) => "stopped",
-        Ending::Interrupted => "interrupted",
-        Ending::Failed(_) => "failed",
-    };
-    summary.status = word.into();
-    summary.message = match &ending {
-        Ending::Finished => None,
-        Ending::Stopped(by) => Some(format!("stopped by {by}")),
-        Ending::Interrupted => Some("stopped by Ctrl-C".into()),
-        Ending::Failed(error) => Some(error.to_string().trim_start_matches("error: ").to_string()),
-    };
-    if let Some(writer) = recorder.writer.take() {
-        writer.finish().unwrap_or_else(|e| warn(&e.to_string()));
+        let mut summary = Summary {
+            cpu_s: before.cpu_s + elapsed.cpu_s,
+            wall_s: before.wall_s + elapsed.wall_s,
+            profile,
+            ..Summary::default()
+        };
+        let ending = match (started, ending) {
+            (Ok(started), ending) => {
+                let done = started.done();
+                recorder.last_shape(&done.model, &done.state);
+                (summary.counts, summary.energy) = (done.counts, energy(&done.audit));
+                ending.unwrap_or(Ending::Finished)
+            }
+            (Err(e), _) => Ending::Failed(e),
+        };
+        let word = match &ending {
+            Ending::Finished => "finished",
+            Ending::Stopped(_) => "stopped",
+            Ending::Interrupted => "interrupted",
+            Ending::Failed(_) => "failed",
+        };
+        summary.status = word.into();
+        summary.message = match &ending {
+            Ending::Finished => None,
+            Ending::Stopped(by) => Some(format!("stopped by {by}")),
+            Ending::Interrupted => Some("stopped by Ctrl-C".into()),
+            Ending::Failed(error) => Some(error.to_string().trim_start_matches("error: ").to_string()),
+        };
+        if let Some(writer) = recorder.writer.take() {
+            writer.finish().unwrap_or_else(|e| warnings.say(&e.to_string()));
+        }
+        recorder.finals(&mut summary);
+        let pictures = pictures::draw(&folder, file.title(), &recorder, &mut |w| warnings.say(w));
+        let tables = tables::write(&folder, &recorder, &mut |w| warnings.say(w));
+        summary.warnings = warnings.all;
+        if matches!(ending, Ending::Finished | Ending::Stopped(_)) && recorder.saver.is_some() {
+            // there is nothing left to go on with
+            let _ = std::fs::remove_file(folder.checkpoint_file());
+        }
+        // last of all: who finds a summary finds everything
+        folder.write_summary(&summary)?;
+        let report = report::report(file, &summary, &recorder, &folder, &pictures, &tables);
+        Ok(Outcome { folder, summary, history: recorder.table, pictures, report })
     }
-    recorder.finals(&mut summary);
-    let pictures = pictures::draw(&folder, file.title(), &recorder, warn);
-    let tables = tables::write(&folder, &recorder, warn);
-    summary.warnings = warnings;
-    // last of all: who finds a summary finds everything
-    folder.write_summary(&summary)?;
-    let report = report::report(file, &summary, &recorder, &folder, &pictures, &tables);
-    Ok(Outcome { folder, summary, history: recorder.table, pictures, report })
 }
 
 /// A start that is refused is the fault of a section of the scene: point there.

@@ -49,7 +49,7 @@ pub fn simulate(scene: &Scene) -> Result<History, Error> {
     let mut recorder = Recorder::new(scene, records(scene, &model)?);
     let mut started = Started::new(scene, model)?;
     let mut warnings = started.warnings(scene);
-    let ending = started.go(scene, &mut recorder);
+    let ending = started.go(scene, &mut recorder, false);
     warnings.extend(started.afterthought());
     let stopped_by = match ending {
         Ending::Finished => None,

@@ -147,6 +147,7 @@ impl Sweep<'_> {
             out: Some(folder.path().to_path_buf()),
             profile: false,
             progress: ProgressMode::Quiet,
+            checkpoint: None,
         };
         let progress = |t_end: f64| self.progress.begin(name, t_end);
         let mut warn = |text: &str| {

@@ -14,6 +14,7 @@ pub mod integrator;
 mod lane;
 mod marker;
 mod model;
+pub mod modes;
 mod motion;
 mod node;
 mod order;
@@ -56,7 +57,7 @@ pub use record::{Audit, Column, Record, Sample};
 pub use redundancy::Redundancy;
 pub use remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
 pub use scene::{Analysis, Level, Run, Scene, SceneError, ShapeTitles, TableSpec, Water};
-pub use simulation::{Action, End, Event, Observer, Simulation};
+pub use simulation::{Action, Checkpoint, End, Event, Observer, Simulation, Unfit};
 pub use solver::{Chain, Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,

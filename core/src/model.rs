@@ -31,6 +31,8 @@ pub struct Model {
     pub(crate) redundancy: Option<Redundancy>,
     /// The scene that it was built of, if its mesh changes while it runs.
     pub(crate) recipe: Option<Arc<Scene>>,
+    /// The meshes that it was built on instead of those of the scene.
+    pub(crate) plan: Plan,
     structure: Structure,
     pattern: Pattern,
     touched: Vec<Rows>,
@@ -150,6 +152,7 @@ impl Model {
             switches: Switches::default(),
             redundancy: None,
             recipe: None,
+            plan: Plan::new(),
             structure,
             pattern,
             touched,

@@ -1,9 +1,10 @@
 //! Meshes that change while a run goes on.
 
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A mesh that a part is built on instead of that of its spec.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mesh {
     /// Unstretched arc length of each node, as material coordinate where material flows [m].
     pub nodes: Vec<f64>,
@@ -20,7 +21,7 @@ impl From<Vec<f64>> for Mesh {
 }
 
 /// Coordinates and velocities of the nodes of a new mesh.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MeshState {
     /// Coordinates of each node.
     pub q: Vec<Vec<f64>>,
@@ -32,7 +33,7 @@ pub struct MeshState {
 
 /// A stress-free strain of one element that fades out smoothly: what keeps its tension from jumping when its neighbours
 /// are split or merged.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prestrain {
     /// The element, by number along the mesh.
     pub element: usize,

@@ -370,6 +370,7 @@ impl Scene {
         self.solver.check().map_err(|e| whole(BuildError::new(e)))?;
         let changes = b.changes();
         let mut model = b.finish().map_err(whole)?;
+        model.plan = plan.clone();
         if changes {
             model.recipe = Some(Arc::new(self.clone()));
         }

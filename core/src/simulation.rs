@@ -1,5 +1,9 @@
 //! A run in time: steps, outputs, events, the audit of energy.
 
+mod checkpoint;
+
+pub use checkpoint::{Checkpoint, Unfit};
+
 use crate::dense::Dense;
 use crate::integrator::{
     Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, consistent, prepare, restart,
@@ -64,6 +68,14 @@ pub trait Observer {
     fn event(&mut self, _name: &str, _t: f64) {}
     /// The mesh has changed.
     fn remeshed(&mut self, _report: &Remeshed) {}
+    /// Whether a checkpoint is wanted after this step. Taking one drops kept factors, as going on from it does.
+    fn wants_checkpoint(&mut self) -> bool {
+        false
+    }
+    /// A checkpoint that was wanted.
+    fn checkpoint(&mut self, _checkpoint: Checkpoint) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 /// An observer that looks away.
@@ -126,6 +138,8 @@ pub struct Simulation {
     events: Vec<(Arc<dyn Event>, f64)>,
     previous: State,
     scratch: State,
+    /// Time at which the present advance began, and the number of its next sample.
+    sampled: (f64, u64),
 }
 
 impl Simulation {
@@ -169,6 +183,7 @@ impl Simulation {
             events,
             previous,
             scratch,
+            sampled: (0.0, 0),
         })
     }
 
@@ -193,8 +208,21 @@ impl Simulation {
         interval: f64,
         observer: &mut dyn Observer,
     ) -> Result<End, StepError> {
-        let start = self.state.t;
-        let mut next = 0u64;
+        self.sampled = (self.state.t, 0);
+        if self.sample(observer, None)?.is_break() {
+            return Ok(End::Stopped { by: "observer".into() });
+        }
+        self.sampled.1 = 1;
+        self.go_on(end, interval, observer)
+    }
+
+    /// As [`Simulation::advance`], but goes on with an advance that a checkpoint was taken of: with the same `end` and
+    /// `interval`.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn go_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
+        let (start, mut next) = self.sampled;
         let sample_time = |k: u64| start + interval * k as f64;
         // times that differ by less than this are the same: no step of the size of rounding. To call them so mustn't move
         // what is driven
@@ -203,10 +231,6 @@ impl Simulation {
             Stepping::Controlled { .. } => interval.min(end - start),
         };
         let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * short + 4.0 * f64::EPSILON * b.abs();
-        if self.sample(observer, None)?.is_break() {
-            return Ok(End::Stopped { by: "observer".into() });
-        }
-        next += 1;
         while self.state.t < end && !same(self.state.t, end) {
             self.previous.clone_from(&self.state);
             let mut left = end - self.state.t;
@@ -237,6 +261,13 @@ impl Simulation {
                 && let Some(end) = self.fire(fired, observer)?
             {
                 return Ok(end);
+            }
+            self.sampled.1 = next;
+            if observer.wants_checkpoint() {
+                let checkpoint = self.checkpoint()?;
+                if observer.checkpoint(checkpoint).is_break() {
+                    return Ok(End::Stopped { by: "observer".into() });
+                }
             }
         }
         if !same(sample_time(next - 1), end) && self.sample(observer, None)?.is_break() {

@@ -101,6 +101,15 @@ pub enum OutputError {
         message: String,
     },
 
+    /// A checkpoint can't be written or read.
+    #[error("{}: {message}", path.display())]
+    Checkpoint {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+    },
+
     /// The system did not let Ctrl-C be caught.
     #[error("Ctrl-C can't be caught: {message}")]
     Interrupt {

@@ -1,7 +1,7 @@
 //! The folder of a run: where results go, so that no run ever overwrites another.
 
 use std::fs;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process;
 
@@ -107,6 +107,11 @@ impl RunFolder {
         self.path.join("summary.json")
     }
 
+    /// `checkpoint`: from where a run that didn't come to its end can be resumed.
+    pub fn checkpoint_file(&self) -> PathBuf {
+        self.path.join("checkpoint")
+    }
+
     /// `plots/<name>.svg`; the name may be that of a record, and the folder is made if needed.
     ///
     /// # Errors
@@ -183,6 +188,27 @@ pub fn write_atomic(path: &Path, text: &str) -> Result<(), OutputError> {
         let _ = fs::remove_file(&temporary);
         OutputError::io("write", path)(error)
     })
+}
+
+/// As [`write_atomic`], and on the disk when it returns: neither a killed program nor a power cut leaves a part.
+pub(crate) fn write_durable(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    // one name, so that what a killed program leaves behind is written over by the next
+    let temporary = path.with_file_name(format!(".{name}.tmp"));
+    let written = fs::File::create(&temporary).and_then(|mut file| {
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        fs::rename(&temporary, path)
+    });
+    written.map_err(|error| {
+        let _ = fs::remove_file(&temporary);
+        OutputError::io("write", path)(error)
+    })?;
+    // the name is on the disk once the folder is; not every system lets a folder be opened for that
+    if let Some(Ok(folder)) = path.parent().map(fs::File::open) {
+        let _ = folder.sync_all();
+    }
+    Ok(())
 }
 
 pub(crate) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), OutputError> {

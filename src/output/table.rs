@@ -5,10 +5,10 @@ use std::fs::{self, File};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::OutputError;
+use super::{OutputError, write_durable};
 
 /// One column of a [`Table`]: a recorded quantity over time.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Column {
     /// Name of the record, such as `hose.end.x`.
     pub name: String,
@@ -58,7 +58,7 @@ impl Column {
 /// assert_eq!(table.to_csv()?, "t [s],hose.end.x [m]\n0,1.25\n");
 /// # Ok::<(), OutputError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Table {
     /// The columns, time first.
     pub columns: Vec<Column>,
@@ -201,6 +201,16 @@ impl TableWriter {
         let text = table.to_csv()?;
         let mut file = File::create(path).map_err(OutputError::io("create", path))?;
         file.write_all(text.as_bytes()).map_err(OutputError::io("write", path))?;
+        Ok(Self { file, path: path.to_path_buf(), columns: table.columns.len(), line: String::new() })
+    }
+
+    /// Replaces a file by these rows, all or nothing, to go on behind them.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create).
+    pub fn resume(path: &Path, table: &Table) -> Result<Self, OutputError> {
+        write_durable(path, table.to_csv()?.as_bytes())?;
+        let file = File::options().append(true).open(path).map_err(OutputError::io("write", path))?;
         Ok(Self { file, path: path.to_path_buf(), columns: table.columns.len(), line: String::new() })
     }
 

@@ -1,12 +1,13 @@
 //! The observer of a run: it evaluates the records, writes the history, shows the progress and keeps shapes.
 
+use super::checkpoint::{Saved, Saver};
 use super::start::Ending;
 use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{
-    Analysis, At, BuildError, Channel, Model, Observer, Process, Record, Sample, Scene, SceneError, SpecKind,
-    State, V3,
+    Analysis, At, BuildError, Channel, Checkpoint, Model, Observer, Process, Record, Sample, Scene,
+    SceneError, SpecKind, State, V3,
 };
 use std::collections::HashSet;
 use std::ops::ControlFlow;
@@ -39,11 +40,13 @@ pub(crate) struct Recorder<'a> {
     /// Lines of all parts at several times; parts are separated by a point that isn't finite.
     pub shapes: Vec<(f64, Vec<V3<f64>>)>,
     /// When shapes are still to be kept, last first.
-    due: Vec<f64>,
+    pub(super) due: Vec<f64>,
     /// Why it stopped the run.
     pub stop: Option<Ending>,
     /// What happened and when.
     pub events: Vec<Happened>,
+    /// Where checkpoints go, if any are wanted.
+    pub saver: Option<Saver>,
 }
 
 /// The records of a scene, each with a name of its own.
@@ -107,7 +110,21 @@ impl<'a> Recorder<'a> {
             due: due.collect(),
             stop: None,
             events: Vec::new(),
+            saver: None,
         }
+    }
+
+    /// Takes up what was recorded until a checkpoint; says which column differs if the records are others.
+    pub(super) fn take_up(&mut self, saved: &Saved<'_>) -> Result<(), String> {
+        let heads = |t: &Table| t.columns.iter().map(|c| c.heading()).collect::<Vec<_>>();
+        if heads(&self.table) != heads(&saved.table) {
+            return Err("the checkpoint belongs to other records".into());
+        }
+        self.table = saved.table.clone().into_owned();
+        self.shapes = saved.shapes.clone().into_owned();
+        self.due = saved.due.clone().into_owned();
+        self.events = saved.events.clone().into_owned();
+        Ok(())
     }
 
     /// Binds the records to the model if it is another one than before: node numbers change with the mesh.
@@ -208,6 +225,9 @@ impl Observer for Recorder<'_> {
         if let Some(progress) = &mut self.progress {
             progress.step(state.t, report.h, report.rejected);
         }
+        if let Some(saver) = &mut self.saver {
+            saver.step();
+        }
         if self.interrupt.is_some_and(Interrupt::requested) {
             self.stop = Some(Ending::Interrupted);
             return ControlFlow::Break(());
@@ -217,6 +237,16 @@ impl Observer for Recorder<'_> {
     }
     fn needs_forces(&self) -> bool {
         self.needs_forces
+    }
+    fn wants_checkpoint(&mut self) -> bool {
+        self.saver.as_ref().is_some_and(Saver::is_due)
+    }
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> ControlFlow<()> {
+        if let Some(mut saver) = self.saver.take() {
+            saver.write(checkpoint, self);
+            self.saver = Some(saver);
+        }
+        ControlFlow::Continue(())
     }
     fn event(&mut self, name: &str, t: f64) {
         self.events.push(Happened { name: name.into(), t });

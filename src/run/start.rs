@@ -1,12 +1,15 @@
 //! The analyses: motion in time, and a path of equilibria.
 
 use super::Recorder;
+use super::checkpoint::Saved;
 use crate::error::Error;
 use crate::output::{Counts, ProfileEntry};
+use crate::read::SceneFile;
+use crate::scene::Fault;
 use ropewalk_core::integrator::{StepError, StepReport};
 use ropewalk_core::statics::Statics;
 use ropewalk_core::{
-    Analysis, Audit, End, Model, Observer, Process, Sample, Scene, Simulation, SolveError, State,
+    Analysis, Audit, End, Model, Observer, Process, Sample, Scene, Simulation, SolveError, State, Unfit,
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -136,12 +139,26 @@ impl Started {
         s.work.times(&s.model).into_iter().map(entry).collect()
     }
 
-    /// Computes until the end, or until something stops it.
-    pub(crate) fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>) -> Ending {
+    /// A run in time as it was at a checkpoint.
+    pub(crate) fn resumed(file: &SceneFile, saved: &Saved<'_>) -> Result<Self, Error> {
+        let (scene, checkpoint) = (file.scene(), saved.simulation.clone());
+        let mut model = file.build()?;
+        if !checkpoint.meshes.is_empty() {
+            model = scene.build_on(&checkpoint.meshes)?;
+        }
+        match Simulation::restore(model, &scene.solver, scene.run.duration, checkpoint) {
+            Ok(simulation) => Ok(Started::Dynamics(Box::new(simulation), saved.flutter)),
+            Err(Unfit::Step(e)) => Err(e.into()),
+            Err(e) => Err(Fault::new(e.to_string()).into()),
+        }
+    }
+
+    /// Computes until the end, or until something stops it; `resumed` says that a checkpoint was gone on from.
+    pub(crate) fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>, resumed: bool) -> Ending {
+        let (duration, interval) = (scene.run.duration, scene.run.interval());
         let end = match self {
-            Started::Dynamics(s, _) => {
-                s.advance(scene.run.duration, scene.run.interval(), recorder).map_err(Error::from)
-            }
+            Started::Dynamics(s, _) if resumed => s.go_on(duration, interval, recorder).map_err(Error::from),
+            Started::Dynamics(s, _) => s.advance(duration, interval, recorder).map_err(Error::from),
             Started::Statics(path) => path.go(scene, recorder),
             Started::Process(process, _) => through(process.as_mut(), scene, recorder),
         };

@@ -8,7 +8,7 @@ use crate::solver::SolveError;
 use crate::state::{At, State};
 
 /// How far a start had to be moved, as root mean squares over the mass.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Correction {
     /// Of positions [m].
     pub position: f64,

@@ -134,6 +134,22 @@ impl Workspace {
         }
     }
 
+    /// Makes everything anew but the counters and the times that are measured: what comes next doesn't depend on what
+    /// went before.
+    ///
+    /// # Errors
+    /// Not enough memory for the factors.
+    pub(crate) fn renew(&mut self, model: &Model) -> Result<(), SolveError> {
+        let mut new = Workspace::new(model)?;
+        (new.counts, new.phases) = (self.counts, self.phases);
+        new.system.profile = self.system.profile.take();
+        if self.softening.is_some() {
+            new.soften(model);
+        }
+        *self = new;
+        Ok(())
+    }
+
     /// From now on constraints are solved as if some were redundant.
     pub(crate) fn soften(&mut self, model: &Model) {
         self.softening = Some(Softening::new(model, model.structure()));

@@ -5,10 +5,12 @@
 //! An equilibrium is accepted if it is stable and not folded: by the inertia of the factors where the tangent is
 //! symmetric, else by what becomes of a small disturbance.
 
+mod linear;
 mod search;
 mod stability;
 mod tangent;
 
+pub(crate) use linear::Linear;
 pub use stability::Disturbance;
 
 use crate::build::{BuildError, positive};

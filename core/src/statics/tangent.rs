@@ -2,7 +2,9 @@
 
 use super::Statics;
 use crate::lane::V3;
+use crate::marker::frame;
 use crate::node::NodeKind;
+use crate::rotation::{M3, cross, product, skew, transposed_times};
 use crate::solver::SolveError;
 use crate::state::{At, Relaxation, Relaxed, State};
 use crate::term::Weights;
@@ -70,7 +72,7 @@ impl Statics<'_> {
             self.model.assemble_in(&self.structure, &at, lambda, one(0.0, 0.0, 1.0), &mut self.mass);
         }
         if omega != [0.0; 3] {
-            self.turn_columns(omega);
+            self.turn_columns(omega, q);
         }
     }
 
@@ -89,9 +91,6 @@ impl Statics<'_> {
     /// Velocities and accelerations of the frame at a configuration.
     pub(super) fn follow_frame(&mut self, q: &[f64]) {
         let Some(f) = self.frame else { return };
-        let cross = |a: V3<f64>, b: V3<f64>| {
-            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-        };
         for n in self.model.nodes() {
             let x = &q[n.coords()];
             let blocks = match n.kind {
@@ -102,46 +101,57 @@ impl Statics<'_> {
             for b in 0..blocks {
                 let origin = if b == 0 { f.centre } else { [0.0; 3] };
                 let arm: V3<f64> = std::array::from_fn(|i| x[3 * b + i] - origin[i]);
-                let turn = cross(f.omega, arm);
-                let pull = cross(f.omega, turn);
+                let turn = cross(&f.omega, &arm);
+                let pull = cross(&f.omega, &turn);
                 for i in 0..3 {
                     self.v[n.v + 3 * b + i] = turn[i] + if b == 0 { f.velocity[i] } else { 0.0 };
                     self.a[n.v + 3 * b + i] = pull[i];
                 }
             }
             if n.kind == NodeKind::Frame {
-                // the spin of the body itself, in its own axes, is left to the bodies
-                self.v[n.v + 3..n.v + 6].fill(0.0);
+                // a body turns with the frame; in its own axes its spin is constant
+                let spin = transposed_times(&frame(x), &f.omega);
+                self.v[n.v + 3..n.v + 6].copy_from_slice(&spin);
             }
         }
     }
 
-    /// Adds `C W + M W²` to the stiffness and `2 M W` to the damping, where `W` turns each three components of a node
-    /// by `ω ×`.
-    pub(super) fn turn_columns(&mut self, omega: V3<f64>) {
-        let [x, y, z] = omega;
-        let w = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
-        let w2: [[f64; 3]; 3] =
-            std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| w[i][k] * w[k][j]).sum()));
+    /// Adds what the frame's turning makes of a displacement `x` that rides with it: `C W₁ + M W₃` to the stiffness
+    /// and `M W₂` to the damping.
+    ///
+    /// Vectors in space: `W₁ = ω̃`, `W₂ = 2 ω̃`, `W₃ = ω̃²`. Rotations in a body's own axes: `W₁ = W₂ = ω̃`, with `ω` in
+    /// those axes too, and `W₃ = 0`.
+    pub(super) fn turn_columns(&mut self, omega: V3<f64>, q: &[f64]) {
         let s = &self.structure;
-        // the first of three components at each position that a node's components start at
-        let mut triple = vec![false; s.n];
+        let w = skew(&omega);
+        let space = [w, w.map(|row| row.map(|x| 2.0 * x)), product(&w, &w)];
+        // at each position that three components of a node start at
+        let mut turning: Vec<Option<[M3; 3]>> = vec![None; s.n];
         for n in self.model.nodes() {
             for block in 0..n.kind.velocities() / 3 {
-                triple[s.position[n.v + 3 * block]] = true;
+                let own = match (n.kind, block) {
+                    (NodeKind::Scalars(_), _) => continue,
+                    (NodeKind::Frame, 1) => {
+                        let w = skew(&transposed_times(&frame(&q[n.coords()]), &omega));
+                        [w, w, [[0.0; 3]; 3]]
+                    }
+                    _ => space,
+                };
+                turning[s.position[n.v + 3 * block]] = Some(own);
             }
         }
         for (_, columns, at) in s.rows().filter(|(r, ..)| !s.is_multiplier[*r]) {
-            for k in (0..at.len()).filter(|&k| triple[columns.get(k)]) {
-                let p = at.start + k;
+            for (k, p) in at.enumerate() {
+                let Some([w1, w2, w3]) = &turning[columns.get(k)] else { continue };
                 let (c, m): (V3<f64>, V3<f64>) = (
                     std::array::from_fn(|i| self.damping.values[p + i]),
                     std::array::from_fn(|i| self.mass.values[p + i]),
                 );
+                let (k1, k2, k3) =
+                    (transposed_times(w1, &c), transposed_times(w2, &m), transposed_times(w3, &m));
                 for j in 0..3 {
-                    self.system.values[p + j] +=
-                        (0..3).map(|i| c[i] * w[i][j] + m[i] * w2[i][j]).sum::<f64>();
-                    self.damping.values[p + j] += 2.0 * (0..3).map(|i| m[i] * w[i][j]).sum::<f64>();
+                    self.system.values[p + j] += k1[j] + k3[j];
+                    self.damping.values[p + j] += k2[j];
                 }
             }
         }

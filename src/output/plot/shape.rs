@@ -83,6 +83,8 @@ pub struct ShapePlot {
     pub y_label: String,
     /// The cable at several times, in order.
     pub snapshots: Vec<Snapshot>,
+    /// What the legend calls the snapshots; left empty, their times.
+    pub names: Vec<String>,
 }
 
 impl ShapePlot {
@@ -99,6 +101,7 @@ impl ShapePlot {
             x_label: x_label.into(),
             y_label: y_label.into(),
             snapshots: positions.iter().map(snapshot).collect(),
+            names: Vec::new(),
         }
     }
 
@@ -132,7 +135,7 @@ impl ShapePlot {
             x,
             y,
             equal: true,
-            legend: legend(&shown),
+            legend: legend(&shown, &self.names),
             bar: bar(&shown),
         };
         frame.draw(|canvas, area| {
@@ -182,9 +185,17 @@ fn age(snapshot: &Snapshot, shown: &[&Snapshot]) -> f64 {
     if last > first { (snapshot.t - first) / (last - first) } else { 0.0 }
 }
 
-fn legend(shown: &[&Snapshot]) -> Vec<Entry> {
+fn legend(shown: &[&Snapshot], names: &[String]) -> Vec<Entry> {
     if !(2..=MOST_ENTRIES).contains(&shown.len()) {
         return Vec::new();
+    }
+    if names.len() == shown.len() {
+        let entry = |(snapshot, name): (&&Snapshot, &String)| Entry {
+            label: name.clone(),
+            colour: colour::ramp(age(snapshot, shown)),
+            mark: Mark::Line,
+        };
+        return shown.iter().zip(names).map(entry).collect();
     }
     let (first, last) = span(shown);
     let digits = (3.0 - (last - first).max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;

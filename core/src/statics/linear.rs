@@ -1,0 +1,43 @@
+//! The equations of motion linearised about an equilibrium, in the frame of the search.
+
+use super::Statics;
+use crate::state::State;
+use crate::structure::Structure;
+
+/// `M ẍ + C ẋ + K x + Gᵀλ = -r`, `G x = -g`, with all matrices stored as [`Structure::rows`] says.
+///
+/// In a frame that turns, `C` holds the gyroscopic and `K` the centrifugal part.
+pub(crate) struct Linear {
+    pub structure: Structure,
+    /// `K`, and `G` in the rows of the constraints.
+    pub stiffness: Vec<f64>,
+    /// The same with `ρ GᵀG` added, for factorisation, and its residual.
+    pub braced: Vec<f64>,
+    pub braced_residual: Vec<f64>,
+    pub damping: Vec<f64>,
+    pub mass: Vec<f64>,
+}
+
+impl Statics<'_> {
+    /// Linearises at a state, with the velocities and accelerations of the frame.
+    pub(crate) fn linearise(&mut self, state: &State) -> Linear {
+        self.assemble(state, &state.q, &state.lambda, None, true);
+        let stiffness = self.system.values.clone();
+        self.brace();
+        Linear {
+            structure: self.structure.clone(),
+            stiffness,
+            braced: self.system.values.clone(),
+            braced_residual: self.system.residual.clone(),
+            damping: self.damping.values.clone(),
+            mass: self.mass.values.clone(),
+        }
+    }
+
+    /// Sets velocities and accelerations of a state to those of the frame.
+    pub(crate) fn ride(&mut self, state: &mut State) {
+        self.follow_frame(&state.q);
+        state.v.clone_from(&self.v);
+        state.a.clone_from(&self.a);
+    }
+}

@@ -1,0 +1,50 @@
+//! `ropewalk modes SCENE`
+
+use super::{Exit, complain, say};
+use crate::cli::SceneArgs;
+use crate::error::Error;
+use crate::modes::{ModesOptions, write_modes};
+use crate::output::ProgressMode;
+use crate::read::SceneFile;
+use ropewalk_core::modes::ModesError;
+use ropewalk_core::quantity;
+use ropewalk_models::Bundled;
+use std::path::PathBuf;
+
+/// Which modes, of what, and where they go.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ModesArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// How many modes, from the lowest on
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    count: u32,
+    /// Time at which loads and motions are taken [default: 0, in statics the end of the load path]
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    at: Option<f64>,
+    /// Folder for the results, new or empty [default: runs/SCENE-modes, numbered]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Say nothing but errors and warnings
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    text.trim().parse().or_else(|_| quantity::kind::TIME.parse(text))
+}
+
+pub(crate) fn modes(args: &ModesArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
+    let file = SceneFile::open(&args.scene.scene, &args.scene.overrides, bundled)?;
+    let progress = if args.quiet { ProgressMode::Quiet } else { ProgressMode::Auto };
+    let options = ModesOptions { count: args.count as usize, time: args.at, out: args.out.clone(), progress };
+    let done = write_modes(&file, &options, &mut |warning| complain(format!("warning: {warning}")));
+    if let Err(Error::Modes(ModesError::Interrupted)) = done {
+        return Ok(Exit::Interrupted);
+    }
+    let outcome = done?;
+    if !args.quiet {
+        say(outcome.report.trim_end());
+    }
+    Ok(Exit::Done)
+}
