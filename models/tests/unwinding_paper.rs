@@ -388,7 +388,15 @@ fn a_cable_that_sticks_peels_at_its_energy() {
     assert!(h.stopped.is_none(), "{:?}", h.stopped);
     let last = h.rows[h.rows.len() - 1];
     assert!((last.length / balloon.shape.length - 1.0).abs() < 1e-3, "{}", last.length);
-    assert!((last.tension / 0.15 - 1.0).abs() < 1e-2, "{}", last.tension);
+    // the balance of peeling is unstable, so that the speed of peeling trembles, and the tension with it
+    assert!((last.tension / 0.15 - 1.0).abs() < 3e-2, "{}", last.tension);
+    for row in &h.rows {
+        assert!(
+            (row.lift_curvature / balloon.shape.curvature[40] - 1.0).abs() < 2e-3,
+            "{}",
+            row.lift_curvature
+        );
+    }
 }
 
 #[test]
