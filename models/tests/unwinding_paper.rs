@@ -241,7 +241,6 @@ fn a_stiff_balloon_that_turns_keeps_its_shape() {
 }
 
 #[test]
-#[ignore = "half a minute in a build without optimisation"]
 fn a_stiff_balloon_keeps_its_tension_on_a_fine_mesh() {
     // the rows of the third case are too far apart for its boundary layer to be started from
     for (name, n) in [("low_bend_const_5kn_a", 120), ("bend_nodrag_15kn", 120)] {
@@ -388,7 +387,15 @@ fn a_cable_that_sticks_peels_at_its_energy() {
     assert!(h.stopped.is_none(), "{:?}", h.stopped);
     let last = h.rows[h.rows.len() - 1];
     assert!((last.length / balloon.shape.length - 1.0).abs() < 1e-3, "{}", last.length);
-    assert!((last.tension / 0.15 - 1.0).abs() < 1e-2, "{}", last.tension);
+    // the balance of peeling is unstable, so that the speed of peeling trembles, and the tension with it
+    assert!((last.tension / 0.15 - 1.0).abs() < 3e-2, "{}", last.tension);
+    for row in &h.rows {
+        assert!(
+            (row.lift_curvature / balloon.shape.curvature[40] - 1.0).abs() < 2e-3,
+            "{}",
+            row.lift_curvature
+        );
+    }
 }
 
 #[test]
@@ -435,6 +442,8 @@ fn an_empty_package_ends_the_run() {
     let Some(Stopped::Empty { t, wound }) = h.stopped else { panic!("{:?}", h.stopped) };
     assert!((wound - 2.0 * TAU * 0.06).abs() < 1e-3 && (wound - h.state.peeled[0]) < 1e-3);
     assert!(t > 0.3 && t < 0.4 && h.rows.len() > 30);
+    // the short steps towards the end don't shake the tension
+    assert!(h.conditions.is_empty(), "{:?}", h.conditions);
 }
 
 #[test]

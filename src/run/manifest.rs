@@ -88,6 +88,10 @@ impl fmt::Display for Manifest {
             self.constraints.iter().map(|(n, rows)| format!("{n} ({})", equations(*rows))).collect();
         list(f, "constraints", &constraints)?;
         list(f, "records", &self.records)?;
+        if self.non_zeros == 0 {
+            // a process has its own
+            return write!(f, "  {:<12} {}", "unknowns", self.unknowns);
+        }
         let symmetric = if self.symmetric { "symmetric" } else { "unsymmetric" };
         writeln!(f, "  {:<12} {}, and {} multipliers", "unknowns", self.unknowns, self.multipliers)?;
         writeln!(f, "  {:<12} {} non-zeros, {symmetric}", "matrix", self.non_zeros)?;
