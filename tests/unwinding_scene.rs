@@ -55,7 +55,9 @@ fn what_is_wrong_is_said_with_its_place() {
         (scene(&format!("drag = {{}}\n{package}")), "[water] section"),
         (scene(&format!("step = 0\n{package}")), "`h` must be positive"),
         (
-            scene(&format!("{package}[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nmass = 1\n")),
+            scene(&format!(
+                "{package}[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nmass = 1\nat = [0, 0, 0]\n"
+            )),
             "of its own",
         ),
     ];
