@@ -384,7 +384,7 @@ fn cable_is_paid_out_and_reeled_in_with_the_right_tension() {
 fn cable_is_paid_out_to_fifty_metres_and_back() {
     for water in [false, true] {
         for (element, elements, eta) in
-            [(None, 20, 0.01), (Some(0.5), 2, 0.01), (Some(0.5), 2, 0.001), (Some(0.5), 2, 0.1)]
+            [(None, 20, 0.01), (Some(0.45), 2, 0.01), (Some(0.45), 2, 0.001), (Some(0.45), 2, 0.1)]
         {
             let begin = std::time::Instant::now();
             let hauled = out_and_back(49.0, element, eta, elements, water);

@@ -93,7 +93,7 @@ fn inertia_is_that_of_material_points() {
     );
     let node = |i: usize| TWO.fixed[i] + TWO.by[0][i] * x[0][12] + TWO.by[1][i] * x[0][13];
     let (a, l) = (node(0), node(1) - node(0));
-    let mut expected = vec![0.0; 14];
+    let mut expected = [0.0; 14];
     for (xi, w) in GAUSS {
         let acceleration = material_point(&TWO, &x, a + xi * l).map(|r| r.eps.eps);
         let s = hermite(xi, l);

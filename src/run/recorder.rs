@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{
-    Analysis, At, BuildError, Channel, Checkpoint, Model, Observer, Process, Record, Sample, Scene,
+    Analysis, At, BuildError, Channel, Checkpoint, Model, Observer, Process, Record, Remeshed, Sample, Scene,
     SceneError, SpecKind, State, V3,
 };
 use std::collections::HashSet;
@@ -45,6 +45,8 @@ pub(crate) struct Recorder<'a> {
     pub stop: Option<Ending>,
     /// What happened and when.
     pub events: Vec<Happened>,
+    /// How the mesh has changed.
+    pub remeshed: Vec<Remeshed>,
     /// Where checkpoints go, if any are wanted.
     pub saver: Option<Saver>,
 }
@@ -110,6 +112,7 @@ impl<'a> Recorder<'a> {
             due: due.collect(),
             stop: None,
             events: Vec::new(),
+            remeshed: Vec::new(),
             saver: None,
         }
     }
@@ -250,6 +253,9 @@ impl Observer for Recorder<'_> {
     }
     fn event(&mut self, name: &str, t: f64) {
         self.events.push(Happened { name: name.into(), t });
+    }
+    fn remeshed(&mut self, report: &Remeshed) {
+        self.remeshed.push(report.clone());
     }
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         let recorded = self.record(sample);

@@ -2,7 +2,7 @@
 
 use super::Recorder;
 use crate::output::{Column, RunFolder, Table};
-use ropewalk_core::{Scene, TableSpec};
+use ropewalk_core::{Remeshed, Scene, TableSpec};
 
 /// What is wrong with the tables that the scene asks for, if anything.
 pub(crate) fn check(scene: &Scene, history: &Table) -> Result<(), String> {
@@ -37,7 +37,33 @@ pub(crate) fn write(folder: &RunFolder, recorder: &Recorder<'_>, warn: &mut dyn 
             Err(e) => warn(&e.to_string()),
         }
     }
+    if !recorder.remeshed.is_empty() {
+        match folder.table_file(REMESHING).and_then(|path| remeshing(&recorder.remeshed).write(&path)) {
+            Ok(()) => written.push(REMESHING.to_string()),
+            Err(e) => warn(&e.to_string()),
+        }
+    }
     written
+}
+
+/// The table of what changes of the mesh have done.
+const REMESHING: &str = "remeshing";
+
+fn remeshing(all: &[Remeshed]) -> Table {
+    let columns = [
+        ("t", "s"),
+        ("kinetic", "J"),
+        ("potential", "J"),
+        ("momentum", "kg m/s"),
+        ("tension before", "N"),
+        ("tension after", "N"),
+    ];
+    let values = |r: &Remeshed| [r.t, r.kinetic, r.potential, r.impulse(), r.tension[0], r.tension[1]];
+    let column = |(k, (name, unit)): (usize, (&str, &str))| Column {
+        values: all.iter().map(|r| values(r)[k]).collect(),
+        ..Column::new(name, unit)
+    };
+    Table { columns: columns.into_iter().enumerate().map(column).collect() }
 }
 
 fn table(spec: &TableSpec, history: &Table, interval: f64) -> Table {

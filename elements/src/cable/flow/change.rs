@@ -27,6 +27,14 @@ pub(crate) struct Snapshot {
     pub stress: Vec<Vec<f64>>,
 }
 
+/// What there was at a point of a piece: weight, place in the new element, slope of shape and of velocity.
+struct Was {
+    weight: f64,
+    xi: f64,
+    slope: V3<f64>,
+    rate: V3<f64>,
+}
+
 fn mix<const N: usize>(c: [f64; N], x: [V3<f64>; N]) -> V3<f64> {
     std::array::from_fn(|i| (0..N).map(|n| c[n] * x[n][i]).sum())
 }
@@ -95,7 +103,8 @@ impl Snapshot {
             for at in Gauss5::POINTS {
                 let slope = hermite_slope(at.xi, 1.0 / own);
                 let there = self.p[piece] + at.xi * own;
-                samples.push((at.w * own, (there - p[0]) / l, mix(slope, e), mix(slope, v)));
+                let (weight, xi) = (at.w * own, (there - p[0]) / l);
+                samples.push(Was { weight, xi, slope: mix(slope, e), rate: mix(slope, v) });
             }
         }
         let old = [self.material(k - 1), self.material(k)];
@@ -109,23 +118,23 @@ impl Snapshot {
         let (a, b) = (k - 1, k);
         // the nearest slope at the front: least squares of r', of which it makes φ
         let own = if front == 0 { 1 } else { 3 };
-        let fit = |mut nodes: [V3<f64>; 4], pick: &dyn Fn(&(f64, f64, V3<f64>, V3<f64>)) -> V3<f64>| {
+        let fit = |mut nodes: [V3<f64>; 4], pick: fn(&Was) -> V3<f64>| {
             nodes[own] = [0.0; 3];
             let (mut sum, mut square) = ([0.0; 3], 0.0);
             for sample in &samples {
-                let slope = hermite_slope(sample.1, 1.0 / l);
+                let slope = hermite_slope(sample.xi, 1.0 / l);
                 let (rest, there) = (mix(slope, nodes), pick(sample));
                 for c in 0..3 {
-                    sum[c] += sample.0 * slope[own] * (there[c] - rest[c]);
+                    sum[c] += sample.weight * slope[own] * (there[c] - rest[c]);
                 }
-                square += sample.0 * slope[own] * slope[own];
+                square += sample.weight * slope[own] * slope[own];
             }
             sum.map(|x| x / square)
         };
         let node = if front == 0 { a } else { b };
-        self.s[node] = fit([self.r[a], self.s[a], self.r[b], self.s[b]], &|s| s.2);
+        self.s[node] = fit([self.r[a], self.s[a], self.r[b], self.s[b]], |s| s.slope);
         let nu = [old[0][0], old[0][1], old[1][2], old[1][3]];
-        let slope = fit(nu, &|s| s.3);
+        let slope = fit(nu, |s| s.rate);
         let bend = {
             let il = 1.0 / l;
             let e: [V3<f64>; 4] = [self.r[a], self.s[a], self.r[b], self.s[b]];
