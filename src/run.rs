@@ -107,6 +107,7 @@ pub(crate) fn run_showing(
     };
     folder.write_scene(&file.document().to_toml())?;
     folder.write_manifest(&manifest)?;
+    let notes = manifest.notes;
     recorder.writer = Some(TableWriter::create(&folder.history_file(), &recorder.table)?);
     recorder.progress = Some(progress(scene.run.duration));
     match Interrupt::install() {
@@ -139,7 +140,8 @@ pub(crate) fn run_showing(
         None => stopwatch.elapsed(),
     };
 
-    let mut summary = Summary { cpu_s: elapsed.cpu_s, wall_s: elapsed.wall_s, profile, ..Summary::default() };
+    let mut summary =
+        Summary { notes, cpu_s: elapsed.cpu_s, wall_s: elapsed.wall_s, profile, ..Summary::default() };
     let ending = match (started, ending) {
         (Ok(started), ending) => {
             let done = started.done();

@@ -21,6 +21,8 @@ pub struct Manifest {
     pub terms: Vec<String>,
     /// The constraints, each as name and number of equations.
     pub constraints: Vec<(String, usize)>,
+    /// What one should know about them.
+    pub notes: Vec<String>,
     /// Columns of the history, without time.
     pub records: Vec<String>,
     /// Number of velocities.
@@ -53,6 +55,7 @@ impl Manifest {
             parts: model.parts().iter().map(|p| (p.name().to_string(), p.kind())).collect(),
             terms: model.terms().iter().map(|t| t.label()).collect(),
             constraints: model.constraints().iter().map(|c| (c.name().to_string(), c.rows().len())).collect(),
+            notes: file.scene().constraints.iter().flat_map(|c| c.notes(model)).collect(),
             records: records.iter().flat_map(|r| r.columns()).map(|c| c.name).collect(),
             unknowns: model.velocities(),
             multipliers: model.multipliers(),
@@ -80,6 +83,7 @@ impl fmt::Display for Manifest {
         let constraints: Vec<String> =
             self.constraints.iter().map(|(n, rows)| format!("{n} ({})", equations(*rows))).collect();
         list(f, "constraints", &constraints)?;
+        list(f, "notes", &self.notes)?;
         list(f, "records", &self.records)?;
         let symmetric = if self.symmetric { "symmetric" } else { "unsymmetric" };
         writeln!(f, "  {:<12} {}, and {} multipliers", "unknowns", self.unknowns, self.multipliers)?;
