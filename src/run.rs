@@ -108,6 +108,7 @@ pub(crate) fn run_showing(
     };
     folder.write_scene(&file.document().to_toml())?;
     folder.write_manifest(&manifest)?;
+    let notes = manifest.notes;
     recorder.writer = Some(TableWriter::create(&folder.history_file(), &recorder.table)?);
     recorder.progress = Some(progress(scene.run.duration));
     if let Ok(started) = &started {
@@ -131,7 +132,8 @@ pub(crate) fn run_showing(
             (_, None) => {}
         }
     }
-    let course = Course { file, folder, recorder, stopwatch, before: Elapsed::default(), resumed: false };
+    let before = Elapsed::default();
+    let course = Course { file, folder, recorder, stopwatch, before, resumed: false, notes };
     course.complete(started, options.profile, warnings)
 }
 
@@ -158,7 +160,8 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     recorder.writer = Some(TableWriter::resume(&folder.history_file(), &recorder.table)?);
     let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
     recorder.progress = Some(Progress::new(t, end, options.progress));
-    let course = Course { file: &file, folder, recorder, stopwatch, before, resumed: true };
+    let notes = manifest::notes(file.scene(), &simulation.model);
+    let course = Course { file: &file, folder, recorder, stopwatch, before, resumed: true, notes };
     course.complete(Ok(started), options.profile, warnings)
 }
 
@@ -184,6 +187,8 @@ struct Course<'a> {
     /// What was spent on it before it was resumed.
     before: Elapsed,
     resumed: bool,
+    /// What its constraints have to say.
+    notes: Vec<String>,
 }
 
 impl Course<'_> {
@@ -193,7 +198,7 @@ impl Course<'_> {
         measure: bool,
         mut warnings: Warnings<'_>,
     ) -> Result<Outcome, Error> {
-        let Course { file, folder, mut recorder, stopwatch, before, resumed } = self;
+        let Course { file, folder, mut recorder, stopwatch, before, resumed, notes } = self;
         match Interrupt::install() {
             Ok(interrupt) => recorder.interrupt = Some(interrupt),
             Err(e) => warnings.say(&e.to_string()),
@@ -225,6 +230,7 @@ impl Course<'_> {
             cpu_s: before.cpu_s + elapsed.cpu_s,
             wall_s: before.wall_s + elapsed.wall_s,
             profile,
+            notes,
             ..Summary::default()
         };
         let ending = match (started, ending) {

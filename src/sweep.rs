@@ -4,6 +4,7 @@
 //! again computes only what is missing there.
 
 mod axis;
+mod finals;
 mod folder;
 mod grid;
 mod pictures;
@@ -87,12 +88,14 @@ pub(crate) fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome,
     results.save()?;
     let mut warn = |text: &str| progress.say(&format!("warning: {text}"));
     let pictures = pictures::draw(&folder, grid, &axes, &results, &mut warn);
+    let tables = finals::write(&folder, grid, &axes, &results, &mut warn);
     progress.finish();
 
     let interrupted = results.count("interrupted") > 0 || results.len() < grid.len();
     let failed = results.count("failed") + results.count("refused");
     let complete = results.rows().filter(|(_, row)| row.is_complete()).count();
-    let report = report::report(&results, &folder, stopwatch.elapsed().wall_s, grid.len(), pictures);
+    let report =
+        report::report(&results, &folder, stopwatch.elapsed().wall_s, grid.len(), [tables, pictures]);
     let runs = (grid.len(), complete);
     Ok(SweepOutcome { interrupted, failed, runs, folder: folder.path().to_path_buf(), report })
 }

@@ -49,7 +49,7 @@ impl Motion for Sway {
 }
 
 fn positions(of: &str) -> PositionSpec {
-    PositionSpec { of: of.into(), name: None, title: None }
+    PositionSpec::new(of)
 }
 
 /// The chain of the reference, in vacuum or in water.

@@ -39,7 +39,7 @@ fn close(what: &str, found: f64, exact: f64, tolerance: f64) {
 }
 
 fn ends(scene: &mut Scene, constraints: Vec<Box<dyn ConstraintSpec>>) {
-    scene.constraints.extend(constraints);
+    scene.constraints.extend(constraints.into_iter().map(std::sync::Arc::from));
 }
 
 #[test]

@@ -205,6 +205,12 @@ fn every_combination_is_the_run_that_one_would_make_alone() {
         }
     }
     assert!(text(at("runs/swing-sweep/plots/rope.end.z-final.svg")).contains("mass [kg/m]"));
+    // last values once more, by the first parameter
+    let finals = table(at("runs/swing-sweep/tables/rope.end.z-final.csv"));
+    for row in &rows {
+        let own = finals.iter().find(|f| f["mass [kg/m]"] == row["mass [kg/m]"]).unwrap();
+        assert_eq!(own[&format!("rope.end.z [m]: n={}", row["n"])], row["final rope.end.z [m]"]);
+    }
     let manifest: serde_json::Value = serde_json::from_str(&text(at("runs/swing-sweep/sweep.json"))).unwrap();
     assert_eq!(manifest["ropewalk"], env!("CARGO_PKG_VERSION"));
     assert_eq!((&manifest["scenes"][0]["text"], &manifest["runs"]), (&SWING.into(), &6.into()));

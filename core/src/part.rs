@@ -105,6 +105,10 @@ pub trait Part: Send + Sync {
     fn length_now(&self, _at: &At<'_>) -> f64 {
         self.length()
     }
+    /// Time in which bending runs along one of its elements, `l² √(ρA/EI)` [s]; of parts that bend.
+    fn bending_time(&self) -> Option<f64> {
+        None
+    }
     /// The front at an end that feeds: 0 the start, 1 the end.
     fn front(&self, _end: usize) -> Option<Front> {
         None

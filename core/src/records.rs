@@ -1,4 +1,4 @@
-//! The records that come with Ropewalk: motion of a point and turning of a body, tension and the like along a cable,
+//! The records that come with Ropewalk: motion of a point and turning of a body, tension and the like along a cable, its length,
 //! reaction of a constraint and how well it follows its motion, force of a contact or spring, what has let go, balance of
 //! energy.
 //!
@@ -9,6 +9,7 @@ mod driving;
 mod energy;
 mod feeding;
 mod force;
+mod length;
 mod motion;
 mod place;
 mod reaction;
@@ -20,6 +21,7 @@ pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
 pub use feeding::FeedingSpec;
 pub use force::ForceRecordSpec;
+pub use length::LengthSpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
 pub use place::{SpaceAxis, Station as RecordPlace};
 pub use reaction::{ReactionPart, ReactionSpec};

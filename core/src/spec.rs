@@ -39,6 +39,10 @@ pub trait ConstraintSpec: Debug + Send + Sync {
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
         None
     }
+    /// What one should know about it, one sentence each, in the model that was built.
+    fn notes(&self, _: &crate::Model) -> Vec<String> {
+        Vec::new()
+    }
     /// Adds its equations.
     fn build(&self, b: &mut Builder) -> Result<(), BuildError>;
 }

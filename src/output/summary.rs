@@ -17,6 +17,9 @@ pub struct Summary {
     /// What one should know although the run went on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// What one should know about the model, such as numbers that follow from what the scene says.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// Events of the run: what broke or let go, and when.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<Happened>,

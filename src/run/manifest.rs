@@ -2,7 +2,7 @@
 
 use crate::read::SceneFile;
 use crate::scene::Fault;
-use ropewalk_core::{Analysis, Guard, Model, Width};
+use ropewalk_core::{Analysis, Guard, Model, Scene, Width};
 use serde::Serialize;
 use std::fmt;
 
@@ -21,6 +21,8 @@ pub struct Manifest {
     pub terms: Vec<String>,
     /// The constraints, each as name and number of equations.
     pub constraints: Vec<(String, usize)>,
+    /// What one should know about them.
+    pub notes: Vec<String>,
     /// Columns of the history, without time.
     pub records: Vec<String>,
     /// Number of velocities.
@@ -60,6 +62,7 @@ impl Manifest {
                 .collect(),
             terms: model.terms().iter().map(|t| t.label()).collect(),
             constraints: model.constraints().iter().map(|c| (c.name().to_string(), c.rows().len())).collect(),
+            notes: notes(file.scene(), model),
             records: records.into_iter().chain(channels).map(|c| c.name).collect(),
             unknowns: model.velocities() + processes.iter().map(|p| p.unknowns()).sum::<usize>(),
             multipliers: model.multipliers(),
@@ -69,6 +72,11 @@ impl Manifest {
             lanes: Width::best().lanes(),
         })
     }
+}
+
+/// What the constraints of a scene have to say of themselves.
+pub(super) fn notes(scene: &Scene, model: &Model) -> Vec<String> {
+    scene.constraints.iter().flat_map(|c| c.notes(model)).collect()
 }
 
 impl fmt::Display for Manifest {
@@ -87,6 +95,7 @@ impl fmt::Display for Manifest {
         let constraints: Vec<String> =
             self.constraints.iter().map(|(n, rows)| format!("{n} ({})", equations(*rows))).collect();
         list(f, "constraints", &constraints)?;
+        list(f, "notes", &self.notes)?;
         list(f, "records", &self.records)?;
         if self.non_zeros == 0 {
             // a process has its own

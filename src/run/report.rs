@@ -56,6 +56,9 @@ pub(crate) fn report(
             ),
         );
     }
+    for (k, note) in summary.notes.iter().enumerate() {
+        line(if k == 0 { "notes" } else { "" }, note.clone());
+    }
     for (k, (name, times)) in by_name(&summary.events).into_iter().enumerate() {
         let when = match times.as_slice() {
             [one] => format!("at t = {} s", number(*one)),

@@ -12,7 +12,8 @@
 //! A text that is `$` and a name stands for the parameter's value, whatever that is: a number, a list, a table. `$$` at
 //! the beginning of a text is a literal dollar sign. There is no arithmetic.
 //!
-//! A table with `choose` stands for one of its other values, that under the name that `choose` has:
+//! A table with `choose` stands for one of its other values, that under the name that `choose` has; for a
+//! quantity in any unit, and for a number without unit in SI:
 //!
 //! ```toml
 //! duration = { choose = "$speed", "25 kn" = "4 s", "15 kn" = "6 s", otherwise = "20 s" }
@@ -22,6 +23,7 @@ use super::fault::{Fault, did_you_mean, expected, quoted};
 use super::source::{Sources, Span};
 use super::toml;
 use super::value::{DEEPEST, Key, Kind, Table, Value};
+use ropewalk_core::quantity::Written;
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -105,6 +107,18 @@ struct Done {
     value: Value,
     depth: usize,
     size: usize,
+}
+
+/// Whether two texts are the same value: but for spaces, or as quantities, where a bare number is in SI.
+fn same(a: &str, b: &str) -> bool {
+    let plain = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
+    let quantities = Written::parse(a).zip(Written::parse(b));
+    plain(a) == plain(b)
+        || quantities.is_some_and(|(a, b)| {
+            let fits = a.unit.is_empty() || b.unit.is_empty() || a.dimension == b.dimension;
+            // units cost a digit or two
+            fits && (a.si - b.si).abs() <= 1e-12 * a.si.abs()
+        })
 }
 
 fn is_name(name: &str) -> bool {
@@ -257,7 +271,6 @@ impl Resolver<'_> {
             return Err(self.fault("nothing to choose", span));
         };
         self.value(&mut by)?;
-        let plain = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
         let wanted = match &by.kind {
             Kind::String(text) => text.clone(),
             Kind::Integer(x) => x.to_string(),
@@ -266,7 +279,7 @@ impl Resolver<'_> {
             _ => return Err(self.fault("`choose` takes a text or a number", key.span)),
         };
         let names: Vec<String> = table.iter().map(|(key, _)| key.name.clone()).collect();
-        let fits = names.iter().find(|n| plain(n) == plain(&wanted)).map_or(OTHERWISE, String::as_str);
+        let fits = names.iter().find(|n| same(n, &wanted)).map_or(OTHERWISE, String::as_str);
         let Some((_, mut value)) = table.remove(fits) else {
             let message = format!("there is nothing to choose for {}, {}", quoted(&wanted), expected(&names));
             let help = format!("add it, or `{OTHERWISE}` for all that isn't named");

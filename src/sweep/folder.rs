@@ -74,6 +74,7 @@ fn shortened(text: &str) -> String {
 ///   sweep.json                 scenes and parameters
 ///   table.csv                  a row for each run
 ///   plots/*.svg                pictures over all runs
+///   tables/*.csv               last values by the first parameter
 ///   runs/speed=5kn,start=40/   a run, as `ropewalk run` leaves it
 /// ```
 pub(super) struct SweepFolder {
@@ -164,13 +165,21 @@ impl SweepFolder {
         RunFolder::earlier(self.path.clone()).plot_file(name)
     }
 
+    /// `tables/<record>-final.csv`
+    ///
+    /// # Errors
+    /// A folder `tables` that can't be made.
+    pub(super) fn final_file(&self, record: &str) -> Result<PathBuf, OutputError> {
+        RunFolder::earlier(self.path.clone()).table_file(&format!("{record}-final"))
+    }
+
     /// Deletes what a sweep leaves; that it was a sweep is forgotten last, so that this may be interrupted.
     fn clear(&self) -> Result<(), OutputError> {
         let gone = |path: PathBuf, result: std::io::Result<()>| match result {
             Err(e) if e.kind() != ErrorKind::NotFound => Err(OutputError::io("delete", &path)(e)),
             _ => Ok(()),
         };
-        for folder in ["runs", "plots"] {
+        for folder in ["runs", "plots", "tables"] {
             let path = self.path.join(folder);
             gone(path.clone(), fs::remove_dir_all(&path))?;
         }

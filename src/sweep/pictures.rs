@@ -1,6 +1,7 @@
 //! The pictures of a sweep: every record over time with a line for each run, and its last value over the parameter.
 
 use super::axis::Axis;
+use super::finals::finals;
 use super::folder::SweepFolder;
 use super::grid::Grid;
 use super::results::{Recorded, Results, Row};
@@ -65,7 +66,7 @@ pub(super) fn draw(
     }
 
     for (c, axis) in records.iter().flat_map(|c| Some((c, axes.first()?))) {
-        let all = finals(c, grid, axis, results);
+        let all = final_series(c, grid, axis, results);
         let series = chosen(&all);
         let plot = LinePlot {
             title: title(&format!("{} at the end", c.name), series.len(), all.len()),
@@ -90,22 +91,13 @@ pub(super) fn draw(
 }
 
 /// Last values over the first parameter; runs that differ in nothing else are a line.
-fn finals(column: &Recorded, grid: &Grid, axis: &Axis, results: &Results) -> Vec<Series> {
-    let mut series: Vec<Series> = Vec::new();
-    let mut place: HashMap<String, usize> = HashMap::new();
-    for (k, row) in results.rows().filter(|(_, row)| row.is_complete()) {
-        let Some([last, ..]) = Results::values(row, column) else { continue };
-        let others = grid.label(k, 1);
-        let at = *place.entry(others.clone()).or_insert_with(|| {
-            series.push(Series::new(others, Vec::new()).with_mark(Mark::LineAndDots));
-            series.len() - 1
-        });
-        series[at].points.push((axis.numbers[grid.choice(k).1[0]], last));
-    }
-    for s in &mut series {
-        s.points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    }
-    series
+fn final_series(column: &Recorded, grid: &Grid, axis: &Axis, results: &Results) -> Vec<Series> {
+    let lines = finals(column, grid, results).into_iter().map(|line| {
+        let mut points: Vec<_> = line.values.iter().map(|&(i, value)| (axis.numbers[i], value)).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Series::new(line.name, points).with_mark(Mark::LineAndDots)
+    });
+    lines.collect()
 }
 
 /// All of them, or some at equal distances if there are too many.

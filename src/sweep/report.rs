@@ -6,7 +6,7 @@ use crate::output::{number, rough};
 use std::fmt::Write;
 
 /// Rows that are shown.
-const MOST_ROWS: usize = 60;
+const MOST_ROWS: usize = 80;
 /// Width of the table, in characters.
 const WIDTH: usize = 118;
 
@@ -16,7 +16,7 @@ pub(super) fn report(
     folder: &SweepFolder,
     wall_s: f64,
     runs: usize,
-    pictures: usize,
+    [tables, pictures]: [usize; 2],
 ) -> String {
     let recorded = results.recorded();
     let mut headings = results.headings.clone();
@@ -67,7 +67,10 @@ pub(super) fn report(
     let cpu: f64 = results.rows().filter(|(_, r)| !r.earlier).map(|(_, r)| r.cpu_s).sum();
     line("time", format!("{} s on the clock, {} s of CPU", rough(wall_s), rough(cpu)));
     line("folder", folder.path().display().to_string());
-    line("results", format!("table.csv, runs/, {pictures} pictures in plots/"));
+    line(
+        "results",
+        format!("table.csv, runs/, {tables} tables of last values in tables/, {pictures} pictures in plots/"),
+    );
     out
 }
 

@@ -37,6 +37,7 @@ impl Row {
             [last, fold(f64::min), fold(f64::max)]
         };
         let mut message: Vec<String> = summary.message.iter().cloned().collect();
+        message.extend(summary.notes.iter().cloned());
         message.extend(summary.warnings.iter().map(|w| format!("warning: {w}")));
         Self {
             status: summary.status.clone(),

@@ -3,7 +3,9 @@
 use super::{Feeding, Limit, Pull, Side, Zone};
 use crate::motion::Straight;
 use ropewalk_core::build::{BuildError, Builder, not_negative, positive};
-use ropewalk_core::{ConstraintSpec, Feed, MarkerRef, Motion, Moving, quantity, register_spec};
+use ropewalk_core::{
+    ConstraintSpec, Feed, MarkerRef, Model, Motion, Moving, quantity, register_spec, split_marker,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -25,6 +27,7 @@ fn rest() -> f64 {
 ///
 /// Where that end is in space is told by another constraint, such as `spherical` or `driving`. Prescribe the speed by
 /// `speed` or by `motion`; or leave the end free and give what holds it back: `tension`, `brake`, `damping`, `inertia`.
+/// A winch whose `speed` is 0 is no winch: the cable is as it would be without.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WinchSpec {
@@ -32,7 +35,8 @@ pub struct WinchSpec {
     pub name: String,
     /// The end of the cable: `hose.start` or `hose.end`.
     pub marker: MarkerRef,
-    /// Speed at which it feeds out after the ramp [m/s]; negative reels in.
+    /// Speed at which it feeds out after the ramp [m/s]; negative reels in. Where `final_length` says which of the two it
+    /// is, it may be positive for both.
     #[serde(
         default,
         deserialize_with = "quantity::optional::speed",
@@ -48,6 +52,20 @@ pub struct WinchSpec {
     /// Time at which it begins to slow down again [s]; left out, it goes on.
     #[serde(default, deserialize_with = "quantity::optional::time", skip_serializing_if = "Option::is_none")]
     pub stop: Option<f64>,
+    /// Length that it feeds out in all before it stops [m], with the sign of the speed, instead of `stop`.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub total: Option<f64>,
+    /// Length of the cable at which it stops [m], instead of `stop` and `total`.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub final_length: Option<f64>,
     /// Name of a motion whose x component is the length fed out, instead of `speed`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
@@ -144,6 +162,8 @@ impl WinchSpec {
             start: 0.0,
             ramp: ramp(),
             stop: None,
+            total: None,
+            final_length: None,
             motion: None,
             tension: None,
             brake: 0.0,
@@ -159,8 +179,61 @@ impl WinchSpec {
         }
     }
 
+    /// Whether it never feeds.
+    fn idle(&self) -> bool {
+        self.speed == Some(0.0) && self.motion.is_none()
+    }
+
+    /// The speed with its sign, and when it begins to fall, of a cable of this length.
+    fn course(&self, speed: f64, whole: f64) -> Result<(f64, Option<f64>), BuildError> {
+        if speed == 0.0 {
+            return Ok((speed, None));
+        }
+        let total = match (self.stop, self.total, self.final_length) {
+            (None, None, None) => return Ok((speed, None)),
+            (Some(stop), None, None) if stop < self.start + self.ramp => {
+                let message = format!("it would stop at {stop} s, before its speed has risen");
+                return Err(BuildError::at("stop", message));
+            }
+            (Some(stop), None, None) => return Ok((speed, Some(stop))),
+            (None, Some(total), None) => total,
+            (None, None, Some(last)) => positive("final_length", last)? - whole,
+            (Some(_), ..) => {
+                let field = if self.total.is_some() { "total" } else { "final_length" };
+                let message = format!("give `stop` or `{field}`, not both: one follows from the other");
+                return Err(BuildError::at(field, message));
+            }
+            _ => {
+                let message = "give `total` or `final_length`, not both: one follows from the other";
+                return Err(BuildError::at("final_length", message));
+            }
+        };
+        let field = if self.total.is_some() { "total" } else { "final_length" };
+        // a length tells the direction as well
+        let speed = if self.final_length.is_some() && speed > 0.0 { speed.copysign(total) } else { speed };
+        let time = total / speed;
+        if !(time > 0.0 && time.is_finite()) {
+            let message = match self.final_length {
+                Some(last) if total == 0.0 => format!("the cable is {last} m long already"),
+                Some(last) => format!("a cable of {whole} m can't be reeled in to {last} m"),
+                None => format!("at {speed} m/s it never feeds out {total} m: their signs must be the same"),
+            };
+            return Err(BuildError::at(field, message));
+        }
+        if time < self.ramp {
+            let message = format!(
+                "{} m are over before the speed has risen to {} m/s: take a `ramp` of at most {} s, or less speed",
+                total.abs(),
+                speed.abs(),
+                time
+            );
+            return Err(BuildError::at(field, message));
+        }
+        Ok((speed, Some(self.start + time)))
+    }
+
     /// Where its length is prescribed: the length fed out as a motion.
-    fn prescribed(&self, b: &Builder) -> Result<Option<Arc<dyn Motion>>, BuildError> {
+    fn prescribed(&self, b: &Builder, whole: f64) -> Result<Option<Arc<dyn Motion>>, BuildError> {
         let free = self.tension.is_some() || self.brake != 0.0 || self.damping != 0.0 || self.inertia != 0.0;
         match (self.speed, &self.motion) {
             (Some(_), Some(_)) => Err(BuildError::at("motion", "give `speed` or `motion`, not both")),
@@ -172,18 +245,19 @@ impl WinchSpec {
             )),
             (Some(speed), None) => {
                 let ahead = [1.0, 0.0, 0.0];
+                // says what is wrong with speed, start and ramp first
+                Straight::new(ahead, speed, self.start, self.ramp)?;
+                let (speed, stop) = self.course(speed, whole)?;
                 let rise = Straight::new(ahead, speed, self.start, self.ramp)?;
-                let fall = match self.stop {
-                    Some(stop) if stop < self.start + self.ramp => {
-                        let message = format!("it would stop at {stop} s, before its speed has risen");
-                        return Err(BuildError::at("stop", message));
-                    }
-                    Some(stop) => Some(Straight::new(ahead, speed, stop, self.ramp)?),
-                    None => None,
-                };
+                let fall = stop.map(|stop| Straight::new(ahead, speed, stop, self.ramp)).transpose()?;
                 Ok(Some(Arc::new(Haul { rise, fall })))
             }
             (None, Some(motion)) => b.motion(motion).map(Some),
+            (None, None) if self.total.is_some() || self.final_length.is_some() => {
+                let field = if self.total.is_some() { "total" } else { "final_length" };
+                let message = format!("`{field}` says when a `speed` ends, and this winch has none");
+                Err(BuildError::at(field, message))
+            }
             (None, None) if free => Ok(None),
             (None, None) => Err(BuildError::at(
                 "name",
@@ -202,15 +276,41 @@ impl ConstraintSpec for WinchSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        Some((&self.marker, Feed { element: self.element }))
+        (!self.idle()).then_some((&self.marker, Feed { element: self.element }))
+    }
+    fn notes(&self, model: &Model) -> Vec<String> {
+        let (Some(speed), MarkerRef::Name(marker)) = (self.speed.filter(|v| *v != 0.0), &self.marker) else {
+            return Vec::new();
+        };
+        let part = split_marker(marker).ok().and_then(|(name, _)| model.part(name));
+        let Some((part, time)) = part.and_then(|p| Some((p, p.bending_time()?))) else { return Vec::new() };
+        let element = part.length() / (part.mesh().len() - 1) as f64;
+        let in_or_out = match self.final_length {
+            Some(last) if last < part.length() => "in",
+            None if speed < 0.0 => "in",
+            _ => "out",
+        };
+        let speed = speed.abs();
+        vec![format!(
+            "`{}` reels `{}` {in_or_out} at V = {speed} m/s, v = V T / L = {:.4} with T = L² √(ρA/EI) = {time:.4} s \
+             and elements of L = {element:.4} m at the start",
+            self.name,
+            part.name(),
+            speed * time / element
+        )]
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         for (name, x) in [("brake", self.brake), ("damping", self.damping), ("inertia", self.inertia)] {
             not_negative(name, x)?;
         }
         positive("slip", self.slip)?;
+        if self.idle() {
+            // it adds nothing, but what is wrong with it is said all the same
+            let part = b.feeding_part(&self.marker)?;
+            return self.prescribed(b, part.length()).map(drop);
+        }
         let (front, part) = (b.front(&self.marker)?, b.feeding_part(&self.marker)?);
-        match self.prescribed(b)? {
+        match self.prescribed(b, part.length())? {
             Some(motion) => {
                 let start = motion.at(0.0);
                 if start.x[0] != 0.0 {
@@ -250,6 +350,12 @@ impl ConstraintSpec for WinchSpec {
         if shortest >= whole {
             let message = format!("the cable is {whole} m long at the start, and `shortest` must be less");
             return Err(BuildError::at("shortest", message));
+        }
+        if let Some(last) = self.final_length.filter(|last| *last <= shortest) {
+            let message = format!(
+                "the cable would become {last} m long, but the run ends at {shortest} m: give a smaller `shortest`"
+            );
+            return Err(BuildError::at("final_length", message));
         }
         b.event(limit(Side::Short, shortest));
         if let Some(element) = self.element {

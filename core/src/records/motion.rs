@@ -1,7 +1,7 @@
 //! Position, velocity and acceleration of a point.
 
 use super::named;
-use super::place::Spotted;
+use super::place::{SpaceAxis, Spotted, all_axes, check_axes};
 use crate::build::BuildError;
 use crate::lane::V3;
 use crate::model::Model;
@@ -11,12 +11,15 @@ use crate::spec::RecordSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Position of a point: columns `hose.end.x`, `.y` and `.z` in m.
+/// Position of a point: columns `hose.end.x`, `.y` and `.z` in m, or some of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PositionSpec {
     /// The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
     pub of: String,
+    /// The axes of space that are recorded; left out, all three.
+    #[serde(default = "all_axes")]
+    pub axes: Vec<SpaceAxis>,
     /// Name in results; left out, that of the point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
@@ -58,7 +61,7 @@ pub struct AccelerationSpec {
 impl PositionSpec {
     /// The position of a point, under its own name.
     pub fn new(of: &str) -> Self {
-        PositionSpec { of: of.into(), name: None, title: None }
+        PositionSpec { of: of.into(), axes: all_axes(), name: None, title: None }
     }
 }
 
@@ -76,6 +79,7 @@ enum Order {
 struct Motion {
     point: Spotted,
     order: Order,
+    axes: Vec<SpaceAxis>,
     name: String,
     /// What columns begin with.
     stem: String,
@@ -88,7 +92,9 @@ impl Motion {
         of: &str,
         (name, title): (&Option<String>, &Option<String>),
         order: Order,
+        axes: &[SpaceAxis],
     ) -> Result<Box<dyn Record>, BuildError> {
+        check_axes(axes)?;
         let point = Spotted::find(model, of)?;
         let of: String = of.chars().filter(|c| !c.is_whitespace()).collect();
         let stem = named(name, || of.clone());
@@ -105,7 +111,7 @@ impl Motion {
             };
             format!("{what} of {of}")
         });
-        Ok(Box::new(Motion { point, order, name, stem, title }))
+        Ok(Box::new(Motion { point, order, axes: axes.to_vec(), name, stem, title }))
     }
 
     fn value(&self, s: &Sample<'_>) -> V3<f64> {
@@ -130,33 +136,35 @@ impl Record for Motion {
             Order::Velocity => ("v", "m/s"),
             Order::Acceleration => ("a", "m/s^2"),
         };
-        ["x", "y", "z"].map(|i| Column::new(format!("{}.{prefix}{i}", self.stem), unit)).to_vec()
+        let column = |i: &SpaceAxis| Column::new(format!("{}.{prefix}{}", self.stem, i.letter()), unit);
+        self.axes.iter().map(column).collect()
     }
     fn needs_forces(&self) -> bool {
         self.order == Order::Acceleration
     }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
-        out.extend(self.value(s));
+        let value = self.value(s);
+        out.extend(self.axes.iter().map(|&i| value[i as usize]));
     }
 }
 
 #[typetag::serde(name = "position")]
 impl RecordSpec for PositionSpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
-        Motion::boxed(model, &self.of, (&self.name, &self.title), Order::Position)
+        Motion::boxed(model, &self.of, (&self.name, &self.title), Order::Position, &self.axes)
     }
 }
 
 #[typetag::serde(name = "velocity")]
 impl RecordSpec for VelocitySpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
-        Motion::boxed(model, &self.of, (&self.name, &self.title), Order::Velocity)
+        Motion::boxed(model, &self.of, (&self.name, &self.title), Order::Velocity, &all_axes())
     }
 }
 
 #[typetag::serde(name = "acceleration")]
 impl RecordSpec for AccelerationSpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
-        Motion::boxed(model, &self.of, (&self.name, &self.title), Order::Acceleration)
+        Motion::boxed(model, &self.of, (&self.name, &self.title), Order::Acceleration, &all_axes())
     }
 }

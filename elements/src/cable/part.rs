@@ -277,6 +277,12 @@ impl Part for CablePart {
         points
     }
 
+    fn bending_time(&self) -> Option<f64> {
+        let s = &self.section;
+        let l = self.laid / (self.mesh.len() - 1) as f64;
+        (s.ei > 0.0).then(|| l * l * ((s.mass + s.flooded) / s.ei).sqrt())
+    }
+
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
         let (what, density) = match per {
             Per::Mass => ("weight", self.section.mass),

@@ -174,6 +174,10 @@ fn a_value_is_chosen_by_another() {
     assert_eq!(value(scene, &[]), text("fast"));
     assert_eq!(value(scene, &["v=25kn"]), text("fast"));
     assert_eq!(value(scene, &["v=15 kn"]), text("b"));
+    assert_eq!(value(scene, &["v=46.3 km/h"]), text("fast"));
+    // a number without unit is in SI, and 25 m are no speed
+    assert_eq!(value(&scene.replace("25 kn", "7 m/s"), &["v=7"]), text("fast"));
+    assert_eq!(value(&scene.replace("25 kn", "7 m/s"), &["v=7.0 m"]), text("c"));
     assert_eq!(value(scene, &["v=3"]), text("c"));
     // parameters choose too, by numbers as well
     let scene = "parameters.n = 3\nparameters.m.default = { choose = '$n', 3 = 1, 4 = 2 }\nx = '$m'";
