@@ -240,7 +240,7 @@ fn what_cannot_be_reeled_is_refused() {
         let e = short(spec).build().err().unwrap_or_else(|| panic!("it builds"));
         (e.error.field.unwrap_or_default(), e.error.message)
     };
-    let cases: [(&dyn Fn(&mut WinchSpec), &str, &str); 15] = [
+    let cases: [(&dyn Fn(&mut WinchSpec), &str, &str); 16] = [
         (&|w| w.tension = Some(5.0), "tension", "the speed of this winch is prescribed"),
         (&|w| w.ramp = 0.0, "ramp", "jump of velocity"),
         (&|w| w.total = Some(5.0), "total", "their signs must be the same"),
@@ -255,6 +255,7 @@ fn what_cannot_be_reeled_is_refused() {
         (&|w| w.final_length = Some(1.0), "final_length", "the run ends at 1.5 m"),
         (&|w| w.stop = Some(0.5), "stop", "before its speed has risen"),
         (&|w| (w.speed, w.tension, w.total) = (None, Some(5.0), Some(1.0)), "total", "has none"),
+        (&|w| (w.speed, w.motion, w.stop) = (None, Some("haul".into()), Some(9.0)), "stop", "has none"),
         // of a winch that isn't one, too
         (&|w| (w.speed, w.ramp) = (Some(0.0), 0.0), "ramp", "jump of velocity"),
     ];

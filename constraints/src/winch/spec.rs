@@ -252,12 +252,16 @@ impl WinchSpec {
                 let fall = stop.map(|stop| Straight::new(ahead, speed, stop, self.ramp)).transpose()?;
                 Ok(Some(Arc::new(Haul { rise, fall })))
             }
-            (None, Some(motion)) => b.motion(motion).map(Some),
-            (None, None) if self.total.is_some() || self.final_length.is_some() => {
-                let field = if self.total.is_some() { "total" } else { "final_length" };
+            (None, _) if [self.stop, self.total, self.final_length].iter().any(Option::is_some) => {
+                let field = match (self.stop, self.total) {
+                    (Some(_), _) => "stop",
+                    (None, Some(_)) => "total",
+                    (None, None) => "final_length",
+                };
                 let message = format!("`{field}` says when a `speed` ends, and this winch has none");
                 Err(BuildError::at(field, message))
             }
+            (None, Some(motion)) => b.motion(motion).map(Some),
             (None, None) if free => Ok(None),
             (None, None) => Err(BuildError::at(
                 "name",
