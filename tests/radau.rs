@@ -245,7 +245,7 @@ impl Event for Refine {
         1
     }
     fn act(&self, _: &Model, _: &mut State) -> Action {
-        let mesh = (0..=24).map(|k| f64::from(k) / 24.0).collect();
+        let mesh: Vec<f64> = (0..=24).map(|k| f64::from(k) / 24.0).collect();
         let plan: Plan = [("cable".to_string(), mesh.into())].into_iter().collect();
         Action::Remesh(Box::new(soft().build_on(&plan).expect("model")))
     }
