@@ -35,7 +35,7 @@ impl Observer for Keeper {
         ControlFlow::Continue(())
     }
     fn wants_checkpoint(&mut self) -> bool {
-        self.steps % self.every == 0
+        self.steps.is_multiple_of(self.every)
     }
     fn checkpoint(&mut self, c: Checkpoint) -> ControlFlow<()> {
         self.keep = self.keep.saturating_sub(1);

@@ -273,7 +273,7 @@ fn what_is_buckled_or_upside_down_is_called_unstable() {
         })
         .force(GravitySpec::default());
     let found = modes(&scene, &ModesOptions::default()).unwrap();
-    close("falling rod", found.modes[0].growth, (1.5 * g as f64).sqrt(), 1e-9);
+    close("falling rod", found.modes[0].growth, (1.5_f64 * g).sqrt(), 1e-9);
     assert!(found.modes[0].is_unstable() && found.warnings.iter().any(|w| w.contains("unstable")));
 
     // Euler's column, pinned at both ends: ω² = (π/L)⁴ EI/ρA (1 - P/P_E)

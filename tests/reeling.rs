@@ -232,6 +232,9 @@ fn a_run_ends_where_a_winch_is_at_its_limits() {
     }
 }
 
+/// What a test changes of a winch.
+type Change<'a> = &'a dyn Fn(&mut WinchSpec);
+
 #[test]
 fn what_cannot_be_reeled_is_refused() {
     let with = |change: &dyn Fn(&mut WinchSpec)| {
@@ -240,7 +243,7 @@ fn what_cannot_be_reeled_is_refused() {
         let e = short(spec).build().err().unwrap_or_else(|| panic!("it builds"));
         (e.error.field.unwrap_or_default(), e.error.message)
     };
-    let cases: [(&dyn Fn(&mut WinchSpec), &str, &str); 16] = [
+    let cases: [(Change<'_>, &str, &str); 16] = [
         (&|w| w.tension = Some(5.0), "tension", "the speed of this winch is prescribed"),
         (&|w| w.ramp = 0.0, "ramp", "jump of velocity"),
         (&|w| w.total = Some(5.0), "total", "their signs must be the same"),

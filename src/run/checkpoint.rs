@@ -122,7 +122,7 @@ impl Saver {
     pub(crate) fn is_due(&self) -> bool {
         match self.every {
             Every::Time(time) => self.last.elapsed() >= time,
-            Every::Steps(n) => self.steps % n == 0,
+            Every::Steps(n) => self.steps.is_multiple_of(n),
         }
     }
 

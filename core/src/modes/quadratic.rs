@@ -167,8 +167,10 @@ fn raw(p: &mut Pencil, rate: [f64; 2], scale: f64, vector: [Vec<f64>; 2]) -> Res
     let b: Vec<f64> = both().map(|(r, i)| cos * i - sin * r).collect();
     // rounding moves a double zero by its root
     let [(k_a, n_a), (k_b, n_b)] = [p.energy(&a), p.energy(&b)];
-    let free = k_a.abs() + k_b.abs() <= super::ZERO * (n_a + n_b);
-    let rigid = free && size(rate) <= 1e-6 * scale;
+    // entries that cancel leave more than their own rounding: what would swing slower than a zero rate is free too
+    let slow = 1e-6 * scale;
+    let free = k_a.abs() + k_b.abs() <= super::ZERO * (n_a + n_b) + slow * slow;
+    let rigid = free && size(rate) <= slow;
 
     // what is left of the equations, as a displacement against the shape
     let (l_re, l_im) = (rate[0], rate[1]);

@@ -108,7 +108,7 @@ pub struct UnwindingSpec {
     #[serde(default, deserialize_with = "quantity::optional::number")]
     pub damping: Option<f64>,
 }
-register_spec!(Process, "unwinding", UnwindingSpec);
+register_spec!(Process, "unwound_cable", UnwindingSpec);
 
 impl UnwindingSpec {
     /// The problem.
@@ -198,7 +198,7 @@ impl UnwindingSpec {
     }
 }
 
-#[typetag::serde(name = "unwinding")]
+#[typetag::serde(name = "unwound_cable")]
 impl ProcessSpec for UnwindingSpec {
     fn name(&self) -> &str {
         &self.name
