@@ -378,7 +378,7 @@ fn conical_pendulums_nod_at_their_frequency() {
     });
     close("bob on a string", spinning(bob), nod(cos), 1e-8);
 
-    let axial = 1e-7;
+    let axial = 1e-4;
     let cos = 0.5 * g / ((1.0 / 3.0 - axial) * turn * turn);
     let sin = (1.0 - cos * cos).sqrt();
     let mut rod = Scene::new();
@@ -387,7 +387,8 @@ fn conical_pendulums_nod_at_their_frequency() {
         RigidBodySpec { angles: [0.0, -sin.atan2(cos), 0.0], ..body }.with_point("eye", [0.0, 0.0, 0.5]),
     )
     .constraint(SphericalSpec::pin("hook", "rod.eye"));
-    close("rod", spinning(rod), nod(cos), 1e-5);
+    // its own inertia about its axis is left out of the formula
+    close("rod", spinning(rod), nod(cos), 1e-3);
 }
 
 const STRING: &str = r#"

@@ -40,7 +40,7 @@ fn what_is_wrong_is_said_with_its_place() {
     let scene = |of: &str| {
         format!(
             "title = \"x\"\n[run]\nduration = 0.01\n[[motions]]\ntype = \"rest\"\nname = \"draw\"\n[[processes]]\ntype = \
-             \"unwinding\"\nname = \"c\"\nmass = 1e-3\nmotion = \"draw\"\nrule = {{ tension = {{ rest = 1 }} }}\n{of}"
+             \"unwound_cable\"\nname = \"c\"\nmass = 1e-3\nmotion = \"draw\"\nrule = {{ tension = {{ rest = 1 }} }}\n{of}"
         )
     };
     let package = "[processes.package]\nradius = 0.06\nlength = 0.1\ndiameter = 1e-3\norigin = [0, 0, 0.1]\n";

@@ -117,6 +117,10 @@ pub(super) fn find(p: &mut Pencil, count: usize, watch: &mut Watch<'_>) -> Resul
             break;
         }
         let mode = raw(p, rate(ritz, sigma), weight.sqrt(), space.vector(&ritz.vector))?;
+        // rounding of what has no finite rate, in a space that holds everything
+        if !(mode.residual <= 1e-3) {
+            continue;
+        }
         if !mode.rigid {
             modes.push(mode);
             continue;
