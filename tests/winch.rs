@@ -306,6 +306,8 @@ struct Hauled {
     jump: f64,
     impulse: f64,
     changes: usize,
+    /// Steps in all, those on earlier meshes included.
+    steps: u64,
     /// Imbalance of energy over the largest term.
     imbalance: f64,
 }
@@ -333,7 +335,8 @@ fn out_and_back(way: f64, element: Option<f64>, eta: f64, elements: usize, water
     let mut s = hang(&scene, &options, ea, w, l0);
     let motion = ropewalk_core::MotionSpec::build(&haul(way)).expect("motion");
     let mut seen = Meshes::default();
-    let mut out = Hauled { tension: 0.0, tip: 0.0, jump: 0.0, impulse: 0.0, changes: 0, imbalance: 0.0 };
+    let mut out =
+        Hauled { tension: 0.0, tip: 0.0, jump: 0.0, impulse: 0.0, changes: 0, steps: 0, imbalance: 0.0 };
     let end = 2.0 * way + 6.0;
     for k in 1..=(10.0 * end) as usize {
         let t = 0.1 * k as f64;
@@ -363,6 +366,7 @@ fn out_and_back(way: f64, element: Option<f64>, eta: f64, elements: usize, water
         out.impulse = out.impulse.max(m.impulse());
     }
     out.changes = seen.0.len();
+    out.steps = s.work.counts.steps;
     out.imbalance = s.audit.imbalance() / s.audit.scale;
     out
 }
@@ -376,6 +380,7 @@ fn cable_is_paid_out_and_reeled_in_with_the_right_tension() {
         assert!(hauled.jump < 5e-3 && hauled.impulse < 1e-4, "{element:?}, water {water}: {hauled:?}");
         assert!(hauled.imbalance.abs() < 1e-5, "{element:?}, water {water}: {hauled:?}");
         assert_eq!(hauled.changes > 10, element.is_some());
+        assert!(hauled.steps >= 1800, "{hauled:?}");
     }
 }
 

@@ -421,11 +421,13 @@ impl Simulation {
                 let event = self.events[k].0.clone();
                 let before = self.measure(event.as_ref());
                 self.state = model.carry(&self.model, &self.state);
+                let counts = self.work.counts;
                 self.work = Workspace::new(&model).map_err(|source| StepError::Linear {
                     t: self.state.t,
                     source,
                     unknown: "the structure of the new mesh".into(),
                 })?;
+                self.work.counts = counts;
                 // events of the scene belong to its model; those that were added stay
                 let own = self.model.events().len();
                 let new = model.events().iter().map(|e| (e.clone(), 0.0)).collect::<Vec<_>>();
