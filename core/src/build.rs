@@ -348,8 +348,10 @@ impl Builder {
         let (name, end) = end_of(marker)?;
         let (_, part) = self.find(name, "marker")?;
         part.front(end).ok_or_else(|| {
-            let message =
-                format!("material can flow through the ends of a cable, but `{name}` is a {}", part.kind());
+            let message = match part.kind() {
+                "cable" => format!("no `winch` feeds at {marker}: add one"),
+                kind => format!("material can flow through the ends of a cable, but `{name}` is a {kind}"),
+            };
             BuildError::at("marker", message)
         })
     }

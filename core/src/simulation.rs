@@ -412,7 +412,11 @@ impl Simulation {
                 self.resume(k, changed);
                 return Ok(None);
             }
-            Action::Stop => return Ok(Some(End::Stopped { by: self.events[k].0.name() })),
+            Action::Stop => {
+                // the moment that ends the run is worth a sample
+                let _ = self.sample(observer, None)?;
+                return Ok(Some(End::Stopped { by: self.events[k].0.name() }));
+            }
             Action::Fail(why) => {
                 return Err(StepError::Event { t: self.state.t, event: self.events[k].0.name(), why });
             }

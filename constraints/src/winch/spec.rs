@@ -348,6 +348,11 @@ impl ConstraintSpec for WinchSpec {
             b.event(limit(Side::Empty, positive("stock", self.stock)?));
         }
         let whole = part.length();
+        if self.element.is_some_and(|e| e >= 0.5 * whole) {
+            let message =
+                format!("the cable is {whole} m long at the start: take elements of less than half of that");
+            return Err(BuildError::at("element", message));
+        }
         // an element can't be swallowed by the last one
         let least = self.element.map_or(0.05 * whole, |e| (2.0 * e).max(0.05 * whole));
         let shortest = positive("shortest", self.shortest.unwrap_or(least))?;
@@ -364,12 +369,6 @@ impl ConstraintSpec for WinchSpec {
         b.event(limit(Side::Short, shortest));
         if let Some(element) = self.element {
             let (element, release) = (positive("element", element)?, positive("release", self.release)?);
-            if element > 0.5 * whole {
-                let message = format!(
-                    "the cable is {whole} m long at the start: take elements of at most half of that"
-                );
-                return Err(BuildError::at("element", message));
-            }
             if self.shortest.is_some_and(|s| s < 2.0 * element) {
                 let message = format!(
                     "elements of {element} m leave no cable shorter than two of them, but `shortest` does"
