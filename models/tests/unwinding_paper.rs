@@ -28,10 +28,10 @@ fn cases(text: &str) -> Vec<Value> {
     all["cases"].as_array().unwrap().clone()
 }
 fn flexible() -> Vec<Value> {
-    cases(include_str!("data/balloon.json"))
+    cases(include_str!("../../tests/data/flow/balloon.json"))
 }
 fn stiff() -> Vec<Value> {
-    cases(include_str!("data/balloon_bend.json"))
+    cases(include_str!("../../tests/data/flow/balloon_bend.json"))
 }
 fn named(all: Vec<Value>, name: &str) -> Value {
     all.into_iter().find(|c| c["name"] == name).unwrap()
@@ -141,7 +141,7 @@ fn stiff_balloons_are_those_of_the_reference() {
 
 #[test]
 fn below_the_fold_there_is_no_steady_balloon() {
-    let all: Value = serde_json::from_str(include_str!("data/balloon.json")).unwrap();
+    let all: Value = serde_json::from_str(include_str!("../../tests/data/flow/balloon.json")).unwrap();
     let exact = all["fold_no_drag_15kn"]["T0_min"].as_f64().unwrap();
     let case = named(flexible(), "flex_nodrag_15kn_T0.5");
     let least = [40, 80].map(|n| match problem(&case, n).steady(15.0 * KNOT, 0.9 * exact, 0.0) {

@@ -240,8 +240,8 @@ impl WinchSpec {
             (Some(_), None) | (None, Some(_)) if free || self.pile => Err(BuildError::at(
                 if self.tension.is_some() { "tension" } else { "brake" },
                 "the speed of this winch is prescribed, so its tension is a result: leave out `tension`, `brake`, \
-                 `damping`, `inertia` and `pile`, or the speed. To prescribe both, let the other end of the cable \
-                 lift off from a package (`lift_off`)",
+                 `damping`, `inertia` and `pile`, or the speed. A cable whose other end feeds too can have the \
+                 tension here and the speed there, as in the scene `unwinding`",
             )),
             (Some(speed), None) => {
                 let ahead = [1.0, 0.0, 0.0];
