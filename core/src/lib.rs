@@ -38,6 +38,7 @@ mod station;
 mod structure;
 mod term;
 pub mod testing;
+mod times;
 
 pub use build::{BuildError, Builder};
 pub use constraint::{Constraint, Joint, Relation, RowKind, lift};
@@ -66,6 +67,7 @@ pub use state::{At, Control, Relaxation, Relaxed, State};
 pub use station::{FieldTerm, Gives, Law, Laws, Load, Station, StationElement, StationPool, Stations};
 pub use structure::{Block, Columns, Structure};
 pub use term::{Assembly, Energy, Leap, Power, Term, Weights};
+pub use times::Spent;
 
 #[doc(hidden)]
 pub use inventory;

@@ -13,6 +13,7 @@ use crate::simulation::Event;
 use crate::state::{At, Control, State};
 use crate::structure::Structure;
 use crate::term::{Assembly, Energy, Leap, Power, Term, Weights};
+use crate::times::Spent;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -94,7 +95,7 @@ pub struct System {
     /// Whether a term was only approximated.
     pub(crate) approximate: bool,
     /// Calls and time of each term, then of the constraints; only filled where profiling was asked for.
-    pub profile: Option<Vec<(u64, Duration)>>,
+    pub profile: Option<Vec<Spent>>,
 }
 
 impl Model {
@@ -575,6 +576,25 @@ impl Model {
     /// The longest step from here that leaps over nothing that a term has ahead [s].
     pub fn horizon(&self, at: &At<'_>) -> f64 {
         self.watchful.iter().map(|&k| self.terms[k].horizon(at)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The residual of one term alone, one entry for each velocity: minus the forces that it exerts. The term is one of
+    /// this model, or of the [`Term::effects`] of one.
+    pub fn share_of(&self, term: &dyn Term, at: &At<'_>) -> Vec<f64> {
+        let mut residual = vec![0.0; self.velocities];
+        let mut out = Assembly {
+            residual: &mut residual,
+            values: None,
+            weights: Weights::default(),
+            width: self.width,
+            structure: &self.structure,
+            clique: 0,
+            scratch: &mut Vec::new(),
+            leap: None,
+            approximate: &mut false,
+        };
+        term.add(at, &mut out);
+        residual
     }
 
     /// Kinetic and potential energy of all terms.
