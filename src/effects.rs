@@ -174,6 +174,9 @@ pub fn write_effects(
     let model = file.build()?;
     let manifest = Manifest::new(file, &model)?;
     drop(model);
+    for name in file.document().unused_parameters() {
+        warn(&format!("parameter `{name}` is not used by the scene"));
+    }
     let is_new = options.out.as_ref().is_none_or(|out| !out.exists());
     let folder = RunFolder::create(options.out.clone(), &format!("{}-effects", file.name()))?;
     let stopwatch = Stopwatch::start();
