@@ -112,6 +112,16 @@ fn percent(x: f64) -> String {
     format!("{:.1} %", 100.0 * x)
 }
 
+/// What a run saves or costs of the time of the scene itself; of much longer ones how many times that.
+fn time(cpu_s: f64, ledger: &Ledger, saves: bool) -> String {
+    let ratio = cpu_s / ledger.cpu_s;
+    match (ratio > 2.0, saves) {
+        (true, _) => format!("{} times as long", rough(ratio)),
+        (false, true) => percent(1.0 - ratio),
+        (false, false) => percent(ratio - 1.0),
+    }
+}
+
 /// A number in three digits, or that there is none.
 fn or_none(x: f64) -> String {
     if x.is_nan() { "-".into() } else { rough(x) }
@@ -185,11 +195,10 @@ pub(super) fn report(
 fn row(t: &Tried, ledger: &Ledger, saves: bool) -> (Vec<String>, String) {
     match &t.verdict {
         Verdict::Ran { change, cpu_s, counts, note } => {
-            let saved = 1.0 - cpu_s / ledger.cpu_s;
             let cells = vec![
                 t.name.clone(),
                 rough(*change),
-                percent(if saves { saved } else { -saved }),
+                time(*cpu_s, ledger, saves),
                 counts.steps.to_string(),
                 counts.newton_iterations.to_string(),
             ];
