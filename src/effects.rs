@@ -217,13 +217,15 @@ impl Keeper<'_> {
         let model = scene.build()?;
         let blank = crate::run::Recorder::new(scene, crate::run::records(scene, &model)?);
         let watched = Watched::find(record, &blank.figures, &blank.table, scene.run.duration)?;
+        let rounding = if watched.unit(&blank.table) == "m" { model.rounding() } else { 0.0 };
         drop((model, blank));
 
         let base = trial::fastest(scene, name, How::default(), watch).map_err(whole)?;
         watch.progress.done(false);
         let scale = watched.scale(&base.table);
-        if !(scale > 0.0) {
-            let message = format!("`{record}` is 0 throughout the run: changes of it can't be told");
+        if !(scale > rounding) {
+            let message =
+                format!("`{record}` is 0 throughout the run, but for rounding: changes of it can't be told");
             return Err(Fault::new(message).with_help("choose another record with `--of`").into());
         }
         if watched.change(&base.table, &base.table).is_none() {

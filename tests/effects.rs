@@ -514,7 +514,11 @@ fn what_is_wrong_with_a_ledger_is_said_in_one_message() {
     refused("swing.toml", &["--of", "rope.end", "--accuracy", "0"], &["`--accuracy` must be positive"]);
     refused("swing.toml", &["--of", "rope.end", "--accuracy", "NaN"], &["`--accuracy` must be positive"]);
     refused("blind.toml", &["--of", "rope.end"], &["no record", "[[records]]"]);
-    refused("still.toml", &["--of", "rope.start"], &["is 0 throughout the run", "another record"]);
+    refused(
+        "still.toml",
+        &["--of", "rope.start"],
+        &["is 0 throughout the run, but for rounding", "another record"],
+    );
     refused("unwinding-paper", &["--of", "cable.tension"], &["has no terms"]);
     refused("swing.toml", &[], &["--of"]);
     // nothing of this has left a folder behind

@@ -80,6 +80,11 @@ impl Watched {
         Some((0..times.len()).map(|k| (times[k], columns.iter().map(|c| c[k]).collect())).collect())
     }
 
+    /// The unit of its first column.
+    pub fn unit<'t>(&self, table: &'t Table) -> &'t str {
+        self.columns.first().and_then(|c| table.column(c)).map_or("", |c| &c.unit)
+    }
+
     /// The largest size of the record in the run, which changes are relative to.
     pub fn scale(&self, table: &Table) -> f64 {
         let rows = self.rows(table).unwrap_or_default();
