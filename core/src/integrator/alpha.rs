@@ -350,7 +350,7 @@ impl Integrator for Alpha {
         // a step that only fills the rest of an interval says nothing about the next
         let cut = h >= limit && state.control.h_next > limit;
         let mut report = StepReport::default();
-        let (mut failures, mut stale) = (0, false);
+        let (mut failures, mut stale, mut careful) = (0, false, false);
         loop {
             let mut aux = std::mem::take(&mut work.trial.aux_old);
             self.rescale(state, h, &mut aux);
@@ -374,6 +374,7 @@ impl Integrator for Alpha {
                 // a step that leaps over the instant at which a point sticks ends so stiff that the estimate of its error
                 // is blind: error control has to find that instant
                 leaps: !controlled,
+                careful,
             };
             // factors that served badly last time are not tried again
             if state.control.theta > REFRESH {
@@ -426,6 +427,12 @@ impl Integrator for Alpha {
                     work.soften(model);
                     continue;
                 }
+                // a mechanism may be about to end next to a singular position, which a smaller step needn't avoid
+                Outcome::Failed { .. } if failures == 0 && !careful && !linear_constraints => {
+                    careful = true;
+                    work.factored = None;
+                    continue;
+                }
                 Outcome::Linear(source) if h <= self.options.h_min => {
                     return Err(linear(model, state.t, source));
                 }
@@ -437,6 +444,7 @@ impl Integrator for Alpha {
             work.counts.rejected += 1;
             work.factored = None;
             failures += 1;
+            careful = false;
             let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
             if smaller < self.options.h_min {
                 let why = match model.redundancy() {

@@ -7,6 +7,7 @@
 use super::workspace::{Trial, Which};
 use super::{Coefficients, NewtonPolicy, Workspace};
 use crate::model::Model;
+use crate::redundancy::Softening;
 use crate::solver::SolveError;
 use crate::state::{At, State};
 use crate::term::{Leap, Weights};
@@ -22,6 +23,10 @@ const MOST_RENEWALS: u32 = 3;
 
 /// The same where forces were approximated at kinks, which renews the matrix every time.
 const MOST_AT_KINKS: u32 = 10;
+
+/// Iterations of a careful start. Next to a singular position a prediction off by `e` asks for a correction of `e` over
+/// the distance, which may lead beyond the other branch; once the well determined directions are right, little is left.
+const CAREFUL: u32 = 3;
 
 /// Largest expected rest of the error that is believed without a second iteration. What is expected grows from step to
 /// step that has only one.
@@ -67,6 +72,8 @@ pub(crate) struct Newton<'a> {
     pub stabilised: bool,
     /// Whether terms with kinks are told what an iteration comes from.
     pub leaps: bool,
+    /// Whether to start carefully because the step may end next to a singular position.
+    pub careful: bool,
 }
 
 impl Newton<'_> {
@@ -99,10 +106,20 @@ impl Newton<'_> {
     }
 
     /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.
-    fn evaluate(&self, work: &mut Workspace, matrix: bool, leap: Option<Leap<'_>>) -> Result<(), SolveError> {
+    fn evaluate(
+        &self,
+        work: &mut Workspace,
+        matrix: bool,
+        leap: Option<Leap<'_>>,
+        careful: bool,
+    ) -> Result<(), SolveError> {
         let weights = self.weights();
         let at = self.place(&work.trial);
         self.model.assemble_from(leap, &at, &work.trial.lambda, matrix.then_some(weights), &mut work.system);
+        if careful {
+            Softening::new(self.model, self.model.structure()).blunt(&mut work.system.values);
+            work.system.approximate = true;
+        }
         if matrix { work.factor(self.model, weights) } else { Ok(()) }
     }
 
@@ -126,7 +143,8 @@ impl Newton<'_> {
             // an iteration that would go on for long with its matrix gets a new one
             let slow = !approximated && since > 1 && last > noise && last * theta.powi(PATIENCE) > stop;
             let refresh = stale || self.policy == NewtonPolicy::Full || slow || approximated;
-            let refresh = refresh || k == 0 && work.trial.kinked;
+            let careful = self.careful && k < CAREFUL;
+            let refresh = refresh || k == 0 && work.trial.kinked || self.careful && k <= CAREFUL;
             let before = std::mem::take(&mut work.trial.v_before);
             let leap = match k {
                 _ if !kinks => None,
@@ -135,7 +153,7 @@ impl Newton<'_> {
                 k if k % 2 == 0 && refresh => Some(Leap { v: &before, predicted: false }),
                 _ => None,
             };
-            let result = self.evaluate(work, refresh, leap);
+            let result = self.evaluate(work, refresh, leap, careful);
             work.trial.v_before = before;
             if let Err(e) = result {
                 return Outcome::Linear(e);
