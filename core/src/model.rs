@@ -545,8 +545,12 @@ impl Model {
 
     /// Tolerance of each constraint row relative to that of lengths: positions in metres, directions as they are.
     pub fn row_scale(&self) -> impl Iterator<Item = f64> + '_ {
-        let kinds = self.constraints.iter().flat_map(|c| c.rows().iter());
-        kinds.map(|k| if *k == RowKind::Position { 1.0 } else { 1.0 / self.length })
+        self.lengthlike().map(|length| if length { 1.0 } else { 1.0 / self.length })
+    }
+
+    /// Whether each constraint row is a length, rather than a number without dimension.
+    pub(crate) fn lengthlike(&self) -> impl Iterator<Item = bool> + '_ {
+        self.constraints.iter().flat_map(|c| c.rows().iter()).map(|k| *k == RowKind::Position)
     }
 
     /// What an unknown is called in messages: its part or node, or the constraint's row.

@@ -123,7 +123,18 @@ impl Started {
                 1.0 / flutter
             )
         };
-        (flutter > 0.0).then(unstable).into_iter().collect()
+        let unmet = match self {
+            Started::Dynamics(s, _) => s.work.counts.unmet,
+            _ => 0,
+        };
+        let stopped = || {
+            format!(
+                "{unmet} steps never met the absolute stopping test: rounding leaves more than it allows. They are as \
+                 good as they get; the `relative` test wouldn't have gone on in vain"
+            )
+        };
+        let flutter = (flutter > 0.0).then(unstable);
+        flutter.into_iter().chain((unmet > 0).then(stopped)).collect()
     }
 
     /// Measures the time of every term from now on.

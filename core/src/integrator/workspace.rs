@@ -1,6 +1,7 @@
 //! Scratch and caches of an integration. Dropping it changes cost, never what is accepted.
 
 use super::radau::Stages;
+use super::scales::Scaled;
 use crate::model::{Model, System};
 use crate::node::NodeKind;
 use crate::redundancy::Softening;
@@ -26,6 +27,8 @@ pub struct Counts {
     pub factorizations: u64,
     /// Factorisations without pivoting that were not good enough and were repeated with it.
     pub fallbacks: u64,
+    /// Steps that an absolute stopping test was never met in, since rounding leaves more.
+    pub unmet: u64,
 }
 
 /// Scratch of an integration: system, factors, mass matrix.
@@ -58,6 +61,8 @@ pub struct Workspace {
     earlier: Times,
     /// What makes the matrix regular although constraints are redundant; `None` where they aren't.
     pub(crate) softening: Option<Softening>,
+    /// The iteration matrix without dimensions, where it is wished.
+    pub(crate) scaled: Option<Scaled>,
     correction: Vec<f64>,
     pub(crate) trial: Trial,
     /// Scratch of Radau IIA; made when first needed.
@@ -109,6 +114,7 @@ impl Workspace {
             clocks: Clocks::default(),
             earlier: Times::default(),
             softening: model.redundancy().map(|_| Softening::new(model, s)),
+            scaled: None,
             correction: Vec::new(),
             trial: Trial {
                 q: model.start.q.clone(),
@@ -251,9 +257,14 @@ impl Workspace {
     /// Replaces `x`, a right-hand side in elimination order, by the solution.
     pub(crate) fn solve_ordered(&mut self, model: &Model, which: Which) -> Result<(), SolveError> {
         let (s, begin) = (model.structure(), self.clocks.start());
-        match which {
-            Which::Iteration => self.solver.solve(s, &self.system.values, &mut self.x)?,
-            Which::Mass => self.mass_solver.solve(s, &self.mass.values, &mut self.x)?,
+        match (which, &self.scaled) {
+            (Which::Iteration, Some(scaled)) => {
+                scaled.enter(&mut self.x);
+                self.solver.solve(s, &scaled.values, &mut self.x)?;
+                scaled.leave(&mut self.x);
+            }
+            (Which::Iteration, None) => self.solver.solve(s, &self.system.values, &mut self.x)?,
+            (Which::Mass, _) => self.mass_solver.solve(s, &self.mass.values, &mut self.x)?,
         }
         self.clocks.stop(Phase::Solution, begin);
         Ok(())
@@ -269,7 +280,14 @@ impl Workspace {
             softening.apply(&mut self.system.values);
         }
         let begin = self.clocks.start();
-        self.solver.factor(model.structure(), &self.system.values)?;
+        let values = match &mut self.scaled {
+            Some(scaled) => {
+                scaled.take(&self.system.values);
+                &scaled.values
+            }
+            None => &self.system.values,
+        };
+        self.solver.factor(model.structure(), values)?;
         self.clocks.stop(Phase::Factorisation, begin);
         self.factored = Some(weights);
         self.counts.jacobians += 1;
