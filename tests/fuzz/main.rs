@@ -5,6 +5,7 @@
 //! say how many the long, ignored run takes, `FUZZ_SEED` where it begins.
 
 mod assembly;
+mod finds;
 mod guard;
 mod random;
 mod text;
@@ -68,6 +69,14 @@ fn texts_end_in_an_error_or_a_scene() {
 #[test]
 fn assemblies_end_in_an_error_or_a_finite_state() {
     assemblies(0..400);
+}
+
+#[test]
+fn finds_are_refused_now() {
+    for find in finds::all() {
+        let seen = hunt("find", 0..1, |_| find.clone(), guard::read);
+        assert_eq!(seen.get("refused"), Some(&1), "{find}");
+    }
 }
 
 #[test]
