@@ -103,6 +103,17 @@ enum Command {
         equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
         The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
     Modes(commands::modes::ModesArgs),
+    /// What accuracy costs: the cheapest mesh, models, scheme and step for errors of a record from 1 % to 1e-6
+    #[command(after_help = "Examples:\n  \
+        ropewalk cost cantilever --of beam.end          over the whole load path\n  \
+        ropewalk cost hose-turn --of height@60s         at one time\n  \
+        ropewalk cost pendulum --of cable.end --set duration='0.4 s' --budget 5min\n\n\
+        Errors are relative to the largest magnitude of the record over the run; without @TIME the largest one over the\n\
+        run counts. The reference is computed first, on all cores: steps and mesh are refined until they make no\n\
+        difference, a second integrator has to agree, the mesh is extrapolated. Then runs are timed one by one.\n\
+        The folder holds table.csv, advice.json, plots/cost.svg (error over CPU time) and runs/. Ctrl-C stops; the same\n\
+        command goes on.")]
+    Cost(commands::cost::CostArgs),
     /// List the bundled scenes and the types that a scene can use
     List,
     /// Explain a scene, a type, or a section of a scene file
@@ -201,6 +212,7 @@ pub fn main_from(
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
+        Command::Cost(args) => commands::cost::cost(args, bundled),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),

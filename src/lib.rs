@@ -19,6 +19,7 @@
 pub mod bench;
 pub mod cli;
 mod commands;
+mod cost;
 mod error;
 mod modes;
 pub mod output;
@@ -26,6 +27,7 @@ mod read;
 mod run;
 pub mod scene;
 mod simulate;
+mod study;
 mod sweep;
 
 pub use ropewalk_constraints as constraints;
@@ -34,6 +36,7 @@ pub use ropewalk_elements as elements;
 pub use ropewalk_forces as forces;
 pub use ropewalk_models as models;
 
+pub use cost::{Advice, CostOptions, CostOutcome, cost};
 pub use error::Error;
 pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use read::{SceneFile, read};

@@ -11,6 +11,7 @@ use ropewalk_core::{
 };
 use std::collections::HashSet;
 use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// A record in the table: its name, its title, and its columns.
 pub(crate) struct Figure {
@@ -37,6 +38,10 @@ pub(crate) struct Recorder<'a> {
     pub progress: Option<Progress>,
     /// Whether Ctrl-C was pressed.
     pub interrupt: Option<Interrupt>,
+    /// Lines of all parts at every row, if they are wanted.
+    pub track: Option<Vec<Vec<V3<f64>>>>,
+    /// When the run has taken too long and stops as by Ctrl-C.
+    pub deadline: Option<Instant>,
     /// Lines of all parts at several times; parts are separated by a point that isn't finite.
     pub shapes: Vec<(f64, Vec<V3<f64>>)>,
     /// When shapes are still to be kept, last first.
@@ -108,6 +113,8 @@ impl<'a> Recorder<'a> {
             writer: None,
             progress: None,
             interrupt: None,
+            track: None,
+            deadline: None,
             shapes: Vec::new(),
             due: due.collect(),
             stop: None,
@@ -147,6 +154,9 @@ impl<'a> Recorder<'a> {
         for record in &self.records {
             record.sample(s, &mut self.row);
         }
+        if let Some(track) = &mut self.track {
+            track.push(lines(s.model, &s.at));
+        }
         self.keep(s.at.t, || lines(s.model, &s.at))
     }
 
@@ -156,7 +166,7 @@ impl<'a> Recorder<'a> {
         if let Some(progress) = &mut self.progress {
             progress.step(t, h, 0);
         }
-        if self.interrupt.is_some_and(Interrupt::requested) {
+        if self.is_to_stop() {
             self.stop = Some(Ending::Interrupted);
             return ControlFlow::Break(());
         }
@@ -212,6 +222,10 @@ impl<'a> Recorder<'a> {
         self.table.columns.first().and_then(|c| c.values.last()).copied().unwrap_or(0.0)
     }
 
+    fn is_to_stop(&self) -> bool {
+        self.interrupt.is_some_and(Interrupt::requested) || self.deadline.is_some_and(|d| Instant::now() >= d)
+    }
+
     fn go_on(&mut self, result: Result<(), Error>) -> ControlFlow<()> {
         match result {
             Ok(()) => ControlFlow::Continue(()),
@@ -231,7 +245,7 @@ impl Observer for Recorder<'_> {
         if let Some(saver) = &mut self.saver {
             saver.step();
         }
-        if self.interrupt.is_some_and(Interrupt::requested) {
+        if self.is_to_stop() {
             self.stop = Some(Ending::Interrupted);
             return ControlFlow::Break(());
         }
