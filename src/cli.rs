@@ -48,25 +48,12 @@ enum Command {
     #[command(after_help = "Examples:\n  \
         ropewalk run scene.toml\n  \
         ropewalk run scene.toml --set speed='25 kn' --set n=40 --out results\n  \
-        ropewalk run runs/scene/scene.toml      again, from what a run left behind\n\n\
+        ropewalk run runs/scene/scene.toml      again, from what a run left behind\n  \
+        ropewalk run scene.toml --certify       how far it can be trusted\n  \
+        ropewalk run scene.toml --accuracy 1e-3 --of hose.end\n\n\
         The folder holds scene.toml (as it was run), manifest.json, history.csv, summary.json and plots/*.svg.\n\
         Ctrl-C ends the run in good order; what was computed is kept.")]
-    Run {
-        #[command(flatten)]
-        scene: SceneArgs,
-        /// Folder for the results, new or empty [default: runs/SCENE, numbered]
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-        /// Measure the time of every term
-        #[arg(long)]
-        profile: bool,
-        /// Write a checkpoint every so often, such as `60s` or `500 steps`, from which `resume` goes on
-        #[arg(long, value_name = "EVERY")]
-        checkpoint: Option<Every>,
-        /// Say nothing but errors and warnings
-        #[arg(long, short)]
-        quiet: bool,
-    },
+    Run(commands::run::RunArgs),
     /// Go on with a run that was interrupted or killed, from its last checkpoint
     #[command(after_help = "Examples:\n  \
         ropewalk run scene.toml --checkpoint 60s\n  \
@@ -206,9 +193,7 @@ pub fn main_from(
         }
     };
     let done = match cli.command {
-        Command::Run { scene, out, profile, checkpoint, quiet } => {
-            commands::run::run(&scene, out, profile, checkpoint, quiet, bundled)
-        }
+        Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),

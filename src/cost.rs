@@ -134,7 +134,8 @@ pub fn cost(scene: &str, bundled: &[Bundled], options: &CostOptions) -> Result<C
     let quiet = options.progress == ProgressMode::Quiet;
     let runs = Runs::new(&axes, &target, &folder, progress, quiet);
     let earlier = runs.len();
-    let find = || Reference::find(&runs, GOALS[4] / 3.0, Watch { deadline: until(0.5), ..watch });
+    let find =
+        || Reference::find(&runs, GOALS[4] / 3.0, until(0.25), Watch { deadline: until(0.5), ..watch });
     let reference = on_all_cores(find)??;
     let path = folder.path().to_path_buf();
     let Some(reference) = reference else {

@@ -17,6 +17,7 @@
 //! crate that adds types of its own offers them with [`cli::main_with`] in the same command line.
 
 pub mod bench;
+mod certificate;
 pub mod cli;
 mod commands;
 mod cost;
@@ -36,6 +37,7 @@ pub use ropewalk_elements as elements;
 pub use ropewalk_forces as forces;
 pub use ropewalk_models as models;
 
+pub use certificate::{Certificate, Change};
 pub use cost::{Advice, CostOptions, CostOutcome, cost};
 pub use error::Error;
 pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};

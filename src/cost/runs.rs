@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Runs shorter than this are timed several times [s] …
 const SHORT: f64 = 0.1;
@@ -77,17 +78,35 @@ impl<'a> Runs<'a> {
         known.values().filter(|r| r.timed).cloned().collect()
     }
 
-    /// The run with these settings; none if it was stopped before its end.
+    /// The run with these settings, with the machine to itself, and given up as soon as it has taken longer than `worth`;
+    /// none if there was no time left for it.
     ///
     /// # Errors
     /// Its result can't be kept.
-    pub(super) fn get(
+    pub(super) fn timed_for(
         &self,
         settings: &Settings,
-        timed: bool,
+        worth: Duration,
         watch: Watch,
     ) -> Result<Option<Arc<Run>>, Error> {
-        let name = name(settings, timed);
+        self.kept(settings, Some(worth), watch)
+    }
+
+    /// The run with these settings, beside others; none if it was stopped before its end.
+    ///
+    /// # Errors
+    /// Its result can't be kept.
+    pub(super) fn get(&self, settings: &Settings, watch: Watch) -> Result<Option<Arc<Run>>, Error> {
+        self.kept(settings, None, watch)
+    }
+
+    fn kept(
+        &self,
+        settings: &Settings,
+        worth: Option<Duration>,
+        watch: Watch,
+    ) -> Result<Option<Arc<Run>>, Error> {
+        let name = name(settings, worth.is_some());
         if let Some(run) = self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&name) {
             return Ok(Some(run.clone()));
         }
@@ -95,7 +114,7 @@ impl<'a> Runs<'a> {
             return Ok(None);
         }
         self.progress.plan(1);
-        let run = self.compute(settings, timed, watch);
+        let run = self.compute(settings, worth, watch);
         self.progress.done(false);
         let Some(run) = run else { return Ok(None) };
         let path = self.folder.run(&format!("{}.json", plain(&name)));
@@ -106,7 +125,9 @@ impl<'a> Runs<'a> {
         Ok(Some(run))
     }
 
-    fn compute(&self, settings: &Settings, timed: bool, watch: Watch) -> Option<Run> {
+    fn compute(&self, settings: &Settings, worth: Option<Duration>, watch: Watch) -> Option<Run> {
+        let (timed, limit) = (worth.is_some(), worth.and_then(|w| Instant::now().checked_add(w)));
+        let limited = Watch { deadline: [watch.deadline, limit].into_iter().flatten().min(), ..watch };
         let words = self.axes.words(settings);
         let mut run = Run {
             settings: *settings,
@@ -116,19 +137,24 @@ impl<'a> Runs<'a> {
             failure: None,
             values: Table::default(),
         };
-        let file = match self.axes.with(settings, self.target) {
+        let file = match self.axes.with(settings, self.target.t) {
             Ok(file) => file,
             Err(fault) => return Some(Run { failure: Some(fault.message), ..run }),
         };
         for _ in 0..if timed { REPEATS } else { 1 } {
             let progress: Progress = self.progress.begin(&words, file.scene().run.duration);
-            let done = measure(&file, false, watch, progress);
+            let done = measure(&file, false, limited, progress);
             *self.spent.lock().unwrap_or_else(PoisonError::into_inner) += done.cpu_s;
-            if done.stopped {
+            if done.stopped && watch.is_over() {
                 return None;
             }
             run.cpu_s = run.cpu_s.min(done.cpu_s);
             (run.counts, run.failure) = (done.counts, done.failure);
+            if done.stopped {
+                run.failure = Some("given up: others are as accurate in far less time".into());
+                (run.cpu_s, run.values) = (done.cpu_s, Table::default());
+                break;
+            }
             run.values = self.target.of(&done.history);
             if run.failure.is_some() || run.cpu_s > SHORT {
                 break;

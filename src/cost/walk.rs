@@ -17,6 +17,10 @@ const LAST_LEVEL: i32 = 7;
 const PATIENCE: usize = 3;
 /// How much dearer a run on twice the elements is, or one with steps ten times tighter.
 const DEARER: f64 = 3.0;
+/// How many times as long as the run before one may take until it is given up.
+const TOO_DEAR: f64 = 20.0;
+/// As good as for ever [s].
+const LONGEST: f64 = 1e7;
 
 /// A walk against a reference.
 pub(super) struct Walk<'a> {
@@ -57,11 +61,17 @@ impl Walk<'_> {
 
     /// A run with its error; none if there is no time for it.
     fn take(&self, settings: &Settings, like: Option<&Run>) -> Result<Option<(Arc<Run>, f64)>, Error> {
-        let dear = Duration::from_secs_f64(like.map_or(0.0, |run| DEARER * run.cpu_s).clamp(0.0, 1e6));
-        if self.watch.deadline.is_some_and(|d| Instant::now() + dear > d) {
+        let dear = like.map_or(0.0, |run| DEARER * run.cpu_s).clamp(0.0, LONGEST);
+        if self
+            .watch
+            .deadline
+            .is_some_and(|d| d.saturating_duration_since(Instant::now()).as_secs_f64() < dear)
+        {
             return Ok(None);
         }
-        let run = self.runs.get(settings, true, self.watch)?;
+        let worth =
+            Duration::from_secs_f64(like.map_or(LONGEST, |run| (TOO_DEAR * run.cpu_s).clamp(1.0, LONGEST)));
+        let run = self.runs.timed_for(settings, worth, self.watch)?;
         Ok(run.map(|run| {
             let error = self.error(&run);
             (run, error)
@@ -113,7 +123,7 @@ impl Walk<'_> {
         let (mut behind, mut before) = (0, f64::INFINITY);
         for best in front(&points) {
             let settings = Settings { models: Some(models), ..best.run.settings };
-            let Some((run, error)) = self.take(&settings, Some(&*best.run).filter(|r| r.cpu_s > 1.0))? else {
+            let Some((run, error)) = self.take(&settings, Some(&best.run))? else {
                 break;
             };
             if run.failure.is_some() && run.counts.steps == 0 && run.cpu_s.is_infinite() {
@@ -124,10 +134,14 @@ impl Walk<'_> {
             if error < best.error
                 && let Some(mesh) = settings.mesh.filter(|m| Some(0.5 * m) >= self.runs.axes.coarsest())
             {
-                self.take(&settings.meshed(Some(0.5 * mesh)), None)?;
+                self.take(&settings.meshed(Some(0.5 * mesh)), Some(&best.run))?;
             }
             let beaten = points.iter().any(|p| p.error <= error && p.run.cpu_s <= run.cpu_s);
-            behind = if beaten { behind + 1 } else { 0 };
+            behind = match (&run.failure, beaten) {
+                (Some(_), _) => behind + 2,
+                (None, true) => behind + 1,
+                (None, false) => 0,
+            };
             let stuck = error.is_finite() && error > 0.7 * before;
             if behind >= 3 || stuck && beaten {
                 break;

@@ -13,6 +13,9 @@ use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+/// About how many rows keep the lines of all parts, where they are tracked.
+const TRACKED: f64 = 200.0;
+
 /// A record in the table: its name, its title, and its columns.
 pub(crate) struct Figure {
     pub name: String,
@@ -38,7 +41,7 @@ pub(crate) struct Recorder<'a> {
     pub progress: Option<Progress>,
     /// Whether Ctrl-C was pressed.
     pub interrupt: Option<Interrupt>,
-    /// Lines of all parts at every row, if they are wanted.
+    /// Lines of all parts at some hundred rows, if they are wanted.
     pub track: Option<Vec<Vec<V3<f64>>>>,
     /// When the run has taken too long and stops as by Ctrl-C.
     pub deadline: Option<Instant>,
@@ -155,7 +158,10 @@ impl<'a> Recorder<'a> {
             record.sample(s, &mut self.row);
         }
         if let Some(track) = &mut self.track {
-            track.push(lines(s.model, &s.at));
+            let rows = self.scene.run.duration / self.scene.run.interval();
+            if self.table.rows().is_multiple_of((rows / TRACKED).ceil().max(1.0) as usize) {
+                track.push(lines(s.model, &s.at));
+            }
         }
         self.keep(s.at.t, || lines(s.model, &s.at))
     }

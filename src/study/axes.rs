@@ -4,7 +4,6 @@
 //! A value that the scene takes from a parameter is changed by that parameter, so that all that depends on it follows
 //! and `--set` gives the same; any other is changed where it stands.
 
-use super::target::Target;
 use crate::read::{SceneFile, SceneText};
 use crate::scene::{Fault, Kind, Value};
 use ropewalk_core::Analysis;
@@ -166,13 +165,13 @@ impl<'a> Axes<'a> {
         self.meshes.iter().map(|(_, n)| ((*n as f64 * mesh).round() as u64).max(1)).collect()
     }
 
-    /// The scene with these settings, as long as the target asks for.
+    /// The scene with these settings, up to its end or to an earlier time [s].
     ///
     /// # Errors
     /// Settings that the scene refuses.
-    pub(crate) fn with(&self, settings: &Settings, target: &Target) -> Result<SceneFile, Fault> {
+    pub(crate) fn with(&self, settings: &Settings, until: Option<f64>) -> Result<SceneFile, Fault> {
         let mut changes = self.changes(settings);
-        if let Some(t) = target.t.filter(|t| *t < self.run[0]) {
+        if let Some(t) = until.filter(|t| *t < self.run[0]) {
             let mut put = |path: &str, x: f64| changes.put.push((path.into(), format!("{x:?}")));
             put("run.duration", t);
             put("run.output", self.run[1]);
@@ -199,7 +198,12 @@ impl<'a> Axes<'a> {
 
     fn changes(&self, settings: &Settings) -> Changes {
         let mut changes = Changes::default();
-        let mut change = |path: &str, value: String| match self.file.document().parameter_at(path) {
+        let document = self.file.document();
+        let there = |path: &str, value: &str| {
+            document.find(path).and_then(Value::as_str) == Some(value.trim_matches('"'))
+        };
+        let mut change = |path: &str, value: String| match document.parameter_at(path) {
+            _ if there(path, &value) => {}
             Some(name) => {
                 let text = format!("{name}={}", value.trim_matches('"'));
                 if !changes.set.contains(&text) {
@@ -230,7 +234,6 @@ impl<'a> Axes<'a> {
                 Stepping::Controlled { tolerance } => ("controlled", "tolerance", tolerance),
                 Stepping::Fixed { h } => ("fixed", "h", h),
             };
-            let document = self.file.document();
             let inside = [format!("solver.stepping.{kind}.{field}"), format!("solver.stepping.{field}")];
             match inside.iter().find(|path| document.parameter_at(path).is_some()) {
                 Some(path) => change(path, format!("{x:?}")),

@@ -91,7 +91,7 @@ fn go(file: &SceneFile, with_lines: bool, watch: Watch, progress: Progress) -> R
 }
 
 impl Measured {
-    fn failed(message: String) -> Self {
+    pub(crate) fn failed(message: String) -> Self {
         Measured {
             history: Table::default(),
             lines: Vec::new(),
