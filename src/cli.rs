@@ -98,8 +98,8 @@ enum Command {
         Errors are relative to the largest magnitude of the record over the run; without @TIME the largest one over the\n\
         run counts. The reference is computed first, on all cores: steps and mesh are refined until they make no\n\
         difference, a second integrator has to agree, the mesh is extrapolated. Then runs are timed one by one.\n\
-        The folder holds table.csv, advice.json, plots/cost.svg (error over CPU time) and runs/. Ctrl-C stops; the same\n\
-        command goes on.")]
+        The folder holds table.csv, advice.json, advice/*.toml (the scene with the settings for each error), plots/cost.svg\n\
+        (error over CPU time) and runs/. Ctrl-C stops; the same command goes on.")]
     Cost(commands::cost::CostArgs),
     /// List the bundled scenes and the types that a scene can use
     List,

@@ -164,6 +164,7 @@ pub fn cost(scene: &str, bundled: &[Bundled], options: &CostOptions) -> Result<C
     points.sort_by(|a, b| a.run.cpu_s.total_cmp(&b.run.cpu_s));
     let report = Report { axes: &axes, target: &target, reference: &reference, points };
     report.write_table(&folder)?;
+    report.write_scenes(&folder)?;
     let advice = report.advice();
     let found = Found {
         of: &target.text,
@@ -185,7 +186,7 @@ pub fn cost(scene: &str, bundled: &[Bundled], options: &CostOptions) -> Result<C
         said += "\n  the time given is up: the same command with a larger --budget goes on\n";
     }
     said += &format!(
-        "\n  runs      {}, {} of them from before\n  time      {} s on the clock, {} s of CPU\n  folder    {}\n  results   table.csv, advice.json, plots/cost.svg, runs/\n",
+        "\n  runs      {}, {} of them from before\n  time      {} s on the clock, {} s of CPU\n  folder    {}\n  results   table.csv, advice.json, advice/*.toml (scenes with these settings), plots/cost.svg, runs/\n",
         runs.len(),
         earlier,
         rough(start.elapsed().as_secs_f64()),

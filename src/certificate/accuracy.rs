@@ -108,6 +108,7 @@ pub(crate) fn choose(trials: &Trials<'_>, target: &Target, accuracy: f64) -> Res
     };
     // that is known already, but for what was interrupted
     let certificate = certify(trials, &settings, std::slice::from_ref(target), Some(accuracy))?;
-    let Some(certificate) = certificate else { return Ok(None) };
+    let Some(mut certificate) = certificate else { return Ok(None) };
+    certificate.cpu_s = trials.spent();
     Ok(Some(Chosen { settings, reached: error <= accuracy && certificate.holds(), certificate }))
 }

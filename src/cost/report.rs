@@ -3,12 +3,15 @@
 use super::GOALS;
 use super::front::{Point, cheapest, front};
 use super::reference::Reference;
+use crate::error::Error;
 use crate::output::{
-    LinePlot, Mark, OutputError, Series, in_columns, push_cell, push_number, rough, write_atomic,
+    LinePlot, Mark, OutputError, Series, cannot_create, in_columns, push_cell, push_number, rough,
+    write_atomic,
 };
 use crate::study::{Axes, StudyFolder, Target, words};
 use serde::Serialize;
 use std::fmt::Write;
+use std::fs;
 use std::sync::Arc;
 
 /// Rows that are shown.
@@ -51,6 +54,28 @@ impl Report<'_> {
             }
         };
         GOALS.map(of).into()
+    }
+
+    /// Writes the scene with the settings for each accuracy, ready to run: `advice/1e-3.toml`.
+    ///
+    /// # Errors
+    /// A file that can't be written.
+    pub(super) fn write_scenes(&self, folder: &StudyFolder) -> Result<(), Error> {
+        let path = folder.path().join("advice");
+        // what an earlier call found is no longer true
+        match fs::remove_dir_all(&path) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                return Err(OutputError::io("delete", &path)(e).into());
+            }
+            _ => fs::create_dir_all(&path).map_err(|e| cannot_create(&path, e))?,
+        }
+        for accuracy in GOALS {
+            if let Some(p) = cheapest(&self.points, accuracy - self.reference.doubt()) {
+                let file = self.axes.with(&p.run.settings, None)?;
+                write_atomic(&path.join(format!("{accuracy:e}.toml")), &file.document().to_toml())?;
+            }
+        }
+        Ok(())
     }
 
     fn cells(&self, p: &Point) -> Vec<String> {

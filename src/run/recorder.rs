@@ -6,14 +6,14 @@ use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{
-    Analysis, At, BuildError, Channel, Checkpoint, Model, Observer, Process, Record, Remeshed, Sample, Scene,
-    SceneError, SpecKind, State, V3,
+    Analysis, At, BuildError, Channel, Checkpoint, Model, NodeKind, Observer, Process, Record, Remeshed,
+    Sample, Scene, SceneError, SpecKind, State, V3,
 };
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-/// About how many rows keep the lines of all parts, where they are tracked.
+/// About how many rows keep the positions of all nodes, where they are tracked.
 const TRACKED: f64 = 200.0;
 
 /// A record in the table: its name, its title, and its columns.
@@ -41,7 +41,7 @@ pub(crate) struct Recorder<'a> {
     pub progress: Option<Progress>,
     /// Whether Ctrl-C was pressed.
     pub interrupt: Option<Interrupt>,
-    /// Lines of all parts at some hundred rows, if they are wanted.
+    /// Positions of all nodes at some hundred rows, if they are wanted.
     pub track: Option<Vec<Vec<V3<f64>>>>,
     /// When the run has taken too long and stops as by Ctrl-C.
     pub deadline: Option<Instant>,
@@ -160,7 +160,7 @@ impl<'a> Recorder<'a> {
         if let Some(track) = &mut self.track {
             let rows = self.scene.run.duration / self.scene.run.interval();
             if self.table.rows().is_multiple_of((rows / TRACKED).ceil().max(1.0) as usize) {
-                track.push(lines(s.model, &s.at));
+                track.push(positions(s.model, &s.at));
             }
         }
         self.keep(s.at.t, || lines(s.model, &s.at))
@@ -293,4 +293,9 @@ fn lines(model: &Model, at: &At<'_>) -> Vec<V3<f64>> {
         all.extend(line);
     }
     all
+}
+
+fn positions(model: &Model, at: &At<'_>) -> Vec<V3<f64>> {
+    let nodes = model.nodes().iter().filter(|n| !matches!(n.kind, NodeKind::Scalars(_)));
+    nodes.map(|n| [at.q[n.q], at.q[n.q + 1], at.q[n.q + 2]]).collect()
 }

@@ -139,11 +139,11 @@ impl StudyFolder {
             Err(e) if e.kind() != ErrorKind::NotFound => Err(OutputError::io("delete", &path)(e)),
             _ => Ok(()),
         };
-        for folder in ["runs", "plots", "tables"] {
+        for folder in ["runs", "plots", "tables", "advice"] {
             let path = self.path.join(folder);
             gone(path.clone(), fs::remove_dir_all(&path))?;
         }
-        for path in [self.table_file(), self.manifest_file()] {
+        for path in [self.table_file(), self.path.join("advice.json"), self.manifest_file()] {
             gone(path.clone(), fs::remove_file(&path))?;
         }
         Ok(())

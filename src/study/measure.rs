@@ -36,8 +36,8 @@ impl Watch {
 pub(crate) struct Measured {
     /// The history, as far as it was computed.
     pub history: Table,
-    /// Lines of all parts at the rows of the history, if they were asked for.
-    pub lines: Vec<Vec<V3<f64>>>,
+    /// Positions of all nodes at some rows of the history, if they were asked for.
+    pub positions: Vec<Vec<V3<f64>>>,
     /// Length by which positions are measured [m].
     pub length: f64,
     /// CPU time of building and running, without output to files [s].
@@ -51,10 +51,10 @@ pub(crate) struct Measured {
 }
 
 /// Runs a scene; a run that fails is a result too.
-pub(crate) fn measure(file: &SceneFile, with_lines: bool, watch: Watch, progress: Progress) -> Measured {
+pub(crate) fn measure(file: &SceneFile, with_positions: bool, watch: Watch, progress: Progress) -> Measured {
     let stopwatch = Stopwatch::start();
     // a defect that shows in one run must not take the others with it
-    let done = catch_unwind(AssertUnwindSafe(|| go(file, with_lines, watch, progress)));
+    let done = catch_unwind(AssertUnwindSafe(|| go(file, with_positions, watch, progress)));
     let mut measured = match done {
         Ok(Ok(measured)) => measured,
         Ok(Err(e)) => Measured::failed(match e {
@@ -67,14 +67,14 @@ pub(crate) fn measure(file: &SceneFile, with_lines: bool, watch: Watch, progress
     measured
 }
 
-fn go(file: &SceneFile, with_lines: bool, watch: Watch, progress: Progress) -> Result<Measured, Error> {
+fn go(file: &SceneFile, with_positions: bool, watch: Watch, progress: Progress) -> Result<Measured, Error> {
     let scene = file.scene();
     let model = file.build()?;
     let length = model.length();
     let mut recorder = Recorder::new(scene, file.records(&model)?);
     (recorder.interrupt, recorder.deadline) = (watch.interrupt, watch.deadline);
     recorder.progress = Some(progress);
-    recorder.track = with_lines.then(Vec::new);
+    recorder.track = with_positions.then(Vec::new);
     let mut started = Started::new(scene, model)?;
     let ending = started.go(scene, &mut recorder, false);
     if let Some(progress) = recorder.progress.take() {
@@ -84,17 +84,17 @@ fn go(file: &SceneFile, with_lines: bool, watch: Watch, progress: Progress) -> R
         Ending::Failed(e) => Some(e.to_string().trim_start_matches("error: ").to_string()),
         _ => None,
     };
-    let lines = recorder.track.take().unwrap_or_default();
+    let positions = recorder.track.take().unwrap_or_default();
     let (history, counts) = (recorder.table, started.done().counts);
     let stopped = matches!(ending, Ending::Interrupted);
-    Ok(Measured { history, lines, length, cpu_s: f64::NAN, counts, failure, stopped })
+    Ok(Measured { history, positions, length, cpu_s: f64::NAN, counts, failure, stopped })
 }
 
 impl Measured {
     pub(crate) fn failed(message: String) -> Self {
         Measured {
             history: Table::default(),
-            lines: Vec::new(),
+            positions: Vec::new(),
             length: f64::NAN,
             cpu_s: f64::NAN,
             counts: Counts::default(),
