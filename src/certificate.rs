@@ -166,8 +166,7 @@ pub(crate) fn certify(
         [("as it is", Some(&base)), ("tighter steps", tightened.as_ref()), ("finer mesh", refined.as_ref())];
     certificate.failures = named.iter().filter_map(|(words, run)| failed(words, (*run)?)).collect();
     for target in records {
-        let own = target.of(&base.history);
-        let size = target.size(&own)?;
+        let (own, size) = (target.of(&base.history), target.size_in(&base.history)?);
         let change = |other: &Arc<Measured>| {
             let change = difference(&own, &target.of(&other.history), target.t.is_some()) / size;
             // runs that failed, or that end at quite another time, don't agree in anything

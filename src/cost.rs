@@ -11,11 +11,11 @@ pub use report::Advice;
 
 use crate::error::Error;
 use crate::output::{
-    Interrupt, OutputError, ProgressMode, RunFolder, SweepProgress, plain, rough, write_json,
+    Interrupt, OutputError, Progress, ProgressMode, RunFolder, SweepProgress, plain, rough, write_json,
 };
 use crate::read::SceneText;
 use crate::scene::Fault;
-use crate::study::{Axes, Study, StudyFolder, Target, Watch, on_all_cores};
+use crate::study::{Axes, Study, StudyFolder, Target, Watch, measure, on_all_cores};
 use front::distrust;
 use reference::Reference;
 use report::Report;
@@ -28,6 +28,9 @@ use walk::Walk;
 
 /// The accuracies that advice is given for, relative to the size of the record.
 const GOALS: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+
+/// Longer than this nothing is checked beforehand.
+const LONGEST_CHECK: Duration = Duration::from_secs(2);
 
 /// What may be chosen about a study of cost.
 #[derive(Clone, Debug)]
@@ -101,6 +104,19 @@ struct Found<'a> {
     advice: &'a [Advice],
 }
 
+/// A cheap run, before anything is begun: is there something of which an error can be a part?
+fn check(axes: &Axes<'_>, target: &Target) -> Result<(), Error> {
+    let coarse = axes.base.meshed(axes.coarsest()).stepped(axes.level(0));
+    let watch = Watch { deadline: Instant::now().checked_add(LONGEST_CHECK), ..Watch::default() };
+    let file = axes.with(&coarse, target.t)?;
+    let run = measure(&file, false, watch, Progress::new(0.0, 1.0, ProgressMode::Quiet));
+    // a coarse run may well fail, and one that takes too long is no reason to stop
+    if run.failure.is_none() && !run.stopped {
+        target.size_in(&run.history)?;
+    }
+    Ok(())
+}
+
 /// Finds out what the accuracy of a record costs in a scene, given by its bundled name or path.
 ///
 /// # Errors
@@ -116,6 +132,7 @@ pub fn cost(scene: &str, bundled: &[Bundled], options: &CostOptions) -> Result<C
         .with_help("vary its own parameters with `ropewalk sweep`")
         .into());
     }
+    check(&axes, &target)?;
     let manifest = Manifest {
         ropewalk: env!("CARGO_PKG_VERSION").into(),
         name: text.name.clone(),

@@ -267,7 +267,7 @@ fn what_is_wrong_is_said_in_one_message() {
             &["cost", "plain.toml", "--of", "rope.start"],
             &["zero or no number all the time", "choose another record"],
         ),
-        (&["cost", "unwinding-paper", "--of", "eyelet.tension"], &["nothing to vary", "ropewalk sweep"]),
+        (&["cost", "unwinding-paper", "--of", "cable.tension"], &["nothing to vary", "ropewalk sweep"]),
         (&["cost", "pendulm", "--of", "x"], &["did you mean `pendulum`?"]),
         (
             &["cost", "pendulum", "--of", "cable.end", "--set", "elephants=3"],

@@ -55,7 +55,7 @@ pub(crate) fn choose(trials: &Trials<'_>, target: &Target, accuracy: f64) -> Res
                 return Err(crate::scene::Fault::new(message).into());
             }
             let (a, b) = (target.of(&base.history), target.of(&other.history));
-            let change = difference(&a, &b, target.t.is_some()) / target.size(&a)?;
+            let change = difference(&a, &b, target.t.is_some()) / target.size_in(&base.history)?;
             Ok(if change.is_nan() { f64::INFINITY } else { change })
         };
         let failed = base.failure.is_some() || done.iter().any(|r| r.failure.is_some());

@@ -159,7 +159,7 @@ fn sized(all: Vec<Target>, outcome: &Outcome) -> Vec<Target> {
     let mut kept: Vec<Target> = Vec::new();
     for target in all {
         let inside = kept.iter().any(|k| k.columns.contains(&target.columns.start));
-        if !inside && target.size(&target.of(&outcome.history)).is_ok() {
+        if !inside && target.size_in(&outcome.history).is_ok() {
             kept.push(target);
         }
     }

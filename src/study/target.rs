@@ -7,6 +7,9 @@ use crate::scene::{Fault, did_you_mean, quoted};
 use ropewalk_core::{Analysis, quantity};
 use std::ops::Range;
 
+/// What is smaller than others of its unit by this is rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// A record, or one of its columns, over the whole run or at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Target {
@@ -107,10 +110,7 @@ impl Target {
         let last = rows.last().map_or(f64::NAN, magnitude);
         let name = quoted(&self.text);
         if size == 0.0 {
-            let message = format!(
-                "{name} is zero or no number all the time: there is nothing that an error could be a part of"
-            );
-            return Err(Fault::new(message).with_help("choose another record, or another time"));
+            return Err(self.nothing());
         }
         if self.t.is_some() && !last.is_finite() {
             return Err(
@@ -118,6 +118,24 @@ impl Target {
             );
         }
         Ok(size)
+    }
+
+    /// The size in a history with all columns, where what is but rounding beside others of its unit is none.
+    ///
+    /// # Errors
+    /// As [`size`](Self::size).
+    pub(crate) fn size_in(&self, history: &Table) -> Result<f64, Fault> {
+        let size = self.size(&self.of(history))?;
+        let alike = history.columns.iter().skip(1).filter(|c| c.unit == self.unit);
+        let largest =
+            alike.flat_map(|c| &c.values).filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
+        if size > ROUNDING * largest { Ok(size) } else { Err(self.nothing()) }
+    }
+
+    fn nothing(&self) -> Fault {
+        let message = "is zero or no number all the time: there is nothing that an error could be a part of";
+        Fault::new(format!("{} {message}", quoted(&self.text)))
+            .with_help("choose another record, or another time")
     }
 }
 
