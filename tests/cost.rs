@@ -381,7 +381,7 @@ fn advice_for_the_pendulum_holds() {
 #[test]
 #[ignore = "minutes"]
 fn advice_for_the_turning_hose_holds() {
-    holds("hose-turn", "height@60s", &[], &["height"], &GOALS, ["elements = ", "80"], 1e-6, 23.7);
+    holds("hose-turn", "height@60s", &[], &["height.z"], &GOALS, ["elements = ", "80"], 1e-6, 23.7);
 }
 
 #[test]
