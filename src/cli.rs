@@ -101,6 +101,16 @@ enum Command {
         The folder holds table.csv, advice.json, advice/*.toml (the scene with the settings for each error), plots/cost.svg\n\
         (error over CPU time) and runs/. Ctrl-C stops; the same command goes on.")]
     Cost(commands::cost::CostArgs),
+    /// What each effect costs and does, what its absence would change, and what absent effects would add
+    #[command(after_help = "Examples:\n  \
+        ropewalk effects hose-turn --of height@60s\n  \
+        ropewalk effects pendulum --of cable.end --accuracy 1e-3 --set elements=16\n\n\
+        A record of several columns counts as a vector; with @TIME it is looked at at that time, else over the whole run.\n\
+        Changes are relative to the largest size of the record in the run. The scene is run once without each of its\n\
+        effects, and once with each effect that it lacks and that can be guessed from it; then without all those together\n\
+        that change the record by less than the accuracy. Runs are timed one after the other.\n\
+        The folder holds scene.toml, manifest.json, tables/ledger.csv, tables/effects.csv and plots/*.svg.")]
+    Effects(commands::effects::EffectsArgs),
     /// List the bundled scenes and the types that a scene can use
     List,
     /// Explain a scene, a type, or a section of a scene file
@@ -198,6 +208,7 @@ pub fn main_from(
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
         Command::Cost(args) => commands::cost::cost(args, bundled),
+        Command::Effects(args) => commands::effects::effects(&args, bundled),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),

@@ -7,7 +7,7 @@ mod report;
 mod runs;
 mod walk;
 
-pub use report::Advice;
+pub use report::CostAdvice;
 
 use crate::error::Error;
 use crate::output::{
@@ -55,7 +55,7 @@ pub struct CostOutcome {
     /// Whether Ctrl-C ended it.
     pub interrupted: bool,
     /// The cheapest settings for each accuracy.
-    pub advice: Vec<Advice>,
+    pub advice: Vec<CostAdvice>,
     /// How far the reference may be from the truth, relative to the size of the record; NaN without reference.
     pub doubt: f64,
     /// The folder.
@@ -101,7 +101,7 @@ struct Found<'a> {
     doubt_of_steps: f64,
     doubt_of_mesh: f64,
     reference: &'a [String],
-    advice: &'a [Advice],
+    advice: &'a [CostAdvice],
 }
 
 /// A cheap run, before anything is begun: is there something of which an error can be a part?

@@ -21,6 +21,7 @@ mod certificate;
 pub mod cli;
 mod commands;
 mod cost;
+mod effects;
 mod error;
 mod modes;
 pub mod output;
@@ -38,7 +39,10 @@ pub use ropewalk_forces as forces;
 pub use ropewalk_models as models;
 
 pub use certificate::{Certificate, Change};
-pub use cost::{Advice, CostOptions, CostOutcome, cost};
+pub use cost::{CostAdvice, CostOptions, CostOutcome, cost};
+pub use effects::{
+    Advice, Deed, EffectsOptions, EffectsOutcome, Ledger, Tried, Verdict, effects, write_effects,
+};
 pub use error::Error;
 pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use read::{SceneFile, read};

@@ -192,4 +192,11 @@ impl Term for FieldTerm {
     fn power(&self, at: &At<'_>) -> Power {
         self.stations.power(&self.laws, at)
     }
+    fn effects(&self) -> Vec<Box<dyn Term>> {
+        let one = |law: &Arc<dyn ErasedLaw>| -> Box<dyn Term> {
+            let (part, stations) = (self.part.clone(), self.stations.clone());
+            Box::new(FieldTerm { part, stations, laws: Laws(vec![law.clone()]) })
+        };
+        if self.laws.0.len() > 1 { self.laws.0.iter().map(one).collect() } else { Vec::new() }
+    }
 }

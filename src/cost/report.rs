@@ -19,7 +19,7 @@ const MOST_ROWS: usize = 60;
 
 /// What to take for an error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Advice {
+pub struct CostAdvice {
     /// The error that is allowed, relative to the size of the record.
     pub accuracy: f64,
     /// The settings in words, none if none were found.
@@ -42,10 +42,10 @@ pub(super) struct Report<'a> {
 
 impl Report<'_> {
     /// The cheapest settings for each accuracy that the reference can tell.
-    pub(super) fn advice(&self) -> Vec<Advice> {
+    pub(super) fn advice(&self) -> Vec<CostAdvice> {
         let of = |accuracy: f64| {
             let found = cheapest(&self.points, accuracy - self.reference.doubt());
-            Advice {
+            CostAdvice {
                 accuracy,
                 settings: found.map(|p| self.axes.words(&p.run.settings)),
                 recipe: found.map(|p| self.axes.recipe(&p.run.settings)),
