@@ -48,25 +48,12 @@ enum Command {
     #[command(after_help = "Examples:\n  \
         ropewalk run scene.toml\n  \
         ropewalk run scene.toml --set speed='25 kn' --set n=40 --out results\n  \
-        ropewalk run runs/scene/scene.toml      again, from what a run left behind\n\n\
+        ropewalk run runs/scene/scene.toml      again, from what a run left behind\n  \
+        ropewalk run scene.toml --certify       how far it can be trusted\n  \
+        ropewalk run scene.toml --accuracy 1e-3 --of hose.end\n\n\
         The folder holds scene.toml (as it was run), manifest.json, history.csv, summary.json and plots/*.svg.\n\
         Ctrl-C ends the run in good order; what was computed is kept.")]
-    Run {
-        #[command(flatten)]
-        scene: SceneArgs,
-        /// Folder for the results, new or empty [default: runs/SCENE, numbered]
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-        /// Measure the time of every term
-        #[arg(long)]
-        profile: bool,
-        /// Write a checkpoint every so often, such as `60s` or `500 steps`, from which `resume` goes on
-        #[arg(long, value_name = "EVERY")]
-        checkpoint: Option<Every>,
-        /// Say nothing but errors and warnings
-        #[arg(long, short)]
-        quiet: bool,
-    },
+    Run(commands::run::RunArgs),
     /// Go on with a run that was interrupted or killed, from its last checkpoint
     #[command(after_help = "Examples:\n  \
         ropewalk run scene.toml --checkpoint 60s\n  \
@@ -103,6 +90,17 @@ enum Command {
         equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
         The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
     Modes(commands::modes::ModesArgs),
+    /// What accuracy costs: the cheapest mesh, models, scheme and step for errors of a record from 1 % to 1e-6
+    #[command(after_help = "Examples:\n  \
+        ropewalk cost cantilever --of beam.end          over the whole load path\n  \
+        ropewalk cost hose-turn --of height@60s         at one time\n  \
+        ropewalk cost pendulum --of cable.end --set duration='0.4 s' --budget 5min\n\n\
+        Errors are relative to the largest magnitude of the record over the run; without @TIME the largest one over the\n\
+        run counts. The reference is computed first, on all cores: steps and mesh are refined until they make no\n\
+        difference, a second integrator has to agree, the mesh is extrapolated. Then runs are timed one by one.\n\
+        The folder holds table.csv, advice.json, advice/*.toml (the scene with the settings for each error), plots/cost.svg\n\
+        (error over CPU time) and runs/. Ctrl-C stops; the same command goes on.")]
+    Cost(commands::cost::CostArgs),
     /// What each effect costs and does, what its absence would change, and what absent effects would add
     #[command(after_help = "Examples:\n  \
         ropewalk effects hose-turn --of height@60s\n  \
@@ -205,12 +203,11 @@ pub fn main_from(
         }
     };
     let done = match cli.command {
-        Command::Run { scene, out, profile, checkpoint, quiet } => {
-            commands::run::run(&scene, out, profile, checkpoint, quiet, bundled)
-        }
+        Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
+        Command::Cost(args) => commands::cost::cost(args, bundled),
         Command::Effects(args) => commands::effects::effects(&args, bundled),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),

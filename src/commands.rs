@@ -2,6 +2,7 @@
 
 pub(crate) mod bench;
 pub(crate) mod check;
+pub(crate) mod cost;
 pub(crate) mod describe;
 pub(crate) mod effects;
 pub(crate) mod list;

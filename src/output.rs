@@ -6,6 +6,7 @@
 //! - [`Summary`]: the few numbers that say how a run ended, as JSON.
 //! - [`Progress`], [`SweepProgress`], [`Interrupt`], [`Stopwatch`]: the progress bars, Ctrl-C, and CPU time.
 
+mod columns;
 mod error;
 mod folder;
 mod interrupt;
@@ -16,6 +17,7 @@ mod stopwatch;
 mod summary;
 mod table;
 
+pub(crate) use columns::in_columns;
 pub use error::OutputError;
 pub(crate) use folder::write_durable;
 pub(crate) use folder::{RUNS, cannot_create, plain, write_json};

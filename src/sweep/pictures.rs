@@ -2,10 +2,10 @@
 
 use super::axis::Axis;
 use super::finals::finals;
-use super::folder::SweepFolder;
 use super::grid::Grid;
 use super::results::{Recorded, Results, Row};
 use crate::output::{LinePlot, Mark, OutputError, RunFolder, Series, Table};
+use crate::study::StudyFolder;
 use std::collections::HashMap;
 
 /// More lines than this can't be told apart.
@@ -15,7 +15,7 @@ const MOST_POINTS: usize = 20_000;
 
 /// Draws everything and gives the number of pictures. A picture that can't be drawn is no reason to fail.
 pub(super) fn draw(
-    folder: &SweepFolder,
+    folder: &StudyFolder,
     grid: &Grid,
     axes: &[Axis],
     results: &Results,
