@@ -349,7 +349,7 @@ impl Builder {
         let (_, part) = self.find(name, "marker")?;
         part.front(end).ok_or_else(|| {
             let message = match part.kind() {
-                "cable" => format!("no `winch` feeds at {marker}: add one"),
+                "cable" => format!("no `winch` or `eyelet` feeds at {marker}: add one"),
                 kind => format!("material can flow through the ends of a cable, but `{name}` is a {kind}"),
             };
             BuildError::at("marker", message)

@@ -123,6 +123,10 @@ pub trait Term: Send + Sync {
     fn kinked(&self) -> bool {
         false
     }
+    /// The drag coefficient of the flow across a part at an unstretched arc length [m], if it is the drag on this part.
+    fn coefficient(&self, _part: &str, _s: f64, _at: &At<'_>) -> Option<f64> {
+        None
+    }
     /// What a record of type `force` shows of it; names are put behind that of the record.
     fn columns(&self) -> Vec<Column> {
         Vec::new()
