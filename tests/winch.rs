@@ -3,8 +3,8 @@
 mod common;
 
 use common::{data, number};
-use ropewalk_constraints::winch::Feeding;
 use ropewalk_constraints::motion::{HarmonicSpec, StraightSpec};
+use ropewalk_constraints::winch::Feeding;
 use ropewalk_constraints::{DrivingSpec, EyeletSpec, SphericalSpec, WinchSpec};
 use ropewalk_core::integrator::{Options, Stepping};
 use ropewalk_core::{End, Scene, Simulation, State};
@@ -548,12 +548,8 @@ fn strings_that_run_along_themselves_have_the_right_modes() {
 
 /// A cable in water that hangs from a moving point, with bending stiffness, damping and drag.
 fn wet() -> Scene {
-    let section = Section {
-        diameter: 0.02,
-        axial_damping: 0.01,
-        bending_damping: 0.01,
-        ..Section::new(0.8, 1e4, 2.0)
-    };
+    let section =
+        Section { diameter: 0.02, axial_damping: 0.01, bending_damping: 0.01, ..Section::new(0.8, 1e4, 2.0) };
     let mut scene = Scene::new();
     scene.water = Some(ropewalk_core::Water::default());
     scene
@@ -579,13 +575,13 @@ type Add<'a> = &'a dyn Fn(&mut Scene);
 fn an_eyelet_is_a_point_and_a_winch_in_one() {
     let feed = |w: WinchSpec| WinchSpec { name: "eyelet.feed".into(), ..w };
     let cases: [(Add<'_>, Add<'_>); 4] = [
-        (
-            &|s| drop(s.constraint(EyeletSpec::speed("eyelet", "rope.start", -0.8))),
-            &|s| {
-                s.constraint(SphericalSpec::pin("eyelet", "rope.start"))
-                    .constraint(feed(WinchSpec::speed("", "rope.start", -0.8)));
-            },
-        ),
+        (&|s| drop(s.constraint(EyeletSpec::speed("eyelet", "rope.start", -0.8))), &|s| {
+            s.constraint(SphericalSpec::pin("eyelet", "rope.start")).constraint(feed(WinchSpec::speed(
+                "",
+                "rope.start",
+                -0.8,
+            )));
+        }),
         (
             &|s| {
                 s.constraint(EyeletSpec {

@@ -111,7 +111,8 @@ pub trait Law: Send + Sync + 'static {
     fn power<R: Real>(&self, _t: f64, at: &Station<R>, f: &V3<R>) -> Power<R> {
         Power { supplied: dot(f, &at.v), ..Power::zero() }
     }
-    /// The drag coefficient of the flow across the body there, if this is a law of drag; infinite where nothing flows.
+    /// The drag coefficient of the flow across the body there, if this is a law of drag; NaN in flow so slow that it is
+    /// of no use.
     fn coefficient(&self, _at: &Station<f64>) -> Option<f64> {
         None
     }

@@ -123,7 +123,7 @@ pub trait Term: Send + Sync {
     fn kinked(&self) -> bool {
         false
     }
-    /// The drag coefficient of the flow across a part at an unstretched arc length [m], if it is the drag on this part.
+    /// The drag coefficient of the flow across a part at an arc length of its material [m], if it is the drag on this part.
     fn coefficient(&self, _part: &str, _s: f64, _at: &At<'_>) -> Option<f64> {
         None
     }

@@ -236,7 +236,8 @@ impl Law for Drag {
                 let along = dot(&v, &at.slope) / dot(&at.slope, &at.slope);
                 let across: V3<f64> = [0, 1, 2].map(|i| v[i] - along * at.slope[i]);
                 let re = self.density * at.diameter * dot(&across, &across).sqrt() / self.viscosity;
-                if re > 0.0 { cn_re_one(re, self.blend).0 / re } else { f64::INFINITY }
+                // creeping flow has large coefficients and hardly any force
+                if re >= 1.0 { cn_re_one(re, self.blend).0 / re } else { f64::NAN }
             }
         })
     }

@@ -63,6 +63,10 @@ pub struct EyeletSpec {
     /// Tension by the square of the speed, besides `tension` [kg/m].
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub per_speed2: f64,
+    /// Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs here, which
+    /// then drives itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pace: Option<String>,
     /// Resistance per speed, besides `tension` [N s/m].
     #[serde(default, deserialize_with = "quantity::damping")]
     pub damping: f64,
@@ -112,6 +116,7 @@ impl EyeletSpec {
             motion: None,
             tension: None,
             per_speed2: 0.0,
+            pace: None,
             damping: 0.0,
             shortest: None,
             element: None,
@@ -129,6 +134,7 @@ impl EyeletSpec {
             motion: self.motion.clone(),
             tension: self.tension,
             per_speed2: self.per_speed2,
+            pace: self.pace.clone(),
             damping: self.damping,
             shortest: self.shortest,
             element: self.element,

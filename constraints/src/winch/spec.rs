@@ -3,9 +3,10 @@
 use super::drive::Drive;
 use super::{Feeding, Limit, Pull, Side, Zone};
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
-use ropewalk_core::{ConstraintSpec, Feed, MarkerRef, Model, quantity, register_spec, split_marker};
+use ropewalk_core::{ConstraintSpec, Feed, MarkerRef, Model, Motion, quantity, register_spec, split_marker};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 fn ramp() -> f64 {
     1.0
@@ -85,6 +86,10 @@ pub struct WinchSpec {
     /// Tension by the square of the speed, besides `tension` [kg/m]: what is measured at an eyelet often goes by it.
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub per_speed2: f64,
+    /// Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs here. A
+    /// tension that draws, and grows with the speed to which it draws, drives itself: then name the motion that is meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pace: Option<String>,
     /// Inertia of the drum over the square of its radius [kg].
     #[serde(default, deserialize_with = "quantity::mass")]
     pub inertia: f64,
@@ -149,6 +154,7 @@ impl WinchSpec {
             slip: slip(),
             damping: 0.0,
             per_speed2: 0.0,
+            pace: None,
             inertia: 0.0,
             pile: false,
             stock: rest(),
@@ -156,6 +162,18 @@ impl WinchSpec {
             element: None,
             release: release(),
         }
+    }
+
+    /// The motion whose speed the tension goes by.
+    fn pace(&self, b: &Builder) -> Result<Option<Arc<dyn Motion>>, BuildError> {
+        let Some(name) = &self.pace else { return Ok(None) };
+        let motion = b.motion(name).map_err(|e| e.of("pace"))?;
+        if motion.range() != (f64::NEG_INFINITY, f64::INFINITY) {
+            let message =
+                format!("the speed of `{name}` is not defined for ever: take another motion, or longer");
+            return Err(BuildError::at("pace", message));
+        }
+        Ok(Some(motion))
     }
 
     /// Whether it never feeds.
@@ -221,6 +239,7 @@ impl ConstraintSpec for WinchSpec {
             Drive::Held => {
                 let tension = self.tension.unwrap_or(0.0);
                 finite("tension", &[tension])?;
+                let pace = self.pace(b)?;
                 b.term(Box::new(Pull {
                     name: self.name.clone(),
                     front,
@@ -229,6 +248,7 @@ impl ConstraintSpec for WinchSpec {
                     slip: self.slip,
                     damping: self.damping,
                     per_speed2: self.per_speed2,
+                    pace,
                     inertia: self.inertia,
                     pile: self.pile,
                 }));

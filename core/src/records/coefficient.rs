@@ -19,7 +19,7 @@ fn quarters() -> Vec<Station> {
 /// Drag coefficient `Cn` of the flow across a cable at some places: columns `hose.cn@25%`, `hose.cn@50%`, `hose.cn@75%`.
 ///
 /// It is that of the `drag` which acts on the cable, taken between its stations on either side of the place; empty where
-/// no water flows across, which has none.
+/// hardly any water flows across, at Reynolds numbers below 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DragCoefficientSpec {
@@ -66,8 +66,9 @@ impl Record for DragCoefficient {
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
         let term = &s.model.terms()[self.term];
         out.extend(self.at.iter().map(|place| {
-            let s_now = place.now(self.part.as_ref(), &s.at);
-            let cn = term.coefficient(self.part.name(), s_now, &s.at);
+            // stations count along the material, which runs through a start that feeds
+            let start = self.part.front(0).map_or(0.0, |front| s.at.q[front.q]);
+            let cn = term.coefficient(self.part.name(), start + place.now(self.part.as_ref(), &s.at), &s.at);
             cn.filter(|cn| cn.is_finite()).unwrap_or(f64::NAN)
         }));
     }
