@@ -575,7 +575,7 @@ type Add<'a> = &'a dyn Fn(&mut Scene);
 fn an_eyelet_is_a_point_and_a_winch_in_one() {
     let feed = |w: WinchSpec| WinchSpec { name: "eyelet.feed".into(), ..w };
     let cases: [(Add<'_>, Add<'_>); 4] = [
-        (&|s| drop(s.constraint(EyeletSpec::speed("eyelet", "rope.start", -0.8))), &|s| {
+        (&|s| _ = s.constraint(EyeletSpec::speed("eyelet", "rope.start", -0.8)), &|s| {
             s.constraint(SphericalSpec::pin("eyelet", "rope.start")).constraint(feed(WinchSpec::speed(
                 "",
                 "rope.start",
@@ -652,7 +652,8 @@ fn cart(scene: &mut Scene) {
 #[test]
 fn what_no_eyelet_can_do_is_refused() {
     let speed = || EyeletSpec::speed("eyelet", "rope.start", -0.8);
-    let cases: [(EyeletSpec, &str, &str); 12] = [
+    let tension = || EyeletSpec::tension("eyelet", "rope.start", 5.0);
+    let cases: [(EyeletSpec, &str, &str); 14] = [
         (EyeletSpec { speed: None, ..speed() }, "name", "say what draws the cable"),
         (EyeletSpec { motion: Some("course".into()), ..speed() }, "motion", "not both"),
         (EyeletSpec { tension: Some(5.0), ..speed() }, "tension", "the tension at this eyelet is a result"),
@@ -669,10 +670,12 @@ fn what_no_eyelet_can_do_is_refused() {
         (EyeletSpec { element: Some(4.0), ..speed() }, "element", "less than half of that"),
         (EyeletSpec { shortest: Some(7.0), ..speed() }, "shortest", "must be less"),
         (EyeletSpec { marker: "rope@2m".into(), ..speed() }, "marker", "end of a cable"),
+        (EyeletSpec { pace: Some("corse".into()), ..tension() }, "pace", "there is no motion `corse`"),
+        (EyeletSpec { pace: Some("in".into()), ..tension() }, "pace", "not defined for ever"),
     ];
     for (spec, field, message) in cases {
         let mut scene = wet();
-        scene.constraint(spec);
+        scene.motion(steadily("in", 1.0)).constraint(spec);
         let e = scene.build().err().unwrap_or_else(|| panic!("{message}: it builds")).error;
         assert!(
             e.field.as_deref() == Some(field) && e.message.contains(message),
@@ -731,5 +734,46 @@ fn energy_closes_over_events_at_a_moving_eyelet() {
         assert!(all.iter().all(|(_, changes)| *changes >= 3), "{all:?}");
         assert!(all[2].0 < 1e-5, "{speed}: {all:?}");
         assert!(ratios.iter().all(|r| *r > 3.0), "{speed}: {ratios:?}");
+    }
+}
+
+#[test]
+fn an_eyelet_that_moves_stays_on_its_path_over_changes_of_the_mesh() {
+    for speed in [1.2, -1.2] {
+        let mut scene = wet();
+        scene.constraint(EyeletSpec {
+            path: Some("course".into()),
+            element: Some(0.5),
+            ..EyeletSpec::speed("eyelet", "rope.start", speed)
+        });
+        let mut s = Simulation::new(scene.build().unwrap_or_else(|e| panic!("{e}")), &fixed(2e-3), 2.0)
+            .unwrap_or_else(|e| panic!("{e}"));
+        go(&mut s, 2.0);
+        // a ramp of 0.5 s and 1.5 s at 1 m/s
+        let x = common::place(&s.model, &s.state, "rope", 0.0);
+        assert!((x[0] - 1.75).abs() < 1e-9 && x[2].abs() < 1e-9, "{speed}: {x:?}");
+    }
+}
+
+#[test]
+fn a_cable_is_laid_under_tension() {
+    let lay = |change: &dyn Fn(&mut CableSpec)| {
+        let mut cable =
+            CableSpec::straight("rope", [0.0; 3], [5.0, 0.0, 0.0], 3, Section::new(1.0, 1e4, 0.0));
+        change(&mut cable);
+        let mut scene = Scene::new();
+        scene.element(cable).constraint(SphericalSpec::pin("a", "rope.start"));
+        scene.build().map_err(|e| e.error)
+    };
+    let model = lay(&|c| c.tension = Some(20.0)).unwrap_or_else(|e| panic!("{e}"));
+    let rope = model.part("rope").expect("rope");
+    assert!((rope.length() * (1.0 + 2e-3) - 5.0).abs() < 1e-12);
+    let tension = rope.observe(ropewalk_core::Quantity::Tension, 2.0, &model.state().at()).expect("tension");
+    assert!((tension - 20.0).abs() < 1e-9, "{tension}");
+    for (tension, length, says) in
+        [(20.0, Some(5.0), "not both"), (-2e4, None, "to nothing"), (f64::NAN, None, "tension")]
+    {
+        let e = lay(&|c| (c.tension, c.length) = (Some(tension), length)).err().expect("refused");
+        assert!(e.field.as_deref() == Some("tension") && e.message.contains(says), "{e}");
     }
 }

@@ -355,11 +355,20 @@ impl ElementSpec for CableSpec {
         let state = given.as_ref().and_then(|m| m.state.as_ref());
         for (k, &at) in mesh.iter().enumerate() {
             // a cable that has fed since it was laid gets its true shape from the state before
-            let (x, t) = path.at((at * stretch).clamp(0.0, path.length()));
+            let (x, t) = match k {
+                // an end has stayed one while material went through it
+                0 => path.at(0.0),
+                k if k + 1 == mesh.len() => path.at(path.length()),
+                _ => path.at((at * stretch).clamp(0.0, path.length())),
+            };
             let q = [x[0], x[1], x[2], t[0] * stretch, t[1] * stretch, t[2] * stretch];
             let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0];
             let node = match state {
-                Some(state) => b.node(NodeKind::Slope, &state.q[k], &state.v[k])?,
+                Some(state) => {
+                    let node = b.node(NodeKind::Slope, &state.q[k], &state.v[k])?;
+                    b.was_laid(node, &q);
+                    node
+                }
                 None => b.node(NodeKind::Slope, &q, &v)?,
             };
             nodes.push(node);
