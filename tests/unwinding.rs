@@ -74,6 +74,8 @@ struct Kept {
     curvature: f64,
     /// Angle between cable and wound layer there.
     kink: f64,
+    /// What holds the lift-off point back over what peeling costs by fracture mechanics.
+    peeling: f64,
     said: Vec<String>,
 }
 
@@ -236,7 +238,8 @@ fn balloon(c: &Case, off: Off, n: usize, turns: f64, per_turn: usize, eta: f64) 
         ..Options::default()
     };
     let mut s = Simulation::from(model, state, &options, turns * turn).unwrap_or_else(|e| panic!("{e}"));
-    let mut kept = Kept { shape: 0.0, tension: 0.0, curvature: 0.0, kink: 0.0, said: Vec::new() };
+    let mut kept =
+        Kept { shape: 0.0, tension: 0.0, curvature: 0.0, kink: 0.0, peeling: f64::NAN, said: Vec::new() };
     let mut said = Said::default();
     let eyelet = s.model.constraints().iter().position(|c| c.name() == "pull").expect("the winch");
     let samples = 40;
@@ -268,6 +271,11 @@ fn balloon(c: &Case, off: Off, n: usize, turns: f64, per_turn: usize, eta: f64) 
         let size = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
         let along: f64 = (0..3).map(|i| layer[i] * slope[i] / size).sum();
         kept.kink = along.clamp(-1.0, 1.0).acos();
+    }
+    if let Some(spool) = s.model.constraints().iter().position(|c| c.name() == "spool") {
+        // the energy of the bond less that of the bending that wound cable brings along
+        let cost = bond - 0.5 * ei * wound * wound;
+        kept.peeling = s.state.lambda[s.model.rows_of(spool).start] / cost;
     }
     kept.said = said.0;
     kept
@@ -310,12 +318,15 @@ fn steady_balloons_with_bending_stiffness_lie_along_the_wound_layer() {
 
 #[test]
 fn a_cable_that_sticks_peels_at_its_energy() {
-    for (name, n) in [("low_bend_const_5kn_a", 40)] {
-        let c = case("flow/balloon_bend.json", name);
-        let kept = balloon(&c, Off::Peeled, n, 2.0, 400, 1e-4);
-        eprintln!("{name}: {kept:?}");
-        assert!(kept.tension.abs() < 1e-2 && kept.curvature.abs() < 2e-2, "{name}: {kept:?}");
-    }
+    let c = case("flow/balloon_bend.json", "low_bend_const_5kn_a");
+    // peeled at a speed, it is held back by what the energy of the bond would be
+    let kept = balloon(&c, Off::Package, 40, 0.5, 400, 1e-4);
+    eprintln!("{kept:?}");
+    assert!((kept.peeling - 1.0).abs() < 0.05, "{kept:?}");
+    // peeled by that energy it goes on for a while; the balance is unstable, as that of the other formulation is
+    let kept = balloon(&c, Off::Peeled, 40, 0.05, 4000, 1e-4);
+    eprintln!("{kept:?}");
+    assert!(kept.curvature.abs() < 3e-2, "{kept:?}");
 }
 
 /// From rest to 15 kn with speed and tension given at the eyelet, by finite differences; then the same in cable elements

@@ -29,9 +29,8 @@ fn the_bundled_scene_unwinds() {
 
 /// A bundled scene run with some parameters.
 fn history(scene: &str, speed: &str, traverse: &str, more: &[&str]) -> ropewalk::History {
-    let set =
-        [&[&format!("speed={speed}"), &format!("traverse={traverse}")].map(String::as_str), more].concat();
-    let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+    let mut set = vec![format!("speed={speed}"), format!("traverse={traverse}")];
+    set.extend(more.iter().map(ToString::to_string));
     let file = SceneFile::open(scene, &set, bundled()).unwrap_or_else(|e| panic!("{e}"));
     simulate(file.scene()).unwrap_or_else(|e| panic!("{scene} {set:?}: {e}"))
 }
