@@ -1,12 +1,11 @@
 //! Where a cable lifts off from a package.
 
-use super::{Limit, Peel, Side};
+use super::{Limit, Side};
 use crate::package::{Lay, Package, PackageSpec};
-use ropewalk_core::build::{BuildError, Builder, not_negative};
+use ropewalk_core::build::{BuildError, Builder};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::{
-    At, Constraint, ConstraintSpec, Feed, Front, Marker, MarkerRef, Node, NodeId, RowKind, V3, dot, quantity,
-    register_spec,
+    At, Constraint, ConstraintSpec, Front, Marker, MarkerRef, Node, NodeId, RowKind, V3, dot, register_spec,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -159,8 +158,7 @@ impl Constraint for LiftOff {
 
 /// Lets an end of a cable lift off from a package: the lift-off point runs round the package as cable is peeled.
 ///
-/// A `winch` at the same end says what peels it: `speed` or `motion`, or `tension` for what the package holds it back with;
-/// or `peel` says that it sticks, without a winch.
+/// A `winch` at the same end says what peels it: `speed` or `motion`, or `tension` for what the package holds it back with.
 /// Where the cable goes to is told by an eyelet at the other end: a `spherical` constraint and a winch of its own. Reports
 /// what happens on the way: a tension below what keeps the cable taut, contact with the package, too much bending.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -175,14 +173,6 @@ pub struct LiftOffSpec {
     /// Whether the cable is tangent to the wound layer where it lifts off; needs bending stiffness.
     #[serde(default)]
     pub tangent: bool,
-    /// Energy per length that it takes to peel the cable off [J/m = N]: the curvatures `κ` of the free and `κ_w` of the
-    /// wound cable then differ by `EI |κ - κ_w|²/2 = peel`. Instead of a winch at this end, and with `tangent`.
-    #[serde(
-        default,
-        deserialize_with = "quantity::optional::force",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub peel: Option<f64>,
 }
 register_spec!(Constraint, "lift_off", LiftOffSpec);
 
@@ -194,25 +184,10 @@ impl ConstraintSpec for LiftOffSpec {
     fn markers(&self) -> Vec<&MarkerRef> {
         vec![&self.marker]
     }
-    fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        self.peel.map(|_| (&self.marker, Feed::default()))
-    }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let package = Arc::new(self.package.build()?);
         let front = b.front(&self.marker)?;
         let part = b.feeding_part(&self.marker)?;
-        if let Some(energy) = self.peel {
-            not_negative("peel", energy)?;
-            // of an element of length l, bending runs along in l² √(ρA/EI)
-            let element = part.length() / (part.mesh().len() - 1) as f64;
-            let Some(time) = part.bending_time().filter(|_| self.tangent) else {
-                let message = "peeling costs what bending sets free: give the cable bending stiffness and set `tangent`";
-                return Err(BuildError::at("peel", message));
-            };
-            let ei = front.rho_a * (element * element / time).powi(2);
-            let (name, package) = (self.name.clone(), package.clone());
-            b.term(Box::new(Peel { name, front, package, energy, ei }));
-        }
         b.event(Limit {
             name: self.name.clone(),
             front,
