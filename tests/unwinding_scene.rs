@@ -62,7 +62,8 @@ fn predictions_at_25_knots_are_those_of_both_formulations_and_follow_the_trend()
             trend.push((traverse, v, length[0], tension[0]));
         }
     }
-    // tension by the square of the speed keeps the shape but for the drag coefficient, which still falls a little, and for how far the lift-off point has walked
+    // tension by the square of the speed keeps the shape, but for the drag coefficient, which still falls a little, and for
+    // how far the lift-off point has walked
     for pair in trend.chunks(2) {
         let [(_, slow, short, low), (_, fast, long, high)] = pair else { panic!("pairs") };
         let similar = ((high - 0.02) / (low - 0.02)) / (fast / slow).powi(2);
