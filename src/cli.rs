@@ -103,6 +103,16 @@ enum Command {
         equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
         The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
     Modes(commands::modes::ModesArgs),
+    /// What each effect costs and does, what its absence would change, and what absent effects would add
+    #[command(after_help = "Examples:\n  \
+        ropewalk effects hose-turn --of height@60s\n  \
+        ropewalk effects pendulum --of cable.end --accuracy 1e-3 --set elements=16\n\n\
+        A record of several columns counts as a vector; with @TIME it is looked at at that time, else over the whole run.\n\
+        Changes are relative to the largest size of the record in the run. The scene is run once without each of its\n\
+        effects, and once with each effect that it lacks and that can be guessed from it; then without all those together\n\
+        that change the record by less than the accuracy. Runs are timed one after the other.\n\
+        The folder holds scene.toml, manifest.json, tables/ledger.csv, tables/effects.csv and plots/*.svg.")]
+    Effects(commands::effects::EffectsArgs),
     /// List the bundled scenes and the types that a scene can use
     List,
     /// Explain a scene, a type, or a section of a scene file
@@ -201,6 +211,7 @@ pub fn main_from(
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
+        Command::Effects(args) => commands::effects::effects(&args, bundled),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),

@@ -3,6 +3,7 @@
 pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod describe;
+pub(crate) mod effects;
 pub(crate) mod list;
 pub(crate) mod modes;
 pub(crate) mod resume;

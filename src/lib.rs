@@ -19,6 +19,7 @@
 pub mod bench;
 pub mod cli;
 mod commands;
+mod effects;
 mod error;
 mod modes;
 pub mod output;
@@ -34,6 +35,9 @@ pub use ropewalk_elements as elements;
 pub use ropewalk_forces as forces;
 pub use ropewalk_models as models;
 
+pub use effects::{
+    Advice, Deed, EffectsOptions, EffectsOutcome, Ledger, Tried, Verdict, effects, write_effects,
+};
 pub use error::Error;
 pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use read::{SceneFile, read};

@@ -12,7 +12,7 @@ mod tables;
 pub use checkpoint::Every;
 pub use manifest::Manifest;
 pub(crate) use pictures::{PLANES, planes, view};
-pub(crate) use recorder::{Recorder, records};
+pub(crate) use recorder::{Figure, Recorder, records};
 pub(crate) use shapes::last as last_shape;
 pub(crate) use start::{Ending, Started};
 
@@ -298,10 +298,10 @@ fn energy(a: &Audit) -> EnergyTotals {
     }
 }
 
-/// Adds what is not in any term or phase: Newton's method, the audit, recording.
+/// Adds what is not in any term or phase: Newton's method, recording.
 fn shares(mut entries: Vec<ProfileEntry>, total: f64) -> Vec<ProfileEntry> {
     let known: f64 = entries.iter().map(|e| e.seconds).sum();
-    let label = "integrator, audit and output".to_string();
+    let label = "integrator and output".to_string();
     entries.push(ProfileEntry { label, calls: 1, seconds: (total - known).max(0.0), share: 0.0 });
     for e in &mut entries {
         e.share = if total > 0.0 { e.seconds / total } else { 0.0 };

@@ -15,6 +15,9 @@ use std::collections::BTreeSet;
 /// Diagonal of the multipliers relative to the size of `G A⁻¹ Gᵀ`, equation by equation. Larger ones get in the way
 /// where a mechanism passes a singular position: a four-bar linkage stops at 1e-6.
 const SOFT: f64 = 1e-12;
+/// The same where an iteration starts next to a singular position: directions that the constraints hardly determine
+/// (by less than a thousandth of what they could) wait until the others are right.
+const BLUNT: f64 = 1e-6;
 /// The same where only the rank is asked for.
 const RANK: f64 = 1e-12;
 /// Entries of a vector that the constraints can't resist, relative to those of the vector that it is projected from;
@@ -60,6 +63,11 @@ impl Softening {
     /// Subtracts the small diagonal from an assembled matrix.
     pub fn apply<T: Scalar>(&self, values: &mut [T]) {
         self.apply_scaled(values, SOFT);
+    }
+
+    /// Subtracts a diagonal that keeps corrections small next to a singular position.
+    pub fn blunt<T: Scalar>(&self, values: &mut [T]) {
+        self.apply_scaled(values, BLUNT);
     }
 
     fn apply_scaled<T: Scalar>(&self, values: &mut [T], scale: f64) {

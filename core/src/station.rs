@@ -215,4 +215,11 @@ impl Term for FieldTerm {
             [one, other] => one.or(other).map(|(_, c)| c),
         }
     }
+    fn effects(&self) -> Vec<Box<dyn Term>> {
+        let one = |law: &Arc<dyn ErasedLaw>| -> Box<dyn Term> {
+            let (part, stations) = (self.part.clone(), self.stations.clone());
+            Box::new(FieldTerm { part, stations, laws: Laws(vec![law.clone()]) })
+        };
+        if self.laws.0.len() > 1 { self.laws.0.iter().map(one).collect() } else { Vec::new() }
+    }
 }

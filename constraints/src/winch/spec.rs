@@ -198,8 +198,9 @@ impl ConstraintSpec for WinchSpec {
             return Vec::new();
         };
         let part = split_marker(marker).ok().and_then(|(name, _)| model.part(name));
-        let Some((part, time)) = part.and_then(|p| Some((p, p.bending_time()?))) else { return Vec::new() };
-        let element = part.length() / (part.mesh().len() - 1) as f64;
+        let slender = part.and_then(|p| Some((p, p.slender()?))).filter(|(_, s)| s.ei > 0.0);
+        let Some((part, slender)) = slender else { return Vec::new() };
+        let (element, time) = (slender.element, slender.bending_time());
         let in_or_out = match self.final_length {
             Some(last) if last < part.length() => "in",
             None if speed < 0.0 => "in",

@@ -2,10 +2,11 @@
 
 use super::newton::{Newton, Outcome, Rate};
 use super::options::fixed_step;
+use super::scales::Scaled;
 use super::start::{anew, settle};
 use super::workspace::Which;
 use super::{
-    Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping,
+    Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping, Units,
     Workspace,
 };
 use crate::model::Model;
@@ -17,6 +18,7 @@ pub struct Alpha {
     options: Options,
     scheme: Coefficients,
     horizon: f64,
+    units: Units,
     warning: Option<String>,
 }
 
@@ -48,7 +50,10 @@ impl Alpha {
             }
             warning = Some(format!("unstable scheme allowed: {why}"));
         }
-        Ok(Alpha { options: options.clone(), scheme, horizon: options.horizon_in(duration), warning })
+        let units = options.scales.map_or(Ok(Units::SI), |scales| Units::of(scales, model));
+        let units = units.map_err(StepError::Scheme)?;
+        let horizon = options.horizon_in(duration);
+        Ok(Alpha { options: options.clone(), scheme, horizon, units, warning })
     }
 
     /// Its numbers.
@@ -229,6 +234,7 @@ impl Alpha {
         std::mem::swap(&mut state.lambda, &mut t.lambda);
         state.t += h;
         work.counts.steps += 1;
+        work.counts.unmet += u64::from(rate.unmet);
     }
 }
 
@@ -332,6 +338,10 @@ impl Integrator for Alpha {
     ) -> Result<StepReport, StepError> {
         work.ensure_mass(model, &state.at(), &state.lambda)
             .map_err(|source| linear(model, state.t, source))?;
+        if self.options.scales.is_some() && work.scaled.is_none() {
+            work.scaled = Some(Scaled::new(model, self.units));
+            work.factored = None;
+        }
         let linear_constraints = !model.is_mechanism();
         let controlled = matches!(self.options.stepping, Stepping::Controlled { .. });
         let limit = h_max.min(self.options.h_max);
@@ -350,7 +360,7 @@ impl Integrator for Alpha {
         // a step that only fills the rest of an interval says nothing about the next
         let cut = h >= limit && state.control.h_next > limit;
         let mut report = StepReport::default();
-        let (mut failures, mut stale) = (0, false);
+        let (mut failures, mut stale, mut careful) = (0, false, false);
         loop {
             let mut aux = std::mem::take(&mut work.trial.aux_old);
             self.rescale(state, h, &mut aux);
@@ -369,11 +379,14 @@ impl Integrator for Alpha {
                 },
                 max_iterations: self.options.max_iterations,
                 tolerance: self.newton_tolerance(model, h),
+                stopping: self.options.stopping,
+                units: self.units,
                 linear_constraints,
                 stabilised: self.stabilised(model),
                 // a step that leaps over the instant at which a point sticks ends so stiff that the estimate of its error
                 // is blind: error control has to find that instant
                 leaps: !controlled,
+                careful,
             };
             // factors that served badly last time are not tried again
             if state.control.theta > REFRESH {
@@ -426,6 +439,12 @@ impl Integrator for Alpha {
                     work.soften(model);
                     continue;
                 }
+                // a mechanism may be about to end next to a singular position, which a smaller step needn't avoid
+                Outcome::Failed { .. } if failures == 0 && !careful && !linear_constraints => {
+                    careful = true;
+                    work.factored = None;
+                    continue;
+                }
                 Outcome::Linear(source) if h <= self.options.h_min => {
                     return Err(linear(model, state.t, source));
                 }
@@ -437,6 +456,7 @@ impl Integrator for Alpha {
             work.counts.rejected += 1;
             work.factored = None;
             failures += 1;
+            careful = false;
             let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
             if smaller < self.options.h_min {
                 let why = match model.redundancy() {

@@ -5,8 +5,9 @@
 //! grow as the step shrinks (Bottasso, Bauchau & Cardona 2007), and β = 0 is no special case.
 
 use super::workspace::{Trial, Which};
-use super::{Coefficients, NewtonPolicy, Workspace};
+use super::{Coefficients, NewtonPolicy, Stopping, Units, Workspace};
 use crate::model::Model;
+use crate::redundancy::Softening;
 use crate::solver::SolveError;
 use crate::state::{At, State};
 use crate::term::{Leap, Weights};
@@ -23,6 +24,10 @@ const MOST_RENEWALS: u32 = 3;
 /// The same where forces were approximated at kinks, which renews the matrix every time.
 const MOST_AT_KINKS: u32 = 10;
 
+/// Iterations of a careful start. Next to a singular position a prediction off by `e` asks for a correction of `e` over
+/// the distance, which may lead beyond the other branch; once the well determined directions are right, little is left.
+const CAREFUL: u32 = 3;
+
 /// Largest expected rest of the error that is believed without a second iteration. What is expected grows from step to
 /// step that has only one.
 const TRUST: f64 = 0.1;
@@ -38,6 +43,8 @@ pub(crate) struct Rate {
     pub theta: Option<f64>,
     /// Whether kept factors had to be replaced on the way.
     pub kept_failed: bool,
+    /// Whether an absolute stopping test was given up, since only rounding is left.
+    pub unmet: bool,
 }
 
 /// What Newton's method of a trial came to.
@@ -52,6 +59,15 @@ pub(crate) enum Outcome {
     Linear(SolveError),
 }
 
+/// What an absolute stopping test says of an iteration.
+#[derive(Clone, Copy, PartialEq)]
+enum Test {
+    Met,
+    Failed,
+    /// It is met if the correction of this iteration is smaller.
+    Increment(f64),
+}
+
 pub(crate) struct Newton<'a> {
     pub model: &'a Model,
     pub state: &'a State,
@@ -61,12 +77,17 @@ pub(crate) struct Newton<'a> {
     pub max_iterations: u32,
     /// Tolerance of displacements [m].
     pub tolerance: f64,
+    /// When to stop, and the units of absolute tests.
+    pub stopping: Stopping,
+    pub units: Units,
     /// Whether every constraint is linear, so that one iteration meets it.
     pub linear_constraints: bool,
     /// Whether velocities are to meet the constraints as well.
     pub stabilised: bool,
     /// Whether terms with kinks are told what an iteration comes from.
     pub leaps: bool,
+    /// Whether to start carefully because the step may end next to a singular position.
+    pub careful: bool,
 }
 
 impl Newton<'_> {
@@ -99,11 +120,19 @@ impl Newton<'_> {
     }
 
     /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.
-    fn evaluate(&self, work: &mut Workspace, matrix: bool, leap: Option<Leap<'_>>) -> Result<(), SolveError> {
-        let weights = self.weights();
+    fn evaluate(&self, work: &mut Workspace, matrix: bool, leap: Option<Leap<'_>>) {
         let at = self.place(&work.trial);
-        self.model.assemble_from(leap, &at, &work.trial.lambda, matrix.then_some(weights), &mut work.system);
-        if matrix { work.factor(self.model, weights) } else { Ok(()) }
+        let weights = matrix.then(|| self.weights());
+        self.model.assemble_from(leap, &at, &work.trial.lambda, weights, &mut work.system);
+    }
+
+    /// Factors the iteration matrix that was assembled at the trial.
+    fn factor(&self, work: &mut Workspace, careful: bool) -> Result<(), SolveError> {
+        if careful {
+            Softening::new(self.model, self.model.structure()).blunt(&mut work.system.values);
+            work.system.approximate = true;
+        }
+        work.factor(self.model, self.weights())
     }
 
     /// Iterates from the prediction in `work.trial.aux` and `work.trial.lambda`.
@@ -126,7 +155,8 @@ impl Newton<'_> {
             // an iteration that would go on for long with its matrix gets a new one
             let slow = !approximated && since > 1 && last > noise && last * theta.powi(PATIENCE) > stop;
             let refresh = stale || self.policy == NewtonPolicy::Full || slow || approximated;
-            let refresh = refresh || k == 0 && work.trial.kinked;
+            let careful = self.careful && k < CAREFUL;
+            let refresh = refresh || k == 0 && work.trial.kinked || self.careful && k <= CAREFUL;
             let before = std::mem::take(&mut work.trial.v_before);
             let leap = match k {
                 _ if !kinks => None,
@@ -135,9 +165,14 @@ impl Newton<'_> {
                 k if k % 2 == 0 && refresh => Some(Leap { v: &before, predicted: false }),
                 _ => None,
             };
-            let result = self.evaluate(work, refresh, leap);
+            self.evaluate(work, refresh, leap);
             work.trial.v_before = before;
-            if let Err(e) = result {
+            let test = self.absolute(work);
+            if test == Some(Test::Met) && !work.system.approximate {
+                let theta = (renewals > 0).then_some(0.0);
+                return Outcome::Converged(Rate { iterations: k, eta, theta, kept_failed, unmet: false });
+            }
+            if refresh && let Err(e) = self.factor(work, careful) {
                 return Outcome::Linear(e);
             }
             // behind a kink, corrections say nothing about convergence
@@ -194,20 +229,34 @@ impl Newton<'_> {
             let last_before = std::mem::replace(&mut last, size);
             // a rate that wasn't seen for some steps has to be seen again before it is trusted
             let trusted = since > 1 || eta <= TRUST;
-            let done = trusted && size * eta.min(1e3) <= stop || size <= floor;
-            if done && !approximate && self.constraints_hold(work) {
+            let done = match test {
+                None => {
+                    (trusted && size * eta.min(1e3) <= stop || size <= floor)
+                        && !approximate
+                        && self.constraints_hold(work)
+                }
+                Some(Test::Increment(limit)) => !approximate && self.increment(work) < limit,
+                Some(_) => false,
+            };
+            if done {
                 let theta = if since > 1 && last_before > noise {
                     Some(theta)
                 } else {
                     (renewals > 0).then_some(0.0)
                 };
-                return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed });
+                return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed, unmet: false });
             }
-            if theta >= 1.0 {
+            if theta >= 1.0 && (test.is_none() || size > noise) {
                 // at the floor of rounding the iteration wanders; far from it, it diverges
                 if size <= noise && renewals > 0 {
-                    let rate = Rate { iterations: k + 1, eta: 1.0, theta: Some(1.0), kept_failed };
-                    return Outcome::Converged(rate);
+                    let theta = Some(1.0);
+                    return Outcome::Converged(Rate {
+                        iterations: k + 1,
+                        eta: 1.0,
+                        theta,
+                        kept_failed,
+                        unmet: false,
+                    });
                 }
                 match renewals {
                     0 => return Outcome::Stale,
@@ -217,7 +266,29 @@ impl Newton<'_> {
                 }
             }
         }
+        if self.stopping != Stopping::Relative && last <= noise {
+            let (iterations, theta) = (self.max_iterations, (renewals > 0).then_some(0.0));
+            return Outcome::Converged(Rate { iterations, eta, theta, kept_failed, unmet: true });
+        }
         Outcome::Failed { why: format!("{} Newton iterations were not enough", self.max_iterations) }
+    }
+
+    /// What an absolute stopping test says of the equations, as they were just assembled.
+    fn absolute(&self, work: &Workspace) -> Option<Test> {
+        let Stopping::Absolute { residual, increment } = self.stopping else { return None };
+        let met = residual.is_none_or(|r| self.units.residual(self.model, &work.system.residual) < r);
+        Some(match (met, increment) {
+            (false, _) => Test::Failed,
+            (true, None) => Test::Met,
+            (true, Some(limit)) => Test::Increment(limit),
+        })
+    }
+
+    /// Norm of the correction of the coordinates that was just solved for.
+    fn increment(&self, work: &Workspace) -> f64 {
+        let positions = &self.model.structure().position[..self.model.velocities()];
+        let scale = self.scheme.beta * self.h * self.h;
+        self.units.increment(self.model, positions.iter().map(|&p| scale * work.x[p]))
     }
 
     fn place<'a>(&'a self, trial: &'a Trial) -> At<'a> {
