@@ -129,6 +129,12 @@ enum Command {
         ropewalk bench --elements 8,64,512 --lanes four\n  \
         ropewalk bench --out cost               with a picture, CSV and JSON")]
     Bench(commands::bench::BenchArgs),
+    /// Compare the stiffness models of cables, and equations with and without dimensions
+    #[command(after_help = "Examples:\n  \
+        ropewalk variants\n  \
+        ropewalk variants --only stiffness\n  \
+        ropewalk variants --only scaling --finest 16 --absolute 1e-5")]
+    Variants(commands::variants::VariantsArgs),
     /// Read and build a scene without running it, and show what it consists of
     #[command(after_help = "Example:\n  ropewalk check scene.toml --set n=200")]
     Check {
@@ -212,6 +218,7 @@ pub fn main_from(
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),
+        Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
     };
     match done {

@@ -11,6 +11,7 @@ pub(crate) mod resume;
 pub(crate) mod run;
 mod schema;
 pub(crate) mod sweep;
+pub(crate) mod variants;
 
 use std::fmt::Display;
 use std::io::Write;

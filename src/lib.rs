@@ -31,6 +31,7 @@ pub mod scene;
 mod simulate;
 mod study;
 mod sweep;
+pub mod variants;
 
 pub use ropewalk_constraints as constraints;
 pub use ropewalk_core as core;

@@ -5,12 +5,15 @@ mod manifest;
 mod pictures;
 mod recorder;
 mod report;
+mod shapes;
 mod start;
 mod tables;
 
 pub use checkpoint::Every;
 pub use manifest::Manifest;
+pub(crate) use pictures::{PLANES, planes, view};
 pub(crate) use recorder::{Figure, Recorder, records};
+pub(crate) use shapes::last as last_shape;
 pub(crate) use start::{Ending, Started};
 
 use crate::error::Error;
@@ -260,6 +263,7 @@ impl Course<'_> {
         }
         recorder.finals(&mut summary);
         let pictures = pictures::draw(&folder, file.title(), &recorder, &mut |w| warnings.say(w));
+        shapes::write(&folder, &recorder.shapes).unwrap_or_else(|e| warnings.say(&e.to_string()));
         let tables = tables::write(&folder, &recorder, &mut |w| warnings.say(w));
         summary.warnings = warnings.all;
         if matches!(ending, Ending::Finished | Ending::Stopped(_)) && recorder.saver.is_some() {

@@ -3,7 +3,7 @@
 use super::{Exit, say};
 use crate::bench::models;
 use crate::error::Error;
-use crate::output::{OutputError, RunFolder, interrupted, new_bar, write_atomic};
+use crate::output::{Interrupt, OutputError, RunFolder, new_bar, write_atomic};
 use crate::scene::Fault;
 use crate::variants::scaling::{self, DRAWN, MESHES};
 use crate::variants::{Form, Problem, Variants, pictures, stiffness};
@@ -47,6 +47,7 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
             return Err(Fault::new(format!("`{name}` must be positive and at most 100000, not {x}")).into());
         }
     }
+    let interrupt = Interrupt::install()?;
     let folder = match &args.out {
         Some(path) => RunFolder::at(path.clone())?,
         None => RunFolder::numbered(Path::new("runs"), "variants")?,
@@ -69,7 +70,7 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
         bar.set_message(format!("{:?}+{:?}: errors", m.longitudinal, m.transverse));
         found.stiffness.push(stiffness::measure(m)?);
         bar.inc(1);
-        if interrupted() {
+        if interrupt.requested() {
             return Ok(Exit::Interrupted);
         }
     }
@@ -95,7 +96,7 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
                     }
                     found.scaling.push(run.row);
                     bar.inc(1);
-                    if interrupted() {
+                    if interrupt.requested() {
                         return Ok(Exit::Interrupted);
                     }
                 }

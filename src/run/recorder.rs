@@ -137,6 +137,7 @@ impl<'a> Recorder<'a> {
         self.shapes = saved.shapes.clone().into_owned();
         self.due = saved.due.clone().into_owned();
         self.events = saved.events.clone().into_owned();
+        self.remeshed = saved.remeshed.clone().into_owned();
         Ok(())
     }
 
