@@ -15,6 +15,7 @@ use crate::output::{Counts, Interrupt, ProfileEntry, ProgressMode, RunFolder, St
 use crate::read::SceneFile;
 use crate::run::{Manifest, Started};
 use crate::scene::Fault;
+use crate::study::Target;
 use books::Books;
 use catalogue::{Candidate, absent, edited, present};
 use ropewalk_core::integrator::Stepping;
@@ -216,7 +217,8 @@ impl Keeper<'_> {
         // an unknown record should not have to wait for the run
         let model = scene.build()?;
         let blank = crate::run::Recorder::new(scene, crate::run::records(scene, &model)?);
-        let watched = Watched::find(record, &blank.figures, &blank.table, scene.run.duration)?;
+        let watched =
+            Watched::of(&Target::find(record, &Target::recorded(&blank), &scene.run)?, &blank.table);
         let rounding = if watched.unit(&blank.table) == "m" { model.rounding() } else { 0.0 };
         drop((model, blank));
 

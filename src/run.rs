@@ -12,7 +12,7 @@ mod tables;
 pub use checkpoint::Every;
 pub use manifest::Manifest;
 pub(crate) use pictures::{PLANES, planes, view};
-pub(crate) use recorder::{Figure, Recorder, records};
+pub(crate) use recorder::{Recorder, records};
 pub(crate) use shapes::last as last_shape;
 pub(crate) use start::{Ending, Started};
 

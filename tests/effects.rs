@@ -509,7 +509,7 @@ fn what_is_wrong_with_a_ledger_is_said_in_one_message() {
         run(folder.path(), &[&["effects", scene], more].concat()).refused(holds);
     };
     refused("swing.toml", &["--of", "rope.ende"], &["no record `rope.ende`", "did you mean `rope.end`"]);
-    refused("swing.toml", &["--of", "rope.end@2s"], &["2 s is not in the run", "from 0 to 0.3 s"]);
+    refused("swing.toml", &["--of", "rope.end@2s"], &["time 2 s", "outside the run, which ends at 0.3 s"]);
     refused("swing.toml", &["--of", "rope.end@soon"], &["is no time"]);
     refused("swing.toml", &["--of", "rope.end", "--accuracy", "0"], &["`--accuracy` must be positive"]);
     refused("swing.toml", &["--of", "rope.end", "--accuracy", "NaN"], &["`--accuracy` must be positive"]);

@@ -1,9 +1,7 @@
 //! The record by which effects are judged, and how far it changes.
 
 use crate::output::Table;
-use crate::run::Figure;
-use crate::scene::{Fault, did_you_mean, quoted};
-use ropewalk_core::quantity;
+use crate::study::Target;
 
 /// A record, or a single column of one, over the whole run or at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,59 +15,10 @@ pub(super) struct Watched {
 }
 
 impl Watched {
-    /// Finds `RECORD` or `RECORD@TIME`, where the record may also be one of its columns.
-    ///
-    /// # Errors
-    /// There is no such record, or the run has no such time.
-    pub fn find(text: &str, figures: &[Figure], table: &Table, duration: f64) -> Result<Self, Fault> {
-        let columns_of = |name: &str| -> Option<Vec<String>> {
-            let name_of = |k: usize| table.columns[k].name.clone();
-            if let Some(f) = figures.iter().find(|f| f.name == name) {
-                return Some(f.columns.clone().map(name_of).collect());
-            }
-            table.columns.iter().skip(1).find(|c| c.name == name).map(|c| vec![c.name.clone()])
-        };
-        // names such as `hose@15m` have this sign too
-        if let Some(columns) = columns_of(text) {
-            return Ok(Watched { text: text.into(), columns, t: None });
-        }
-        let (name, time) = match text.rsplit_once('@') {
-            Some((name, time)) if columns_of(name).is_some() => (name, Some(time)),
-            _ => (text, None),
-        };
-        let Some(columns) = columns_of(name) else {
-            let names: Vec<&str> = figures.iter().map(|f| f.name.as_str()).collect();
-            let fault = Fault::new(format!("the scene has no record {}", quoted(name)));
-            return Err(match names.as_slice() {
-                [] => fault
-                    .with_help("add one to the scene, such as `[[records]] type = \"position\" of = ...`"),
-                _ => {
-                    let all = figures
-                        .iter()
-                        .flat_map(|f| f.columns.clone())
-                        .map(|k| table.columns[k].name.as_str());
-                    let all: Vec<&str> = names.iter().copied().chain(all).collect();
-                    let fault = fault.with_note(format!("its records are {}", names.join(", ")));
-                    match did_you_mean(name, &all) {
-                        Some(help) => fault.with_help(help),
-                        None => fault.with_help("name one of them, or one of their columns"),
-                    }
-                }
-            });
-        };
-        let parse = |time: &str| {
-            let t: Result<f64, String> = time.trim().parse().or_else(|_| quantity::kind::TIME.parse(time));
-            match t {
-                Ok(t) if (0.0..=duration).contains(&t) => Ok(t),
-                Ok(t) => Err(Fault::new(format!(
-                    "the time {t} s is not in the run, which goes from 0 to {duration} s"
-                ))
-                .with_help("choose an earlier time, or a longer `duration`")),
-                Err(e) => Err(Fault::new(format!("{} is no time: {e}", quoted(time)))),
-            }
-        };
-        let t = time.map(parse).transpose()?;
-        Ok(Watched { text: text.into(), columns, t })
+    /// The columns of a target, by their names: what has other effects may have other columns beside them.
+    pub fn of(target: &Target, table: &Table) -> Self {
+        let columns = target.columns.clone().map(|k| table.columns[k].name.clone()).collect();
+        Watched { text: target.text.clone(), columns, t: target.t }
     }
 
     /// Its rows: time and values.
@@ -144,37 +93,12 @@ mod tests {
         table
     }
 
-    fn figure() -> Vec<Figure> {
-        vec![Figure { name: "end".into(), title: String::new(), columns: 1..3 }]
-    }
-
-    #[test]
-    fn records_columns_and_times_are_found() {
-        let t = table(&[[0.0, 3.0, 4.0], [1.0, 6.0, 8.0]]);
-        let find = |text: &str| Watched::find(text, &figure(), &t, 1.0);
-        assert_eq!(find("end").unwrap().columns, ["end.x", "end.z"]);
-        assert_eq!(find("end.z").unwrap().columns, ["end.z"]);
-        assert_eq!(find("end@500 ms").unwrap().t, Some(0.5));
-        assert_eq!(find("end").unwrap().scale(&t), 10.0);
-        for (text, message) in [
-            ("ende", "no record `ende`"),
-            ("end@2", "the time 2 s is not in the run"),
-            ("end@-1", "the time -1 s is not in the run"),
-            ("end@NaN", "not in the run"),
-            ("end@1 m", "is no time"),
-            ("", "no record"),
-            ("t", "no record `t`"),
-        ] {
-            let fault = find(text).unwrap_err();
-            assert!(fault.to_string().contains(message), "{fault}");
-        }
-    }
-
     #[test]
     fn changes_are_largest_differences() {
         let base = table(&[[0.0, 0.0, 0.0], [1.0, 6.0, 8.0], [2.0, 6.0, 8.0]]);
         let other = table(&[[0.0, 0.0, 0.0], [1.0, 3.0, 4.0]]);
         let watched = |t| Watched { text: String::new(), columns: vec!["end.x".into(), "end.z".into()], t };
+        assert_eq!(watched(None).scale(&base), 10.0);
         assert_eq!(watched(None).change(&base, &other), Some(5.0));
         assert_eq!(watched(Some(0.5)).change(&base, &other), Some(2.5));
         assert_eq!(watched(Some(1.5)).change(&base, &other), None);

@@ -4,7 +4,7 @@ use crate::output::Table;
 use crate::read::SceneFile;
 use crate::run::Recorder;
 use crate::scene::{Fault, did_you_mean, quoted};
-use ropewalk_core::{Analysis, quantity};
+use ropewalk_core::{Analysis, Run, quantity};
 use std::ops::Range;
 
 /// What is smaller than others of its unit by this is rounding.
@@ -31,7 +31,14 @@ impl Target {
     /// # Errors
     /// There is no such record, or no such time.
     pub(crate) fn parse(text: &str, file: &SceneFile) -> Result<Self, Fault> {
-        let all = Self::all(file)?;
+        Self::find(text, &Self::all(file)?, &file.scene().run)
+    }
+
+    /// The same among these, of a run.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse).
+    pub(crate) fn find(text: &str, all: &[Self], run: &Run) -> Result<Self, Fault> {
         let named = |name: &str| all.iter().find(|t| t.name == name);
         if let Some(target) = named(text) {
             return Ok(Target { text: text.into(), ..target.clone() });
@@ -53,19 +60,19 @@ impl Target {
                 (false, None) => fault.with_help(format!("choose one of {}", names.join(", "))),
             });
         };
-        let t = time.map(|time| Self::time(text, time, file)).transpose()?;
+        let t = time.map(|time| Self::time(text, time, run)).transpose()?;
         Ok(Target { text: text.into(), t, ..target.clone() })
     }
 
-    fn time(text: &str, time: &str, file: &SceneFile) -> Result<f64, Fault> {
-        let statics = file.scene().run.analysis == Analysis::Statics;
+    fn time(text: &str, time: &str, run: &Run) -> Result<f64, Fault> {
+        let statics = run.analysis == Analysis::Statics;
         let (what, unit, example) =
             if statics { ("load factor", "", "0.5") } else { ("time", " s", "2.5 s") };
         let t: f64 = time.parse().or_else(|_| quantity::kind::TIME.parse(time)).map_err(|_| {
             Fault::new(format!("{} is no {what}, in {}", quoted(time), quoted(text)))
                 .with_help(format!("write it behind the @, as in `record@{example}`"))
         })?;
-        let end = file.scene().run.duration;
+        let end = run.duration;
         if !(t > 0.0 && t <= end * (1.0 + 1e-12)) {
             let message =
                 format!("{what} {t}{unit} in {} is outside the run, which ends at {end}{unit}", quoted(text));
@@ -82,14 +89,18 @@ impl Target {
     /// The scene can't be built.
     pub(crate) fn all(file: &SceneFile) -> Result<Vec<Self>, Fault> {
         let model = file.build()?;
-        let recorder = Recorder::new(file.scene(), file.records(&model)?);
+        Ok(Self::recorded(&Recorder::new(file.scene(), file.records(&model)?)))
+    }
+
+    /// All records of a recorder, then their columns.
+    pub(crate) fn recorded(recorder: &Recorder<'_>) -> Vec<Self> {
         let of = |name: &str, columns: Range<usize>| {
             let unit = recorder.table.columns.get(columns.start).map_or("", |c| c.unit.as_str()).to_string();
             Target { text: name.into(), name: name.into(), t: None, columns, unit }
         };
         let records = recorder.figures.iter().map(|f| of(&f.name, f.columns.clone()));
         let columns = recorder.table.columns.iter().enumerate().skip(1).map(|(k, c)| of(&c.name, k..k + 1));
-        Ok(records.chain(columns).collect())
+        records.chain(columns).collect()
     }
 
     /// Time and the columns that are looked at, of a history with all columns.
