@@ -34,7 +34,7 @@ use std::process::ExitCode;
         ropewalk run scene.toml --set n=40      the same with another parameter\n  \
         ropewalk sweep scene.toml --vary n=10,20,40 --vary speed=5:25:10kn\n  \
         ropewalk describe cable                 the fields of a type\n\n\
-        Exit codes: 0 done, 2 wrong scene or usage, 3 the solver gave up, 130 Ctrl-C.",
+        Exit codes: 0 done, 1 a case of `verify` is off, 2 wrong scene or usage, 3 the solver gave up, 130 Ctrl-C.",
     disable_help_subcommand = true
 )]
 struct Cli {
@@ -103,6 +103,15 @@ enum Command {
         equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
         The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
     Modes(commands::modes::ModesArgs),
+    /// Run cases with known results, and compare: measured values, references, tolerances, CPU time
+    #[command(after_help = "Examples:\n  \
+        ropewalk verify                         all cases\n  \
+        ropewalk verify elastica flying         those whose names begin so\n  \
+        ropewalk verify --list                  what there is\n  \
+        ropewalk verify -o docs/verification.md a page of the results, with a picture beside it\n\n\
+        Exit codes: 0 all within their tolerances, 1 something outside, 2 wrong usage, 130 Ctrl-C. CPU time beyond the\n\
+        suggested limit is reported, no failure. Cases are scenes: `--scenes DIR` writes them, to be run and changed.")]
+    Verify(commands::verify::VerifyArgs),
     /// List the bundled scenes and the types that a scene can use
     List,
     /// Explain a scene, a type, or a section of a scene file
@@ -201,6 +210,7 @@ pub fn main_from(
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
+        Command::Verify(args) => commands::verify::verify(&args),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),

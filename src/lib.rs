@@ -27,6 +27,7 @@ mod run;
 pub mod scene;
 mod simulate;
 mod sweep;
+pub mod verify;
 
 pub use ropewalk_constraints as constraints;
 pub use ropewalk_core as core;

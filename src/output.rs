@@ -2,7 +2,7 @@
 //!
 //! - [`RunFolder`]: the folder of a run; nothing in it is ever overwritten by a later run.
 //! - [`Table`], [`TableWriter`]: time histories, as CSV.
-//! - [`LinePlot`], [`ShapePlot`]: SVG pictures that need no fonts and no display.
+//! - [`LinePlot`], [`ShapePlot`], [`BarPlot`]: SVG pictures that need no fonts and no display.
 //! - [`Summary`]: the few numbers that say how a run ended, as JSON.
 //! - [`Progress`], [`SweepProgress`], [`Interrupt`], [`Stopwatch`]: the progress bars, Ctrl-C, and CPU time.
 
@@ -22,7 +22,7 @@ pub(crate) use folder::{RUNS, cannot_create, plain, write_json};
 pub use folder::{RunFolder, write_atomic};
 pub use interrupt::Interrupt;
 pub(crate) use number::{number, rough};
-pub use plot::{LinePlot, Mark, Plane, Series, ShapePlot, Snapshot};
+pub use plot::{BarPlot, LinePlot, Mark, NamedBar, Plane, Series, ShapePlot, Snapshot};
 pub(crate) use progress::new_bar;
 pub use progress::{Progress, ProgressMode, SweepProgress};
 pub use stopwatch::{Elapsed, Stopwatch};

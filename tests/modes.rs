@@ -342,7 +342,7 @@ fn what_has_no_modes_is_refused_with_the_reason() {
             axis: [0.0, 0.0, 1.0],
             motion: "spin".into(),
         })
-        .motion(SpinSpec { name: "spin".into(), rate: 3.0, start: 0.0, ramp: 0.0 });
+        .motion(SpinSpec { name: "spin".into(), rate: 3.0, start: 0.0, ramp: 0.0, rise: Default::default() });
     let message = told(&scene, &ModesOptions::default());
     assert!(message.contains("`motor` moves at t = 0 s") && message.contains("frame"), "{message}");
     scene.motions.clear();

@@ -3,8 +3,10 @@
 //!
 //! - [`LinePlot`]: quantities over time, or one over another.
 //! - [`ShapePlot`]: a cable in a plane at several times.
+//! - [`BarPlot`]: one number for each of several things, on a logarithmic scale.
 
 mod axis;
+mod bar;
 mod canvas;
 mod colour;
 mod frame;
@@ -12,5 +14,6 @@ mod line;
 mod shape;
 mod thin;
 
+pub use bar::{BarPlot, NamedBar};
 pub use line::{LinePlot, Mark, Series};
 pub use shape::{Plane, ShapePlot, Snapshot};

@@ -23,6 +23,7 @@ pub use plane::Side;
 pub use rest::Rest;
 pub use spec::{CircleSpec, HarmonicSpec, RestSpec, StraightSpec, TableEnds, TableSpec, Towards, TurnSpec};
 pub use speed::{SpeedTable, SpeedTableSpec};
+pub use smooth::Shape;
 pub use spin::{Spin, SpinSpec};
 pub use straight::Straight;
 pub use swing::SwingSpec;
