@@ -42,62 +42,6 @@ fn ends(scene: &mut Scene, constraints: Vec<Box<dyn ConstraintSpec>>) {
     scene.constraints.extend(constraints.into_iter().map(std::sync::Arc::from));
 }
 
-#[test]
-fn string_chain_and_beam_have_the_frequencies_of_their_case() {
-    let taut = {
-        let mut scene = Scene::new();
-        let section = Section::new(1.5, 1e6, 50.0);
-        scene.element(
-            CableSpec::straight("string", [0.0; 3], [10.01, 0.0, 0.0], 32, section).unstretched(10.0),
-        );
-        ends(
-            &mut scene,
-            vec![
-                Box::new(SphericalSpec::pin("left", "string.start")),
-                Box::new(SphericalSpec::pin("right", "string.end")),
-            ],
-        );
-        find(&scene, 110)
-    };
-    let across = along(&taut, 1);
-    let lengthwise = along(&taut, 0);
-    let chain = {
-        let mut scene = Scene::new();
-        let section = Section::new(1.5, 1e8, 1e-7);
-        let chain = CableSpec::straight("chain", [0.0; 3], [0.0, 0.0, -10.0], 32, section);
-        // without tension and bending stiffness the free end has nothing but the quadrature to hold its slope
-        let chain = chain.models(LongitudinalModel::L4, TransverseModel::T3, Integration::Full);
-        scene
-            .element(chain)
-            .constraint(SphericalSpec::pin("hook", "chain.start"))
-            .force(GravitySpec::default());
-        find(&scene, 8)
-    };
-    let beam = {
-        let mut scene = Scene::new();
-        let section = Section::new(1.5, 1e6, 50.0);
-        scene
-            .element(CableSpec::straight("beam", [0.0; 3], [10.0, 0.0, 0.0], 32, section))
-            .constraint(SphericalSpec::pin("root", "beam.start"))
-            .constraint(ClampSpec::new("clamp", "beam.start"));
-        find(&scene, 8)
-    };
-    for r in reference("modes_string_chain_beam") {
-        let n: usize = r.quantity.rsplit([' ', '=']).next().and_then(|n| n.parse().ok()).expect("a number");
-        let found = match &r.quantity {
-            q if q.contains("transverse") => across[n - 1],
-            q if q.contains("longitudinal") => lengthwise[n - 1],
-            // both planes have the same frequencies
-            q if q.contains("chain") => chain[2 * (n - 1)].omega,
-            _ => beam[2 * (n - 1)].omega,
-        };
-        close(&r.quantity, found, r.number(), r.tolerance);
-    }
-    for pair in beam.chunks(2) {
-        close("the other plane", pair[1].omega, pair[0].omega, 1e-6);
-    }
-}
-
 /// The beam of the case, clamped at the axis of a frame that turns about z.
 fn rotating(omega: f64, n: usize) -> Scene {
     let mut scene = Scene::new();
@@ -108,25 +52,6 @@ fn rotating(omega: f64, n: usize) -> Scene {
     scene.run.analysis = Analysis::Statics;
     scene.run.frame = Some(SteadyFrame { omega: [0.0, 0.0, omega], ..SteadyFrame::default() });
     scene
-}
-
-#[test]
-fn rotating_beam_has_the_published_frequencies() {
-    for omega in [0.0, 3.0, 6.0, 12.0] {
-        let found = find(&rotating(omega, 32), 8);
-        assert!(found.iter().all(|m| m.growth.abs() < 1e-6 * m.omega), "nothing damps it");
-        let (inside, out) = (along(&found, 1), along(&found, 2));
-        for r in reference("rotating_beam_modes") {
-            let (speed, what) = r.quantity.split_once(": ").expect("speed");
-            if speed != format!("Omega*={omega:.0}") {
-                continue;
-            }
-            let n: usize =
-                what.split_once("frequency ").and_then(|w| w.1[..1].parse().ok()).expect("a number");
-            let of = if what.starts_with("in-plane") { &inside } else { &out };
-            close(&r.quantity, of[n - 1], r.number(), r.tolerance);
-        }
-    }
 }
 
 #[test]

@@ -219,9 +219,9 @@ impl Quantity {
             }
             Take::Mode { number, along } => {
                 let share = along.as_ref().map(|of| column(results, of)).transpose()?;
-                let chosen = (0..x.len()).filter(|&k| share.is_none_or(|s| s[k] > 0.9));
+                let mut chosen = (0..x.len()).filter(|&k| share.is_none_or(|s| s[k] > 0.9));
                 let missing = || format!("fewer than {number} such modes were computed");
-                chosen.skip(number.saturating_sub(1)).map(|k| x[k]).next().ok_or_else(missing)
+                chosen.nth(number.saturating_sub(1)).map(|k| x[k]).ok_or_else(missing)
             }
         }
     }
