@@ -61,6 +61,7 @@ struct DrivenRodSpec {
     name: String,
 }
 
+#[derive(Debug)]
 struct DrivenRod;
 
 impl Motion for DrivenRod {
