@@ -13,10 +13,13 @@ pub fn heading(o: &Outcome) -> String {
     if o.case.quantities() == 0 {
         return format!("{name:<41} not run");
     }
-    let verdict = if o.is_within() { "within" } else { "OUTSIDE" };
     let compared = o.measured.len();
+    if !o.trouble.is_empty() {
+        return format!("{name:<41} FAILED: {compared} of {} quantities, {time}", o.case.quantities());
+    }
+    let verdict = if o.is_within() { "within" } else { "OUTSIDE" };
     let worst = ratio(o.worst());
-    format!("{name:<41} {verdict:<7}  {worst:>9} of the tolerance, {compared:>2} quantities, {time}{slow}")
+    format!("{name:<41} {verdict:<7} {worst:>8} of the tolerance, {compared:>2} quantities, {time}{slow}")
 }
 
 /// All that it compared, a line each: measured, reference, tolerance, error in parts of the tolerance.
