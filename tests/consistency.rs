@@ -15,7 +15,8 @@ use ropewalk_core::rotation::cross;
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::testing::difference;
 use ropewalk_core::{
-    At, Audit, Model, Observer, RecordSpec, Sample, Scene, Simulation, State, System, V3, Water, Weights, retract,
+    At, Audit, Model, Observer, RecordSpec, Sample, Scene, Simulation, State, System, V3, Water, Weights,
+    retract,
 };
 use ropewalk_elements::rigid_body::{HullSpec, Shape};
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};

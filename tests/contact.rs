@@ -1,4 +1,5 @@
-//! Contact against closed forms: bounces, blocks, pulleys, capstans, balls that roll; meshes; what is refused.
+//! Contact against closed forms: capstans, pulleys, balls that roll; meshes; what is refused. Bounces, blocks and the pulley
+//! without friction are a case of the verification suite.
 
 mod common;
 
@@ -48,45 +49,7 @@ fn shown(model: &Model, state: &State, force: &str) -> Vec<f64> {
     out
 }
 
-/// Height and its rate of the first node at every step.
-#[derive(Default)]
-struct Height(Vec<(f64, f64, f64)>);
-
-impl Observer for Height {
-    fn step(&mut self, _: &Model, s: &State, _: &StepReport) -> ControlFlow<()> {
-        self.0.push((s.t, s.q[2], s.v[2]));
-        ControlFlow::Continue(())
-    }
-}
-
-impl Height {
-    /// Time, height and rate between steps, by the cubic through both.
-    fn between(a: (f64, f64, f64), b: (f64, f64, f64), xi: f64) -> (f64, f64, f64) {
-        let h = b.0 - a.0;
-        let (d, p, q) = (b.1 - a.1, h * a.2, h * b.2);
-        let (two, three) = (3.0 * d - 2.0 * p - q, p + q - 2.0 * d);
-        let z = a.1 + xi * (p + xi * (two + xi * three));
-        (a.0 + xi * h, z, (p + xi * (2.0 * two + xi * 3.0 * three)) / h)
-    }
-    /// Where a function of time, height and rate changes its sign.
-    fn zeros(&self, f: impl Fn((f64, f64, f64)) -> f64) -> Vec<(f64, f64, f64)> {
-        let mut found = Vec::new();
-        for w in self.0.windows(2) {
-            if (f(w[0]) > 0.0) != (f(w[1]) > 0.0) {
-                let (mut low, mut high) = (0.0, 1.0);
-                for _ in 0..60 {
-                    let mid = 0.5 * (low + high);
-                    let same = (f(Self::between(w[0], w[1], mid)) > 0.0) == (f(w[0]) > 0.0);
-                    if same { low = mid } else { high = mid }
-                }
-                found.push(Self::between(w[0], w[1], low));
-            }
-        }
-        found
-    }
-}
-
-/// The sphere of the case: its radius doesn't matter.
+/// Radius of the ball; it doesn't matter.
 const R: f64 = 0.05;
 
 fn floor(stiffness: f64) -> ContactSpec {

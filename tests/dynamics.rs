@@ -2,15 +2,12 @@
 
 mod common;
 
-use common::{case, data, models, number, pendulum, place, size};
+use common::{data, models, number, pendulum, place, size};
 use ropewalk_constraints::DistanceSpec;
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
-use ropewalk_core::{End, Scene, Simulation, Water};
+use ropewalk_core::{End, Scene, Simulation};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
-use ropewalk_forces::{
-    AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec, PointForceSpec, PointMomentSpec, SpringSpec,
-    TimeFunction,
-};
+use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
 
 fn fixed(h: f64) -> Options {
     Options { stepping: Stepping::Fixed { h }, ..Options::default() }

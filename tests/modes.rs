@@ -1,22 +1,15 @@
-//! Vibration modes against closed forms and published frequencies.
+//! Vibration modes against closed forms; those of strings, chains and beams are cases of the verification suite.
 
-mod common;
 mod program;
 
-use common::{Reference, data};
 use ropewalk::{ModesOptions, modes};
 use ropewalk_constraints::motion::SpinSpec;
-use ropewalk_constraints::{ClampSpec, DistanceSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec};
+use ropewalk_constraints::{DistanceSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec};
 use ropewalk_core::modes::Mode;
-use ropewalk_core::{Analysis, ConstraintSpec, Scene, SteadyFrame};
-use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
+use ropewalk_core::{Analysis, Scene, SteadyFrame};
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, SpringSpec, TimeFunction};
 use std::f64::consts::PI;
-
-fn reference(name: &str) -> Vec<Reference> {
-    serde_json::from_value(data(&format!("cases/{name}.json"))["reference"].clone()).expect(name)
-}
 
 #[track_caller]
 fn find(scene: &Scene, count: usize) -> Vec<Mode> {
@@ -26,32 +19,11 @@ fn find(scene: &Scene, count: usize) -> Vec<Mode> {
     found.modes
 }
 
-/// Angular frequencies of the modes that move along one direction; of equal pairs both.
-fn along(modes: &[Mode], direction: usize) -> Vec<f64> {
-    modes.iter().filter(|m| m.directions[direction] > 0.9).map(|m| m.omega).collect()
-}
-
 #[track_caller]
 fn close(what: &str, found: f64, exact: f64, tolerance: f64) {
     let off = (found / exact - 1.0).abs();
     println!("{what}: {found:.9}, exact {exact:.9}, off by {off:.1e}");
     assert!(off <= tolerance, "{what}: {found} instead of {exact}, off by {off:e}");
-}
-
-fn ends(scene: &mut Scene, constraints: Vec<Box<dyn ConstraintSpec>>) {
-    scene.constraints.extend(constraints.into_iter().map(std::sync::Arc::from));
-}
-
-/// The beam of the case, clamped at the axis of a frame that turns about z.
-fn rotating(omega: f64, n: usize) -> Scene {
-    let mut scene = Scene::new();
-    scene
-        .element(CableSpec::straight("beam", [0.0; 3], [1.0, 0.0, 0.0], n, Section::new(1.0, 1e7, 1.0)))
-        .constraint(SphericalSpec::pin("hub", "beam.start"))
-        .constraint(ClampSpec::new("clamp", "beam.start"));
-    scene.run.analysis = Analysis::Statics;
-    scene.run.frame = Some(SteadyFrame { omega: [0.0, 0.0, omega], ..SteadyFrame::default() });
-    scene
 }
 
 #[test]

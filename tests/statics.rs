@@ -1,15 +1,13 @@
-//! Equilibria against references: cantilever, elastica, roll-up, catenaries from bad guesses.
+//! Equilibria against references: cantilevers of every variant, catenaries from bad guesses, tows; what is no equilibrium.
 
 mod common;
 
-use common::{cantilever, data, hose, law, linear, models, number, place, reaction, size, towed};
+use common::{cantilever, data, hose, law, models, number, place, reaction, size, towed};
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::statics::{Found, Statics, StaticsOptions};
-use ropewalk_core::{Level, Model, Scene, State, SteadyFrame, Water};
-use ropewalk_elements::{CableSpec, PointMassSpec, Section};
-use ropewalk_forces::{
-    BuoyancySpec, DragLaw, DragSpec, GravitySpec, PointForceSpec, PointMomentSpec, TimeFunction,
-};
+use ropewalk_core::{Model, Scene, State, SteadyFrame, Water};
+use ropewalk_elements::{CableSpec, Section};
+use ropewalk_forces::{DragLaw, DragSpec, GravitySpec};
 
 /// Follows the load factor from 0 to 1 in equal steps.
 fn follow(model: &Model, steps: usize) -> (State, Vec<Found>) {

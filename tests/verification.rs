@@ -10,7 +10,8 @@ use std::fs;
 
 #[track_caller]
 fn within(name: &str) {
-    let outcome = case(name).expect("a case").run(Followed { progress: ProgressMode::Quiet, interrupt: None });
+    let outcome =
+        case(name).expect("a case").run(Followed { progress: ProgressMode::Quiet, interrupt: None });
     println!("{}\n{}", heading(&outcome), lines(&outcome).join("\n"));
     assert!(outcome.is_within(), "{}\n{}", heading(&outcome), lines(&outcome).join("\n"));
 }

@@ -85,7 +85,9 @@ pub(crate) fn verify(args: &VerifyArgs) -> Result<Exit, Error> {
 fn chosen(names: &[String]) -> Result<Vec<Case>, Error> {
     let all = cases();
     let known: Vec<&str> = all.iter().map(|c| c.name).collect();
-    if let Some(name) = names.iter().find(|n| n.is_empty() || !known.iter().any(|k| k.starts_with(n.as_str()))) {
+    if let Some(name) =
+        names.iter().find(|n| n.is_empty() || !known.iter().any(|k| k.starts_with(n.as_str())))
+    {
         let near = known.iter().filter(|k| !name.is_empty() && k.contains(name.as_str())).copied();
         let near: Vec<&str> = near.collect();
         let fault = Fault::new(format!("there is no case {}", quoted(name)));

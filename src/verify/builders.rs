@@ -36,7 +36,8 @@ fn hinge(name: String, marker: &str, to: impl Into<MarkerRef>) -> RevoluteSpec {
 fn four_bars(scene: &mut Scene, n: usize) {
     for k in 0..=n {
         let (crank, foot) = (format!("crank{k}"), [k as f64, 0.0, 0.0]);
-        let body = RigidBodySpec { angular_velocity: [0.0, 0.0, -1.0], ..rod(crank.clone(), foot, FRAC_PI_2) };
+        let body =
+            RigidBodySpec { angular_velocity: [0.0, 0.0, -1.0], ..rod(crank.clone(), foot, FRAC_PI_2) };
         scene.element(body).constraint(hinge(format!("ground{k}"), &crank, foot));
     }
     for k in 0..n {

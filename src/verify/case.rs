@@ -106,7 +106,8 @@ impl Case {
     /// Leaves out what this program was built without.
     fn possible(mut self) -> Self {
         if cfg!(not(feature = "contact")) && self.name.starts_with("contact") {
-            let reason = "needs the cargo feature `contact`, which this program was built without".to_string();
+            let reason =
+                "needs the cargo feature `contact`, which this program was built without".to_string();
             let count = self.quantities();
             self.left_out.push(LeftOut { quantity: "all".into(), count, reason });
             self.runs.clear();
@@ -214,10 +215,15 @@ mod tests {
     fn what_fails_is_told_and_the_rest_is_compared() {
         let missing = pendulum(|text| text.replace("\"mass.ax\"", "\"mass.jerk\""));
         assert_eq!((missing.measured.len(), missing.worst()), (3, f64::INFINITY));
-        assert!(missing.trouble[0].contains("no column `mass.jerk`; there are t, mass.x"), "{:?}", missing.trouble);
+        assert!(
+            missing.trouble[0].contains("no column `mass.jerk`; there are t, mass.x"),
+            "{:?}",
+            missing.trouble
+        );
         let late = pendulum(|text| text.replacen("{\"at\": 0.0}", "{\"at\": 7.0}", 1));
         assert!(late.trouble[0].contains("there is no sample at 7"), "{:?}", late.trouble);
-        let refused = pendulum(|text| text.replace("\"quantities\":", "\"set\": [\"no=1\"], \"quantities\":"));
+        let refused =
+            pendulum(|text| text.replace("\"quantities\":", "\"set\": [\"no=1\"], \"quantities\":"));
         assert_eq!((refused.measured.len(), refused.trouble.len()), (0, 1));
         assert!(!refused.is_within());
     }

@@ -19,12 +19,15 @@ pub fn page(outcomes: &[Outcome], picture: &str) -> String {
         out,
         "Written by `ropewalk verify`, version {}. {within} of {} cases are within their tolerances; {compared} quantities \
          are compared. Errors are in parts of the tolerance; those of a vector are those of its worst component. CPU time \
-         is that of one core of the machine on which the page was written; the limit is only a suggestion.\n",
+         is that of one core of the machine on which the page was written, in a {} build; the limit is only a \
+         suggestion.\n",
         env!("CARGO_PKG_VERSION"),
         run.len(),
+        if cfg!(debug_assertions) { "development" } else { "release" },
     );
     _ = writeln!(out, "![Largest error of each case in parts of its tolerance]({picture})\n");
-    out += "| case | compared | largest error | CPU time | suggested |\n| --- | ---: | ---: | ---: | ---: |\n";
+    out +=
+        "| case | compared | largest error | CPU time | suggested |\n| --- | ---: | ---: | ---: | ---: |\n";
     for o in &run {
         let mark = if o.is_within() { "" } else { " **outside**" };
         _ = writeln!(
@@ -38,7 +41,8 @@ pub fn page(outcomes: &[Outcome], picture: &str) -> String {
             number(o.case.suggested_cpu_s)
         );
     }
-    let left: Vec<_> = outcomes.iter().flat_map(|o| o.case.left_out.iter().map(|l| (o.case.name, l))).collect();
+    let left: Vec<_> =
+        outcomes.iter().flat_map(|o| o.case.left_out.iter().map(|l| (o.case.name, l))).collect();
     if !left.is_empty() {
         out += "\n## What is not run\n\n| case | references | | reason |\n| --- | ---: | --- | --- |\n";
         for (name, l) in left {

@@ -151,7 +151,8 @@ impl Quantity {
     /// The results don't have what is asked for.
     pub(super) fn measure(&self, results: &Table) -> Result<Measured, String> {
         let reference = self.value.list();
-        let mut measured = self.measured(results, &reference).map_err(|e| format!("{}: {e}", self.quantity))?;
+        let mut measured =
+            self.measured(results, &reference).map_err(|e| format!("{}: {e}", self.quantity))?;
         if measured.len() != reference.len() {
             let counts = (measured.len(), reference.len());
             return Err(format!("{}: {} numbers, but {} references", self.quantity, counts.0, counts.1));

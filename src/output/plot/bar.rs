@@ -110,7 +110,12 @@ mod tests {
         let mut plot = BarPlot {
             title: "Title".into(),
             limit: Some(1.0),
-            bars: vec![bar("small", 1e-4), bar("none", 0.0), bar("failed", f64::INFINITY), bar("odd", f64::NAN)],
+            bars: vec![
+                bar("small", 1e-4),
+                bar("none", 0.0),
+                bar("failed", f64::INFINITY),
+                bar("odd", f64::NAN),
+            ],
             ..BarPlot::default()
         };
         let svg = plot.svg().unwrap();
