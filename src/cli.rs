@@ -48,25 +48,12 @@ enum Command {
     #[command(after_help = "Examples:\n  \
         ropewalk run scene.toml\n  \
         ropewalk run scene.toml --set speed='25 kn' --set n=40 --out results\n  \
-        ropewalk run runs/scene/scene.toml      again, from what a run left behind\n\n\
+        ropewalk run runs/scene/scene.toml      again, from what a run left behind\n  \
+        ropewalk run scene.toml --certify       how far it can be trusted\n  \
+        ropewalk run scene.toml --accuracy 1e-3 --of hose.end\n\n\
         The folder holds scene.toml (as it was run), manifest.json, history.csv, summary.json and plots/*.svg.\n\
         Ctrl-C ends the run in good order; what was computed is kept.")]
-    Run {
-        #[command(flatten)]
-        scene: SceneArgs,
-        /// Folder for the results, new or empty [default: runs/SCENE, numbered]
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-        /// Measure the time of every term
-        #[arg(long)]
-        profile: bool,
-        /// Write a checkpoint every so often, such as `60s` or `500 steps`, from which `resume` goes on
-        #[arg(long, value_name = "EVERY")]
-        checkpoint: Option<Every>,
-        /// Say nothing but errors and warnings
-        #[arg(long, short)]
-        quiet: bool,
-    },
+    Run(commands::run::RunArgs),
     /// Go on with a run that was interrupted or killed, from its last checkpoint
     #[command(after_help = "Examples:\n  \
         ropewalk run scene.toml --checkpoint 60s\n  \
@@ -103,6 +90,27 @@ enum Command {
         equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
         The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
     Modes(commands::modes::ModesArgs),
+    /// What accuracy costs: the cheapest mesh, models, scheme and step for errors of a record from 1 % to 1e-6
+    #[command(after_help = "Examples:\n  \
+        ropewalk cost cantilever --of beam.end          over the whole load path\n  \
+        ropewalk cost hose-turn --of height@60s         at one time\n  \
+        ropewalk cost pendulum --of cable.end --set duration='0.4 s' --budget 5min\n\n\
+        Errors are relative to the largest magnitude of the record over the run; without @TIME the largest one over the\n\
+        run counts. The reference is computed first, on all cores: steps and mesh are refined until they make no\n\
+        difference, a second integrator has to agree, the mesh is extrapolated. Then runs are timed one by one.\n\
+        The folder holds table.csv, advice.json, advice/*.toml (the scene with the settings for each error), plots/cost.svg\n\
+        (error over CPU time) and runs/. Ctrl-C stops; the same command goes on.")]
+    Cost(commands::cost::CostArgs),
+    /// What each effect costs and does, what its absence would change, and what absent effects would add
+    #[command(after_help = "Examples:\n  \
+        ropewalk effects hose-turn --of height@60s\n  \
+        ropewalk effects pendulum --of cable.end --accuracy 1e-3 --set elements=16\n\n\
+        A record of several columns counts as a vector; with @TIME it is looked at at that time, else over the whole run.\n\
+        Changes are relative to the largest size of the record in the run. The scene is run once without each of its\n\
+        effects, and once with each effect that it lacks and that can be guessed from it; then without all those together\n\
+        that change the record by less than the accuracy. Runs are timed one after the other.\n\
+        The folder holds scene.toml, manifest.json, tables/ledger.csv, tables/effects.csv and plots/*.svg.")]
+    Effects(commands::effects::EffectsArgs),
     /// Run cases with known results, and compare: measured values, references, tolerances, CPU time
     #[command(after_help = "Examples:\n  \
         ropewalk verify                         all cases\n  \
@@ -130,6 +138,12 @@ enum Command {
         ropewalk bench --elements 8,64,512 --lanes four\n  \
         ropewalk bench --out cost               with a picture, CSV and JSON")]
     Bench(commands::bench::BenchArgs),
+    /// Compare the stiffness models of cables, and equations with and without dimensions
+    #[command(after_help = "Examples:\n  \
+        ropewalk variants\n  \
+        ropewalk variants --only stiffness\n  \
+        ropewalk variants --only scaling --finest 16 --absolute 1e-5")]
+    Variants(commands::variants::VariantsArgs),
     /// Read and build a scene without running it, and show what it consists of
     #[command(after_help = "Example:\n  ropewalk check scene.toml --set n=200")]
     Check {
@@ -184,7 +198,7 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 
 /// The whole command line with these bundled scenes, on the arguments of the program.
 ///
-/// Exit codes: 0 done; 2 something is wrong with the scene or the command; 3 the solver gave up, all results until
+/// Exit codes: 0 done; 1 a case of `verify` is outside its tolerances; 2 something is wrong with the scene or the command; 3 the solver gave up, all results until
 /// then are kept; 130 interrupted by Ctrl-C, all results until then are kept.
 pub fn main_with(bundled: &[Bundled]) -> ExitCode {
     main_from(bundled, std::env::args_os())
@@ -204,16 +218,17 @@ pub fn main_from(
         }
     };
     let done = match cli.command {
-        Command::Run { scene, out, profile, checkpoint, quiet } => {
-            commands::run::run(&scene, out, profile, checkpoint, quiet, bundled)
-        }
+        Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
+        Command::Cost(args) => commands::cost::cost(args, bundled),
+        Command::Effects(args) => commands::effects::effects(&args, bundled),
         Command::Verify(args) => commands::verify::verify(&args),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),
+        Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
     };
     match done {

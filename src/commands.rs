@@ -2,13 +2,16 @@
 
 pub(crate) mod bench;
 pub(crate) mod check;
+pub(crate) mod cost;
 pub(crate) mod describe;
+pub(crate) mod effects;
 pub(crate) mod list;
 pub(crate) mod modes;
 pub(crate) mod resume;
 pub(crate) mod run;
 mod schema;
 pub(crate) mod sweep;
+pub(crate) mod variants;
 pub(crate) mod verify;
 
 use std::fmt::Display;

@@ -28,6 +28,9 @@ pub enum Error {
     /// The vibration modes could not be found.
     #[error("error: {0}")]
     Modes(#[from] ModesError),
+    /// Ctrl-C was pressed before there was anything to keep.
+    #[error("stopped by Ctrl-C")]
+    Interrupted,
     /// Results could not be written.
     #[error("error: {0}")]
     Output(#[from] OutputError),
@@ -40,7 +43,7 @@ impl Error {
         match self {
             Error::File(_) | Error::Scene(_) | Error::Output(_) => true,
             Error::Step(e) => matches!(e, StepError::Scheme(_) | StepError::Inconsistent(_)),
-            Error::Statics(_) | Error::Process(_) => false,
+            Error::Statics(_) | Error::Process(_) | Error::Interrupted => false,
             Error::Modes(e) => matches!(
                 e,
                 ModesError::Massless { .. } | ModesError::Moving { .. } | ModesError::Held | ModesError::None

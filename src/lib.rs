@@ -17,8 +17,11 @@
 //! crate that adds types of its own offers them with [`cli::main_with`] in the same command line.
 
 pub mod bench;
+mod certificate;
 pub mod cli;
 mod commands;
+mod cost;
+mod effects;
 mod error;
 mod modes;
 pub mod output;
@@ -26,7 +29,9 @@ mod read;
 mod run;
 pub mod scene;
 mod simulate;
+mod study;
 mod sweep;
+pub mod variants;
 pub mod verify;
 
 pub use ropewalk_constraints as constraints;
@@ -35,6 +40,11 @@ pub use ropewalk_elements as elements;
 pub use ropewalk_forces as forces;
 pub use ropewalk_models as models;
 
+pub use certificate::{Certificate, Change};
+pub use cost::{CostAdvice, CostOptions, CostOutcome, cost};
+pub use effects::{
+    Advice, Deed, EffectsOptions, EffectsOutcome, Ledger, Tried, Verdict, effects, write_effects,
+};
 pub use error::Error;
 pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use read::{SceneFile, read};

@@ -2,10 +2,11 @@
 //!
 //! - [`RunFolder`]: the folder of a run; nothing in it is ever overwritten by a later run.
 //! - [`Table`], [`TableWriter`]: time histories, as CSV.
-//! - [`LinePlot`], [`ShapePlot`], [`BarPlot`]: SVG pictures that need no fonts and no display.
+//! - [`LinePlot`], [`BarPlot`], [`ShapePlot`]: SVG pictures that need no fonts and no display.
 //! - [`Summary`]: the few numbers that say how a run ended, as JSON.
 //! - [`Progress`], [`SweepProgress`], [`Interrupt`], [`Stopwatch`]: the progress bars, Ctrl-C, and CPU time.
 
+mod columns;
 mod error;
 mod folder;
 mod interrupt;
@@ -16,13 +17,14 @@ mod stopwatch;
 mod summary;
 mod table;
 
+pub(crate) use columns::in_columns;
 pub use error::OutputError;
 pub(crate) use folder::write_durable;
 pub(crate) use folder::{RUNS, cannot_create, plain, write_json};
 pub use folder::{RunFolder, write_atomic};
 pub use interrupt::Interrupt;
 pub(crate) use number::{number, rough};
-pub use plot::{BarPlot, LinePlot, Mark, NamedBar, Plane, Series, ShapePlot, Snapshot};
+pub use plot::{Bar, BarPlot, LinePlot, Mark, Plane, Series, ShapePlot, Snapshot};
 pub(crate) use progress::new_bar;
 pub use progress::{Progress, ProgressMode, SweepProgress};
 pub use stopwatch::{Elapsed, Stopwatch};

@@ -52,10 +52,20 @@ impl SceneText {
 
     /// The scene with these parameters, each `name=value`.
     pub(crate) fn with(&self, overrides: &[String]) -> Result<SceneFile, Fault> {
+        self.edited(overrides, &[])
+    }
+
+    /// The same with other values at some places, each a path and a value as TOML.
+    pub(crate) fn edited(
+        &self,
+        overrides: &[String],
+        edits: &[(String, String)],
+    ) -> Result<SceneFile, Fault> {
         let mut document = Document::parse(&self.text, &self.label, self.format, overrides)?;
         if let Some(folder) = &self.folder {
             document.files_from(folder);
         }
+        edits.iter().try_for_each(|(path, value)| document.put(path, value))?;
         SceneFile::of(document, self.name.clone())
     }
 }

@@ -5,12 +5,15 @@ mod manifest;
 mod pictures;
 mod recorder;
 mod report;
+mod shapes;
 mod start;
 mod tables;
 
 pub use checkpoint::Every;
 pub use manifest::Manifest;
-pub(crate) use recorder::{Recorder, records};
+pub(crate) use pictures::{PLANES, planes, view};
+pub(crate) use recorder::{Figure, Recorder, records};
+pub(crate) use shapes::last as last_shape;
 pub(crate) use start::{Ending, Started};
 
 use crate::error::Error;
@@ -260,6 +263,7 @@ impl Course<'_> {
         }
         recorder.finals(&mut summary);
         let pictures = pictures::draw(&folder, file.title(), &recorder, &mut |w| warnings.say(w));
+        shapes::write(&folder, &recorder.shapes).unwrap_or_else(|e| warnings.say(&e.to_string()));
         let tables = tables::write(&folder, &recorder, &mut |w| warnings.say(w));
         summary.warnings = warnings.all;
         if matches!(ending, Ending::Finished | Ending::Stopped(_)) && recorder.saver.is_some() {
@@ -294,10 +298,10 @@ fn energy(a: &Audit) -> EnergyTotals {
     }
 }
 
-/// Adds what is not in any term or phase: Newton's method, the audit, recording.
+/// Adds what is not in any term or phase: Newton's method, recording.
 fn shares(mut entries: Vec<ProfileEntry>, total: f64) -> Vec<ProfileEntry> {
     let known: f64 = entries.iter().map(|e| e.seconds).sum();
-    let label = "integrator, audit and output".to_string();
+    let label = "integrator and output".to_string();
     entries.push(ProfileEntry { label, calls: 1, seconds: (total - known).max(0.0), share: 0.0 });
     for e in &mut entries {
         e.share = if total > 0.0 { e.seconds / total } else { 0.0 };

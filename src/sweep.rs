@@ -5,8 +5,8 @@
 
 mod axis;
 mod finals;
-mod folder;
 mod grid;
+mod manifest;
 mod pictures;
 mod report;
 mod results;
@@ -18,7 +18,7 @@ use crate::output::{Interrupt, ProgressMode, RunFolder, Stopwatch, Summary, Swee
 use crate::read::SceneFile;
 use crate::run::{RunOptions, run_showing};
 use crate::scene::Fault;
-use folder::SweepFolder;
+use crate::study::StudyFolder;
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use results::{Results, Row};
 use std::collections::HashSet;
@@ -63,7 +63,7 @@ pub(crate) struct SweepOutcome {
 /// is no error.
 pub(crate) fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome, Error> {
     let axes = grid.check()?;
-    let folder = SweepFolder::open(options.out.clone(), options.fresh, &grid.manifest())?;
+    let folder = StudyFolder::open(options.out.clone(), options.fresh, &grid.manifest())?;
     let stopwatch = Stopwatch::start();
     let mut sweep = Sweep {
         grid,
@@ -103,7 +103,7 @@ pub(crate) fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome,
 /// What all threads share.
 struct Sweep<'a> {
     grid: &'a Grid,
-    folder: &'a SweepFolder,
+    folder: &'a StudyFolder,
     progress: SweepProgress,
     interrupt: Option<Interrupt>,
     /// Warnings that have been said: most of them hold for all runs.

@@ -202,6 +202,52 @@ fn killed_run_is_resumed_and_leaves_the_results_of_one_that_was_not() {
     assert!(!here.join("killed/checkpoint").exists() && !here.join("killed/.checkpoint.tmp").exists());
 }
 
+/// The same cable, drawn through a ring: elements are swallowed and born all the time.
+fn drawn() -> String {
+    let ring = "[[constraints]]\ntype = \"eyelet\"\nname = \"hook\"\nmarker = \"rope.start\"\nspeed = 1\nramp = 0.02\nelement = \"40 mm\"\n";
+    let hook = "[[constraints]]\ntype = \"spherical\"\nname = \"hook\"\nmarker = \"rope.start\"\n";
+    assert!(SWING.contains(hook));
+    SWING.replace(hook, ring)
+}
+
+#[test]
+fn a_resumed_run_tells_of_all_changes_of_the_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    fs::write(here.join("drawn.toml"), drawn()).unwrap();
+    let start = ["run", "drawn.toml", "--checkpoint", "300 steps", "--out"];
+    let whole = run(here, &[&start[..], &["whole"]].concat());
+    assert_eq!(whole.code, Some(0), "{whole:?}");
+    let mut child = program(here, &[&start[..], &["killed"]].concat())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !here.join("killed/checkpoint").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it could be killed");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let done = run(here, &["resume", "killed"]);
+    assert_eq!(done.code, Some(0), "{done:?}");
+    for file in ["history.csv", "shapes.csv", "tables/remeshing.csv"] {
+        let text = |run: &str| fs::read_to_string(here.join(run).join(file)).unwrap();
+        assert_eq!(text("whole"), text("killed"), "{file}");
+    }
+    let changes: Vec<f64> = fs::read_to_string(here.join("killed/tables/remeshing.csv"))
+        .unwrap()
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').next().unwrap().parse().unwrap())
+        .collect();
+    // on both sides of the checkpoint, which is at 0.12 s or a little later
+    assert!(
+        changes[0] < 0.12 && changes.len() > 10 && changes.windows(2).all(|w| w[0] < w[1]),
+        "{changes:?}"
+    );
+}
+
 fn kept(folder: &Path) -> Vec<u8> {
     fs::write(folder.join("swing.toml"), SWING).unwrap();
     let words = ["run", "swing.toml", "--checkpoint", "20 steps", "--out", "run"];

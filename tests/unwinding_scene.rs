@@ -27,6 +27,50 @@ fn the_bundled_scene_unwinds() {
     assert!((1.1..1.3).contains(&last("cable.drag.half")));
 }
 
+/// A bundled scene run with some parameters.
+fn history(scene: &str, speed: &str, traverse: &str, more: &[&str]) -> ropewalk::History {
+    let mut set = vec![format!("speed={speed}"), format!("traverse={traverse}")];
+    set.extend(more.iter().map(ToString::to_string));
+    let file = SceneFile::open(scene, &set, bundled()).unwrap_or_else(|e| panic!("{e}"));
+    simulate(file.scene()).unwrap_or_else(|e| panic!("{scene} {set:?}: {e}"))
+}
+
+#[test]
+fn predictions_at_25_knots_are_those_of_both_formulations_and_follow_the_trend() {
+    let mut trend = Vec::new();
+    for (traverse, more) in [("forward", "elements=16"), ("backward", "elements=24")] {
+        for speed in ["15 kn", "25 kn"] {
+            let elements = history("unwinding", speed, traverse, &["duration=0.3 s", more]);
+            let paper = history("unwinding-paper", speed, traverse, &["duration=0.3 s"]);
+            let of = |h: &ropewalk::History, name: &str| h.last(name).unwrap_or_else(|| panic!("no {name}"));
+            let v = of(&paper, "cable.speed.drawn");
+            let tension = [of(&elements, "eyelet.tension"), of(&paper, "cable.tension.eyelet")];
+            let length = [of(&elements, "cable.length"), of(&paper, "cable.length.free")];
+            let centre = |h: &ropewalk::History, x: &str, y: &str| of(h, x).hypot(of(h, y));
+            let radius = [
+                centre(&elements, "centre.x", "centre.y"),
+                centre(&paper, "cable.centre.x", "cable.centre.y"),
+            ];
+            let middle = "cable.cn@50%";
+            let cn = [of(&elements, middle), of(&paper, "cable.drag.half")];
+            println!(
+                "{speed} {traverse}: tension {tension:?}, length {length:?}, centre {radius:?}, Cn {cn:?}"
+            );
+            for ([a, b], scale) in [(tension, tension[1]), (length, length[1]), (radius, 0.06), (cn, cn[1])] {
+                assert!((a - b).abs() < 0.01 * scale, "{speed} {traverse}: {a}, not {b}");
+            }
+            trend.push((traverse, v, length[0], tension[0]));
+        }
+    }
+    // tension by the square of the speed keeps the shape, but for the drag coefficient, which still falls a little, and for
+    // how far the lift-off point has walked
+    for pair in trend.chunks(2) {
+        let [(_, slow, short, low), (_, fast, long, high)] = pair else { panic!("pairs") };
+        let similar = ((high - 0.02) / (low - 0.02)) / (fast / slow).powi(2);
+        assert!((similar - 1.0).abs() < 0.01 && (long / short - 1.0).abs() < 0.03, "{trend:?}");
+    }
+}
+
 #[test]
 fn a_package_that_runs_empty_ends_the_run() {
     let file = open(&["layers=1", "length=2 mm", "segments=12", "duration=2 s", "step=1 ms"]);

@@ -35,4 +35,4 @@ pub use revolute::{RevoluteSpec, revolute};
 pub use spherical::{SphericalSpec, spherical};
 pub use universal::{PerpendicularSpec, UniversalSpec, perpendicular, universal};
 pub use weld::{WeldSpec, weld};
-pub use winch::{LiftOffSpec, WinchSpec};
+pub use winch::{EyeletSpec, LiftOffSpec, WinchSpec};

@@ -110,6 +110,8 @@ pub type Numbered = (usize, Arc<dyn Part>);
 pub struct Builder {
     nodes: Vec<Node>,
     start: Start,
+    /// The coordinates when the run began: others than at the start where a mesh has changed on the way.
+    laid: Vec<f64>,
     pools: Vec<(TypeId, Box<dyn AnyPool>)>,
     terms: Vec<Box<dyn Term>>,
     constraints: Vec<Box<dyn Constraint>>,
@@ -151,7 +153,13 @@ impl Builder {
         self.nodes.push(Node { kind, q: self.start.q.len(), v: self.start.v.len(), shared: false });
         self.start.q.extend_from_slice(q);
         self.start.v.extend_from_slice(v);
+        self.laid.extend_from_slice(q);
         Ok(id)
+    }
+
+    /// Says where a node was when the run began, if it isn't where it starts now: of a mesh that is changed on the way.
+    pub fn was_laid(&mut self, node: NodeId, q: &[f64]) {
+        self.laid[self.nodes[node.0 as usize].coords()].copy_from_slice(q);
     }
 
     /// The nodes so far.
@@ -159,9 +167,9 @@ impl Builder {
         &self.nodes
     }
 
-    /// The coordinates at the start, of the nodes so far.
+    /// The coordinates when the run began, of the nodes so far.
     pub fn coordinates(&self) -> &[f64] {
-        &self.start.q
+        &self.laid
     }
 
     /// Marks a node as shared by many elements, so that it is eliminated last.
@@ -302,9 +310,9 @@ impl Builder {
         part.marker(&spot).map_err(|e| BuildError::at(field, format!("marker `{name}`: {e}")))
     }
 
-    /// Where a marker starts.
+    /// Where a marker was when the run began; what holds on to that place does so over all changes of the mesh.
     pub fn place(&self, marker: &Marker) -> crate::marker::Place<f64> {
-        marker.place(&self.nodes, &self.start.q, |_| 0.0)
+        marker.place(&self.nodes, &self.laid, |_| 0.0)
     }
 
     /// Notes the markers that constraints and forces hold, so that cables put nodes there.
@@ -349,7 +357,7 @@ impl Builder {
         let (_, part) = self.find(name, "marker")?;
         part.front(end).ok_or_else(|| {
             let message = match part.kind() {
-                "cable" => format!("no `winch` feeds at {marker}: add one"),
+                "cable" => format!("no `winch` or `eyelet` feeds at {marker}: add one"),
                 kind => format!("material can flow through the ends of a cable, but `{name}` is a {kind}"),
             };
             BuildError::at("marker", message)

@@ -38,6 +38,7 @@ mod station;
 mod structure;
 mod term;
 pub mod testing;
+mod times;
 
 pub use build::{BuildError, Builder};
 pub use constraint::{Constraint, Joint, Relation, RowKind, lift};
@@ -49,7 +50,7 @@ pub use marker::{Jet, Marker, Place};
 pub use model::{Model, Start, Switches, System};
 pub use motion::{Motion, Moving, SteadyFrame};
 pub use node::{Node, NodeId, NodeKind, difference, retract};
-pub use part::{ContactPoint, Part, Per, Quantity, Spot, split_marker};
+pub use part::{ContactPoint, Part, Per, Quantity, Slender, Spot, split_marker};
 pub use pattern::Pattern;
 pub use pool::{Batch, Element, Local, Pool, Share};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};
@@ -66,6 +67,7 @@ pub use state::{At, Control, Relaxation, Relaxed, State};
 pub use station::{FieldTerm, Gives, Law, Laws, Load, Station, StationElement, StationPool, Stations};
 pub use structure::{Block, Columns, Structure};
 pub use term::{Assembly, Energy, Leap, Power, Term, Weights};
+pub use times::Spent;
 
 #[doc(hidden)]
 pub use inventory;

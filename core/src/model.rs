@@ -13,6 +13,7 @@ use crate::simulation::Event;
 use crate::state::{At, Control, State};
 use crate::structure::Structure;
 use crate::term::{Assembly, Energy, Leap, Power, Term, Weights};
+use crate::times::Spent;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -94,7 +95,7 @@ pub struct System {
     /// Whether a term was only approximated.
     pub(crate) approximate: bool,
     /// Calls and time of each term, then of the constraints; only filled where profiling was asked for.
-    pub profile: Option<Vec<(u64, Duration)>>,
+    pub profile: Option<Vec<Spent>>,
 }
 
 impl Model {
@@ -544,8 +545,12 @@ impl Model {
 
     /// Tolerance of each constraint row relative to that of lengths: positions in metres, directions as they are.
     pub fn row_scale(&self) -> impl Iterator<Item = f64> + '_ {
-        let kinds = self.constraints.iter().flat_map(|c| c.rows().iter());
-        kinds.map(|k| if *k == RowKind::Position { 1.0 } else { 1.0 / self.length })
+        self.lengthlike().map(|length| if length { 1.0 } else { 1.0 / self.length })
+    }
+
+    /// Whether each constraint row is a length, rather than a number without dimension.
+    pub(crate) fn lengthlike(&self) -> impl Iterator<Item = bool> + '_ {
+        self.constraints.iter().flat_map(|c| c.rows().iter()).map(|k| *k == RowKind::Position)
     }
 
     /// What an unknown is called in messages: its part or node, or the constraint's row.
@@ -575,6 +580,25 @@ impl Model {
     /// The longest step from here that leaps over nothing that a term has ahead [s].
     pub fn horizon(&self, at: &At<'_>) -> f64 {
         self.watchful.iter().map(|&k| self.terms[k].horizon(at)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The residual of one term alone, one entry for each velocity: minus the forces that it exerts. The term is one of
+    /// this model, or of the [`Term::effects`] of one.
+    pub fn share_of(&self, term: &dyn Term, at: &At<'_>) -> Vec<f64> {
+        let mut residual = vec![0.0; self.velocities];
+        let mut out = Assembly {
+            residual: &mut residual,
+            values: None,
+            weights: Weights::default(),
+            width: self.width,
+            structure: &self.structure,
+            clique: 0,
+            scratch: &mut Vec::new(),
+            leap: None,
+            approximate: &mut false,
+        };
+        term.add(at, &mut out);
+        residual
     }
 
     /// Kinetic and potential energy of all terms.

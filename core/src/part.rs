@@ -61,6 +61,31 @@ pub struct ContactPoint {
     pub s: f64,
 }
 
+/// An element of a slender part and what it is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slender {
+    /// Its length [m].
+    pub element: f64,
+    /// Its mass per length, of the water that it is flooded with too [kg/m].
+    pub mass: f64,
+    /// Its axial stiffness [N].
+    pub ea: f64,
+    /// Its bending stiffness [N m²].
+    pub ei: f64,
+}
+
+impl Slender {
+    /// Time in which bending runs along the element, `l² √(ρA/EI)` [s]; infinite without bending stiffness.
+    pub fn bending_time(&self) -> f64 {
+        self.element.powi(2) * (self.mass / self.ei).sqrt()
+    }
+
+    /// Time in which sound runs along it, `l √(ρA/EA)` [s].
+    pub fn axial_time(&self) -> f64 {
+        self.element * (self.mass / self.ea).sqrt()
+    }
+}
+
 /// A named part of a model: a cable, a point mass, a rigid body.
 pub trait Part: Send + Sync {
     /// Its name in the scene.
@@ -105,8 +130,8 @@ pub trait Part: Send + Sync {
     fn length_now(&self, _at: &At<'_>) -> f64 {
         self.length()
     }
-    /// Time in which bending runs along one of its elements, `l² √(ρA/EI)` [s]; of parts that bend.
-    fn bending_time(&self) -> Option<f64> {
+    /// What its elements are like on average, if it is a cable.
+    fn slender(&self) -> Option<Slender> {
         None
     }
     /// The front at an end that feeds: 0 the start, 1 the end.

@@ -5,6 +5,7 @@
 //! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
 
 mod along;
+mod coefficient;
 mod driving;
 mod energy;
 mod feeding;
@@ -18,6 +19,7 @@ mod released;
 mod turning;
 
 pub use along::AlongSpec;
+pub use coefficient::DragCoefficientSpec;
 pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
 pub use feeding::FeedingSpec;

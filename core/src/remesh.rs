@@ -82,7 +82,7 @@ pub enum Change {
 pub type Plan = BTreeMap<String, Mesh>;
 
 /// What a change of mesh has done, for reports: all of it is zero for an ideal one.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Remeshed {
     /// Which event.
     pub name: String,

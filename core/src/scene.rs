@@ -128,6 +128,12 @@ pub struct ShapeTitles {
     /// From the end: y and z.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub end: Option<String>,
+    /// In space, seen obliquely from above; drawn only if it has a title.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub space: Option<String>,
+    /// z over the distance from the z axis; drawn only if it has a title.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radial: Option<String>,
 }
 
 /// Some columns of the history as a table of their own: `tables/NAME.csv`.

@@ -14,6 +14,7 @@ use crate::record::{Audit, Sample};
 use crate::remesh::Remeshed;
 use crate::state::State;
 use crate::term::{Energy, Power};
+use crate::times::Phase;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -278,10 +279,12 @@ impl Simulation {
 
     fn account(&mut self) {
         if self.keep_audit {
+            let begin = self.work.clocks.start();
             let power = self.model.power(&self.state.at(), &self.state.lambda);
             let h = self.state.t - self.previous.t;
             self.audit.add(h, self.model.energy(&self.state.at()), self.power, power);
             self.power = power;
+            self.work.clocks.stop(Phase::Audit, begin);
         }
     }
 
@@ -425,13 +428,11 @@ impl Simulation {
                 let event = self.events[k].0.clone();
                 let before = self.measure(event.as_ref());
                 self.state = model.carry(&self.model, &self.state);
-                let counts = self.work.counts;
-                self.work = Workspace::new(&model).map_err(|source| StepError::Linear {
+                self.work.change_mesh(&self.model, &model).map_err(|source| StepError::Linear {
                     t: self.state.t,
                     source,
                     unknown: "the structure of the new mesh".into(),
                 })?;
-                self.work.counts = counts;
                 // events of the scene belong to its model; those that were added stay
                 let own = self.model.events().len();
                 let new = model.events().iter().map(|e| (e.clone(), 0.0)).collect::<Vec<_>>();

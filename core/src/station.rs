@@ -111,6 +111,11 @@ pub trait Law: Send + Sync + 'static {
     fn power<R: Real>(&self, _t: f64, at: &Station<R>, f: &V3<R>) -> Power<R> {
         Power { supplied: dot(f, &at.v), ..Power::zero() }
     }
+    /// The drag coefficient of the flow across the body there, if this is a law of drag; NaN in flow so slow that it is
+    /// of no use.
+    fn coefficient(&self, _at: &Station<f64>) -> Option<f64> {
+        None
+    }
 }
 
 /// An element that distributed loads can act on: it offers `S` stations and carries their loads back to its nodes.
@@ -191,5 +196,30 @@ impl Term for FieldTerm {
     }
     fn power(&self, at: &At<'_>) -> Power {
         self.stations.power(&self.laws, at)
+    }
+    fn coefficient(&self, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
+        if part != self.part {
+            return None;
+        }
+        // the stations on either side of the place
+        let mut beside: [Option<(f64, f64)>; 2] = [None; 2];
+        self.stations.each(at, &mut |station| {
+            let side = usize::from(station.s > s);
+            let nearer = beside[side].is_none_or(|(there, _)| (station.s - s).abs() < (there - s).abs());
+            if let Some(c) = self.laws.0.iter().find_map(|l| l.coefficient(station)).filter(|_| nearer) {
+                beside[side] = Some((station.s, c));
+            }
+        });
+        match beside {
+            [Some((a, low)), Some((b, high))] => Some(low + (high - low) * (s - a) / (b - a)),
+            [one, other] => one.or(other).map(|(_, c)| c),
+        }
+    }
+    fn effects(&self) -> Vec<Box<dyn Term>> {
+        let one = |law: &Arc<dyn ErasedLaw>| -> Box<dyn Term> {
+            let (part, stations) = (self.part.clone(), self.stations.clone());
+            Box::new(FieldTerm { part, stations, laws: Laws(vec![law.clone()]) })
+        };
+        if self.laws.0.len() > 1 { self.laws.0.iter().map(one).collect() } else { Vec::new() }
     }
 }

@@ -123,6 +123,15 @@ pub trait Term: Send + Sync {
     fn kinked(&self) -> bool {
         false
     }
+    /// The drag coefficient of the flow across a part at an arc length of its material [m], if it is the drag on this part.
+    fn coefficient(&self, _part: &str, _s: f64, _at: &At<'_>) -> Option<f64> {
+        None
+    }
+    /// The effects that it applies together, each as a term of its own; none if it is a single one. For ledgers: these
+    /// are evaluated for forces, energy and power, but never assembled into a matrix.
+    fn effects(&self) -> Vec<Box<dyn Term>> {
+        Vec::new()
+    }
     /// What a record of type `force` shows of it; names are put behind that of the record.
     fn columns(&self) -> Vec<Column> {
         Vec::new()

@@ -227,6 +227,21 @@ impl Law for Drag {
         }
     }
 
+    fn coefficient(&self, at: &Station<f64>) -> Option<f64> {
+        Some(match self.normal {
+            NormalLaw::Constant(cn) => cn,
+            NormalLaw::ChooCasarella => {
+                let (u, _) = self.current.at(at.x[2]);
+                let v: V3<f64> = [0, 1, 2].map(|i| at.v[i] - u[i]);
+                let along = dot(&v, &at.slope) / dot(&at.slope, &at.slope);
+                let across: V3<f64> = [0, 1, 2].map(|i| v[i] - along * at.slope[i]);
+                let re = self.density * at.diameter * dot(&across, &across).sqrt() / self.viscosity;
+                // creeping flow has large coefficients and hardly any force
+                if re >= 1.0 { cn_re_one(re, self.blend).0 / re } else { f64::NAN }
+            }
+        })
+    }
+
     /// What the fluid takes by friction, `-f·(v - u)`, is dissipated; what it carries along, `f·u`, is supplied.
     #[inline(always)]
     fn power<R: Real>(&self, _t: f64, at: &Station<R>, f: &V3<R>) -> Power<R> {

@@ -1,27 +1,169 @@
 //! `ropewalk run SCENE`
 
 use super::{Exit, complain, say};
+use crate::certificate::{Certificate, Trials, certify, choose};
 use crate::cli::SceneArgs;
 use crate::error::Error;
-use crate::output::ProgressMode;
-use crate::read::SceneFile;
+use crate::output::{Interrupt, ProgressMode, SweepProgress, rough};
+use crate::read::{SceneFile, SceneText};
 use crate::run::{Every, Outcome, RunOptions, run as run_scene};
+use crate::scene::Fault;
+use crate::study::{Axes, Target, Watch};
 use ropewalk_models::Bundled;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
-pub(crate) fn run(
-    args: &SceneArgs,
+/// What to run, and how far it has to be trusted.
+#[derive(Debug, clap::Args)]
+pub(crate) struct RunArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder for the results, new or empty [default: runs/SCENE, numbered]
+    #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Measure the time of every term
+    #[arg(long)]
     profile: bool,
+    /// Write a checkpoint every so often, such as `60s` or `500 steps`, from which `resume` goes on
+    #[arg(long, value_name = "EVERY")]
     checkpoint: Option<Every>,
+    /// Run again with tighter steps and a finer mesh, and say what that changes
+    #[arg(long)]
+    certify: bool,
+    /// Choose step or tolerance and mesh so that the error of a record, relative to its size, is at most this
+    #[arg(long, value_name = "ERROR", requires = "of", allow_negative_numbers = true)]
+    accuracy: Option<f64>,
+    /// The record that `--accuracy` and `--certify` look at, with @TIME at that time only
+    #[arg(long, value_name = "RECORD[@TIME]")]
+    of: Option<String>,
+    /// Time on the clock that the search of `--accuracy` may take
+    #[arg(long, value_name = "TIME", default_value = "10 min", value_parser = super::cost::time)]
+    budget: Duration,
+    /// Say nothing but errors and warnings
+    #[arg(long, short)]
     quiet: bool,
-    bundled: &[Bundled],
-) -> Result<Exit, Error> {
-    let file = SceneFile::open(&args.scene, &args.overrides, bundled)?;
-    let progress = if quiet { ProgressMode::Quiet } else { ProgressMode::Auto };
-    let options = RunOptions { out, profile, progress, checkpoint };
-    let outcome = run_scene(&file, &options, &mut |warning| complain(format!("warning: {warning}")))?;
-    Ok(tell(&outcome, quiet))
+}
+
+pub(crate) fn run(args: &RunArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
+    if let Some(accuracy) = args.accuracy.filter(|a| !(*a > 0.0 && *a < 1.0)) {
+        let fault = Fault::new(format!("an accuracy is a number above 0 and below 1, not {accuracy}"));
+        return Err(fault.with_help("for 0.1 % write `--accuracy 1e-3`").into());
+    }
+    let trusting = !args.certify && args.accuracy.is_none();
+    if trusting && args.of.is_some() {
+        let fault = Fault::new("`--of` belongs to `--accuracy` or `--certify`");
+        return Err(fault.with_help("leave it out, or add `--certify`").into());
+    }
+    if trusting {
+        let file = SceneFile::open(&args.scene.scene, &args.scene.overrides, bundled)?;
+        return Ok(tell(&args.go(&file)?, args.quiet));
+    }
+    let text = SceneText::open(&args.scene.scene, bundled)?;
+    let axes = Axes::new(&text, &args.scene.overrides)?;
+    let of = args.of.as_ref().map(|of| Target::parse(of, axes.file())).transpose()?;
+    if axes.is_empty() {
+        let message =
+            "there is nothing to refine: the scene has neither elements nor time steps of the solver";
+        return Err(Fault::new(message).with_help("leave `--accuracy` and `--certify` out").into());
+    }
+    match (args.accuracy, of) {
+        (Some(accuracy), Some(of)) => args.accurate(&axes, &of, accuracy),
+        (_, of) => args.certified(&axes, of),
+    }
+}
+
+impl RunArgs {
+    fn progress(&self) -> ProgressMode {
+        if self.quiet { ProgressMode::Quiet } else { ProgressMode::Auto }
+    }
+
+    /// Runs a scene into its folder.
+    fn go(&self, file: &SceneFile) -> Result<Outcome, Error> {
+        let (out, checkpoint) = (self.out.clone(), self.checkpoint);
+        let options = RunOptions { out, profile: self.profile, progress: self.progress(), checkpoint };
+        run_scene(file, &options, &mut |warning| complain(format!("warning: {warning}")))
+    }
+
+    fn trials<'a>(&self, axes: &'a Axes<'a>, until: Option<f64>, deadline: Option<Instant>) -> Trials<'a> {
+        let interrupt = Interrupt::install().map_err(|e| complain(format!("warning: {e}"))).ok();
+        Trials::new(axes, until, Watch { interrupt, deadline }, SweepProgress::new(0, self.progress()))
+    }
+
+    /// Runs with settings that reach the accuracy, or come nearest to it.
+    fn accurate(&self, axes: &Axes<'_>, of: &Target, accuracy: f64) -> Result<Exit, Error> {
+        let trials = self.trials(axes, of.t, Instant::now().checked_add(self.budget));
+        let Some(chosen) = choose(&trials, of, accuracy)? else {
+            if trials.watch.is_interrupted() {
+                complain("stopped by Ctrl-C");
+                return Ok(Exit::Interrupted);
+            }
+            complain("error: no settings were found in the time given\n  = help: raise --budget");
+            return Ok(Exit::Solver);
+        };
+        let spent = format!("{} runs and {} s of CPU", trials.len(), rough(trials.spent()));
+        trials.progress.finish();
+        if !self.quiet {
+            let word = if chosen.reached { "chosen" } else { "nearest" };
+            say(format!("{word}: {}, after {spent}", chosen.certificate.settings));
+            say(format!("  {}", axes.recipe(&chosen.settings)));
+        }
+        let outcome = self.go(&axes.with(&chosen.settings, None)?)?;
+        let exit = self.keep(outcome, chosen.certificate)?;
+        if exit == Exit::Done && !chosen.reached {
+            complain(format!(
+                "error: the accuracy {accuracy:e} was not reached: the results are those of the nearest settings\n  = \
+                 help: allow a larger error or a longer --budget, or look at an earlier time with `--of RECORD@TIME`"
+            ));
+            return Ok(Exit::Solver);
+        }
+        Ok(exit)
+    }
+
+    /// Runs with the settings as they are, and certifies the record that is asked for, or all.
+    fn certified(&self, axes: &Axes<'_>, of: Option<Target>) -> Result<Exit, Error> {
+        let outcome = self.go(axes.file())?;
+        if matches!(outcome.summary.status.as_str(), "failed" | "interrupted") {
+            return Ok(tell(&outcome, self.quiet));
+        }
+        let trials = self.trials(axes, of.as_ref().and_then(|of| of.t), None);
+        let records = match of {
+            Some(of) => vec![of],
+            None => sized(Target::all(axes.file())?, &outcome),
+        };
+        let certificate = certify(&trials, &axes.base, &records, None)?;
+        trials.progress.finish();
+        match certificate {
+            Some(certificate) => self.keep(outcome, certificate),
+            None => {
+                tell(&outcome, self.quiet);
+                complain("stopped by Ctrl-C: the run is complete, the certificate is missing");
+                Ok(Exit::Interrupted)
+            }
+        }
+    }
+
+    /// Keeps the certificate with the results and says how all ended.
+    fn keep(&self, mut outcome: Outcome, certificate: Certificate) -> Result<Exit, Error> {
+        outcome.report += &certificate.text();
+        if certificate.sensitive && self.quiet {
+            complain("warning: the run is sensitive: see the certificate in summary.json");
+        }
+        outcome.summary.certificate = Some(certificate);
+        outcome.folder.write_summary(&outcome.summary)?;
+        Ok(tell(&outcome, self.quiet))
+    }
+}
+
+/// The records that have a size, and columns that belong to none of them.
+fn sized(all: Vec<Target>, outcome: &Outcome) -> Vec<Target> {
+    let mut kept: Vec<Target> = Vec::new();
+    for target in all {
+        let inside = kept.iter().any(|k| k.columns.contains(&target.columns.start));
+        if !inside && target.size_in(&outcome.history).is_ok() {
+            kept.push(target);
+        }
+    }
+    kept
 }
 
 /// Says how a run ended.

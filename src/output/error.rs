@@ -30,21 +30,25 @@ pub enum OutputError {
         path: PathBuf,
     },
 
-    /// The folder asked for belongs to another sweep.
+    /// The folder asked for belongs to another sweep or other study.
     #[error(
-        "{} holds another sweep, {difference}: give another folder with --out, or delete those results with --fresh",
+        "{} holds another {kind}, {difference}: give another folder with --out, or delete those results with --fresh",
         path.display()
     )]
-    OtherSweep {
+    OtherStudy {
+        /// What the folder is for, such as "sweep".
+        kind: &'static str,
         /// The folder that was asked for.
         path: PathBuf,
-        /// How the sweep that is there differs, such as "of other values".
+        /// How the one that is there differs, such as "of other values".
         difference: String,
     },
 
-    /// Another process computes a sweep in the folder.
-    #[error("another sweep is at work in {}: wait for its end, or give another folder with --out", path.display())]
+    /// Another process computes in the folder.
+    #[error("another {kind} is at work in {}: wait for its end, or give another folder with --out", path.display())]
     Busy {
+        /// What the folder is for, such as "sweep".
+        kind: &'static str,
         /// The folder that was asked for.
         path: PathBuf,
     },

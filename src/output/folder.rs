@@ -17,6 +17,7 @@ pub(crate) const RUNS: &str = "runs";
 ///   scene.toml      the scene as it was read
 ///   manifest.json   what was built from it
 ///   history.csv     time histories, written while the run goes on
+///   shapes.csv      lines of all parts at several times
 ///   summary.json    how the run ended
 ///   plots/*.svg     pictures
 /// ```
@@ -100,6 +101,11 @@ impl RunFolder {
     /// `history.csv`: the time histories, for a [`TableWriter`](super::TableWriter).
     pub fn history_file(&self) -> PathBuf {
         self.path.join("history.csv")
+    }
+
+    /// `shapes.csv`: the lines of all parts at the times of the snapshots.
+    pub fn shapes_file(&self) -> PathBuf {
+        self.path.join("shapes.csv")
     }
 
     /// `summary.json`: how the run ended.

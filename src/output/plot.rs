@@ -2,11 +2,11 @@
 //! display, colours that colour-blind readers can tell apart.
 //!
 //! - [`LinePlot`]: quantities over time, or one over another.
+//! - [`BarPlot`]: quantities side by side.
 //! - [`ShapePlot`]: a cable in a plane at several times.
-//! - [`BarPlot`]: one number for each of several things, on a logarithmic scale.
 
 mod axis;
-mod bar;
+mod bars;
 mod canvas;
 mod colour;
 mod frame;
@@ -14,6 +14,6 @@ mod line;
 mod shape;
 mod thin;
 
-pub use bar::{BarPlot, NamedBar};
+pub use bars::{Bar, BarPlot};
 pub use line::{LinePlot, Mark, Series};
 pub use shape::{Plane, ShapePlot, Snapshot};

@@ -1,5 +1,6 @@
 //! `summary.json`: the few numbers that say how a run ended.
 
+use crate::certificate::Certificate;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
@@ -41,6 +42,9 @@ pub struct Summary {
     /// Time on the clock, in seconds.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub wall_s: f64,
+    /// How far the run can be trusted, if that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
     /// Where the time went, if the run was profiled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile: Option<Vec<ProfileEntry>>,

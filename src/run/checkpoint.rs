@@ -7,7 +7,7 @@ use super::{Recorder, Started};
 use crate::error::Error;
 use crate::output::{Elapsed, Happened, OutputError, RunFolder, Stopwatch, Table};
 use crate::scene::Fault;
-use ropewalk_core::{Checkpoint, V3, quantity};
+use ropewalk_core::{Checkpoint, Remeshed, V3, quantity};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -57,6 +57,7 @@ pub(crate) struct Saved<'a> {
     pub shapes: Cow<'a, [(f64, Vec<V3<f64>>)]>,
     pub due: Cow<'a, [f64]>,
     pub events: Cow<'a, [Happened]>,
+    pub remeshed: Cow<'a, [Remeshed]>,
     pub warnings: Cow<'a, [String]>,
     pub flutter: f64,
     pub cpu_s: f64,
@@ -138,6 +139,7 @@ impl Saver {
             shapes: Cow::Borrowed(&recorder.shapes),
             due: Cow::Borrowed(&recorder.due),
             events: Cow::Borrowed(&recorder.events),
+            remeshed: Cow::Borrowed(&recorder.remeshed),
             warnings: Cow::Borrowed(&self.warnings),
             flutter: self.flutter,
             cpu_s: self.before.cpu_s + elapsed.cpu_s,

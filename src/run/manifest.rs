@@ -1,9 +1,11 @@
 //! `manifest.json`: what was built from a scene, so that a run can be understood without running it again.
 
+use super::pictures::shape_titles;
 use crate::read::SceneFile;
 use crate::scene::Fault;
 use ropewalk_core::{Analysis, Guard, Model, Scene, Width};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// What a model consists of. An effect that the scene doesn't name is not in it.
@@ -25,6 +27,8 @@ pub struct Manifest {
     pub notes: Vec<String>,
     /// Columns of the history, without time.
     pub records: Vec<String>,
+    /// Titles of the pictures, by column of the history and by name of the picture of shapes.
+    pub titles: BTreeMap<String, String>,
     /// Number of velocities.
     pub unknowns: usize,
     /// Number of multipliers.
@@ -47,9 +51,17 @@ impl Manifest {
     pub fn new(file: &SceneFile, model: &Model) -> Result<Self, Fault> {
         let s = model.structure();
         let solver = Guard::new(s).map_err(|e| Fault::new(e.to_string()))?.name();
-        let records = file.records(model)?.iter().flat_map(|r| r.columns()).collect::<Vec<_>>();
         let processes = &file.scene().processes;
-        let channels = processes.iter().flat_map(|p| p.channels()).flat_map(|c| c.columns);
+        let records = file.records(model)?;
+        let records = records.iter().map(|r| (r.title(), r.columns()));
+        let channels = processes.iter().flat_map(|p| p.channels()).map(|c| (c.title, c.columns));
+        let mut titles = BTreeMap::new();
+        let mut columns = Vec::new();
+        for (title, own) in records.chain(channels) {
+            titles.extend(own.iter().map(|c| (c.name.clone(), title.clone())));
+            columns.extend(own.into_iter().map(|c| c.name));
+        }
+        titles.extend(shape_titles(&file.scene().run.shape_titles));
         Ok(Manifest {
             title: file.title().to_string(),
             ropewalk: env!("CARGO_PKG_VERSION"),
@@ -63,7 +75,8 @@ impl Manifest {
             terms: model.terms().iter().map(|t| t.label()).collect(),
             constraints: model.constraints().iter().map(|c| (c.name().to_string(), c.rows().len())).collect(),
             notes: notes(file.scene(), model),
-            records: records.into_iter().chain(channels).map(|c| c.name).collect(),
+            records: columns,
+            titles,
             unknowns: model.velocities() + processes.iter().map(|p| p.unknowns()).sum::<usize>(),
             multipliers: model.multipliers(),
             non_zeros: s.entries(),

@@ -3,7 +3,10 @@
 use super::Recorder;
 use super::recorder::Figure;
 use crate::output::{LinePlot, OutputError, Plane, RunFolder, Series, ShapePlot};
-use ropewalk_core::V3;
+use ropewalk_core::{ShapeTitles, V3};
+
+/// All ways to look at shapes.
+pub(crate) const PLANES: [Plane; 5] = [Plane::SideX, Plane::Top, Plane::SideY, Plane::Oblique, Plane::Radial];
 
 /// Draws everything and says what was drawn. A picture that can't be drawn is no reason to fail.
 pub(crate) fn draw(
@@ -25,19 +28,45 @@ pub(crate) fn draw(
             keep(name, written);
         }
     }
-    for plane in planes(&recorder.shapes) {
-        let titles = &recorder.scene.run.shape_titles;
-        let (name, from, given) = match plane {
-            Plane::Top => ("shape_top", "from above", &titles.top),
-            Plane::SideX => ("shape_side", "from the side", &titles.side),
-            Plane::SideY => ("shape_end", "from the end", &titles.end),
-        };
-        let title = given.clone().unwrap_or_else(|| format!("{title}, {from}"));
+    let titles = &recorder.scene.run.shape_titles;
+    let asked = [(Plane::Oblique, &titles.space), (Plane::Radial, &titles.radial)];
+    let asked = asked.into_iter().filter(|(_, title)| title.is_some()).map(|(plane, _)| plane);
+    for plane in planes(&recorder.shapes).into_iter().chain(asked) {
+        let (name, from) = view(plane);
+        let title = shape_title(titles, plane).cloned().unwrap_or_else(|| format!("{title}, {from}"));
         let plot = ShapePlot::of_positions(title, plane, &recorder.shapes);
         let written = folder.plot_file(name).and_then(|path| plot.write(&path));
         keep(name.to_string(), written);
     }
     drawn
+}
+
+/// The name of a picture of shapes, and from where they are seen.
+pub(crate) fn view(plane: Plane) -> (&'static str, &'static str) {
+    match plane {
+        Plane::Top => ("shape_top", "from above"),
+        Plane::SideX => ("shape_side", "from the side"),
+        Plane::SideY => ("shape_end", "from the end"),
+        Plane::Oblique => ("shape_space", "in space"),
+        Plane::Radial => ("shape_radial", "z over the distance from the axis"),
+    }
+}
+
+/// The pictures of shapes that a scene gives titles to, by name.
+pub(super) fn shape_titles(titles: &ShapeTitles) -> impl Iterator<Item = (String, String)> {
+    let all = PLANES.into_iter().filter_map(|plane| Some((view(plane).0, shape_title(titles, plane)?)));
+    all.map(|(name, title)| (name.to_string(), title.clone()))
+}
+
+/// The title that a scene gives to a picture of shapes.
+fn shape_title(titles: &ShapeTitles, plane: Plane) -> Option<&String> {
+    match plane {
+        Plane::Top => titles.top.as_ref(),
+        Plane::SideX => titles.side.as_ref(),
+        Plane::SideY => titles.end.as_ref(),
+        Plane::Oblique => titles.space.as_ref(),
+        Plane::Radial => titles.radial.as_ref(),
+    }
 }
 
 /// A plot of each unit that the record has: one axis can't show metres and newtons.
@@ -75,7 +104,7 @@ fn histories(figure: &Figure, recorder: &Recorder<'_>) -> Vec<(String, LinePlot)
 }
 
 /// The planes in which there is anything to see: both directions are moved or extended in.
-fn planes(shapes: &[(f64, Vec<V3<f64>>)]) -> Vec<Plane> {
+pub(crate) fn planes(shapes: &[(f64, Vec<V3<f64>>)]) -> Vec<Plane> {
     let points = || shapes.iter().flat_map(|(_, line)| line).filter(|p| p.iter().all(|x| x.is_finite()));
     if points().next().is_none() {
         return Vec::new();

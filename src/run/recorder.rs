@@ -6,11 +6,15 @@ use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{
-    Analysis, At, BuildError, Channel, Checkpoint, Model, Observer, Process, Record, Remeshed, Sample, Scene,
-    SceneError, SpecKind, State, V3,
+    Analysis, At, BuildError, Channel, Checkpoint, Model, NodeKind, Observer, Process, Record, Remeshed,
+    Sample, Scene, SceneError, SpecKind, State, V3,
 };
 use std::collections::HashSet;
 use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// About how many rows keep the positions of all nodes, where they are tracked.
+const TRACKED: f64 = 200.0;
 
 /// A record in the table: its name, its title, and its columns.
 pub(crate) struct Figure {
@@ -37,6 +41,10 @@ pub(crate) struct Recorder<'a> {
     pub progress: Option<Progress>,
     /// Whether Ctrl-C was pressed.
     pub interrupt: Option<Interrupt>,
+    /// Positions of all nodes at some hundred rows, if they are wanted.
+    pub track: Option<Vec<Vec<V3<f64>>>>,
+    /// When the run has taken too long and stops as by Ctrl-C.
+    pub deadline: Option<Instant>,
     /// Lines of all parts at several times; parts are separated by a point that isn't finite.
     pub shapes: Vec<(f64, Vec<V3<f64>>)>,
     /// When shapes are still to be kept, last first.
@@ -108,6 +116,8 @@ impl<'a> Recorder<'a> {
             writer: None,
             progress: None,
             interrupt: None,
+            track: None,
+            deadline: None,
             shapes: Vec::new(),
             due: due.collect(),
             stop: None,
@@ -127,6 +137,7 @@ impl<'a> Recorder<'a> {
         self.shapes = saved.shapes.clone().into_owned();
         self.due = saved.due.clone().into_owned();
         self.events = saved.events.clone().into_owned();
+        self.remeshed = saved.remeshed.clone().into_owned();
         Ok(())
     }
 
@@ -147,6 +158,12 @@ impl<'a> Recorder<'a> {
         for record in &self.records {
             record.sample(s, &mut self.row);
         }
+        if let Some(track) = &mut self.track {
+            let rows = self.scene.run.duration / self.scene.run.interval();
+            if self.table.rows().is_multiple_of((rows / TRACKED).ceil().max(1.0) as usize) {
+                track.push(positions(s.model, &s.at));
+            }
+        }
         self.keep(s.at.t, || lines(s.model, &s.at))
     }
 
@@ -156,7 +173,7 @@ impl<'a> Recorder<'a> {
         if let Some(progress) = &mut self.progress {
             progress.step(t, h, 0);
         }
-        if self.interrupt.is_some_and(Interrupt::requested) {
+        if self.is_to_stop() {
             self.stop = Some(Ending::Interrupted);
             return ControlFlow::Break(());
         }
@@ -212,6 +229,10 @@ impl<'a> Recorder<'a> {
         self.table.columns.first().and_then(|c| c.values.last()).copied().unwrap_or(0.0)
     }
 
+    fn is_to_stop(&self) -> bool {
+        self.interrupt.is_some_and(Interrupt::requested) || self.deadline.is_some_and(|d| Instant::now() >= d)
+    }
+
     fn go_on(&mut self, result: Result<(), Error>) -> ControlFlow<()> {
         match result {
             Ok(()) => ControlFlow::Continue(()),
@@ -231,7 +252,7 @@ impl Observer for Recorder<'_> {
         if let Some(saver) = &mut self.saver {
             saver.step();
         }
-        if self.interrupt.is_some_and(Interrupt::requested) {
+        if self.is_to_stop() {
             self.stop = Some(Ending::Interrupted);
             return ControlFlow::Break(());
         }
@@ -273,4 +294,9 @@ fn lines(model: &Model, at: &At<'_>) -> Vec<V3<f64>> {
         all.extend(line);
     }
     all
+}
+
+fn positions(model: &Model, at: &At<'_>) -> Vec<V3<f64>> {
+    let nodes = model.nodes().iter().filter(|n| !matches!(n.kind, NodeKind::Scalars(_)));
+    nodes.map(|n| [at.q[n.q], at.q[n.q + 1], at.q[n.q + 2]]).collect()
 }

@@ -13,6 +13,7 @@ use ropewalk_core::{
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// How an analysis ended.
 pub(crate) enum Ending {
@@ -36,7 +37,12 @@ pub(crate) struct Done {
     pub audit: Audit,
     pub counts: Counts,
     pub flutter: Flutter,
+    /// Where the time of statics went, if that was asked for.
+    times: Option<Vec<Spent>>,
 }
+
+/// A label with calls and time.
+type Spent = (String, u64, Duration);
 
 /// An analysis that is ready to go.
 pub(crate) enum Started {
@@ -117,26 +123,43 @@ impl Started {
                 1.0 / flutter
             )
         };
-        (flutter > 0.0).then(unstable).into_iter().collect()
+        let unmet = match self {
+            Started::Dynamics(s, _) => s.work.counts.unmet,
+            _ => 0,
+        };
+        let stopped = || {
+            format!(
+                "{unmet} steps never met the absolute stopping test: rounding leaves more than it allows. They are as \
+                 good as they get; the `relative` test wouldn't have gone on in vain"
+            )
+        };
+        let flutter = (flutter > 0.0).then(unstable);
+        flutter.into_iter().chain((unmet > 0).then(stopped)).collect()
     }
 
     /// Measures the time of every term from now on.
     pub(crate) fn profile(&mut self) {
-        if let Started::Dynamics(s, _) = self {
-            s.work.profile();
+        match self {
+            Started::Dynamics(s, _) => s.work.profile(),
+            Started::Statics(done) => done.times = Some(Vec::new()),
+            Started::Process(..) => {}
         }
     }
 
     /// The measured times.
     pub(crate) fn times(&self) -> Vec<ProfileEntry> {
-        let Started::Dynamics(s, _) = self else { return Vec::new() };
-        let entry = |(label, calls, time): (String, u64, std::time::Duration)| ProfileEntry {
+        let times = match self {
+            Started::Dynamics(s, _) => s.work.times(&s.model),
+            Started::Statics(done) => done.times.clone().unwrap_or_default(),
+            Started::Process(..) => Vec::new(),
+        };
+        let entry = |(label, calls, time): Spent| ProfileEntry {
             label,
             calls,
             seconds: time.as_secs_f64(),
             share: 0.0,
         };
-        s.work.times(&s.model).into_iter().map(entry).collect()
+        times.into_iter().map(entry).collect()
     }
 
     /// A run in time as it was at a checkpoint.
@@ -158,15 +181,25 @@ impl Started {
         let (duration, interval) = (scene.run.duration, scene.run.interval());
         let end = match self {
             Started::Dynamics(s, _) if resumed => s.go_on(duration, interval, recorder).map_err(Error::from),
-            Started::Dynamics(s, _) => s.advance(duration, interval, recorder).map_err(Error::from),
-            Started::Statics(path) => path.go(scene, recorder),
             Started::Process(process, _) => through(process.as_mut(), scene, recorder),
+            _ => self.drive(scene, recorder),
         };
         match (end, recorder.stop.take()) {
             (_, Some(error)) => error,
             (Ok(End::Done), None) => Ending::Finished,
             (Ok(End::Stopped { by }), None) => Ending::Stopped(by),
             (Err(error), None) => Ending::Failed(error),
+        }
+    }
+
+    /// Moves a model to its end under the eyes of an observer. A process has no model to look at: it stays as it is.
+    pub(crate) fn drive(&mut self, scene: &Scene, observer: &mut dyn Observer) -> Result<End, Error> {
+        match self {
+            Started::Dynamics(s, _) => {
+                s.advance(scene.run.duration, scene.run.interval(), observer).map_err(Error::from)
+            }
+            Started::Statics(path) => path.go(scene, observer),
+            Started::Process(..) => Ok(End::Done),
         }
     }
 
@@ -177,7 +210,7 @@ impl Started {
             Started::Process(process, done) => Done { counts: counts(process.counts()), ..*done },
             Started::Dynamics(s, _) => {
                 let counts = counts(s.work.counts);
-                Done { model: s.model, state: s.state, audit: s.audit, counts, flutter: 0.0 }
+                Done { model: s.model, state: s.state, audit: s.audit, counts, flutter: 0.0, times: None }
             }
         }
     }
@@ -215,13 +248,29 @@ impl Done {
         let mut state = model.state();
         state.v.fill(0.0);
         let audit = Audit::start(model.energy(&state.at()));
-        Done { model: Arc::new(model), state, audit, counts: Counts::default(), flutter: 0.0 }
+        Done { model: Arc::new(model), state, audit, counts: Counts::default(), flutter: 0.0, times: None }
     }
 
     /// One equilibrium after the other; each starts from the one before.
-    fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>) -> Result<End, Error> {
-        let mut search =
-            Statics::relative(&self.model, &scene.statics, scene.run.frame).map_err(no_memory)?;
+    fn go(&mut self, scene: &Scene, observer: &mut dyn Observer) -> Result<End, Error> {
+        let model = self.model.clone();
+        let mut search = Statics::relative(&model, &scene.statics, scene.run.frame).map_err(no_memory)?;
+        if self.times.is_some() {
+            search.profile();
+        }
+        let end = self.follow(&mut search, scene, observer);
+        if let Some(times) = &mut self.times {
+            *times = search.times();
+        }
+        end
+    }
+
+    fn follow(
+        &mut self,
+        search: &mut Statics<'_>,
+        scene: &Scene,
+        observer: &mut dyn Observer,
+    ) -> Result<End, Error> {
         let steps = scene.statics.steps.max(1);
         for k in 0..=steps {
             let before = self.state.t;
@@ -246,7 +295,7 @@ impl Done {
                 lambda: &self.state.lambda,
                 audit: &self.audit,
             };
-            let flow = [recorder.sample(&sample), recorder.step(&self.model, &self.state, &report)];
+            let flow = [observer.sample(&sample), observer.step(&self.model, &self.state, &report)];
             if flow.iter().any(ControlFlow::is_break) {
                 return Ok(End::Stopped { by: "observer".into() });
             }

@@ -98,6 +98,27 @@ impl Document {
         self.root.find(path)
     }
 
+    /// The parameter that stands at a path as `"$name"`, if that is how the value was written.
+    #[must_use]
+    pub(crate) fn parameter_at(&self, path: &str) -> Option<&str> {
+        let name = self.sources.text(self.find(path)?.used?).trim_matches(['"', '\'']).strip_prefix('$')?;
+        self.parameters.iter().find(|p| p.name == name).map(|p| p.name.as_str())
+    }
+
+    /// Puts another value, written as TOML, at a path like `elements[2].longitudinal`.
+    ///
+    /// # Errors
+    /// If there is no such place, or the text is no value.
+    pub(crate) fn put(&mut self, path: &str, text: &str) -> Result<(), Fault> {
+        let source = self.sources.add(path, text);
+        let value = toml::parse_value(text, 0, source, &self.sources)
+            .unwrap_or_else(|| Err(Fault::new(format!("{} is no value", quoted(text)))))?;
+        match self.root.put(path, value) {
+            true => Ok(()),
+            false => Err(Fault::new(format!("the scene has no place {}", quoted(path)))),
+        }
+    }
+
     fn ask(&mut self, name: &str) {
         if !self.asked.iter().any(|a| a == name) {
             self.asked.push(name.to_string());

@@ -76,6 +76,11 @@ impl Sources {
         self.0.get(source).map_or("", |s| &s.name)
     }
 
+    /// What stands at a span.
+    pub(super) fn text(&self, span: Span) -> &str {
+        self.0.get(span.source).and_then(|s| s.text.get(span.start..span.end)).unwrap_or_default()
+    }
+
     pub(super) fn place(&self, span: Span) -> Option<Place> {
         const LONGEST: usize = 100;
         const BEFORE: usize = 40;

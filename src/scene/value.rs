@@ -95,6 +95,29 @@ impl Value {
         steps(path).try_fold(self, |here, step| here.step(step))
     }
 
+    /// Puts a value at a path below this one, and makes the tables on the way that aren't there. Says whether there
+    /// was a way: lists are never made longer.
+    pub(super) fn put(&mut self, path: &str, value: Self) -> bool {
+        let mut here = self;
+        for step in steps(path) {
+            let span = here.span;
+            here = match (&mut here.kind, step.strip_suffix(']').map(str::parse::<usize>)) {
+                (Kind::Array(list), Some(Ok(i))) if i < list.len() => &mut list[i],
+                (Kind::Table(table), None) => {
+                    let at = table.0.iter().position(|(key, _)| key.name == step).unwrap_or_else(|| {
+                        let key = Key { name: step.to_string(), span };
+                        table.0.push((key, Self::new(Kind::Table(Table::default()), span)));
+                        table.0.len() - 1
+                    });
+                    &mut table.0[at].1
+                }
+                _ => return false,
+            };
+        }
+        *here = value;
+        true
+    }
+
     /// The value one step below this one: `section`, or `0]`.
     fn step(&self, step: &str) -> Option<&Self> {
         match (&self.kind, step.strip_suffix(']').map(str::parse::<usize>)) {

@@ -1,10 +1,10 @@
 //! Where the runs ended: the last value of every record by the first parameter, as tables.
 
 use super::axis::Axis;
-use super::folder::SweepFolder;
 use super::grid::Grid;
 use super::results::{Recorded, Results};
 use crate::output::{OutputError, push_cell, push_number, write_atomic};
+use crate::study::StudyFolder;
 use std::collections::HashMap;
 
 /// Last values of runs that differ in nothing but the first parameter.
@@ -34,7 +34,7 @@ pub(super) fn finals(column: &Recorded, grid: &Grid, results: &Results) -> Vec<L
 /// Writes a table for every record: a row for each value of the first parameter, a column for all others. Gives the
 /// number of tables; one that can't be written is no reason to fail.
 pub(super) fn write(
-    folder: &SweepFolder,
+    folder: &StudyFolder,
     grid: &Grid,
     axes: &[Axis],
     results: &Results,

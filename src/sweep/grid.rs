@@ -1,7 +1,7 @@
 //! The combinations of a sweep.
 
 use super::axis::{Axis, unquoted};
-use super::folder::{SceneCopy, SweepManifest, VariedCopy};
+use super::manifest::{SceneCopy, SweepManifest, VariedCopy};
 use crate::output::plain;
 use crate::read::{SceneFile, SceneText};
 use crate::scene::{Fault, Varied, quoted};

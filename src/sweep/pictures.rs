@@ -2,10 +2,11 @@
 
 use super::axis::Axis;
 use super::finals::finals;
-use super::folder::SweepFolder;
 use super::grid::Grid;
 use super::results::{Recorded, Results, Row};
-use crate::output::{LinePlot, Mark, OutputError, RunFolder, Series, Table};
+use crate::output::{LinePlot, Mark, OutputError, Plane, RunFolder, Series, Table};
+use crate::run::{PLANES, last_shape, planes, view};
+use crate::study::StudyFolder;
 use std::collections::HashMap;
 
 /// More lines than this can't be told apart.
@@ -15,7 +16,7 @@ const MOST_POINTS: usize = 20_000;
 
 /// Draws everything and gives the number of pictures. A picture that can't be drawn is no reason to fail.
 pub(super) fn draw(
-    folder: &SweepFolder,
+    folder: &StudyFolder,
     grid: &Grid,
     axes: &[Axis],
     results: &Results,
@@ -24,16 +25,12 @@ pub(super) fn draw(
     let recorded = results.recorded();
     let Some((time, records)) = recorded.split_first() else { return 0 };
     let mut plots: Vec<(String, LinePlot)> = Vec::new();
-    let title = |what: &str, shown: usize, all: usize| {
-        let scenes = grid.scenes().join(" and ");
-        if shown < all { format!("{what}, {scenes}: {shown} of {all}") } else { format!("{what}, {scenes}") }
-    };
-
     let with_history: Vec<(usize, &Row)> = results
         .rows()
         .filter(|(_, row)| Results::values(row, time).is_some_and(|v| v[0].is_finite()))
         .collect();
     let lines = chosen(&with_history);
+    let titles = Titles::read(folder, grid, lines.iter().map(|(k, _)| *k));
     let mut histories: HashMap<&str, Vec<Series>> = HashMap::new();
     for (k, _) in &lines {
         let run = RunFolder::earlier(folder.run(grid.name(*k)));
@@ -56,7 +53,7 @@ pub(super) fn draw(
     for c in records {
         let series = histories.remove(c.heading.as_str()).unwrap_or_default();
         let plot = LinePlot {
-            title: title(&c.name, lines.len(), with_history.len()),
+            title: titles.of(&c.name, &c.name, lines.len(), with_history.len()),
             x_label: time.heading.clone(),
             y_label: c.heading.clone(),
             series,
@@ -69,7 +66,7 @@ pub(super) fn draw(
         let all = final_series(c, grid, axis, results);
         let series = chosen(&all);
         let plot = LinePlot {
-            title: title(&format!("{} at the end", c.name), series.len(), all.len()),
+            title: titles.of(&c.name, &format!("{} at the end", c.name), series.len(), all.len()),
             x_label: axis.label(),
             y_label: c.heading.clone(),
             series,
@@ -77,6 +74,8 @@ pub(super) fn draw(
         };
         plots.push((format!("{}-final", c.name), plot));
     }
+
+    plots.extend(shapes(folder, grid, &lines, with_history.len(), &titles));
 
     let mut drawn = 0;
     for (name, plot) in plots {
@@ -88,6 +87,94 @@ pub(super) fn draw(
         }
     }
     drawn
+}
+
+/// The shapes in which the runs ended, one over the other.
+fn shapes(
+    folder: &StudyFolder,
+    grid: &Grid,
+    lines: &[(usize, &Row)],
+    all: usize,
+    titles: &Titles,
+) -> Vec<(String, LinePlot)> {
+    let run = |k: usize| RunFolder::earlier(folder.run(grid.name(k)));
+    let ends: Vec<_> = lines.iter().filter_map(|(k, _)| Some((*k, last_shape(&run(*k)).ok()?))).collect();
+    let together = [(0.0, ends.iter().flat_map(|(_, line)| line.iter().copied()).collect())];
+    let seen = planes(&together);
+    let asked = |plane: &Plane| seen.contains(plane) || titles.has(view(*plane).0);
+    let plot = |plane: Plane| {
+        let (name, from) = view(plane);
+        let of = |(k, line): &(usize, Vec<_>)| {
+            Series::new(grid.label(*k, 0), line.iter().map(|x| plane.project(*x)).collect())
+        };
+        let (x_label, y_label) = plane.labels();
+        let plot = LinePlot {
+            title: titles.of(name, &format!("Shapes at the end, {from}"), ends.len(), all),
+            x_label: x_label.into(),
+            y_label: y_label.into(),
+            series: ends.iter().map(of).collect(),
+            equal_axes: true,
+            ..LinePlot::default()
+        };
+        (name.to_string(), plot)
+    };
+    PLANES.into_iter().filter(asked).map(plot).collect()
+}
+
+/// The titles that the pictures of the runs have.
+struct Titles {
+    scenes: String,
+    runs: Vec<HashMap<String, String>>,
+}
+
+impl Titles {
+    fn read(folder: &StudyFolder, grid: &Grid, runs: impl Iterator<Item = usize>) -> Self {
+        let read = |k: usize| {
+            let manifest = RunFolder::earlier(folder.run(grid.name(k))).manifest_file();
+            let text = std::fs::read_to_string(manifest).ok()?;
+            let all: serde_json::Value = serde_json::from_str(&text).ok()?;
+            serde_json::from_value(all["titles"].clone()).ok()
+        };
+        Titles { scenes: grid.scenes().join(" and "), runs: runs.filter_map(read).collect() }
+    }
+
+    /// Whether a run has a title for this picture.
+    fn has(&self, picture: &str) -> bool {
+        self.runs.iter().any(|titles| titles.contains_key(picture))
+    }
+
+    /// The title of a picture over some of the runs: what it shows, with the title that all of them have, or the numbers
+    /// of the figures that all their titles name.
+    fn of(&self, picture: &str, what: &str, shown: usize, all: usize) -> String {
+        let own: Vec<&str> =
+            self.runs.iter().filter_map(|titles| titles.get(picture).map(String::as_str)).collect();
+        let what = match (own.as_slice(), shared(&own)) {
+            ([first, rest @ ..], _) if rest.iter().all(|title| title == first) => {
+                // what is shown at the end only says so
+                let end = if what.ends_with(" at the end") { ", at the end" } else { "" };
+                format!("{first}{end}")
+            }
+            (_, figures) if figures.is_empty() => what.to_string(),
+            (_, figures) => {
+                let word = if figures.len() == 1 { "Figure" } else { "Figures" };
+                format!("{word} {}: {what}", figures.join(" and "))
+            }
+        };
+        let scenes = &self.scenes;
+        if shown < all { format!("{what}, {scenes}: {shown} of {all}") } else { format!("{what}, {scenes}") }
+    }
+}
+
+/// Numbers of figures that all titles begin with, as in `Figures 4.37 and 4.40: end of the hose`.
+fn shared<'a>(titles: &[&'a str]) -> Vec<&'a str> {
+    let numbers = |title: &'a str| -> Vec<&'a str> {
+        let head = title.split_once(':').map_or("", |(head, _)| head);
+        let list = head.strip_prefix("Figures ").or_else(|| head.strip_prefix("Figure ")).unwrap_or("");
+        list.split([' ', ',']).filter(|w| w.starts_with(|c: char| c.is_ascii_digit())).collect()
+    };
+    let mut each = titles.iter().map(|title| numbers(title));
+    let first = each.next().unwrap_or_default();
+    each.fold(first, |kept, other| kept.into_iter().filter(|n| other.contains(n)).collect())
 }
 
 /// Last values over the first parameter; runs that differ in nothing else are a line.
@@ -134,6 +221,23 @@ mod tests {
         assert_eq!((some.len(), some[0], some[MOST_LINES - 1]), (MOST_LINES, 0, 999));
         assert!(some.windows(2).all(|w| w[0] < w[1]));
         assert_eq!(chosen(&all[..5]), all[..5]);
+    }
+
+    #[test]
+    fn figures_of_a_sweep_are_those_that_all_its_runs_share() {
+        let turn = ["Figures 4.37 and 4.40: end, from 40 s", "Figures 4.37 and 4.41: end, from 80 s"];
+        assert_eq!(shared(&turn), ["4.37"]);
+        assert_eq!(shared(&["Figure 2.13: tension", "Figure 2.13: tension"]), ["2.13"]);
+        assert!(shared(&["Figure 2.14: a", "Figure 2.18: b"]).is_empty());
+        assert!(shared(&["Figure 2.14: a", "the end"]).is_empty() && shared(&[]).is_empty());
+        let titles = |all: &[&str]| Titles {
+            scenes: "hose".into(),
+            runs: all.iter().map(|t| HashMap::from([("z".to_string(), t.to_string())])).collect(),
+        };
+        assert_eq!(titles(&turn).of("z", "z at the end", 2, 2), "Figure 4.37: z at the end, hose");
+        assert_eq!(titles(&["End", "End"]).of("z", "z at the end", 2, 3), "End, at the end, hose: 2 of 3");
+        assert_eq!(titles(&["End", "Start"]).of("z", "z", 2, 2), "z, hose");
+        assert_eq!(titles(&[]).of("z", "z", 0, 0), "z, hose");
     }
 
     #[test]

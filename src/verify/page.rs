@@ -3,7 +3,7 @@
 use super::case::Outcome;
 use super::quantity::Measured;
 use super::report::{list, ratio, spread};
-use crate::output::{BarPlot, NamedBar, OutputError, number, rough};
+use crate::output::{Bar, BarPlot, OutputError, number, rough};
 use std::fmt::Write;
 
 /// The first line of every such page.
@@ -84,12 +84,20 @@ fn cell(text: &str) -> String {
 /// There is nothing to show.
 pub fn picture(outcomes: &[Outcome]) -> Result<String, OutputError> {
     let run = outcomes.iter().filter(|o| o.case.quantities() > 0);
-    let bars = run.map(|o| NamedBar { name: o.case.name.into(), value: o.worst() });
+    let bars = run.clone().map(|o| Bar {
+        label: o.case.name.into(),
+        value: o.worst(),
+        note: ratio(o.worst()),
+        group: usize::from(!o.is_within()),
+    });
+    let groups = ["within", "outside"].map(str::to_string).to_vec();
     let plot = BarPlot {
         title: "Largest error of each case in parts of its tolerance".into(),
-        label: "error / tolerance".into(),
-        limit: Some(1.0),
+        axis: "error / tolerance".into(),
         bars: bars.collect(),
+        groups: if run.clone().all(Outcome::is_within) { Vec::new() } else { groups },
+        log: true,
+        mark: Some((1.0, "tolerance".into())),
     };
     plot.svg()
 }

@@ -47,6 +47,9 @@ fn one() -> usize {
     1
 }
 
+/// More layers than any package has.
+const MOST_LAYERS: usize = 10_000;
+
 /// A package of cable, wound in layers: inside a hollow cylinder, as in the dispenser of a vehicle, or on a spool.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -174,6 +177,10 @@ impl PackageSpec {
         }
         if self.layers == 0 {
             return Err(BuildError::at("layers", "a package without layers holds no cable: give 1 at least"));
+        }
+        if self.layers > MOST_LAYERS {
+            let message = format!("a package has at most {MOST_LAYERS} layers, not {}", self.layers);
+            return Err(BuildError::at("layers", message));
         }
         self.check_radii()?;
         let (first, length) = (self.first(), self.length);

@@ -120,6 +120,7 @@ fn what_cannot_be_wound_is_refused_by_field() {
         (PackageSpec { length: 0.0, ..spec() }, "length", "positive"),
         (PackageSpec { length: 0.5e-3, ..spec() }, "length", "less than one turn"),
         (PackageSpec { layers: 0, ..spec() }, "layers", "no cable"),
+        (PackageSpec { layers: usize::MAX, ..spec() }, "layers", "at most 10000"),
         (PackageSpec { side: Side::Outer, layers: 70, ..spec() }, "layers", "fewer"),
         (PackageSpec { bend_limit: Some(0.07), ..spec() }, "radius", "may not be bent"),
         (PackageSpec { first: Some(0.011), ..spec() }, "first", "within the package"),

@@ -1,6 +1,8 @@
 //! Winches: ends of cables that feed out and reel in.
 
 mod conditions;
+mod drive;
+mod eyelet;
 mod feeding;
 mod lift_off;
 mod limit;
@@ -8,6 +10,7 @@ mod pull;
 mod spec;
 mod zone;
 
+pub use eyelet::EyeletSpec;
 pub use feeding::Feeding;
 pub use lift_off::{LiftOff, LiftOffSpec};
 pub use limit::{Limit, Side};

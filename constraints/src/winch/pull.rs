@@ -1,6 +1,7 @@
 //! Feeding under a force: tension, brake, the inertia of a drum.
 
-use ropewalk_core::{Assembly, At, Column, Energy, Front, Pattern, Power, Term};
+use ropewalk_core::{Assembly, At, Column, Energy, Front, Motion, Pattern, Power, Term};
+use std::sync::Arc;
 
 /// What a winch that isn't driven pulls with, as force on the front: `P |r'|` with
 /// `P = tension + brake u/√(u² + slip²) + damping u + per_speed2 u² + pile`, and `inertia u̇` of its drum; `u` is the speed at which it
@@ -8,7 +9,7 @@ use ropewalk_core::{Assembly, At, Column, Energy, Front, Pattern, Power, Term};
 ///
 /// A brake is dry friction, so below its force the end creeps at a part of `slip`. Cable picked up from a pile at rest
 /// has to be set moving, which takes `ρA u²` for `u > 0` (without rebound; a drum that turns with the cable takes none).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone)]
 pub struct Pull {
     /// Name of the winch.
     pub name: String,
@@ -24,6 +25,8 @@ pub struct Pull {
     pub damping: f64,
     /// Tension by the square of the speed, whichever way it feeds [kg/m].
     pub per_speed2: f64,
+    /// The motion along x whose speed that is, if it isn't the speed at which this end feeds.
+    pub pace: Option<Arc<dyn Motion>>,
     /// Inertia of the drum over the square of its radius [kg].
     pub inertia: f64,
     /// Whether the cable is picked up from rest.
@@ -31,12 +34,18 @@ pub struct Pull {
 }
 
 impl Pull {
+    /// The part of the tension that is given from outside.
+    fn given(&self, t: f64, u: f64) -> f64 {
+        let pace = self.pace.as_ref().map_or(u, |motion| motion.at(t).v[0]);
+        self.tension + self.per_speed2 * pace * pace
+    }
     /// The pull, and its derivative by the speed of feeding.
-    fn pull(&self, u: f64) -> (f64, f64) {
+    fn pull(&self, t: f64, u: f64) -> (f64, f64) {
         let root = (u * u + self.slip * self.slip).sqrt();
-        let rho = self.per_speed2 + if self.pile && u > 0.0 { self.front.rho_a } else { 0.0 };
+        let pile = if self.pile && u > 0.0 { self.front.rho_a } else { 0.0 };
+        let rho = pile + if self.pace.is_none() { self.per_speed2 } else { 0.0 };
         (
-            self.tension + self.brake * u / root + self.damping * u + rho * u * u,
+            self.given(t, u) + self.brake * u / root + self.damping * u + pile * u * u,
             self.brake * self.slip * self.slip / (root * root * root) + self.damping + 2.0 * rho * u,
         )
     }
@@ -57,7 +66,7 @@ impl Term for Pull {
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let (front, slope) = (&self.front, self.slope(at));
-        let (stretch, (pull, by_u)) = (front.stretch(at), self.pull(front.rate(at)));
+        let (stretch, (pull, by_u)) = (front.stretch(at), self.pull(at.t, front.rate(at)));
         // feeding out moves the front by its sign, and the pull resists that
         out.add(front.v, front.sign * pull * stretch + self.inertia * at.a[front.v]);
         let w = out.weights();
@@ -73,20 +82,21 @@ impl Term for Pull {
     }
     fn power(&self, at: &At<'_>) -> Power {
         let (u, stretch) = (self.front.rate(at), self.front.stretch(at));
-        let given = (self.tension + self.per_speed2 * u * u) * u * stretch;
-        Power { supplied: -given, dissipated: self.pull(u).0 * u * stretch - given, ..Power::default() }
+        let given = self.given(at.t, u) * u * stretch;
+        Power { supplied: -given, dissipated: self.pull(at.t, u).0 * u * stretch - given, ..Power::default() }
     }
     fn columns(&self) -> Vec<Column> {
         vec![Column::new(format!("{}.pull", self.name), "N")]
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
-        out.push(self.pull(self.front.rate(at)).0);
+        out.push(self.pull(at.t, self.front.rate(at)).0);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::Straight;
     use ropewalk_core::testing::check_tangent;
     use ropewalk_core::{Node, NodeId, NodeKind, Width};
 
@@ -96,7 +106,10 @@ mod tests {
             Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false },
             Node { kind: NodeKind::Scalars(1), q: 6, v: 6, shared: true },
         ];
-        for (sign, rate) in [(-1.0, 0.7), (-1.0, -0.4), (1.0, 0.3)] {
+        let steady = Straight::new([1.0, 0.0, 0.0], 3.0, -1.0, 0.1).expect("a speed");
+        for (sign, rate, pace) in
+            [(-1.0, 0.7, None), (-1.0, -0.4, Some(Arc::new(steady) as Arc<dyn Motion>)), (1.0, 0.3, None)]
+        {
             let front = Front {
                 node: NodeId(1),
                 q: 6,
@@ -116,6 +129,7 @@ mod tests {
                 slip: 0.5,
                 damping: 0.7,
                 per_speed2: 0.4,
+                pace,
                 inertia: 2.0,
                 pile: true,
             };

@@ -1,11 +1,9 @@
 //! `type = "winch"`.
 
+use super::drive::Drive;
 use super::{Feeding, Limit, Pull, Side, Zone};
-use crate::motion::Straight;
-use ropewalk_core::build::{BuildError, Builder, not_negative, positive};
-use ropewalk_core::{
-    ConstraintSpec, Feed, MarkerRef, Model, Motion, Moving, quantity, register_spec, split_marker,
-};
+use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
+use ropewalk_core::{ConstraintSpec, Feed, MarkerRef, Model, Motion, quantity, register_spec, split_marker};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -88,6 +86,10 @@ pub struct WinchSpec {
     /// Tension by the square of the speed, besides `tension` [kg/m]: what is measured at an eyelet often goes by it.
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub per_speed2: f64,
+    /// Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs here. A
+    /// tension that draws, and grows with the speed to which it draws, drives itself: then name the motion that is meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pace: Option<String>,
     /// Inertia of the drum over the square of its radius [kg].
     #[serde(default, deserialize_with = "quantity::mass")]
     pub inertia: f64,
@@ -123,24 +125,6 @@ fn is_infinite(x: &f64) -> bool {
     x.is_infinite()
 }
 
-/// A speed that rises, and falls again later.
-#[derive(Clone, Debug)]
-struct Haul {
-    rise: Straight,
-    fall: Option<Straight>,
-}
-
-impl Motion for Haul {
-    fn at(&self, t: f64) -> Moving {
-        let mut x = self.rise.at(t);
-        if let Some(fall) = &self.fall {
-            let less = fall.at(t);
-            (x.x[0], x.v[0], x.a[0]) = (x.x[0] - less.x[0], x.v[0] - less.v[0], x.a[0] - less.a[0]);
-        }
-        x
-    }
-}
-
 impl WinchSpec {
     /// A winch that feeds out at a speed [m/s]; a negative one reels in.
     pub fn speed(name: &str, marker: impl Into<MarkerRef>, speed: f64) -> Self {
@@ -154,7 +138,7 @@ impl WinchSpec {
     pub fn tension(name: &str, marker: impl Into<MarkerRef>, tension: f64) -> Self {
         WinchSpec { tension: Some(tension), ..Self::new(name, marker) }
     }
-    fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
+    pub(super) fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
         WinchSpec {
             name: name.into(),
             marker: marker.into(),
@@ -170,6 +154,7 @@ impl WinchSpec {
             slip: slip(),
             damping: 0.0,
             per_speed2: 0.0,
+            pace: None,
             inertia: 0.0,
             pile: false,
             stock: rest(),
@@ -179,95 +164,21 @@ impl WinchSpec {
         }
     }
 
+    /// The motion whose speed the tension goes by.
+    fn pace(&self, b: &Builder) -> Result<Option<Arc<dyn Motion>>, BuildError> {
+        let Some(name) = &self.pace else { return Ok(None) };
+        let motion = b.motion(name).map_err(|e| e.of("pace"))?;
+        if motion.range() != (f64::NEG_INFINITY, f64::INFINITY) {
+            let message =
+                format!("the speed of `{name}` is not defined for ever: take another motion, or longer");
+            return Err(BuildError::at("pace", message));
+        }
+        Ok(Some(motion))
+    }
+
     /// Whether it never feeds.
     fn idle(&self) -> bool {
         self.speed == Some(0.0) && self.motion.is_none()
-    }
-
-    /// The speed with its sign, and when it begins to fall, of a cable of this length.
-    fn course(&self, speed: f64, whole: f64) -> Result<(f64, Option<f64>), BuildError> {
-        if speed == 0.0 {
-            return Ok((speed, None));
-        }
-        let total = match (self.stop, self.total, self.final_length) {
-            (None, None, None) => return Ok((speed, None)),
-            (Some(stop), None, None) if stop < self.start + self.ramp => {
-                let message = format!("it would stop at {stop} s, before its speed has risen");
-                return Err(BuildError::at("stop", message));
-            }
-            (Some(stop), None, None) => return Ok((speed, Some(stop))),
-            (None, Some(total), None) => total,
-            (None, None, Some(last)) => positive("final_length", last)? - whole,
-            (Some(_), ..) => {
-                let field = if self.total.is_some() { "total" } else { "final_length" };
-                let message = format!("give `stop` or `{field}`, not both: one follows from the other");
-                return Err(BuildError::at(field, message));
-            }
-            _ => {
-                let message = "give `total` or `final_length`, not both: one follows from the other";
-                return Err(BuildError::at("final_length", message));
-            }
-        };
-        let field = if self.total.is_some() { "total" } else { "final_length" };
-        // a length tells the direction as well
-        let speed = if self.final_length.is_some() && speed > 0.0 { speed.copysign(total) } else { speed };
-        let time = total / speed;
-        if !(time > 0.0 && time.is_finite()) {
-            let message = match self.final_length {
-                Some(last) if total == 0.0 => format!("the cable is {last} m long already"),
-                Some(last) => format!("a cable of {whole} m can't be reeled in to {last} m"),
-                None => format!("at {speed} m/s it never feeds out {total} m: their signs must be the same"),
-            };
-            return Err(BuildError::at(field, message));
-        }
-        if time < self.ramp {
-            let message = format!(
-                "{} m are over before the speed has risen to {} m/s: take a `ramp` of at most {} s, or less speed",
-                total.abs(),
-                speed.abs(),
-                time
-            );
-            return Err(BuildError::at(field, message));
-        }
-        Ok((speed, Some(self.start + time)))
-    }
-
-    /// Where its length is prescribed: the length fed out as a motion.
-    fn prescribed(&self, b: &Builder, whole: f64) -> Result<Option<Arc<dyn Motion>>, BuildError> {
-        let free = self.tension.is_some() || self.brake != 0.0 || self.damping != 0.0 || self.inertia != 0.0;
-        match (self.speed, &self.motion) {
-            (Some(_), Some(_)) => Err(BuildError::at("motion", "give `speed` or `motion`, not both")),
-            (Some(_), None) | (None, Some(_)) if free || self.pile => Err(BuildError::at(
-                if self.tension.is_some() { "tension" } else { "brake" },
-                "the speed of this winch is prescribed, so its tension is a result: leave out `tension`, `brake`, \
-                 `damping`, `inertia` and `pile`, or the speed. A cable whose other end feeds too can have the \
-                 tension here and the speed there, as in the scene `unwinding`",
-            )),
-            (Some(speed), None) => {
-                let ahead = [1.0, 0.0, 0.0];
-                // says what is wrong with speed, start and ramp first
-                Straight::new(ahead, speed, self.start, self.ramp)?;
-                let (speed, stop) = self.course(speed, whole)?;
-                let rise = Straight::new(ahead, speed, self.start, self.ramp)?;
-                let fall = stop.map(|stop| Straight::new(ahead, speed, stop, self.ramp)).transpose()?;
-                Ok(Some(Arc::new(Haul { rise, fall })))
-            }
-            (None, _) if [self.stop, self.total, self.final_length].iter().any(Option::is_some) => {
-                let field = match (self.stop, self.total) {
-                    (Some(_), _) => "stop",
-                    (None, Some(_)) => "total",
-                    (None, None) => "final_length",
-                };
-                let message = format!("`{field}` says when a `speed` ends, and this winch has none");
-                Err(BuildError::at(field, message))
-            }
-            (None, Some(motion)) => b.motion(motion).map(Some),
-            (None, None) if free => Ok(None),
-            (None, None) => Err(BuildError::at(
-                "name",
-                "say how this winch feeds: `speed` or `motion`, or what holds it back: `tension`, `brake`, `damping`",
-            )),
-        }
     }
 }
 
@@ -287,8 +198,9 @@ impl ConstraintSpec for WinchSpec {
             return Vec::new();
         };
         let part = split_marker(marker).ok().and_then(|(name, _)| model.part(name));
-        let Some((part, time)) = part.and_then(|p| Some((p, p.bending_time()?))) else { return Vec::new() };
-        let element = part.length() / (part.mesh().len() - 1) as f64;
+        let slender = part.and_then(|p| Some((p, p.slender()?))).filter(|(_, s)| s.ei > 0.0);
+        let Some((part, slender)) = slender else { return Vec::new() };
+        let (element, time) = (slender.element, slender.bending_time());
         let in_or_out = match self.final_length {
             Some(last) if last < part.length() => "in",
             None if speed < 0.0 => "in",
@@ -308,14 +220,15 @@ impl ConstraintSpec for WinchSpec {
             not_negative(name, x)?;
         }
         positive("slip", self.slip)?;
+        let part = b.feeding_part(&self.marker)?;
+        let whole = part.length();
         if self.idle() {
             // it adds nothing, but what is wrong with it is said all the same
-            let part = b.feeding_part(&self.marker)?;
-            return self.prescribed(b, part.length()).map(drop);
+            return self.drive(b, whole).map(drop);
         }
-        let (front, part) = (b.front(&self.marker)?, b.feeding_part(&self.marker)?);
-        match self.prescribed(b, part.length())? {
-            Some(motion) => {
+        let front = b.front(&self.marker)?;
+        match self.drive(b, whole)? {
+            Drive::Motion(motion) => {
                 let start = motion.at(0.0);
                 if start.x[0] != 0.0 {
                     let message = format!("the motion has fed out {} m before the run begins", start.x[0]);
@@ -324,18 +237,23 @@ impl ConstraintSpec for WinchSpec {
                 b.start_feeding(&self.marker, front.sign * start.v[0])?;
                 b.constraint(Feeding::new(&self.name, front, motion))?;
             }
-            None => b.term(Box::new(Pull {
-                name: self.name.clone(),
-                front,
-                tension: ropewalk_core::build::finite("tension", &[self.tension.unwrap_or(0.0)])
-                    .map(|()| self.tension.unwrap_or(0.0))?,
-                brake: self.brake,
-                slip: self.slip,
-                damping: self.damping,
-                per_speed2: self.per_speed2,
-                inertia: self.inertia,
-                pile: self.pile,
-            })),
+            Drive::Held => {
+                let tension = self.tension.unwrap_or(0.0);
+                finite("tension", &[tension])?;
+                let pace = self.pace(b)?;
+                b.term(Box::new(Pull {
+                    name: self.name.clone(),
+                    front,
+                    tension,
+                    brake: self.brake,
+                    slip: self.slip,
+                    damping: self.damping,
+                    per_speed2: self.per_speed2,
+                    pace,
+                    inertia: self.inertia,
+                    pile: self.pile,
+                }));
+            }
         }
         let limit = |side, length| Limit {
             name: self.name.clone(),
@@ -347,7 +265,6 @@ impl ConstraintSpec for WinchSpec {
         if self.stock.is_finite() {
             b.event(limit(Side::Empty, positive("stock", self.stock)?));
         }
-        let whole = part.length();
         if self.element.is_some_and(|e| e >= 0.5 * whole) {
             let message =
                 format!("the cable is {whole} m long at the start: take elements of less than half of that");

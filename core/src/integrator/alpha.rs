@@ -2,10 +2,11 @@
 
 use super::newton::{Newton, Outcome, Rate};
 use super::options::fixed_step;
+use super::scales::Scaled;
 use super::start::{anew, settle};
 use super::workspace::Which;
 use super::{
-    Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping,
+    Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping, Units,
     Workspace,
 };
 use crate::model::Model;
@@ -17,6 +18,7 @@ pub struct Alpha {
     options: Options,
     scheme: Coefficients,
     horizon: f64,
+    units: Units,
     warning: Option<String>,
 }
 
@@ -48,7 +50,10 @@ impl Alpha {
             }
             warning = Some(format!("unstable scheme allowed: {why}"));
         }
-        Ok(Alpha { options: options.clone(), scheme, horizon: options.horizon_in(duration), warning })
+        let units = options.scales.map_or(Ok(Units::SI), |scales| Units::of(scales, model));
+        let units = units.map_err(StepError::Scheme)?;
+        let horizon = options.horizon_in(duration);
+        Ok(Alpha { options: options.clone(), scheme, horizon, units, warning })
     }
 
     /// Its numbers.
@@ -229,6 +234,7 @@ impl Alpha {
         std::mem::swap(&mut state.lambda, &mut t.lambda);
         state.t += h;
         work.counts.steps += 1;
+        work.counts.unmet += u64::from(rate.unmet);
     }
 }
 
@@ -336,6 +342,10 @@ impl Integrator for Alpha {
     ) -> Result<StepReport, StepError> {
         work.ensure_mass(model, &state.at(), &state.lambda)
             .map_err(|source| linear(model, state.t, source))?;
+        if self.options.scales.is_some() && work.scaled.is_none() {
+            work.scaled = Some(Scaled::new(model, self.units));
+            work.factored = None;
+        }
         let linear_constraints = !model.is_mechanism();
         let controlled = matches!(self.options.stepping, Stepping::Controlled { .. });
         let limit = h_max.min(self.options.h_max);
@@ -373,6 +383,8 @@ impl Integrator for Alpha {
                 },
                 max_iterations: self.options.max_iterations,
                 tolerance: self.newton_tolerance(model, h),
+                stopping: self.options.stopping,
+                units: self.units,
                 linear_constraints,
                 stabilised: self.stabilised(model),
                 // a step that leaps over the instant at which a point sticks ends so stiff that the estimate of its error

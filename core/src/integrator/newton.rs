@@ -5,7 +5,7 @@
 //! grow as the step shrinks (Bottasso, Bauchau & Cardona 2007), and β = 0 is no special case.
 
 use super::workspace::{Trial, Which};
-use super::{Coefficients, NewtonPolicy, Workspace};
+use super::{Coefficients, NewtonPolicy, Stopping, Units, Workspace};
 use crate::model::Model;
 use crate::redundancy::Softening;
 use crate::solver::SolveError;
@@ -43,6 +43,8 @@ pub(crate) struct Rate {
     pub theta: Option<f64>,
     /// Whether kept factors had to be replaced on the way.
     pub kept_failed: bool,
+    /// Whether an absolute stopping test was given up, since only rounding is left.
+    pub unmet: bool,
 }
 
 /// What Newton's method of a trial came to.
@@ -57,6 +59,15 @@ pub(crate) enum Outcome {
     Linear(SolveError),
 }
 
+/// What an absolute stopping test says of an iteration.
+#[derive(Clone, Copy, PartialEq)]
+enum Test {
+    Met,
+    Failed,
+    /// It is met if the correction of this iteration is smaller.
+    Increment(f64),
+}
+
 pub(crate) struct Newton<'a> {
     pub model: &'a Model,
     pub state: &'a State,
@@ -66,6 +77,9 @@ pub(crate) struct Newton<'a> {
     pub max_iterations: u32,
     /// Tolerance of displacements [m].
     pub tolerance: f64,
+    /// When to stop, and the units of absolute tests.
+    pub stopping: Stopping,
+    pub units: Units,
     /// Whether every constraint is linear, so that one iteration meets it.
     pub linear_constraints: bool,
     /// Whether velocities are to meet the constraints as well.
@@ -106,21 +120,19 @@ impl Newton<'_> {
     }
 
     /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.
-    fn evaluate(
-        &self,
-        work: &mut Workspace,
-        matrix: bool,
-        leap: Option<Leap<'_>>,
-        careful: bool,
-    ) -> Result<(), SolveError> {
-        let weights = self.weights();
+    fn evaluate(&self, work: &mut Workspace, matrix: bool, leap: Option<Leap<'_>>) {
         let at = self.place(&work.trial);
-        self.model.assemble_from(leap, &at, &work.trial.lambda, matrix.then_some(weights), &mut work.system);
+        let weights = matrix.then(|| self.weights());
+        self.model.assemble_from(leap, &at, &work.trial.lambda, weights, &mut work.system);
+    }
+
+    /// Factors the iteration matrix that was assembled at the trial.
+    fn factor(&self, work: &mut Workspace, careful: bool) -> Result<(), SolveError> {
         if careful {
             Softening::new(self.model, self.model.structure()).blunt(&mut work.system.values);
             work.system.approximate = true;
         }
-        if matrix { work.factor(self.model, weights) } else { Ok(()) }
+        work.factor(self.model, self.weights())
     }
 
     /// Iterates from the prediction in `work.trial.aux` and `work.trial.lambda`.
@@ -153,9 +165,14 @@ impl Newton<'_> {
                 k if k % 2 == 0 && refresh => Some(Leap { v: &before, predicted: false }),
                 _ => None,
             };
-            let result = self.evaluate(work, refresh, leap, careful);
+            self.evaluate(work, refresh, leap);
             work.trial.v_before = before;
-            if let Err(e) = result {
+            let test = self.absolute(work);
+            if test == Some(Test::Met) && !work.system.approximate {
+                let theta = (renewals > 0).then_some(0.0);
+                return Outcome::Converged(Rate { iterations: k, eta, theta, kept_failed, unmet: false });
+            }
+            if refresh && let Err(e) = self.factor(work, careful) {
                 return Outcome::Linear(e);
             }
             // behind a kink, corrections say nothing about convergence
@@ -212,20 +229,34 @@ impl Newton<'_> {
             let last_before = std::mem::replace(&mut last, size);
             // a rate that wasn't seen for some steps has to be seen again before it is trusted
             let trusted = since > 1 || eta <= TRUST;
-            let done = trusted && size * eta.min(1e3) <= stop || size <= floor;
-            if done && !approximate && self.constraints_hold(work) {
+            let done = match test {
+                None => {
+                    (trusted && size * eta.min(1e3) <= stop || size <= floor)
+                        && !approximate
+                        && self.constraints_hold(work)
+                }
+                Some(Test::Increment(limit)) => !approximate && self.increment(work) < limit,
+                Some(_) => false,
+            };
+            if done {
                 let theta = if since > 1 && last_before > noise {
                     Some(theta)
                 } else {
                     (renewals > 0).then_some(0.0)
                 };
-                return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed });
+                return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed, unmet: false });
             }
-            if theta >= 1.0 {
+            if theta >= 1.0 && (test.is_none() || size > noise) {
                 // at the floor of rounding the iteration wanders; far from it, it diverges
                 if size <= noise && renewals > 0 {
-                    let rate = Rate { iterations: k + 1, eta: 1.0, theta: Some(1.0), kept_failed };
-                    return Outcome::Converged(rate);
+                    let theta = Some(1.0);
+                    return Outcome::Converged(Rate {
+                        iterations: k + 1,
+                        eta: 1.0,
+                        theta,
+                        kept_failed,
+                        unmet: false,
+                    });
                 }
                 match renewals {
                     0 => return Outcome::Stale,
@@ -235,7 +266,29 @@ impl Newton<'_> {
                 }
             }
         }
+        if self.stopping != Stopping::Relative && last <= noise {
+            let (iterations, theta) = (self.max_iterations, (renewals > 0).then_some(0.0));
+            return Outcome::Converged(Rate { iterations, eta, theta, kept_failed, unmet: true });
+        }
         Outcome::Failed { why: format!("{} Newton iterations were not enough", self.max_iterations) }
+    }
+
+    /// What an absolute stopping test says of the equations, as they were just assembled.
+    fn absolute(&self, work: &Workspace) -> Option<Test> {
+        let Stopping::Absolute { residual, increment } = self.stopping else { return None };
+        let met = residual.is_none_or(|r| self.units.residual(self.model, &work.system.residual) < r);
+        Some(match (met, increment) {
+            (false, _) => Test::Failed,
+            (true, None) => Test::Met,
+            (true, Some(limit)) => Test::Increment(limit),
+        })
+    }
+
+    /// Norm of the correction of the coordinates that was just solved for.
+    fn increment(&self, work: &Workspace) -> f64 {
+        let positions = &self.model.structure().position[..self.model.velocities()];
+        let scale = self.scheme.beta * self.h * self.h;
+        self.units.increment(self.model, positions.iter().map(|&p| scale * work.x[p]))
     }
 
     fn place<'a>(&'a self, trial: &'a Trial) -> At<'a> {

@@ -1,6 +1,6 @@
 //! What a user may choose about time integration.
 
-use super::{Alpha, Integrator, Radau, Scheme, StepError};
+use super::{Alpha, Integrator, Radau, Scales, Scheme, StepError, Stopping};
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
@@ -87,6 +87,12 @@ pub struct Options {
     pub max_iterations: u32,
     /// Newton tolerance as a fraction of the default; smaller is tighter.
     pub newton_tolerance: f64,
+    /// When Newton's method stops.
+    pub stopping: Stopping,
+    /// Makes the equations dimensionless before they are solved. With the `relative` stopping test that changes nothing
+    /// but rounding.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scales: Option<Scales>,
 }
 
 impl Default for Options {
@@ -105,6 +111,8 @@ impl Default for Options {
             filter_start: true,
             max_iterations: 20,
             newton_tolerance: 1.0,
+            stopping: Stopping::default(),
+            scales: None,
         }
     }
 }
@@ -145,6 +153,13 @@ impl Options {
         }
         if self.max_iterations < 2 {
             return Err("`max_iterations` must be at least 2".into());
+        }
+        self.stopping.check()?;
+        if self.scheme == Scheme::RadauIia5 && (self.stopping != Stopping::Relative || self.scales.is_some())
+        {
+            return Err(
+                "Radau IIA has neither `scales` nor an `absolute` stopping test: take another scheme".into(),
+            );
         }
         match self.stepping {
             Stepping::Fixed { h } => positive("h", h),

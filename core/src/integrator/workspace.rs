@@ -1,6 +1,7 @@
 //! Scratch and caches of an integration. Dropping it changes cost, never what is accepted.
 
 use super::radau::Stages;
+use super::scales::Scaled;
 use crate::model::{Model, System};
 use crate::node::NodeKind;
 use crate::redundancy::Softening;
@@ -8,7 +9,8 @@ use crate::solver::{Guard, SolveError};
 use crate::state::{At, State};
 use crate::structure::Structure;
 use crate::term::Weights;
-use std::time::{Duration, Instant};
+use crate::times::{Clocks, Phase, Times};
+use std::time::Duration;
 
 /// What a run did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -25,6 +27,8 @@ pub struct Counts {
     pub factorizations: u64,
     /// Factorisations without pivoting that were not good enough and were repeated with it.
     pub fallbacks: u64,
+    /// Steps that an absolute stopping test was never met in, since rounding leaves more.
+    pub unmet: u64,
 }
 
 /// Scratch of an integration: system, factors, mass matrix.
@@ -51,10 +55,14 @@ pub struct Workspace {
     pub(crate) y: Vec<f64>,
     /// Counters.
     pub counts: Counts,
-    /// Calls and time of factorisations and of solutions; only filled where profiling was asked for.
-    pub phases: Option<[(u64, Duration); 2]>,
+    /// What factorisations, solutions and the audit took.
+    pub(crate) clocks: Clocks,
+    /// What was spent on earlier meshes.
+    earlier: Times,
     /// What makes the matrix regular although constraints are redundant; `None` where they aren't.
     pub(crate) softening: Option<Softening>,
+    /// The iteration matrix without dimensions, where it is wished.
+    pub(crate) scaled: Option<Scaled>,
     correction: Vec<f64>,
     pub(crate) trial: Trial,
     /// Scratch of Radau IIA; made when first needed.
@@ -103,8 +111,10 @@ impl Workspace {
             x: vec![0.0; s.n],
             y: vec![0.0; s.n],
             counts: Counts::default(),
-            phases: None,
+            clocks: Clocks::default(),
+            earlier: Times::default(),
             softening: model.redundancy().map(|_| Softening::new(model, s)),
+            scaled: None,
             correction: Vec::new(),
             trial: Trial {
                 q: model.start.q.clone(),
@@ -141,12 +151,29 @@ impl Workspace {
     /// Not enough memory for the factors.
     pub(crate) fn renew(&mut self, model: &Model) -> Result<(), SolveError> {
         let mut new = Workspace::new(model)?;
-        (new.counts, new.phases) = (self.counts, self.phases);
+        (new.counts, new.clocks) = (self.counts, self.clocks);
+        new.earlier = std::mem::take(&mut self.earlier);
         new.system.profile = self.system.profile.take();
+        new.mass.profile = self.mass.profile.take();
         if self.softening.is_some() {
             new.soften(model);
         }
         *self = new;
+        Ok(())
+    }
+
+    /// Makes everything anew for another mesh, but the counters and the times.
+    ///
+    /// # Errors
+    /// Not enough memory for the factors.
+    pub(crate) fn change_mesh(&mut self, old: &Model, new: &Model) -> Result<(), SolveError> {
+        let mut work = Workspace::new(new)?;
+        work.counts = self.counts;
+        if self.system.profile.is_some() {
+            work.profile();
+            work.earlier = self.spent(old);
+        }
+        *self = work;
         Ok(())
     }
 
@@ -159,32 +186,27 @@ impl Workspace {
     /// Records the time of each term from now on.
     pub fn profile(&mut self) {
         self.system.profile = Some(Vec::new());
-        self.phases = Some(Default::default());
+        self.mass.profile = Some(Vec::new());
+        self.clocks = Clocks::running();
+        self.earlier = Times::default();
     }
 
     /// No longer records times, and forgets those that were.
     pub fn unprofile(&mut self) {
         self.system.profile = None;
-        self.phases = None;
+        self.mass.profile = None;
+        self.clocks = Clocks::default();
+        self.earlier = Times::default();
     }
 
-    /// Calls and time of each term, of the constraints and of the solver; nothing without [`Workspace::profile`].
+    /// Calls and time of each term, of the constraints, of the solver and of the audit, by label; nothing without
+    /// [`Workspace::profile`].
     pub fn times(&self, model: &Model) -> Vec<(String, u64, Duration)> {
-        let phases = ["constraints", "factorisation", "solution and its check"].map(String::from);
-        let labels = model.terms().iter().map(|t| t.label()).chain(phases);
-        let times = self.system.profile.iter().flatten().chain(self.phases.iter().flatten());
-        labels.zip(times).map(|(label, &(calls, time))| (label, calls, time)).collect()
+        self.spent(model).list()
     }
 
-    pub(crate) fn clock(&self) -> Option<Instant> {
-        self.phases.map(|_| Instant::now())
-    }
-
-    pub(crate) fn count(&mut self, phase: usize, begin: Option<Instant>) {
-        if let (Some(phases), Some(begin)) = (&mut self.phases, begin) {
-            phases[phase].0 += 1;
-            phases[phase].1 += begin.elapsed();
-        }
+    fn spent(&self, model: &Model) -> Times {
+        self.earlier.clone().adding(model, [&self.system, &self.mass], &self.clocks)
     }
 
     /// Solves for a right-hand side (velocities, then multipliers), which the solution replaces.
@@ -234,12 +256,17 @@ impl Workspace {
 
     /// Replaces `x`, a right-hand side in elimination order, by the solution.
     pub(crate) fn solve_ordered(&mut self, model: &Model, which: Which) -> Result<(), SolveError> {
-        let (s, begin) = (model.structure(), self.clock());
-        match which {
-            Which::Iteration => self.solver.solve(s, &self.system.values, &mut self.x)?,
-            Which::Mass => self.mass_solver.solve(s, &self.mass.values, &mut self.x)?,
+        let (s, begin) = (model.structure(), self.clocks.start());
+        match (which, &self.scaled) {
+            (Which::Iteration, Some(scaled)) => {
+                scaled.enter(&mut self.x);
+                self.solver.solve(s, &scaled.values, &mut self.x)?;
+                scaled.leave(&mut self.x);
+            }
+            (Which::Iteration, None) => self.solver.solve(s, &self.system.values, &mut self.x)?,
+            (Which::Mass, _) => self.mass_solver.solve(s, &self.mass.values, &mut self.x)?,
         }
-        self.count(1, begin);
+        self.clocks.stop(Phase::Solution, begin);
         Ok(())
     }
 
@@ -252,9 +279,16 @@ impl Workspace {
         if let Some(softening) = &self.softening {
             softening.apply(&mut self.system.values);
         }
-        let begin = self.clock();
-        self.solver.factor(model.structure(), &self.system.values)?;
-        self.count(0, begin);
+        let begin = self.clocks.start();
+        let values = match &mut self.scaled {
+            Some(scaled) => {
+                scaled.take(&self.system.values);
+                &scaled.values
+            }
+            None => &self.system.values,
+        };
+        self.solver.factor(model.structure(), values)?;
+        self.clocks.stop(Phase::Factorisation, begin);
         self.factored = Some(weights);
         self.counts.jacobians += 1;
         self.counts.factorizations += 1;
@@ -288,9 +322,9 @@ impl Workspace {
         // without added mass and with constraints that are linear it never changes
         if factor && self.mass_factored != self.mass.values {
             self.mass_factored.clear();
-            let begin = self.clock();
+            let begin = self.clocks.start();
             self.mass_solver.factor(model.structure(), &self.mass.values)?;
-            self.count(0, begin);
+            self.clocks.stop(Phase::Factorisation, begin);
             self.counts.factorizations += 1;
             self.mass_factored.extend_from_slice(&self.mass.values);
         }

@@ -20,8 +20,10 @@ use crate::redundancy::Softening;
 use crate::solver::{Guard, Profile, SolveError};
 use crate::state::State;
 use crate::structure::Structure;
+use crate::times::{Clocks, Times};
 use search::FOLD;
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 
 /// How equilibria are found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -118,6 +120,7 @@ pub struct Statics<'a> {
     system: System,
     damping: System,
     mass: System,
+    clocks: Clocks,
     v: Vec<f64>,
     a: Vec<f64>,
 }
@@ -161,9 +164,25 @@ impl<'a> Statics<'a> {
             system: System::default(),
             damping: System::default(),
             mass: System::default(),
+            clocks: Clocks::default(),
             v: zero.clone(),
             a: zero,
         })
+    }
+
+    /// Records the time of each term from now on.
+    pub fn profile(&mut self) {
+        for system in [&mut self.system, &mut self.damping, &mut self.mass] {
+            system.profile = Some(Vec::new());
+        }
+        self.clocks = Clocks::running();
+    }
+
+    /// Calls and time of each term, of the constraints and of the solver, by label; nothing without
+    /// [`Statics::profile`].
+    pub fn times(&self) -> Vec<(String, u64, Duration)> {
+        let systems = [&self.system, &self.damping, &self.mass];
+        Times::default().adding(self.model, systems, &self.clocks).list()
     }
 
     /// Moves `state` to the equilibrium at its time. `cold` says that no equilibrium nearby is known: the first of a

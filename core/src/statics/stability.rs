@@ -5,6 +5,7 @@ use super::Statics;
 use crate::integrator::Scheme;
 use crate::solver::{Guard, SolveError};
 use crate::state::State;
+use crate::times::Phase;
 
 /// What becomes of a small disturbance of an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +65,7 @@ impl Statics<'_> {
         };
         let time = (mass * model.length() / load).sqrt();
         let mut h = time / PER_TIME;
+        let begin = self.clocks.start();
         let mut found = self.integrate(h, time)?;
         for _ in 0..REFINEMENTS {
             // a growth that the steps don't resolve changes sign at each of them
@@ -73,6 +75,7 @@ impl Statics<'_> {
             h *= 0.25;
             found = self.integrate(h, time)?;
         }
+        self.clocks.stop(Phase::Stability, begin);
         Ok(found)
     }
 

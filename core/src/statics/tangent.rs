@@ -8,6 +8,7 @@ use crate::rotation::{M3, cross, product, skew, transposed_times};
 use crate::solver::SolveError;
 use crate::state::{At, Relaxation, Relaxed, State};
 use crate::term::Weights;
+use crate::times::Phase;
 
 pub(super) struct Trial {
     /// Correction of velocities (as increments) and multipliers.
@@ -41,14 +42,18 @@ impl Statics<'_> {
         if let Some(softening) = &self.softening {
             softening.apply(&mut self.system.values);
         }
+        let begin = self.clocks.start();
         self.solver.factor(&self.structure, &self.system.values)?;
+        self.clocks.stop(Phase::Factorisation, begin);
         let negative = self.solver.negative_pivots().is_none_or(|n| n != self.model.multipliers());
         let s = &self.structure;
         let mut x = vec![0.0; s.n];
         for (i, &p) in s.position.iter().enumerate() {
             x[p] = -self.system.residual[i];
         }
+        let begin = self.clocks.start();
         self.solver.solve(s, &self.system.values, &mut x)?;
+        self.clocks.stop(Phase::Solution, begin);
         let d: Vec<f64> = s.position.iter().map(|&p| x[p]).collect();
         Ok(Trial { d, negative })
     }

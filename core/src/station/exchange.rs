@@ -127,6 +127,7 @@ pub(super) trait ErasedLaw: Send + Sync {
     fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange);
     /// The power of the loads in the first `lanes` lanes of a batch.
     fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power;
+    fn coefficient(&self, at: &Station<f64>) -> Option<f64>;
 }
 
 struct LoadAll<'a, L> {
@@ -180,6 +181,9 @@ impl<L: Law> ErasedLaw for L {
         let mut out = Power::default();
         run(width, PowerOf { law: self, t, x, lanes, out: &mut out });
         out
+    }
+    fn coefficient(&self, at: &Station<f64>) -> Option<f64> {
+        Law::coefficient(self, at)
     }
 }
 

@@ -9,7 +9,7 @@ use super::{CableModel, CableParams};
 use ropewalk_core::held::Held;
 use ropewalk_core::{
     At, Change, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Mesh, MeshState, Node, NodeId, Part, Per,
-    Prestrain, Quantity, Spot, Stations, Term, V3,
+    Prestrain, Quantity, Slender, Spot, Stations, Term, V3,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -277,10 +277,10 @@ impl Part for CablePart {
         points
     }
 
-    fn bending_time(&self) -> Option<f64> {
+    fn slender(&self) -> Option<Slender> {
         let s = &self.section;
-        let l = self.laid / (self.mesh.len() - 1) as f64;
-        (s.ei > 0.0).then(|| l * l * ((s.mass + s.flooded) / s.ei).sqrt())
+        let element = self.laid / (self.mesh.len() - 1) as f64;
+        Some(Slender { element, mass: s.mass + s.flooded, ea: s.ea, ei: s.ei })
     }
 
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {

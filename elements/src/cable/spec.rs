@@ -110,6 +110,14 @@ pub struct CableSpec {
     /// Unstretched length [m]; left out, that of the path. A different length is spread evenly over the path.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub length: Option<f64>,
+    /// Tension with which it is laid [N], instead of `length`: the path is longer than the cable by the strain
+    /// `tension / ea`.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::force",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub tension: Option<f64>,
     /// Number of elements.
     pub elements: usize,
     /// What it is made of.
@@ -148,6 +156,7 @@ impl CableSpec {
             points: vec![from, to],
             curve: Vec::new(),
             length: None,
+            tension: None,
             elements,
             section,
             longitudinal: LongitudinalModel::default(),
@@ -170,6 +179,26 @@ impl CableSpec {
     pub fn unstretched(mut self, length: f64) -> Self {
         self.length = Some(length);
         self
+    }
+
+    /// The unstretched length of a cable that is laid along a path of this length.
+    fn unstretched_length(&self, path: f64) -> Result<f64, BuildError> {
+        match (self.length, self.tension) {
+            (Some(_), Some(_)) => {
+                let message = "give `length` or `tension`, not both: one follows from the other";
+                Err(BuildError::at("tension", message))
+            }
+            (length, None) => positive("length", length.unwrap_or(path)),
+            (None, Some(tension)) => {
+                finite("tension", &[tension])?;
+                let stretch = 1.0 + tension / self.section.ea;
+                if stretch > 0.0 {
+                    return Ok(path / stretch);
+                }
+                let message = format!("a tension of {tension} N would press the cable to nothing");
+                Err(BuildError::at("tension", message))
+            }
+        }
     }
 
     fn path(&self) -> Result<(Path, &'static str), BuildError> {
@@ -305,7 +334,7 @@ impl ElementSpec for CableSpec {
         }
         legal(self.longitudinal, self.transverse).map_err(|e| BuildError::at("transverse", e))?;
         let (path, _) = self.path()?;
-        let length = positive("length", self.length.unwrap_or(path.length()))?;
+        let length = self.unstretched_length(path.length())?;
         let stretch = path.length() / length;
         let mut pins = b.pins(&self.name);
         pins.extend(path.corners().iter().map(|c| c / stretch));
@@ -326,11 +355,20 @@ impl ElementSpec for CableSpec {
         let state = given.as_ref().and_then(|m| m.state.as_ref());
         for (k, &at) in mesh.iter().enumerate() {
             // a cable that has fed since it was laid gets its true shape from the state before
-            let (x, t) = path.at((at * stretch).clamp(0.0, path.length()));
+            let (x, t) = match k {
+                // an end has stayed one while material went through it
+                0 => path.at(0.0),
+                k if k + 1 == mesh.len() => path.at(path.length()),
+                _ => path.at((at * stretch).clamp(0.0, path.length())),
+            };
             let q = [x[0], x[1], x[2], t[0] * stretch, t[1] * stretch, t[2] * stretch];
             let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0];
             let node = match state {
-                Some(state) => b.node(NodeKind::Slope, &state.q[k], &state.v[k])?,
+                Some(state) => {
+                    let node = b.node(NodeKind::Slope, &state.q[k], &state.v[k])?;
+                    b.was_laid(node, &q);
+                    node
+                }
                 None => b.node(NodeKind::Slope, &q, &v)?,
             };
             nodes.push(node);

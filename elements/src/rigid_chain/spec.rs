@@ -203,6 +203,13 @@ impl RigidChainSpec {
             Some(length) => positive("length", length)? / self.links as f64,
             None => filling(&path, self.links).map_err(|e| BuildError::at("links", e))?,
         };
+        if link < 1e-9 * path.length() {
+            let message = format!(
+                "links of {link:e} m are lost in the rounding of a path of {:.6} m: give a larger `length` or fewer `links`",
+                path.length()
+            );
+            return Err(BuildError::at("length", message));
+        }
         let joints = joints(&path, self.links, link).map_err(|fit| {
             let message = format!(
                 "the path, {:.6} m long, ends after {fit} of {} links of {link:.6} m: lengthen it or shorten the chain",

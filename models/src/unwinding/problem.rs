@@ -7,6 +7,9 @@ use ropewalk_forces::{AddedMass, Drag, TimeFunction};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+/// More segments than rounding leaves any fourth derivatives of.
+const MOST_SEGMENTS: usize = 20_000;
+
 /// The cable, inextensible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cable {
@@ -146,6 +149,11 @@ impl Unwinding {
         if self.segments < 6 {
             let message =
                 format!("{} segments are too few for fourth derivatives: give 6 at least", self.segments);
+            return Err(BuildError::at("segments", message));
+        }
+        if self.segments > MOST_SEGMENTS {
+            let message =
+                format!("{} segments are more than the {MOST_SEGMENTS} there may be", self.segments);
             return Err(BuildError::at("segments", message));
         }
         if let Eyelet::Guided(d) = self.through

@@ -13,6 +13,7 @@ use ropewalk_core::{
 use ropewalk_forces::{AddedMass, DragSpec, TimeFunction};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -49,6 +50,10 @@ pub enum RuleSpec {
         start: f64,
     },
 }
+
+/// What it records.
+const CHANNELS: [&str; 9] =
+    ["tension", "length", "speed", "lift", "radius", "centre", "acceleration", "drag", "curvature"];
 
 fn segments() -> usize {
     40
@@ -107,6 +112,10 @@ pub struct UnwindingSpec {
     /// Numerical damping of Newmark's method; left out, 0.05 with bending stiffness and 0 without.
     #[serde(default, deserialize_with = "quantity::optional::number")]
     pub damping: Option<f64>,
+    /// Titles of its pictures, by what they show: `tension`, `length`, `speed`, `lift`, `radius`, `centre`,
+    /// `acceleration`, `drag`, `curvature`; left out, what it is.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub titles: BTreeMap<String, String>,
 }
 register_spec!(Process, "unwound_cable", UnwindingSpec);
 
@@ -206,7 +215,7 @@ impl ProcessSpec for UnwindingSpec {
     fn channels(&self) -> Vec<Channel> {
         let name = &self.name;
         let channel = |(what, title, labels, unit): (&str, &str, &[&str], &str)| Channel {
-            title: title.to_string(),
+            title: self.titles.get(what).map_or(title, String::as_str).to_string(),
             name: format!("{name}.{what}"),
             columns: labels.iter().map(|l| Column::new(format!("{name}.{what}.{l}"), unit)).collect(),
         };
@@ -216,6 +225,11 @@ impl ProcessSpec for UnwindingSpec {
         4 * self.segments - 3 + usize::from(!matches!(self.rule, RuleSpec::Length { .. }))
     }
     fn build(&self, around: &Surroundings) -> Result<Box<dyn Process>, BuildError> {
+        if let Some(what) = self.titles.keys().find(|what| !CHANNELS.contains(&what.as_str())) {
+            let known = CHANNELS.map(|c| format!("`{c}`")).join(", ");
+            let message = format!("there is no picture `{what}` to give a title to; there are {known}");
+            return Err(BuildError::at("titles", message));
+        }
         let problem = self.problem(around)?;
         let [speed, _] = problem.speed(0.0);
         let start = if self.points.is_empty() {

@@ -68,6 +68,11 @@ impl Area {
         Some((self.across(x), self.down(y)))
     }
 
+    /// A point in pixels at this distance from the left and from below.
+    pub(super) fn corner(&self, distance: f64) -> Pixel {
+        (self.left + distance, self.bottom() - distance)
+    }
+
     fn across(&self, place: f64) -> f64 {
         self.left + place * self.width
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::axis::Axis;
-use super::canvas::Canvas;
+use super::canvas::{Align, Canvas};
 use super::colour;
 use super::frame::{Area, Bar, Entry, Frame};
 use super::line::Mark;
@@ -28,7 +28,7 @@ pub struct Snapshot {
     pub points: Vec<(f64, f64)>,
 }
 
-/// A plane in which a cable is looked at; z is up.
+/// From where a cable is looked at; z is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Plane {
     /// From above: y over x.
@@ -37,7 +37,15 @@ pub enum Plane {
     SideX,
     /// From the end: z over y.
     SideY,
+    /// From far away, obliquely from above: x towards the left and the front, y towards the right.
+    Oblique,
+    /// z over the distance from the z axis.
+    Radial,
 }
+
+/// Where the oblique view is seen from: turned from the x axis by an azimuth, above the ground by an elevation.
+const AZIMUTH: f64 = 35.0;
+const ELEVATION: f64 = 25.0;
 
 impl Plane {
     /// The point as it is seen in this plane.
@@ -47,6 +55,12 @@ impl Plane {
             Self::Top => (x, y),
             Self::SideX => (x, z),
             Self::SideY => (y, z),
+            Self::Oblique => {
+                let (sin, cos) = AZIMUTH.to_radians().sin_cos();
+                let (sunk, up) = ELEVATION.to_radians().sin_cos();
+                (cos * y - sin * x, up * z - sunk * (cos * x + sin * y))
+            }
+            Self::Radial => (x.hypot(y), z),
         }
     }
 
@@ -56,6 +70,8 @@ impl Plane {
             Self::Top => ("x [m]", "y [m]"),
             Self::SideX => ("x [m]", "z [m]"),
             Self::SideY => ("y [m]", "z [m]"),
+            Self::Oblique => ("to the right [m]", "upwards [m]"),
+            Self::Radial => ("r [m]", "z [m]"),
         }
     }
 }
@@ -85,6 +101,8 @@ pub struct ShapePlot {
     pub snapshots: Vec<Snapshot>,
     /// What the legend calls the snapshots; left empty, their times.
     pub names: Vec<String>,
+    /// Directions of x, y and z in the plane, drawn as a small cross of axes if there are any.
+    pub directions: Vec<(f64, f64)>,
 }
 
 impl ShapePlot {
@@ -102,6 +120,12 @@ impl ShapePlot {
             y_label: y_label.into(),
             snapshots: positions.iter().map(snapshot).collect(),
             names: Vec::new(),
+            directions: match plane {
+                Plane::Oblique => {
+                    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| plane.project(e)).to_vec()
+                }
+                _ => Vec::new(),
+            },
         }
     }
 
@@ -143,7 +167,7 @@ impl ShapePlot {
                 let colour = colour::ramp(age(snapshot, &shown));
                 draw_snapshot(canvas, area, snapshot, BUDGET / shown.len(), colour)?;
             }
-            Ok(())
+            draw_directions(canvas, area, &self.directions)
         })
     }
 
@@ -170,6 +194,23 @@ fn draw_snapshot(
             [only] => canvas.dot(only, 2.5, colour)?,
             _ => canvas.line(run, LINE_WIDTH, colour)?,
         }
+    }
+    Ok(())
+}
+
+/// A cross of axes in the lower left corner.
+fn draw_directions(
+    canvas: &mut Canvas<'_>,
+    area: &Area,
+    directions: &[(f64, f64)],
+) -> Result<(), OutputError> {
+    const LENGTH: f64 = 30.0;
+    let (x0, y0) = area.corner(50.0);
+    for ((x, y), name) in directions.iter().zip(["x", "y", "z"]) {
+        let end = (x0 + LENGTH * x, y0 - LENGTH * y);
+        canvas.line([(x0, y0), end], 1.0, colour::TEXT)?;
+        let beyond = |from: f64, to: f64| from + 1.35 * (to - from);
+        canvas.text(name, (beyond(x0, end.0), beyond(y0, end.1)), 12.0, Align::Centre, false)?;
     }
     Ok(())
 }
@@ -269,6 +310,20 @@ mod tests {
         assert_eq!(Plane::Top.project([1.0, 2.0, 3.0]), (1.0, 2.0));
         assert_eq!(Plane::SideX.project([1.0, 2.0, 3.0]), (1.0, 3.0));
         assert_eq!(Plane::SideY.project([1.0, 2.0, 3.0]), (2.0, 3.0));
+        assert_eq!(Plane::Radial.project([3.0, -4.0, 7.0]), (5.0, 7.0));
+    }
+
+    #[test]
+    fn the_oblique_view_is_that_of_a_distant_eye() {
+        // the columns of a rotation without its last row: what is lost is the way towards the eye
+        let [x, y, z] =
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| Plane::Oblique.project(e));
+        let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+        let (right, up) = ([x.0, y.0, z.0], [x.1, y.1, z.1]);
+        assert!((dot(right, right) - 1.0).abs() < 1e-15 && (dot(up, up) - 1.0).abs() < 1e-15);
+        assert!(dot(right, up).abs() < 1e-15 && z.0 == 0.0 && z.1 > 0.0);
+        let plot = ShapePlot::of_positions("", Plane::Oblique, &[(0.0, vec![[0.0; 3], [1.0, 2.0, 3.0]])]);
+        assert!(plot.svg().unwrap().contains(">\nx\n<"), "{}", plot.svg().unwrap());
     }
 
     #[test]

@@ -43,6 +43,15 @@ impl SweepProgress {
         Self { bars, quiet: mode == ProgressMode::Quiet, state: Mutex::new(state) }
     }
 
+    /// Raises the number of runs, where one run tells which the next ones are.
+    pub fn plan(&self, more: usize) {
+        let mut s = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        s.total += more;
+        if let Some((_, whole)) = &self.bars {
+            whole.set_length(s.total as u64);
+        }
+    }
+
     /// The progress of one run up to `t_end`, in seconds.
     pub fn begin(&self, name: &str, t_end: f64) -> Progress {
         let shown = match &self.bars {

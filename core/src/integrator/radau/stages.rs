@@ -8,6 +8,7 @@ use crate::solver::{Guard, SolveError};
 use crate::state::{At, State};
 use crate::structure::Structure;
 use crate::term::Weights;
+use crate::times::Phase;
 use faer::c64;
 
 /// One vector for each stage.
@@ -210,9 +211,9 @@ impl Stages {
             softening.apply(&mut self.values);
         }
         work.factor(model, Weights { q: g * g, v: g, a: 1.0 })?;
-        let begin = work.clock();
+        let begin = work.clocks.start();
         self.solver.factor(s, &self.values)?;
-        work.count(0, begin);
+        work.clocks.stop(Phase::Factorisation, begin);
         work.counts.factorizations += 1;
         work.counts.fallbacks += self.solver.fallbacks;
         self.factored = h;
@@ -221,11 +222,11 @@ impl Stages {
 
     /// Solves the complex system for the right-hand side in `imaginary`, which the solution replaces.
     pub(super) fn solve_complex(&mut self, model: &Model, work: &mut Workspace) -> Result<(), SolveError> {
-        let (s, begin) = (model.structure(), work.clock());
+        let (s, begin) = (model.structure(), work.clocks.start());
         s.order(&self.imaginary, &mut self.x);
         self.solver.solve(s, &self.values, &mut self.x)?;
         s.restore(&self.x, &mut self.imaginary);
-        work.count(1, begin);
+        work.clocks.stop(Phase::Solution, begin);
         Ok(())
     }
 }

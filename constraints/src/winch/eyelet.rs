@@ -1,0 +1,202 @@
+//! `type = "eyelet"`: a point that a cable runs through.
+
+use super::WinchSpec;
+use crate::driving::driving;
+use crate::pair::pair;
+use crate::spherical::spherical;
+use ropewalk_core::build::{BuildError, Builder};
+use ropewalk_core::{ConstraintSpec, Feed, MarkerRef, Model, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+fn ramp() -> f64 {
+    1.0
+}
+fn release() -> f64 {
+    0.1
+}
+
+/// An eyelet that an end of a cable runs through: a fixed or moving point, and what draws the cable there.
+///
+/// It is a `spherical` or `driving` constraint and a `winch` in one. The point stays where the end starts, or goes with
+/// `to`, or along `path`. Give one of `speed`, `motion` and `tension`: what isn't given is a result. The constraint of
+/// the point has the name of the eyelet, by which records ask for its reaction; what draws is called `name.feed`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EyeletSpec {
+    /// Name, by which records and events refer to it.
+    pub name: String,
+    /// The end of the cable: `fibre.start` or `fibre.end`.
+    pub marker: MarkerRef,
+    /// What the eyelet is on: a marker of a part or a point in space; left out, the point where the end starts.
+    #[serde(default)]
+    pub to: Option<MarkerRef>,
+    /// Name of a motion along which the eyelet moves from where the end starts, instead of `to`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<String>,
+    /// Speed at which cable comes in through the eyelet after the ramp [m/s]; negative draws it out of the free cable.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::speed",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub speed: Option<f64>,
+    /// Time at which the speed begins to rise [s].
+    #[serde(default, deserialize_with = "quantity::time")]
+    pub start: f64,
+    /// Time in which the speed rises, and falls at the stop [s].
+    #[serde(default = "ramp", deserialize_with = "quantity::time")]
+    pub ramp: f64,
+    /// Time at which the speed begins to fall again [s]; left out, it goes on.
+    #[serde(default, deserialize_with = "quantity::optional::time", skip_serializing_if = "Option::is_none")]
+    pub stop: Option<f64>,
+    /// Name of a motion whose x component is the length that has come in, instead of `speed`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
+    /// Tension with which the cable is drawn [N], instead of a speed.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::force",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub tension: Option<f64>,
+    /// Tension by the square of the speed, besides `tension` [kg/m].
+    #[serde(default, deserialize_with = "quantity::mass_per_length")]
+    pub per_speed2: f64,
+    /// Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs here, which
+    /// then drives itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pace: Option<String>,
+    /// Resistance per speed, besides `tension` [N s/m].
+    #[serde(default, deserialize_with = "quantity::damping")]
+    pub damping: f64,
+    /// Shortest length of the free cable [m], where the run ends; left out, as for `winch`.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub shortest: Option<f64>,
+    /// Length of elements [m] that are born and swallowed at the eyelet; left out, all elements grow and shrink together.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub element: Option<f64>,
+    /// Time in which the strain fades that keeps the tension from jumping when an element is born or swallowed [s].
+    #[serde(default = "release", deserialize_with = "quantity::time")]
+    pub release: f64,
+}
+register_spec!(Constraint, "eyelet", EyeletSpec);
+
+impl EyeletSpec {
+    /// An eyelet through which cable comes in at a speed [m/s]; a negative one draws it out.
+    pub fn speed(name: &str, marker: impl Into<MarkerRef>, speed: f64) -> Self {
+        EyeletSpec { speed: Some(speed), ..Self::new(name, marker) }
+    }
+    /// An eyelet through which cable comes by a motion.
+    pub fn motion(name: &str, marker: impl Into<MarkerRef>, motion: &str) -> Self {
+        EyeletSpec { motion: Some(motion.into()), ..Self::new(name, marker) }
+    }
+    /// An eyelet at which the cable has a tension [N].
+    pub fn tension(name: &str, marker: impl Into<MarkerRef>, tension: f64) -> Self {
+        EyeletSpec { tension: Some(tension), ..Self::new(name, marker) }
+    }
+    fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
+        EyeletSpec {
+            name: name.into(),
+            marker: marker.into(),
+            to: None,
+            path: None,
+            speed: None,
+            start: 0.0,
+            ramp: ramp(),
+            stop: None,
+            motion: None,
+            tension: None,
+            per_speed2: 0.0,
+            pace: None,
+            damping: 0.0,
+            shortest: None,
+            element: None,
+            release: release(),
+        }
+    }
+
+    /// The winch that draws.
+    fn winch(&self) -> WinchSpec {
+        WinchSpec {
+            speed: self.speed,
+            start: self.start,
+            ramp: self.ramp,
+            stop: self.stop,
+            motion: self.motion.clone(),
+            tension: self.tension,
+            per_speed2: self.per_speed2,
+            pace: self.pace.clone(),
+            damping: self.damping,
+            shortest: self.shortest,
+            element: self.element,
+            release: self.release,
+            ..WinchSpec::new(&format!("{}.feed", self.name), self.marker.clone())
+        }
+    }
+
+    fn check(&self) -> Result<(), BuildError> {
+        let given = [("speed", self.speed.is_some()), ("motion", self.motion.is_some())];
+        let given: Vec<_> = given.iter().filter(|(_, is)| *is).map(|(field, _)| *field).collect();
+        match (given.as_slice(), self.tension) {
+            ([], None) => Err(BuildError::at(
+                "name",
+                "say what draws the cable through this eyelet: `speed`, `motion` or `tension`",
+            )),
+            ([_, second, ..], _) => Err(BuildError::at(*second, "give `speed` or `motion`, not both")),
+            ([first], Some(_)) => Err(BuildError::at(
+                "tension",
+                format!(
+                    "`{first}` is given, so the tension at this eyelet is a result: give one of them. With a \
+                     `lift_off` at the other end, both can be given: the tension here, the speed by a `winch` there"
+                ),
+            )),
+            ([first], None) if self.per_speed2 != 0.0 || self.damping != 0.0 => Err(BuildError::at(
+                if self.damping != 0.0 { "damping" } else { "per_speed2" },
+                format!("it goes with `tension`; with `{first}` the tension is a result"),
+            )),
+            _ if self.to.is_some() && self.path.is_some() => Err(BuildError::at(
+                "path",
+                "give `to` or `path`, not both: the eyelet is on something, or moves by itself",
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[typetag::serde(name = "eyelet")]
+impl ConstraintSpec for EyeletSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        std::iter::once(&self.marker).chain(&self.to).collect()
+    }
+    fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
+        let feed = self.winch().feeds()?.1;
+        Some((&self.marker, feed))
+    }
+    fn notes(&self, model: &Model) -> Vec<String> {
+        self.winch().notes(model)
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        self.check()?;
+        let between = pair(b, &self.marker, self.to.as_ref())?;
+        b.constraint(match &self.path {
+            Some(path) => {
+                let motion = b.motion(path).map_err(|e| e.of("path"))?;
+                driving(&self.name, b.nodes(), between, motion)?
+            }
+            None => spherical(&self.name, b.nodes(), between)?,
+        })?;
+        self.winch().build(b)
+    }
+}
