@@ -198,8 +198,9 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 
 /// The whole command line with these bundled scenes, on the arguments of the program.
 ///
-/// Exit codes: 0 done; 1 a case of `verify` is outside its tolerances; 2 something is wrong with the scene or the command; 3 the solver gave up, all results until
-/// then are kept; 130 interrupted by Ctrl-C, all results until then are kept.
+/// Exit codes: 0 done; 1 a case of `verify` is outside its tolerances; 2 something is wrong with the scene or the
+/// command; 3 the solver gave up, all results until then are kept; 130 interrupted by Ctrl-C, all results until then are
+/// kept.
 pub fn main_with(bundled: &[Bundled]) -> ExitCode {
     main_from(bundled, std::env::args_os())
 }
