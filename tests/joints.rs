@@ -3,9 +3,10 @@
 mod common;
 mod mechanisms;
 
+use common::case;
 use mechanisms::{
-    Angle, G, Stand, Worst, attitude, careful, case, chain, controlled, door, drive, energy, fixed,
-    for_output, four_bars, go, hooke, largest, listed, minus, radau, reaction, rod, slider_crank, squeezer,
+    Angle, G, Stand, Worst, attitude, careful, chain, controlled, door, drive, energy, fixed, for_output,
+    four_bars, go, hooke, largest, listed, minus, radau, reaction, rod, slider_crank, squeezer,
     squeezer_angles, start, tight, time_of, whereabouts,
 };
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};

@@ -1,7 +1,6 @@
 //! Scenes of rigid bodies and joints, and how the tests look at them.
 #![allow(dead_code)]
 
-pub use super::common::case;
 use ropewalk_constraints::{
     PerpendicularSpec, PointOnLineSpec, PrismaticSpec, RevoluteSpec, RotationSpec, SphericalSpec,
     UniversalSpec,
