@@ -3,6 +3,7 @@
 mod common;
 
 use common::{data, everything, models};
+use ropewalk::variants::{Form, condition};
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::integrator::{NewtonPolicy, Options, Scales, Scheme, Stepping, Stopping};
 use ropewalk_core::{End, Scene, Simulation};
@@ -126,4 +127,27 @@ fn scales_and_absolute_tests_refuse_what_makes_no_sense() {
         assert!(error.contains(holds), "no {holds:?} in {error}");
     }
     run(&limp, &scaled(Scales::Axial), 0.01);
+}
+
+#[test]
+fn condition_numbers_are_those_of_the_reference() {
+    let reference = data("nd_steel.json");
+    for n in [4, 16] {
+        let rows = reference[format!("E2.07e+11_inc_1e-12_n{n}")].as_array().expect("rows");
+        let options = Options { scheme: Scheme::AverageAcceleration, ..Options::default() };
+        let model = steel(n).build().expect("model");
+        for (name, form) in [
+            (("None", false), Form::Si),
+            (("None", true), Form::Scaled),
+            (("bend", false), Form::Bending),
+            (("axial", false), Form::Axial),
+        ] {
+            let row = rows.iter().find(|r| r[0] == name.0 && r[1] == name.1).expect("row");
+            let wanted = row[4].as_f64().expect("condition number");
+            let found = condition(&model, &model.state(), &options, 1e-3, form).expect("condition number");
+            println!("{n} elements, {}: {found:.3e}, reference {wanted:.3e}", form.label());
+            // the reference lies in a plane
+            assert!((found / wanted).ln().abs() < 0.3, "{}: {found:e} instead of {wanted:e}", form.label());
+        }
+    }
 }

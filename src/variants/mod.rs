@@ -6,7 +6,7 @@
 //! tests, and counts Newton's iterations.
 
 mod condition;
-mod pictures;
+pub(crate) mod pictures;
 mod problem;
 mod report;
 pub mod scaling;

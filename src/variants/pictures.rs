@@ -84,7 +84,10 @@ impl Variants {
     }
 
     fn times(&self, problem: Problem) -> LinePlot {
-        let title = titled(figures(problem)[0], format!("time, dimensional and non-dimensional: {}", problem.title()));
+        let title = titled(
+            figures(problem)[0],
+            format!("time, dimensional and non-dimensional: {}", problem.title()),
+        );
         self.over_elements(problem, title, "CPU time [s]", &|r| r.cpu_s, &COMPARED)
     }
 
@@ -95,7 +98,13 @@ impl Variants {
 
     fn conditions(&self, problem: Problem) -> LinePlot {
         let title = format!("Condition number of the matrix: {}", problem.title());
-        self.over_elements(problem, title, "condition number [1]", &|r| r.condition, &Form::ALL.map(|f| (f, false)))
+        self.over_elements(
+            problem,
+            title,
+            "condition number [1]",
+            &|r| r.condition,
+            &Form::ALL.map(|f| (f, false)),
+        )
     }
 
     fn deflections(&self) -> LinePlot {
@@ -136,7 +145,13 @@ pub fn histories(h: &Histories) -> Vec<(String, LinePlot)> {
     let [_, position, acceleration] = figures(h.problem);
     let cable = h.problem.cable();
     let mut all = vec![
-        (format!("{}-position", h.problem.name()), position, "height of the end", "z [m]", format!("{cable}.end.z")),
+        (
+            format!("{}-position", h.problem.name()),
+            position,
+            "height of the end",
+            "z [m]",
+            format!("{cable}.end.z"),
+        ),
         (
             format!("{}-acceleration", h.problem.name()),
             acceleration,
@@ -160,5 +175,7 @@ pub fn histories(h: &Histories) -> Vec<(String, LinePlot)> {
             .collect(),
         ..LinePlot::default()
     };
-    all.into_iter().map(|(name, figure, what, label, column)| (name, plot(figure, what, label, &column))).collect()
+    all.into_iter()
+        .map(|(name, figure, what, label, column)| (name, plot(figure, what, label, &column)))
+        .collect()
 }

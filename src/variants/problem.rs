@@ -127,9 +127,9 @@ impl Problem {
         let (about, across) = (1e-3 * mass * LENGTH.powi(2), mass * LENGTH.powi(2) / 12.0);
         let rod = RigidBodySpec {
             centre: [0.5 * LENGTH, 0.0, 0.0],
-            points: [("end".to_string(), [LENGTH, 0.0, 0.0])].into(),
             ..RigidBodySpec::new("rod", [0.0; 3], mass, [about, across, across])
         };
+        let rod = rod.with_point("end", [LENGTH, 0.0, 0.0]);
         let mut scene = Scene::new();
         scene.element(rod).force(GravitySpec { g: G, on: Vec::new() });
         match self {
@@ -138,7 +138,11 @@ impl Problem {
             _ => return None,
         };
         let end = || "rod.end".to_string();
-        scene.record(PositionSpec::new(&end())).record(AccelerationSpec { of: end(), name: None, title: None });
+        scene.record(PositionSpec::new(&end())).record(AccelerationSpec {
+            of: end(),
+            name: None,
+            title: None,
+        });
         scene.run.duration = self.duration();
         scene.run.output = self.duration() / 400.0;
         scene.solver.stepping = Stepping::Fixed { h: self.step() };

@@ -1,9 +1,9 @@
 //! The findings as tables, for people and as CSV.
 
 use super::scaling::{MESHES, Row, deflection_error};
-use super::stiffness::{CANTILEVER, PENDULUM, Stiffness};
+use super::stiffness::{CANTILEVER, PENDULUM};
 use super::{Form, Problem, Variants};
-use crate::output::number;
+use crate::output::rough;
 use std::fmt::Write as _;
 
 impl Variants {
@@ -110,7 +110,10 @@ impl Variants {
             for (quantity, meshes, errors) in
                 [("cantilever", &CANTILEVER[..], &s.cantilever), ("pendulum", &PENDULUM[..], &s.pendulum)]
             {
-                meshes.iter().zip(errors).for_each(|(n, e)| _ = writeln!(out, "{label},error of the {quantity},{n},{e}"));
+                meshes
+                    .iter()
+                    .zip(errors)
+                    .for_each(|(n, e)| _ = writeln!(out, "{label},error of the {quantity},{n},{e}"));
             }
             for (quantity, x) in [
                 ("force [us per element]", s.force_us),
@@ -160,9 +163,10 @@ const EXPLANATION: &str = "\
 What equations without dimensions gain: nothing, where the stopping test is relative. Newton's method is invariant under
 a scaling of unknowns and equations, so the iterations are the same and only rounding differs. An absolute test of the
 residual, however, means another accuracy in every system of units. In SI units rounding leaves a residual of about
-1e-16 EA, which on stiff cables is more than the test allows: such a step iterates in vain. Without dimensions the same
-number is a looser test. The condition number of the plain matrix falls by many decades for the same reason, and as far
-by the factor β h² that Ropewalk's equations carry anyway (see `SI, scaled`).
+1e-16 EA, which on a stiff rod is more than the test allows: such a step iterates in vain. Divided by a large unit of
+force the same number is a looser test, which is all that was gained; divided by a small one, as that of bending is for a
+hose that hardly bends, it is a tighter test, and more is lost. The condition number of the plain matrix falls by many
+decades for the same reason, and as far by the factor β h² that Ropewalk's equations carry anyway (see `SI, scaled`).
 ";
 
 /// A number in nine characters.
@@ -170,7 +174,7 @@ fn short(x: f64) -> String {
     match x {
         x if x.is_nan() => "fails".into(),
         0.0 => "0".into(),
-        x if (0.01..1000.0).contains(&x.abs()) => number(x, 3),
+        x if (0.01..1000.0).contains(&x.abs()) => rough(x),
         x => format!("{x:.1e}"),
     }
 }

@@ -173,7 +173,10 @@ fn cantilever(models: CableModel, n: usize, ea: f64, load: Load) -> Option<(f64,
     let part = model.part("rod")?;
     let places = (0..=200).map(|k| f64::from(k) / 200.0);
     let strain = places.filter_map(|s| part.observe(Quantity::Strain, s, &state.at()));
-    Some((strain.fold(0.0, |a, e| if e.abs() > a || e.is_nan() { e.abs() } else { a }), tip(&model, &state, 1.0)))
+    Some((
+        strain.fold(0.0, |a, e| if e.abs() > a || e.is_nan() { e.abs() } else { a }),
+        tip(&model, &state, 1.0),
+    ))
 }
 
 fn tip(model: &Model, state: &State, s: f64) -> V3<f64> {
