@@ -153,7 +153,7 @@ impl Case {
 
 impl Run {
     fn label(&self) -> String {
-        [&[self.scene.clone()], self.set.as_slice()].concat().join(" ")
+        [std::slice::from_ref(&self.scene), self.set.as_slice()].concat().join(" ")
     }
 
     /// The history of its scene, or its modes.

@@ -48,7 +48,7 @@ fn line(m: &Measured) -> String {
 pub(super) fn ratio(r: f64) -> String {
     match r {
         r if !r.is_finite() => "failed".into(),
-        r if r == 0.0 => "0".into(),
+        0.0 => "0".into(),
         r if r >= 0.01 => format!("{r:.2}"),
         r => format!("{r:.1e}"),
     }
