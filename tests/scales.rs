@@ -147,7 +147,11 @@ fn condition_numbers_are_those_of_the_reference() {
             let found = condition(&model, &model.state(), &options, 1e-3, form).expect("condition number");
             println!("{n} elements, {}: {found:.3e}, reference {wanted:.3e}", form.label());
             // the reference lies in a plane, and is taken at another moment
-            assert!((found / wanted).ln().abs() < 3f64.ln(), "{}: {found:e} instead of {wanted:e}", form.label());
+            assert!(
+                (found / wanted).ln().abs() < 3f64.ln(),
+                "{}: {found:e} instead of {wanted:e}",
+                form.label()
+            );
         }
     }
 }

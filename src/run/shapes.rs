@@ -8,7 +8,8 @@ pub(crate) fn write(folder: &RunFolder, shapes: &[(f64, Vec<V3<f64>>)]) -> Resul
     if shapes.is_empty() {
         return Ok(());
     }
-    let columns = [("t", "s"), ("x", "m"), ("y", "m"), ("z", "m")].map(|(name, unit)| Column::new(name, unit));
+    let columns =
+        [("t", "s"), ("x", "m"), ("y", "m"), ("z", "m")].map(|(name, unit)| Column::new(name, unit));
     let mut table = Table { columns: columns.to_vec() };
     for (t, line) in shapes {
         for x in line {
