@@ -34,7 +34,7 @@ use std::process::ExitCode;
         ropewalk run scene.toml --set n=40      the same with another parameter\n  \
         ropewalk sweep scene.toml --vary n=10,20,40 --vary speed=5:25:10kn\n  \
         ropewalk describe cable                 the fields of a type\n\n\
-        Exit codes: 0 done, 2 wrong scene or usage, 3 the solver gave up, 130 Ctrl-C.",
+        Exit codes: 0 done, 1 a case of `verify` is off, 2 wrong scene or usage, 3 the solver gave up, 130 Ctrl-C.",
     disable_help_subcommand = true
 )]
 struct Cli {
@@ -111,6 +111,15 @@ enum Command {
         that change the record by less than the accuracy. Runs are timed one after the other.\n\
         The folder holds scene.toml, manifest.json, tables/ledger.csv, tables/effects.csv and plots/*.svg.")]
     Effects(commands::effects::EffectsArgs),
+    /// Run cases with known results, and compare: measured values, references, tolerances, CPU time
+    #[command(after_help = "Examples:\n  \
+        ropewalk verify                         all cases\n  \
+        ropewalk verify elastica flying         those whose names begin so\n  \
+        ropewalk verify --list                  what there is\n  \
+        ropewalk verify -o docs/verification.md a page of the results, with a picture beside it\n\n\
+        Exit codes: 0 all within their tolerances, 1 something outside, 2 wrong usage, 130 Ctrl-C. CPU time beyond the\n\
+        suggested limit is reported, no failure. Cases are scenes: `--scenes DIR` writes them, to be run and changed.")]
+    Verify(commands::verify::VerifyArgs),
     /// List the bundled scenes and the types that a scene can use
     List,
     /// Explain a scene, a type, or a section of a scene file
@@ -189,8 +198,9 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 
 /// The whole command line with these bundled scenes, on the arguments of the program.
 ///
-/// Exit codes: 0 done; 2 something is wrong with the scene or the command; 3 the solver gave up, all results until
-/// then are kept; 130 interrupted by Ctrl-C, all results until then are kept.
+/// Exit codes: 0 done; 1 a case of `verify` is outside its tolerances; 2 something is wrong with the scene or the
+/// command; 3 the solver gave up, all results until then are kept; 130 interrupted by Ctrl-C, all results until then are
+/// kept.
 pub fn main_with(bundled: &[Bundled]) -> ExitCode {
     main_from(bundled, std::env::args_os())
 }
@@ -215,6 +225,7 @@ pub fn main_from(
         Command::Modes(args) => commands::modes::modes(&args, bundled),
         Command::Cost(args) => commands::cost::cost(args, bundled),
         Command::Effects(args) => commands::effects::effects(&args, bundled),
+        Command::Verify(args) => commands::verify::verify(&args),
         Command::List => commands::list::list(bundled),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),

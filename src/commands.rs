@@ -12,6 +12,7 @@ pub(crate) mod run;
 mod schema;
 pub(crate) mod sweep;
 pub(crate) mod variants;
+pub(crate) mod verify;
 
 use std::fmt::Display;
 use std::io::Write;
@@ -22,6 +23,8 @@ use std::io::Write;
 pub(crate) enum Exit {
     /// All went well.
     Done = 0,
+    /// A case of the verification suite is outside its tolerances.
+    Outside = 1,
     /// The scene or the command is wrong.
     Input = 2,
     /// The solver gave up.

@@ -32,6 +32,7 @@ mod simulate;
 mod study;
 mod sweep;
 pub mod variants;
+pub mod verify;
 
 pub use ropewalk_constraints as constraints;
 pub use ropewalk_core as core;

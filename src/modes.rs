@@ -4,7 +4,7 @@ mod pictures;
 mod report;
 
 use crate::error::Error;
-use crate::output::{Interrupt, ProgressMode, RunFolder, Stopwatch, new_bar};
+use crate::output::{Interrupt, ProgressMode, RunFolder, Stopwatch, Table, new_bar};
 use crate::read::SceneFile;
 use crate::run::Manifest;
 use crate::scene::Fault;
@@ -58,6 +58,13 @@ impl Default for ModesOptions {
 pub fn modes(scene: &Scene, options: &ModesOptions) -> Result<Modal, Error> {
     let model = scene.build()?;
     find(scene, model, options, &mut |_, _, _| ControlFlow::Continue(()))
+}
+
+impl Modal {
+    /// The modes as a table: number, frequency, damping and shares of each.
+    pub fn table(&self) -> Table {
+        report::table(self)
+    }
 }
 
 /// Modes in a folder of their own.
@@ -115,10 +122,24 @@ pub fn write_modes(
     modal.warnings.iter().for_each(|w| warn(w));
     folder.write_scene(&file.document().to_toml())?;
     folder.write_manifest(&manifest)?;
-    report::table(&modal).write(&folder.table_file("modes")?)?;
+    modal.table().write(&folder.table_file("modes")?)?;
     let pictures = pictures::draw(&folder, &modal, warn);
     let report = report::report(file, &modal, &folder, pictures, stopwatch.elapsed());
     Ok(ModesOutcome { folder, modal, report })
+}
+
+/// As [`modes`], stopped by Ctrl-C.
+pub(crate) fn modes_showing(
+    scene: &Scene,
+    count: usize,
+    interrupt: Option<Interrupt>,
+) -> Result<Modal, Error> {
+    let options = ModesOptions { count, ..ModesOptions::default() };
+    let mut look = |_: usize, _: usize, _: usize| match interrupt.is_some_and(Interrupt::requested) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    find(scene, scene.build()?, &options, &mut look)
 }
 
 fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'_>) -> Result<Modal, Error> {

@@ -1,7 +1,7 @@
 //! A scene run in memory, for use from Rust.
 
 use crate::error::Error;
-use crate::output::{Counts, Table};
+use crate::output::{Counts, Interrupt, Progress, Table};
 use crate::run::{Ending, Recorder, Started, records};
 use ropewalk_core::{Audit, Model, Scene, State};
 use std::sync::Arc;
@@ -45,11 +45,24 @@ impl History {
 /// The scene can't be built, or the solver gave up. To keep what was computed until then, drive a
 /// [`Simulation`](crate::Simulation) with an observer, or [`run`](crate::run) the scene into a folder.
 pub fn simulate(scene: &Scene) -> Result<History, Error> {
+    simulate_showing(scene, None, None)
+}
+
+/// As [`simulate`], with a progress bar, and stopped by Ctrl-C.
+pub(crate) fn simulate_showing(
+    scene: &Scene,
+    progress: Option<Progress>,
+    interrupt: Option<Interrupt>,
+) -> Result<History, Error> {
     let model = scene.build()?;
     let mut recorder = Recorder::new(scene, records(scene, &model)?);
+    (recorder.progress, recorder.interrupt) = (progress, interrupt);
     let mut started = Started::new(scene, model)?;
     let mut warnings = started.warnings(scene);
     let ending = started.go(scene, &mut recorder, false);
+    if let Some(progress) = recorder.progress.take() {
+        progress.finish("");
+    }
     warnings.extend(started.afterthought());
     let stopped_by = match ending {
         Ending::Finished => None,

@@ -3,9 +3,10 @@
 mod common;
 mod mechanisms;
 
+use common::case;
 use mechanisms::{
-    G, Stand, Worst, attitude, careful, case, controlled, dzhanibekov, energy, fixed, for_output, go,
-    heading, largest, listed, minus, radau, reaction, rod_pendulum, start, tight, time_of,
+    G, Stand, Worst, attitude, careful, controlled, dzhanibekov, energy, fixed, for_output, go, heading,
+    largest, listed, minus, radau, reaction, rod_pendulum, start, tight, time_of,
 };
 use ropewalk_core::integrator::Options;
 use ropewalk_core::rotation::{matrix, times};

@@ -10,11 +10,13 @@ use mechanisms::{
 };
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec, UniversalSpec};
 use ropewalk_core::integrator::{ConstraintForm, Options, Scheme, StepReport};
-use ropewalk_core::rotation::{cross, matrix, transposed_times};
+use ropewalk_core::records::MomentumSpec;
+use ropewalk_core::rotation::cross;
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::testing::difference;
 use ropewalk_core::{
-    At, Model, NodeKind, Observer, Scene, Simulation, State, System, V3, Water, Weights, retract,
+    At, Audit, Model, Observer, RecordSpec, Sample, Scene, Simulation, State, System, V3, Water, Weights,
+    retract,
 };
 use ropewalk_elements::rigid_body::{HullSpec, Shape};
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
@@ -159,30 +161,43 @@ fn floating() -> Scene {
     scene
 }
 
-/// Linear and angular momentum about the origin: what the kinetic energy changes by with a motion of the whole as one
-/// rigid body.
-fn momenta(model: &Model, state: &State) -> [V3<f64>; 2] {
-    let kinetic = |v: &[f64]| model.energy(&At { v, ..state.at() }).kinetic;
-    let along = |move_by: V3<f64>, turn: V3<f64>| {
-        let mut with = vec![0.0; state.v.len()];
-        for n in model.nodes() {
-            let q = &state.q[n.coords()];
-            let swing = cross(&turn, &[q[0], q[1], q[2]]);
-            let v = &mut with[n.dofs()];
-            (0..3).for_each(|i| v[i] = move_by[i] + swing[i]);
-            match n.kind {
-                NodeKind::Slope => v[3..6].copy_from_slice(&cross(&turn, &[q[3], q[4], q[5]])),
-                NodeKind::Frame => {
-                    v[3..6].copy_from_slice(&transposed_times(&matrix(&[q[3], q[4], q[5], q[6]]), &turn));
-                }
-                _ => {}
-            }
+/// Linear momentum, angular momentum about the origin, and centre of mass, as a record shows them.
+fn momenta(model: &Model, state: &State) -> [V3<f64>; 3] {
+    let record = MomentumSpec::default().build(model).expect("record");
+    let (at, lambda, audit) = (state.at(), &state.lambda, &Audit::default());
+    let mut row = Vec::new();
+    record.sample(&Sample { model, at, lambda, audit }, &mut row);
+    std::array::from_fn(|k| [row[3 * k], row[3 * k + 1], row[3 * k + 2]])
+}
+
+#[test]
+fn momentum_and_centre_of_mass_are_those_of_the_parts() {
+    let inertia = [[0.03, 0.05, 0.06], [0.01, 0.02, 0.02]];
+    let mut s = start(&floating(), &Options { project: true, ..tight(2e-3) }, 1.0);
+    go(&mut s, 0.3);
+    let bodies = [("first", 2.0, inertia[0]), ("second", 1.0, inertia[1])];
+    let [mut p, mut l] = mechanisms::momentum(&s.model, &s.state, &bodies);
+    let mut first = [0.0; 3];
+    for (name, mass, _) in bodies {
+        let [x, _] = mechanisms::whereabouts(&s.model, &s.state, name);
+        (0..3).for_each(|i| first[i] += mass * x[i]);
+    }
+    // the cable by quadrature
+    let cable = s.model.part("cable").expect("cable");
+    let rule = [(-(0.6_f64.sqrt()), 5.0 / 18.0), (0.0, 8.0 / 18.0), (0.6_f64.sqrt(), 5.0 / 18.0)];
+    for (k, (xi, weight)) in (0..64).flat_map(|k| rule.map(|r| (k, r))) {
+        let at = (f64::from(k) + 0.5 * (1.0 + xi)) / 64.0;
+        let (x, v) = cable.point(at, &s.state.at()).expect("point");
+        let mass = 0.5 * weight / 64.0;
+        let swing = cross(&x, &v);
+        for i in 0..3 {
+            (p[i], l[i], first[i]) = (p[i] + mass * v[i], l[i] + mass * swing[i], first[i] + mass * x[i]);
         }
-        let moved = |s: f64| kinetic(&state.v.iter().zip(&with).map(|(v, w)| v + s * w).collect::<Vec<_>>());
-        0.5 * (moved(1.0) - moved(-1.0))
-    };
-    let unit = |k: usize| -> V3<f64> { std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 }) };
-    [std::array::from_fn(|k| along(unit(k), [0.0; 3])), std::array::from_fn(|k| along([0.0; 3], unit(k)))]
+    }
+    let centre = first.map(|x| x / 3.5);
+    for (got, want) in momenta(&s.model, &s.state).into_iter().zip([p, l, centre]) {
+        assert!(largest(mechanisms::minus(got, want)) < 1e-9, "{got:?} instead of {want:?}");
+    }
 }
 
 #[test]
@@ -190,11 +205,11 @@ fn momentum_of_a_floating_system_stays() {
     let mut drifts = Vec::new();
     for h in [4e-3, 2e-3, 1e-3] {
         let mut s = start(&floating(), &Options { project: true, ..tight(h) }, 2.0);
-        let [p0, l0] = momenta(&s.model, &s.state);
+        let [p0, l0, _] = momenta(&s.model, &s.state);
         let mut off = [0.0_f64; 2];
         for k in 1..=20 {
             go(&mut s, 0.1 * f64::from(k));
-            let [p, l] = momenta(&s.model, &s.state);
+            let [p, l, _] = momenta(&s.model, &s.state);
             let change = |a: V3<f64>, b: V3<f64>| size(std::array::from_fn(|i| a[i] - b[i])) / size(b);
             off = [off[0].max(change(p, p0)), off[1].max(change(l, l0))];
         }

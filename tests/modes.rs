@@ -1,22 +1,15 @@
-//! Vibration modes against closed forms and published frequencies.
+//! Vibration modes against closed forms; those of strings, chains and beams are cases of the verification suite.
 
-mod common;
 mod program;
 
-use common::{Reference, data};
 use ropewalk::{ModesOptions, modes};
 use ropewalk_constraints::motion::SpinSpec;
-use ropewalk_constraints::{ClampSpec, DistanceSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec};
+use ropewalk_constraints::{DistanceSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec};
 use ropewalk_core::modes::Mode;
-use ropewalk_core::{Analysis, ConstraintSpec, Scene, SteadyFrame};
-use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
+use ropewalk_core::{Analysis, Scene, SteadyFrame};
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, SpringSpec, TimeFunction};
 use std::f64::consts::PI;
-
-fn reference(name: &str) -> Vec<Reference> {
-    serde_json::from_value(data(&format!("cases/{name}.json"))["reference"].clone()).expect(name)
-}
 
 #[track_caller]
 fn find(scene: &Scene, count: usize) -> Vec<Mode> {
@@ -26,107 +19,11 @@ fn find(scene: &Scene, count: usize) -> Vec<Mode> {
     found.modes
 }
 
-/// Angular frequencies of the modes that move along one direction; of equal pairs both.
-fn along(modes: &[Mode], direction: usize) -> Vec<f64> {
-    modes.iter().filter(|m| m.directions[direction] > 0.9).map(|m| m.omega).collect()
-}
-
 #[track_caller]
 fn close(what: &str, found: f64, exact: f64, tolerance: f64) {
     let off = (found / exact - 1.0).abs();
     println!("{what}: {found:.9}, exact {exact:.9}, off by {off:.1e}");
     assert!(off <= tolerance, "{what}: {found} instead of {exact}, off by {off:e}");
-}
-
-fn ends(scene: &mut Scene, constraints: Vec<Box<dyn ConstraintSpec>>) {
-    scene.constraints.extend(constraints.into_iter().map(std::sync::Arc::from));
-}
-
-#[test]
-fn string_chain_and_beam_have_the_frequencies_of_their_case() {
-    let taut = {
-        let mut scene = Scene::new();
-        let section = Section::new(1.5, 1e6, 50.0);
-        scene.element(
-            CableSpec::straight("string", [0.0; 3], [10.01, 0.0, 0.0], 32, section).unstretched(10.0),
-        );
-        ends(
-            &mut scene,
-            vec![
-                Box::new(SphericalSpec::pin("left", "string.start")),
-                Box::new(SphericalSpec::pin("right", "string.end")),
-            ],
-        );
-        find(&scene, 110)
-    };
-    let across = along(&taut, 1);
-    let lengthwise = along(&taut, 0);
-    let chain = {
-        let mut scene = Scene::new();
-        let section = Section::new(1.5, 1e8, 1e-7);
-        let chain = CableSpec::straight("chain", [0.0; 3], [0.0, 0.0, -10.0], 32, section);
-        // without tension and bending stiffness the free end has nothing but the quadrature to hold its slope
-        let chain = chain.models(LongitudinalModel::L4, TransverseModel::T3, Integration::Full);
-        scene
-            .element(chain)
-            .constraint(SphericalSpec::pin("hook", "chain.start"))
-            .force(GravitySpec::default());
-        find(&scene, 8)
-    };
-    let beam = {
-        let mut scene = Scene::new();
-        let section = Section::new(1.5, 1e6, 50.0);
-        scene
-            .element(CableSpec::straight("beam", [0.0; 3], [10.0, 0.0, 0.0], 32, section))
-            .constraint(SphericalSpec::pin("root", "beam.start"))
-            .constraint(ClampSpec::new("clamp", "beam.start"));
-        find(&scene, 8)
-    };
-    for r in reference("modes_string_chain_beam") {
-        let n: usize = r.quantity.rsplit([' ', '=']).next().and_then(|n| n.parse().ok()).expect("a number");
-        let found = match &r.quantity {
-            q if q.contains("transverse") => across[n - 1],
-            q if q.contains("longitudinal") => lengthwise[n - 1],
-            // both planes have the same frequencies
-            q if q.contains("chain") => chain[2 * (n - 1)].omega,
-            _ => beam[2 * (n - 1)].omega,
-        };
-        close(&r.quantity, found, r.number(), r.tolerance);
-    }
-    for pair in beam.chunks(2) {
-        close("the other plane", pair[1].omega, pair[0].omega, 1e-6);
-    }
-}
-
-/// The beam of the case, clamped at the axis of a frame that turns about z.
-fn rotating(omega: f64, n: usize) -> Scene {
-    let mut scene = Scene::new();
-    scene
-        .element(CableSpec::straight("beam", [0.0; 3], [1.0, 0.0, 0.0], n, Section::new(1.0, 1e7, 1.0)))
-        .constraint(SphericalSpec::pin("hub", "beam.start"))
-        .constraint(ClampSpec::new("clamp", "beam.start"));
-    scene.run.analysis = Analysis::Statics;
-    scene.run.frame = Some(SteadyFrame { omega: [0.0, 0.0, omega], ..SteadyFrame::default() });
-    scene
-}
-
-#[test]
-fn rotating_beam_has_the_published_frequencies() {
-    for omega in [0.0, 3.0, 6.0, 12.0] {
-        let found = find(&rotating(omega, 32), 8);
-        assert!(found.iter().all(|m| m.growth.abs() < 1e-6 * m.omega), "nothing damps it");
-        let (inside, out) = (along(&found, 1), along(&found, 2));
-        for r in reference("rotating_beam_modes") {
-            let (speed, what) = r.quantity.split_once(": ").expect("speed");
-            if speed != format!("Omega*={omega:.0}") {
-                continue;
-            }
-            let n: usize =
-                what.split_once("frequency ").and_then(|w| w.1[..1].parse().ok()).expect("a number");
-            let of = if what.starts_with("in-plane") { &inside } else { &out };
-            close(&r.quantity, of[n - 1], r.number(), r.tolerance);
-        }
-    }
 }
 
 #[test]
@@ -342,7 +239,7 @@ fn what_has_no_modes_is_refused_with_the_reason() {
             axis: [0.0, 0.0, 1.0],
             motion: "spin".into(),
         })
-        .motion(SpinSpec { name: "spin".into(), rate: 3.0, start: 0.0, ramp: 0.0 });
+        .motion(SpinSpec { name: "spin".into(), rate: 3.0, start: 0.0, ramp: 0.0, rise: Default::default() });
     let message = told(&scene, &ModesOptions::default());
     assert!(message.contains("`motor` moves at t = 0 s") && message.contains("frame"), "{message}");
     scene.motions.clear();

@@ -1,6 +1,6 @@
 //! The records that come with Ropewalk: motion of a point and turning of a body, tension and the like along a cable, its length,
-//! reaction of a constraint and how well it follows its motion, force of a contact or spring, what has let go, balance of
-//! energy.
+//! reaction of a constraint and how well it follows its motion, force of a contact or spring, what has let go, momentum
+//! and balance of energy.
 //!
 //! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
 
@@ -11,6 +11,7 @@ mod energy;
 mod feeding;
 mod force;
 mod length;
+mod momentum;
 mod motion;
 mod place;
 mod reaction;
@@ -24,6 +25,7 @@ pub use energy::EnergySpec;
 pub use feeding::FeedingSpec;
 pub use force::ForceRecordSpec;
 pub use length::LengthSpec;
+pub use momentum::MomentumSpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
 pub use place::{SpaceAxis, Station as RecordPlace};
 pub use reaction::{ReactionPart, ReactionSpec};

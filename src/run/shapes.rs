@@ -8,9 +8,9 @@ pub(crate) fn write(folder: &RunFolder, shapes: &[(f64, Vec<V3<f64>>)]) -> Resul
     if shapes.is_empty() {
         return Ok(());
     }
-    let mut table = Table::default();
-    table.columns =
-        vec![Column::new("t", "s"), Column::new("x", "m"), Column::new("y", "m"), Column::new("z", "m")];
+    let columns =
+        [("t", "s"), ("x", "m"), ("y", "m"), ("z", "m")].map(|(name, unit)| Column::new(name, unit));
+    let mut table = Table { columns: columns.to_vec() };
     for (t, line) in shapes {
         for x in line {
             table.push_row(&[*t, x[0], x[1], x[2]])?;

@@ -126,12 +126,19 @@ pub fn towed(from: [f64; 3], to: [f64; 3], n: usize, section: Section, law: Drag
     scene
 }
 
-/// A line of a verification case.
+/// A quantity of a verification case.
 #[derive(serde::Deserialize)]
 pub struct Reference {
     pub quantity: String,
     pub value: Value,
+    /// How far off its first number may be.
+    #[serde(deserialize_with = "first")]
     pub tolerance: f64,
+}
+
+fn first<'de, D: serde::Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
+    let value: Value = serde::Deserialize::deserialize(d)?;
+    Ok(number(value.get(0).unwrap_or(&value)))
 }
 
 impl Reference {
@@ -143,9 +150,12 @@ impl Reference {
     }
 }
 
-/// The references of a verification case.
+/// The references of a case of the verification suite, which itself runs it in one way.
 pub fn case(name: &str) -> Vec<Reference> {
-    serde_json::from_value(data("cases.json")[name]["reference"].clone()).expect(name)
+    let all = data(&format!("../../verification/{name}.json"));
+    let runs = all["runs"].as_array().expect("runs");
+    let quantities = runs.iter().flat_map(|r| r["quantities"].as_array().expect("quantities"));
+    quantities.map(|q| serde_json::from_value(q.clone()).expect(name)).collect()
 }
 
 /// A cable in water, sprung, with a mass: everything that takes or brings energy.

@@ -1,7 +1,6 @@
 //! Scenes of rigid bodies and joints, and how the tests look at them.
 #![allow(dead_code)]
 
-use super::common::Reference;
 use ropewalk_constraints::{
     PerpendicularSpec, PointOnLineSpec, PrismaticSpec, RevoluteSpec, RotationSpec, SphericalSpec,
     UniversalSpec,
@@ -60,12 +59,6 @@ pub fn for_output(s: &mut Simulation) -> State {
     let mut state = s.state.clone();
     consistent(&s.model, &mut state, &mut s.work).expect("accelerations");
     state
-}
-
-/// The references of a case of a file of its own.
-pub fn case(name: &str) -> Vec<Reference> {
-    let file = super::common::data(&format!("cases/{name}.json"));
-    serde_json::from_value(file["reference"].clone()).expect(name)
 }
 
 /// The time that a quantity is asked for at, `… at t=0.5 s …`.

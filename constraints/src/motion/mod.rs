@@ -21,6 +21,7 @@ pub use circle::Circle;
 pub use harmonic::Harmonic;
 pub use plane::Side;
 pub use rest::Rest;
+pub use smooth::Shape;
 pub use spec::{CircleSpec, HarmonicSpec, RestSpec, StraightSpec, TableEnds, TableSpec, Towards, TurnSpec};
 pub use speed::{SpeedTable, SpeedTableSpec};
 pub use spin::{Spin, SpinSpec};

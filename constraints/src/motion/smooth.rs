@@ -1,6 +1,20 @@
 //! Speeds that rise smoothly.
 
 use ropewalk_core::build::{BuildError, finite, positive};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// How a rate rises.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Shape {
+    /// The quintic smooth step: the acceleration rises smoothly as well.
+    #[default]
+    Quintic,
+    /// The cycloid, whose acceleration is `1 - cos`: the spin-up of Kane, Ryan & Banerjee (1987).
+    Cycloidal,
+}
 
 /// The quintic smooth step `S = 10u³ - 15u⁴ + 6u⁵` with its integral and its derivative: `[∫S, S, S']`. It has two
 /// continuous derivatives; before 0 it is 0, after 1 it is 1.
@@ -19,6 +33,18 @@ pub(crate) fn step(u: f64) -> [f64; 3] {
     }
 }
 
+/// The cycloidal step `S = u - sin(2πu)/2π`, as [`step`]; its own derivative is continuous, the second isn't.
+pub(crate) fn cycloid(u: f64) -> [f64; 3] {
+    if u <= 0.0 {
+        [0.0; 3]
+    } else if u < 1.0 {
+        let (sin, cos) = (TAU * u).sin_cos();
+        [0.5 * u * u + (cos - 1.0) / (TAU * TAU), u - sin / TAU, 1.0 - cos]
+    } else {
+        [u - 0.5, 1.0, 0.0]
+    }
+}
+
 /// Second derivative of the smooth step.
 pub(crate) fn step_second(u: f64) -> f64 {
     if u > 0.0 && u < 1.0 { 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) } else { 0.0 }
@@ -30,6 +56,7 @@ pub(crate) struct Rise {
     pub top: f64,
     pub start: f64,
     pub ramp: f64,
+    pub shape: Shape,
 }
 
 impl Rise {
@@ -42,11 +69,15 @@ impl Rise {
             return Err(BuildError::at(fields[1], message));
         }
         positive(fields[1], ramp)?;
-        Ok(Rise { top, start, ramp })
+        Ok(Rise { top, start, ramp, shape: Shape::default() })
     }
     /// What has passed, the rate, and its derivative.
     pub fn at(&self, t: f64) -> [f64; 3] {
-        let [sum, rate, rise] = step((t - self.start) / self.ramp);
+        let u = (t - self.start) / self.ramp;
+        let [sum, rate, rise] = match self.shape {
+            Shape::Quintic => step(u),
+            Shape::Cycloidal => cycloid(u),
+        };
         [self.top * self.ramp * sum, self.top * rate, self.top / self.ramp * rise]
     }
     /// When it is constant.

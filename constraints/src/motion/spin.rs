@@ -1,6 +1,6 @@
 //! An angle that grows steadily.
 
-use super::smooth::Rise;
+use super::smooth::{Rise, Shape};
 use ropewalk_core::build::{BuildError, finite};
 use ropewalk_core::{Motion, MotionSpec, Moving, quantity, register_spec};
 use schemars::JsonSchema;
@@ -32,6 +32,17 @@ impl Spin {
     }
 }
 
+impl Spin {
+    /// The same with a rate that rises in another way.
+    #[must_use]
+    pub fn rising(mut self, shape: Shape) -> Self {
+        if let Some(rise) = &mut self.rise {
+            rise.shape = shape;
+        }
+        self
+    }
+}
+
 impl Motion for Spin {
     fn at(&self, t: f64) -> Moving {
         let [x, v, a] = self.rise.map_or([self.rate * t, self.rate, 0.0], |rise| rise.at(t));
@@ -58,6 +69,9 @@ pub struct SpinSpec {
     /// Time in which the rate rises [s]; 0 for what turns from the first moment on and starts with that velocity.
     #[serde(default = "ramp", deserialize_with = "quantity::time")]
     pub ramp: f64,
+    /// How it rises meanwhile.
+    #[serde(default)]
+    pub rise: Shape,
 }
 register_spec!(Motion, "spin", SpinSpec);
 
@@ -67,6 +81,6 @@ impl MotionSpec for SpinSpec {
         &self.name
     }
     fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
-        Ok(Arc::new(Spin::new(self.rate, self.start, self.ramp)?))
+        Ok(Arc::new(Spin::new(self.rate, self.start, self.ramp)?.rising(self.rise)))
     }
 }

@@ -326,6 +326,10 @@ impl Integrator for Alpha {
         h: f64,
         stiff: f64,
     ) -> Result<(), SolveError> {
+        if !self.options.filter_start {
+            state.aux.copy_from_slice(&state.a);
+            return Ok(());
+        }
         settle(model, state, work, &self.scheme, h, stiff, !self.stabilised(model))
     }
 

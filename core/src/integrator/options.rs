@@ -80,8 +80,8 @@ pub struct Options {
     pub horizon: f64,
     /// Move an inconsistent start onto the constraints however far away it is.
     pub project: bool,
-    /// Filter the accelerations of the start by the stiffness, as fine meshes need; only a textbook comparison of
-    /// the bare scheme wants them raw.
+    /// Filter the accelerations of the start by the stiffness, as fine meshes need, and let the scheme's own begin ahead
+    /// of them, as its order needs; only a textbook comparison of the bare scheme wants them raw.
     pub filter_start: bool,
     /// Most Newton iterations of a step before it is repeated smaller; Radau IIA takes at most 10.
     pub max_iterations: u32,
