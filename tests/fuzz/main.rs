@@ -7,6 +7,7 @@
 mod assembly;
 mod finds;
 mod guard;
+mod nasty;
 mod random;
 mod text;
 
@@ -76,6 +77,14 @@ fn finds_are_refused_now() {
     for find in finds::all() {
         let seen = hunt("find", 0..1, |_| find.clone(), guard::read);
         assert_eq!(seen.get("refused"), Some(&1), "{find}");
+    }
+}
+
+#[test]
+fn nasty_scenes_end_in_an_error_or_a_finite_state() {
+    for text in nasty::all() {
+        let seen = hunt("nasty", 0..1, |_| text.clone(), guard::run);
+        println!("{seen:?}: {}", text.lines().last().unwrap_or_default());
     }
 }
 
