@@ -1,9 +1,10 @@
 //! Equations without dimensions: the same results and the same iterations, unless a stopping test is absolute.
 
 mod common;
+mod program;
 
 use common::{data, everything, models};
-use ropewalk::variants::{Form, condition};
+use ropewalk::variants::{Form, Problem, condition, scaling, stiffness};
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::integrator::{NewtonPolicy, Options, Scales, Scheme, Stepping, Stopping};
 use ropewalk_core::{End, Scene, Simulation};
@@ -154,4 +155,60 @@ fn condition_numbers_are_those_of_the_reference() {
             );
         }
     }
+}
+
+#[test]
+fn stiffness_models_are_compared_by_what_they_are() {
+    use ropewalk_elements::cable::{CableModel, Integration, LongitudinalModel, TransverseModel};
+    let of = |longitudinal, transverse, integration| {
+        stiffness::measure(CableModel { longitudinal, transverse, integration }).expect("measured")
+    };
+    let best = stiffness::measure(CableModel::default()).expect("measured");
+    println!("{best:?}");
+    // the table of the reference, whose errors have two digits
+    let table = [-5.3e-2, -7.4e-3, -6.5e-4, -4.5e-5, -2.9e-6, -1.8e-7];
+    assert!(best.cantilever.iter().zip(table).all(|(e, want)| (e / want - 1.0).abs() < 0.03), "{best:?}");
+    assert!(best.pendulum.windows(2).all(|w| w[1] < 0.2 * w[0]) && best.pendulum[3] < 1e-5, "{best:?}");
+    assert!(
+        (best.locking - 1.0).abs() < 0.01 && best.asymmetry < 1e-8 && best.moment_strain < 1e-9,
+        "{best:?}"
+    );
+    let full = of(LongitudinalModel::L4, TransverseModel::T3, Integration::Full);
+    assert!(full.locking > 5.0 && full.moment_strain > 1e-6, "{full:?}");
+    let frozen = of(LongitudinalModel::L1n, TransverseModel::T1, Integration::Full);
+    assert!(frozen.asymmetry > 1e-3 && frozen.energy > 100.0 * best.energy, "{frozen:?}");
+    assert_eq!(stiffness::forbidden().len(), 6);
+}
+
+#[test]
+fn the_gain_of_equations_without_dimensions_is_that_of_the_stopping_test() {
+    let run = |form, absolute, reference| {
+        scaling::run(Problem::Spherical, 4, form, absolute, reference).expect("run")
+    };
+    let si = run(Form::Si, None, None);
+    let plain = run(Form::Bending, None, Some(&si)).row;
+    assert!(plain.iterations == si.row.iterations && plain.apart < 1e-9, "{plain:?}");
+    let (vain, loose) =
+        (run(Form::Si, Some(1e-7), Some(&si)).row, run(Form::Bending, Some(1e-7), Some(&si)).row);
+    println!("{vain:?}\n{loose:?}");
+    assert!(vain.unmet > vain.steps / 2 && vain.iterations > 10.0, "{vain:?}");
+    assert!(loose.unmet == 0 && loose.iterations < 2.0, "{loose:?}");
+}
+
+#[test]
+fn the_command_compares_models_and_refuses_what_makes_no_sense() {
+    let folder = tempfile::tempdir().expect("folder");
+    let said =
+        program::run(folder.path(), &["variants", "--only", "stiffness", "--seconds", "0.1", "--out", "out"]);
+    assert_eq!(said.code, Some(0), "{}", said.stderr);
+    assert!(said.stdout.contains("cable L4+T3 locking-free") && said.stdout.contains("L2+T3 isn't there"));
+    for file in ["variants.txt", "variants.json", "tables/stiffness.csv", "plots/stiffness.svg"] {
+        let text = std::fs::read_to_string(folder.path().join("out").join(file)).expect(file);
+        assert!(text.contains("L1n+T1"), "{file}");
+    }
+    let refused = |arguments: &[&str], holds: &str| program::run(folder.path(), arguments).refused(&[holds]);
+    refused(&["variants", "--absolute", "nan"], "`--absolute` must be positive");
+    refused(&["variants", "--seconds=-1"], "`--seconds` must be positive");
+    refused(&["variants", "--finest", "65"], "65");
+    refused(&["variants", "--out", "out"], "out");
 }
