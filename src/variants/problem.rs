@@ -104,10 +104,7 @@ impl Problem {
         let end = format!("{}.end", self.cable());
         scene.records.clear();
         scene.record(PositionSpec::new(&end)).record(AccelerationSpec { of: end, name: None, title: None });
-        if self == Problem::Spherical {
-            let of = "joint".to_string();
-            scene.record(ReactionSpec { of, what: Default::default(), name: None, title: None });
-        }
+        self.watch_joint(&mut scene);
         scene.run.duration = self.duration();
         scene.run.output = self.duration() / 400.0;
         scene.run.audit = false;
@@ -143,10 +140,18 @@ impl Problem {
             name: None,
             title: None,
         });
+        self.watch_joint(&mut scene);
         scene.run.duration = self.duration();
         scene.run.output = self.duration() / 400.0;
         scene.solver.stepping = Stepping::Fixed { h: self.step() };
         Some(scene)
+    }
+
+    fn watch_joint(self, scene: &mut Scene) {
+        if self == Problem::Spherical {
+            let of = "joint".to_string();
+            scene.record(ReactionSpec { of, what: Default::default(), name: None, title: None });
+        }
     }
 
     fn pendulum(self, elements: usize) -> Scene {
