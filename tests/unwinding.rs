@@ -302,7 +302,7 @@ fn steady_balloons_with_bending_stiffness_lie_along_the_wound_layer() {
 #[test]
 fn a_flexible_cable_starts_from_the_tension_at_its_eyelet() {
     for rest in ["0.02 N", "0.03 N", "0.5 N"] {
-        let set = ["duration = 2 ms".to_string(), format!("rest = {rest}"), format!("laid = {rest}")];
+        let set = ["duration=2 ms".to_string(), format!("rest={rest}"), format!("laid={rest}")];
         let file = SceneFile::open("unwinding", &set, bundled()).unwrap_or_else(|e| panic!("{e}"));
         let history = simulate(file.scene()).unwrap_or_else(|e| panic!("{rest}: {e}"));
         assert_eq!(history.stopped_by, None);
