@@ -113,7 +113,7 @@ fn an_empty_package_says_so() {
 
 #[test]
 fn what_cannot_be_wound_is_refused_by_field() {
-    let cases: [(PackageSpec, &str, &str); 12] = [
+    let cases: [(PackageSpec, &str, &str); 13] = [
         (PackageSpec { pitch: Some(0.8e-3), ..spec() }, "pitch", "below the diameter"),
         (PackageSpec { radius: 0.0, ..spec() }, "radius", "positive"),
         (PackageSpec { radius: f64::NAN, ..spec() }, "radius", "positive"),
