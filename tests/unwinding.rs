@@ -133,7 +133,21 @@ impl Relation for Round {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Off {
     Package,
+    /// It sticks to the package with the energy that the curvature of the reference gives.
+    Peeled,
     Ring,
+}
+
+impl Case {
+    /// Energy per length at which the cable of the reference peels, `EI |κ - κ_w|²/2`.
+    fn bond(&self) -> f64 {
+        // the direction of bending at the lift-off point, where the wound cable bends towards the axis
+        let (end, before) = (self.length(), self.length() * (1.0 - 1e-3));
+        let bend: V3<f64> = [1, 2, 3].map(|i| self.at(end, i).1 - self.at(before, i).1);
+        let inwards = -bend[0] / bend.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let (kappa, wound) = (self.kappa_lift, 1.0 / self.get("R"));
+        0.5 * self.get("EI") * (kappa * kappa + wound * wound - 2.0 * inwards * kappa * wound)
+    }
 }
 
 fn balloon(c: &Case, off: Off, n: usize, turns: f64, per_turn: usize, eta: f64) -> Kept {
@@ -174,12 +188,15 @@ fn balloon(c: &Case, off: Off, n: usize, turns: f64, per_turn: usize, eta: f64) 
         .motion(speed("draw", -v))
         .motion(speed("peel", v))
         .constraint(SphericalSpec::new("eyelet", "fibre.start", [0.0; 3]))
-        .constraint(WinchSpec::motion("pull", "fibre.start", "draw"))
-        .constraint(WinchSpec::motion("spool", "fibre.end", "peel"));
+        .constraint(WinchSpec::motion("pull", "fibre.start", "draw"));
+    if off != Off::Peeled {
+        scene.constraint(WinchSpec::motion("spool", "fibre.end", "peel"));
+    }
     let climb = c.params["tL"][2].as_f64().unwrap_or(0.0).asin();
     let marker: MarkerRef = "fibre.end".into();
-    if off == Off::Package {
-        scene.constraint(LiftOffSpec { name: "off".into(), marker, package, tangent: bent });
+    if off != Off::Ring {
+        let peel = (off == Off::Peeled).then(|| c.bond());
+        scene.constraint(LiftOffSpec { tangent: bent, peel, ..LiftOffSpec::new("off", marker, package) });
     } else {
         let height = start(c.length())[2];
         scene.constraint(RingSpec { marker, radius, height, spin, climb });
@@ -213,7 +230,7 @@ fn balloon(c: &Case, off: Off, n: usize, turns: f64, per_turn: usize, eta: f64) 
         expected.push([0, 1, 2].map(|i| state.q[6 * k + i]));
     }
     (state.v[6 * (n + 1)], state.v[6 * (n + 1) + 1]) = (v, v);
-    if bent && off == Off::Package {
+    if bent && off != Off::Ring {
         // the reference climbs by the pitch of its package, this one doesn't
         state.q[6 * n + 3..6 * n + 6].copy_from_slice(&[0.0, 1.0 + c.at(c.length(), 4).0 / ea, 0.0]);
         state.v[6 * n + 3..6 * n + 6].copy_from_slice(&[-spin * state.q[6 * n + 4], 0.0, 0.0]);
@@ -298,11 +315,150 @@ fn steady_balloons_with_bending_stiffness_lie_along_the_wound_layer() {
     }
 }
 
+/// With what it takes to peel as the only thing that is known of the lift-off: half a turn by finite differences and in
+/// cable elements.
+#[test]
+fn a_cable_that_sticks_peels_at_its_energy() {
+    use ropewalk_constraints::motion::Straight;
+    use ropewalk_models::unwinding as fd;
+    use std::sync::Arc;
+    let c = case("flow/balloon_bend.json", "low_bend_const_5kn_a");
+    let turn = TAU / c.get("Om");
+    let climb = c.params["tL"][2].as_f64().unwrap_or(0.0).asin();
+    let ring = fd::Ring { radius: c.get("R"), height: c.get("h"), climb, inner: true };
+    let cable =
+        fd::Cable { mass: c.get("m"), diameter: c.get("d"), bending: c.get("EI"), curvature_limit: 1e4 };
+    let draw = Arc::new(Straight::new([1.0, 0.0, 0.0], c.get("V"), -1.0, 0.1).expect("speed"));
+    let mut problem = fd::Unwinding::new(cable, Arc::new(ring), draw, fd::Rule::Peel(c.bond()), 60);
+    problem.lift_off = fd::LiftOff::Tangent;
+    let water = Water { density: c.get("rho"), ..Water::default() };
+    let drag = DragSpec { cn: c.get("Cn"), ct: c.get("Ct"), ..DragSpec::default() };
+    problem.drag = Some(drag.law(&water).expect("drag"));
+    let points: Vec<V3<f64>> = c.rows.iter().map(|r| [r[1], r[2], r[3]]).collect();
+    let start = problem.start(&points, c.get("Om"), 0.0).expect("start");
+    let plan = fd::Plan { t_end: 0.5 * turn, every: 0.025 * turn, shapes: vec![] };
+    let stepping = fd::Stepping { damping: 0.05, ..fd::Stepping::new(turn / 200.0) };
+    let history = problem.run(start, stepping, &plan).expect("run");
+    assert!(history.stopped.is_none(), "{:?}", history.stopped);
+    let rows = &history.rows[history.rows.len() / 2..];
+    let mean = |of: fn(&fd::Row) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
+    let (tension, curvature) =
+        (mean(|r| r.tension) / c.get("T0") - 1.0, mean(|r| r.lift_curvature) / c.kappa_lift - 1.0);
+
+    let kept = balloon(&c, Off::Peeled, 40, 0.5, 400, 1e-4);
+    eprintln!("finite differences {tension:.2e}, {curvature:.2e}; {kept:?}");
+    assert!(kept.tension.abs() < 1e-2 && kept.curvature.abs() < 2e-2, "{kept:?}");
+    assert!((kept.tension - tension).abs() < 1e-2 && (kept.curvature - curvature).abs() < 2e-2, "{kept:?}");
+    assert!(kept.kink < 1e-9 && kept.shape < 5e-3, "{kept:?}");
+}
+
+/// A flexible cable, at any time: `(T - ρA u²) (1 - cos D) + T ε/2 = Γ` where it comes off at an angle `D` to the layer.
+#[test]
+fn a_flexible_cable_peels_at_its_angle_and_energy_closes() {
+    let (mass, ea, tension, bond) = (1e-3, 1e3, 0.6, 0.4);
+    let run = |h: f64| {
+        let from = [0.06, 0.0, 0.1];
+        let whole = (0.06_f64.powi(2) + 0.01).sqrt();
+        let mut section = Section::new(mass, ea, 0.0);
+        (section.diameter, section.axial_damping, section.displaced) = (0.9e-3, 1e-5, Some(0.0));
+        let mut scene = Scene::new();
+        scene.water = Some(Water::default());
+        let package =
+            PackageSpec { origin: [0.0, 0.0, 0.1], layers: 2, ..PackageSpec::new(0.06, 0.2, 0.9e-3) };
+        scene
+            .element(
+                CableSpec::straight("fibre", [0.0; 3], from, 20, section)
+                    .unstretched(whole / (1.0 + tension / ea)),
+            )
+            .constraint(SphericalSpec::new("eyelet", "fibre.start", [0.0; 3]))
+            .constraint(WinchSpec::tension("pull", "fibre.start", tension))
+            .constraint(LiftOffSpec {
+                peel: Some(bond),
+                slip: 1e-2,
+                ..LiftOffSpec::new("off", "fibre.end", package)
+            })
+            .force(DragSpec { cn: 1.2, ct: 0.01, ..DragSpec::default() });
+        let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
+        let options = Options {
+            stepping: Stepping::Fixed { h },
+            scheme: Scheme::GeneralizedAlpha { rho_inf: 0.8 },
+            ..Options::default()
+        };
+        let mut s = Simulation::new(model, &options, 0.1).unwrap_or_else(|e| panic!("{e}"));
+        let mut worst = 0.0_f64;
+        for k in 1..=10 {
+            let end =
+                s.advance(0.01 * f64::from(k), f64::INFINITY, &mut ()).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(end, End::Done);
+            let at = s.state.at();
+            let part = s.model.part("fibre").expect("fibre");
+            let length = part.length_now(&at);
+            let front = part.front(1).expect("front");
+            let pull = part.observe(ropewalk_core::Quantity::Tension, length, &at).expect("tension");
+            let x: V3<f64> = std::array::from_fn(|i| at.q[front.end_q + i]);
+            let slope: V3<f64> = std::array::from_fn(|i| at.q[front.end_q + 3 + i]);
+            let size = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
+            // close-wound: a pitch of a diameter a turn
+            let climb = (0.9e-3 / (TAU * 0.06)).atan();
+            let round = (x[0] * slope[1] - x[1] * slope[0]) / (x[0].hypot(x[1]) * size);
+            let (cos, u) = (round * climb.cos() + slope[2] / size * climb.sin(), front.rate(&at));
+            let found = (pull - mass * u * u) * (1.0 - cos) + 0.5 * pull * pull / ea;
+            eprintln!("{k}: u {u:.3}, T {pull:.4}, cos D {cos:.4}, {:.2e}", found / bond - 1.0);
+            assert!(u > 0.1);
+            worst = worst.max((found / bond - 1.0).abs());
+        }
+        eprintln!("{:?}, {:e}", s.audit, s.audit.imbalance() / s.audit.scale);
+        let front = s.model.part("fibre").expect("fibre").front(1).expect("front");
+        let peeled = front.fed(&s.state.at());
+        assert!(s.audit.dissipated > 0.99 * bond * peeled, "{peeled}");
+        (worst, s.audit.imbalance() / s.audit.scale)
+    };
+    let (coarse, fine) = (run(1e-4), run(5e-5));
+    eprintln!("{coarse:?} {fine:?}");
+    assert!(fine.0 < 1e-2 && fine.1.abs() < 1e-3, "{fine:?}");
+}
+
+#[test]
+fn a_bond_that_makes_no_sense_is_refused() {
+    let refused = |change: fn(&mut LiftOffSpec), winch: bool| {
+        let mut off = LiftOffSpec::new("off", "fibre.end", PackageSpec::new(0.06, 0.2, 0.9e-3));
+        off.peel = Some(0.3);
+        change(&mut off);
+        let mut scene = Scene::new();
+        let section = Section::new(1e-3, 1e3, 0.0);
+        scene
+            .element(CableSpec::straight("fibre", [0.0, 0.0, -0.1], [0.06, 0.0, 0.0], 8, section))
+            .constraint(SphericalSpec::new("eyelet", "fibre.start", [0.0, 0.0, -0.1]))
+            .constraint(WinchSpec::tension("pull", "fibre.start", 0.5));
+        if winch {
+            scene.constraint(WinchSpec::tension("spool", "fibre.end", 0.1));
+        }
+        scene.constraint(off);
+        scene.build().err().expect("refused").to_string()
+    };
+    for (change, winch, says) in [
+        ((|off| off.peel = Some(-0.3)) as fn(&mut LiftOffSpec), false, "`peel` must not be negative"),
+        (|off| off.peel = Some(f64::NAN), false, "`peel` must not be negative"),
+        (|off| off.slip = 0.0, false, "slip"),
+        (|off| off.tangent = true, false, "nothing to peel it off"),
+        (|_| (), true, "two constraints feed at"),
+        (|off| off.peel = None, false, "no `winch`"),
+    ] {
+        let message = refused(change, winch);
+        assert!(message.contains(says), "{message}");
+    }
+    let without = r#"{"type": "lift_off", "name": "off", "marker": "fibre.end", "peel": 0.3}"#;
+    let message =
+        serde_json::from_str::<Box<dyn ConstraintSpec>>(without).err().expect("refused").to_string();
+    assert!(message.contains("package"), "{message}");
+}
+
 /// The accelerations are then nothing but rounding, which a solution with pivoting has to get right all the same.
 #[test]
 fn a_flexible_cable_starts_from_the_tension_at_its_eyelet() {
+    // laid at `rest`, as the scene is
     for rest in ["0.02 N", "0.03 N", "0.5 N"] {
-        let set = ["duration=2 ms".to_string(), format!("rest={rest}"), format!("laid={rest}")];
+        let set = ["duration = 2 ms".to_string(), format!("rest = {rest}")];
         let file = SceneFile::open("unwinding", &set, bundled()).unwrap_or_else(|e| panic!("{e}"));
         let history = simulate(file.scene()).unwrap_or_else(|e| panic!("{rest}: {e}"));
         assert_eq!(history.stopped_by, None);
@@ -359,12 +515,7 @@ fn finite_differences_and_finite_elements_agree_from_rest_to_15_knots() {
         .constraint(SphericalSpec::new("eyelet", "fibre.start", [0.0; 3]))
         .constraint(WinchSpec { per_speed2, ..WinchSpec::tension("pull", "fibre.start", rest) })
         .constraint(WinchSpec::motion("spool", "fibre.end", "peel"))
-        .constraint(LiftOffSpec {
-            name: "off".into(),
-            marker: "fibre.end".into(),
-            package: spec,
-            tangent: false,
-        })
+        .constraint(LiftOffSpec::new("off", "fibre.end", spec))
         .force(drag);
     let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
     let options = Options {

@@ -339,7 +339,12 @@ impl Builder {
         let (part, end) = end_of(marker)?;
         match self.feeds.entry(part.to_string()).or_default()[end].replace(feed) {
             None => Ok(()),
-            Some(_) => Err(BuildError::at("marker", format!("two winches feed at {marker}"))),
+            Some(_) => Err(BuildError::at(
+                "marker",
+                format!(
+                    "two constraints feed at {marker}, but one of `winch`, `eyelet` and `lift_off` with `peel` does"
+                ),
+            )),
         }
     }
 

@@ -9,6 +9,9 @@ pub struct Feed {
     /// Length of elements [m] that are born and swallowed at the end while the rest of the cable stays on its material.
     /// Left out, all elements of the cable grow and shrink together.
     pub element: Option<f64>,
+    /// Whether what passes the end is free of strain energy outside, as cable that sticks to a package is up to what its
+    /// law of peeling counts. Else it is strained outside as it is inside.
+    pub unstrained: bool,
 }
 
 /// An end of a cable that feeds: the material coordinate there is an unknown.

@@ -1,11 +1,12 @@
 //! Where a cable lifts off from a package.
 
-use super::{Limit, Side};
+use super::{Limit, Peel, Side};
 use crate::package::{Lay, Package, PackageSpec};
-use ropewalk_core::build::{BuildError, Builder};
+use ropewalk_core::build::{BuildError, Builder, not_negative, positive};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::{
-    At, Constraint, ConstraintSpec, Front, Marker, MarkerRef, Node, NodeId, RowKind, V3, dot, register_spec,
+    At, Constraint, ConstraintSpec, Feed, Front, Marker, MarkerRef, Node, NodeId, RowKind, V3, dot, quantity,
+    register_spec,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,7 @@ use std::sync::Arc;
 /// The end of a cable is where its package has it: `r - H(σ) = 0`, with the length `σ` that has been fed out there; three
 /// equations. With `tangent` the cable goes on along the wound layer, `r' ∥ H'(σ)`, two more.
 ///
-/// Cable that is wound is at rest. What peels it is told by the winch at the same end: a speed, or a force.
+/// Cable that is wound is at rest. What peels it is told by the winch at the same end: a speed, or a force; or by a [`Peel`].
 #[derive(Clone, Debug)]
 pub struct LiftOff {
     name: String,
@@ -159,6 +160,7 @@ impl Constraint for LiftOff {
 /// Lets an end of a cable lift off from a package: the lift-off point runs round the package as cable is peeled.
 ///
 /// A `winch` at the same end says what peels it: `speed` or `motion`, or `tension` for what the package holds it back with.
+/// Or `peel` says, without a winch, at which energy it comes off a package to which it sticks.
 /// Where the cable goes to is told by an eyelet at the other end: a `spherical` constraint and a winch of its own. Reports
 /// what happens on the way: a tension below what keeps the cable taut, contact with the package, too much bending.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -173,8 +175,32 @@ pub struct LiftOffSpec {
     /// Whether the cable is tangent to the wound layer where it lifts off; needs bending stiffness.
     #[serde(default)]
     pub tangent: bool,
+    /// Energy per length that it takes to peel the cable off [J/m], instead of a winch at this end. The cable then lifts off
+    /// at a curvature with `EI (κ - κ_w)²/2 = peel`, `κ_w` being that of the wound cable, or if it isn't `tangent`, at an
+    /// angle `D` with `T (1 - cos D) = peel`.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::force",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub peel: Option<f64>,
+    /// Speed below which a cable that sticks creeps [m/s], with `peel`.
+    #[serde(default = "slip", deserialize_with = "quantity::speed")]
+    pub slip: f64,
 }
 register_spec!(Constraint, "lift_off", LiftOffSpec);
+
+fn slip() -> f64 {
+    1e-3
+}
+
+impl LiftOffSpec {
+    /// Lifts off from a package, peeled by a winch.
+    pub fn new(name: &str, marker: impl Into<MarkerRef>, package: PackageSpec) -> Self {
+        let (name, marker) = (name.into(), marker.into());
+        LiftOffSpec { name, marker, package, tangent: false, peel: None, slip: slip() }
+    }
+}
 
 #[typetag::serde(name = "lift_off")]
 impl ConstraintSpec for LiftOffSpec {
@@ -184,10 +210,25 @@ impl ConstraintSpec for LiftOffSpec {
     fn markers(&self) -> Vec<&MarkerRef> {
         vec![&self.marker]
     }
+    fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
+        self.peel.map(|_| (&self.marker, Feed { element: None, unstrained: true }))
+    }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let package = Arc::new(self.package.build()?);
         let front = b.front(&self.marker)?;
         let part = b.feeding_part(&self.marker)?;
+        positive("slip", self.slip)?;
+        if let Some(energy) = self.peel {
+            let ei = part.slender().map_or(0.0, |s| s.ei);
+            if self.tangent && ei == 0.0 {
+                let message = "a cable without bending stiffness that goes on along the wound layer has nothing to peel it \
+                               off: leave out `tangent`, or give the cable an `ei`";
+                return Err(BuildError::at("tangent", message));
+            }
+            let (name, energy) = (self.name.clone(), not_negative("peel", energy)?);
+            let package = package.clone();
+            b.term(Box::new(Peel { name, front, package, energy, slip: self.slip, ei }));
+        }
         b.event(Limit {
             name: self.name.clone(),
             front,

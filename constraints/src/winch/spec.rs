@@ -191,7 +191,7 @@ impl ConstraintSpec for WinchSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        (!self.idle()).then_some((&self.marker, Feed { element: self.element }))
+        (!self.idle()).then_some((&self.marker, Feed { element: self.element, unstrained: false }))
     }
     fn notes(&self, model: &Model) -> Vec<String> {
         let (Some(speed), MarkerRef::Name(marker)) = (self.speed.filter(|v| *v != 0.0), &self.marker) else {

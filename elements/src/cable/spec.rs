@@ -254,7 +254,9 @@ impl CableSpec {
                 },
             ));
         }
-        Ok(Line::new(mesh, fronts, feeding.map(|f| f.is_some_and(|f| f.element.is_some()))))
+        let ends = |is: fn(&Feed) -> bool| feeding.map(|f| f.as_ref().is_some_and(is));
+        let line = Line::new(mesh, fronts, ends(|f| f.element.is_some()));
+        Ok(Line { unstrained: ends(|f| f.unstrained), ..line })
     }
 
     /// Damping and a stress-free shape of one element, where the scene asks for them.

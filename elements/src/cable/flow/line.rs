@@ -21,6 +21,8 @@ pub struct Line {
     pub nodes: Vec<Follows>,
     /// Whether elements are born and swallowed at the ends, the rest staying on its material.
     pub zone: [bool; 2],
+    /// Whether what passes the ends is free of strain energy outside; else it takes along what it has inside.
+    pub unstrained: [bool; 2],
 }
 
 impl Line {
@@ -54,7 +56,7 @@ impl Line {
                 node
             })
             .collect();
-        Line { fronts, nodes, zone }
+        Line { fronts, nodes, zone, unstrained: [false; 2] }
     }
 
     fn sum(&self, k: usize, fixed: f64, x: impl Fn(&Front) -> f64) -> f64 {
@@ -68,6 +70,12 @@ impl Line {
     /// Its rate [m/s].
     pub fn rate(&self, k: usize, v: &[f64]) -> f64 {
         self.sum(k, 0.0, |f| v[f.v])
+    }
+    /// The open end at the element behind node `k`: the end of the line, and the number of the front there.
+    pub fn opens(&self, k: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let last = self.nodes.len() - 2;
+        let ends = self.fronts.iter().enumerate().map(|(front, &(end, _))| (end, front));
+        ends.filter(move |&(end, _)| k == if end == 0 { 0 } else { last } && !self.unstrained[end])
     }
     /// Whether material flows through the element behind node `k`.
     pub fn flows(&self, k: usize) -> bool {

@@ -10,7 +10,7 @@
 //! material with the consistent nodal vector `F` acts on the front by a [rule](close) that is the same for all.
 //!
 //! The equations are d'Alembert's principle at fixed material points, so no flux stands at the ends; the elastic
-//! energy of what passes an open end does ([`FlowEnd`]). There is no `m V²` in the tension of a hanging cable.
+//! energy of what passes an open end does ([`FlowEnd`]), unless it is free of strain outside. There is no `m V²` in the tension of a hanging cable.
 
 pub(super) mod change;
 mod damping;

@@ -54,13 +54,10 @@ macro_rules! push {
     ($self:ident, $fronts:literal, $L:ident, $T:ident, $Q:ident) => {{
         let (line, k) = ($self.piece.line, $self.piece.k);
         let (nodes, by, s) = ($self.piece.nodes(), line.embedding::<$fronts>(k), $self.section);
-        let last = line.nodes.len() - 2;
         $self.b.element(FlowCable::<$L, $T, $Q, $fronts>::new($self.params, by), &nodes)?;
-        for (front, &(end, _)) in line.fronts.iter().enumerate() {
-            if k == if end == 0 { 0 } else { last } {
-                let open = FlowEnd::<$L, $T, $Q, $fronts>::new($self.params, by, end, front);
-                $self.b.element(open, &nodes)?;
-            }
+        for (end, front) in line.opens(k) {
+            let open = FlowEnd::<$L, $T, $Q, $fronts>::new($self.params, by, end, front);
+            $self.b.element(open, &nodes)?;
         }
         if s.axial_damping > 0.0 {
             let damping =
@@ -105,8 +102,6 @@ pub(crate) fn fading(
 ) -> Result<(), BuildError> {
     let (line, k) = (piece.line, piece.k);
     let nodes: Vec<Node> = piece.nodes().iter().map(|n| b.nodes()[n.0 as usize]).collect();
-    let last = line.nodes.len() - 2;
-    let end = line.fronts.iter().enumerate().map(|(f, (end, _))| (*end, f));
     let mut by = Embedding { fixed: [line.nodes[k].fixed, line.nodes[k + 1].fixed], by: [[0.0; 2]; 2] };
     for f in 0..line.fronts.len() {
         by.by[f] = [line.nodes[k].by[f], line.nodes[k + 1].by[f]];
@@ -117,7 +112,7 @@ pub(crate) fn fading(
         q: nodes.iter().flat_map(Node::coords).collect(),
         v: nodes.iter().flat_map(Node::dofs).collect(),
         by,
-        end: end.into_iter().find(|&(end, _)| k == if end == 0 { 0 } else { last }),
+        end: line.opens(k).next(),
     };
     b.term(prestrain::fading(model, strain.clone(), place).map_err(BuildError::new)?);
     Ok(())

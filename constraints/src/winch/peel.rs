@@ -1,0 +1,139 @@
+//! Peeling at a given energy: cable that sticks to its package.
+
+use crate::package::Package;
+use ropewalk_core::{Assembly, At, Column, Front, Pattern, Power, Term, V3, dot};
+use std::sync::Arc;
+
+/// Holds back an end that lifts off by what peeling costs, as force on the front: `Γ - EI κ_w²/2 + ρA v²/2`.
+///
+/// Moving the lift-off point by `δσ` breaks a bond of the energy `Γ δσ`, and the free cable takes over `EI κ_w²/2 δσ` of
+/// bending from the wound one, which lies unstretched and at rest. With the derivative of all of the strain energy of the
+/// free cable (an end whose outside is `unstrained`) virtual work then says what fracture mechanics does: of a cable tangent
+/// to the wound layer `EI |κ - κ_w|²/2 + T ε/2 = Γ`, with the curvatures of the free and of the wound cable as vectors and a
+/// small part by the strain `ε`; of a flexible one at an angle `D` to the layer `(T - ρA u²) (1 - cos D) + T ε/2 = Γ`, where `ρA v²/2`
+/// sets the cable moving that was at rest (Rivlin 1944; with inertia Burridge & Keller 1978).
+///
+/// The bond resists peeling only: cable that is laid on again doesn't stick, and one that is pulled less than it takes
+/// creeps at a part of `slip`.
+#[derive(Clone, Debug)]
+pub struct Peel {
+    /// Name of the lift-off.
+    pub name: String,
+    /// The end that lifts off.
+    pub front: Front,
+    /// What it lifts off from.
+    pub package: Arc<Package>,
+    /// Energy of the bond per length `Γ` [J/m].
+    pub energy: f64,
+    /// Speed below which it creeps [m/s].
+    pub slip: f64,
+    /// Bending stiffness [N m²].
+    pub ei: f64,
+}
+
+impl Peel {
+    /// What the bond takes per length at a speed of peeling, and its derivative by that.
+    fn bond(&self, u: f64) -> (f64, f64) {
+        if u <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let root = u.hypot(self.slip);
+        (self.energy * u / root, self.energy * self.slip * self.slip / (root * root * root))
+    }
+    /// Bending energy per length of the wound cable where a length has been peeled.
+    fn wound(&self, peeled: f64) -> f64 {
+        // beyond the end of the package the run ends
+        let lay = self.package.at(peeled.min(self.package.wound()));
+        lay.map_or(f64::NAN, |lay| 0.5 * self.ei * dot(&lay.curvature, &lay.curvature))
+    }
+    /// By differences, since a package has two continuous derivatives only.
+    fn wound_slope(&self, peeled: f64) -> f64 {
+        let h = 1e-4 * self.package.spec().radius;
+        (self.wound(peeled + h) - self.wound(peeled - h)) / (2.0 * h)
+    }
+    /// Slope of the cable at the end and velocity of its material there.
+    fn motion(&self, at: &At<'_>) -> (V3<f64>, V3<f64>) {
+        let slope: V3<f64> = std::array::from_fn(|i| at.q[self.front.end_q + 3 + i]);
+        let v = std::array::from_fn(|i| at.v[self.front.end_v + i] - at.v[self.front.v] * slope[i]);
+        (slope, v)
+    }
+}
+
+impl Term for Peel {
+    fn label(&self) -> String {
+        format!("{}.peel", self.name)
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        p.clique([self.front.v].into_iter().chain((0..6).map(|i| self.front.end_v + i)));
+    }
+    fn symmetric(&self) -> bool {
+        false
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        let (front, peeled, (slope, v)) = (&self.front, self.front.fed(at), self.motion(at));
+        let (bond, by_u) = self.bond(front.rate(at));
+        let pull = bond - self.wound(peeled) + 0.5 * front.rho_a * dot(&v, &v);
+        out.add(front.v, front.sign * pull);
+        if !out.wants_tangent() {
+            return;
+        }
+        let (w, by_peeled) = (out.weights(), -self.wound_slope(peeled));
+        let momentum = v.map(|v| front.sign * front.rho_a * v);
+        let rate = at.v[front.v];
+        out.add_block(0, 7, |i, j| match (i, j) {
+            (0, 0) => w.q * by_peeled + w.v * (by_u - dot(&momentum, &slope)),
+            (0, 1..=3) => w.v * momentum[j - 1],
+            (0, j) => -w.q * rate * momentum[j - 4],
+            _ => 0.0,
+        });
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        let (u, (_, v)) = (self.front.rate(at), self.motion(at));
+        // what comes in has the energy of wound cable at rest, and not that of the free one
+        let carried = (self.wound(self.front.fed(at)) - 0.5 * self.front.rho_a * dot(&v, &v)) * u;
+        Power { dissipated: self.bond(u).0 * u, carried, ..Power::default() }
+    }
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::new(format!("{}.bond", self.name), "J/m")]
+    }
+    fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
+        out.push(self.bond(self.front.rate(at)).0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::package::PackageSpec;
+    use ropewalk_core::testing::check_tangent;
+    use ropewalk_core::{Node, NodeId, NodeKind, Width};
+
+    #[test]
+    fn tangent_agrees_with_differences_within_a_layer_and_between_two() {
+        let nodes = [
+            Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false },
+            Node { kind: NodeKind::Scalars(1), q: 6, v: 6, shared: true },
+        ];
+        let spec = PackageSpec { layers: 2, ..PackageSpec::new(0.06, 0.02, 0.009) };
+        let package = Arc::new(spec.build().expect("package"));
+        for (sign, peeled, u) in [(1.0, 0.1, 0.4), (-1.0, 0.75, 0.4), (1.0, 0.8, -0.2)] {
+            let front = Front {
+                node: NodeId(1),
+                q: 6,
+                v: 6,
+                sign,
+                home: 0.0,
+                end: NodeId(0),
+                end_q: 0,
+                end_v: 0,
+                rho_a: 1.3,
+            };
+            let (energy, slip, ei) = (0.3, 0.2, 0.002);
+            let peel = Peel { name: "off".into(), front, package: package.clone(), energy, slip, ei };
+            let q = [0.1, 0.2, 0.3, 0.9, 0.5, -0.4, sign * peeled];
+            let v = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, sign * u];
+            let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], modes: &[], relaxed: None };
+            assert!(check_tangent(&peel, &nodes, &at, Width::One) < 1e-6, "{peeled}");
+        }
+    }
+}
