@@ -449,8 +449,7 @@ fn a_bond_that_makes_no_sense_is_refused() {
         assert!(message.contains(says), "{message}");
     }
     let without = r#"{"lift_off": {"name": "off", "marker": "fibre.end", "peel": 0.3}}"#;
-    let message =
-        serde_json::from_str::<Box<dyn ConstraintSpec>>(without).err().expect("refused").to_string();
+    let message = serde_json::from_str::<Box<dyn ConstraintSpec>>(without).expect_err("refused").to_string();
     assert!(message.contains("package"), "{message}");
 }
 
