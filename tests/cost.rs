@@ -334,8 +334,7 @@ fn holds(
     println!("{}", done(at, &arguments).stdout);
     let text = fs::read_to_string(at.join("study/advice/1e-2.toml")).unwrap();
     let line = text.lines().find(|l| l.starts_with(mesh[0])).map(str::to_string);
-    let fine =
-        line.map_or(text.clone(), |line| text.replacen(&line, &format!("{} = {}", mesh[0], mesh[1]), 1));
+    let fine = line.map_or(text.clone(), |line| text.replacen(&line, &format!("{}{}", mesh[0], mesh[1]), 1));
     let base = ["longitudinal = ", "transverse = ", "integration = "].iter().fold(fine, |text, key| {
         let kept = text.lines().filter(|l| !l.starts_with(key)).collect::<Vec<_>>();
         kept.join("\n")
