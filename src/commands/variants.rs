@@ -3,10 +3,12 @@
 use super::{Exit, say};
 use crate::bench::models;
 use crate::error::Error;
-use crate::output::{Interrupt, OutputError, RunFolder, new_bar, write_atomic};
+use crate::output::{Interrupt, LinePlot, OutputError, RunFolder, new_bar, write_atomic};
 use crate::scene::Fault;
 use crate::variants::scaling::{self, DRAWN, MESHES};
 use crate::variants::{Form, Problem, Variants, pictures, stiffness};
+use indicatif::ProgressBar;
+use ropewalk_elements::cable::CableModel;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -57,7 +59,7 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
     let problems = if args.only == Some(Study::Stiffness) { &[][..] } else { &Problem::ALL[..] };
     // each problem: every mesh in four forms and with two tests, then its histories
     let bar = match args.quiet {
-        true => indicatif::ProgressBar::hidden(),
+        true => ProgressBar::hidden(),
         false => new_bar((4 * models.len() + problems.len() * (7 * meshes.len() + 1)) as u64),
     };
     let mut found = Variants {
@@ -66,56 +68,93 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
         forbidden: if models.is_empty() { Vec::new() } else { stiffness::forbidden() },
         scaling: Vec::new(),
     };
+    let mut plots = Vec::new();
+    let budget = Duration::from_secs_f64(args.seconds);
+    compare_models(&mut found, models, budget, &bar, interrupt)?;
+    for &problem in problems {
+        if !interrupt.requested() {
+            plots.extend(compare_forms(&mut found, problem, &meshes, args.absolute, &bar, interrupt)?);
+        }
+    }
+    bar.finish_and_clear();
+    // what was found until Ctrl-C is kept
+    leave(&found, &plots, &folder, args.quiet)?;
+    Ok(if interrupt.requested() { Exit::Interrupted } else { Exit::Done })
+}
+
+/// The stiffness models: first what they are, then what they cost.
+fn compare_models(
+    found: &mut Variants,
+    models: Vec<CableModel>,
+    budget: Duration,
+    bar: &ProgressBar,
+    interrupt: Interrupt,
+) -> Result<(), Error> {
     for m in models {
+        if interrupt.requested() {
+            return Ok(());
+        }
         bar.set_message(format!("{:?}+{:?}: errors", m.longitudinal, m.transverse));
         found.stiffness.push(stiffness::measure(m)?);
         bar.inc(1);
-        if interrupt.requested() {
-            return Ok(Exit::Interrupted);
-        }
     }
     bar.set_message("stiffness models: times");
-    stiffness::time(&mut found.stiffness, Duration::from_secs_f64(args.seconds), &|| bar.inc(1))?;
+    stiffness::time(&mut found.stiffness, budget, &|| bar.inc(1))
+}
 
-    let mut plots = Vec::new();
-    for &problem in problems {
-        let mut traces = Vec::new();
-        for &n in &meshes {
-            bar.set_message(format!("{}: {n} elements", problem.title()));
-            let plain = scaling::run(problem, n, Form::Si, None, None)?;
-            bar.inc(1);
-            for form in Form::ALL {
-                for absolute in [None, Some(args.absolute)] {
-                    // the factor β h² changes neither iterations nor the test: only its condition number is asked for
-                    if absolute.is_none() && form == Form::Si || absolute.is_some() && form == Form::Scaled {
-                        continue;
-                    }
-                    let run = scaling::run(problem, n, form, absolute, Some(&plain))?;
-                    if absolute.is_some() && n == DRAWN {
-                        traces.push((form, run.iterations));
-                    }
-                    found.scaling.push(run.row);
-                    bar.inc(1);
-                    if interrupt.requested() {
-                        return Ok(Exit::Interrupted);
-                    }
-                }
-            }
-            found.scaling.push(plain.row);
-        }
-        if !traces.is_empty() {
-            plots.push((format!("{}-newton", problem.name()), pictures::iterations(problem, &traces)));
-        }
-        bar.set_message(format!("{}: histories", problem.title()));
-        plots.extend(pictures::histories(&scaling::histories(problem)?));
+/// One problem on every mesh, in every form and with both stopping tests; gives the pictures of its histories.
+fn compare_forms(
+    found: &mut Variants,
+    problem: Problem,
+    meshes: &[usize],
+    limit: f64,
+    bar: &ProgressBar,
+    interrupt: Interrupt,
+) -> Result<Vec<(String, LinePlot)>, Error> {
+    let mut traces = Vec::new();
+    for &n in meshes {
+        bar.set_message(format!("{}: {n} elements", problem.title()));
+        let plain = scaling::run(problem, n, Form::Si, None, None)?;
         bar.inc(1);
+        for form in Form::ALL {
+            for absolute in [None, Some(limit)] {
+                // the factor β h² changes neither iterations nor the test: only its condition number is asked for
+                if absolute.is_none() && form == Form::Si || absolute.is_some() && form == Form::Scaled {
+                    continue;
+                }
+                if interrupt.requested() {
+                    return Ok(Vec::new());
+                }
+                let run = scaling::run(problem, n, form, absolute, Some(&plain))?;
+                if absolute.is_some() && n == DRAWN {
+                    traces.push((form, run.iterations));
+                }
+                found.scaling.push(run.row);
+                bar.inc(1);
+            }
+        }
+        found.scaling.push(plain.row);
     }
-    bar.finish_and_clear();
+    let mut plots = Vec::new();
+    if !traces.is_empty() {
+        plots.push((format!("{}-newton", problem.name()), pictures::iterations(problem, &traces)));
+    }
+    bar.set_message(format!("{}: histories", problem.title()));
+    plots.extend(pictures::histories(&scaling::histories(problem)?));
+    bar.inc(1);
+    Ok(plots)
+}
 
-    plots.extend(found.pictures());
+/// Tables and pictures, in the folder and on the screen.
+fn leave(
+    found: &Variants,
+    histories: &[(String, LinePlot)],
+    folder: &RunFolder,
+    quiet: bool,
+) -> Result<(), Error> {
     let path = folder.path();
     let text = found.text();
-    let json = serde_json::to_string_pretty(&found).map_err(|e| Fault::new(e.to_string()))?;
+    let json = serde_json::to_string_pretty(found).map_err(|e| Fault::new(e.to_string()))?;
     write_atomic(&path.join("variants.txt"), &text)?;
     write_atomic(&path.join("variants.json"), &(json + "\n"))?;
     if !found.stiffness.is_empty() {
@@ -125,16 +164,16 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
         write_atomic(&folder.table_file("scaling")?, &found.scaling_csv())?;
     }
     let mut drawn = 0;
-    for (name, plot) in &plots {
+    for (name, plot) in histories.iter().chain(&found.pictures()) {
         match plot.write(&folder.plot_file(name)?) {
             Ok(()) => drawn += 1,
             Err(OutputError::EmptyPlot { .. } | OutputError::LogAxis { .. }) => {}
             Err(e) => return Err(e.into()),
         }
     }
-    if !args.quiet {
+    if !quiet {
         say(text.trim_end());
         say(format!("\n{drawn} pictures, tables and variants.json are in {}", path.display()));
     }
-    Ok(Exit::Done)
+    Ok(())
 }

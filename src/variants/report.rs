@@ -31,7 +31,7 @@ impl Variants {
         PENDULUM.iter().for_each(|n| _ = write!(out, "{:>9}", format!("n = {n}")));
         _ = writeln!(out, "{:>9}{:>9}{:>9}{:>9}", "locking", "energy", "asymm.", "strain");
         for s in &self.stiffness {
-            _ = write!(out, "  {:<wide$}{:>8.3}{:>9.3}", s.label, s.force_us, s.tangent_us);
+            _ = write!(out, "  {:<wide$}{:>8}{:>9}", s.label, timed(s.force_us), timed(s.tangent_us));
             s.cantilever.iter().chain(&s.pendulum).for_each(|e| _ = write!(out, "{:>9}", short(*e)));
             for x in [s.locking, s.energy, s.asymmetry, s.moment_strain] {
                 _ = write!(out, "{:>9}", short(x));
@@ -168,6 +168,11 @@ force the same number is a looser test, which is all that was gained; divided by
 hose that hardly bends, it is a tighter test, and more is lost. The condition number of the plain matrix falls by many
 decades for the same reason, and as far by the factor β h² that Ropewalk's equations carry anyway (see `SI, scaled`).
 ";
+
+/// A time in µs; a dash where Ctrl-C came before.
+fn timed(us: f64) -> String {
+    if us.is_nan() { "-".into() } else { format!("{us:.3}") }
+}
 
 /// A number in nine characters.
 fn short(x: f64) -> String {

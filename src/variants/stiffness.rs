@@ -98,8 +98,9 @@ pub fn measure(models: CableModel) -> Result<Stiffness, Error> {
             energy = imbalance;
         }
     }
+    let (label, asymmetry) = asymmetry(models)?;
     Ok(Stiffness {
-        label: String::new(),
+        label,
         models,
         force_us: f64::NAN,
         tangent_us: f64::NAN,
@@ -107,7 +108,7 @@ pub fn measure(models: CableModel) -> Result<Stiffness, Error> {
         cantilever: errors,
         pendulum,
         energy,
-        asymmetry: asymmetry(models)?,
+        asymmetry,
         moment_strain: cantilever(models, 4, 1e6, Load::Moment).map_or(f64::NAN, |(strain, _)| strain),
     })
 }
@@ -130,7 +131,7 @@ pub fn time(all: &mut [Stiffness], budget: Duration, tick: &dyn Fn()) -> Result<
     }
     for (s, meter) in all.iter_mut().zip(&meters) {
         let cost = meter.cost();
-        (s.label, s.force_us, s.tangent_us) = (cost.label, cost.force, cost.tangent);
+        (s.force_us, s.tangent_us) = (cost.force, cost.tangent);
     }
     Ok(())
 }
@@ -198,8 +199,9 @@ fn fall(models: CableModel, n: usize) -> Result<(V3<f64>, f64), Error> {
     Ok((tip(&s.model, &s.state, ROD), s.audit.imbalance().abs() / s.audit.scale))
 }
 
-/// How far the matrix of two bent elements is from its transpose, by central differences of their forces.
-fn asymmetry(models: CableModel) -> Result<f64, Error> {
+/// What the pool of the models is called, and how far the matrix of two bent elements is from its transpose, by central
+/// differences of their forces.
+fn asymmetry(models: CableModel) -> Result<(String, f64), Error> {
     let mut scene = Scene::new();
     scene.element(cable(models, 2, 1.0, Section::new(1.0, 100.0, 1.0)));
     let model = scene.build()?;
@@ -229,5 +231,5 @@ fn asymmetry(models: CableModel) -> Result<f64, Error> {
     let largest = |f: &dyn Fn(usize, usize) -> f64| {
         (0..n * n).map(|m| f(m / n, m % n).abs()).fold(0.0, |a, x| if x > a || x.is_nan() { x } else { a })
     };
-    Ok(largest(&|i, j| k[i][j] - k[j][i]) / largest(&|i, j| k[i][j]))
+    Ok((model.terms()[0].label(), largest(&|i, j| k[i][j] - k[j][i]) / largest(&|i, j| k[i][j])))
 }
