@@ -121,7 +121,7 @@ fn an_event_ends_a_run() {
 #[test]
 fn a_failed_step_leaves_the_state_as_it_was() {
     // one iteration too few for a step so large, and no smaller one allowed
-    let options = Options { max_iterations: 2, h_min: 0.4, newton_tolerance: 1e-9, ..fixed(0.5) };
+    let options = Options { max_iterations: 2, h_min: Some(0.4), newton_tolerance: 1e-9, ..fixed(0.5) };
     let mut s = Simulation::new(swinging().build().expect("model"), &options, 1.0).expect("start");
     let before = s.state.clone();
     let error = s.advance(1.0, f64::INFINITY, &mut ()).expect_err("must fail");
