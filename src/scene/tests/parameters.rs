@@ -92,6 +92,15 @@ fn parameters_are_listed_with_values_and_use() {
 }
 
 #[test]
+fn parameters_of_what_was_not_chosen_are_used_unless_they_were_set() {
+    let scene =
+        "x = { choose = '$a', 1 = '$b', 2 = ['$c'] }\n[parameters]\na = 1\nb = 0\nc = '$d'\nd = 3\ne = 4\n";
+    assert_eq!(parse(scene, &[]).unwrap().unused_parameters(), ["e"]);
+    assert_eq!(parse(scene, &["d=5"]).unwrap().unused_parameters(), ["d", "e"]);
+    assert_eq!(parse(scene, &["d=5", "a=2"]).unwrap().unused_parameters(), ["e"]);
+}
+
+#[test]
 fn wrong_parameters_are_refused() {
     for (text, set, message, help) in [
         ("x = '$a'", "", "unknown parameter `a`, the scene has none", "declare it in `[parameters]`"),
