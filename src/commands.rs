@@ -58,7 +58,8 @@ pub(crate) fn wrapped(text: &str, indent: usize) -> String {
     let mut out = String::new();
     let mut paragraphs = text.split("\n\n").peekable();
     while let Some(paragraph) = paragraphs.next() {
-        let as_written = paragraph.lines().all(|line| line.trim().is_empty() || line.starts_with("    "));
+        let as_written = !paragraph.trim().is_empty()
+            && paragraph.lines().all(|line| line.trim().is_empty() || line.starts_with("    "));
         let kept = paragraph.lines().filter(|_| as_written);
         out.extend(kept.map(|line| format!("{:indent$}{line}\n", "")));
         let mut line = String::new();

@@ -63,8 +63,6 @@ impl fmt::Debug for Error {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn a_main_that_returns_an_error_prints_what_a_user_can_read() {
         let e = crate::read("nowhere.toml").unwrap_err();

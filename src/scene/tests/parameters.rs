@@ -59,7 +59,7 @@ fn faults_of_set_values_point_at_the_command_line() {
     assert_eq!(
         scene(&mut document).unwrap_err().to_string(),
         "\
-error: expected a length like \"30 m\" or a number in m, found a list
+expected a length like \"30 m\" or a number in m, found a list
  --> --set:1:9 (elements[1].from[1])
   |
 1 | depth = [1, true]
