@@ -83,6 +83,9 @@ pub enum StepError {
     /// The scheme is refused, or its parameters are wrong.
     #[error("{0}")]
     Scheme(String),
+    /// The state is that of another model.
+    #[error("the state belongs to another model: {0}")]
+    Foreign(String),
 }
 
 /// An implicit scheme at work. Its memory between steps is in the [`State`].
