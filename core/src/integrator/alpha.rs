@@ -30,8 +30,6 @@ const REFRESH: f64 = 0.1;
 const COARSE: f64 = 64.0;
 /// Largest rotation of a body in a fixed step [rad]: from a quarter turn on a driven joint may end on another branch.
 const MOST_TURN: f64 = 1.5;
-/// What fixed steps leave of the equations of motion, relative to the forces at work: no error of time hides it.
-const FIXED_FORCE: f64 = 1e-5;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
@@ -79,15 +77,6 @@ impl Alpha {
                     let steps = if model.is_mechanism() { (10.0 * h / self.horizon).min(1.0) } else { 1.0 };
                     1e-4 * steps * tolerance.min(1e-3)
                 }
-            }
-    }
-
-    /// Tolerance of what it leaves of the equations of motion, relative to the forces at work in each part.
-    fn force_tolerance(&self) -> f64 {
-        self.options.newton_tolerance
-            * match self.options.stepping {
-                Stepping::Fixed { .. } => FIXED_FORCE,
-                Stepping::Controlled { .. } => 0.1 * self.options.force_tolerance,
             }
     }
 
@@ -395,7 +384,7 @@ impl Integrator for Alpha {
                 policy: if full { NewtonPolicy::Full } else { NewtonPolicy::Modified },
                 max_iterations: self.options.max_iterations,
                 tolerance: self.newton_tolerance(model, h),
-                force_tolerance: self.force_tolerance(),
+                force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
                 stopping: self.options.stopping,
                 units: self.units,
                 linear_constraints,

@@ -61,7 +61,7 @@ impl Norms {
         for (g, group) in groups.iter_mut().enumerate() {
             let (length, size) = lengths(model, &owner, &sizes, g);
             (group.length, group.size) = (length, size);
-            group.rounding /= length;
+            group.rounding = 0.5 * f64::EPSILON * (group.rounding / length).max(1.0);
         }
 
         let mut norms =
@@ -224,12 +224,15 @@ fn group(model: &Model, owner: &[usize], g: usize, mass: &[f64]) -> Group {
         Some(part) => (part.name().to_string(), part.length()),
         None => (own().next().map_or(String::new(), |n| model.unknown_name(n.v)), 0.0),
     };
-    Group { name, length: 0.0, size, mass: total, rounding: 0.5 * f64::EPSILON * farthest }
+    // for the moment what rounding is a part of
+    Group { name, length: 0.0, size, mass: total, rounding: farthest }
 }
 
 /// What the positions and the rotations of a group are relative to.
 fn lengths(model: &Model, owner: &[usize], sizes: &[f64], g: usize) -> (f64, f64) {
-    let whole = |x: f64| if x > 0.0 { x } else { model.length() };
+    // a marker that is off by rounding is no lever
+    let least = 1e-9 * model.length();
+    let whole = |x: f64| if x > least { x } else { model.length() };
     let slender = |g: usize| model.parts().get(g).is_some_and(|p| p.mesh().len() > 1 || p.seats().len() > 1);
     if slender(g) {
         return (whole(sizes[g]), whole(sizes[g]));
@@ -253,7 +256,7 @@ fn lengths(model: &Model, owner: &[usize], sizes: &[f64], g: usize) -> (f64, f64
             neighbour = neighbour.max(sizes[other]);
         }
     }
-    let size = if arm > 0.0 { arm } else { neighbour };
+    let size = if arm > least { arm } else { neighbour };
     // what hangs on a line is placed by the line
     (whole(size.max(line)), whole(size))
 }

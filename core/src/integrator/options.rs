@@ -21,6 +21,9 @@ pub enum Stepping {
     },
 }
 
+/// What fixed steps leave of the equations of motion, relative to the forces at work: no error of time hides it.
+const FIXED_FORCE: f64 = 1e-5;
+
 /// Bounds of the step size [s].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -144,6 +147,14 @@ impl Options {
             Scheme::RadauIia5 => Box::new(Radau::new(self, duration)?),
             _ => Box::new(Alpha::new(self, model, duration)?),
         })
+    }
+
+    /// What Newton's method may leave of the equations of motion, relative to the forces at work in each part.
+    pub(crate) fn newton_force_tolerance(&self) -> f64 {
+        match self.stepping {
+            Stepping::Fixed { .. } => FIXED_FORCE,
+            Stepping::Controlled { .. } => 0.1 * self.force_tolerance,
+        }
     }
 
     /// Bounds of the step in a run of this length [s].

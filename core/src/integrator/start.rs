@@ -20,6 +20,8 @@ pub struct Correction {
 const SMALL: f64 = 1e-3;
 /// First step under error control, in parts of the time in which the part that moves most goes its own length.
 const FIRST: f64 = 1e-2;
+/// Solutions that move velocities onto the constraints.
+const MOST_PROJECTIONS: usize = 4;
 /// Relative change of velocities that is taken as meant.
 const SMALL_VELOCITY: f64 = 0.05;
 
@@ -139,22 +141,39 @@ pub(super) fn anew(
     }
 }
 
-/// Replaces accelerations and multipliers by those for output: what the index-1 system gives. The integrator's own are
-/// noisier.
+/// Replaces velocities, accelerations and multipliers by those for output: velocities moved onto the constraints, and what
+/// the index-1 system gives there. The integrator's own are noisier.
 ///
-/// Velocities stay those of the scheme. They meet the constraints to its order only, but all of them alike: to move a
-/// driven end alone onto its motion would strain what is next to it at a rate of its own, and damping along a stiff cable
+/// Velocities are moved in the metric of the iteration matrix, `M + γh C + βh² K`: what is next to a driven end moves along
+/// with it. In the metric of the mass alone it would be strained at a rate of its own, and damping along a stiff cable
 /// makes a large force of that.
 ///
 /// # Errors
 /// The mass matrix with the constraints is singular; the state is as it was.
 pub fn consistent(model: &Model, state: &mut State, work: &mut Workspace) -> Result<(), SolveError> {
     let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
+    let mut v = state.v.clone();
     work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+    if model.multipliers() > 0 {
+        // without factors of a step this is a start, which meets the constraints already
+        let metric = if work.factored.is_some() { Which::Iteration } else { Which::Mass };
+        for _ in 0..MOST_PROJECTIONS {
+            let mut rhs = velocity_rhs(model, &At { v: &v, ..state.at() }, work);
+            work.solve(model, metric, &mut rhs)?;
+            for (v, d) in v.iter_mut().zip(&rhs) {
+                *v += d;
+            }
+            // kept factors hold the constraints of a configuration a little earlier
+            let size = work.norms.relative(&v);
+            if work.norms.relative(&rhs[..v.len()]) <= 1e-12 * size {
+                break;
+            }
+        }
+    }
     let zero = vec![0.0; model.velocities()];
-    let at = At { a: &zero, ..state.at() };
+    let at = At { v: &v, a: &zero, ..state.at() };
     solve_accelerations(model, &at, work, &mut a, &mut lambda)?;
-    (state.a, state.lambda) = (a, lambda);
+    (state.v, state.a, state.lambda) = (v, a, lambda);
     Ok(())
 }
 
@@ -238,12 +257,12 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
 }
 
 /// Right-hand side that removes `G v + ∂g/∂t`.
-fn velocity_rhs(model: &Model, state: &State, work: &mut Workspace) -> Vec<f64> {
+fn velocity_rhs(model: &Model, at: &At<'_>, work: &mut Workspace) -> Vec<f64> {
     let (nv, m) = (model.velocities(), model.multipliers());
     let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
-    model.rates(&state.at(), &mut rate, &mut bias);
+    model.rates(at, &mut rate, &mut bias);
     let mut rhs = vec![0.0; nv];
-    rhs.extend(times_jacobian(model, work, &state.v).iter().zip(&rate).map(|(gv, gt)| -gv - gt));
+    rhs.extend(times_jacobian(model, work, at.v).iter().zip(&rate).map(|(gv, gt)| -gv - gt));
     rhs
 }
 
@@ -259,7 +278,7 @@ fn project_velocities(model: &Model, state: &mut State, work: &mut Workspace) ->
         return Ok(Moved::default());
     }
     work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
-    let mut rhs = velocity_rhs(model, state, work);
+    let mut rhs = velocity_rhs(model, &state.at(), work);
     work.solve(model, Which::Mass, &mut rhs)?;
     let moved = Moved::by(&rhs[..model.velocities()], work);
     for (v, d) in state.v.iter_mut().zip(&rhs) {
