@@ -379,8 +379,8 @@ impl Structure {
     }
 
     /// The columns of a block's rows, all that are stored.
-    pub(crate) fn columns_of(&self, b: &Block) -> impl Iterator<Item = usize> + '_ {
-        self.columns[b.columns.clone()].iter().map(|&c| c as usize)
+    pub(crate) fn columns_of(&self, b: &Block) -> &[u32] {
+        &self.columns[b.columns.clone()]
     }
 
     /// Sum of the absolute values in one row.

@@ -17,6 +17,7 @@ pub use scalar::Scalar;
 
 use crate::structure::Structure;
 use check::Check;
+use faer::c64;
 
 /// Why a linear system could not be solved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -82,13 +83,28 @@ const REFINE: f64 = 1e-12;
 /// Backward error after refinement from which on LU with pivoting takes over.
 const GIVE_UP: f64 = 1e-9;
 
-impl<T: Scalar> Guard<T> {
+impl Guard {
     /// The solver that suits a structure: block elimination along the chain, or along the tree where there are branches
     /// and rings.
     pub fn new(s: &Structure) -> Result<Self, SolveError> {
-        let primary: Box<dyn LinearSolver<T>> =
-            if s.chain { Box::new(Chain::default()) } else { Box::new(Fronts::default()) };
-        Self::with(s, primary)
+        Self::suiting(s)
+    }
+}
+
+impl Guard<c64> {
+    /// As [`Guard::new`], for complex matrices.
+    pub fn complex(s: &Structure) -> Result<Self, SolveError> {
+        Self::suiting(s)
+    }
+}
+
+impl<T: Scalar> Guard<T> {
+    fn suiting(s: &Structure) -> Result<Self, SolveError> {
+        if s.chain {
+            Self::with(s, Box::new(Chain::default()))
+        } else {
+            Self::with(s, Box::new(Fronts::default()))
+        }
     }
 
     /// A guard around a solver of one's own choice.

@@ -1,4 +1,4 @@
-//! Structures like those of cables to test solvers with: trees, nets and hubs, with joints as constraints.
+//! Structures like those of cables to test solvers with: lines, trees, nets and hubs, with joints as constraints.
 
 use super::Scalar;
 use crate::node::{Node, NodeId, NodeKind};
@@ -34,6 +34,14 @@ impl Sample {
         self.nodes += elements + 1;
         self.elements.extend((first..first + elements).map(|k| [k, k + 1]));
         [first, first + elements]
+    }
+
+    /// A cable, held at one end.
+    pub fn line(elements: usize) -> Self {
+        let mut s = Sample::default();
+        let [a, _] = s.cable(elements);
+        s.joints.push((a, None));
+        s
     }
 
     /// A binary tree of cables, whose root is held.
@@ -88,10 +96,6 @@ impl Sample {
         // a spring holds it
         s.elements.push([0, 1]);
         s
-    }
-
-    pub fn elements(&self) -> usize {
-        self.elements.len()
     }
 
     pub fn multipliers(&self) -> usize {

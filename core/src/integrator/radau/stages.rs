@@ -71,7 +71,7 @@ impl Stages {
             real: vec![0.0; s.n],
             imaginary: vec![c64::default(); s.n],
             values: vec![c64::default(); s.entries()],
-            solver: Guard::new(s)?,
+            solver: Guard::complex(s)?,
             x: vec![c64::default(); s.n],
             stiffness: vec![0.0; s.entries()],
             damping: vec![0.0; s.entries()],

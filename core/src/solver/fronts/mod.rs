@@ -120,8 +120,6 @@ impl<T: Scalar> Fronts<T> {
         &mut self,
         values: &[T],
     ) -> Result<(), SolveError> {
-        self.upper.fill(T::default());
-        self.lower.fill(T::default());
         self.negative = 0;
         self.growth.start();
         for k in 0..self.plan.fronts.len() {
@@ -153,6 +151,10 @@ impl<T: Scalar> Fronts<T> {
     fn assemble<const SYMMETRIC: bool>(&mut self, k: usize, values: &[T]) {
         let (plan, f) = (&self.plan, self.plan.fronts[k]);
         let (upper, lower) = (&mut self.upper[f.factors()], &mut self.lower[f.factors()]);
+        upper.fill(T::default());
+        if !SYMMETRIC {
+            lower.fill(T::default());
+        }
         for p in &plan.rows[f.rows.0..f.rows.1] {
             for i in 0..p.rows as usize {
                 let from = &values[p.at as usize + i * p.stride as usize..][..p.columns as usize];

@@ -175,8 +175,8 @@ impl Plan {
         // blocks with entries below each front
         let mut below: Vec<(usize, usize)> = Vec::new();
         for (k, b) in s.blocks.iter().enumerate().filter(|_| !s.symmetric) {
-            let columns = s.columns_of(b).filter(|&c| c < b.first && front_of[c] != front_of[b.first]);
-            below.extend(columns.map(|c| (front_of[c], k)));
+            let fronts = s.columns_of(b).iter().map(|&c| front_of[c as usize]);
+            below.extend(fronts.filter(|&f| f < front_of[b.first]).map(|f| (f, k)));
         }
         below.sort_unstable();
         below.dedup();
@@ -190,11 +190,11 @@ impl Plan {
             for (i, &u) in self.unknowns[f.unknowns()].iter().enumerate() {
                 local[u as usize] = (k, i);
             }
-            let place = |c: usize| (local[c].0 == k).then_some(local[c].1);
+            let place = |c: &u32| Some(local[*c as usize]).filter(|l| l.0 == k).map(|l| l.1);
             let begin = self.rows.len();
             for b in groups[g].blocks.iter().map(|&b| &s.blocks[b]) {
-                let Some(row) = place(b.first) else { continue };
-                for run in runs(s.columns_of(b).map(place)) {
+                let row = local[b.first].1;
+                for run in runs(s.columns_of(b).iter().map(place)) {
                     self.rows.push(Rectangle {
                         at: (b.base + run.from) as u32,
                         stride: b.width() as u32,
@@ -207,12 +207,17 @@ impl Plan {
             self.fronts[k].rows = (begin, self.rows.len());
             let begin = self.columns.len();
             while let Some((_, b)) = below.next_if(|&(front, _)| front == k) {
-                let b = &s.blocks[b];
-                let own = |c: usize| place(c).filter(|&i| i < f.own);
-                for rows in runs(range(b).map(place)) {
-                    for run in runs(s.columns_of(b).map(own)) {
+                let (b, all) = (&s.blocks[b], s.columns_of(&s.blocks[b]));
+                // of the columns of a hub few are this front's
+                let own = &self.unknowns[f.at..f.at + f.own];
+                let skip = all.partition_point(|c| own.first().is_some_and(|first| c < first));
+                let mine = all[skip..].iter().take_while(|c| own.last().is_some_and(|last| *c <= last));
+                let columns = runs(mine.map(|c| place(c).filter(|&i| i < f.own)));
+                let own_rows: Vec<u32> = range(b).map(|r| r as u32).collect();
+                for rows in runs(own_rows.iter().map(place)) {
+                    for run in &columns {
                         self.columns.push(Rectangle {
-                            at: (b.base + rows.from * b.width() + run.from) as u32,
+                            at: (b.base + rows.from * b.width() + skip + run.from) as u32,
                             stride: b.width() as u32,
                             rows: rows.count as u32,
                             columns: run.count as u32,
@@ -236,7 +241,8 @@ fn groups(s: &Structure) -> (Vec<Group>, Vec<usize>) {
     let (mut waiting, mut roots) = (vec![Vec::new(); s.blocks.len()], Vec::new());
     for (k, b) in s.blocks.iter().enumerate() {
         let behind = b.first + b.size;
-        let mut others: Vec<u32> = s.columns_of(b).filter(|&c| c >= behind).map(|c| c as u32).collect();
+        let mut others: Vec<u32> =
+            s.columns_of(b).iter().copied().filter(|&c| c as usize >= behind).collect();
         let mut children: Vec<usize> = std::mem::take(&mut waiting[k]);
         for &c in &children {
             others.extend(groups[c].others.iter().filter(|&&u| u as usize >= behind));
