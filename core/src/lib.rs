@@ -60,7 +60,7 @@ pub use redundancy::Redundancy;
 pub use remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
 pub use scene::{Analysis, Level, Run, Scene, SceneError, ShapeTitles, TableSpec, Water};
 pub use simulation::{Action, Checkpoint, End, Event, Observer, Simulation, Unfit};
-pub use solver::{Chain, Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
+pub use solver::{Chain, Dense as DenseSolver, Fronts, Guard, LinearSolver, Lu, Scalar, SolveError};
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
 };

@@ -119,14 +119,18 @@ impl Model {
         }
         let mut rows = vec![0];
         let mut touched = Vec::new();
+        let zero = vec![0.0; velocities];
+        let begin = At { t: 0.0, q: &start.q, v: &zero, a: &zero, modes: &start.modes, relaxed: None };
         for c in &constraints {
             let (first, count) = (rows[rows.len() - 1], c.rows().len());
             let dofs = c.nodes().iter().flat_map(|k| nodes[k.0 as usize].dofs());
+            let mut jacobian = vec![0.0; count * dofs.clone().count()];
+            c.jacobian(&nodes, &begin, &mut vec![0.0; count], &mut jacobian);
             let at = pattern.len();
             pattern.clique(dofs.chain((first..first + count).map(|r| velocities + r)));
             cliques.push(at..at + 1);
             rows.push(first + count);
-            touched.push(Rows { count, nodes: c.nodes().to_vec() });
+            touched.push(Rows { count, nodes: c.nodes().to_vec(), jacobian });
         }
         // the forces of a constraint on a body turn it, and rotations one after the other don't commute
         let turns = |c: &dyn Constraint| {

@@ -311,7 +311,7 @@ impl Workspace {
     }
 
     /// Replaces a right-hand side (velocities, then multipliers) by the solution with the factors of the iteration
-    /// matrix. The first solution after [`Workspace::factor`] is checked, later ones trust the factors.
+    /// matrix. Where entries have grown, the first solution after [`Workspace::factor`] is checked.
     ///
     /// # Errors
     /// The solution is not good enough, even with pivoting.
