@@ -36,7 +36,15 @@ pub struct Audit {
     pub initial: f64,
     /// Largest energy or work that occurred, to compare the imbalance with [J].
     pub scale: f64,
+    /// Largest sum of kinetic and potential energy without their signs: what rounding is relative to [J].
+    #[serde(default)]
+    pub size: f64,
 }
+
+/// Imbalance, in parts of the largest energy or work so far, that is no error of an integration any more.
+const CREATED: f64 = 0.1;
+/// The same in parts of energies as they are, not of their changes: nothing at rest is taken for it.
+const NOTHING: f64 = 1e-9;
 
 impl Audit {
     /// Starts at an energy.
@@ -61,6 +69,14 @@ impl Audit {
         for x in all {
             self.scale = self.scale.max(x.abs());
         }
+        self.size = self.size.max(e.kinetic.abs() + e.potential.abs());
+    }
+    /// Whether energy has appeared from nowhere: more than what may be called an error of the integration.
+    /// `noise` is energy that doesn't count [J].
+    pub fn is_created(&self, noise: f64) -> bool {
+        let imbalance = self.imbalance();
+        // a NaN is no balance either
+        !(imbalance <= CREATED * self.scale || imbalance <= NOTHING * self.size + noise)
     }
     /// What the balance misses: energy gained beyond what was supplied and not dissipated [J]. Numerical damping
     /// makes it negative.

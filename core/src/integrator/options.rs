@@ -21,6 +21,11 @@ pub enum Stepping {
     },
 }
 
+/// A year [s].
+const YEAR: f64 = 3.2e7;
+/// What a step takes at the very least for each unknown, on any machine [s].
+const LEAST_WORK: f64 = 1e-7;
+
 /// By how much of itself a fixed step grows to end where it has to, rather than leave a rest behind.
 const STRETCH: f64 = 1e-3;
 
@@ -124,10 +129,27 @@ impl Options {
     /// # Errors
     /// The options are wrong, or the scheme doesn't suit the model.
     pub fn integrator(&self, model: &Model, duration: f64) -> Result<Box<dyn Integrator>, StepError> {
+        self.check().and_then(|()| self.check_work(model, duration)).map_err(StepError::Scheme)?;
         Ok(match self.scheme {
             Scheme::RadauIia5 => Box::new(Radau::new(self, duration)?),
             _ => Box::new(Alpha::new(self, model, duration)?),
         })
+    }
+
+    /// Refuses steps so short that the run would surely take longer than a year.
+    fn check_work(&self, model: &Model, duration: f64) -> Result<(), String> {
+        let (name, h) = match self.stepping {
+            Stepping::Fixed { h } => ("h", h),
+            Stepping::Controlled { .. } => ("h_max", self.h_max),
+        };
+        let (steps, least) = (duration / h, YEAR / (LEAST_WORK * model.velocities().max(1) as f64));
+        if steps > least {
+            return Err(format!(
+                "`{name}` = {h:e} s makes {steps:.0e} steps of a run of {duration} s: more than a year of computing. \
+                 Take a larger one"
+            ));
+        }
+        Ok(())
     }
 
     /// The time over which errors add up [s].
@@ -148,6 +170,9 @@ impl Options {
         positive("h_min", self.h_min)?;
         positive("h_start", self.h_start)?;
         positive("newton_tolerance", self.newton_tolerance)?;
+        if self.h_min > self.h_max {
+            return Err(format!("`h_min` = {} s must not be above `h_max` = {} s", self.h_min, self.h_max));
+        }
         if !(self.horizon >= 0.0 && self.horizon.is_finite()) {
             return Err(format!("`horizon` must not be negative, but is {}", self.horizon));
         }
