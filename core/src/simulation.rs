@@ -255,7 +255,8 @@ impl Simulation {
                 left = self.limit(end - self.state.t);
             }
             self.previous.clone_from(&self.state);
-            let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left)?;
+            let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left);
+            let report = report.map_err(|e| self.suspect(e))?;
             self.check_constraints()?;
             self.count_cut(report.h, left);
             if same(self.state.t, end) {

@@ -40,6 +40,21 @@ impl Simulation {
         Err(error)
     }
 
+    /// Names the constraints that may be to blame for a step that failed, since they contradict each other there.
+    pub(super) fn suspect(&self, error: StepError) -> StepError {
+        let Some(redundancy) = self.model.redundancy() else { return error };
+        let who = format!("do the redundant constraints contradict each other here? {redundancy}");
+        match error {
+            StepError::NoConvergence { t, h, why, equation } => {
+                StepError::NoConvergence { t, h, why: format!("{why} ({who})"), equation }
+            }
+            StepError::Linear { t, source, unknown } => {
+                StepError::Linear { t, source, unknown: format!("{unknown} ({who})") }
+            }
+            e => e,
+        }
+    }
+
     /// Counts a fixed step that was cut since it failed.
     pub(super) fn count_cut(&mut self, h: f64, left: f64) {
         if let Stepping::Fixed { h: whole } = self.integrator.options().stepping
