@@ -6,7 +6,7 @@ use ropewalk_constraints::CoordinateSpec;
 use ropewalk_core::integrator::{Options, Scheme, StepReport, Stepping};
 use ropewalk_core::{
     Assembly, At, BuildError, Builder, End, ForceSpec, MarkerRef, Model, Motion, MotionSpec, Moving, Observer,
-    Pattern, Scene, Simulation, State, Term,
+    Pattern, Power, Scene, Simulation, State, Term,
 };
 use ropewalk_elements::PointMassSpec;
 use ropewalk_forces::{PointForceSpec, TimeFunction};
@@ -137,6 +137,10 @@ impl Term for ThrustTerm {
         if at.t >= self.0.from && at.t < self.0.to {
             out.add(self.1, -0.5);
         }
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        let on = at.t >= self.0.from && at.t < self.0.to;
+        Power { supplied: if on { 0.5 * at.v[self.1] } else { 0.0 }, ..Power::default() }
     }
     fn timed(&self) -> bool {
         true

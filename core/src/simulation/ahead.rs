@@ -41,7 +41,7 @@ impl Simulation {
             return Ok(());
         }
         let jump = self.model.jump(self.state.t);
-        if jump - self.state.t <= SAME * jump.abs() {
+        if jump - self.state.t <= SAME * self.state.t.abs() {
             let h = self.state.control.h_last;
             self.state.t = jump;
             restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
