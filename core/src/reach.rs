@@ -14,7 +14,7 @@ const PER_RISE: f64 = 4.0;
 /// the ends of the step.
 const STRAY: f64 = 0.02;
 /// The same for functions that only show their values, and at the quarter points of the step.
-const STRAY_SHOWN: f64 = 0.1;
+const STRAY_SHOWN: f64 = 0.03;
 /// How often a step is halved at most since a function looks rough.
 const HALVINGS: u32 = 6;
 /// Instants that are nearer to each other than this many units in the last place are the same.

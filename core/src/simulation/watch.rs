@@ -3,8 +3,8 @@
 use super::{Observer, Simulation};
 use crate::integrator::{StepError, Stepping};
 
-/// What may be left of constraints after a step, in parts of the model's length: Newton's method leaves far less.
-const LEFT: f64 = 1e-7;
+/// What may be left of constraints after a step, in parts of the model's length: ten times what Newton's method leaves.
+const LEFT: f64 = 1e-9;
 /// What a constraint that takes part in a contradiction is violated by, in parts of the most violated one.
 const PART: f64 = 1e-3;
 /// A step shorter than this, in parts of what it should be, was cut.
