@@ -5,8 +5,8 @@ use ropewalk::{SceneFile, simulate};
 use ropewalk_constraints::CoordinateSpec;
 use ropewalk_core::integrator::{Options, Scheme, StepReport, Stepping};
 use ropewalk_core::{
-    Assembly, At, BuildError, Builder, End, ForceSpec, MarkerRef, Model, Motion, MotionSpec, Moving, Observer,
-    Pattern, Power, Scene, Simulation, State, Term,
+    Assembly, At, BuildError, Builder, End, ForceSpec, MarkerRef, Model, Motion, MotionSpec, Moving,
+    Observer, Pattern, Power, Scene, Simulation, State, Term,
 };
 use ropewalk_elements::PointMassSpec;
 use ropewalk_forces::{PointForceSpec, TimeFunction};
@@ -103,8 +103,12 @@ fn a_fine_table_does_not_hold_up_the_steps() {
     let swing = |t: f64| (0.9 * t).sin();
     let t: Vec<f64> = (0..=20_000).map(|k| 1e-3 * f64::from(k)).collect();
     let value = t.iter().map(|t| swing(*t)).collect();
-    let formula =
-        TimeFunction::Harmonic { mean: 0.0, amplitude: 1.0, frequency: 0.9 / std::f64::consts::TAU, phase: 0.0 };
+    let formula = TimeFunction::Harmonic {
+        mean: 0.0,
+        amplitude: 1.0,
+        frequency: 0.9 / std::f64::consts::TAU,
+        phase: 0.0,
+    };
     let mut counts = Vec::new();
     for time in [formula, TimeFunction::Table { t, value }] {
         let mut scene = mass();

@@ -65,9 +65,16 @@ fn right_runs_are_not_suspected() {
         (swing(0.1, 5e4, 0.01, 10.0), 2.0),
         (swing(0.14, 1.5e6, 0.1, 10.0), 1.0),
         // at rest for all time
-        ("[[elements]]\ntype='rigid_body'\nname='b'\nposition=[0,0,0]\nmass=1\ninertia=[1,1,1]\n".into(), 10.0),
-        ("[[elements]]\ntype='cable'\nname='c'\npoints=[[3,0,0],[3,0,1]]\nelements=4\n\
-          section={ mass=0.5, ea=1e6, ei=0.1 }\n".into(), 10.0),
+        (
+            "[[elements]]\ntype='rigid_body'\nname='b'\nposition=[0,0,0]\nmass=1\ninertia=[1,1,1]\n".into(),
+            10.0,
+        ),
+        (
+            "[[elements]]\ntype='cable'\nname='c'\npoints=[[3,0,0],[3,0,1]]\nelements=4\n\
+          section={ mass=0.5, ea=1e6, ei=0.1 }\n"
+                .into(),
+            10.0,
+        ),
     ] {
         for options in [Options::default(), radau.clone(), fixed(1e-3)] {
             let (said, _) = watched(&text, &options, duration);

@@ -190,8 +190,17 @@ impl Connection {
         let rows = equations.iter().map(Equation::kind).collect();
         let coincide = is_coincidence(&equations);
         let linear_rows = Vec::new();
-        let mut c =
-            Connection { name, equations, markers, nodes: on, rows, range, linear: false, linear_rows, coincide };
+        let mut c = Connection {
+            name,
+            equations,
+            markers,
+            nodes: on,
+            rows,
+            range,
+            linear: false,
+            linear_rows,
+            coincide,
+        };
         c.check_axes(nodes)?;
         c.linear_rows = c.equations.iter().map(|e| c.is_linear(nodes, e)).collect();
         c.linear = c.linear_rows.iter().all(|linear| *linear);

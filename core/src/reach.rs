@@ -119,7 +119,10 @@ mod tests {
 
     #[test]
     fn rises_and_periods_get_a_few_steps_each() {
-        assert_eq!([0.0, 9.0, 10.0, 12.0, 14.0].map(|t| rise(10.0, 14.0, t, 60.0)), [11.0, 2.0, 1.0, 1.0, 60.0]);
+        assert_eq!(
+            [0.0, 9.0, 10.0, 12.0, 14.0].map(|t| rise(10.0, 14.0, t, 60.0)),
+            [11.0, 2.0, 1.0, 1.0, 60.0]
+        );
         assert_eq!([period(24.0, 60.0), period(24.0, 1.0)], [2.0, 1.0]);
     }
 }

@@ -241,7 +241,8 @@ pub(crate) fn find(model: &Model) -> Result<Option<Redundancy>, BuildError> {
         model.rates(&At { t, ..at }, &mut rate, &mut bias);
         let largest = largest(&rate);
         let conflict = if largest > 0.0 { left(&rate)? } else { continue };
-        let differ = |share: f64| (0..m).filter(|&r| conflict[r].abs() > share * largest).collect::<BTreeSet<_>>();
+        let differ =
+            |share: f64| (0..m).filter(|&r| conflict[r].abs() > share * largest).collect::<BTreeSet<_>>();
         // what is linear stays redundant for ever, anything else as long as it has hardly moved
         let linear = Some(differ(1e-6)).filter(|rows| rows.iter().all(|&r| model.linear_row(r)));
         let rows = linear.unwrap_or_else(|| if moved < MOVED { differ(0.05) } else { BTreeSet::new() });
@@ -250,7 +251,8 @@ pub(crate) fn find(model: &Model) -> Result<Option<Redundancy>, BuildError> {
             return Err(contradiction(&who, &format!("prescribe different velocities at t = {t:.3} s")));
         }
     }
-    let constraints = model.constraints_where(|r| rows.contains(&r)).into_iter().map(str::to_string).collect();
+    let constraints =
+        model.constraints_where(|r| rows.contains(&r)).into_iter().map(str::to_string).collect();
     Ok(Some(Redundancy { equations: basis.len(), constraints }))
 }
 

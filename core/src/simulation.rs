@@ -237,7 +237,10 @@ impl Simulation {
         let (start, mut next) = self.sampled;
         let samples = (end - start) / interval;
         if !(interval > 0.0 && samples <= MOST_SAMPLES) {
-            let message = format!("samples every {interval:e} s of {:e} s never end: take a longer interval", end - start);
+            let message = format!(
+                "samples every {interval:e} s of {:e} s never end: take a longer interval",
+                end - start
+            );
             return Err(StepError::Scheme(message));
         }
         let sample_time = |k: u64| start + interval * k as f64;

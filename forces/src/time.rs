@@ -94,7 +94,8 @@ impl TimeFunction {
     /// How much of a step `h` from `t` may be taken that leaps over nothing [s].
     pub fn reach(&self, t: f64, h: f64) -> f64 {
         let knots = |times: &[f64], value: &[f64]| {
-            let range = value.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (x.min(a), x.max(b)));
+            let range =
+                value.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (x.min(a), x.max(b)));
             reach::knots(times, |k| [value[k], 0.0, 0.0], range.1 - range.0, t, h)
         };
         match self {

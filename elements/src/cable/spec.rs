@@ -333,7 +333,8 @@ impl ElementSpec for CableSpec {
         finite("velocity", &self.velocity)?;
         finite("strain", &[self.strain])?;
         if !STRETCHES.contains(&(1.0 + self.strain)) {
-            let message = format!("a strain at rest of {} is no cable's: give one between -0.9 and 9", self.strain);
+            let message =
+                format!("a strain at rest of {} is no cable's: give one between -0.9 and 9", self.strain);
             return Err(BuildError::at("strain", message));
         }
         finite("curvature", &[self.curvature])?;
