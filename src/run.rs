@@ -25,7 +25,8 @@ use crate::output::{
 use crate::read::SceneFile;
 use crate::scene::Fault;
 use checkpoint::Saver;
-use ropewalk_core::{Analysis, Audit};
+use ropewalk_core::Audit;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 /// What may be chosen about a run beside its scene.
@@ -57,9 +58,6 @@ pub struct Outcome {
     pub report: String,
 }
 
-/// More rows than this are surely a mistake, and fill the disk.
-const MOST_ROWS: f64 = 1e7;
-
 /// Runs a scene into a folder of its own. What one should know although the run goes on is said by `warn`, at once.
 ///
 /// A run that fails or is interrupted is an `Ok` too: all that it computed until then is in the folder, and the
@@ -83,11 +81,6 @@ pub(crate) fn run_showing(
     let model = file.build()?;
     let records = file.records(&model)?;
     let manifest = Manifest::new(file, &model)?;
-    let rows = scene.run.duration / scene.run.interval();
-    if scene.run.analysis == Analysis::Dynamics && rows > MOST_ROWS {
-        let message = format!("a history of {rows:.0e} rows is too long: make `output` longer");
-        return Err(file.document().fault_at("run.output", message).into());
-    }
     for name in file.document().unused_parameters() {
         warnings.say(&format!("parameter `{name}` is not used by the scene"));
     }
@@ -162,6 +155,8 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     recorder.saver =
         Some(Saver::new(&folder, &saved.name, every, &started, &warnings.all, before, stopwatch)?);
     recorder.writer = Some(TableWriter::resume(&folder.history_file(), &recorder.table)?);
+    // what it says is of rows that are computed again
+    let _ = std::fs::remove_file(folder.summary_file());
     let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
     recorder.progress = Some(Progress::new(t, end, options.progress));
     let notes = manifest::notes(file.scene(), &simulation.model);
@@ -203,7 +198,11 @@ impl<'a> Course<'a> {
                 }
                 let clock = std::time::Instant::now();
                 recorder.warnings = warnings;
-                let ending = started.go(file.scene(), &mut recorder, resumed);
+                // a defect must not take what was computed with it
+                let go = || started.go(file.scene(), &mut recorder, resumed);
+                let ending = catch_unwind(AssertUnwindSafe(go)).unwrap_or_else(|_| {
+                    Ending::Failed(Error::Process("an internal error, see above: please report it".into()))
+                });
                 warnings = std::mem::take(&mut recorder.warnings);
                 started.afterthought().iter().for_each(|w| warnings.say(w));
                 if measure {
@@ -245,15 +244,16 @@ impl<'a> Course<'a> {
         summary.message = match &ending {
             Ending::Finished => None,
             Ending::Stopped(by) => Some(format!("stopped by {by}")),
-            Ending::Interrupted => Some("stopped by Ctrl-C".into()),
-            Ending::Failed(error) => Some(error.to_string().trim_start_matches("error: ").to_string()),
+            Ending::Interrupted => Some(format!("stopped by {}", Interrupt::cause())),
+            Ending::Failed(error) => Some(error.to_string()),
         };
         if let Some(writer) = recorder.writer.take() {
             writer.finish().unwrap_or_else(|e| warnings.say(&e.to_string()));
         }
         recorder.finals(&mut summary);
         let pictures = pictures::draw(&folder, file.title(), &recorder, &mut |w| warnings.say(w));
-        shapes::write(&folder, &recorder.shapes).unwrap_or_else(|e| warnings.say(&e.to_string()));
+        shapes::write(&folder, &recorder.table.columns[0], &recorder.shapes)
+            .unwrap_or_else(|e| warnings.say(&e.to_string()));
         let tables = tables::write(&folder, &recorder, &mut |w| warnings.say(w));
         summary.warnings = warnings.all;
         if matches!(ending, Ending::Finished | Ending::Stopped(_)) && recorder.saver.is_some() {
@@ -261,7 +261,9 @@ impl<'a> Course<'a> {
             let _ = std::fs::remove_file(folder.checkpoint_file());
         }
         // last of all: who finds a summary finds everything
-        folder.write_summary(&summary)?;
+        if let Err(e) = folder.write_summary(&summary) {
+            (summary.status, summary.message) = ("failed".into(), Some(e.to_string()));
+        }
         let report = report::report(file, &summary, &recorder, &folder, &pictures, &tables);
         Ok(Outcome { folder, summary, history: recorder.table, pictures, report })
     }

@@ -68,7 +68,7 @@ pub(crate) fn simulate_showing(
     let stopped_by = match ending {
         Ending::Finished => None,
         Ending::Stopped(by) => Some(by),
-        Ending::Interrupted => Some("Ctrl-C".into()),
+        Ending::Interrupted => Some(Interrupt::cause().into()),
         Ending::Failed(error) => return Err(error),
     };
     let (table, done) = (recorder.table, started.done());

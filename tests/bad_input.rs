@@ -126,6 +126,51 @@ fn changes(scene: &str, cases: &[Change<'_>]) {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_as_scene_table_and_mesh() {
+    use std::process::Command;
+    let folder = tempfile::tempdir().unwrap();
+    let fifo = folder.path().join("fifo.toml");
+    if !Command::new("mkfifo").arg(&fifo).status().is_ok_and(|s| s.success()) {
+        return; // not every machine has the program
+    }
+    for ending in ["csv", "stl", "obj"] {
+        assert!(
+            Command::new("mkfifo")
+                .arg(folder.path().join(format!("fifo.{ending}")))
+                .status()
+                .unwrap()
+                .success()
+        );
+    }
+    refuse(folder.path(), &["run", "fifo.toml"])
+        .refused(&["`fifo.toml` is a pipe or a device", "/dev/stdin"]);
+    refuse(folder.path(), &["run", "/dev/zero"]).refused(&["`/dev/zero` is a pipe or a device"]);
+    let mass = "[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nat = [0, 0, 0]\nmass = 1\n";
+    for file in ["fifo.csv", "/dev/zero"] {
+        let motion = format!("[[motions]]\ntype = \"speed_table\"\nname = \"launch\"\nfile = \"{file}\"\n");
+        refuse_scene(folder.path(), &(mass.to_string() + &motion)).refused(&["is a pipe or a device"]);
+    }
+    if cfg!(feature = "contact") {
+        for file in ["fifo.stl", "fifo.obj"] {
+            let contact = format!(
+                "[[forces]]\ntype = \"contact\"\nname = \"c\"\nshape = {{ mesh = {{ file = \"{file}\" }} }}\nradius = 0.1\nstiffness = 1\n"
+            );
+            refuse_scene(folder.path(), &(mass.to_string() + &contact)).refused(&["is a pipe or a device"]);
+        }
+    }
+}
+
+#[test]
+fn a_history_without_end_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let mass = "[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nat = [0, 0, 0]\nmass = 1\n";
+    let said = refuse_scene(folder.path(), &format!("[run]\noutput = 1e-300\n{mass}"));
+    said.refused(&["a history of 1e300 rows is too long"]);
+    assert_eq!(place(&said), (2, "1e-300".into()));
+}
+
 #[test]
 fn zero_and_negative_numbers_are_refused_where_they_make_no_sense() {
     cases(&[

@@ -9,6 +9,7 @@ mod current;
 mod dead;
 mod dense;
 mod feed;
+pub mod file;
 pub mod held;
 pub mod integrator;
 mod lane;

@@ -229,6 +229,25 @@ impl Model {
         }
     }
 
+    /// Whether a state can be one of this model.
+    ///
+    /// # Errors
+    /// What of it is of another size, in a few words.
+    pub fn check(&self, state: &State) -> Result<(), String> {
+        let own = [
+            ("coordinates", state.q.len(), self.start.q.len()),
+            ("velocities", state.v.len(), self.velocities),
+            ("accelerations", state.a.len(), self.velocities),
+            ("auxiliary accelerations", state.aux.len(), self.velocities),
+            ("multipliers", state.lambda.len(), self.multipliers()),
+            ("modes", state.modes.len(), self.start.modes.len()),
+        ];
+        match own.into_iter().find(|(_, has, wants)| has != wants) {
+            Some((what, has, wants)) => Err(format!("it has {has} {what}, the model {wants}")),
+            None => Ok(()),
+        }
+    }
+
     /// Its nodes.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes

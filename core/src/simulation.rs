@@ -55,7 +55,8 @@ pub trait Event: Send + Sync {
 
 /// Sees every accepted step and every sample, read-only: recorders, progress bars.
 pub trait Observer {
-    /// A step was accepted.
+    /// A step was accepted. To break ends the advance behind it, with its samples, its events and, if one is wanted, a
+    /// checkpoint.
     fn step(&mut self, _model: &Model, _state: &State, _report: &StepReport) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
@@ -165,8 +166,10 @@ impl Simulation {
     /// Starts a model from a state, which is made consistent.
     ///
     /// # Errors
-    /// The scheme is refused, the start is too far from the constraints, or a linear system can't be solved.
+    /// The state is that of another model, the scheme is refused, the start is too far from the constraints, or a linear
+    /// system can't be solved.
     pub fn from(model: Model, mut state: State, options: &Options, duration: f64) -> Result<Self, StepError> {
+        model.check(&state).map_err(StepError::Foreign)?;
         let integrator = options.integrator(&model, duration)?;
         let mut work = Workspace::new(&model).map_err(|source| StepError::Linear {
             t: state.t,
@@ -212,14 +215,16 @@ impl Simulation {
     /// Goes on to time `end`, with a sample now and every `interval` seconds.
     ///
     /// # Errors
-    /// A step that couldn't be taken; everything up to there has been sampled, and the state is the last good one. An
-    /// interval that isn't above zero, or so short that the samples would never end.
+    /// A step that couldn't be taken; everything up to there has been sampled, and the state is the last good one. A state
+    /// of another model, since anybody may set it. An interval that isn't above zero, or so short that the samples would
+    /// never end.
     pub fn advance(
         &mut self,
         end: f64,
         interval: f64,
         observer: &mut dyn Observer,
     ) -> Result<End, StepError> {
+        self.model.check(&self.state).map_err(StepError::Foreign)?;
         self.sampled = (self.state.t, 0);
         if self.sample(observer, None)?.is_break() {
             return Ok(End::Stopped { by: "observer".into() });
@@ -234,6 +239,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn go_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
+        self.model.check(&self.state).map_err(StepError::Foreign)?;
         let (start, mut next) = self.sampled;
         let samples = (end - start) / interval;
         if !(interval > 0.0 && samples <= MOST_SAMPLES) {
@@ -269,9 +275,8 @@ impl Simulation {
             self.account();
             self.watch_energy(observer);
             self.measure_ringing();
-            if observer.step(&self.model, &self.state, &report).is_break() {
-                return Ok(End::Stopped { by: "interrupt".into() });
-            }
+            // whoever wants to stop gets what this step has brought first
+            let stop = observer.step(&self.model, &self.state, &report).is_break();
             while next as f64 * interval <= (end - start) * (1.0 + 1e-12) {
                 let t = sample_time(next);
                 if t > self.state.t && !same(t, self.state.t) {
@@ -293,6 +298,9 @@ impl Simulation {
                 if observer.checkpoint(checkpoint).is_break() {
                     return Ok(End::Stopped { by: "observer".into() });
                 }
+            }
+            if stop {
+                return Ok(End::Stopped { by: "interrupt".into() });
             }
         }
         if !same(sample_time(next - 1), end) && self.sample(observer, None)?.is_break() {

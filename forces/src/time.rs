@@ -1,7 +1,7 @@
 //! Factors that change with time.
 
 use ropewalk_core::build::{BuildError, finite, need};
-use ropewalk_core::reach;
+use ropewalk_core::{quantity, reach};
 use std::f64::consts::TAU;
 
 /// A factor of a load as a function of time.
@@ -18,13 +18,16 @@ pub enum TimeFunction {
         /// Value from `t1` on.
         to: f64,
         /// Start of the ramp [s].
+        #[serde(deserialize_with = "quantity::time")]
         t0: f64,
         /// End of the ramp [s].
+        #[serde(deserialize_with = "quantity::time")]
         t1: f64,
     },
     /// Linear between given times, constant before the first and after the last.
     Table {
         /// Times [s], ascending.
+        #[serde(deserialize_with = "quantity::list::time")]
         t: Vec<f64>,
         /// Value at each time.
         value: Vec<f64>,
@@ -32,10 +35,13 @@ pub enum TimeFunction {
     /// 0 up to `t0`, rises to 1 at `peak`, falls to 0 at `t1` and stays there.
     Triangle {
         /// Start [s].
+        #[serde(deserialize_with = "quantity::time")]
         t0: f64,
         /// Time of the value 1 [s].
+        #[serde(deserialize_with = "quantity::time")]
         peak: f64,
         /// End [s].
+        #[serde(deserialize_with = "quantity::time")]
         t1: f64,
     },
     /// `mean + amplitude sin(2π frequency t + phase)`.
@@ -45,8 +51,10 @@ pub enum TimeFunction {
         /// Amplitude.
         amplitude: f64,
         /// Frequency [Hz].
+        #[serde(deserialize_with = "quantity::frequency")]
         frequency: f64,
         /// Phase at `t = 0` [rad].
+        #[serde(deserialize_with = "quantity::angle")]
         phase: f64,
     },
 }

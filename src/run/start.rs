@@ -100,7 +100,7 @@ impl Started {
             if c.position > 1e-8 * s.model.length() || c.velocity > 1e-6 {
                 all.push(format!(
                     "the start was moved onto the constraints: positions by {:.1e} m, velocities by {:.1e} m/s \
-                     (root mean square over the mass)",
+                     (root mean square along the part that is moved most)",
                     c.position, c.velocity
                 ));
             }
@@ -131,8 +131,8 @@ impl Started {
         let (unmet, cut, steps) = (counts.unmet, counts.cut, counts.steps);
         let stopped = || {
             format!(
-                "{unmet} steps never met the absolute stopping test: rounding leaves more than it allows. They are as \
-                 good as they get; the `relative` test wouldn't have gone on in vain"
+                "{unmet} steps never met the stopping test of Newton's method: rounding leaves more than it allows. They \
+                 are as good as they get"
             )
         };
         let shorter = || {

@@ -24,7 +24,7 @@ impl Simulation {
         // steps end just before a jump
         let left = left.min(model.jump(at.t) * (1.0 - 0.5 * SAME) - at.t);
         let wish = match self.state.control.h_next {
-            h if h > 0.0 => h.min(self.integrator.options().h_max).min(left),
+            h if h > 0.0 => h.min(self.integrator.options().h_max.unwrap_or(left)).min(left),
             _ => left,
         };
         let reach = model.reach(&at, wish);

@@ -10,7 +10,7 @@ const PART: f64 = 1e-3;
 /// A step shorter than this, in parts of what it should be, was cut.
 const CUT: f64 = 1.0 - 1e-6;
 
-/// What has moved by no more than this since the run began, in parts of the model's length, has no energy to speak of.
+/// What has moved by no more than this since the run began, in parts of its own length, has no energy to speak of.
 const REST: f64 = 1e-7;
 
 impl Simulation {
@@ -69,8 +69,9 @@ impl Simulation {
         if !self.keep_audit || self.created.is_some() {
             return;
         }
-        let speed = REST * self.model.length() / self.state.t;
-        if !self.audit.is_created(self.work.total_mass * speed * speed) {
+        let still = |length: f64, mass: f64| mass * (REST * length / self.state.t).powi(2);
+        let noise = self.work.norms.groups.iter().map(|g| still(g.length, g.mass)).sum();
+        if !self.audit.is_created(noise) {
             return;
         }
         self.created = Some(self.state.t);

@@ -102,10 +102,10 @@ pub struct CableSpec {
     /// Name by which the rest of the scene refers to it.
     pub name: String,
     /// Points along which it is laid, from start to end [m]: straight lines between them.
-    #[serde(default, deserialize_with = "crate::path::points")]
+    #[serde(default, deserialize_with = "quantity::points")]
     pub points: Vec<V3<f64>>,
     /// Points of a smooth curve along which it is laid [m], instead of `points`.
-    #[serde(default, deserialize_with = "crate::path::points")]
+    #[serde(default, deserialize_with = "quantity::points")]
     pub curve: Vec<V3<f64>>,
     /// Unstretched length [m]; left out, that of the path. A different length is spread evenly over the path.
     #[serde(default, deserialize_with = "quantity::optional::length")]

@@ -41,7 +41,7 @@ pub(super) struct Newton<'a> {
     pub h: f64,
     pub policy: NewtonPolicy,
     pub max_iterations: u32,
-    /// Tolerance of displacements [m].
+    /// Tolerance of displacements, relative to the length of each part.
     pub tolerance: f64,
     /// Whether every constraint is linear, so that one iteration meets it.
     pub linear_constraints: bool,
@@ -49,7 +49,7 @@ pub(super) struct Newton<'a> {
 
 impl Newton<'_> {
     pub fn solve(&self, work: &mut Workspace, s: &mut Stages) -> Result<Converged, Failure> {
-        let floor = 4.0 * self.model.rounding();
+        let floor = 4.0 * work.norms.rounding();
         let stop = self.tolerance.max(floor);
         let control = &self.state.control;
         let mut eta = if control.h_last > 0.0 { control.eta.max(1e-3).powf(0.8) } else { 1.0 };
@@ -109,7 +109,8 @@ impl Newton<'_> {
         Err(Failure::Newton(format!("{} Newton iterations were not enough", self.max_iterations)))
     }
 
-    /// One iteration; gives the size of the change of positions: the largest of the three stages [m].
+    /// One iteration; gives the size of the change of positions: the largest of the three stages, relative to
+    /// the part that it moves most.
     fn iterate(&self, work: &mut Workspace, s: &mut Stages) -> Result<f64, Failure> {
         let (model, nv) = (self.model, self.model.velocities());
         work.counts.newton_iterations += 1;
@@ -147,7 +148,7 @@ impl Newton<'_> {
                 s.d[k] = T[i][0] * x + T[i][1] * y.re + T[i][2] * y.im;
                 s.z[i][k] += s.d[k];
             }
-            let change = work.norm(&s.d);
+            let change = work.norms.relative(&s.d);
             // max() would swallow a NaN
             if !(change <= size) {
                 size = change;
@@ -162,7 +163,7 @@ impl Newton<'_> {
             return true;
         }
         let length = self.model.length();
-        let limit = (1e-10 * length).min(self.tolerance).max(8.0 * self.model.rounding());
+        let limit = (1e-10 * length).min(self.tolerance * length).max(8.0 * self.model.rounding());
         let mut g = std::mem::take(&mut s.rate);
         let fine = (0..3).all(|i| {
             self.model.violations(&s.at(self.state, self.h, i), &mut work.system, &mut g);
