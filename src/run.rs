@@ -12,6 +12,7 @@ mod tables;
 pub use checkpoint::Every;
 pub use manifest::Manifest;
 pub(crate) use pictures::{PLANES, planes, view};
+use recorder::Warnings;
 pub(crate) use recorder::{Recorder, records};
 pub(crate) use shapes::last as last_shape;
 pub(crate) use start::{Ending, Started};
@@ -75,7 +76,7 @@ pub(crate) fn run_showing(
     progress: &dyn Fn(f64) -> Progress,
     warn: &mut dyn FnMut(&str),
 ) -> Result<Outcome, Error> {
-    let mut warnings = Warnings { all: Vec::new(), tell: warn };
+    let mut warnings = Warnings { all: Vec::new(), tell: Some(warn) };
     let scene = file.scene();
     let model = file.build()?;
     let records = file.records(&model)?;
@@ -148,7 +149,7 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let Started::Dynamics(simulation, _) = &started else { unreachable!("only runs in time are resumed") };
     let mut recorder = Recorder::new(file.scene(), file.records(&simulation.model)?);
     recorder.take_up(&saved).map_err(Fault::new)?;
-    let warnings = Warnings { all: saved.warnings.to_vec(), tell: warn };
+    let warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
     let before = Elapsed { cpu_s: saved.cpu_s, wall_s: saved.wall_s };
     let every = options.checkpoint.unwrap_or(saved.every);
     recorder.saver =
@@ -161,19 +162,6 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let notes = manifest::notes(file.scene(), &simulation.model);
     let course = Course { file: &file, folder, recorder, stopwatch, before, resumed: true, notes };
     course.complete(Ok(started), options.profile, warnings)
-}
-
-/// Warnings are said at once and kept for the summary.
-struct Warnings<'w> {
-    all: Vec<String>,
-    tell: &'w mut dyn FnMut(&str),
-}
-
-impl Warnings<'_> {
-    fn say(&mut self, text: &str) {
-        self.all.push(text.to_string());
-        (self.tell)(text);
-    }
 }
 
 /// A run from where everything is ready for it to where everything is written.
@@ -189,12 +177,12 @@ struct Course<'a> {
     notes: Vec<String>,
 }
 
-impl Course<'_> {
+impl<'a> Course<'a> {
     fn complete(
         self,
         mut started: Result<Started, Error>,
         measure: bool,
-        mut warnings: Warnings<'_>,
+        mut warnings: Warnings<'a>,
     ) -> Result<Outcome, Error> {
         let Course { file, folder, mut recorder, stopwatch, before, resumed, notes } = self;
         match Interrupt::install() {
@@ -209,11 +197,13 @@ impl Course<'_> {
                     started.profile();
                 }
                 let clock = std::time::Instant::now();
+                recorder.warnings = warnings;
                 // a defect must not take what was computed with it
                 let go = || started.go(file.scene(), &mut recorder, resumed);
                 let ending = catch_unwind(AssertUnwindSafe(go)).unwrap_or_else(|_| {
                     Ending::Failed(Error::Process("an internal error, see above: please report it".into()))
                 });
+                warnings = std::mem::take(&mut recorder.warnings);
                 started.afterthought().iter().for_each(|w| warnings.say(w));
                 if measure {
                     profile = Some(shares(started.times(), clock.elapsed().as_secs_f64()));

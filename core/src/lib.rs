@@ -24,6 +24,7 @@ mod pattern;
 mod pool;
 mod process;
 pub mod quantity;
+pub mod reach;
 mod record;
 pub mod records;
 mod redundancy;

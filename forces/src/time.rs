@@ -1,7 +1,7 @@
 //! Factors that change with time.
 
 use ropewalk_core::build::{BuildError, finite, need};
-use ropewalk_core::quantity;
+use ropewalk_core::{quantity, reach};
 use std::f64::consts::TAU;
 
 /// A factor of a load as a function of time.
@@ -91,6 +91,27 @@ impl TimeFunction {
             TimeFunction::Harmonic { mean, amplitude, frequency, phase } => {
                 finite("harmonic of a load", &[*mean, *amplitude, *frequency, *phase])
             }
+        }
+    }
+
+    /// Whether it changes at all.
+    pub fn changes(&self) -> bool {
+        !matches!(self, TimeFunction::Constant)
+    }
+
+    /// How much of a step `h` from `t` may be taken that leaps over nothing [s].
+    pub fn reach(&self, t: f64, h: f64) -> f64 {
+        let knots = |times: &[f64], value: &[f64]| {
+            let range =
+                value.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (x.min(a), x.max(b)));
+            reach::knots(times, |k| [value[k], 0.0, 0.0], range.1 - range.0, t, h)
+        };
+        match self {
+            TimeFunction::Constant => h,
+            TimeFunction::Ramp { t0, t1, .. } => reach::rise(*t0, *t1, t, h),
+            TimeFunction::Table { t: times, value } => knots(times, value),
+            TimeFunction::Triangle { t0, peak, t1 } => knots(&[*t0, *peak, *t1], &[0.0, 1.0, 0.0]),
+            TimeFunction::Harmonic { frequency, .. } => reach::period(1.0 / frequency, h),
         }
     }
 

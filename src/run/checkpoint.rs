@@ -71,7 +71,7 @@ pub(crate) struct Saver {
     scene: u32,
     name: String,
     every: Every,
-    warnings: Vec<String>,
+    pub warnings: Vec<String>,
     flutter: f64,
     /// Time spent before this process.
     before: Elapsed,

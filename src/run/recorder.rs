@@ -58,6 +58,25 @@ pub(crate) struct Recorder<'a> {
     pub remeshed: Vec<Remeshed>,
     /// Where checkpoints go, if any are wanted.
     pub saver: Option<Saver>,
+    /// Where warnings go while the run goes on.
+    pub warnings: Warnings<'a>,
+}
+
+/// Warnings are said at once and kept for the summary.
+#[derive(Default)]
+pub(crate) struct Warnings<'w> {
+    pub all: Vec<String>,
+    /// Who is told, if anybody is.
+    pub tell: Option<&'w mut dyn FnMut(&str)>,
+}
+
+impl Warnings<'_> {
+    pub(crate) fn say(&mut self, text: &str) {
+        self.all.push(text.to_string());
+        if let Some(tell) = &mut self.tell {
+            tell(text);
+        }
+    }
 }
 
 /// The records of a scene, each with a name of its own.
@@ -125,6 +144,7 @@ impl<'a> Recorder<'a> {
             events: Vec::new(),
             remeshed: Vec::new(),
             saver: None,
+            warnings: Warnings::default(),
         }
     }
 
@@ -273,6 +293,12 @@ impl Observer for Recorder<'_> {
             self.saver = Some(saver);
         }
         ControlFlow::Continue(())
+    }
+    fn warn(&mut self, text: &str) {
+        self.warnings.say(text);
+        if let Some(saver) = &mut self.saver {
+            saver.warnings.push(text.to_string());
+        }
     }
     fn event(&mut self, name: &str, t: f64) {
         self.events.push(Happened { name: name.into(), t });

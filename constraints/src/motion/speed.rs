@@ -4,7 +4,7 @@ use super::csv;
 use crate::check::unit;
 use ropewalk_core::build::{BuildError, finite};
 use ropewalk_core::quantity::kind;
-use ropewalk_core::{Motion, MotionSpec, Moving, V3, quantity, register_spec};
+use ropewalk_core::{Motion, MotionSpec, Moving, V3, quantity, reach, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -113,6 +113,10 @@ impl Motion for SpeedTable {
         let a = (a0 + u * (2.0 * b + 3.0 * u * c)) / h;
         let along = |s: f64| self.direction.map(|d| s * d);
         Moving { x: along(x), v: along(v), a: along(a) }
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        let size = self.v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        Some(reach::knots(&self.t, |k| [self.v[k], 0.0, 0.0], size, t, h))
     }
     fn range(&self) -> (f64, f64) {
         (self.t[0], self.t[self.t.len() - 1])

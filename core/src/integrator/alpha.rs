@@ -471,12 +471,6 @@ impl Integrator for Alpha {
             careful = false;
             let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
             if smaller < self.limits.least {
-                let why = match model.redundancy() {
-                    Some(r) => {
-                        format!("{why} (do the redundant constraints contradict each other here? {r})")
-                    }
-                    None => why,
-                };
                 return Err(StepError::NoConvergence { t: state.t, h, why, equation });
             }
             state.control.h_cap = 0.7 * h;

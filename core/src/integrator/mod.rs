@@ -67,6 +67,19 @@ pub enum StepError {
         /// The unknown at the pivot.
         unknown: String,
     },
+    /// Constraints that take part in a redundancy ask for different things.
+    #[error(
+        "at t = {t:.6} s the constraints {constraints} contradict each other: they can't all be met, and the nearest \
+         that the model can come leaves {off:.1e} m (or rad). Remove one of them or correct it"
+    )]
+    Contradiction {
+        /// Time to which the step was to lead [s].
+        t: f64,
+        /// Their names.
+        constraints: String,
+        /// By how much the most violated one is off [m, directions times the model's length].
+        off: f64,
+    },
     /// An event can't do what it should.
     #[error("at t = {t:.6} s, {event}: {why}")]
     Event {

@@ -23,6 +23,10 @@ pub enum Stepping {
 
 /// What fixed steps leave of the equations of motion, relative to the forces at work: no error of time hides it.
 const FIXED_FORCE: f64 = 1e-5;
+/// A year [s].
+const YEAR: f64 = 3.2e7;
+/// What a step takes at the very least for each unknown, on any machine [s].
+const LEAST_WORK: f64 = 1e-7;
 
 /// Bounds of the step size [s].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,6 +147,7 @@ impl Options {
     /// # Errors
     /// The options are wrong, or the scheme doesn't suit the model.
     pub fn integrator(&self, model: &Model, duration: f64) -> Result<Box<dyn Integrator>, StepError> {
+        self.check().and_then(|()| self.check_work(model, duration)).map_err(StepError::Scheme)?;
         Ok(match self.scheme {
             Scheme::RadauIia5 => Box::new(Radau::new(self, duration)?),
             _ => Box::new(Alpha::new(self, model, duration)?),
@@ -155,6 +160,22 @@ impl Options {
             Stepping::Fixed { .. } => FIXED_FORCE,
             Stepping::Controlled { .. } => 0.1 * self.force_tolerance,
         }
+    }
+
+    /// Refuses steps so short that the run would surely take longer than a year.
+    fn check_work(&self, model: &Model, duration: f64) -> Result<(), String> {
+        let (name, h) = match self.stepping {
+            Stepping::Fixed { h } => ("h", h),
+            Stepping::Controlled { .. } => ("h_max", self.limits(duration).most),
+        };
+        let (steps, least) = (duration / h, YEAR / (LEAST_WORK * model.velocities().max(1) as f64));
+        if steps > least {
+            return Err(format!(
+                "`{name}` = {h:e} s makes {steps:.0e} steps of a run of {duration} s: more than a year of computing. \
+                 Take a larger one"
+            ));
+        }
+        Ok(())
     }
 
     /// Bounds of the step in a run of this length [s].
@@ -184,6 +205,11 @@ impl Options {
             h.map_or(Ok(()), |h| positive(name, h))?;
         }
         positive("newton_tolerance", self.newton_tolerance)?;
+        if let (Some(least), Some(most)) = (self.h_min, self.h_max)
+            && least > most
+        {
+            return Err(format!("`h_min` = {least} s must not be above `h_max` = {most} s"));
+        }
         positive("force_tolerance", self.force_tolerance)?;
         if !(self.horizon >= 0.0 && self.horizon.is_finite()) {
             return Err(format!("`horizon` must not be negative, but is {}", self.horizon));

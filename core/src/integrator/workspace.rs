@@ -29,6 +29,9 @@ pub struct Counts {
     pub factorizations: u64,
     /// Factorisations without pivoting that were not good enough and were repeated with it.
     pub fallbacks: u64,
+    /// Fixed steps that had to be cut, since they failed.
+    #[serde(default)]
+    pub cut: u64,
     /// Steps whose stopping test was never met, since rounding leaves more.
     pub unmet: u64,
 }
