@@ -273,7 +273,8 @@ impl Simulation {
             }
             let fired = self.locate(observer);
             self.account();
-            self.watch_energy(observer);
+            self.watch_energy(end, observer);
+            self.watch_steps(end, observer);
             self.measure_ringing();
             // whoever wants to stop gets what this step has brought first
             let stop = observer.step(&self.model, &self.state, &report).is_break();

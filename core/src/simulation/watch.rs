@@ -9,7 +9,10 @@ const LEFT: f64 = 1e-9;
 const PART: f64 = 1e-3;
 /// A step shorter than this, in parts of what it should be, was cut.
 const CUT: f64 = 1.0 - 1e-6;
-
+/// Steps after which a run has begun.
+const BEGUN: u64 = 50;
+/// So many steps are worth a word.
+const MANY: u64 = 100_000;
 /// What has moved by no more than this since the run began, in parts of its own length, has no energy to speak of.
 const REST: f64 = 1e-7;
 
@@ -64,9 +67,24 @@ impl Simulation {
         }
     }
 
+    /// Warns once of a run that takes very many steps: something that isn't asked for may drive them.
+    pub(super) fn watch_steps(&self, end: f64, observer: &mut dyn Observer) {
+        if self.work.counts.steps != MANY || !matches!(self.integrator.options().stepping, Stepping::Controlled { .. }) {
+            return;
+        }
+        let (t, h) = (self.state.t, self.state.control.h_last);
+        observer.warn(&format!(
+            "{MANY} steps so far, at t = {t:.4} s of {end} s, the last of {h:.1e} s: fast motion that nothing damps asks for \
+             them. A little `axial_damping` or `bending_damping`, a looser `tolerance`, a shorter `horizon` or Radau IIA \
+             need fewer"
+        ));
+    }
+
     /// Warns the first time that energy has appeared from nowhere.
-    pub(super) fn watch_energy(&mut self, observer: &mut dyn Observer) {
-        if !self.keep_audit || self.created.is_some() {
+    pub(super) fn watch_energy(&mut self, end: f64, observer: &mut dyn Observer) {
+        // a run that has hardly begun has no energy yet that another could be compared with
+        let begun = self.work.counts.steps >= BEGUN || self.state.t >= 0.01 * end;
+        if !self.keep_audit || self.created.is_some() || !begun {
             return;
         }
         let still = |length: f64, mass: f64| mass * (REST * length / self.state.t).powi(2);
