@@ -277,7 +277,9 @@ fn tow(ea: f64, elements: usize, duration: f64, solver: &str) -> String {
 #[test]
 fn forces_of_a_steady_tow_are_steady_and_those_of_the_hose() {
     for (ea, elements) in [(1e6, 20), (1e8, 40)] {
-        for solver in ["", "constraints = \"ggl\"", "scheme = \"radau-iia-5\"", "stepping = { fixed = { h = 0.05 } }"] {
+        for solver in
+            ["", "constraints = \"ggl\"", "scheme = \"radau-iia-5\"", "stepping = { fixed = { h = 0.05 } }"]
+        {
             let h = run(&tow(ea, elements, 60.0, solver));
             let column = |name: &str| {
                 let all = h.column(name).unwrap_or_else(|| panic!("no {name}"));

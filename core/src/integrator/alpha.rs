@@ -144,8 +144,15 @@ impl Alpha {
     }
 
     /// Estimated error of the trial, relative to the part where it is largest: `|Cq h² (a₊ - a)|`, without what the
-    /// constraints and the numerical damping take away.
-    fn error(&self, model: &Model, modes: &[f64], work: &mut Workspace, h: f64) -> Result<f64, SolveError> {
+    /// constraints and the numerical damping take away. With it by what tensions are off for it, relative to the forces at
+    /// work.
+    fn error(
+        &self,
+        model: &Model,
+        modes: &[f64],
+        work: &mut Workspace,
+        h: f64,
+    ) -> Result<[f64; 2], SolveError> {
         let factor = self.scheme.error_constant() * h * h;
         let (nv, mut e, mut rhs) =
             (model.velocities(), std::mem::take(&mut work.trial.d), std::mem::take(&mut work.trial.rhs));
@@ -160,9 +167,10 @@ impl Alpha {
         work.times_mass(model, &e, &mut rhs[..nv]);
         let solved = work.solve(model, Which::Iteration, &mut rhs);
         let size = work.norms.relative(&rhs[..nv]);
+        let strained = work.forces.strained(&work.trial.q, &rhs[..nv]);
         (work.trial.d, work.trial.rhs) = (e, rhs);
         solved?;
-        Ok(size)
+        Ok([size, strained])
     }
 
     /// Whether a trial that converged is to be accepted.
@@ -186,11 +194,14 @@ impl Alpha {
             Stepping::Fixed { .. } => Ok(Verdict::Good { error: 0.0 }),
             Stepping::Controlled { tolerance } => {
                 let turn = model.turn(&work.trial.d);
-                let local = self
+                let [local, strained] = self
                     .error(model, &state.modes, work, h)
                     .map_err(|source| linear(model, state.t, source))?;
-                // per unit step
-                let error = local * (self.horizon / h) / tolerance.min(1e-3);
+                // errors of positions add up, per unit step; stiff directions follow what moves them, and forget
+                let position = local * (self.horizon / h) / tolerance.min(1e-3);
+                let force = strained / self.options.force_tolerance;
+                // max() would swallow a NaN
+                let error = if position >= force { position } else { force };
                 // a body that is driven has no error, but a larger turn may end on another branch of its joint
                 let error = if turn > 1.0 { error + turn * turn } else { error };
                 match error {

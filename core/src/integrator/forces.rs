@@ -18,12 +18,24 @@ pub(crate) struct Forces {
     rounding: Vec<f64>,
     /// For every multiplier what turns it into a force, and the groups that it acts on.
     rows: Vec<(f64, Vec<usize>)>,
-    /// The cables, by number of part: tension is looked at in these places.
-    cables: Vec<(usize, Vec<f64>)>,
+    /// The cables: tension is looked at in some places.
+    cables: Vec<Line>,
     /// Sums over the groups: of squares of the residual, of those of inertia; and the largest multipliers.
     residual: Vec<f64>,
     inertia: Vec<f64>,
     reaction: Vec<f64>,
+}
+
+/// A cable as its tension is seen.
+#[derive(Clone, Debug)]
+struct Line {
+    /// Its number among the parts.
+    part: usize,
+    /// Where tension is looked at [m].
+    places: Vec<f64>,
+    ea: f64,
+    /// First coordinate and velocity of each node, and the length of the element behind it [m].
+    nodes: Vec<(usize, usize, f64)>,
 }
 
 /// In how many places tension is looked at.
@@ -47,13 +59,15 @@ impl Forces {
                 RowKind::Direction => (1.0 / arm, on.clone()),
             }));
         }
-        let cables = model.parts().iter().enumerate().filter(|(_, p)| p.slender().is_some());
-        let cables = cables.map(|(k, p)| {
-            let (mesh, last) = (p.mesh(), (p.mesh().len() - 1) as f64);
+        let cables = model.parts().iter().enumerate().filter_map(|(part, p)| {
+            let (mesh, seats, ea) = (p.mesh(), p.seats(), p.slender()?.ea);
+            let last = (mesh.len().checked_sub(1)?) as f64;
             let place = |i: usize| mesh[(last * i as f64 / (PLACES - 1) as f64).round() as usize];
             let mut places: Vec<f64> = (0..PLACES).map(place).collect();
             places.dedup();
-            (k, places)
+            let behind = mesh.iter().skip(1).zip(mesh).map(|(b, a)| b - a).chain([0.0]);
+            let nodes = seats.iter().zip(behind).map(|(&(q, v), l)| (q, v, l)).collect();
+            Some(Line { part, places, ea, nodes })
         });
         let none = vec![0.0; norms.groups.len()];
         Forces {
@@ -73,10 +87,10 @@ impl Forces {
         for (p, m) in self.present.iter_mut().zip(&state.control.forces) {
             *p = MEMORY * m;
         }
-        for (k, places) in &self.cables {
+        for Line { part, places, .. } in &self.cables {
             for &s in places {
-                let tension = model.parts()[*k].observe(Quantity::Tension, s, &state.at()).unwrap_or(0.0);
-                self.present[*k] = self.present[*k].max(tension.abs());
+                let tension = model.parts()[*part].observe(Quantity::Tension, s, &state.at()).unwrap_or(0.0);
+                self.present[*part] = self.present[*part].max(tension.abs());
             }
         }
     }
@@ -122,6 +136,34 @@ impl Forces {
             if !(ratio <= worst) {
                 worst = ratio;
             }
+        }
+        worst
+    }
+
+    /// What an increment `d` of the configuration `q` changes tensions by, relative to the forces at work as of the last
+    /// [`Forces::ratio`], in the cable where that is largest: at nodes and in the middle of elements.
+    pub fn strained(&self, q: &[f64], d: &[f64]) -> f64 {
+        let mut worst = 0.0f64;
+        for line in &self.cables {
+            let mut most = 0.0f64;
+            for (k, &(x, i, l)) in line.nodes.iter().enumerate() {
+                let along = |slope: [f64; 3], change: [f64; 3]| {
+                    slope.iter().zip(change).map(|(s, c)| s * c).sum::<f64>().abs()
+                };
+                let three = |of: &[f64], at: usize| [of[at], of[at + 1], of[at + 2]];
+                let (slope, change) = (three(q, x + 3), three(d, i + 3));
+                most = most.max(along(slope, change));
+                if let Some(&(y, j, _)) = line.nodes.get(k + 1) {
+                    // the slope of the Hermite cubic in the middle
+                    let middle = |of: &[f64], a: usize, b: usize| {
+                        std::array::from_fn(|c| {
+                            1.5 * (of[b + c] - of[a + c]) / l - 0.25 * (of[a + 3 + c] + of[b + 3 + c])
+                        })
+                    };
+                    most = most.max(along(middle(q, x, y), middle(d, i, j)));
+                }
+            }
+            worst = worst.max(line.ea * most / self.at_work(line.part).max(f64::MIN_POSITIVE));
         }
         worst
     }

@@ -69,7 +69,9 @@ impl Simulation {
 
     /// Warns once of a run that takes very many steps: something that isn't asked for may drive them.
     pub(super) fn watch_steps(&self, end: f64, observer: &mut dyn Observer) {
-        if self.work.counts.steps != MANY || !matches!(self.integrator.options().stepping, Stepping::Controlled { .. }) {
+        if self.work.counts.steps != MANY
+            || !matches!(self.integrator.options().stepping, Stepping::Controlled { .. })
+        {
             return;
         }
         let (t, h) = (self.state.t, self.state.control.h_last);
