@@ -191,6 +191,9 @@ impl Term for FieldTerm {
     fn symmetric(&self) -> bool {
         false
     }
+    fn is_load(&self) -> bool {
+        true
+    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         self.stations.add(&self.laws, at, out);
     }

@@ -109,6 +109,9 @@ impl Term for PointMoment {
     fn symmetric(&self) -> bool {
         false
     }
+    fn is_load(&self) -> bool {
+        true
+    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let (m, force) = self.now(at);
         for i in 0..3 {

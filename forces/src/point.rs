@@ -153,6 +153,9 @@ impl Term for PointForce {
     fn symmetric(&self) -> bool {
         matches!((self.aim, self.ends[1]), (Aim::Dead(_), Held::Moves { .. }))
     }
+    fn is_load(&self) -> bool {
+        true
+    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let f = self.force(at);
         let w = out.weights().q * self.time.at(at.t);
