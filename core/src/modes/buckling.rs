@@ -19,7 +19,7 @@ pub struct Critical {
     /// The loads that grow together, by label.
     pub loads: Vec<String>,
     /// The smallest positive factor at which an equilibrium is lost that is there before; of an unstable equilibrium the
-    /// one, below 1, from which on it is unstable. `None` if there is none below 10⁶.
+    /// one, below 1, from which on it is unstable. `None` if there is none below 10⁴.
     pub factor: Option<f64>,
     /// The direction in which it tips over, as a mode without a rate.
     pub shape: Option<Mode>,
@@ -28,7 +28,7 @@ pub struct Critical {
 /// Size of the differences by which `K'` is found, in lengths of the model and radians.
 const DIFFERENCE: f64 = 1e-3;
 /// Inverse of the largest factor, less 1, that is looked for.
-const LEAST: f64 = 1e-6;
+const LEAST: f64 = 1e-4;
 /// Start vectors, as round columns tip over in two ways at once.
 const STARTS: usize = 4;
 const MOST_TURNS: usize = 200;
@@ -157,7 +157,7 @@ fn search(growth: &mut Growth<'_>, stable: bool) -> Result<Option<(f64, Vec<f64>
         let real = |r: &&Ritz| r.value[1].abs() <= 1e-6 * r.size();
         let counts = |r: &&Ritz| match stable {
             true => r.value[0] > LEAST,
-            false => r.value[0] > LEAST || r.value[0] < -1.0,
+            false => r.value[0] > LEAST || r.value[0] < -1.0 - LEAST,
         };
         let first = all.iter().filter(real).filter(counts).min_by(|a, b| factor(a).total_cmp(&factor(b)));
         let fine = |r: &Ritz| r.residual <= 1e-8 * r.size();

@@ -187,6 +187,9 @@ pub fn in_balance(
             return Ok(false);
         }
         trial.lambda.iter_mut().zip(multipliers).for_each(|(l, d)| *l += d);
+        // a tiny strain of what is stiff is not a tiny force
+        let before = trial.q.clone();
+        model.retract(&before, moves, &mut trial.q);
         if round == 1 {
             statics.ride(&mut trial);
             *state = trial;
@@ -249,7 +252,11 @@ pub fn modes(
         }
         _ => None,
     };
-    let critical = buckling::critical(&mut statics, model, &rest, &mut pencil, &modes)?;
+    // the modes are right though a matrix of the buckling problem be singular
+    let critical = match buckling::critical(&mut statics, model, &rest, &mut pencil, &modes) {
+        Err(ModesError::Solver(_) | ModesError::Eigen) => None,
+        found => found?,
+    };
     let Found { missing, of, .. } = found;
     Ok(Modes { modes, damped: pencil.damped, of, missing, critical, hidden })
 }
