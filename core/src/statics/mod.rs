@@ -290,7 +290,8 @@ impl<'a> Statics<'a> {
                 Err(e) => {
                     *state = last;
                     h *= 0.5;
-                    if h.abs() < least {
+                    // what was refused isn't found by smaller steps either
+                    if h.abs() < least || e.iterations == 0 {
                         return Err(e);
                     }
                 }
