@@ -14,6 +14,23 @@ fn fixed(h: f64) -> Options {
     Options { stepping: Stepping::Fixed { h }, ..Options::default() }
 }
 
+#[test]
+fn states_of_other_models_are_refused() {
+    let ball = |count: usize| {
+        let mut scene = Scene::new();
+        for k in 0..count {
+            scene.element(PointMassSpec::new(&format!("ball{k}"), [k as f64, 0.0, 0.0], 1.0));
+        }
+        scene.build().expect("model")
+    };
+    let mut s = Simulation::new(ball(1), &Options::default(), 1.0).expect("start");
+    let other = ball(2).state();
+    let e = Simulation::from(ball(1), other.clone(), &Options::default(), 1.0).err().expect("refused");
+    assert_eq!(e, StepError::Foreign("it has 6 coordinates, the model 3".into()));
+    s.state = other;
+    assert!(matches!(s.advance(1.0, 0.1, &mut ()), Err(StepError::Foreign(_))));
+}
+
 /// The floor that a mass falls on.
 struct Bounce {
     restitution: f64,
@@ -121,7 +138,7 @@ fn an_event_ends_a_run() {
 #[test]
 fn a_failed_step_leaves_the_state_as_it_was() {
     // one iteration too few for a step so large, and no smaller one allowed
-    let options = Options { max_iterations: 2, h_min: 0.4, newton_tolerance: 1e-9, ..fixed(0.5) };
+    let options = Options { max_iterations: 2, h_min: Some(0.4), newton_tolerance: 1e-9, ..fixed(0.5) };
     let mut s = Simulation::new(swinging().build().expect("model"), &options, 1.0).expect("start");
     let before = s.state.clone();
     let error = s.advance(1.0, f64::INFINITY, &mut ()).expect_err("must fail");
