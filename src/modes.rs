@@ -8,7 +8,7 @@ use crate::output::{Interrupt, ProgressMode, RunFolder, Stopwatch, Table, new_ba
 use crate::read::SceneFile;
 use crate::run::Manifest;
 use crate::scene::Fault;
-use ropewalk_core::modes::{self as core, Mode, ModesError, OnLook};
+use ropewalk_core::modes::{self as core, Critical, Mode, ModesError, OnLook};
 use ropewalk_core::statics::{Found, Statics, StaticsError};
 use ropewalk_core::{Analysis, Model, Scene, SolveError, State};
 use std::ops::ControlFlow;
@@ -22,8 +22,12 @@ pub struct Modal {
     pub state: State,
     /// How it was found; `None` if the scene was in balance as laid.
     pub search: Option<Found>,
-    /// The modes, lowest first.
+    /// The modes, lowest first. Of an unstable equilibrium only those that grow: nothing vibrates about it.
     pub modes: Vec<Mode>,
+    /// Whether the equilibrium is unstable.
+    pub unstable: bool,
+    /// How far the loads may grow until it tips over; `None` without loads.
+    pub critical: Option<Critical>,
     /// What one should know about them.
     pub warnings: Vec<String>,
 }
@@ -176,15 +180,28 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
              close to rounding, or modes lie too close together"
         ));
     }
-    let unstable = found.modes.iter().filter(|m| m.is_unstable()).count();
-    if unstable > 0 {
-        let which = if unstable == 1 { "one mode grows".into() } else { format!("{unstable} modes grow") };
-        warnings.push(format!("the equilibrium is unstable: {which} (negative damping ratio)"));
+    let (mut modes, critical) = (found.modes, found.critical);
+    let growing = modes.iter().filter(|m| m.is_unstable()).count();
+    let unstable = growing > 0 || found.hidden.is_some();
+    if unstable {
+        modes.retain(Mode::is_unstable);
+        let how = match (found.hidden, growing) {
+            (Some(rate), _) => format!(
+                "a small disturbance grows by {rate:.3e} per second, in none of the {count} lowest modes: ask for more \
+                 with `--count`",
+                count = options.count
+            ),
+            (None, 1) => "a small disturbance grows in one mode".into(),
+            (None, n) => format!("a small disturbance grows in {n} modes"),
+        };
+        warnings.push(format!(
+            "the equilibrium is unstable: {how}. Nothing vibrates about it, so no frequencies are given"
+        ));
     }
-    if let Some(bad) = found.modes.iter().map(|m| m.residual).filter(|r| !(*r <= 1e-6)).reduce(f64::max) {
+    if let Some(bad) = modes.iter().map(|m| m.residual).filter(|r| !(*r <= 1e-6)).reduce(f64::max) {
         warnings.push(format!("the equations of a mode are met only to {bad:.0e} of its size"));
     }
-    Ok(Modal { model, state, search, modes: found.modes, warnings })
+    Ok(Modal { model, state, search, modes, unstable, critical, warnings })
 }
 
 /// The equilibrium at a time: of statics scenes along the load path.

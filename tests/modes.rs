@@ -2,9 +2,11 @@
 
 mod program;
 
-use ropewalk::{ModesOptions, modes};
-use ropewalk_constraints::motion::SpinSpec;
-use ropewalk_constraints::{DistanceSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec};
+use ropewalk::{Modal, ModesOptions, modes};
+use ropewalk_constraints::motion::{SpeedTableSpec, SpinSpec};
+use ropewalk_constraints::{
+    ClampSpec, DistanceSpec, PointOnLineSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec, WinchSpec,
+};
 use ropewalk_core::modes::Mode;
 use ropewalk_core::{Analysis, Scene, SteadyFrame};
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
@@ -180,7 +182,7 @@ fn what_is_buckled_or_upside_down_is_called_unstable() {
         scene
             .element(CableSpec::straight("column", [0.0; 3], [0.0, 0.0, 1.0], 32, Section::new(1.5, 1e9, ei)))
             .constraint(SphericalSpec::pin("foot", "column.start"))
-            .constraint(ropewalk_constraints::PointOnLineSpec {
+            .constraint(PointOnLineSpec {
                 name: "head".into(),
                 marker: "column.end".into(),
                 to: None,
@@ -346,4 +348,139 @@ fn program_shows_the_modes_and_leaves_tables_and_pictures() {
     assert!(said.stderr.contains("no equilibrium") && !here.join("runs/falling-modes").exists(), "{said:?}");
     program::run(here, &["modes", "string.toml", "--at", "9 s"])
         .refused(&["`--at` must be between 0 and 1 s"]);
+}
+
+/// A column of `EI = 1 N m²` and 1 m under a load, straight.
+fn column(load: f64, foot: bool, head: [bool; 2]) -> Scene {
+    let mut scene = Scene::new();
+    scene
+        .element(CableSpec::straight("column", [0.0; 3], [0.0, 0.0, 1.0], 32, Section::new(1.0, 1e8, 1.0)))
+        .constraint(SphericalSpec::pin("foot", "column.start"));
+    if foot {
+        scene.constraint(ClampSpec::new("foot-clamp", "column.start"));
+    }
+    let [guided, clamped] = head;
+    if guided {
+        scene.constraint(PointOnLineSpec {
+            name: "head".into(),
+            marker: "column.end".into(),
+            to: None,
+            axis: [0.0, 0.0, 1.0],
+        });
+    }
+    if clamped {
+        scene.constraint(ClampSpec::new("head-clamp", "column.end"));
+    }
+    if load != 0.0 {
+        scene.force(PointForceSpec::new("column.end", [0.0, 0.0, -load], TimeFunction::default()));
+    }
+    scene.run.analysis = Analysis::Statics;
+    scene.statics.stable = false;
+    scene
+}
+
+#[track_caller]
+fn modal(scene: &Scene, count: usize) -> Modal {
+    modes(scene, &ModesOptions { count, ..ModesOptions::default() }).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn columns_buckle_at_the_critical_factor_of_their_loads() {
+    let cases = [
+        ("clamped, free", true, [false, false], 0.25 * PI * PI),
+        ("pinned", false, [true, false], PI * PI),
+        ("clamped, pinned", true, [true, false], 20.190_728_556_426_63),
+        ("clamped", true, [true, true], 4.0 * PI * PI),
+    ];
+    for (name, foot, head, exact) in cases {
+        for share in [1e-3, 0.4, 0.95] {
+            let found = modal(&column(share * exact, foot, head), 4);
+            assert!(!found.unstable && found.warnings.is_empty(), "{:?}", found.warnings);
+            let critical = found.critical.expect("a load");
+            assert_eq!(critical.loads, ["force at `column.end`"]);
+            close(name, critical.factor.expect("it buckles"), 1.0 / share, 1e-4);
+            let shape = critical.shape.expect("a shape");
+            assert!(shape.directions[0] + shape.directions[1] > 0.999, "{:?}", shape.directions);
+        }
+        // beyond it nothing vibrates: the ways in which it falls, and from which load on it does
+        let found = modal(&column(1.5 * exact, foot, head), 6);
+        assert!(found.unstable && found.modes.len() == 2 && found.modes.iter().all(Mode::is_unstable));
+        assert!(found.warnings[0].contains("grows in 2 modes"), "{:?}", found.warnings);
+        close(name, found.critical.and_then(|c| c.factor).expect("lost before"), 1.0 / 1.5, 1e-4);
+    }
+    // Greenhill: a column under its own weight
+    let mut heavy = column(0.0, true, [false, false]);
+    heavy.force(GravitySpec { g: [0.0, 0.0, -2.0], on: vec![] });
+    let critical = modal(&heavy, 4).critical.expect("a load");
+    close("Greenhill", critical.factor.expect("it buckles"), 7.837_347_438_943_38 / 2.0, 1e-4);
+    // hung up, it never buckles
+    let mut hung = column(0.0, true, [false, false]);
+    hung.force(GravitySpec { g: [0.0, 0.0, 2.0], on: vec![] });
+    assert_eq!(modal(&hung, 4).critical.expect("a load").factor, None);
+    assert!(modal(&column(0.0, true, [false, false]), 4).critical.is_none(), "no load, no factor");
+}
+
+#[test]
+fn follower_forces_flutter_and_never_buckle() {
+    // Beck's column flutters at 20.051 without damping
+    for (load, flutters) in [(10.0, false), (19.5, false), (20.6, true)] {
+        let mut scene = column(0.0, true, [false, false]);
+        scene.force(PointForceSpec {
+            follower: Some(-load),
+            ..PointForceSpec::new("column.end", [0.0; 3], TimeFunction::default())
+        });
+        let found = modal(&scene, 8);
+        assert_eq!(found.unstable, flutters, "{load}: {:?}", found.warnings);
+        assert_eq!(found.critical.expect("a load").factor, None, "{load}");
+        if flutters {
+            assert!(found.modes.iter().all(|m| m.is_unstable() && m.omega > 1.0));
+        }
+    }
+}
+
+/// A string that runs at a speed through two eyelets: `ω = n π (c² - V²)/(c L)`.
+#[test]
+fn a_running_string_has_its_frequencies() {
+    let (mass, tension, length) = (1e-3, 2.0_f64, 0.25);
+    let wave = (tension / mass).sqrt();
+    let steadily = |name: &str, v: f64| SpeedTableSpec {
+        name: name.into(),
+        direction: [1.0, 0.0, 0.0],
+        file: None,
+        t: vec![0.0, 1.0],
+        v: vec![v; 2],
+    };
+    let scene = |out: f64, drawn: f64, elements: usize| {
+        let section = Section::new(mass, 1e4 * tension, 0.0);
+        let mut scene = Scene::new();
+        let string = CableSpec::straight("string", [0.0; 3], [length, 0.0, 0.0], elements, section);
+        scene
+            .element(CableSpec { tension: Some(tension), ..string })
+            .constraint(SphericalSpec::pin("in", "string.start"))
+            .constraint(SphericalSpec::pin("out", "string.end"))
+            .motion(steadily("out", out))
+            .motion(steadily("in", -drawn))
+            .constraint(WinchSpec::motion("fed", "string.start", "out"))
+            .constraint(WinchSpec::motion("drawn", "string.end", "in"));
+        scene.run.analysis = Analysis::Statics;
+        scene.run.duration = 1e-3;
+        scene.statics.steps = 1;
+        scene
+    };
+    for speed in [7.716_666_666_666_667, 30.0] {
+        let found = modal(&scene(speed, speed, 16), 6);
+        assert!(!found.unstable && found.warnings.is_empty(), "{:?}", found.warnings);
+        let first = PI * (wave * wave - speed * speed) / (wave * length);
+        close("running string", found.modes[0].omega, first, 1e-4);
+        for m in found.modes.iter().filter(|m| m.omega < 3.5 * first) {
+            close("running string", m.omega, (m.omega / first).round() * first, 2e-3);
+            assert!(m.growth.abs() < 1e-7 * m.omega);
+        }
+    }
+    let refused = modes(&scene(30.0, 29.0, 8), &ModesOptions::default()).err().expect("it grows").to_string();
+    assert!(refused.contains("free length of `string` changes by 1 m/s"), "{refused}");
+    let mut growing = scene(30.0, 30.0, 8);
+    growing.constraints.pop();
+    let refused = modes(&growing, &ModesOptions::default()).err().expect("it grows").to_string();
+    assert!(refused.contains("feeds at one end only, at 30 m/s"), "{refused}");
 }

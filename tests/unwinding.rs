@@ -8,8 +8,9 @@ use ropewalk_constraints::motion::SpeedTableSpec;
 use ropewalk_constraints::{LiftOffSpec, PackageSpec, SphericalSpec, WinchSpec};
 use ropewalk_core::build::{BuildError, Builder};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
+use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{ConstraintSpec, Jet, Joint, MarkerRef, Place, Relation, RowKind};
-use ropewalk_core::{End, Scene, Simulation, V3, Water};
+use ropewalk_core::{End, Model, Scene, Simulation, State, SteadyFrame, V3, Water};
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{DragLaw, DragSpec};
 use serde_json::Value;
@@ -150,7 +151,8 @@ impl Case {
     }
 }
 
-fn balloon(c: &Case, off: Off, n: usize, turns: f64, per_turn: usize, eta: f64) -> Kept {
+/// A model with the balloon of the reference as its state, and where its nodes should be.
+fn laid(c: &Case, off: Off, n: usize, eta: f64) -> (Model, State, Vec<V3<f64>>) {
     let [m, d, radius, v, spin, t0, ei] = ["m", "d", "R", "V", "Om", "T0", "EI"].map(|k| c.get(k));
     // stiff enough that the cable is as long as the inextensible one of the reference to 1e-4
     let ea = 1e4 * t0;
@@ -235,6 +237,13 @@ fn balloon(c: &Case, off: Off, n: usize, turns: f64, per_turn: usize, eta: f64) 
         state.q[6 * n + 3..6 * n + 6].copy_from_slice(&[0.0, 1.0 + c.at(c.length(), 4).0 / ea, 0.0]);
         state.v[6 * n + 3..6 * n + 6].copy_from_slice(&[-spin * state.q[6 * n + 4], 0.0, 0.0]);
     }
+    (model, state, expected)
+}
+
+fn balloon(c: &Case, off: Off, n: usize, turns: f64, per_turn: usize, eta: f64) -> Kept {
+    let [radius, spin, t0, ei] = ["R", "Om", "T0", "EI"].map(|k| c.get(k));
+    let (bent, ea) = (ei > 0.0, 1e4 * t0);
+    let (model, state, expected) = laid(c, off, n, eta);
     let turn = TAU / spin;
     let h = turn / per_turn as f64;
     let options = Options {
@@ -297,6 +306,55 @@ fn steady_balloons_turn_on_as_they_are() {
         // of fourth order in the mesh until the error of the time steps shows; damping adds one of its own
         let order = (shapes[0] / shapes[1]).log2();
         assert!(order > if eta == 0.0 { 3.0 } else { 2.0 }, "{name}: order {order}");
+    }
+}
+
+/// In the frame that turns with it, a balloon is an equilibrium of its own: cable runs in at the lift-off point as fast as
+/// it is drawn off at the eyelet. Without its Coriolis force the tension would be 10 to 20 % off.
+#[test]
+fn steady_balloons_are_equilibria_of_the_turning_frame() {
+    for (name, n) in [
+        ("flex_nodrag_15kn_T0.5", 20),
+        ("flex_nodrag_5kn_T0.05", 10),
+        ("low_const_5kn_a", 10),
+        ("low_choo_15kn_a", 10),
+    ] {
+        let c = case("flow/balloon.json", name);
+        let [radius, spin, t0] = ["R", "Om", "T0"].map(|k| c.get(k));
+        let (model, mut state, expected) = laid(&c, Off::Package, n, 0.0);
+        // not where it should be, nor moving
+        state.v.fill(0.0);
+        for k in 1..n {
+            for i in 0..2 {
+                state.q[6 * k + i] *= 0.97;
+            }
+        }
+        let frame = SteadyFrame { omega: [0.0, 0.0, spin], ..SteadyFrame::default() };
+        let options = StaticsOptions { stable: false, ..StaticsOptions::default() };
+        let mut search = Statics::relative(&model, &options, Some(frame)).expect("memory");
+        search.find(&mut state, true).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let compare = |state: &State| {
+            let (sin, cos) = (spin * state.t).sin_cos();
+            let off = expected.iter().enumerate().map(|(k, e)| {
+                let should = [cos * e[0] - sin * e[1], sin * e[0] + cos * e[1], e[2]];
+                (0..3).map(|i| (state.q[6 * k + i] - should[i]).powi(2)).sum::<f64>().sqrt() / radius
+            });
+            let eyelet = model.constraints().iter().position(|c| c.name() == "pull").expect("the winch");
+            let pull = state.lambda[model.rows_of(eyelet).start];
+            (off.fold(0.0, f64::max), pull / (1.0 + 1e-4) / t0 - 1.0)
+        };
+        let (shape, tension) = compare(&state);
+        eprintln!("{name}: shape {shape:.1e}, tension {tension:.1e}");
+        assert!(shape < 1e-4 && tension.abs() < 1e-3, "{name}: {shape:e} {tension:e}");
+        // a quarter of a turn later it is the same, turned with its lift-off point
+        search.follow(&mut state, 0.25 * TAU / spin).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let later = compare(&state);
+        assert!((later.0 - shape).abs() < 1e-6 && (later.1 - tension).abs() < 1e-6, "{name}: {later:?}");
+
+        let wrong = SteadyFrame { omega: [0.0, 0.0, 0.9 * spin], ..frame };
+        let mut search = Statics::relative(&model, &options, Some(wrong)).expect("memory");
+        let refused = search.find(&mut state, false).expect_err("the lift-off point runs ahead").to_string();
+        assert!(refused.contains("`off` moves by") && refused.contains("`frame` in [run]"), "{refused}");
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::check::unit;
 use crate::connection::{Connection, Equation};
 use ropewalk_core::build::{BuildError, Builder, finite, need};
-use ropewalk_core::rotation::around;
+use ropewalk_core::rotation::{around, cross};
 use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, NodeId, NodeKind, V3, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ pub fn clamp(
 }
 
 /// Holds the direction of a cable at a marker, in space or on a rigid body; its stretch stays free. With `spherical` a
-/// built-in end.
+/// built-in end. A cable that is bent when free of stress can't twist there either.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ClampSpec {
@@ -71,12 +71,26 @@ impl ConstraintSpec for ClampSpec {
         };
         let direction = self.direction.unwrap_or(b.place(&marker).axes[0]);
         finite("direction", &direction)?;
-        let axes = around(unit("direction", direction)?);
+        let direction = unit("direction", direction)?;
+        let director = b.parts(&[])?.iter().find_map(|(_, part)| part.director(node));
+        let axes = match director.map(|d| b.place(&Marker::node(d)).x) {
+            None => around(direction),
+            Some(d) => {
+                let across = unit("direction", cross(&direction, &d))?;
+                [cross(&across, &direction), across, direction]
+            }
+        };
         let to = match &self.to {
             Some(to) => b.marker("to", to)?,
             None => Marker::ground([0.0; 3]),
         };
         let to = to.with_axes(b.nodes(), b.coordinates(), axes);
+        if let Some(director) = director {
+            let name = format!("{}.twist", self.name);
+            let held =
+                Connection::new(name, b.nodes(), [to, Marker::node(director)], vec![Equation::normal(1, 0)])?;
+            b.constraint(held)?;
+        }
         b.constraint(clamp(&self.name, b.nodes(), node, to)?)
     }
 }

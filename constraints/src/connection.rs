@@ -3,8 +3,8 @@
 //!
 //! With `D = x_1 - x_0` and axes `u`, `w` of the markers the equations are `d·D = …` (a coordinate in space),
 //! `u·D = …` (a coordinate in a body's axes, "dot-2"), `u·w = …` (an angle, "dot-1") and `|D| = L`. An axis of a body
-//! turns with it: `δ(R u) = R (θ × u)`; the "axis" of a cable is its slope `r'`, whose length doesn't matter to a
-//! right angle. Haug, *Computer-Aided Kinematics and Dynamics* (1989), chapter 9, has them all.
+//! turns with it: `δ(R u) = R (θ × u)`; the "axis" of a cable is its slope `r'`, that of a director the vector itself,
+//! whose length doesn't matter to a right angle. Haug, *Computer-Aided Kinematics and Dynamics* (1989), chapter 9, has them all.
 
 use ropewalk_core::build::{BuildError, finite, need};
 use ropewalk_core::rotation::{M3, cross, matrix, product, skew, times, transposed_times};
@@ -169,7 +169,7 @@ impl Connection {
         for id in &on {
             let node = nodes.get(id.0 as usize);
             let node = node.ok_or_else(|| BuildError::new(format!("{name}: there is no node {}", id.0)))?;
-            need(!matches!(node.kind, NodeKind::Scalars(_)), || {
+            need(!matches!(node.kind, NodeKind::Scalars(n) if n != 3), || {
                 format!("{name}: node {} has no position", id.0)
             })?;
         }
@@ -229,8 +229,8 @@ impl Connection {
             let node = self.markers[of].on().map_or(0, |n| n.0);
             let good = match self.kind(nodes, of) {
                 None | Some(NodeKind::Frame) => true,
-                Some(NodeKind::Slope) => !turned,
-                Some(_) => false,
+                Some(NodeKind::Slope | NodeKind::Scalars(_)) => !turned,
+                Some(NodeKind::Point) => false,
             };
             need(good, || {
                 format!(
@@ -258,7 +258,7 @@ impl Connection {
             Arrow::Between => point(0).max(point(1)),
             Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => match self.kind(nodes, *of) {
                 None => 0,
-                Some(NodeKind::Slope) => 1,
+                Some(NodeKind::Slope | NodeKind::Scalars(_)) => 1,
                 Some(_) => 2,
             },
         };
@@ -326,7 +326,8 @@ impl Connection {
                         (0..3).for_each(|i| end.x[i] += arm[i]);
                     }
                     NodeKind::Slope => end.axes = [[q[3], q[4], q[5]]; 3],
-                    _ => {}
+                    NodeKind::Scalars(_) => end.axes = [[q[0], q[1], q[2]]; 3],
+                    NodeKind::Point => {}
                 }
                 end
             }
@@ -418,6 +419,7 @@ fn add(arrow: &Arrow, ends: &[End; 2], t: f64, p: &V3<f64>, row: &mut [f64]) {
             match end.kind {
                 Some(NodeKind::Frame) => end.add_turn(&end.axis(arrow, t)[0], p, 1.0, row),
                 Some(NodeKind::Slope) => (0..3).for_each(|i| row[end.start + 3 + i] += p[i]),
+                Some(NodeKind::Scalars(_)) => (0..3).for_each(|i| row[end.start + i] += p[i]),
                 _ => {}
             }
         }
@@ -481,8 +483,9 @@ fn flow(arrow: &Arrow, ends: &[End; 2], at: &At<'_>) -> Flow {
                     let [first, second] = end.turning(at, &axis);
                     Flow { value, by_t: times(&end.r, &axis[1]), first, second }
                 }
-                Some(_) => {
-                    let first = [at.v[end.v + 3], at.v[end.v + 4], at.v[end.v + 5]];
+                Some(kind) => {
+                    let v = end.v + if kind == NodeKind::Slope { 3 } else { 0 };
+                    let first = [at.v[v], at.v[v + 1], at.v[v + 2]];
                     Flow { value, by_t: none, first, second: none }
                 }
                 None => Flow { value, by_t: axis[1], first: axis[1], second: axis[2] },

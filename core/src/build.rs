@@ -469,7 +469,7 @@ impl Builder {
         let mut length = self.length;
         if self.nodes.iter().any(|n| n.kind == NodeKind::Frame) {
             let place = |n: &Node, i: usize| self.start.q[n.q + i];
-            let points = || self.nodes.iter().filter(|n| n.kind.velocities() >= 3);
+            let points = || self.nodes.iter().filter(|n| n.kind.has_position());
             let square: f64 = (0..3)
                 .map(|i| {
                     let most = points().map(|n| place(n, i)).fold(f64::NEG_INFINITY, f64::max);

@@ -68,6 +68,9 @@ impl Term for DeadLoad {
         self.label.clone()
     }
     fn pattern(&self, _: &mut Pattern) {}
+    fn is_load(&self) -> bool {
+        true
+    }
     fn add(&self, _: &At<'_>, out: &mut Assembly<'_>) {
         for e in &self.entries {
             out.add(e.dof, -e.value);
@@ -100,6 +103,9 @@ impl Term for DeadPull {
     }
     fn symmetric(&self) -> bool {
         !matches!(self.held, Held::Beside { .. })
+    }
+    fn is_load(&self) -> bool {
+        true
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let force = Pull { f: self.force, ..Pull::default() };

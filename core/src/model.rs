@@ -142,8 +142,7 @@ impl Model {
         };
         let symmetric = terms.iter().all(|t| t.symmetric()) && !constraints.iter().any(|c| turns(c.as_ref()));
         let flat = nodes.iter().all(|n| n.kind != NodeKind::Frame);
-        let positions =
-            nodes.iter().filter(|n| n.kind.velocities() >= 3).flat_map(|n| &start.q[n.q..n.q + 3]);
+        let positions = nodes.iter().filter(|n| n.kind.has_position()).flat_map(|n| &start.q[n.q..n.q + 3]);
         let farthest = positions.fold(length, |m, x| m.max(x.abs()));
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
         let watchful = (0..terms.len()).filter(|&k| terms[k].foresees()).collect();
@@ -332,6 +331,12 @@ impl Model {
         }
     }
 
+    /// Coordinate, velocity and acceleration that are prescribed at time `t` where the velocity has this place.
+    pub(crate) fn prescribed(&self, at: usize, t: f64, modes: &[f64]) -> Option<[f64; 3]> {
+        let own = self.driven.iter().find(|&&(c, _, v)| v == at && self.holds(c, modes));
+        own.map(|&(c, ..)| self.constraints[c].prescribed(t))
+    }
+
     /// Leaves out what a vector of velocities has of prescribed coordinates.
     pub(crate) fn without_driven(&self, modes: &[f64], x: &mut [f64]) {
         for &(c, _, at) in &self.driven {
@@ -387,6 +392,53 @@ impl Model {
         self.assemble_all(structure, None, at, lambda, weights, sys);
     }
 
+    /// Residual and tangent of the loads alone, without constraints.
+    pub(crate) fn assemble_loads(
+        &self,
+        structure: &Structure,
+        at: &At<'_>,
+        weights: Weights,
+        sys: &mut System,
+    ) {
+        self.clear(structure, true, sys);
+        for k in (0..self.terms.len()).filter(|&k| self.terms[k].is_load()) {
+            self.add_term(structure, k, None, at, Some(weights), sys);
+        }
+    }
+
+    fn clear(&self, structure: &Structure, tangent: bool, sys: &mut System) {
+        sys.approximate = false;
+        sys.residual.resize(self.structure.n, 0.0);
+        sys.residual.fill(0.0);
+        if tangent {
+            sys.values.resize(structure.entries(), 0.0);
+            sys.values.fill(0.0);
+        }
+    }
+
+    fn add_term(
+        &self,
+        structure: &Structure,
+        k: usize,
+        leap: Option<Leap<'_>>,
+        at: &At<'_>,
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
+        let mut out = Assembly {
+            residual: &mut sys.residual[..self.velocities],
+            values: weights.map(|_| sys.values.as_mut_slice()),
+            weights: weights.unwrap_or_default(),
+            width: self.width,
+            structure,
+            clique: self.cliques[k].start,
+            scratch: &mut sys.scratch,
+            leap,
+            approximate: &mut sys.approximate,
+        };
+        self.terms[k].add(at, &mut out);
+    }
+
     fn assemble_all(
         &self,
         structure: &Structure,
@@ -396,31 +448,13 @@ impl Model {
         weights: Option<Weights>,
         sys: &mut System,
     ) {
-        let nv = self.velocities;
-        sys.approximate = false;
-        sys.residual.resize(self.structure.n, 0.0);
-        sys.residual.fill(0.0);
-        if weights.is_some() {
-            sys.values.resize(structure.entries(), 0.0);
-            sys.values.fill(0.0);
-        }
+        self.clear(structure, weights.is_some(), sys);
         if let Some(p) = &mut sys.profile {
             p.resize(self.terms.len() + 1, (0, Duration::ZERO));
         }
-        for (k, term) in self.terms.iter().enumerate() {
+        for k in 0..self.terms.len() {
             let begin = sys.profile.as_ref().map(|_| Instant::now());
-            let mut out = Assembly {
-                residual: &mut sys.residual[..nv],
-                values: weights.map(|_| sys.values.as_mut_slice()),
-                weights: weights.unwrap_or_default(),
-                width: self.width,
-                structure,
-                clique: self.cliques[k].start,
-                scratch: &mut sys.scratch,
-                leap,
-                approximate: &mut sys.approximate,
-            };
-            term.add(at, &mut out);
+            self.add_term(structure, k, leap, at, weights, sys);
             if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
                 p[k].0 += 1;
                 p[k].1 += begin.elapsed();

@@ -32,6 +32,11 @@ impl NodeKind {
         }
     }
 
+    /// Whether its first three coordinates are a position.
+    pub fn has_position(self) -> bool {
+        !matches!(self, NodeKind::Scalars(_))
+    }
+
     /// Number of velocities, increments and equations.
     pub fn velocities(self) -> usize {
         match self {

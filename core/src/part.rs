@@ -142,6 +142,10 @@ pub trait Part: Send + Sync {
     fn front(&self, _end: usize) -> Option<Front> {
         None
     }
+    /// Whether elements are born and swallowed at an end, instead of growing and shrinking together.
+    fn makes_elements(&self, _end: usize) -> bool {
+        false
+    }
     /// Sets velocities `v` such that an end feeds at this rate of its material coordinate [m/s] while the material keeps
     /// the velocity that it has.
     fn start_feeding(&self, _end: usize, _rate: f64, _q: &[f64], _v: &mut [f64]) {}
@@ -157,6 +161,14 @@ pub trait Part: Send + Sync {
     /// First coordinate and velocity of each of its own nodes, in order.
     fn seats(&self) -> Vec<(usize, usize)> {
         Vec::new()
+    }
+    /// The node, three numbers, that tells which way the section at a node of a cable looks; `None` where it doesn't know.
+    fn director(&self, _node: NodeId) -> Option<NodeId> {
+        None
+    }
+    /// Interpolates the numbers of those nodes, or their rates, at arc length `s`.
+    fn looks(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<V3<f64>> {
+        None
     }
     /// Length of the element at an end [m]: 0 the start, 1 the end.
     fn end_element(&self, _end: usize, _at: &At<'_>) -> Option<f64> {

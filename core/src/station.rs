@@ -199,6 +199,9 @@ impl Term for FieldTerm {
     fn symmetric(&self) -> bool {
         false
     }
+    fn is_load(&self) -> bool {
+        true
+    }
     fn timed(&self) -> bool {
         self.laws.0.iter().any(|l| l.timed())
     }

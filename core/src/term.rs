@@ -99,6 +99,10 @@ pub trait Term: Send + Sync {
     fn symmetric(&self) -> bool {
         true
     }
+    /// Whether it is a load from outside, which [critical factors](crate::modes::Critical) scale.
+    fn is_load(&self) -> bool {
+        false
+    }
     /// Adds its share of the residual and, if wanted, of the tangent.
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>);
     /// Its kinetic and potential energy.

@@ -109,6 +109,9 @@ impl Term for PointMoment {
     fn symmetric(&self) -> bool {
         false
     }
+    fn is_load(&self) -> bool {
+        true
+    }
     fn timed(&self) -> bool {
         self.time.changes()
     }

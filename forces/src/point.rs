@@ -153,6 +153,9 @@ impl Term for PointForce {
     fn symmetric(&self) -> bool {
         matches!((self.aim, self.ends[1]), (Aim::Dead(_), Held::Moves { .. }))
     }
+    fn is_load(&self) -> bool {
+        true
+    }
     fn timed(&self) -> bool {
         self.time.changes()
     }

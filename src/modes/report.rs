@@ -3,7 +3,7 @@
 use super::Modal;
 use crate::output::{Column, Elapsed, RunFolder, Table, number};
 use crate::read::SceneFile;
-use ropewalk_core::modes::Mode;
+use ropewalk_core::modes::{Critical, Mode};
 use ropewalk_core::{Analysis, Model, NodeId};
 use std::fmt::Write as _;
 
@@ -50,7 +50,7 @@ pub(super) fn where_it_moves(model: &Model, m: &Mode) -> String {
     let part = &model.parts()[p];
     let way = |k: usize| {
         let n = &model.nodes()[k];
-        let own = n.v..n.v + n.kind.velocities().min(3);
+        let own = if n.kind.has_position() { n.v..n.v + 3 } else { n.v..n.v };
         own.map(|i| m.shape[i].powi(2) + m.quadrature[i].powi(2)).sum::<f64>()
     };
     let on = (0..model.nodes().len()).filter_map(|k| Some((k, part.place_of(NodeId(k as u32))?)));
@@ -99,23 +99,14 @@ pub(super) fn report(
         Analysis::Statics => format!("load factor {}", number(modal.state.t)),
     };
     let _ = writeln!(out, "{about}, {when}\n");
-    let rows: Vec<[String; 6]> = modal
-        .modes
-        .iter()
-        .enumerate()
-        .map(|(k, m)| {
-            let ratio = if m.rigid { String::new() } else { format!("{:.4}", m.damping_ratio()) };
-            [
-                (k + 1).to_string(),
-                format!("{:.6}", Short(m.frequency())),
-                format!("{:.6}", Short(m.omega)),
-                ratio,
-                where_it_moves(&modal.model, m),
-                kind(m).to_string(),
-            ]
-        })
-        .collect();
-    let head = ["", "Hz", "rad/s", "damping", "moves", ""].map(str::to_string);
+    let row = if modal.unstable { growing } else { vibrating };
+    let rows: Vec<[String; 6]> =
+        modal.modes.iter().enumerate().map(|(k, m)| row(&modal.model, k, m)).collect();
+    let head = match modal.unstable {
+        false => ["", "Hz", "rad/s", "damping", "moves", ""],
+        true => ["", "growth 1/s", "e-fold s", "swings Hz", "moves", ""],
+    };
+    let head = head.map(str::to_string);
     let width = |c: usize| rows.iter().chain([&head]).map(|r| r[c].chars().count()).max().unwrap_or(0);
     let widths: [usize; 6] = std::array::from_fn(width);
     for row in std::iter::once(&head).chain(&rows) {
@@ -126,6 +117,9 @@ pub(super) fn report(
         }
         let _ = writeln!(out, "  {}", line.trim_end());
     }
+    if let Some(critical) = &modal.critical {
+        let _ = writeln!(out, "\n{}", buckling(&modal.model, critical));
+    }
     let _ = writeln!(
         out,
         "\n{}: tables/modes.csv, {pictures} pictures in plots/ ({:.2} s of CPU time)",
@@ -133,6 +127,47 @@ pub(super) fn report(
         elapsed.cpu_s
     );
     out
+}
+
+/// The row of a mode of vibration.
+fn vibrating(model: &Model, k: usize, m: &Mode) -> [String; 6] {
+    let ratio = if m.rigid { String::new() } else { format!("{:.4}", m.damping_ratio()) };
+    [
+        (k + 1).to_string(),
+        Short(m.frequency()).to_string(),
+        Short(m.omega).to_string(),
+        ratio,
+        where_it_moves(model, m),
+        kind(m).to_string(),
+    ]
+}
+
+/// The row of a mode of an unstable equilibrium, of which its growth counts.
+fn growing(model: &Model, k: usize, m: &Mode) -> [String; 6] {
+    let swings = if m.omega > 0.0 { Short(m.frequency()).to_string() } else { String::new() };
+    [
+        (k + 1).to_string(),
+        Short(m.growth).to_string(),
+        Short(1.0 / m.growth).to_string(),
+        swings,
+        where_it_moves(model, m),
+        kind(m).to_string(),
+    ]
+}
+
+/// The critical factor in a sentence.
+fn buckling(model: &Model, critical: &Critical) -> String {
+    let loads = critical.loads.join(", ");
+    match (&critical.factor, &critical.shape) {
+        (Some(factor), Some(shape)) => format!(
+            "Critical factor of all loads together ({loads}): {}, by linear buckling; moves {}",
+            Short(*factor),
+            where_it_moves(model, shape)
+        ),
+        _ => format!(
+            "However large all loads together grow ({loads}), linear buckling finds no critical factor"
+        ),
+    }
 }
 
 /// A number with six digits that count.

@@ -418,7 +418,7 @@ impl Workspace {
         let mut total = 0.0;
         for direction in 0..3 {
             unit.fill(0.0);
-            for n in model.nodes().iter().filter(|n| n.kind.velocities() >= 3) {
+            for n in model.nodes().iter().filter(|n| n.kind.has_position()) {
                 unit[n.v + direction] = 1.0;
             }
             self.times_mass(model, &unit, &mut out);

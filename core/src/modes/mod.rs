@@ -4,6 +4,7 @@
 //! and of the forces of constraints, in a turning frame with Coriolis and centrifugal forces. Multipliers stay in the
 //! equations, so motions meet the constraints and no spurious modes come of them.
 
+mod buckling;
 mod krylov;
 mod pencil;
 mod quadratic;
@@ -14,7 +15,8 @@ use crate::motion::SteadyFrame;
 use crate::node::{Node, NodeKind};
 use crate::solver::SolveError;
 use crate::state::{At, State};
-use crate::statics::{Statics, StaticsOptions};
+use crate::statics::{Statics, StaticsError, StaticsOptions};
+pub use buckling::Critical;
 use pencil::Pencil;
 use std::ops::ControlFlow;
 
@@ -71,6 +73,10 @@ pub struct Modes {
     /// How many modes below the last one are missing or too many by Sylvester's law of inertia; `None` where it can't be
     /// asked.
     pub missing: Option<usize>,
+    /// How far the loads may grow until the equilibrium tips over; `None` without loads.
+    pub critical: Option<Critical>,
+    /// The rate at which a disturbance grows that none of these modes explains [1/s]: there are others, unstable ones.
+    pub hidden: Option<f64>,
 }
 
 /// Why modes can't be found.
@@ -99,6 +105,9 @@ pub enum ModesError {
     /// No modes were asked for.
     #[error("the number of modes must be at least 1")]
     None,
+    /// Material runs through a cable whose shape can't be steady.
+    #[error(transparent)]
+    Unsteady(#[from] StaticsError),
     /// A linear system can't be solved.
     #[error("the modes can't be computed: {0}")]
     Solver(SolveError),
@@ -158,6 +167,7 @@ pub fn in_balance(
     frame: Option<SteadyFrame>,
 ) -> Result<bool, ModesError> {
     let mut statics = Statics::relative(model, options, frame).map_err(ModesError::Solver)?;
+    statics.run_material(state)?;
     let mut trial = state.clone();
     // the first correction finds the multipliers, the second is taken with the stiffness that comes of them
     for round in 0..2 {
@@ -168,7 +178,7 @@ pub fn in_balance(
         let mut worst = 0.0_f64;
         for n in model.nodes() {
             for (k, x) in moves[n.dofs()].iter().enumerate() {
-                let x = if k < 3 { x.abs() / model.length() } else { x.abs() };
+                let x = if k < 3 && n.kind.has_position() { x.abs() / model.length() } else { x.abs() };
                 // max() would swallow a NaN
                 worst = if x.is_nan() { f64::INFINITY } else { worst.max(x) };
             }
@@ -177,6 +187,9 @@ pub fn in_balance(
             return Ok(false);
         }
         trial.lambda.iter_mut().zip(multipliers).for_each(|(l, d)| *l += d);
+        // a tiny strain of what is stiff is not a tiny force
+        let before = trial.q.clone();
+        model.retract(&before, moves, &mut trial.q);
         if round == 1 {
             statics.ride(&mut trial);
             *state = trial;
@@ -204,6 +217,7 @@ pub fn modes(
         return Err(ModesError::None);
     }
     let mut statics = Statics::relative(model, options, frame).map_err(ModesError::Solver)?;
+    statics.run_material(state)?;
     let mut rest = state.clone();
     rest.v.fill(0.0);
     rest.a.fill(0.0);
@@ -225,10 +239,26 @@ pub fn modes(
     if found.modes.is_empty() {
         return Err(ModesError::Held);
     }
-    let mut modes: Vec<Mode> = found.modes.into_iter().map(|raw| finish(model, &pencil, raw)).collect();
+    let mut found = found;
+    let all = std::mem::take(&mut found.modes);
+    let mut modes: Vec<Mode> = all.into_iter().map(|raw| finish(model, &pencil, raw)).collect();
     // in the order found, but rigid ones first
     modes.sort_by_key(|m| !m.rigid);
-    Ok(Modes { modes, damped: pencil.damped, of: found.of, missing: found.missing })
+    // no law of inertia counts what is damped or gyroscopic, but a disturbance finds what grows
+    let hidden = match pencil.damped || !pencil.symmetric {
+        true if !modes.iter().any(Mode::is_unstable) => {
+            let after = statics.disturb(&rest).map_err(ModesError::Solver)?;
+            after.unstable.then_some(after.rate)
+        }
+        _ => None,
+    };
+    // the modes are right though a matrix of the buckling problem be singular
+    let critical = match buckling::critical(&mut statics, model, &rest, &mut pencil, &modes) {
+        Err(ModesError::Solver(_) | ModesError::Eigen) => None,
+        found => found?,
+    };
+    let Found { missing, of, .. } = found;
+    Ok(Modes { modes, damped: pencil.damped, of, missing, critical, hidden })
 }
 
 /// What is held still moves with the frame; what is driven must move like it, or not at all.

@@ -118,9 +118,17 @@ impl Pencil {
 
     /// Newton's correction of the equilibrium with the factored matrix, multipliers included.
     pub fn correction(&mut self) -> Result<Vec<f64>, SolveError> {
+        let residual = std::mem::take(&mut self.linear.braced_residual);
+        let found = self.answer(&residual);
+        self.linear.braced_residual = residual;
+        found
+    }
+
+    /// Displacements and multipliers by which the equations take up a residual, with the factored matrix.
+    pub fn answer(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveError> {
         let (l, mut x) = (&self.linear, vec![0.0; self.len()]);
-        for (i, &p) in l.structure.position.iter().enumerate() {
-            x[p] = -l.braced_residual[i];
+        for (residual, &p) in residual.iter().zip(&l.structure.position) {
+            x[p] = -residual;
         }
         self.solver.solve(&l.structure, &self.values, &mut x)?;
         Ok(l.structure.position.iter().map(|&p| x[p]).collect())
@@ -133,6 +141,11 @@ impl Pencil {
             return None;
         }
         self.solver.negative_pivots().map(|n| n.saturating_sub(self.held))
+    }
+
+    /// Leaves of the two sides of the equations only the forces.
+    pub fn load(&self, y: &mut [f64]) {
+        zero_multipliers(&self.linear.structure, y);
     }
 
     pub fn mass(&self, x: &[f64], y: &mut [f64]) {

@@ -1,8 +1,9 @@
 //! The equations of motion linearised about an equilibrium, in the frame of the search.
 
 use super::Statics;
-use crate::state::State;
+use crate::state::{At, State};
 use crate::structure::Structure;
+use crate::term::Weights;
 
 /// `M ẍ + C ẋ + K x + Gᵀλ = -r`, `G x = -g`, with all matrices stored as [`Structure::rows`] says.
 ///
@@ -32,6 +33,24 @@ impl Statics<'_> {
             damping: self.damping.values.clone(),
             mass: self.mass.values.clone(),
         }
+    }
+
+    /// Residual and stiffness of the loads alone, as seen from the frame.
+    pub(crate) fn loads(&mut self, state: &State) -> (Vec<f64>, Vec<f64>) {
+        self.follow_frame(&state.q);
+        let State { t, q, modes, .. } = state;
+        let at = At { t: *t, q, v: &self.v, a: &self.a, modes, relaxed: None };
+        let (q, v, a) = (1.0, 1.0, 1.0);
+        let none = Weights::default();
+        let (model, structure) = (self.model, &self.structure);
+        model.assemble_loads(structure, &at, Weights { q, ..none }, &mut self.system);
+        let omega = self.frame.map_or([0.0; 3], |f| f.omega);
+        if omega != [0.0; 3] {
+            model.assemble_loads(structure, &at, Weights { v, ..none }, &mut self.damping);
+            model.assemble_loads(structure, &at, Weights { a, ..none }, &mut self.mass);
+            self.turn_columns(omega, &state.q);
+        }
+        (self.system.residual.clone(), self.system.values.clone())
     }
 
     /// Sets velocities and accelerations of a state to those of the frame.

@@ -5,6 +5,7 @@
 //! An equilibrium is accepted if it is stable and not folded: by the inertia of the factors where the tangent is
 //! symmetric, else by what becomes of a small disturbance.
 
+mod flow;
 mod linear;
 mod search;
 mod stability;
@@ -91,10 +92,7 @@ impl Found {
 
 /// Why no equilibrium was found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "no equilibrium was found at t = {t}: {why} (after {iterations} iterations, largest residual {residual:.2e} in \
-     {equation}). Try more load `steps`, a start closer to the solution, or a little bending stiffness"
-)]
+#[error("{}", self.told())]
 pub struct StaticsError {
     /// Time, or load factor.
     pub t: f64,
@@ -106,6 +104,25 @@ pub struct StaticsError {
     pub residual: f64,
     /// Where.
     pub equation: String,
+}
+
+impl StaticsError {
+    /// Nothing was searched, since there is nothing to be found.
+    fn refused(t: f64, why: String) -> Self {
+        StaticsError { t, why, iterations: 0, residual: 0.0, equation: String::new() }
+    }
+
+    fn told(&self) -> String {
+        let StaticsError { t, why, iterations, residual, equation } = self;
+        if *iterations == 0 {
+            return format!("there is no equilibrium at t = {t}: {why}");
+        }
+        format!(
+            "no equilibrium was found at t = {t}: {why} (after {iterations} iterations, largest residual \
+             {residual:.2e} in {equation}). Try more load `steps`, a start closer to the solution, or a little bending \
+             stiffness"
+        )
+    }
 }
 
 /// Searches equilibria of one model. Keeps its scratch between searches.
@@ -123,20 +140,26 @@ pub struct Statics<'a> {
     clocks: Clocks,
     v: Vec<f64>,
     a: Vec<f64>,
+    /// Whether material may run through cables, and at which rate it does so at the time of the search: place of each
+    /// front's velocity and coordinate, and its rate.
+    flows: bool,
+    flow: Vec<(usize, usize, f64)>,
 }
 
 impl<'a> Statics<'a> {
-    /// Prepares the search for equilibria at rest.
+    /// Prepares the search for equilibria at rest: what feeds a cable stands still.
     ///
     /// # Errors
     /// Not enough memory for the factors.
     pub fn new(model: &'a Model, options: &StaticsOptions) -> Result<Self, SolveError> {
-        Self::relative(model, options, None)
+        let at_rest = Self::relative(model, options, None)?;
+        Ok(Statics { flows: false, ..at_rest })
     }
 
     /// Prepares the search for equilibria relative to a frame that moves steadily, such as a tow at constant speed or
     /// in a steady turn: one solution instead of a long run. The frame's centre is a point in space at the time of
-    /// the search.
+    /// the search. Material runs through cables whose ends feed: where it runs in as fast as out, their shape may be
+    /// steady, with the forces that this takes.
     ///
     /// # Errors
     /// Not enough memory for the factors.
@@ -162,6 +185,8 @@ impl<'a> Statics<'a> {
             clocks: Clocks::default(),
             v: zero.clone(),
             a: zero,
+            flows: true,
+            flow: Vec::new(),
         })
     }
 
@@ -184,8 +209,16 @@ impl<'a> Statics<'a> {
     /// path, or a guess.
     ///
     /// # Errors
-    /// None was found; the state is as it was.
+    /// None was found, or there is none since the length of a cable changes; the state is as it was.
     pub fn find(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
+        self.run_material(state)?;
+        let before = state.clone();
+        let found = self.seek(state, cold)?;
+        self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
+        Ok(found)
+    }
+
+    fn seek(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
         let before = state.clone();
         let mut first = self.search(state, cold, cold);
         if first.is_err() && !cold {
@@ -240,17 +273,20 @@ impl<'a> Statics<'a> {
         let (mut h, mut sum) = (t - state.t, Found::default());
         let least = h.abs() / 256.0;
         while state.t != t {
+            let last = state.clone();
             let from = state.t;
             state.t = if (t - from).abs() <= 1.001 * h.abs() { t } else { from + h };
+            self.run_on(state, state.t - from);
             match self.find(state, false) {
                 Ok(found) => {
                     sum.add(&found);
                     h *= 2.0;
                 }
                 Err(e) => {
-                    state.t = from;
+                    *state = last;
                     h *= 0.5;
-                    if h.abs() < least {
+                    // what was refused isn't found by smaller steps either
+                    if h.abs() < least || e.iterations == 0 {
                         return Err(e);
                     }
                 }

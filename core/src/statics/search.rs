@@ -154,7 +154,7 @@ impl Statics<'_> {
         let mut worst = 0.0;
         for n in self.model.nodes() {
             for (k, x) in d[n.dofs()].iter().enumerate() {
-                let x = if k < 3 { x / length } else { *x };
+                let x = if k < 3 && n.kind.has_position() { x / length } else { *x };
                 // max() would swallow a NaN
                 if !x.is_finite() {
                     return f64::INFINITY;
@@ -168,6 +168,7 @@ impl Statics<'_> {
     fn position_size(&self, d: &[f64]) -> f64 {
         let nodes = self.model.nodes().iter();
         nodes
+            .filter(|n| n.kind.has_position())
             .flat_map(|n| d[n.v..n.v + n.kind.velocities().min(3)].iter())
             .fold(0.0, |m: f64, x| m.max(x.abs()))
     }

@@ -56,7 +56,7 @@ impl Statics<'_> {
         let mass: f64 = {
             let (mut x, mut y) = (Vec::new(), vec![0.0; n]);
             let mut unit = vec![0.0; model.velocities()];
-            for node in model.nodes().iter().filter(|n| n.kind.velocities() >= 3) {
+            for node in model.nodes().iter().filter(|n| n.kind.has_position()) {
                 unit[node.v] = 1.0;
             }
             order(&unit, &mut x, &self.structure);

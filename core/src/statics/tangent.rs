@@ -95,6 +95,9 @@ impl Statics<'_> {
 
     /// Velocities and accelerations of the frame at a configuration.
     pub(super) fn follow_frame(&mut self, q: &[f64]) {
+        for &(v, _, rate) in &self.flow {
+            self.v[v] = rate;
+        }
         let Some(f) = self.frame else { return };
         for n in self.model.nodes() {
             let x = &q[n.coords()];
@@ -177,7 +180,7 @@ impl Statics<'_> {
         let none = vec![0.0; self.model.multipliers()];
         self.model.assemble_in(&self.structure, &at, &none, None, &mut self.system);
         let mut sum = 0.0;
-        for n in self.model.nodes().iter().filter(|n| n.kind.velocities() >= 3) {
+        for n in self.model.nodes().iter().filter(|n| n.kind.has_position()) {
             let r = &self.system.residual[n.v..n.v + 3];
             sum += r.iter().map(|x| x * x).sum::<f64>().sqrt();
         }

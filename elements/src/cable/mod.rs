@@ -5,6 +5,7 @@
 //! - [`Cable`]: elastic force and mass. [`CableModel`] chooses its models at run time, [`push_cable`] makes it.
 
 mod damping;
+pub(crate) mod directed;
 mod element;
 pub mod flow;
 mod l1;
@@ -29,6 +30,7 @@ mod t3;
 pub mod transverse;
 
 pub use damping::{AxialDamping, BendingDamping};
+pub use directed::{Directed, DirectedLanes, DirectedParams};
 pub use element::{Cable, CableParams, mass};
 pub use l1::L1;
 pub use l1n::L1n;

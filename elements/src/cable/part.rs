@@ -1,5 +1,6 @@
 //! A cable as a part of a model: its markers, its stations, what can be observed along it.
 
+use super::directed::curvature;
 use super::flow::change::{self, Snapshot};
 use super::flow::{Line, push};
 use super::output::read;
@@ -39,6 +40,23 @@ pub struct CablePart {
     pub(crate) rest: Option<Vec<[f64; 12]>>,
     /// Stress-free strain and curvature on top of that.
     pub(crate) offset: (f64, f64),
+    /// Which way its sections look, where it is bent when free of stress.
+    pub(crate) directors: Option<Directors>,
+}
+
+/// The directors of a cable, node by node.
+pub(crate) struct Directors {
+    pub nodes: Vec<NodeId>,
+    /// First coordinate and first velocity of each.
+    pub seats: Vec<(usize, usize)>,
+    /// As the cable was laid.
+    pub laid: Vec<V3<f64>>,
+}
+
+impl Directors {
+    fn at(&self, k: usize, q: &[f64]) -> [V3<f64>; 2] {
+        [k, k + 1].map(|k| std::array::from_fn(|i| q[self.seats[k].0 + i]))
+    }
 }
 
 impl CablePart {
@@ -121,6 +139,14 @@ impl CablePart {
         Ok(snapshot)
     }
 
+    /// Bending moment where sections know which way they look [N m].
+    fn bent(&self, k: usize, l: f64, xi: f64, q: &[f64]) -> Option<f64> {
+        let (directors, rest) = (self.directors.as_ref()?, &self.rest.as_ref()?[k]);
+        let now = curvature(&self.dofs(k, q), directors.at(k, q), l, xi);
+        let then = curvature(rest, [directors.laid[k], directors.laid[k + 1]], l, xi);
+        Some(self.section.ei * (now[0] - then[0]).hypot(now[1] - then[1]))
+    }
+
     /// Second derivative of the curve at an end of element `k`: at its start, or at its end.
     fn bend(&self, k: usize, at_start: bool, q: &[f64]) -> Option<V3<f64>> {
         if k + 1 >= self.mesh.len() {
@@ -179,6 +205,10 @@ impl Part for CablePart {
     }
     fn front(&self, end: usize) -> Option<Front> {
         self.line.as_ref()?.fronts.iter().find(|(at, _)| *at == end).map(|(_, front)| *front)
+    }
+
+    fn makes_elements(&self, end: usize) -> bool {
+        self.line.as_ref().is_some_and(|line| line.zone[end])
     }
 
     fn start_feeding(&self, end: usize, rate: f64, q: &[f64], v: &mut [f64]) {
@@ -332,7 +362,7 @@ impl Part for CablePart {
             Quantity::Tension => r.tension - s.ea * (self.offset.0 + self.fading(k, xi, at.t)),
             Quantity::Strain => r.strain,
             Quantity::Curvature => r.curvature,
-            Quantity::Moment => r.moment - s.ei * self.offset.1,
+            Quantity::Moment => self.bent(k, l, xi, at.q).unwrap_or(r.moment) - s.ei * self.offset.1,
         })
     }
 
@@ -407,12 +437,28 @@ impl Part for CablePart {
         {
             return Some(format!("what is fed at its {}", ["start", "end"][*end]));
         }
+        if let Some(directors) = &self.directors
+            && let Some(k) = directors.nodes.iter().position(|&n| n == node)
+        {
+            return Some(format!("director at {:.4} m", self.mesh[k]));
+        }
         let k = self.nodes.iter().position(|&n| n == node)?;
         Some(format!("at {:.4} m", self.mesh[k]))
     }
 
     fn seats(&self) -> Vec<(usize, usize)> {
         self.seats.clone()
+    }
+
+    fn director(&self, node: NodeId) -> Option<NodeId> {
+        let k = self.nodes.iter().position(|&n| n == node)?;
+        Some(self.directors.as_ref()?.nodes[k])
+    }
+
+    fn looks(&self, s: f64, x: &[f64], coordinates: bool) -> Option<V3<f64>> {
+        let (directors, (k, _, xi)) = (self.directors.as_ref()?, Self::locate(&self.mesh, s)?);
+        let seat = |k: usize| if coordinates { directors.seats[k].0 } else { directors.seats[k].1 };
+        Some(std::array::from_fn(|i| (1.0 - xi) * x[seat(k) + i] + xi * x[seat(k + 1) + i]))
     }
 
     fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
@@ -428,6 +474,14 @@ impl Part for CablePart {
             if let Some((x, dx)) = old.slope(self.mesh[k], at.v, false) {
                 v[node.v..node.v + 3].copy_from_slice(&x);
                 v[node.v + 3..node.v + 6].copy_from_slice(&dx);
+            }
+        }
+        let seats = self.directors.iter().flat_map(|d| &d.seats);
+        for (s, &(own_q, own_v)) in self.mesh.iter().zip(seats) {
+            for (x, all, own, coordinates) in [(at.q, &mut *q, own_q, true), (at.v, &mut *v, own_v, false)] {
+                if let Some(d) = old.looks(*s, x, coordinates) {
+                    all[own..own + 3].copy_from_slice(&d);
+                }
             }
         }
     }

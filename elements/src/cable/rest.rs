@@ -18,7 +18,7 @@ use std::marker::PhantomData;
 pub type AtPoints<R> = [R; MOST];
 
 /// Curvature times length below which a point counts as straight.
-const STRAIGHT: f64 = 1e-6;
+pub(super) const STRAIGHT: f64 = 1e-6;
 
 /// Stress-free strain: adds the energy `EA ∫ (½ ε₀² - ε₀ ε) dx`.
 #[derive(Clone, Copy, Debug)]
@@ -109,8 +109,9 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialRest<L, Q> {
 
 /// Stress-free curvature: adds the energy `EI ∫ (½ κ₀² - κ₀ κ) dx`.
 ///
-/// κ₀ is a number without a direction: a cable without torsion doesn't know to which side it was bent, and in its
-/// straightened state may fall to any. There κ has a kink, so `√(κ² + κₛ²)` with `κₛ = 1e-6/L` takes its place; a
+/// κ₀ is a number without a direction, for a cable that may turn about its axis as it likes: in its straightened state
+/// it may fall to any side, and nothing holds it in the plane in which it is bent. [`Directed`](super::Directed) knows
+/// directions. There κ has a kink, so `√(κ² + κₛ²)` with `κₛ = 1e-6/L` takes its place; a
 /// straight element with κ₀ > 0 is in unstable equilibrium.
 #[derive(Clone, Copy, Debug)]
 pub struct BendingRest<T, Q> {
@@ -201,8 +202,9 @@ impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingRest<T, Q> {
 /// What an element looks like when free of stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rest {
-    /// As in this shape: the twelve dofs of the element.
-    Shape([f64; 12]),
+    /// As long at each point as in this shape, the twelve dofs of the element; how it is bent there is told by
+    /// [`Directed`](super::Directed).
+    Stretched([f64; 12]),
     /// The same strain and curvature everywhere.
     Uniform {
         /// Strain in the model's own measure.
@@ -224,8 +226,8 @@ impl<S: Sink> WithModels for Push<'_, S> {
     fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) {
         let CableParams { l, ea, ei, .. } = self.params;
         let (axial, bending) = match self.rest {
-            Rest::Shape(e) => {
-                (AxialRest::<L, Q::Axial>::at_shape(l, ea, &e), BendingRest::at_shape(l, ei, &e))
+            Rest::Stretched(e) => {
+                (AxialRest::<L, Q::Axial>::at_shape(l, ea, &e), BendingRest::new(l, ei, [0.0; MOST]))
             }
             Rest::Uniform { eps0, kappa0 } => {
                 (AxialRest::new(l, ea, [eps0; MOST]), BendingRest::new(l, ei, [kappa0; MOST]))

@@ -1,10 +1,12 @@
 //! `type = "cable"`: what a scene says about a cable.
 
 use super::damping::{push_axial_damping, push_bending_damping};
+use super::directed::{self, Directed, DirectedParams};
 use super::flow::Line;
 use super::flow::push::{self, Piece};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
-use super::part::{CablePart, mesh};
+use super::part::{CablePart, Directors, mesh};
+use super::quadrature::{Gauss2, Gauss5};
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
 use crate::path::Path;
@@ -30,6 +32,13 @@ pub struct Section {
     /// Bending stiffness EI [N m²].
     #[serde(default, deserialize_with = "quantity::bending_stiffness")]
     pub ei: f64,
+    /// Torsional stiffness GJ [N m²] of a cable that is bent when free of stress; left out, EI. Others don't know twist.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::bending_stiffness",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub gj: Option<f64>,
     /// Mass of water inside that moves along but has no weight in water [kg/m].
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub flooded: f64,
@@ -54,6 +63,7 @@ impl Section {
             mass,
             ea,
             ei,
+            gj: None,
             flooded: 0.0,
             diameter: 0.0,
             displaced: None,
@@ -68,6 +78,7 @@ impl Section {
     fn check(&self) -> Result<(), BuildError> {
         positive("mass", self.mass)?;
         positive("ea", self.ea)?;
+        positive("gj", self.gj.unwrap_or(1.0))?;
         for (name, x) in [
             ("ei", self.ei),
             ("flooded", self.flooded),
@@ -89,11 +100,13 @@ pub enum StressFree {
     /// Straight and unstretched.
     #[default]
     Straight,
-    /// As it is laid: the initial stretch and curvature cost nothing.
+    /// As it is laid: the initial stretch and curvature cost nothing. Sections know then which way they look, and
+    /// resist twist.
     AsLaid,
 }
 
-/// A cable, hose or tether: stretches and bends however far it likes, doesn't twist.
+/// A cable, hose or tether: stretches and bends however far it likes. It doesn't twist, unless it is laid bent and free of
+/// stress.
 ///
 /// It is a chain of ANCF elements with 6 coordinates per node. Markers: `name.start`, `name.end`, `name@12.5m`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -140,8 +153,9 @@ pub struct CableSpec {
     /// Strain at which it is free of stress, on top of `stress_free` [1].
     #[serde(default, deserialize_with = "quantity::number")]
     pub strain: f64,
-    /// Curvature at which it is free of stress, on top of `stress_free` [1/m]. A scalar without direction: a cable
-    /// that doesn't know twist can't know which way it is bent.
+    /// Curvature at which it is free of stress, on top of `stress_free` [1/m]. A scalar without direction, of a cable
+    /// that turns about its axis as it likes: it curls to any side. One with a direction is laid bent, `stress_free =
+    /// "as-laid"`.
     #[serde(default, deserialize_with = "quantity::curvature")]
     pub curvature: f64,
 }
@@ -270,7 +284,7 @@ impl CableSpec {
     ) -> Result<(), BuildError> {
         let s = &self.section;
         if self.stress_free == StressFree::AsLaid {
-            push_rest(pools, model, params, Rest::Shape(*shape), on).map_err(BuildError::new)?;
+            push_rest(pools, model, params, Rest::Stretched(*shape), on).map_err(BuildError::new)?;
         }
         if self.strain != 0.0 || self.curvature != 0.0 {
             let rest = Rest::Uniform { eps0: self.strain, kappa0: self.curvature };
@@ -285,6 +299,53 @@ impl CableSpec {
                 .map_err(BuildError::new)?;
         }
         Ok(())
+    }
+}
+
+impl CableSpec {
+    /// Nodes for the directors of a cable that is bent when free of stress, and its elements that know them.
+    fn directed(
+        &self,
+        b: &mut Builder,
+        mesh: &[f64],
+        nodes: &[NodeId],
+        shapes: &[[f64; 12]],
+    ) -> Result<Option<Directors>, BuildError> {
+        let s = &self.section;
+        let bent = self.stress_free == StressFree::AsLaid && s.ei > 0.0;
+        let laid = if bent { directed::directors(shapes, mesh) } else { None };
+        let Some(laid) = laid else {
+            return match s.gj {
+                None => Ok(None),
+                Some(_) => Err(BuildError::at(
+                    "section.gj",
+                    "only a cable that is bent when free of stress (`stress_free = \"as-laid\"`) knows twist: leave out `gj`",
+                )),
+            };
+        };
+        if self.transverse != TransverseModel::T3 {
+            let message = format!(
+                "the curvature of {:?} has no direction: a cable that is bent when free of stress needs T3",
+                self.transverse
+            );
+            return Err(BuildError::at("transverse", message));
+        }
+        let own: Vec<NodeId> =
+            laid.iter().map(|d| b.node(NodeKind::Scalars(3), d, &[0.0; 3])).collect::<Result<_, _>>()?;
+        let gj = s.gj.unwrap_or(s.ei);
+        // a round bar of this mass has its bending stiffness and its inertia about the axis from one radius
+        let rho_j = 2.0 * (s.mass + s.flooded) * s.ei / s.ea;
+        for (k, shape) in shapes.iter().enumerate() {
+            let params = DirectedParams { l: mesh[k + 1] - mesh[k], ei: s.ei, gj, rho_j };
+            let (on, both) = ([nodes[k], nodes[k + 1], own[k], own[k + 1]], [laid[k], laid[k + 1]]);
+            let pushed = match self.integration {
+                Integration::LockingFree => b.element(Directed::<Gauss2>::at_shape(params, shape, both), &on),
+                Integration::Full => b.element(Directed::<Gauss5>::at_shape(params, shape, both), &on),
+            };
+            pushed?;
+        }
+        let seats = own.iter().map(|n| (b.nodes()[n.0 as usize].q, b.nodes()[n.0 as usize].v)).collect();
+        Ok(Some(Directors { nodes: own, seats, laid }))
     }
 }
 
@@ -430,6 +491,7 @@ impl ElementSpec for CableSpec {
             Some(line) => push::stations(b.nodes(), line, &nodes, s)?,
             None => stations(b.nodes(), &mesh, &nodes, s)?,
         };
+        let directors = self.directed(b, &mesh, &nodes, &shapes)?;
         let prestrain = given.as_ref().map_or_else(Vec::new, |m| m.prestrain.clone());
         if let Some(line) = &line {
             for strain in &prestrain {
@@ -452,6 +514,7 @@ impl ElementSpec for CableSpec {
             line,
             model,
             rest: (self.stress_free == StressFree::AsLaid).then_some(shapes),
+            directors,
             offset: (self.strain, self.curvature),
         }))
     }

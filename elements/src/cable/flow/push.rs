@@ -160,6 +160,9 @@ impl Term for Weight {
     fn symmetric(&self) -> bool {
         false
     }
+    fn is_load(&self) -> bool {
+        true
+    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         self.dead.add(at, out);
         self.flowing.add(at, out);
