@@ -115,7 +115,7 @@ fn a_fine_table_does_not_hold_up_the_steps() {
         scene.force(PointForceSpec::new("ball", [1.0, 0.0, 0.0], time));
         let (s, ends) = run(&scene, &Options::default(), 20.0);
         let exact = 20.0 / 0.9 - (0.9f64 * 20.0).sin() / 0.81;
-        assert!((s.state.q[0] - exact).abs() < 3e-4, "{} instead of {exact}", s.state.q[0]);
+        assert!((s.state.q[0] - exact).abs() < 5e-4, "{} instead of {exact}", s.state.q[0]);
         counts.push(ends.len());
     }
     println!("steps {counts:?}");
@@ -261,7 +261,7 @@ fn fixed_steps_say_what_they_do_not_follow() {
         let said = faster(time.clone());
         match expected {
             Some(t) => assert!(
-                matches!(said.as_slice(), [(who, when)] if who == "force at ball" && (when - t).abs() < 5e-3),
+                matches!(said.as_slice(), [(who, when)] if who == "force at `ball`" && (when - t).abs() < 5e-3),
                 "{time:?}: {said:?}"
             ),
             None => assert!(said.is_empty(), "{time:?}: {said:?}"),

@@ -6,6 +6,7 @@
 use super::norm::Norms;
 use crate::constraint::RowKind;
 use crate::model::Model;
+use crate::node::NodeKind;
 use crate::part::Quantity;
 use crate::state::State;
 
@@ -82,10 +83,16 @@ impl Forces {
     }
 
     /// Looks at the forces at the start of a step.
-    pub fn look(&mut self, model: &Model, state: &State) {
+    pub fn look(&mut self, model: &Model, norms: &Norms, state: &State) {
         self.present.fill(0.0);
         for (p, m) in self.present.iter_mut().zip(&state.control.forces) {
             *p = MEMORY * m;
+        }
+        // what holds a spinning body together is at work too
+        for node in model.nodes().iter().filter(|n| n.kind == NodeKind::Frame) {
+            let spin = node.dofs().skip(3).map(|i| norms.mass[i] * state.v[i].powi(2)).fold(0.0, f64::max);
+            let present = &mut self.present[norms.of(node.v)];
+            *present = present.max(spin);
         }
         for Line { part, places, .. } in &self.cables {
             for &s in places {

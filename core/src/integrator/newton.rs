@@ -161,7 +161,7 @@ impl Newton<'_> {
         let mut last_before = 0.0;
         let test_forces = self.stopping == Stopping::Relative;
         self.kinematics(work);
-        work.forces.look(self.model, self.state);
+        work.forces.look(self.model, &work.norms, self.state);
         for k in 0..self.max_iterations {
             let stale = work.factored != Some(self.weights());
             // an iteration that would go on for long with its matrix gets a new one

@@ -41,7 +41,8 @@ pub(crate) struct Norms {
     runs_ordered: Vec<(usize, Range<usize>)>,
     /// What turns each equation of motion into a force: 1 for positions, one over an arm for slopes and rotations.
     pub arm: Vec<f64>,
-    /// Lumped mass of each position; nothing for what has another unit [kg].
+    /// What turns an acceleration into a force: the lumped mass of a position [kg], the inertia of a rotation over its arm
+    /// [kg m]; nothing for slopes and plain numbers.
     pub mass: Vec<f64>,
     /// For each velocity the square that `dᵀ M d` weighs of it: 1/(m L²).
     energy: Vec<f64>,
@@ -78,12 +79,14 @@ impl Norms {
                 let turns = n.kind == NodeKind::Frame && i >= 3;
                 let length = if turns { g.size } else { g.length };
                 norms.of[dof] = owner[k] as u32;
-                norms.mass[dof] = if i < 3 && n.kind.velocities() >= 3 { mass[dof] } else { 0.0 };
                 norms.weight[dof] = mass[dof] * per / length.powi(2);
                 norms.energy[dof] = per / length.powi(2);
                 if i >= 3 && most > 0.0 {
                     let inertia = if turns { most } else { mass[dof] };
                     norms.arm[dof] = (translation / inertia).sqrt();
+                }
+                if turns || i < 3 && n.kind.has_position() {
+                    norms.mass[dof] = mass[dof] * norms.arm[dof];
                 }
             }
         }

@@ -23,10 +23,9 @@ impl Simulation {
         }
         // steps end just before a jump
         let left = left.min(model.jump(at.t) * (1.0 - 0.5 * SAME) - at.t);
-        let wish = match self.state.control.h_next {
-            h if h > 0.0 => h.min(self.integrator.options().h_max.unwrap_or(left)).min(left),
-            _ => left,
-        };
+        let control = &self.state.control;
+        let wish = if control.h_next > 0.0 { control.h_next } else { control.h_start };
+        let wish = wish.min(self.integrator.limits().most).min(left);
         let reach = model.reach(&at, wish);
         if reach < wish {
             return reach;

@@ -65,7 +65,7 @@ impl Newton<'_> {
         }
         // changes since the matrix was last evaluated
         let (mut k, mut last, mut force_last) = (0, 0.0, 0.0);
-        work.forces.look(self.model, self.state);
+        work.forces.look(self.model, &work.norms, self.state);
         for iterations in 1..=self.max_iterations {
             if full && iterations > 1 {
                 s.differentiate(self.model, work, self.state, self.h)?;
