@@ -18,8 +18,8 @@ pub(crate) use start::{Ending, Started};
 
 use crate::error::Error;
 use crate::output::{
-    Elapsed, EnergyTotals, Interrupt, OutputError, ProfileEntry, Progress, ProgressMode,
-    RunFolder, Stopwatch, Summary, Table, TableWriter,
+    Elapsed, EnergyTotals, Interrupt, OutputError, ProfileEntry, Progress, ProgressMode, RunFolder,
+    Stopwatch, Summary, Table, TableWriter,
 };
 use crate::read::SceneFile;
 use crate::scene::Fault;

@@ -67,9 +67,7 @@ fn elastica(p: f64, side: f64) -> [f64; 2] {
     let shoot = |alpha: f64| {
         let n = 2000;
         let (h, mut y) = (1.0 / f64::from(n), [alpha, 0.0, 0.0, 0.0]);
-        let f = |y: &[f64; 4]| {
-            [y[1], -p * y[0].sin() - side * y[0].cos(), y[0].sin(), y[0].cos()]
-        };
+        let f = |y: &[f64; 4]| [y[1], -p * y[0].sin() - side * y[0].cos(), y[0].sin(), y[0].cos()];
         for _ in 0..n {
             let ahead = |k: &[f64; 4], h: f64| std::array::from_fn(|i| y[i] + h * k[i]);
             let a = f(&y);
@@ -113,7 +111,11 @@ const CRITICAL: f64 = 2.467_401_100_272_339_5;
 fn check(h: &History, p: f64, side: f64, what: &str) {
     let ([x, y, z], [lateral, axial]) = (tip(h, "column"), elastica(p, side));
     let off = (x.hypot(y) - lateral).hypot(z - axial);
-    println!("{what}: lateral {:.5}, off by {off:.1e}, {} iterations", x.hypot(y), h.counts.newton_iterations);
+    println!(
+        "{what}: lateral {:.5}, off by {off:.1e}, {} iterations",
+        x.hypot(y),
+        h.counts.newton_iterations
+    );
     // next to the critical load the amplitude answers to the mesh's own critical load
     let near = if (p / CRITICAL - 1.0).abs() < 0.01 { 2e-2 } else { 2e-3 };
     assert!(off <= near, "{what}: {x} {y} {z}, not {lateral} {axial}");
@@ -125,9 +127,14 @@ fn check(h: &History, p: f64, side: f64, what: &str) {
 #[test]
 fn columns_buckle_whatever_the_steps() {
     let scene = format!("{COLUMN}{PRESSED}");
-    for (p, sides) in
-        [(1.0, [0.0, 1e-6]), (2.4, [0.0, 1e-6]), (2.6, [0.0, 1e-6]), (3.0, [1e-6, 1e-2]), (5.0, [0.0, 1e-6]), (10.0, [1e-6, 1e-4])]
-    {
+    for (p, sides) in [
+        (1.0, [0.0, 1e-6]),
+        (2.4, [0.0, 1e-6]),
+        (2.6, [0.0, 1e-6]),
+        (3.0, [1e-6, 1e-2]),
+        (5.0, [0.0, 1e-6]),
+        (10.0, [1e-6, 1e-4]),
+    ] {
         for side in sides.map(|s| s * p) {
             for steps in [5, 20, 100] {
                 let what = format!("load {p}, side {side:e}, {steps} steps");
@@ -288,7 +295,11 @@ fn a_free_azimuth_is_named_and_no_obstacle() {
     let stretch = 1.2 * 36.0 * 1e3 / 3.0 / 2.8e7;
     assert!((x.hypot(y) - 10.0 - stretch).abs() < 1e-2 * stretch && z.abs() < 1e-9, "{x} {y} {z}");
     assert_eq!(h.warnings.len(), 1, "{:?}", h.warnings);
-    assert!(h.warnings[0].contains("`bar` turns about the axis (0, 0, 1) through (0, 0, 0) m"), "{:?}", h.warnings);
+    assert!(
+        h.warnings[0].contains("`bar` turns about the axis (0, 0, 1) through (0, 0, 0) m"),
+        "{:?}",
+        h.warnings
+    );
 }
 
 /// Two cables joined by a small body that may spin about them.

@@ -100,7 +100,9 @@ impl Statics<'_> {
                 self.system.values[self.structure.diagonal[i] as usize] += drag * masses[i];
             }
             self.factor().ok()?;
-            let positive = self.solver.negative_pivots().is_none_or(|n| n == self.held(state));
+            // without a potential pivots tell nothing
+            let positive =
+                !self.judged.potential || self.solver.negative_pivots().is_none_or(|n| n == self.held(state));
             let d = self.correction().ok()?;
             let size = self.size(&d[..nv]);
             if !size.is_finite() || size > 2.0 || (k > 4 && size > 2.0 * before) {

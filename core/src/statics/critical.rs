@@ -12,6 +12,8 @@ pub enum CriticalKind {
     Limit,
     /// Other paths branch off: the model buckles.
     Bifurcation,
+    /// Under loads without potential, disturbances begin to swing ever wider.
+    Flutter,
 }
 
 /// A load at which equilibria lose their stability.
@@ -36,6 +38,7 @@ impl fmt::Display for CriticalKind {
         f.write_str(match self {
             CriticalKind::Limit => "a limit point",
             CriticalKind::Bifurcation => "a bifurcation",
+            CriticalKind::Flutter => "flutter",
         })
     }
 }

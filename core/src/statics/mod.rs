@@ -31,6 +31,7 @@ use crate::structure::Structure;
 use crate::times::{Clocks, Times};
 use search::FOLD;
 use serde::{Deserialize, Serialize};
+use stability::Judgement;
 use std::time::Duration;
 
 /// How equilibria are found.
@@ -142,6 +143,7 @@ pub struct Statics<'a> {
     unstable: usize,
     neutral: Vec<Neutral>,
     doubt: Option<String>,
+    judged: Judgement,
     /// Critical loads met so far.
     critical: Vec<Critical>,
     /// Longest stretch of time that was to be followed.
@@ -195,6 +197,7 @@ impl<'a> Statics<'a> {
             unstable: 0,
             neutral: Vec::new(),
             doubt: None,
+            judged: Judgement { potential: true, ..Judgement::default() },
             critical: Vec::new(),
             span: 0.0,
         })
@@ -328,18 +331,31 @@ impl<'a> Statics<'a> {
         let mut arcs = 0;
         while state.t != t {
             let before = state.clone();
+            let swings = self.judged.flutter > 0.0;
             state.t = if (t - before.t).abs() <= 1.001 * h.abs() { t } else { before.t + h };
+            let to = state.t;
             let e = match self.step_on(state) {
                 Ok(found) => {
                     sum.add(&found);
+                    if self.judged.flutter > 0.0 && !swings {
+                        self.locate_by_load(&before, state, &mut sum);
+                    } else if self.leapt(&before, state) {
+                        self.go_round(&before, state, &mut sum)?;
+                    }
                     h *= 2.0;
                     continue;
                 }
                 Err(e) => e,
             };
-            let to = state.t;
+            let unstable = self.unstable > 0;
+            let beyond = state.clone();
             state.clone_from(&before);
-            if self.options.stable && (h.abs() <= short || self.unstable > 0) && arcs < ARCS {
+            if self.options.stable && unstable && !self.judged.potential {
+                self.locate_by_load(&before, &beyond, &mut sum);
+                self.leave_last(state, to, &mut sum)?;
+                continue;
+            }
+            if self.options.stable && (h.abs() <= short || unstable) && arcs < ARCS {
                 arcs += 1;
                 let known = self.critical.len();
                 match self.trace(state, to, &mut sum) {

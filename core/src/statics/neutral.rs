@@ -4,6 +4,7 @@
 //! Their eigenvalue is zero, so rounding decides about its sign. A finite push along one tells: it is held there, all
 //! else finds its equilibrium, and the force that holds it says whether it would come back, stay or go on.
 
+use super::stability::MARGIN;
 use super::{Statics, StaticsError};
 use crate::lane::V3;
 use crate::model::Model;
@@ -13,8 +14,6 @@ use crate::solver::SolveError;
 use crate::state::{Relaxation, Relaxed, State};
 use nalgebra::{DMatrix, DVector};
 
-/// Part of the diagonal of the tangent that stands in for the stiffness that is missing.
-pub(super) const GAUGE: f64 = 1e-9;
 /// How far a direction is pushed: displacements relative to the reference length, or angles.
 const PUSH: f64 = 0.05;
 /// Work of the push, relative to that of the load over the same way, from which on it comes from a stiffness.
@@ -143,7 +142,7 @@ impl Statics<'_> {
             self.assemble(there, &q, &lambda, Some(Relaxed { last: Some(&last), how }), false);
             self.prepare();
             let w = self.weights();
-            self.shift(&w, GAUGE);
+            self.shift(&w, MARGIN);
             if self.factor().is_err() {
                 return Leaning::Unknown;
             }
@@ -219,9 +218,8 @@ impl Statics<'_> {
         self.assemble(state, &state.q, &state.lambda, None, false);
         self.prepare();
         let (w, held) = (self.weights(), self.held(state));
-        let margin = 1e-3 * GAUGE;
         let mut counts = [0; 2];
-        for (k, m) in [-margin, 2.0 * margin].into_iter().enumerate() {
+        for (k, m) in [-MARGIN, 2.0 * MARGIN].into_iter().enumerate() {
             self.shift(&w, m);
             let (Ok(()), Some(n)) = (self.factor(), self.solver.negative_pivots()) else { return false };
             counts[k] = n.saturating_sub(held);

@@ -8,7 +8,8 @@
 //!
 //! Riks (1979), Int. J. Solids Struct. 15, 529; Crisfield (1981), Comput. Struct. 13, 55.
 
-use super::neutral::{GAUGE, describe};
+use super::neutral::describe;
+use super::stability::MARGIN;
 use super::{Critical, CriticalKind, Found, Statics, StaticsError};
 use crate::node::{Node, NodeKind, difference, retract};
 use crate::solver::SolveError;
@@ -25,6 +26,12 @@ const BEND: f64 = 0.98;
 const ITERATIONS: u32 = 10;
 /// Most steps of a path.
 const STEPS: u32 = 5000;
+/// Mean move of a step of the load from which on its tangents are compared, relative to the reference length; and the part
+/// of it that they may leave unexplained.
+const FAR: f64 = 0.05;
+const UNEXPLAINED: f64 = 0.5;
+/// How often an interval of the load is halved to locate where eigenvalues cross.
+const HALVINGS: u32 = 20;
 /// How far behind a critical load the stable path is taken up, in parts of what is left of the way.
 const BEHIND: f64 = 0.02;
 
@@ -130,12 +137,100 @@ impl Statics<'_> {
         Err(self.fail(state, "the path of equilibria goes on for ever", found.iterations))
     }
 
+    /// Whether a step of the load may have leapt from one path to another: the tangents at both ends don't explain it.
+    pub(super) fn leapt(&mut self, from: &State, to: &State) -> bool {
+        let nv = self.model.velocities();
+        let mut moved = vec![0.0; nv];
+        difference(self.model.nodes(), &from.q, &to.q, &mut moved);
+        let size = self.inner(&moved, &moved).sqrt();
+        if !(self.options.stable && self.judged.potential && size > FAR) {
+            return false;
+        }
+        let dt = to.t - from.t;
+        let way = Way { end: to.t, span: self.span.max(dt.abs()), sign: dt.signum() };
+        for state in [from, to] {
+            let Ok(p) = self.point(state.clone(), None, way) else { return true };
+            // half of the trapezoidal rule
+            moved.iter_mut().zip(&p.slope).for_each(|(m, s)| *m -= 0.5 * dt * s / p.rate);
+        }
+        let left = self.inner(&moved, &moved).sqrt();
+        !(left <= UNEXPLAINED * size)
+    }
+
+    /// Goes the way that a step of the load may have leapt over; where the arc can't be followed the step stands.
+    pub(super) fn go_round(
+        &mut self,
+        from: &State,
+        state: &mut State,
+        found: &mut Found,
+    ) -> Result<(), StaticsError> {
+        let (known, mut there) = (self.critical.len(), from.clone());
+        let (unstable, neutral, doubt) = (self.unstable, self.neutral.clone(), self.doubt.clone());
+        let (judged, free) = (self.judged.clone(), self.free.clone());
+        match self.trace(&mut there, state.t, found) {
+            Ok(()) => *state = there,
+            Err(e) if self.critical.len() > known => return Err(e),
+            Err(_) => {
+                (self.unstable, self.neutral, self.doubt) = (unstable, neutral, doubt);
+                (self.judged, self.free) = (judged, free);
+            }
+        }
+        Ok(())
+    }
+
+    /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.
+    pub(super) fn locate_by_load(&mut self, from: &State, to: &State, found: &mut Found) {
+        let kept = (self.unstable, self.neutral.clone(), self.doubt.clone(), self.judged.clone());
+        let (mut low, mut high, mut judged) = (from.clone(), to.t, self.judged.clone());
+        for _ in 0..HALVINGS {
+            let mut middle = low.clone();
+            middle.t = 0.5 * (low.t + high);
+            let t = middle.t;
+            let Ok(more) = self.search(&mut middle, false, false, false) else { break };
+            found.add(&more);
+            if self.unstable > 0 || self.judged.flutter > 0.0 {
+                (high, judged) = (t, self.judged.clone());
+            } else {
+                low = middle;
+            }
+        }
+        let (kind, shape) = match judged.way_out {
+            Some(shape) => (CriticalKind::Bifurcation, shape),
+            None => (CriticalKind::Flutter, judged.swing),
+        };
+        let shape = self.small(shape);
+        let state = self.riding(&low);
+        self.critical.push(Critical {
+            t: 0.5 * (low.t + high),
+            kind,
+            directions: judged.unstable.max(1),
+            what: describe(self.model, &low.q, &shape),
+            shape,
+            state,
+        });
+        (self.unstable, self.neutral, self.doubt, self.judged) = kept;
+    }
+
+    /// Leaves the last critical point for the stable path behind it.
+    pub(super) fn leave_last(
+        &mut self,
+        state: &mut State,
+        end: f64,
+        found: &mut Found,
+    ) -> Result<(), StaticsError> {
+        let Some(critical) = self.critical.last().cloned() else { return Ok(()) };
+        *state = critical.state.clone();
+        let way = Way { end, span: self.span, sign: (end - state.t).signum() };
+        let nowhere = vec![0.0; self.model.velocities()];
+        self.leave(state, &nowhere, &critical, way, found)
+    }
+
     /// The tangent of the path at an equilibrium, in the direction of `before`, or else of the way.
     fn point(&mut self, state: State, before: Option<&Point>, way: Way) -> Result<Point, SolveError> {
         let rate = self.assemble_with_rate(&state, None, way);
         let symmetric = self.structure.symmetric || self.is_mirrored();
         let w = self.weights();
-        self.shift(&w, if self.free.is_empty() { 1e-12 } else { GAUGE });
+        self.shift(&w, MARGIN);
         self.factor()?;
         let held = self.held(&state);
         let negative = self.solver.negative_pivots().map_or(0, |n| n.saturating_sub(held));
@@ -171,7 +266,7 @@ impl Statics<'_> {
         for k in 1..=ITERATIONS {
             let rate = self.assemble_with_rate(&there, Some(&last), way);
             let w = self.weights();
-            self.shift(&w, if self.free.is_empty() { 1e-12 } else { GAUGE });
+            self.shift(&w, MARGIN);
             self.factor().ok()?;
             let u = self.correction().ok()?;
             let rhs: Vec<f64> = rate.iter().map(|r| -r).collect();

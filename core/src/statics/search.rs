@@ -97,14 +97,14 @@ impl Statics<'_> {
                 self.check(&there, last.as_deref(), load)
             };
             self.clocks.stop(Phase::Stability, begin);
-            let judged = match judged {
+            let mut judged = match judged {
                 Ok(judged) => judged,
                 Err(e) => return fail(self, &e.to_string(), &found),
             };
             found.residual = judged.residual;
             let mut push = None;
             if leave && judged.unstable > 0 {
-                push = judged.way_out.map(|d| self.small(d));
+                push = judged.way_out.take().map(|d| self.small(d));
             } else if self.size(&judged.correction[..nv]) <= 1e3 * tolerance {
                 self.follow_frame(&q);
                 there.v.clone_from(&self.v);
@@ -121,8 +121,9 @@ impl Statics<'_> {
                 }
                 if push.is_none() {
                     self.unstable = judged.unstable;
-                    self.neutral = judged.neutral;
-                    self.doubt = judged.doubt;
+                    self.neutral = std::mem::take(&mut judged.neutral);
+                    self.doubt = judged.doubt.take();
+                    self.judged = judged;
                     *state = there;
                     return Ok(found);
                 }

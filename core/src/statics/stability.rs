@@ -17,8 +17,8 @@ use crate::node::NodeKind;
 use crate::solver::SolveError;
 use crate::state::{Relaxation, Relaxed, State};
 
-/// Part of the diagonal of the tangent that is taken for rounding of it.
-const MARGIN: f64 = 1e-12;
+/// Part of the diagonal of the tangent that is taken for rounding of it, and stands in for stiffness that is missing.
+pub(super) const MARGIN: f64 = 1e-12;
 /// Difference of entries that mirror each other, as part of their diagonals, up to which a tangent is symmetric.
 const MIRRORED: f64 = 1e-11;
 /// How many eigenvalues are asked for where loads have no potential.
@@ -37,8 +37,11 @@ pub(super) struct Judgement {
     pub way_out: Option<Vec<f64>>,
     /// Directions in which nothing holds it and nothing drives it.
     pub neutral: Vec<Neutral>,
-    /// Rate at which disturbances swing ever wider [1/s]; 0 if none does.
+    /// Rate at which disturbances swing ever wider [1/s], 0 if none does; and their shape.
     pub flutter: f64,
+    pub swing: Vec<f64>,
+    /// Whether loads have a potential there.
+    pub potential: bool,
     /// What can't be told.
     pub doubt: Option<String>,
 }
@@ -64,7 +67,7 @@ impl Statics<'_> {
         let symmetric = self.structure.symmetric || self.is_mirrored();
         self.prepare();
         let w = self.weights();
-        let mut out = Judgement { residual: self.worst().1, ..Judgement::default() };
+        let mut out = Judgement { residual: self.worst().1, potential: symmetric, ..Judgement::default() };
         if !symmetric {
             self.free.clear();
             self.factor()?;
@@ -85,13 +88,10 @@ impl Statics<'_> {
         self.shift(&w, 2.0 * MARGIN);
         self.factor()?;
         let (Some(below), Some(unstable)) = (below, count(self)) else {
+            // pivoting hides the signs of the pivots
             self.free.clear();
             out.correction = self.correction()?;
-            out.doubt = Some(
-                "whether it is stable can't be told: its equations could only be solved with pivoting, which \
-                 hides the signs of the pivots"
-                    .into(),
-            );
+            self.judge_motion(there, &mut out)?;
             return Ok(out);
         };
         let near = below.saturating_sub(unstable);
@@ -166,26 +166,66 @@ impl Statics<'_> {
 
     /// Judges by the eigenvalues of the linearised motion.
     fn judge_motion(&mut self, there: &State, out: &mut Judgement) -> Result<(), SolveError> {
+        let upright = self.is_upright(there);
         let linear = self.linearise(there);
         match slowest(self.model, &there.modes, linear, SLOWEST) {
-            Ok(rates) => {
+            Ok(mut rates) => {
+                // rounding leaves motions among them that the constraints forbid
+                rates.retain(|m| self.is_allowed(&m.shape) && self.is_allowed(&m.quadrature));
                 for mode in rates.iter().filter(|m| m.is_unstable()) {
                     if mode.omega == 0.0 {
                         out.unstable += 1;
                         out.way_out.get_or_insert_with(|| mode.shape.clone());
-                    } else {
-                        out.flutter = out.flutter.max(mode.growth);
+                    } else if mode.growth > out.flutter {
+                        out.flutter = mode.growth;
+                        out.swing.clone_from(&mode.shape);
                     }
                 }
                 for mode in rates.iter().filter(|m| m.rigid) {
                     out.neutral.push(Neutral::new(self.model, there, mode.shape.clone()));
                 }
             }
+            // what has no mass can't swing
+            Err(_) if upright => {}
             Err(e) => {
                 out.doubt = Some(format!("whether it is stable can't be told: {e}"));
             }
         }
         Ok(())
+    }
+
+    /// Whether the symmetric part of the assembled tangent is positive where the constraints leave motions: then no real
+    /// eigenvalue is negative (Bendixson), and nothing goes one way only.
+    fn is_upright(&mut self, there: &State) -> bool {
+        let s = &self.structure;
+        let mut mean = self.system.values.clone();
+        if !s.symmetric {
+            for (r, columns, at) in s.rows() {
+                for (k, p) in at.enumerate() {
+                    mean[p] = 0.5 * (mean[p] + self.system.values[s.slot(columns.get(k), r)]);
+                }
+            }
+        }
+        let factored = self.solver.factor(s, &mean).is_ok();
+        factored && self.solver.negative_pivots() == Some(self.held(there))
+    }
+
+    /// Whether the constraints allow an increment; their Jacobian stands in the assembled tangent.
+    fn is_allowed(&self, d: &[f64]) -> bool {
+        let s = &self.structure;
+        let mut x = vec![0.0; s.n];
+        s.order(d, &mut x);
+        let (mut against, mut size) = (vec![0.0; s.n], vec![0.0; s.n]);
+        for (r, columns, at) in s.rows().filter(|(r, ..)| s.is_multiplier[*r]) {
+            for (k, p) in at.enumerate() {
+                let c = columns.get(k);
+                against[r] += self.system.values[p] * x[c];
+                size[r] += (self.system.values[p] * x[c]).abs();
+            }
+        }
+        let largest = x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let multipliers = (0..s.n).filter(|&r| s.is_multiplier[r]);
+        multipliers.map(|r| (against[r], size[r])).all(|(g, size)| g.abs() <= 1e-6 * size.max(1e-6 * largest))
     }
 
     /// Whether the assembled tangent is its own mirror image, to rounding. The rotations of a body don't commute: what
@@ -198,7 +238,7 @@ impl Statics<'_> {
                 body[s.position[n.v + i]] = k as u32;
             }
         }
-        let diagonal = |p: usize| values[s.diagonal_at[p] as usize].abs();
+        let w = self.weights();
         s.rows().filter(|(r, ..)| !s.is_multiplier[*r]).all(|(r, columns, at)| {
             at.enumerate().all(|(k, p)| {
                 let c = columns.get(k);
@@ -208,8 +248,7 @@ impl Statics<'_> {
                 let same = body[r] != u32::MAX && body[r] == body[c];
                 let allowed = if same { 1e-6 } else { MIRRORED };
                 let off = (values[p] - values[s.slot(c, r)]).abs();
-                off <= allowed * (diagonal(r) * diagonal(c)).sqrt()
-                    || off <= f64::EPSILON * (diagonal(r) + diagonal(c))
+                off <= allowed * (w[r] * w[c]).sqrt() || off <= f64::EPSILON * (w[r] + w[c])
             })
         })
     }

@@ -1,7 +1,7 @@
 //! One linear system of the search: assembly, in a frame that may move, factorisation and solution.
 
 use super::Statics;
-use super::neutral::GAUGE;
+use super::stability::MARGIN;
 use crate::lane::V3;
 use crate::marker::frame;
 use crate::node::NodeKind;
@@ -42,7 +42,7 @@ impl Statics<'_> {
         self.prepare();
         if !self.free.is_empty() {
             let w = self.weights();
-            self.shift(&w, GAUGE);
+            self.shift(&w, MARGIN);
         }
         self.factor()?;
         let negative = self.solver.negative_pivots().is_none_or(|n| n != self.held(state));
