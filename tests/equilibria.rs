@@ -196,7 +196,7 @@ steps = "$steps"
 [[elements]]
 type = "point_mass"
 name = "top"
-position = [0, 0, 0.5]
+at = [0, 0, 0.5]
 mass = 1
 [[constraints]]
 type = "coordinate"

@@ -10,6 +10,7 @@ mod creep;
 mod critical;
 mod disturbance;
 mod linear;
+mod naming;
 mod neutral;
 mod path;
 mod search;

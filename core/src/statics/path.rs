@@ -8,9 +8,8 @@
 //!
 //! Riks (1979), Int. J. Solids Struct. 15, 529; Crisfield (1981), Comput. Struct. 13, 55.
 
-use super::neutral::describe;
 use super::stability::MARGIN;
-use super::{Critical, CriticalKind, Found, Statics, StaticsError};
+use super::{Found, Statics, StaticsError};
 use crate::node::{Node, NodeKind, difference, retract};
 use crate::solver::SolveError;
 use crate::state::{At, Relaxation, Relaxed, State};
@@ -30,29 +29,25 @@ const STEPS: u32 = 5000;
 /// of it that they may leave unexplained.
 const FAR: f64 = 0.05;
 const UNEXPLAINED: f64 = 0.5;
-/// How often an interval of the load is halved to locate where eigenvalues cross.
-const HALVINGS: u32 = 20;
-/// How far behind a critical load the stable path is taken up, in parts of what is left of the way.
-const BEHIND: f64 = 0.02;
 
 /// A point of the path.
 #[derive(Clone)]
-struct Point {
-    state: State,
+pub(super) struct Point {
+    pub state: State,
     /// Change of positions and multipliers, and of time, along the path.
-    slope: Vec<f64>,
-    rate: f64,
+    pub slope: Vec<f64>,
+    pub rate: f64,
     /// Directions that it is unstable in.
-    unstable: usize,
+    pub unstable: usize,
 }
 
 /// The way that is to be gone.
 #[derive(Clone, Copy)]
-struct Way {
-    end: f64,
+pub(super) struct Way {
+    pub end: f64,
     /// Scale of time, and its sign on the way.
-    span: f64,
-    sign: f64,
+    pub span: f64,
+    pub sign: f64,
 }
 
 impl Statics<'_> {
@@ -178,53 +173,6 @@ impl Statics<'_> {
         Ok(())
     }
 
-    /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.
-    pub(super) fn locate_by_load(&mut self, from: &State, to: &State, found: &mut Found) {
-        let kept = (self.unstable, self.neutral.clone(), self.doubt.clone(), self.judged.clone());
-        let (mut low, mut high, mut judged) = (from.clone(), to.t, self.judged.clone());
-        for _ in 0..HALVINGS {
-            let mut middle = low.clone();
-            middle.t = 0.5 * (low.t + high);
-            let t = middle.t;
-            let Ok(more) = self.search(&mut middle, false, false, false) else { break };
-            found.add(&more);
-            if self.unstable > 0 || self.judged.flutter > 0.0 {
-                (high, judged) = (t, self.judged.clone());
-            } else {
-                low = middle;
-            }
-        }
-        let (kind, shape) = match judged.way_out {
-            Some(shape) => (CriticalKind::Bifurcation, shape),
-            None => (CriticalKind::Flutter, judged.swing),
-        };
-        let shape = self.small(shape);
-        let state = self.riding(&low);
-        self.critical.push(Critical {
-            t: 0.5 * (low.t + high),
-            kind,
-            directions: judged.unstable.max(1),
-            what: describe(self.model, &low.q, &shape),
-            shape,
-            state,
-        });
-        (self.unstable, self.neutral, self.doubt, self.judged) = kept;
-    }
-
-    /// Leaves the last critical point for the stable path behind it.
-    pub(super) fn leave_last(
-        &mut self,
-        state: &mut State,
-        end: f64,
-        found: &mut Found,
-    ) -> Result<(), StaticsError> {
-        let Some(critical) = self.critical.last().cloned() else { return Ok(()) };
-        *state = critical.state.clone();
-        let way = Way { end, span: self.span, sign: (end - state.t).signum() };
-        let nowhere = vec![0.0; self.model.velocities()];
-        self.leave(state, &nowhere, &critical, way, found)
-    }
-
     /// The tangent of the path at an equilibrium, in the direction of `before`, or else of the way.
     fn point(&mut self, state: State, before: Option<&Point>, way: Way) -> Result<Point, SolveError> {
         let rate = self.assemble_with_rate(&state, None, way);
@@ -254,7 +202,7 @@ impl Statics<'_> {
     }
 
     /// One step along the path: the next point and the iterations that it took; `None` if there is none within reach.
-    fn step(&mut self, here: &Point, ds: f64, way: Way) -> Option<(Point, u32)> {
+    pub(super) fn step(&mut self, here: &Point, ds: f64, way: Way) -> Option<(Point, u32)> {
         let (model, nv) = (self.model, self.model.velocities());
         let mut there = here.state.clone();
         let mut last: Vec<f64> = here.slope[..nv].iter().map(|x| ds * x).collect();
@@ -301,114 +249,6 @@ impl Statics<'_> {
         None
     }
 
-    /// Locates the critical point between `here` and the point a step further; `here` becomes the last one before it.
-    /// `None` if there is none: these are points of different paths.
-    fn locate(
-        &mut self,
-        here: &mut Point,
-        beyond: &Point,
-        ds: f64,
-        way: Way,
-        found: &mut Found,
-    ) -> Option<Critical> {
-        let (mut low, mut high, mut after) = (0.0, ds, beyond.clone());
-        let start = here.clone();
-        for _ in 0..40 {
-            if (after.state.t - here.state.t).abs() <= 1e-10 * way.span && high - low <= 1e-6 * ds.max(1e-3) {
-                break;
-            }
-            let middle = 0.5 * (low + high);
-            let (next, iterations) = self.step(&start, middle, way)?;
-            found.iterations += iterations;
-            if next.unstable > 0 || next.rate * way.sign <= 0.0 {
-                (high, after) = (middle, next);
-            } else {
-                low = middle;
-                *here = next;
-            }
-        }
-        if self.distance(&here.state.q, &after.state.q) > 1e-2 * ds {
-            return None;
-        }
-        let limit = after.rate * way.sign <= 0.0;
-        let directions = if limit { 1 } else { after.unstable.max(1) };
-        let shapes = self.soft(&here.state, directions).unwrap_or_default();
-        let shape = match (limit, shapes.is_empty()) {
-            (true, _) | (_, true) => self.small(here.slope[..self.model.velocities()].to_vec()),
-            (false, false) => self.choose(&shapes),
-        };
-        Some(Critical {
-            t: 0.5 * (here.state.t + after.state.t),
-            kind: if limit { CriticalKind::Limit } else { CriticalKind::Bifurcation },
-            directions,
-            what: describe(self.model, &here.state.q, &shape),
-            shape,
-            state: self.riding(&here.state),
-        })
-    }
-
-    /// The softest directions of an equilibrium, as increments of the size of a push.
-    fn soft(&mut self, state: &State, count: usize) -> Option<Vec<Vec<f64>>> {
-        let load = self.load(state);
-        self.count(state, None, load)?;
-        let w = self.weights();
-        let lowest = self.lowest(&w, count).ok()?;
-        Some(lowest.iter().map(|x| self.increment(x)).collect())
-    }
-
-    /// Of several directions that all go, one along an axis of space, the first that shows.
-    fn choose(&self, shapes: &[Vec<f64>]) -> Vec<f64> {
-        if shapes.len() == 1 {
-            return shapes[0].clone();
-        }
-        let parts = |axis: usize| -> Vec<f64> {
-            shapes.iter().map(|s| self.places().map(|n| s[n.v + axis]).sum()).collect()
-        };
-        let size = |p: &Vec<f64>| p.iter().map(|x| x * x).sum::<f64>();
-        let all = [parts(0), parts(1), parts(2)];
-        let largest = all.iter().map(size).fold(0.0, f64::max);
-        let along = all.iter().find(|p| size(p) >= 0.5 * largest).unwrap_or(&all[0]);
-        if !(largest > 0.0) {
-            return shapes[0].clone();
-        }
-        let sum = |i: usize| shapes.iter().zip(along).map(|(s, p)| s[i] * p).sum::<f64>();
-        self.small((0..self.model.velocities()).map(sum).collect())
-    }
-
-    /// Leaves a critical point for the stable path behind it.
-    fn leave(
-        &mut self,
-        state: &mut State,
-        slope: &[f64],
-        critical: &Critical,
-        way: Way,
-        found: &mut Found,
-    ) -> Result<(), StaticsError> {
-        let nv = self.model.velocities();
-        let forward = (0..nv).map(|i| slope[i] * critical.shape[i]).sum::<f64>();
-        let sign = if critical.kind == CriticalKind::Limit && forward < 0.0 { -1.0 } else { 1.0 };
-        let left = way.end - state.t;
-        let mut error = None;
-        for (part, sign) in [(BEHIND, sign), (1.0, sign), (BEHIND, -sign), (1.0, -sign)] {
-            let mut there = state.clone();
-            there.t = if part == 1.0 { way.end } else { state.t + part * left };
-            let push: Vec<f64> = critical.shape.iter().map(|x| sign * x).collect();
-            let before = there.q.clone();
-            retract(self.model.nodes(), &before, &push, &mut there.q);
-            self.free.clear();
-            match self.creep(&mut there, found) {
-                Ok(()) => {
-                    *state = there;
-                    return Ok(());
-                }
-                Err(e) => error = error.or(Some(e)),
-            }
-        }
-        let t = critical.t;
-        let e = error.unwrap_or_else(|| self.fail(state, "", found.iterations));
-        Err(StaticsError { why: format!("behind {} at t = {t}, {}", critical.kind, e.why), ..e })
-    }
-
     /// Residual and tangent at an equilibrium or on the way to one, ready for factorisation; returns how the residual
     /// changes with time.
     fn assemble_with_rate(&mut self, state: &State, last: Option<&[f64]>, way: Way) -> Vec<f64> {
@@ -443,7 +283,7 @@ impl Statics<'_> {
     }
 
     /// Nodes that have a place.
-    fn places(&self) -> impl Iterator<Item = &Node> {
+    pub(super) fn places(&self) -> impl Iterator<Item = &Node> {
         self.model.nodes().iter().filter(|n| !matches!(n.kind, NodeKind::Scalars(_)))
     }
 
@@ -463,7 +303,7 @@ impl Statics<'_> {
         sum / f64::from(count.max(1))
     }
 
-    fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+    pub(super) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let mut d = vec![0.0; self.model.velocities()];
         difference(self.model.nodes(), a, b, &mut d);
         self.inner(&d, &d).sqrt()
