@@ -3,6 +3,9 @@
 //! Steps of Euler's backward method for `c M ẋ + r(x) + Gᵀλ = 0`, `g(x) = 0`: each is the minimum of the potential plus
 //! `c/2h |x - x₀|²` nearby, so the potential falls at every step, whatever the start, through contact and behind limit
 //! points. The step grows as long as Newton's method follows and its matrix stays positive.
+//!
+//! A cable that is laid too short for its length would crumple first. From a guess it creeps with a soft `EA`, so that
+//! the load shapes it, and stiffens from stage to stage.
 
 use super::{Found, Statics, StaticsError};
 use crate::node::{difference, retract};
@@ -11,23 +14,34 @@ use crate::state::{Relaxation, Relaxed, State};
 /// Most steps, and most iterations of one.
 const STEPS: u32 = 400;
 const ITERATIONS: u32 = 14;
+/// Caps of the stiff modulus from stage to stage, as [`Relaxation::ramp`]: first such that the load strains by a tenth.
+const STAGES: [f64; 5] = [1e-3, 1e-2, 1e-1, 1.0, f64::INFINITY];
 /// Largest move in one step, relative to the reference length.
 const FARTHEST: f64 = 0.3;
 
 impl Statics<'_> {
-    /// Creeps from `state` to a stable equilibrium at its time, and closes in on it by Newton's method.
+    /// Creeps from `state` to a stable equilibrium at its time, and closes in on it by Newton's method. `far` says that
+    /// the state is a guess.
     ///
     /// # Errors
     /// None was found within the steps; the state is where they ended.
-    pub(super) fn creep(&mut self, state: &mut State, found: &mut Found) -> Result<(), StaticsError> {
+    pub(super) fn creep(
+        &mut self,
+        state: &mut State,
+        found: &mut Found,
+        far: bool,
+    ) -> Result<(), StaticsError> {
         let load = self.load(state).max(f64::MIN_POSITIVE);
         let masses = self.masses(state);
         let (length, nv) = (self.model.length(), self.model.velocities());
         let first = 10.0 * load / length;
         let (mut drag, mut near) = (first, 0_u32);
+        let mut stages = STAGES[if far { 0 } else { STAGES.len() - 1 }..].iter();
+        let mut stage = *stages.next().unwrap_or(&f64::INFINITY);
         for _ in 0..STEPS {
             let mut next = state.clone();
-            let Some((iterations, positive)) = self.creep_once(&mut next, &masses, drag, load) else {
+            let Some((iterations, positive)) = self.creep_once(&mut next, &masses, [drag, load, stage])
+            else {
                 found.iterations += ITERATIONS;
                 drag *= 8.0;
                 if !(drag < 1e14 * first) {
@@ -50,6 +64,13 @@ impl Statics<'_> {
             // where it hardly moves although little holds it back, Newton's method takes over
             if size <= 0.02 && drag <= 1e-2 * first {
                 near += 1;
+                if stage.is_finite() {
+                    if near > 1 {
+                        (stage, near) = (*stages.next().unwrap_or(&f64::INFINITY), 0);
+                        drag = drag.max(0.1 * first);
+                    }
+                    continue;
+                }
                 // a search that fails costs as much as many steps
                 if near.is_power_of_two() {
                     let mut there = state.clone();
@@ -74,20 +95,19 @@ impl Statics<'_> {
     }
 
     /// One step; the iterations that it took, and whether it ended where the matrix is positive.
-    fn creep_once(&mut self, state: &mut State, masses: &[f64], drag: f64, load: f64) -> Option<(u32, bool)> {
+    fn creep_once(
+        &mut self,
+        state: &mut State,
+        masses: &[f64],
+        [drag, load, ramp]: [f64; 3],
+    ) -> Option<(u32, bool)> {
         let (model, nv) = (self.model, self.model.velocities());
         let start = state.q.clone();
         let (mut moved, mut next) = (vec![0.0; nv], state.q.clone());
         let mut last: Option<Vec<f64>> = None;
         let mut before = f64::INFINITY;
         for k in 1..=ITERATIONS {
-            let how = Relaxation {
-                smooth: last.is_some(),
-                ramp: f64::INFINITY,
-                ramp_before: f64::INFINITY,
-                load,
-                floor: None,
-            };
+            let how = Relaxation { smooth: last.is_some(), ramp, ramp_before: ramp, load, floor: None };
             self.assemble(
                 state,
                 &state.q,

@@ -163,7 +163,7 @@ impl Statics<'_> {
             let before = there.q.clone();
             retract(self.model.nodes(), &before, &push, &mut there.q);
             self.free.clear();
-            match self.creep(&mut there, found) {
+            match self.creep(&mut there, found, false) {
                 Ok(()) => {
                     *state = there;
                     return Ok(());

@@ -309,7 +309,7 @@ impl<'a> Statics<'a> {
         self.free.clear();
         if cold && self.options.stable {
             state.clone_from(&before);
-            if self.creep(state, &mut found).is_ok() {
+            if self.creep(state, &mut found, true).is_ok() {
                 return Ok(found);
             }
         }
