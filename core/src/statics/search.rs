@@ -101,6 +101,9 @@ impl Statics<'_> {
                 Ok(judged) => judged,
                 Err(e) => return fail(self, &e.to_string(), &found),
             };
+            if let Some(what) = &judged.driven {
+                return fail(self, &format!("the load drives what nothing holds: {what}"), &found);
+            }
             found.residual = judged.residual;
             let mut push = None;
             if leave && judged.unstable > 0 {

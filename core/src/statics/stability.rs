@@ -10,6 +10,7 @@
 //! Where loads have no potential (drag, forces that follow), eigenvalues of the linearised motion tell
 //! ([`crate::modes`]), and a disturbance that is followed for a while ([`super::disturbance`]).
 
+use super::naming::describe;
 use super::neutral::Leaning;
 use super::{Neutral, Statics};
 use crate::modes::slowest;
@@ -42,6 +43,8 @@ pub(super) struct Judgement {
     pub swing: Vec<f64>,
     /// Whether loads have a potential there.
     pub potential: bool,
+    /// What the load moves, since nothing holds it: this is no equilibrium.
+    pub driven: Option<String>,
     /// What can't be told.
     pub doubt: Option<String>,
 }
@@ -102,6 +105,17 @@ impl Statics<'_> {
         if unstable > 0 {
             out.way_out = Some(self.softest(seed));
             return Ok(out);
+        }
+        // what a load drives where nothing holds is no equilibrium
+        for x in lowest.iter().take(near) {
+            let shape = self.increment(x);
+            let work: f64 = shape.iter().zip(&self.system.residual).map(|(d, r)| d * r).sum();
+            let position = &self.structure.position;
+            let rounding: f64 = shape.iter().zip(position).map(|(d, &p)| MARGIN * w[p] * d * d).sum();
+            if work.abs() > (1e-6 * load * self.size(&shape) * self.model.length()).max(rounding) {
+                out.driven = Some(describe(self.model, &there.q, &shape));
+                return Ok(out);
+            }
         }
         // by the matrix alone these can't be told: rounding is as large as they are
         for k in 0..near {
