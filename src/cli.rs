@@ -16,6 +16,7 @@
 //! ```
 
 use crate::commands::{self, Exit};
+use crate::error::Error;
 use crate::run::Every;
 use clap::{Parser, Subcommand};
 use ropewalk_models::Bundled;
@@ -34,7 +35,8 @@ use std::process::ExitCode;
         ropewalk run scene.toml --set n=40      the same with another parameter\n  \
         ropewalk sweep scene.toml --vary n=10,20,40 --vary speed=5:25:10kn\n  \
         ropewalk describe cable                 the fields of a type\n\n\
-        Exit codes: 0 done, 1 a case of `verify` is off, 2 wrong scene or usage, 3 the solver gave up, 130 Ctrl-C.",
+        Exit codes: 0 done, 1 a case of `verify` is off, 2 wrong scene or usage, 3 the solver gave up, 130 Ctrl-C\n\
+        (143 SIGTERM, 129 SIGHUP, which end a run as Ctrl-C does).",
     disable_help_subcommand = true
 )]
 struct Cli {
@@ -52,7 +54,7 @@ enum Command {
         ropewalk run scene.toml --certify       how far it can be trusted\n  \
         ropewalk run scene.toml --accuracy 1e-3 --of hose.end\n\n\
         The folder holds scene.toml (as it was run), manifest.json, history.csv, summary.json and plots/*.svg.\n\
-        Ctrl-C ends the run in good order; what was computed is kept.")]
+        Ctrl-C, SIGTERM and SIGHUP end the run in good order; what was computed is kept.")]
     Run(commands::run::RunArgs),
     /// Go on with a run that was interrupted or killed, from its last checkpoint
     #[command(after_help = "Examples:\n  \
@@ -60,7 +62,7 @@ enum Command {
         ropewalk resume runs/scene\n\n\
         The results are those of a run with the same checkpoints that was never stopped, to the last digit. A checkpoint\n\
         makes the run drop kept factors, so one without any may differ in rounding. `--checkpoint '500 steps'` writes\n\
-        the same ones on every run, `60s` when the clock says so.")]
+        the same ones on every run, `60s` when the clock says so and when the run is interrupted.")]
     Resume {
         /// Folder of the run
         #[arg(value_name = "DIR")]
@@ -199,8 +201,8 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 /// The whole command line with these bundled scenes, on the arguments of the program.
 ///
 /// Exit codes: 0 done; 1 a case of `verify` is outside its tolerances; 2 something is wrong with the scene or the
-/// command; 3 the solver gave up, all results until then are kept; 130 interrupted by Ctrl-C, all results until then are
-/// kept.
+/// command; 3 the solver gave up, all results until then are kept; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by
+/// SIGHUP, all results until then are kept.
 pub fn main_with(bundled: &[Bundled]) -> ExitCode {
     main_from(bundled, std::env::args_os())
 }
@@ -233,9 +235,13 @@ pub fn main_from(
         Command::Check { scene } => commands::check::check(&scene, bundled),
     };
     match done {
-        Ok(exit) => ExitCode::from(exit as u8),
+        Ok(exit) => ExitCode::from(exit.code()),
+        Err(e @ Error::Interrupted) => {
+            commands::complain(e);
+            ExitCode::from(Exit::Interrupted.code())
+        }
         Err(e) => {
-            commands::complain(&e);
+            commands::complain(format!("error: {e}"));
             ExitCode::from(if e.is_input() { Exit::Input as u8 } else { Exit::Solver as u8 })
         }
     }

@@ -14,6 +14,7 @@ pub(crate) mod sweep;
 pub(crate) mod variants;
 pub(crate) mod verify;
 
+use crate::output::Interrupt;
 use std::fmt::Display;
 use std::io::Write;
 
@@ -29,8 +30,15 @@ pub(crate) enum Exit {
     Input = 2,
     /// The solver gave up.
     Solver = 3,
-    /// Ctrl-C, as shells expect it (128 + SIGINT).
+    /// Ctrl-C or another signal.
     Interrupted = 130,
+}
+
+impl Exit {
+    /// The exit code of the program.
+    pub(crate) fn code(self) -> u8 {
+        if self == Exit::Interrupted { Interrupt::exit_code() } else { self as u8 }
+    }
 }
 
 /// Writes results. Whoever closes the pipe early has seen enough.
@@ -43,14 +51,19 @@ pub(crate) fn complain(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
-/// Breaks a text into lines of at most 96 characters, each behind `indent`; paragraphs stay apart.
+/// Breaks a text into lines of at most 96 characters, each behind `indent`; paragraphs stay apart, and those set in by
+/// four spaces, such as examples, keep their lines.
 pub(crate) fn wrapped(text: &str, indent: usize) -> String {
     const WIDTH: usize = 96;
     let mut out = String::new();
     let mut paragraphs = text.split("\n\n").peekable();
     while let Some(paragraph) = paragraphs.next() {
+        let as_written = !paragraph.trim().is_empty()
+            && paragraph.lines().all(|line| line.trim().is_empty() || line.starts_with("    "));
+        let kept = paragraph.lines().filter(|_| as_written);
+        out.extend(kept.map(|line| format!("{:indent$}{line}\n", "")));
         let mut line = String::new();
-        for word in paragraph.split_whitespace() {
+        for word in paragraph.split_whitespace().filter(|_| !as_written) {
             if !line.is_empty() && indent + line.chars().count() + 1 + word.chars().count() > WIDTH {
                 out += &format!("{:indent$}{line}\n", "");
                 line.clear();
@@ -77,5 +90,17 @@ pub(crate) fn first_line(text: &str) -> String {
     match line.find(". ") {
         Some(end) => line[..=end].to_string(),
         None => line,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn examples_keep_their_lines() {
+        let text = "Words that\nrun on.\n\n    one   --set a=1\n    two   --set b=2\n\nThe end.\n";
+        let shown = "  Words that run on.\n\n      one   --set a=1\n      two   --set b=2\n\n  The end.\n";
+        assert_eq!(wrapped(text, 2), shown);
     }
 }

@@ -365,10 +365,7 @@ impl Judge<'_> {
                     format!("given up after {most:.0} s, {PATIENCE:.0} times what the scene itself takes");
                 return Some(Verdict::Failed(message));
             }
-            Err(Failure::Failed(e)) => {
-                let message = e.to_string().trim_start_matches("error: ").to_string();
-                return Some(Verdict::Failed(message));
-            }
+            Err(Failure::Failed(e)) => return Some(Verdict::Failed(e.to_string())),
         };
         let Some(change) = self.watched.change(&self.base.table, &trial.table) else {
             let message = match &trial.stopped {
@@ -380,7 +377,11 @@ impl Judge<'_> {
         let last = |t: &Trial| t.table.columns.first().and_then(|c| c.values.last()).copied();
         let note = match (&trial.stopped, last(&trial), last(self.base)) {
             (by, Some(t), Some(base)) if (t - base).abs() > 1e-9 * base.abs() => {
-                format!("ends at t = {t:.4} s{}", by.as_ref().map_or(String::new(), |by| format!(" by {by}")))
+                let by = by.as_ref().map_or(String::new(), |by| format!(" by {by}"));
+                match self.base.table.columns.first() {
+                    Some(first) if first.name != "t" => format!("ends at {} {t:.4}{by}", first.name),
+                    _ => format!("ends at t = {t:.4} s{by}"),
+                }
             }
             _ => String::new(),
         };

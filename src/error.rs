@@ -1,38 +1,41 @@
 //! What can go wrong between a scene and its results.
 
-use crate::output::OutputError;
+use crate::output::{Interrupt, OutputError};
 use crate::scene::Fault;
 use ropewalk_core::SceneError;
 use ropewalk_core::integrator::StepError;
 use ropewalk_core::modes::ModesError;
 use ropewalk_core::statics::StaticsError;
+use std::fmt;
 
 /// Why there are no results.
-#[derive(Debug, thiserror::Error)]
+///
+/// Its `Debug` is its message, which is what a `main` that returns it prints.
+#[derive(thiserror::Error)]
 pub enum Error {
     /// The scene file is wrong; the message shows the place.
     #[error("{0}")]
     File(#[from] Fault),
     /// The scene can't be built.
-    #[error("error: {0}")]
+    #[error("{0}")]
     Scene(#[from] SceneError),
     /// A step could not be taken.
-    #[error("error: {0}")]
+    #[error("{0}")]
     Step(#[from] StepError),
     /// A process could not go on.
-    #[error("error: {0}")]
+    #[error("{0}")]
     Process(String),
     /// An equilibrium was not found.
-    #[error("error: {0}")]
+    #[error("{0}")]
     Statics(#[from] StaticsError),
     /// The vibration modes could not be found.
-    #[error("error: {0}")]
+    #[error("{0}")]
     Modes(#[from] ModesError),
-    /// Ctrl-C was pressed before there was anything to keep.
-    #[error("stopped by Ctrl-C")]
+    /// Ctrl-C was pressed, or the system asked for the end, before there was anything to keep.
+    #[error("stopped by {}", Interrupt::cause())]
     Interrupted,
     /// Results could not be written.
-    #[error("error: {0}")]
+    #[error("{0}")]
     Output(#[from] OutputError),
 }
 
@@ -49,5 +52,24 @@ impl Error {
                 ModesError::Massless { .. } | ModesError::Moving { .. } | ModesError::Held | ModesError::None
             ),
         }
+    }
+}
+
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_main_that_returns_an_error_prints_what_a_user_can_read() {
+        let e = crate::read("nowhere.toml").unwrap_err();
+        assert_eq!(format!("Error: {e:?}"), "Error: there is no file `nowhere.toml`");
+        let mut scene = crate::Scene::new();
+        scene.run.duration = -1.0;
+        let e = crate::simulate(&scene).err().unwrap();
+        assert_eq!(format!("Error: {e:?}"), "Error: `duration` must be positive, but is -1");
     }
 }

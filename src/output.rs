@@ -30,4 +30,4 @@ pub use progress::{Progress, ProgressMode, SweepProgress};
 pub use stopwatch::{Elapsed, Stopwatch};
 pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, Summary};
 pub use table::{Column, Table, TableWriter};
-pub(crate) use table::{push_cell, push_number};
+pub(crate) use table::{cells, push_cell, push_number};

@@ -12,6 +12,7 @@ mod tables;
 pub use checkpoint::Every;
 pub use manifest::Manifest;
 pub(crate) use pictures::{PLANES, planes, view};
+use recorder::Warnings;
 pub(crate) use recorder::{Recorder, records};
 pub(crate) use shapes::last as last_shape;
 pub(crate) use start::{Ending, Started};
@@ -24,7 +25,8 @@ use crate::output::{
 use crate::read::SceneFile;
 use crate::scene::Fault;
 use checkpoint::Saver;
-use ropewalk_core::{Analysis, Audit};
+use ropewalk_core::Audit;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 /// What may be chosen about a run beside its scene.
@@ -56,9 +58,6 @@ pub struct Outcome {
     pub report: String,
 }
 
-/// More rows than this are surely a mistake, and fill the disk.
-const MOST_ROWS: f64 = 1e7;
-
 /// Runs a scene into a folder of its own. What one should know although the run goes on is said by `warn`, at once.
 ///
 /// A run that fails or is interrupted is an `Ok` too: all that it computed until then is in the folder, and the
@@ -77,16 +76,11 @@ pub(crate) fn run_showing(
     progress: &dyn Fn(f64) -> Progress,
     warn: &mut dyn FnMut(&str),
 ) -> Result<Outcome, Error> {
-    let mut warnings = Warnings { all: Vec::new(), tell: warn };
+    let mut warnings = Warnings { all: Vec::new(), tell: Some(warn) };
     let scene = file.scene();
     let model = file.build()?;
     let records = file.records(&model)?;
     let manifest = Manifest::new(file, &model)?;
-    let rows = scene.run.duration / scene.run.interval();
-    if scene.run.analysis == Analysis::Dynamics && rows > MOST_ROWS {
-        let message = format!("a history of {rows:.0e} rows is too long: make `output` longer");
-        return Err(file.document().fault_at("run.output", message).into());
-    }
     for name in file.document().unused_parameters() {
         warnings.say(&format!("parameter `{name}` is not used by the scene"));
     }
@@ -155,30 +149,19 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let Started::Dynamics(simulation, ..) = &started else { unreachable!("only runs in time are resumed") };
     let mut recorder = Recorder::new(file.scene(), file.records(&simulation.model)?);
     recorder.take_up(&saved).map_err(Fault::new)?;
-    let warnings = Warnings { all: saved.warnings.to_vec(), tell: warn };
+    let warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
     let before = Elapsed { cpu_s: saved.cpu_s, wall_s: saved.wall_s };
     let every = options.checkpoint.unwrap_or(saved.every);
     recorder.saver =
         Some(Saver::new(&folder, &saved.name, every, &started, &warnings.all, before, stopwatch)?);
     recorder.writer = Some(TableWriter::resume(&folder.history_file(), &recorder.table)?);
+    // what it says is of rows that are computed again
+    let _ = std::fs::remove_file(folder.summary_file());
     let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
     recorder.progress = Some(Progress::new(t, end, options.progress));
     let notes = manifest::notes(file.scene(), &simulation.model);
     let course = Course { file: &file, folder, recorder, stopwatch, before, resumed: true, notes };
     course.complete(Ok(started), options.profile, warnings)
-}
-
-/// Warnings are said at once and kept for the summary.
-struct Warnings<'w> {
-    all: Vec<String>,
-    tell: &'w mut dyn FnMut(&str),
-}
-
-impl Warnings<'_> {
-    fn say(&mut self, text: &str) {
-        self.all.push(text.to_string());
-        (self.tell)(text);
-    }
 }
 
 /// A run from where everything is ready for it to where everything is written.
@@ -194,12 +177,12 @@ struct Course<'a> {
     notes: Vec<String>,
 }
 
-impl Course<'_> {
+impl<'a> Course<'a> {
     fn complete(
         self,
         mut started: Result<Started, Error>,
         measure: bool,
-        mut warnings: Warnings<'_>,
+        mut warnings: Warnings<'a>,
     ) -> Result<Outcome, Error> {
         let Course { file, folder, mut recorder, stopwatch, before, resumed, notes } = self;
         match Interrupt::install() {
@@ -214,7 +197,13 @@ impl Course<'_> {
                     started.profile();
                 }
                 let clock = std::time::Instant::now();
-                let ending = started.go(file.scene(), &mut recorder, resumed);
+                recorder.warnings = warnings;
+                // a defect must not take what was computed with it
+                let go = || started.go(file.scene(), &mut recorder, resumed);
+                let ending = catch_unwind(AssertUnwindSafe(go)).unwrap_or_else(|_| {
+                    Ending::Failed(Error::Process("an internal error, see above: please report it".into()))
+                });
+                warnings = std::mem::take(&mut recorder.warnings);
                 started.afterthought().iter().for_each(|w| warnings.say(w));
                 if measure {
                     profile = Some(shares(started.times(), clock.elapsed().as_secs_f64()));
@@ -256,8 +245,8 @@ impl Course<'_> {
         summary.message = match &ending {
             Ending::Finished => None,
             Ending::Stopped(by) => Some(format!("stopped by {by}")),
-            Ending::Interrupted => Some("stopped by Ctrl-C".into()),
-            Ending::Failed(error) => Some(error.to_string().trim_start_matches("error: ").to_string()),
+            Ending::Interrupted => Some(format!("stopped by {}", Interrupt::cause())),
+            Ending::Failed(error) => Some(error.to_string()),
         };
         if let Some(writer) = recorder.writer.take() {
             writer.finish().unwrap_or_else(|e| warnings.say(&e.to_string()));
@@ -265,7 +254,8 @@ impl Course<'_> {
         recorder.finals(&mut summary);
         let pictures =
             pictures::draw(&folder, file.title(), &recorder, &summary.critical, &mut |w| warnings.say(w));
-        shapes::write(&folder, &recorder.shapes).unwrap_or_else(|e| warnings.say(&e.to_string()));
+        shapes::write(&folder, &recorder.table.columns[0], &recorder.shapes)
+            .unwrap_or_else(|e| warnings.say(&e.to_string()));
         let tables = tables::write(&folder, &recorder, &mut |w| warnings.say(w));
         summary.warnings = warnings.all;
         if matches!(ending, Ending::Finished | Ending::Stopped(_)) && recorder.saver.is_some() {
@@ -273,7 +263,9 @@ impl Course<'_> {
             let _ = std::fs::remove_file(folder.checkpoint_file());
         }
         // last of all: who finds a summary finds everything
-        folder.write_summary(&summary)?;
+        if let Err(e) = folder.write_summary(&summary) {
+            (summary.status, summary.message) = ("failed".into(), Some(e.to_string()));
+        }
         let report = report::report(file, &summary, &recorder, &folder, &pictures, &tables);
         Ok(Outcome { folder, summary, history: recorder.table, pictures, report })
     }

@@ -60,8 +60,9 @@ pub(crate) fn simulate_showing(
     let mut recorder = Recorder::new(scene, records(scene, &model)?);
     (recorder.progress, recorder.interrupt) = (progress, interrupt);
     let mut started = Started::new(scene, model)?;
-    let mut warnings = started.warnings(scene);
+    recorder.warnings.all = started.warnings(scene);
     let ending = started.go(scene, &mut recorder, false);
+    let mut warnings = std::mem::take(&mut recorder.warnings.all);
     if let Some(progress) = recorder.progress.take() {
         progress.finish("");
     }
@@ -69,7 +70,7 @@ pub(crate) fn simulate_showing(
     let stopped_by = match ending {
         Ending::Finished => None,
         Ending::Stopped(by) => Some(by),
-        Ending::Interrupted => Some("Ctrl-C".into()),
+        Ending::Interrupted => Some(Interrupt::cause().into()),
         Ending::Failed(error) => return Err(error),
     };
     let (table, done) = (recorder.table, started.done());

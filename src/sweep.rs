@@ -162,7 +162,7 @@ impl Sweep<'_> {
         match catch_unwind(AssertUnwindSafe(|| run_showing(file, &options, &progress, &mut warn))) {
             Ok(Ok(outcome)) => Row::new(&outcome.summary, &outcome.history, false),
             Ok(Err(Error::File(fault))) => Row::refused(fault.message),
-            Ok(Err(e)) => Row::refused(e.to_string().trim_start_matches("error: ").to_string()),
+            Ok(Err(e)) => Row::refused(e.to_string()),
             Err(_) => Row::refused("an internal error, see above: please report it".into()),
         }
     }
@@ -184,13 +184,13 @@ fn complete(folder: &RunFolder, file: &SceneFile) -> Option<(Summary, Table)> {
     let summary = folder.read_summary().ok()?;
     let history = Table::read(&folder.history_file()).ok()?;
     // a history that was cut off or touched doesn't end as the summary says
-    let finals = summary.final_values.values().flat_map(|v| v.as_array().cloned().unwrap_or(vec![v.clone()]));
-    let last = history.columns.iter().skip(1).map(|c| c.values.last().copied());
-    let ended = last.zip(finals).all(|(there, said)| match (there, said.as_f64()) {
-        // the last digit may be lost in reading JSON
-        (Some(x), Some(y)) => (x - y).abs() <= 1e-12 * x.abs(),
-        (Some(x), None) => !x.is_finite(),
-        (None, _) => false,
+    let ended = history.columns.iter().all(|c| {
+        match (c.values.last(), summary.final_values.get(&c.name).map(serde_json::Value::as_f64)) {
+            // the last digit may be lost in reading JSON
+            (Some(x), Some(Some(y))) => (x - y).abs() <= 1e-12 * x.abs(),
+            (Some(x), Some(None)) => !x.is_finite(),
+            _ => false,
+        }
     });
     let whole = history.rows() == summary.rows && ended;
     (matches!(summary.status.as_str(), "finished" | "stopped") && whole).then_some((summary, history))

@@ -126,6 +126,51 @@ fn changes(scene: &str, cases: &[Change<'_>]) {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_as_scene_table_and_mesh() {
+    use std::process::Command;
+    let folder = tempfile::tempdir().unwrap();
+    let fifo = folder.path().join("fifo.toml");
+    if !Command::new("mkfifo").arg(&fifo).status().is_ok_and(|s| s.success()) {
+        return; // not every machine has the program
+    }
+    for ending in ["csv", "stl", "obj"] {
+        assert!(
+            Command::new("mkfifo")
+                .arg(folder.path().join(format!("fifo.{ending}")))
+                .status()
+                .unwrap()
+                .success()
+        );
+    }
+    refuse(folder.path(), &["run", "fifo.toml"])
+        .refused(&["`fifo.toml` is a pipe or a device", "/dev/stdin"]);
+    refuse(folder.path(), &["run", "/dev/zero"]).refused(&["`/dev/zero` is a pipe or a device"]);
+    let mass = "[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nat = [0, 0, 0]\nmass = 1\n";
+    for file in ["fifo.csv", "/dev/zero"] {
+        let motion = format!("[[motions]]\ntype = \"speed_table\"\nname = \"launch\"\nfile = \"{file}\"\n");
+        refuse_scene(folder.path(), &(mass.to_string() + &motion)).refused(&["is a pipe or a device"]);
+    }
+    if cfg!(feature = "contact") {
+        for file in ["fifo.stl", "fifo.obj"] {
+            let contact = format!(
+                "[[forces]]\ntype = \"contact\"\nname = \"c\"\nshape = {{ mesh = {{ file = \"{file}\" }} }}\nradius = 0.1\nstiffness = 1\n"
+            );
+            refuse_scene(folder.path(), &(mass.to_string() + &contact)).refused(&["is a pipe or a device"]);
+        }
+    }
+}
+
+#[test]
+fn a_history_without_end_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let mass = "[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nat = [0, 0, 0]\nmass = 1\n";
+    let said = refuse_scene(folder.path(), &format!("[run]\noutput = 1e-300\n{mass}"));
+    said.refused(&["a history of 1e300 rows is too long"]);
+    assert_eq!(place(&said), (2, "1e-300".into()));
+}
+
 #[test]
 fn zero_and_negative_numbers_are_refused_where_they_make_no_sense() {
     cases(&[
@@ -155,6 +200,16 @@ fn zero_and_negative_numbers_are_refused_where_they_make_no_sense() {
         ("drag_area = 0.01", "drag_area = -0.01", "-0.01", &["`drag_area` must not be negative"]),
         ("h_max = 0.5", "h_max = 0", "0", &["`h_max` must be positive"]),
         ("h_min = 1e-9", "h_min = -1", "-1", &["`h_min` must be positive"]),
+        ("h_min = 1e-9", "h_min = 1", "1", &["`h_min` = 1 s must not be above `h_max` = 0.5 s"]),
+        ("h_max = 0.5\nh_min = 1e-9", "h_max = 1e-19\nh_min = 1e-20", "1e-19", &["more than a year"]),
+        (
+            "stepping = { controlled = { tolerance = 0.001 } }",
+            "stepping = { fixed = { h = 1e-30 } }",
+            "1e-30",
+            &["`h` = 1e-30 s makes 2e29 steps", "more than a year"],
+        ),
+        ("length = 4.2", "length = 1e-12", "1e-12", &["stretched to 4.0e12 times"]),
+        ("strain = 0.001", "strain = -1", "-1", &["between -0.9 and 9"]),
         ("h_start = 0.001", "h_start = 0", "0", &["`h_start` must be positive"]),
         ("horizon = 5", "horizon = -5", "-5", &["`horizon` must not be negative"]),
         ("newton_tolerance = 1", "newton_tolerance = 0", "0", &["`newton_tolerance` must be positive"]),

@@ -261,6 +261,36 @@ fn kept(folder: &Path) -> Vec<u8> {
     fs::read(folder.join("run/checkpoint")).unwrap()
 }
 
+/// SIGTERM leaves a checkpoint of that very moment, though the first was to come in an hour.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_goes_on_from_where_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    fs::write(here.join("swing.toml"), SWING).unwrap();
+    let words = ["run", "swing.toml", "--checkpoint", "1 h", "--out", "run"];
+    let mut child = program(here, &words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let rows = || fs::read_to_string(here.join("run/history.csv")).map_or(0, |text| text.lines().count());
+    while rows() < 5 {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it could be interrupted");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let kill = format!("kill -TERM {}", child.id());
+    assert!(std::process::Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+    let summary = || -> serde_json::Value {
+        serde_json::from_str(&fs::read_to_string(here.join("run/summary.json")).unwrap()).unwrap()
+    };
+    let (before, kept) = (summary(), fs::read_to_string(here.join("run/history.csv")).unwrap());
+    assert_eq!(before["status"], "interrupted");
+    let done = run(here, &["resume", "run"]);
+    assert_eq!(done.code, Some(0), "{done:?}");
+    let whole = fs::read_to_string(here.join("run/history.csv")).unwrap();
+    assert!(whole.starts_with(&kept) && whole.lines().count() == 102, "{}", whole.lines().count());
+    assert_eq!(summary()["status"], "finished");
+    assert!(summary()["counts"]["steps"].as_u64() > before["counts"]["steps"].as_u64());
+}
+
 #[test]
 fn what_cannot_be_resumed_is_refused_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
@@ -285,7 +315,19 @@ fn what_cannot_be_resumed_is_refused_with_the_reason() {
     fs::write(here.join("run/scene.toml"), format!("{scene}\n# other\n")).unwrap();
     resume().refused(&["was changed after the checkpoint", "ropewalk run"]);
     fs::remove_file(&file).unwrap();
-    resume().refused(&["there is no checkpoint in run", "--checkpoint"]);
-    run(here, &["resume", "nowhere"]).refused(&["there is no checkpoint in nowhere"]);
+    resume().refused(&[
+        "there is no checkpoint in run: that run is still at work, or was killed",
+        "--checkpoint",
+    ]);
+    run(here, &["resume", "nowhere"]).refused(&["there is no checkpoint in nowhere: it doesn't exist"]);
+    run(here, &["resume", "."]).refused(&["there is no checkpoint in .: it holds no run"]);
+    for (status, said) in
+        [("interrupted", "was interrupted before it wrote one"), ("failed", "failed before it wrote one")]
+    {
+        fs::write(here.join("run/summary.json"), format!("{{ \"status\": \"{status}\" }}")).unwrap();
+        resume().refused(&[said, "ropewalk run"]);
+    }
+    fs::write(here.join("run/summary.json"), "{ \"status\": \"finished\" }").unwrap();
+    resume().refused(&["there is nothing to resume in run: that run came to its end"]);
     run(here, &["run", "swing.toml", "--checkpoint", "often"]).code.filter(|c| *c == 2).expect("usage");
 }

@@ -93,8 +93,15 @@ fn a_run_leaves_a_complete_folder() {
 
     let summary = json(out.join("summary.json"));
     assert_eq!(summary["status"], "finished");
-    let last: Vec<f64> = serde_json::from_value(summary["final"]["rope.end"].clone()).unwrap();
-    assert_eq!(last, rows[15][1..4]);
+    // the same names as in the history
+    let last: Vec<(String, f64)> =
+        serde_json::from_value::<serde_json::Map<String, Value>>(summary["final"].clone())
+            .unwrap()
+            .into_iter()
+            .map(|(name, value)| (name, value.as_f64().unwrap()))
+            .collect();
+    let named = header.split(',').map(|heading| heading.rsplit_once(" [").unwrap().0.to_string());
+    assert_eq!(last, named.zip(rows[15].clone()).collect::<Vec<_>>());
     for count in ["steps", "rejected", "newton_iterations", "factorizations"] {
         assert!(summary["counts"][count].is_u64(), "{count}");
     }
@@ -260,7 +267,7 @@ fn json_scenes_are_read_too() {
     }"#;
     fs::write(folder.path().join("fall.json"), scene).unwrap();
     done(run(folder.path(), &["run", "fall.json", "--out", "out"]));
-    let z = json(folder.path().join("out/summary.json"))["final"]["stone"][2].as_f64().unwrap();
+    let z = json(folder.path().join("out/summary.json"))["final"]["stone.z"].as_f64().unwrap();
     assert!((z - (5.0 - 0.5 * 9.81)).abs() < 1e-6, "{z}");
 }
 
@@ -291,6 +298,9 @@ fn describe_explains_scenes_types_and_sections() {
     for line in ["A swing", "Half a second of it.", "mass = 2 kg/m", "number of elements", "rope (cable)"] {
         assert!(scene.contains(line), "no {line} in\n{scene}");
     }
+    let catenary = describe("catenary");
+    let example = "    taut, shorter than the span           ropewalk run catenary --set length=99.9";
+    assert!(catenary.lines().any(|line| line == example), "{catenary}");
     let hose = describe("hose-turn");
     assert!(hose.contains("speed = 25 kn") && hose.contains("radius = 25 m"), "{hose}");
     let cable = describe("cable");
@@ -324,7 +334,8 @@ fn check_builds_without_running() {
     }
     assert!(!folder.path().join("runs").exists());
     for bundled in ropewalk::bundled() {
-        done(run(folder.path(), &["check", bundled.name]));
+        let said = run(folder.path(), &["check", bundled.name]);
+        assert_eq!((said.code, said.stderr.as_str()), (Some(0), ""), "{}", bundled.name);
     }
 }
 
@@ -339,6 +350,43 @@ fn help_and_version_are_no_errors_and_wrong_usage_is() {
         assert!(said.stderr.contains("Usage"), "{}", said.stderr);
     }
     run(folder.path(), &["run", "swing.toml", "--set", "lenght=3"]).refused(&["lenght", "mass"]);
+}
+
+#[test]
+fn statics_call_their_first_column_load_factor_everywhere() {
+    let folder = folder();
+    let report = done(run(folder.path(), &["run", "catenary", "--set", "elements=6", "--out", "out"]));
+    assert!(report.contains("at load factor 1\n"), "{report}");
+    // the names of the history, and a unit for each kind of number
+    let values = report.lines().find(|l| l.contains("left ")).unwrap_or_else(|| panic!("{report}"));
+    assert!(values.contains("fx -") && values.contains("magnitude ") && values.ends_with(" N"), "{values}");
+    let out = folder.path().join("out");
+    assert!(text(out.join("history.csv")).starts_with("load factor [-],middle.x [m],"));
+    assert!(
+        text(out.join("shapes.csv")).starts_with("load factor [-],part,s [m],x [m],y [m],z [m]\n0,cable,0,")
+    );
+    let summary = json(out.join("summary.json"));
+    assert_eq!(summary["final"]["load factor"], 1.0);
+    assert!(summary["final"]["left.fx"].as_f64() < Some(0.0) && summary["final"]["left.reaction"].is_null());
+    let shapes = text(out.join("plots/shape_side.svg"));
+    let labels = texts(&shapes);
+    assert!(labels.contains(&"load factor 1") && !labels.iter().any(|l| l.ends_with(" s")), "{labels:?}");
+}
+
+#[test]
+fn shapes_tell_the_part_and_the_unstretched_arc_length_of_every_point() {
+    let folder = folder();
+    done(run(folder.path(), &["run", "swing.toml", "--out", "out"]));
+    let shapes = text(folder.path().join("out/shapes.csv"));
+    let mut rows = shapes.lines().map(|l| l.split(',').collect::<Vec<_>>());
+    assert_eq!(rows.next().unwrap(), ["t [s]", "part", "s [m]", "x [m]", "y [m]", "z [m]"]);
+    let rows: Vec<_> = rows.collect();
+    // 9 snapshots of 4 elements, each drawn by 8 pieces
+    assert_eq!(rows.len(), 9 * 33);
+    for (k, row) in rows.iter().enumerate() {
+        let s: f64 = row[2].parse().unwrap();
+        assert!(row[1] == "rope" && (s - (k % 33) as f64 / 32.0).abs() < 1e-12, "{row:?}");
+    }
 }
 
 #[test]
@@ -392,7 +440,14 @@ motion = "away"
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_ends_in_good_order() {
+fn signals_end_a_run_in_good_order() {
+    for (signal, name, code) in [("INT", "Ctrl-C", 130), ("TERM", "SIGTERM", 143), ("HUP", "SIGHUP", 129)] {
+        stopped_by(signal, name, code);
+    }
+}
+
+#[cfg(unix)]
+fn stopped_by(signal: &str, name: &str, code: i32) {
     let folder = folder();
     let scene = SWING.replace("duration = \"0.3 s\"", "duration = \"10000 s\"");
     fs::write(folder.path().join("long.toml"), scene).unwrap();
@@ -406,14 +461,15 @@ fn ctrl_c_ends_in_good_order() {
     while !begun() && start.elapsed() < Duration::from_secs(20) {
         std::thread::sleep(Duration::from_millis(20));
     }
-    let kill = format!("kill -INT {}", child.id());
+    let kill = format!("kill -{signal} {}", child.id());
     assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
     let said = Said::of(child.wait_with_output().unwrap());
     assert!(start.elapsed() < Duration::from_secs(30));
-    assert_eq!(said.code, Some(130), "{}", said.stderr);
+    assert_eq!(said.code, Some(code), "{}", said.stderr);
     assert!(said.stdout.contains("interrupted"), "{}", said.stdout);
     let summary = json(folder.path().join("out/summary.json"));
     assert_eq!(summary["status"], "interrupted");
+    assert_eq!(summary["message"], format!("stopped by {name}"));
     assert!(summary["counts"]["steps"].as_u64() > Some(0));
     let rows = text(&history);
     assert!(

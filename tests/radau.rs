@@ -303,7 +303,7 @@ fn motion_does_not_depend_on_the_frame() {
 #[test]
 fn a_failed_step_leaves_the_state_as_it_was() {
     for stepping in [Stepping::Fixed { h: 0.5 }, Stepping::Controlled { tolerance: 1e-4 }] {
-        let options = Options { h_min: 0.4, h_start: 0.5, ..radau(stepping) };
+        let options = Options { h_min: Some(0.4), h_start: Some(0.5), ..radau(stepping) };
         let mut s = start(&soft(), &options, 1.0);
         let before = s.state.clone();
         let error = s.advance(1.0, f64::INFINITY, &mut ()).expect_err("must fail");
@@ -321,7 +321,7 @@ fn bad_options_are_refused_and_all_good_ones_run() {
         (fixed(f64::NAN), "`h`"),
         (controlled(-1.0), "`tolerance`"),
         (Options { max_iterations: 1, ..fixed(1e-3) }, "max_iterations"),
-        (Options { h_min: 0.0, ..fixed(1e-3) }, "h_min"),
+        (Options { h_min: Some(0.0), ..fixed(1e-3) }, "h_min"),
     ] {
         let refused = Simulation::new(soft().build().expect("model"), &bad, 1.0).err().expect("refused");
         assert!(refused.to_string().contains(word), "{refused}");

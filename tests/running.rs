@@ -14,6 +14,23 @@ fn fixed(h: f64) -> Options {
     Options { stepping: Stepping::Fixed { h }, ..Options::default() }
 }
 
+#[test]
+fn states_of_other_models_are_refused() {
+    let ball = |count: usize| {
+        let mut scene = Scene::new();
+        for k in 0..count {
+            scene.element(PointMassSpec::new(&format!("ball{k}"), [k as f64, 0.0, 0.0], 1.0));
+        }
+        scene.build().expect("model")
+    };
+    let mut s = Simulation::new(ball(1), &Options::default(), 1.0).expect("start");
+    let other = ball(2).state();
+    let e = Simulation::from(ball(1), other.clone(), &Options::default(), 1.0).err().expect("refused");
+    assert_eq!(e, StepError::Foreign("it has 6 coordinates, the model 3".into()));
+    s.state = other;
+    assert!(matches!(s.advance(1.0, 0.1, &mut ()), Err(StepError::Foreign(_))));
+}
+
 /// The floor that a mass falls on.
 struct Bounce {
     restitution: f64,
@@ -121,7 +138,7 @@ fn an_event_ends_a_run() {
 #[test]
 fn a_failed_step_leaves_the_state_as_it_was() {
     // one iteration too few for a step so large, and no smaller one allowed
-    let options = Options { max_iterations: 2, h_min: 0.4, newton_tolerance: 1e-9, ..fixed(0.5) };
+    let options = Options { max_iterations: 2, h_min: Some(0.4), newton_tolerance: 1e-9, ..fixed(0.5) };
     let mut s = Simulation::new(swinging().build().expect("model"), &options, 1.0).expect("start");
     let before = s.state.clone();
     let error = s.advance(1.0, f64::INFINITY, &mut ()).expect_err("must fail");
@@ -187,19 +204,31 @@ fn motion_does_not_depend_on_the_frame() {
     assert!(size(off) < 1e-8, "{off:?}");
 }
 
+/// The same cable in metres, kilograms and seconds, in millimetres, tonnes and seconds, in kilometres, kilograms and
+/// milliseconds, and without dimensions: the same steps, the same iterations, the same motion.
 #[test]
 fn motion_does_not_depend_on_units() {
-    // the same cable in millimetres and grams: lengths times 1000, forces times 1e6, EI times 1e12
-    let run = |l: f64, m: f64| {
-        let section = Section::new(2.0 * m / l, 1e4 * m * l, m * l * l * l);
-        let scene = pendulum(8, 2.0 * l, section, models("L4(lob3)+T3(2)").expect("legal"), 9.81 * l);
-        let mut s = Simulation::new(scene.build().expect("model"), &Options::default(), 0.5).expect("start");
-        s.advance(0.5, f64::INFINITY, &mut ()).expect("run");
-        (place(&s.model, &s.state, "cable", 2.0 * l).map(|x| x / l), s.work.counts.steps)
+    let run = |[l, m, t]: [f64; 3], options: &Options| {
+        let force = m * l / (t * t);
+        let section = Section::new(2.0 * m / l, 1e4 * force, force * l * l);
+        let models = models("L4(lob3)+T3(2)").expect("legal");
+        let scene = pendulum(8, 2.0 * l, section, models, 9.81 * l / (t * t));
+        let mut s = Simulation::new(scene.build().expect("model"), options, 0.5 * t).expect("start");
+        s.advance(0.5 * t, f64::INFINITY, &mut ()).expect("run");
+        (place(&s.model, &s.state, "cable", 2.0 * l).map(|x| x / l), s.work.counts)
     };
-    let (metres, millimetres) = (run(1.0, 1.0), run(1000.0, 1000.0));
-    let off: [f64; 3] = std::array::from_fn(|i| metres.0[i] - millimetres.0[i]);
-    assert!(size(off) < 1e-6, "{off:?}, {} and {} steps", metres.1, millimetres.1);
+    for scheme in [Scheme::default(), Scheme::RadauIia5] {
+        let options = Options { scheme, ..Options::default() };
+        let si = run([1.0; 3], &options);
+        for units in [[1e3, 1e-3, 1.0], [1e-3, 1.0, 1e3], [0.5, 0.25, 1.0 / 0.451_523_640_985_750_1]] {
+            let seen = run(units, &options);
+            let off: [f64; 3] = std::array::from_fn(|i| si.0[i] - seen.0[i]);
+            println!("{scheme:?} {units:?}: {:.1e}, {:?}", size(off), seen.1);
+            assert!(size(off) < 1e-9, "{off:?}, {:?} and {:?}", si.1, seen.1);
+            let work = |c: ropewalk_core::integrator::Counts| [c.steps, c.rejected, c.newton_iterations];
+            assert_eq!(work(si.1), work(seen.1), "{scheme:?}, {units:?}");
+        }
+    }
 }
 
 #[test]

@@ -315,6 +315,12 @@ fn tables_of_speeds_are_read_and_bad_ones_refused_with_their_line() {
         ("t,v\n0,0\n1,nan\n3,3\n", ["launch.csv, line 3", "not a finite number"]),
         ("t,v\n0,0\n1,fast\n3,3\n", ["launch.csv, line 3", "`fast` is not a number"]),
         ("t,v\n0,0\n1\n3,3\n", ["launch.csv, line 3", "there are 1 columns, not 2"]),
+        ("t,v\n0,0\n1,2,5\n3,3\n", ["launch.csv, line 3", "there are 3 columns, not 2"]),
+        (
+            "t,v\n0,0\n1,\"0,1\"\n3,3\n",
+            ["launch.csv, line 3, column 3", "`0,1` is not a number: write a decimal point"],
+        ),
+        ("t,v,t [min]\n0,0,0\n3,3,3\n", ["launch.csv, line 1, column 5", "there is a column `t` already"]),
         ("t,speed\n0,0\n3,3\n", ["launch.csv, line 1", "no column `v`"]),
         ("t [s],v [kg]\n0,0\n3,3\n", ["launch.csv, line 1", "column `v`"]),
         ("", ["launch.csv, line 1", "empty"]),

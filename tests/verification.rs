@@ -110,4 +110,9 @@ fn the_scenes_of_a_case_run_like_any_others() {
     let scene = "scenes/inconsistent_initial_conditions_pendulum.toml";
     assert_eq!(run(folder.path(), &["run", scene, "--quiet"]).code, Some(0));
     run(folder.path(), &["verify", "--scenes", "scenes"]).refused(&["is not empty"]);
+    // one whose parts are many is written with all of them
+    let said = run(folder.path(), &["verify", "a02", "--scenes", "bars"]);
+    assert_eq!((said.code, said.stdout.as_str()), (Some(0), "2 scenes in bars\n"), "{}", said.stderr);
+    let said = run(folder.path(), &["check", "bars/a02_n_four_bar_40.toml"]);
+    assert!(said.code == Some(0) && said.stdout.contains("crank40 (rigid_body)"), "{said:?}");
 }

@@ -122,6 +122,7 @@ pub struct Connection {
     rows: Vec<RowKind>,
     range: (f64, f64),
     linear: bool,
+    linear_rows: Vec<bool>,
     /// Whether it only holds two points together, which chains do by the thousand.
     coincide: bool,
 }
@@ -188,10 +189,26 @@ impl Connection {
         }
         let rows = equations.iter().map(Equation::kind).collect();
         let coincide = is_coincidence(&equations);
-        let mut c = Connection { name, equations, markers, nodes: on, rows, range, linear: false, coincide };
+        let linear_rows = Vec::new();
+        let mut c = Connection {
+            name,
+            equations,
+            markers,
+            nodes: on,
+            rows,
+            range,
+            linear: false,
+            linear_rows,
+            coincide,
+        };
         c.check_axes(nodes)?;
-        c.linear = c.equations.iter().all(|e| c.is_linear(nodes, e));
+        c.linear_rows = c.equations.iter().map(|e| c.is_linear(nodes, e)).collect();
+        c.linear = c.linear_rows.iter().all(|linear| *linear);
         Ok(c)
+    }
+
+    fn motions(&self) -> impl Iterator<Item = &Arc<dyn Motion>> {
+        self.equations.iter().flat_map(Equation::motion)
     }
 
     fn kind(&self, nodes: &[Node], of: usize) -> Option<NodeKind> {
@@ -490,8 +507,17 @@ impl Constraint for Connection {
     fn linear(&self) -> bool {
         self.linear
     }
+    fn linear_row(&self, row: usize) -> bool {
+        self.linear_rows[row]
+    }
     fn range(&self) -> (f64, f64) {
         self.range
+    }
+    fn moves(&self) -> bool {
+        self.motions().next().is_some()
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.motions().try_fold(h, |h, m| m.reach(t, h))
     }
     fn imposes(&self) -> Option<&dyn Motion> {
         self.equations.iter().find_map(|e| match e {

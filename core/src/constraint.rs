@@ -40,8 +40,12 @@ pub trait Relation: Send + Sync + 'static {
     fn linear(&self) -> bool {
         false
     }
+    /// The motion that it follows, if it depends on time.
+    fn follows(&self) -> Option<&dyn Motion> {
+        None
+    }
     /// Sets the value of each equation, given where the markers are. A time-dependent relation evaluates its
-    /// motion with [`lift`].
+    /// motion with [`lift`], and tells it as [`Relation::follows`].
     fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]);
 }
 
@@ -63,6 +67,10 @@ pub trait Constraint: Send + Sync {
     fn nodes(&self) -> &[NodeId];
     /// Whether it has no geometric stiffness.
     fn linear(&self) -> bool;
+    /// Whether one of its equations has none.
+    fn linear_row(&self, _row: usize) -> bool {
+        self.linear()
+    }
     /// Sets `g` and, row by row, its Jacobian by the velocities of [`Constraint::nodes`].
     fn jacobian(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]);
     /// Sets `h = ∂(Gᵀλ)/∂q`, a square matrix over the velocities of its nodes: row by equation, column by increment. It
@@ -73,6 +81,14 @@ pub trait Constraint: Send + Sync {
     /// The displacement that it imposes on its last marker as seen from its first, if it does that.
     fn imposes(&self) -> Option<&dyn Motion> {
         None
+    }
+    /// Whether it changes with time: only then [`Constraint::reach`] is asked.
+    fn moves(&self) -> bool {
+        self.imposes().is_some()
+    }
+    /// How much of a step `h` from `t` may be taken that leaps over nothing of its motion, as [`Motion::reach`].
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.imposes().map_or(Some(h), |m| m.reach(t, h))
     }
     /// The coordinate that it prescribes, if it does nothing else: its place and that of its velocity. Integrators then
     /// take coordinate, velocity and acceleration from [`Constraint::prescribed`] instead of following the coordinate,
@@ -165,6 +181,12 @@ impl<R: Relation> Constraint for Joint<R> {
     }
     fn range(&self) -> (f64, f64) {
         self.range
+    }
+    fn moves(&self) -> bool {
+        self.relation.follows().is_some()
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.relation.follows().map_or(Some(h), |m| m.reach(t, h))
     }
 
     fn jacobian(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {

@@ -9,6 +9,7 @@ mod current;
 mod dead;
 mod dense;
 mod feed;
+pub mod file;
 pub mod held;
 pub mod integrator;
 mod lane;
@@ -23,6 +24,7 @@ mod pattern;
 mod pool;
 mod process;
 pub mod quantity;
+pub mod reach;
 mod record;
 pub mod records;
 mod redundancy;
@@ -59,7 +61,7 @@ pub use redundancy::Redundancy;
 pub use remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
 pub use scene::{Analysis, Level, Run, Scene, SceneError, ShapeTitles, TableSpec, Water};
 pub use simulation::{Action, Checkpoint, End, Event, Observer, Simulation, Unfit};
-pub use solver::{Chain, Dense as DenseSolver, Guard, Ldlt, LinearSolver, Lu, Profile, Scalar, SolveError};
+pub use solver::{Chain, Dense as DenseSolver, Fronts, Guard, LinearSolver, Lu, Scalar, SolveError};
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
 };

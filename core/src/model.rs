@@ -53,6 +53,10 @@ pub struct Model {
     finest: usize,
     /// The terms that see something ahead.
     watchful: Vec<usize>,
+    /// The terms that depend on time otherwise than through the state.
+    timed: Vec<usize>,
+    /// The constraints that change with time.
+    moving: Vec<usize>,
     /// The constraints that prescribe a coordinate, and its places.
     driven: Vec<(usize, usize, usize)>,
     /// Whether a term has a kink in velocities.
@@ -119,14 +123,18 @@ impl Model {
         }
         let mut rows = vec![0];
         let mut touched = Vec::new();
+        let zero = vec![0.0; velocities];
+        let begin = At { t: 0.0, q: &start.q, v: &zero, a: &zero, modes: &start.modes, relaxed: None };
         for c in &constraints {
             let (first, count) = (rows[rows.len() - 1], c.rows().len());
             let dofs = c.nodes().iter().flat_map(|k| nodes[k.0 as usize].dofs());
+            let mut jacobian = vec![0.0; count * dofs.clone().count()];
+            c.jacobian(&nodes, &begin, &mut vec![0.0; count], &mut jacobian);
             let at = pattern.len();
             pattern.clique(dofs.chain((first..first + count).map(|r| velocities + r)));
             cliques.push(at..at + 1);
             rows.push(first + count);
-            touched.push(Rows { count, nodes: c.nodes().to_vec() });
+            touched.push(Rows { count, nodes: c.nodes().to_vec(), jacobian });
         }
         // the forces of a constraint on a body turn it, and rotations one after the other don't commute
         let turns = |c: &dyn Constraint| {
@@ -139,6 +147,8 @@ impl Model {
         let farthest = positions.fold(length, |m, x| m.max(x.abs()));
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
         let watchful = (0..terms.len()).filter(|&k| terms[k].foresees()).collect();
+        let timed = (0..terms.len()).filter(|&k| terms[k].timed()).collect();
+        let moving = (0..constraints.len()).filter(|&c| constraints[c].moves()).collect();
         let kinked = terms.iter().any(|t| t.kinked());
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
         let driven = constraints.iter().enumerate();
@@ -167,6 +177,8 @@ impl Model {
             flat,
             finest,
             watchful,
+            timed,
+            moving,
             driven,
             kinked,
         }
@@ -218,6 +230,25 @@ impl Model {
             lambda: vec![0.0; self.multipliers()],
             modes: self.start.modes.clone(),
             control: Control::default(),
+        }
+    }
+
+    /// Whether a state can be one of this model.
+    ///
+    /// # Errors
+    /// What of it is of another size, in a few words.
+    pub fn check(&self, state: &State) -> Result<(), String> {
+        let own = [
+            ("coordinates", state.q.len(), self.start.q.len()),
+            ("velocities", state.v.len(), self.velocities),
+            ("accelerations", state.a.len(), self.velocities),
+            ("auxiliary accelerations", state.aux.len(), self.velocities),
+            ("multipliers", state.lambda.len(), self.multipliers()),
+            ("modes", state.modes.len(), self.start.modes.len()),
+        ];
+        match own.into_iter().find(|(_, has, wants)| has != wants) {
+            Some((what, has, wants)) => Err(format!("it has {has} {what}, the model {wants}")),
+            None => Ok(()),
         }
     }
 
@@ -580,6 +611,33 @@ impl Model {
     /// The longest step from here that leaps over nothing that a term has ahead [s].
     pub fn horizon(&self, at: &At<'_>) -> f64 {
         self.watchful.iter().map(|&k| self.terms[k].horizon(at)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether something changes with time of its own accord.
+    pub(crate) fn is_timed(&self) -> bool {
+        !(self.timed.is_empty() && self.moving.is_empty())
+    }
+
+    /// The terms that depend on time otherwise than through the state.
+    pub(crate) fn timed_terms(&self) -> impl Iterator<Item = &dyn Term> {
+        self.timed.iter().map(|&k| self.terms[k].as_ref())
+    }
+
+    /// The constraints that change with time, with their numbers.
+    pub(crate) fn moving_constraints(&self) -> impl Iterator<Item = (usize, &dyn Constraint)> {
+        self.moving.iter().map(|&c| (c, self.constraints[c].as_ref()))
+    }
+
+    /// Whether a row of the constraints is linear in the increments of its nodes.
+    pub(crate) fn linear_row(&self, row: usize) -> bool {
+        let c = self.rows.partition_point(|&r| r <= row) - 1;
+        self.constraints[c].linear_row(row - self.rows[c])
+    }
+
+    /// Names of the constraints some of whose rows are so.
+    pub(crate) fn constraints_where(&self, row: impl Fn(usize) -> bool) -> Vec<&str> {
+        let all = self.constraints.iter().enumerate();
+        all.filter(|(c, _)| self.rows_of(*c).any(&row)).map(|(_, c)| c.name()).collect()
     }
 
     /// The residual of one term alone, one entry for each velocity: minus the forces that it exerts. The term is one of

@@ -41,6 +41,12 @@ pub trait Motion: Send + Sync + Debug {
     fn range(&self) -> (f64, f64) {
         (f64::NEG_INFINITY, f64::INFINITY)
     }
+    /// How much of a step `h` from `t` may be taken that leaps over nothing of the motion [s], as the functions of
+    /// [`reach`](crate::reach) tell for its rises, periods and knots. `None` if it doesn't know: error control then looks
+    /// at the motion at the quarter points of every step, between which a short one may hide.
+    fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
+        None
+    }
     /// The frame in which the motion is at rest from `t` on, if it is steady then: a straight run, a steady turn.
     fn steady(&self, _t: f64) -> Option<SteadyFrame> {
         None

@@ -1,8 +1,13 @@
 //! The order in which nodes are eliminated, and which unknowns are eliminated together.
 //!
 //! Nodes are taken along the chain where they form one, else in the order in which they were made or in an
-//! approximate minimum degree order of the *nodes*, whichever fills in less. The rows of a constraint follow the last
-//! node that they touch, which keeps elimination without pivoting stable; shared nodes come last.
+//! approximate minimum degree order of the *nodes*, whichever fills in less. Shared nodes come last.
+//!
+//! Rows of constraints follow nodes that they hold, which keeps elimination without pivoting stable: their pivot is
+//! `-G A⁻¹ Gᵀ` of what is eliminated by then, and that must not vanish. Behind the last node that they touch it never
+//! does. But the rows of all lines of a buoy would follow the buoy, and the factors of that large dense block would grow
+//! with the square of the number of lines. So off chains a constraint follows the first node that it holds well, by the
+//! Jacobian at the start: then a line goes together with its joint, as if the other side were at rest.
 
 use crate::node::{Node, NodeId};
 use crate::pattern::Pattern;
@@ -10,12 +15,18 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
-/// The rows of one constraint and the nodes that they touch.
+/// The rows of one constraint, the nodes that they touch, and the Jacobian by their velocities, row by row, where the
+/// model starts; empty where it isn't known.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
     pub count: usize,
     pub nodes: Vec<NodeId>,
+    pub jacobian: Vec<f64>,
 }
+
+/// How well a node has to be held for rows to follow it before others that they touch: the least that is left of each
+/// row besides the other rows, and of its displacement beside those of the other nodes.
+const HOLDS: f64 = 0.1;
 
 /// An elimination order.
 pub(crate) struct Order {
@@ -32,15 +43,16 @@ impl Order {
         let nv = nodes.iter().map(|n| n.kind.velocities()).sum::<usize>();
         let graph = node_graph(nodes, constraints, pattern, nv);
         let natural: Vec<usize> = shared_last(nodes, (0..nodes.len()).collect());
-        let order = if is_chain(nodes, &graph, &natural) {
-            natural
+        if is_chain(nodes, &graph, &natural) {
+            positions(nodes, constraints, &natural, last(constraints, &natural), nv)
         } else if let Some(path) = path(nodes, &graph) {
-            shared_last(nodes, path)
+            let order = shared_last(nodes, path);
+            positions(nodes, constraints, &order, last(constraints, &order), nv)
         } else {
             let degree = shared_last(nodes, minimum_degree(&graph));
-            if fill(&graph, &degree) < fill(&graph, &natural) { degree } else { natural }
-        };
-        positions(nodes, constraints, &order, nv)
+            let order = if fill(&graph, &degree) < fill(&graph, &natural) { degree } else { natural };
+            positions(nodes, constraints, &order, first_held(nodes, constraints, &order), nv)
+        }
     }
 }
 
@@ -150,18 +162,108 @@ fn fill(graph: &[Vec<u32>], order: &[usize]) -> usize {
     total
 }
 
-fn positions(nodes: &[Node], constraints: &[Rows], order: &[usize], nv: usize) -> Order {
+/// For each constraint the place of the last node that it touches.
+fn last(constraints: &[Rows], order: &[usize]) -> Vec<usize> {
     let place = places(order);
+    // a constraint between fixed things only is refused by the model; its place doesn't matter
+    let last = |c: &Rows| c.nodes.iter().map(|k| place[k.0 as usize]).max();
+    constraints.iter().map(|c| last(c).unwrap_or(order.len().saturating_sub(1))).collect()
+}
+
+/// For each constraint the place of the first node that it holds well, together with the constraints that follow that
+/// node already; or of the last.
+fn first_held(nodes: &[Node], constraints: &[Rows], order: &[usize]) -> Vec<usize> {
+    let last = last(constraints, order);
+    let mut touching: Vec<Vec<usize>> = vec![Vec::new(); nodes.len()];
+    for (c, rows) in constraints.iter().enumerate() {
+        for k in &rows.nodes {
+            touching[k.0 as usize].push(c);
+        }
+    }
+    let mut follows: Vec<Option<usize>> = vec![None; constraints.len()];
+    for (p, &k) in order.iter().enumerate() {
+        let mut held: Vec<Vec<f64>> = Vec::new();
+        // those that can't wait come first
+        let (now, later): (Vec<usize>, Vec<usize>) =
+            touching[k].iter().filter(|&&c| follows[c].is_none()).partition(|&&c| last[c] == p);
+        for c in now {
+            follows[c] = Some(p);
+            for row in constraints[c].of_node(nodes, k) {
+                hold(&mut held, row);
+            }
+        }
+        for c in later {
+            let before = held.len();
+            let rows = constraints[c].of_node(nodes, k);
+            let well = !rows.is_empty()
+                && constraints[c].moves_well(nodes, k)
+                && rows.into_iter().all(|row| hold(&mut held, row));
+            if well {
+                follows[c] = Some(p);
+            } else {
+                held.truncate(before);
+            }
+        }
+    }
+    follows.iter().zip(last).map(|(f, last)| f.unwrap_or(last)).collect()
+}
+
+/// Adds a row to an orthonormal basis, unless too little of it is left besides that.
+fn hold(basis: &mut Vec<Vec<f64>>, mut row: Vec<f64>) -> bool {
+    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let before = norm(&row);
+    for b in basis.iter() {
+        let along: f64 = b.iter().zip(&row).map(|(b, x)| b * x).sum();
+        row.iter_mut().zip(b).for_each(|(x, b)| *x -= along * b);
+    }
+    let left = norm(&row);
+    // a row that is zero or NaN holds nothing
+    let well = left > HOLDS * before;
+    if well {
+        row.iter_mut().for_each(|x| *x /= left);
+        basis.push(row);
+    }
+    well
+}
+
+impl Rows {
+    /// The Jacobian by the velocities of one node, row by row.
+    fn of_node(&self, nodes: &[Node], node: usize) -> Vec<Vec<f64>> {
+        let sizes = || self.nodes.iter().map(|k| (k.0 as usize, nodes[k.0 as usize].kind.velocities()));
+        let n = sizes().map(|(_, size)| size).sum::<usize>().max(1);
+        let before: usize = sizes().take_while(|&(k, _)| k != node).map(|(_, size)| size).sum();
+        let size = nodes[node].kind.velocities();
+        self.jacobian.chunks_exact(n).map(|row| row[before..before + size].to_vec()).collect()
+    }
+
+    /// Whether each row feels this node about as much as any other: compared by how their points move, so that lever
+    /// arms don't count.
+    fn moves_well(&self, nodes: &[Node], node: usize) -> bool {
+        let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let felt = |k: usize| -> Vec<f64> {
+            let rows = self.of_node(nodes, k).into_iter();
+            rows.map(|row| match norm(&row[..row.len().min(3)]) {
+                0.0 => norm(&row),
+                point => point,
+            })
+            .collect()
+        };
+        let own = felt(node);
+        self.nodes
+            .iter()
+            .all(|k| felt(k.0 as usize).iter().zip(&own).all(|(other, own)| *own >= HOLDS * other))
+    }
+}
+
+fn positions(nodes: &[Node], constraints: &[Rows], order: &[usize], follows: Vec<usize>, nv: usize) -> Order {
     let n = nv + constraints.iter().map(|c| c.count).sum::<usize>();
     let mut behind: Vec<Vec<usize>> = vec![Vec::new(); nodes.len()];
     let mut row = nv;
-    for c in constraints {
-        let rows = row..row + c.count;
-        row += c.count;
-        // a constraint between fixed things only is refused by the model; its place doesn't matter
-        if let Some(last) = c.nodes.iter().map(|k| place[k.0 as usize]).max().or(nodes.len().checked_sub(1)) {
-            behind[last].extend(rows);
+    for (c, place) in constraints.iter().zip(follows) {
+        if let Some(behind) = behind.get_mut(place) {
+            behind.extend(row..row + c.count);
         }
+        row += c.count;
     }
     let mut position = vec![usize::MAX; n];
     let (mut next, mut starts) = (0, vec![0]);

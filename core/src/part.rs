@@ -124,6 +124,10 @@ pub trait Part: Send + Sync {
     fn line(&self, _at: &At<'_>) -> Vec<V3<f64>> {
         Vec::new()
     }
+    /// Unstretched arc lengths of these points [m], one for each; empty if it has no length to go along.
+    fn arc_lengths(&self, _at: &At<'_>) -> Vec<f64> {
+        Vec::new()
+    }
     /// Unstretched length, or size [m].
     fn length(&self) -> f64;
     /// Unstretched length now [m]: what winches have fed out included.

@@ -20,7 +20,7 @@
 //!
 //! Four families take the same names: the functions of this module read an `f64`, those of [`optional`] an
 //! `Option<f64>` (add `#[serde(default)]` so that the field may be left out), those of [`vec3`] a `[f64; 3]` and those
-//! of [`list`] a `Vec<f64>`, whose entries each are a number or a string. Not-a-number and infinities are refused.
+//! of [`list`] a `Vec<f64>`, whose entries each are a number or a string; [`points`] reads a list of points. Not-a-number and infinities are refused.
 //! Writing stays plain: the `f64` in SI.
 
 mod unit;
@@ -202,6 +202,16 @@ impl<'de> Visitor<'de> for Three {
         }
         if n == 3 { Ok(v) } else { Err(A::Error::invalid_length(n, &self)) }
     }
+}
+
+/// Reads a list of points, each of three entries that are lengths like `30 m` or plain numbers in `m`.
+///
+/// # Errors
+/// If what stands there is no such list.
+pub fn points<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<[f64; 3]>, D::Error> {
+    #[derive(serde::Deserialize)]
+    struct Point(#[serde(deserialize_with = "vec3::length")] [f64; 3]);
+    Ok(<Vec<Point> as serde::Deserialize>::deserialize(d)?.into_iter().map(|p| p.0).collect())
 }
 
 struct Many(One);

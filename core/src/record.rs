@@ -36,7 +36,24 @@ pub struct Audit {
     pub initial: f64,
     /// Largest energy or work that occurred, to compare the imbalance with [J].
     pub scale: f64,
+    /// Largest sum of kinetic and potential energy without their signs: what rounding is relative to [J].
+    #[serde(default)]
+    pub size: f64,
+    /// What the trapezoidal rule may have missed of all work so far [J].
+    #[serde(default)]
+    pub unsure: f64,
+    /// Rate at which the power of all loads together changed in the last step [W/s].
+    #[serde(default)]
+    pub(crate) slope: f64,
 }
+
+/// Share of the second difference of power that the trapezoidal rule may miss: a twelfth where power is smooth, more where
+/// its slope jumps.
+const UNSURE: f64 = 0.25;
+/// Imbalance, in parts of the largest energy or work so far, that is no error of an integration any more.
+const CREATED: f64 = 0.1;
+/// The same in parts of energies as they are, not of their changes: nothing at rest is taken for it.
+const NOTHING: f64 = 1e-9;
 
 impl Audit {
     /// Starts at an energy.
@@ -51,6 +68,10 @@ impl Audit {
         self.supplied += 0.5 * h * (before.supplied + after.supplied);
         self.carried += 0.5 * h * (before.carried + after.carried);
         self.dissipated += 0.5 * h * (before.dissipated + after.dissipated);
+        let net = |p: &Power| p.supplied + p.carried - p.dissipated;
+        let slope = if h > 0.0 { (net(&after) - net(&before)) / h } else { self.slope };
+        self.unsure += UNSURE * h * h * (slope - self.slope).abs();
+        self.slope = slope;
         let all = [
             e.kinetic,
             (e.potential + e.kinetic - self.initial),
@@ -61,6 +82,14 @@ impl Audit {
         for x in all {
             self.scale = self.scale.max(x.abs());
         }
+        self.size = self.size.max(e.kinetic.abs() + e.potential.abs());
+    }
+    /// Whether energy has appeared from nowhere: more than what may be called an error of the integration.
+    /// `noise` is energy that doesn't count [J].
+    pub fn is_created(&self, noise: f64) -> bool {
+        let imbalance = self.imbalance() - self.unsure;
+        // a NaN is no balance either
+        !(imbalance <= CREATED * self.scale || imbalance <= NOTHING * self.size + noise)
     }
     /// What the balance misses: energy gained beyond what was supplied and not dissipated [J]. Numerical damping
     /// makes it negative.

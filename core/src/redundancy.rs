@@ -24,6 +24,11 @@ const RANK: f64 = 1e-12;
 /// below, it is taken for rounding.
 const NOTHING: f64 = 1e-3;
 
+/// How far a motion has gone, in parts of the model, when it is said to have just begun.
+const BEGUN: [f64; 2] = [1e-6, 1e-4];
+/// How far motions may have gone, in parts of the model, for the constraints to be redundant as at the start, nearly.
+const MOVED: f64 = 1e-2;
+
 /// Which constraints are redundant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Redundancy {
@@ -210,12 +215,7 @@ pub(crate) fn find(model: &Model) -> Result<Option<Redundancy>, BuildError> {
         return Ok(None);
     }
 
-    let owners = |keep: &dyn Fn(usize) -> bool| -> Vec<usize> {
-        let all = 0..model.constraints().len();
-        all.filter(|&c| model.rows_of(c).any(keep)).collect()
-    };
-    let contradiction = |who: &[usize], what: &str| {
-        let names: Vec<&str> = who.iter().map(|&c| model.constraints()[c].name()).collect();
+    let contradiction = |names: &[&str], what: &str| {
         let message = format!(
             "the constraints {} contradict each other: they hold the same parts twice and {what}. Remove one of them or \
              correct it",
@@ -231,28 +231,83 @@ pub(crate) fn find(model: &Model) -> Result<Option<Redundancy>, BuildError> {
         ("prescribe different accelerations", &bias, 1e-6 * largest(&bias)),
     ] {
         let conflict = left(values)?;
-        let who = owners(&|r| conflict[r].abs() > limit);
+        let who = model.constraints_where(|r| conflict[r].abs() > limit);
         if !who.is_empty() {
             return Err(contradiction(&who, what));
         }
     }
-    // what is linear stays redundant, so motions can be compared ahead of time
-    let mut t = 1e-2;
-    while t < 1e6 {
+    let ahead = Ahead { model, at, g };
+    for (t, moved) in ahead.times() {
         model.rates(&At { t, ..at }, &mut rate, &mut bias);
-        let limit = 1e-6 * largest(&rate);
-        if limit > 0.0 {
-            let conflict = left(&rate)?;
-            let who = owners(&|r| conflict[r].abs() > limit);
-            if !who.is_empty() && who.iter().all(|&c| model.constraints()[c].linear()) {
-                return Err(contradiction(&who, &format!("prescribe different velocities at t = {t:.3} s")));
+        let largest = largest(&rate);
+        let conflict = if largest > 0.0 { left(&rate)? } else { continue };
+        let differ =
+            |share: f64| (0..m).filter(|&r| conflict[r].abs() > share * largest).collect::<BTreeSet<_>>();
+        // what is linear stays redundant for ever, anything else as long as it has hardly moved
+        let linear = Some(differ(1e-6)).filter(|rows| rows.iter().all(|&r| model.linear_row(r)));
+        let rows = linear.unwrap_or_else(|| if moved < MOVED { differ(0.05) } else { BTreeSet::new() });
+        if !rows.is_empty() {
+            let who = model.constraints_where(|r| rows.contains(&r));
+            return Err(contradiction(&who, &format!("prescribe different velocities at t = {t:.3} s")));
+        }
+    }
+    let constraints =
+        model.constraints_where(|r| rows.contains(&r)).into_iter().map(str::to_string).collect();
+    Ok(Some(Redundancy { equations: basis.len(), constraints }))
+}
+
+/// Motions as they are at later times, while the model stays where it starts.
+struct Ahead<'a> {
+    model: &'a Model,
+    at: At<'a>,
+    /// Values of the constraints at the start.
+    g: Vec<f64>,
+}
+
+impl Ahead<'_> {
+    /// Times at which motions are worth comparing, each with how far they have gone by then, in parts of the model: over
+    /// the whole time for which they are defined, and those at which each of them has just begun.
+    fn times(&self) -> Vec<(f64, f64)> {
+        let moving = || self.model.moving_constraints();
+        if moving().next().is_none() {
+            return Vec::new();
+        }
+        let last = self.model.range().1.min(1e6);
+        let grid = std::iter::successors(Some(1e-2), |t| Some(1.5 * t)).take_while(|t| *t < last);
+        let grid: Vec<f64> = grid.collect();
+        let mut all = Vec::new();
+        for (c, _) in moving() {
+            let Some(k) = grid.iter().position(|&t| self.gone(c, t) > BEGUN[1]) else { continue };
+            let (mut low, mut high) = (if k == 0 { 0.0 } else { grid[k - 1] }, grid[k]);
+            for _ in 0..60 {
+                let t = 0.5 * (low + high);
+                match self.gone(c, t) {
+                    x if x < BEGUN[0] => low = t,
+                    x if x > BEGUN[1] => high = t,
+                    _ => {
+                        all.push(t);
+                        break;
+                    }
+                }
             }
         }
-        t *= 1.5;
+        all.sort_by(f64::total_cmp);
+        all.extend(grid);
+        let farthest = |t: f64| moving().map(|(c, _)| self.gone(c, t)).fold(0.0, f64::max);
+        all.into_iter().map(|t| (t, farthest(t))).collect()
     }
-    let constraints = owners(&|r| rows.contains(&r));
-    let constraints = constraints.iter().map(|&c| model.constraints()[c].name().to_string()).collect();
-    Ok(Some(Redundancy { equations: basis.len(), constraints }))
+
+    /// How far a constraint has moved at a time, in parts of the model's length.
+    fn gone(&self, c: usize, t: f64) -> f64 {
+        let (model, constraint) = (self.model, &self.model.constraints()[c]);
+        let n: usize = constraint.nodes().iter().map(|&k| model.node(k).kind.velocities()).sum();
+        let rows = model.rows_of(c);
+        let mut g = vec![0.0; rows.len()];
+        constraint.jacobian(model.nodes(), &At { t, ..self.at }, &mut g, &mut vec![0.0; n * rows.len()]);
+        let scales = model.lengthlike().skip(rows.start).map(|is| if is { model.length() } else { 1.0 });
+        let gone = g.iter().zip(&self.g[rows.clone()]).zip(scales);
+        gone.map(|((g, before), scale)| (g - before).abs() / scale).fold(0.0, f64::max)
+    }
 }
 
 fn norm(x: &[f64]) -> f64 {

@@ -165,6 +165,9 @@ impl Default for Run {
     }
 }
 
+/// More rows of a history than this are surely a mistake, and fill disk and memory.
+const MOST_ROWS: f64 = 1e7;
+
 impl Run {
     /// The interval of the history [s].
     pub fn interval(&self) -> f64 {
@@ -174,6 +177,11 @@ impl Run {
     pub fn check(&self) -> Result<(), BuildError> {
         crate::build::positive("duration", self.duration).map_err(|e| e.of("run.duration"))?;
         crate::build::not_negative("output", self.output).map_err(|e| e.of("run.output"))?;
+        let rows = self.duration / self.interval();
+        if self.analysis == Analysis::Dynamics && rows > MOST_ROWS {
+            let message = format!("a history of {rows:.0e} rows is too long: make `output` longer");
+            return Err(BuildError::at("run.output", message));
+        }
         if let Some(f) = self.frame {
             crate::build::finite("frame", &[f.velocity, f.omega, f.centre].concat())
                 .map_err(|e| e.of("run.frame"))?;

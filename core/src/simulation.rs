@@ -1,6 +1,8 @@
 //! A run in time: steps, outputs, events, the audit of energy.
 
+mod ahead;
 mod checkpoint;
+mod watch;
 
 pub use checkpoint::{Checkpoint, Unfit};
 
@@ -53,7 +55,8 @@ pub trait Event: Send + Sync {
 
 /// Sees every accepted step and every sample, read-only: recorders, progress bars.
 pub trait Observer {
-    /// A step was accepted.
+    /// A step was accepted. To break ends the advance behind it, with its samples, its events and, if one is wanted, a
+    /// checkpoint.
     fn step(&mut self, _model: &Model, _state: &State, _report: &StepReport) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
@@ -65,6 +68,8 @@ pub trait Observer {
     fn sample(&mut self, _sample: &Sample<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
+    /// Something that the user should know at once although the run goes on.
+    fn warn(&mut self, _text: &str) {}
     /// An event was located.
     fn event(&mut self, _name: &str, _t: f64) {}
     /// The mesh has changed.
@@ -93,6 +98,9 @@ pub enum End {
         by: String,
     },
 }
+
+/// More samples than these are surely a mistake.
+const MOST_SAMPLES: f64 = 1e10;
 
 /// An event that has changed something.
 struct Fired {
@@ -134,6 +142,8 @@ pub struct Simulation {
     /// measured with a scheme that had to be allowed.
     pub ringing: f64,
     change: Vec<f64>,
+    /// When energy was first seen to have appeared from nowhere [s].
+    created: Option<f64>,
     keep_audit: bool,
     power: Power,
     events: Vec<(Arc<dyn Event>, f64)>,
@@ -156,8 +166,10 @@ impl Simulation {
     /// Starts a model from a state, which is made consistent.
     ///
     /// # Errors
-    /// The scheme is refused, the start is too far from the constraints, or a linear system can't be solved.
+    /// The state is that of another model, the scheme is refused, the start is too far from the constraints, or a linear
+    /// system can't be solved.
     pub fn from(model: Model, mut state: State, options: &Options, duration: f64) -> Result<Self, StepError> {
+        model.check(&state).map_err(StepError::Foreign)?;
         let integrator = options.integrator(&model, duration)?;
         let mut work = Workspace::new(&model).map_err(|source| StepError::Linear {
             t: state.t,
@@ -179,6 +191,7 @@ impl Simulation {
             audit,
             ringing: 0.0,
             change: Vec::new(),
+            created: None,
             keep_audit: true,
             power,
             events,
@@ -202,13 +215,16 @@ impl Simulation {
     /// Goes on to time `end`, with a sample now and every `interval` seconds.
     ///
     /// # Errors
-    /// A step that couldn't be taken; everything up to there has been sampled, and the state is the last good one.
+    /// A step that couldn't be taken; everything up to there has been sampled, and the state is the last good one. A state
+    /// of another model, since anybody may set it. An interval that isn't above zero, or so short that the samples would
+    /// never end.
     pub fn advance(
         &mut self,
         end: f64,
         interval: f64,
         observer: &mut dyn Observer,
     ) -> Result<End, StepError> {
+        self.model.check(&self.state).map_err(StepError::Foreign)?;
         self.sampled = (self.state.t, 0);
         if self.sample(observer, None)?.is_break() {
             return Ok(End::Stopped { by: "observer".into() });
@@ -223,7 +239,16 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn go_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
+        self.model.check(&self.state).map_err(StepError::Foreign)?;
         let (start, mut next) = self.sampled;
+        let samples = (end - start) / interval;
+        if !(interval > 0.0 && samples <= MOST_SAMPLES) {
+            let message = format!(
+                "samples every {interval:e} s of {:e} s never end: take a longer interval",
+                end - start
+            );
+            return Err(StepError::Scheme(message));
+        }
         let sample_time = |k: u64| start + interval * k as f64;
         // times that differ by less than this are the same: no step of the size of rounding. To call them so mustn't move
         // what is driven
@@ -233,21 +258,26 @@ impl Simulation {
         };
         let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * short + 4.0 * f64::EPSILON * b.abs();
         while self.state.t < end && !same(self.state.t, end) {
-            self.previous.clone_from(&self.state);
             let mut left = end - self.state.t;
             if let Stepping::Controlled { .. } = self.integrator.options().stepping {
-                left = left.min(self.model.horizon(&self.state.at()));
+                self.leap()?;
+                left = self.limit(end - self.state.t);
             }
-            let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left)?;
+            self.previous.clone_from(&self.state);
+            let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left);
+            let report = report.map_err(|e| self.suspect(e))?;
+            self.check_constraints()?;
+            self.count_cut(report.h, left);
             if same(self.state.t, end) {
                 self.state.t = end;
             }
             let fired = self.locate(observer);
             self.account();
+            self.watch_energy(end, observer);
+            self.watch_steps(end, observer);
             self.measure_ringing();
-            if observer.step(&self.model, &self.state, &report).is_break() {
-                return Ok(End::Stopped { by: "interrupt".into() });
-            }
+            // whoever wants to stop gets what this step has brought first
+            let stop = observer.step(&self.model, &self.state, &report).is_break();
             while next as f64 * interval <= (end - start) * (1.0 + 1e-12) {
                 let t = sample_time(next);
                 if t > self.state.t && !same(t, self.state.t) {
@@ -269,6 +299,9 @@ impl Simulation {
                 if observer.checkpoint(checkpoint).is_break() {
                     return Ok(End::Stopped { by: "observer".into() });
                 }
+            }
+            if stop {
+                return Ok(End::Stopped { by: "interrupt".into() });
             }
         }
         if !same(sample_time(next - 1), end) && self.sample(observer, None)?.is_break() {

@@ -31,6 +31,9 @@ pub struct State {
 pub struct Control {
     /// Size of the last accepted step [s]; 0 before the first.
     pub h_last: f64,
+    /// Size of the first step under error control [s].
+    #[serde(default)]
+    pub h_start: f64,
     /// Size proposed for the next step [s]; 0 if none.
     pub h_next: f64,
     /// No larger step until it has grown back after a failure of Newton's method [s]; 0 if free.
@@ -51,6 +54,9 @@ pub struct Control {
     pub h_before: f64,
     /// Order of the polynomial that would have predicted the last accelerations best.
     pub order: usize,
+    /// The largest force in each part, which Newton's method measures residuals by [N].
+    #[serde(default)]
+    pub forces: Vec<f64>,
     /// Radau IIA: increments from the present configuration back to the start and to the first two stages of the last
     /// step. Empty at a start.
     #[serde(default)]
@@ -79,6 +85,7 @@ macro_rules! clone_in_place {
 clone_in_place!(State { t, q, v, a, aux, lambda, modes, control });
 clone_in_place!(Control {
     h_last,
+    h_start,
     h_next,
     h_cap,
     eta,
@@ -89,6 +96,7 @@ clone_in_place!(Control {
     backs,
     h_before,
     order,
+    forces,
     stages,
     stage_lambda,
     error

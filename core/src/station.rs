@@ -99,6 +99,14 @@ pub trait Law: Send + Sync + 'static {
     const NEEDS_DIAMETER: bool = false;
     /// What it is called in manifests and profiles.
     fn label(&self) -> String;
+    /// Whether it depends on time otherwise than through the state: only then [`Law::reach`] is asked.
+    fn timed(&self) -> bool {
+        false
+    }
+    /// How much of a step `h` from `t` may be taken that leaps over nothing, as [`Term::reach`].
+    fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
+        None
+    }
     /// Which derivatives it has; what is left out here is never read. [`check_law`](crate::testing::check_law) tells
     /// if one is missing.
     fn gives(&self) -> Gives {
@@ -198,6 +206,12 @@ impl Term for FieldTerm {
     fn symmetric(&self) -> bool {
         // a dead load has no derivatives at all
         self.stations.fixed() && self.laws.0.iter().all(|l| l.gives() == Gives::NOTHING)
+    }
+    fn timed(&self) -> bool {
+        self.laws.0.iter().any(|l| l.timed())
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.laws.0.iter().filter(|l| l.timed()).try_fold(h, |h, l| l.reach(t, h))
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         self.stations.add(&self.laws, at, out);

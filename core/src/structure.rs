@@ -378,6 +378,11 @@ impl Structure {
         (b.first + i, columns, at + skip..at + b.width())
     }
 
+    /// The columns of a block's rows, all that are stored.
+    pub(crate) fn columns_of(&self, b: &Block) -> &[u32] {
+        &self.columns[b.columns.clone()]
+    }
+
     /// Sum of the absolute values in one row.
     pub(crate) fn row_sum<T: Scalar>(&self, values: &[T], row: usize) -> f64 {
         let own = self.block_of(row);

@@ -118,6 +118,21 @@ pub trait Term: Send + Sync {
     fn horizon(&self, _at: &At<'_>) -> f64 {
         f64::INFINITY
     }
+    /// Whether it depends on time otherwise than through the state: only then [`Term::reach`] and [`Term::jump`] are asked.
+    fn timed(&self) -> bool {
+        false
+    }
+    /// How much of a step `h` from `t` may be taken that leaps over nothing of what time does to it [s], as the functions
+    /// of [`reach`](crate::reach) tell for rises, periods and knots. `None` if it doesn't know: error control then looks at
+    /// its force at the quarter points of every step, between which a short pulse may hide.
+    fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
+        None
+    }
+    /// When its force jumps next after `t` [s]; infinite if it never does. Error control ends a step just before and
+    /// starts anew there.
+    fn jump(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
     /// Whether its force has a kink in velocities that a step may leap over, such as dry friction between slip and stick:
     /// only then does [`Assembly::leap`] say anything.
     fn kinked(&self) -> bool {

@@ -1,8 +1,7 @@
 //! The path along which a cable or a chain is laid: straight lines, a smooth curve through points, turns on a spool.
 
+use ropewalk_core::V3;
 use ropewalk_core::rotation::cross;
-use ropewalk_core::{V3, quantity};
-use serde::Deserialize;
 use std::f64::consts::TAU;
 
 /// A path in space by arc length.
@@ -163,13 +162,6 @@ impl Path {
         let size = norm(t);
         (p, t.map(|x| x / size))
     }
-}
-
-/// Reads a list of points [m] in a scene.
-pub(crate) fn points<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Vec<V3<f64>>, D::Error> {
-    #[derive(Deserialize)]
-    struct One(#[serde(deserialize_with = "quantity::vec3::length")] V3<f64>);
-    Ok(Vec::<One>::deserialize(d)?.into_iter().map(|p| p.0).collect())
 }
 
 fn check(points: &[V3<f64>]) -> Result<(), String> {

@@ -34,6 +34,12 @@ impl Law for LineLoad {
     fn label(&self) -> String {
         "line load".into()
     }
+    fn timed(&self) -> bool {
+        self.time.changes()
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(self.time.reach(t, h))
+    }
     fn gives(&self) -> Gives {
         Gives { slope: self.per == PerLength::Stretched, ..Gives::NOTHING }
     }

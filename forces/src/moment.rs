@@ -109,6 +109,12 @@ impl Term for PointMoment {
     fn symmetric(&self) -> bool {
         false
     }
+    fn timed(&self) -> bool {
+        self.time.changes()
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(self.time.reach(t, h))
+    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let (m, force) = self.now(at);
         for i in 0..3 {

@@ -153,6 +153,12 @@ impl Term for PointForce {
     fn symmetric(&self) -> bool {
         matches!((self.aim, self.ends[1]), (Aim::Dead(_), Held::Moves { .. }))
     }
+    fn timed(&self) -> bool {
+        self.time.changes()
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(self.time.reach(t, h))
+    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let f = self.force(at);
         let w = out.weights().q * self.time.at(at.t);

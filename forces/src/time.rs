@@ -1,6 +1,7 @@
 //! Factors that change with time.
 
 use ropewalk_core::build::{BuildError, finite, need};
+use ropewalk_core::{quantity, reach};
 use std::f64::consts::TAU;
 
 /// A factor of a load as a function of time.
@@ -17,13 +18,16 @@ pub enum TimeFunction {
         /// Value from `t1` on.
         to: f64,
         /// Start of the ramp [s].
+        #[serde(deserialize_with = "quantity::time")]
         t0: f64,
         /// End of the ramp [s].
+        #[serde(deserialize_with = "quantity::time")]
         t1: f64,
     },
     /// Linear between given times, constant before the first and after the last.
     Table {
         /// Times [s], ascending.
+        #[serde(deserialize_with = "quantity::list::time")]
         t: Vec<f64>,
         /// Value at each time.
         value: Vec<f64>,
@@ -31,10 +35,13 @@ pub enum TimeFunction {
     /// 0 up to `t0`, rises to 1 at `peak`, falls to 0 at `t1` and stays there.
     Triangle {
         /// Start [s].
+        #[serde(deserialize_with = "quantity::time")]
         t0: f64,
         /// Time of the value 1 [s].
+        #[serde(deserialize_with = "quantity::time")]
         peak: f64,
         /// End [s].
+        #[serde(deserialize_with = "quantity::time")]
         t1: f64,
     },
     /// `mean + amplitude sin(2π frequency t + phase)`.
@@ -44,8 +51,10 @@ pub enum TimeFunction {
         /// Amplitude.
         amplitude: f64,
         /// Frequency [Hz].
+        #[serde(deserialize_with = "quantity::frequency")]
         frequency: f64,
         /// Phase at `t = 0` [rad].
+        #[serde(deserialize_with = "quantity::angle")]
         phase: f64,
     },
 }
@@ -82,6 +91,27 @@ impl TimeFunction {
             TimeFunction::Harmonic { mean, amplitude, frequency, phase } => {
                 finite("harmonic of a load", &[*mean, *amplitude, *frequency, *phase])
             }
+        }
+    }
+
+    /// Whether it changes at all.
+    pub fn changes(&self) -> bool {
+        !matches!(self, TimeFunction::Constant)
+    }
+
+    /// How much of a step `h` from `t` may be taken that leaps over nothing [s].
+    pub fn reach(&self, t: f64, h: f64) -> f64 {
+        let knots = |times: &[f64], value: &[f64]| {
+            let range =
+                value.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (x.min(a), x.max(b)));
+            reach::knots(times, |k| [value[k], 0.0, 0.0], range.1 - range.0, t, h)
+        };
+        match self {
+            TimeFunction::Constant => h,
+            TimeFunction::Ramp { t0, t1, .. } => reach::rise(*t0, *t1, t, h),
+            TimeFunction::Table { t: times, value } => knots(times, value),
+            TimeFunction::Triangle { t0, peak, t1 } => knots(&[*t0, *peak, *t1], &[0.0, 1.0, 0.0]),
+            TimeFunction::Harmonic { frequency, .. } => reach::period(1.0 / frequency, h),
         }
     }
 

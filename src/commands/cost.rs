@@ -4,7 +4,7 @@ use super::{Exit, complain, say};
 use crate::cli::SceneArgs;
 use crate::cost::{CostOptions, cost as find};
 use crate::error::Error;
-use crate::output::ProgressMode;
+use crate::output::{Interrupt, ProgressMode};
 use ropewalk_core::quantity;
 use ropewalk_models::Bundled;
 use std::path::PathBuf;
@@ -58,7 +58,8 @@ pub(crate) fn cost(args: CostArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     Ok(if outcome.interrupted {
         let folder = outcome.folder.display();
         complain(format!(
-            "stopped by Ctrl-C: what was computed is in {folder}, the same command goes on with it"
+            "stopped by {}: what was computed is in {folder}, the same command goes on with it",
+            Interrupt::cause()
         ));
         Exit::Interrupted
     } else if outcome.doubt.is_nan() {

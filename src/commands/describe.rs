@@ -10,10 +10,10 @@ use ropewalk_core::{Run, SpecInfo, Water, registered, schemars};
 use ropewalk_models::Bundled;
 use std::path::{Path, is_separator};
 
-type MakeSchema = fn() -> schemars::Schema;
+pub(super) type MakeSchema = fn() -> schemars::Schema;
 
 /// Sections of a scene file that are no lists of parts.
-const SECTIONS: [(&str, MakeSchema); 4] = [
+pub(super) const SECTIONS: [(&str, MakeSchema); 4] = [
     ("water", || schemars::schema_for!(Water)),
     ("run", || schemars::schema_for!(Run)),
     ("solver", || schemars::schema_for!(Options)),

@@ -94,7 +94,7 @@ impl RunArgs {
         let trials = self.trials(axes, of.t, Instant::now().checked_add(self.budget));
         let Some(chosen) = choose(&trials, of, accuracy)? else {
             if trials.watch.is_interrupted() {
-                complain("stopped by Ctrl-C");
+                complain(format!("stopped by {}", Interrupt::cause()));
                 return Ok(Exit::Interrupted);
             }
             complain("error: no settings were found in the time given\n  = help: raise --budget");
@@ -130,13 +130,20 @@ impl RunArgs {
             Some(of) => vec![of],
             None => sized(Target::all(axes.file())?, &outcome),
         };
-        let certificate = certify(&trials, &axes.base, &records, None)?;
+        let certificate = certify(&trials, &axes.base, &records, None);
         trials.progress.finish();
+        let certificate = certificate.inspect_err(|_| {
+            // the run itself is complete
+            tell(&outcome, self.quiet);
+        })?;
         match certificate {
             Some(certificate) => self.keep(outcome, certificate),
             None => {
                 tell(&outcome, self.quiet);
-                complain("stopped by Ctrl-C: the run is complete, the certificate is missing");
+                complain(format!(
+                    "stopped by {}: the run is complete, the certificate is missing",
+                    Interrupt::cause()
+                ));
                 Ok(Exit::Interrupted)
             }
         }
@@ -149,8 +156,9 @@ impl RunArgs {
             complain("warning: the run is sensitive: see the certificate in summary.json");
         }
         outcome.summary.certificate = Some(certificate);
+        let exit = tell(&outcome, self.quiet);
         outcome.folder.write_summary(&outcome.summary)?;
-        Ok(tell(&outcome, self.quiet))
+        Ok(exit)
     }
 }
 

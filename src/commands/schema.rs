@@ -226,6 +226,76 @@ mod tests {
         assert_eq!(plain(doc), "Sum [N], see `Term`, `Drag` and [`open.");
     }
 
+    /// Values for a field, each with one quantity that is written as `describe` promises.
+    fn tried(words: &Words<'_>, field: &Value, doc: &str) -> Vec<Value> {
+        let s = words.resolved(field);
+        let mut all = Vec::new();
+        for variant in variants(s) {
+            for name in names(variant) {
+                if let Some(inner) = variant.get("properties").and_then(|p| p.get(&name)) {
+                    all.extend(tried(words, inner, doc).into_iter().map(|t| json!({ &name: t })));
+                }
+            }
+        }
+        if !all.is_empty() || !variants(s).is_empty() {
+            return all;
+        }
+        match (type_of(s), unit(doc)) {
+            ("number", Some(unit)) => all.push(json!(format!("0.25 {unit}"))),
+            ("array", _) => {
+                let items = s.get("items").or_else(|| s.get("prefixItems").and_then(|p| p.get(0)));
+                let n = s.get("minItems").and_then(Value::as_u64).unwrap_or(1) as usize;
+                let list = |t| Value::Array(vec![t; n.max(1)]);
+                all.extend(items.map_or(Vec::new(), |i| tried(words, i, doc)).into_iter().map(list));
+            }
+            ("object", _) => {
+                for (name, field) in s.get("properties").and_then(Value::as_object).into_iter().flatten() {
+                    let inner = words.resolved(field);
+                    let doc = description(field).or_else(|| description(inner)).unwrap_or_default();
+                    all.extend(tried(words, field, doc).into_iter().map(|t| json!({ name: t })));
+                }
+                if let Some(of) = s.get("additionalProperties").filter(|of| of.is_object()) {
+                    let doc = description(words.resolved(of)).unwrap_or(doc);
+                    all.extend(tried(words, of, doc).into_iter().map(|t| json!({ "a": t })));
+                }
+            }
+            _ => {
+                let any = s.get("anyOf").and_then(Value::as_array);
+                all.extend(any.into_iter().flatten().flat_map(|one| tried(words, one, doc)));
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn every_quantity_may_be_a_text_with_its_unit() {
+        use crate::read::SceneFile;
+        use crate::scene::Format;
+        let types = ropewalk_core::registered().into_iter().map(|s| (Some(s), s.name, (s.schema)()));
+        let sections = super::super::describe::SECTIONS.iter().map(|(name, schema)| (None, *name, schema()));
+        let (mut count, mut wrong) = (0, Vec::new());
+        for (spec, name, schema) in types.chain(sections) {
+            let root = schema.as_value();
+            for mut value in tried(&Words { root }, root, "") {
+                let scene = match spec {
+                    Some(s) => {
+                        value["type"] = json!(name);
+                        json!({ s.kind.list(): [value] })
+                    }
+                    None => json!({ name: value }),
+                };
+                count += 1;
+                let text = scene.to_string();
+                // what else is missing doesn't matter
+                let refused = SceneFile::parse(&text, "s", Format::Json, &[]).err().map(|f| f.message);
+                let refused = refused.filter(|m| m.contains("0.25 ") || m.contains("did not match"));
+                wrong.extend(refused.map(|message| format!("{text}: {message}")));
+            }
+        }
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+        assert!(count > 200, "{count}");
+    }
+
     #[test]
     fn defaults_are_toml() {
         let value = json!({ "fixed": { "h": 0.001, "on": ["a", 1] } });

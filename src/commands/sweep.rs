@@ -3,7 +3,7 @@
 use super::{Exit, complain, say};
 use crate::cli::SweepArgs;
 use crate::error::Error;
-use crate::output::ProgressMode;
+use crate::output::{Interrupt, ProgressMode};
 use crate::sweep::{Grid, SweepOptions, sweep as sweep_grid};
 use ropewalk_models::Bundled;
 
@@ -19,7 +19,8 @@ pub(crate) fn sweep(args: SweepArgs, bundled: &[Bundled]) -> Result<Exit, Error>
     let again = if args.fresh { "without --fresh, the same command" } else { "the same command" };
     Ok(if outcome.interrupted {
         complain(format!(
-            "stopped by Ctrl-C: {complete} of {runs} runs are complete, {again} computes the others"
+            "stopped by {}: {complete} of {runs} runs are complete, {again} computes the others",
+            Interrupt::cause()
         ));
         Exit::Interrupted
     } else if outcome.failed > 0 {

@@ -70,15 +70,17 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
     };
     let mut plots = Vec::new();
     let budget = Duration::from_secs_f64(args.seconds);
-    compare_models(&mut found, models, budget, &bar, interrupt)?;
+    let mut compared = compare_models(&mut found, models, budget, &bar, interrupt);
     for &problem in problems {
-        if !interrupt.requested() {
-            plots.extend(compare_forms(&mut found, problem, &meshes, args.absolute, &bar, interrupt)?);
+        if compared.is_ok() && !interrupt.requested() {
+            compared = compare_forms(&mut found, problem, &meshes, args.absolute, &bar, interrupt)
+                .map(|pictures| plots.extend(pictures));
         }
     }
     bar.finish_and_clear();
-    // what was found until Ctrl-C is kept
+    // what was found until Ctrl-C or a failure is kept
     leave(&found, &plots, &folder, args.quiet)?;
+    compared?;
     Ok(if interrupt.requested() { Exit::Interrupted } else { Exit::Done })
 }
 

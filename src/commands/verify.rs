@@ -53,7 +53,7 @@ pub(crate) fn verify(args: &VerifyArgs) -> Result<Exit, Error> {
     for case in chosen {
         let outcome = case.run(followed);
         if outcome.interrupted {
-            complain("stopped by Ctrl-C: no page is written");
+            complain(format!("stopped by {}: no page is written", Interrupt::cause()));
             return Ok(Exit::Interrupted);
         }
         let runs = outcome.case.quantities() > 0;
@@ -138,7 +138,7 @@ fn write_scenes(chosen: &[Case], folder: &Path) -> Result<Exit, Error> {
     }
     let mut count = 0;
     for (name, text) in chosen.iter().flat_map(Case::scenes) {
-        write_atomic(&folder.join(format!("{name}.toml")), text)?;
+        write_atomic(&folder.join(format!("{name}.toml")), &text)?;
         count += 1;
     }
     let scenes = if count == 1 { "scene" } else { "scenes" };

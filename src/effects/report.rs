@@ -1,7 +1,9 @@
 //! The ledger as tables, for people and as CSV, and what follows from it.
 
 use super::{Ledger, Tried, Verdict};
-use crate::output::{Elapsed, OutputError, RunFolder, number, push_cell, push_number, rough, write_atomic};
+use crate::output::{
+    Elapsed, Interrupt, OutputError, RunFolder, number, push_cell, push_number, rough, write_atomic,
+};
 use crate::read::SceneFile;
 use std::fmt::Write as _;
 
@@ -216,7 +218,7 @@ fn row(t: &Tried, ledger: &Ledger, saves: bool) -> (Vec<String>, String) {
 fn advise(out: &mut String, ledger: &Ledger, accuracy: f64) {
     let at = format!("  at an accuracy of {}:", rough(accuracy));
     if ledger.interrupted {
-        _ = writeln!(out, "  stopped by Ctrl-C before all effects were tried\n");
+        _ = writeln!(out, "  stopped by {} before all effects were tried\n", Interrupt::cause());
         return;
     }
     match &ledger.advice {

@@ -4,7 +4,7 @@ use super::Modal;
 use crate::output::{Column, Elapsed, RunFolder, Table, number};
 use crate::read::SceneFile;
 use ropewalk_core::modes::Mode;
-use ropewalk_core::{Model, NodeId};
+use ropewalk_core::{Analysis, Model, NodeId};
 use std::fmt::Write as _;
 
 const DIRECTIONS: [&str; 4] = ["x", "y", "z", "turning"];
@@ -94,7 +94,11 @@ pub(super) fn report(
         None => "in balance as laid".to_string(),
         Some(found) => format!("equilibrium after {} iterations", found.iterations),
     };
-    let _ = writeln!(out, "{about}, t = {} s\n", number(modal.state.t));
+    let when = match file.scene().run.analysis {
+        Analysis::Dynamics => format!("t = {} s", number(modal.state.t)),
+        Analysis::Statics => format!("load factor {}", number(modal.state.t)),
+    };
+    let _ = writeln!(out, "{about}, {when}\n");
     let rows: Vec<[String; 6]> = modal
         .modes
         .iter()

@@ -114,7 +114,7 @@ pub enum OutputError {
         message: String,
     },
 
-    /// The system did not let Ctrl-C be caught.
+    /// The system did not let signals such as Ctrl-C be caught.
     #[error("Ctrl-C can't be caught: {message}")]
     Interrupt {
         /// The system's own words.

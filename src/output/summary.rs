@@ -31,7 +31,7 @@ pub struct Summary {
     /// Rows of `history.csv`, from which one can tell whether the file is whole.
     #[serde(default)]
     pub rows: usize,
-    /// The last value of every record, a number or an array; see [`set`](Self::set).
+    /// The last value of every column of the history, by its name there; see [`set`](Self::set).
     #[serde(rename = "final", default)]
     pub final_values: Map<String, Value>,
     /// How much work it was.
@@ -55,15 +55,15 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Sets the final value of a record; records keep the order in which they are set.
+    /// Sets the final value of a column; columns keep the order in which they are set.
     ///
     /// ```
     /// # let mut summary = ropewalk::output::Summary::default();
-    /// summary.set("hose.tension", 250.5);
-    /// summary.set("hose.end", vec![1.0, 2.0, -3.0]);
+    /// summary.set("t", 20.0);
+    /// summary.set("hose.end.tension", 250.5);
     /// ```
-    pub fn set(&mut self, record: impl Into<String>, value: impl Into<Value>) {
-        self.final_values.insert(record.into(), value.into());
+    pub fn set(&mut self, column: impl Into<String>, value: f64) {
+        self.final_values.insert(column.into(), value.into());
     }
 }
 
@@ -157,18 +157,18 @@ mod tests {
     fn numbers_that_are_not_finite_become_null() {
         let mut summary = Summary { status: "failed".into(), cpu_s: f64::INFINITY, ..Summary::default() };
         summary.set("hose.tension", f64::NAN);
-        summary.set("hose.end", vec![1.0, f64::INFINITY]);
+        summary.set("hose.end.x", f64::INFINITY);
         summary.energy.imbalance = f64::NAN;
         let value = serde_json::to_value(&summary).unwrap();
         assert_eq!(value["final"]["hose.tension"], Value::Null);
-        assert_eq!(value["final"]["hose.end"][1], Value::Null);
+        assert_eq!(value["final"]["hose.end.x"], Value::Null);
         assert_eq!(value["cpu_s"], Value::Null);
         let back: Summary = serde_json::from_value(value).unwrap();
         assert!(back.energy.imbalance.is_nan() && back.cpu_s.is_nan());
     }
 
     #[test]
-    fn a_summary_reads_back_and_keeps_the_order_of_records() {
+    fn a_summary_reads_back_and_keeps_the_order_of_columns() {
         let mut summary = Summary {
             status: "finished".into(),
             message: Some("reached t = 10 s".into()),
@@ -178,9 +178,9 @@ mod tests {
             ..Summary::default()
         };
         summary.set("z", 1.0);
-        summary.set("a", vec![0.1, 0.2]);
+        summary.set("a", 0.1);
         let text = serde_json::to_string(&summary).unwrap();
-        assert!(text.contains(r#""final":{"z":1.0,"a":[0.1,0.2]}"#));
+        assert!(text.contains(r#""final":{"z":1.0,"a":0.1}"#));
         assert_eq!(serde_json::from_str::<Summary>(&text).unwrap(), summary);
     }
 }

@@ -1,5 +1,6 @@
 //! Time histories: named columns with units, written to and read from CSV.
 
+use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::Write as _;
@@ -149,20 +150,25 @@ impl Table {
             _ => return Err(fail(1, "no header line".into())),
         };
         let mut table = Self {
-            columns: split_header(header.trim_start_matches('\u{feff}'))
+            columns: cells(header.trim_start_matches('\u{feff}'))
                 .iter()
                 .map(|heading| Column::from_heading(heading))
                 .collect(),
         };
+        let mut names = HashSet::new();
+        if let Some(twice) = table.columns.iter().find(|c| !names.insert(&c.name)) {
+            return Err(fail(1, format!("there are two columns `{}`", twice.name)));
+        }
         let mut row = Vec::with_capacity(table.columns.len());
         for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
             row.clear();
+            let mut column = 1;
             for field in line.split(',') {
-                let field = field.trim();
-                let value = field
-                    .parse::<f64>()
-                    .map_err(|_| fail(index + 1, format!("'{field}' is not a number")))?;
+                let value = field.trim().parse::<f64>().map_err(|_| {
+                    fail(index + 1, format!("column {column}: '{}' is not a number", field.trim()))
+                })?;
                 row.push(value);
+                column += field.chars().count() + 1;
             }
             table.push_row(&row).map_err(|error| fail(index + 1, error.to_string()))?;
         }
@@ -269,7 +275,8 @@ pub(crate) fn push_number(text: &mut String, value: f64) {
     }
 }
 
-fn split_header(line: &str) -> Vec<String> {
+/// The cells of a line; what stands in quotes may hold commas.
+pub(crate) fn cells(line: &str) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut quoted = false;
     let mut chars = line.chars().peekable();
@@ -357,7 +364,9 @@ mod tests {
     #[test]
     fn faults_name_the_line() {
         let fault = |text| Table::from_csv(text, Path::new("a.csv")).unwrap_err().to_string();
-        assert_eq!(fault("t [s]\n0\nzero\n"), "a.csv, line 3: 'zero' is not a number");
+        assert_eq!(fault("t [s]\n0\nzero\n"), "a.csv, line 3: column 1: 'zero' is not a number");
+        assert!(fault("t [s],x [m]\n0,\"0,1\"\n").starts_with("a.csv, line 2: column 3: '\"0' is not"));
+        assert_eq!(fault("t [s],x [m],x [N]\n0,1,2\n"), "a.csv, line 1: there are two columns `x`");
         assert!(fault("t [s],x [m]\n0\n").starts_with("a.csv, line 2: a row of 1"));
         assert_eq!(fault(""), "a.csv, line 1: no header line");
         let mut table = Table::new([]);

@@ -3,11 +3,12 @@
 //! The file is replaced as a whole, so that there is always one that can be read. It holds the simulation and everything
 //! recorded so far, with every bit of every number, behind a line that says which program wrote it.
 
+use super::shapes::Shape;
 use super::{Recorder, Started};
 use crate::error::Error;
 use crate::output::{Elapsed, Happened, OutputError, RunFolder, Stopwatch, Table};
 use crate::scene::Fault;
-use ropewalk_core::{Checkpoint, Remeshed, V3, quantity};
+use ropewalk_core::{Checkpoint, Remeshed, quantity};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ use std::time::{Duration, Instant};
 /// When checkpoints are written.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Every {
-    /// After so much time on the clock.
+    /// After so much time on the clock, and when the run is interrupted.
     Time(Duration),
     /// After so many steps: the same checkpoints whatever else the machine does.
     Steps(u64),
@@ -54,7 +55,7 @@ pub(crate) struct Saved<'a> {
     pub every: Every,
     pub simulation: Checkpoint,
     pub table: Cow<'a, Table>,
-    pub shapes: Cow<'a, [(f64, Vec<V3<f64>>)]>,
+    pub shapes: Cow<'a, [Shape]>,
     pub due: Cow<'a, [f64]>,
     pub events: Cow<'a, [Happened]>,
     pub remeshed: Cow<'a, [Remeshed]>,
@@ -70,7 +71,7 @@ pub(crate) struct Saver {
     scene: u32,
     name: String,
     every: Every,
-    warnings: Vec<String>,
+    pub warnings: Vec<String>,
     flutter: f64,
     /// Time spent before this process.
     before: Elapsed,
@@ -119,10 +120,11 @@ impl Saver {
         self.steps += 1;
     }
 
-    /// Whether one is due.
-    pub(crate) fn is_due(&self) -> bool {
+    /// Whether one is due; `ending` says that the run is about to be interrupted. Those by steps come at the same steps
+    /// whatever happens.
+    pub(crate) fn is_due(&self, ending: bool) -> bool {
         match self.every {
-            Every::Time(time) => self.last.elapsed() >= time,
+            Every::Time(time) => ending || self.last.elapsed() >= time,
             Every::Steps(n) => self.steps.is_multiple_of(n),
         }
     }
@@ -160,15 +162,7 @@ impl Saver {
 pub(crate) fn read(folder: &RunFolder) -> Result<Saved<'static>, Error> {
     let (path, shown) = (folder.checkpoint_file(), folder.path().display());
     if !path.exists() {
-        return Err(match folder.read_summary() {
-            Ok(summary) => {
-                Fault::new(format!("there is nothing to resume in {shown}: that run is {}", summary.status))
-            }
-            Err(_) => Fault::new(format!("there is no checkpoint in {shown}")).with_help(
-                "runs can be resumed that were started with `--checkpoint`, such as `--checkpoint 60s`",
-            ),
-        }
-        .into());
+        return Err(without_checkpoint(folder).into());
     }
     let bytes = std::fs::read(&path).map_err(OutputError::io("read", &path))?;
     let damaged = |why: &str| -> Error {
@@ -198,6 +192,34 @@ pub(crate) fn read(folder: &RunFolder) -> Result<Saved<'static>, Error> {
         return Err(Fault::new(message).with_help("run the new scene with `ropewalk run`").into());
     }
     Ok(saved)
+}
+
+/// Why there is nothing to go on from in a folder, and what to do.
+fn without_checkpoint(folder: &RunFolder) -> Fault {
+    let shown = folder.path().display();
+    let again = "its results so far stay where they are; `ropewalk run` with `--checkpoint 60s` and another folder runs \
+                 it again such that it can be resumed";
+    match folder.read_summary().map(|summary| summary.status) {
+        Ok(status) if matches!(status.as_str(), "finished" | "stopped") => {
+            Fault::new(format!("there is nothing to resume in {shown}: that run came to its end"))
+        }
+        Ok(status) => {
+            let how = if status == "failed" { "failed" } else { "was interrupted" };
+            Fault::new(format!("there is no checkpoint in {shown}: that run {how} before it wrote one"))
+                .with_help(again)
+        }
+        Err(_) if folder.scene_file().exists() => {
+            let message = format!(
+                "there is no checkpoint in {shown}: that run is still at work, or was killed before it wrote one"
+            );
+            Fault::new(message).with_help(again)
+        }
+        Err(_) => {
+            let what = if folder.path().exists() { "holds no run" } else { "doesn't exist" };
+            Fault::new(format!("there is no checkpoint in {shown}: it {what}"))
+                .with_help("name a folder that `ropewalk run --checkpoint 60s` left behind")
+        }
+    }
 }
 
 fn scene_checksum(folder: &RunFolder) -> Result<u32, Error> {

@@ -32,10 +32,16 @@ pub(crate) fn draw(
     let titles = &recorder.scene.run.shape_titles;
     let asked = [(Plane::Oblique, &titles.space), (Plane::Radial, &titles.radial)];
     let asked = asked.into_iter().filter(|(_, title)| title.is_some()).map(|(plane, _)| plane);
-    for plane in planes(&recorder.shapes).into_iter().chain(asked) {
+    let shapes: Vec<_> = recorder.shapes.iter().map(|shape| (shape.t, shape.points())).collect();
+    let t_label = match recorder.table.columns.first() {
+        Some(t) if t.name != "t" => t.heading(),
+        _ => String::new(),
+    };
+    for plane in planes(&shapes).into_iter().chain(asked) {
         let (name, from) = view(plane);
         let title = shape_title(titles, plane).cloned().unwrap_or_else(|| format!("{title}, {from}"));
-        let plot = ShapePlot::of_positions(title, plane, &recorder.shapes);
+        let plot = ShapePlot::of_positions(title, plane, &shapes);
+        let plot = ShapePlot { t_label: t_label.clone(), ..plot };
         let written = folder.plot_file(name).and_then(|path| plot.write(&path));
         keep(name.to_string(), written);
     }

@@ -1,6 +1,7 @@
 //! The observer of a run: it evaluates the records, writes the history, shows the progress and keeps shapes.
 
 use super::checkpoint::{Saved, Saver};
+use super::shapes::{Line, Shape};
 use super::start::Ending;
 use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
@@ -45,8 +46,8 @@ pub(crate) struct Recorder<'a> {
     pub track: Option<Vec<Vec<V3<f64>>>>,
     /// When the run has taken too long and stops as by Ctrl-C.
     pub deadline: Option<Instant>,
-    /// Lines of all parts at several times; parts are separated by a point that isn't finite.
-    pub shapes: Vec<(f64, Vec<V3<f64>>)>,
+    /// Lines of all parts at several times.
+    pub shapes: Vec<Shape>,
     /// When shapes are still to be kept, last first.
     pub(super) due: Vec<f64>,
     /// Why it stopped the run.
@@ -57,6 +58,25 @@ pub(crate) struct Recorder<'a> {
     pub remeshed: Vec<Remeshed>,
     /// Where checkpoints go, if any are wanted.
     pub saver: Option<Saver>,
+    /// Where warnings go while the run goes on.
+    pub warnings: Warnings<'a>,
+}
+
+/// Warnings are said at once and kept for the summary.
+#[derive(Default)]
+pub(crate) struct Warnings<'w> {
+    pub all: Vec<String>,
+    /// Who is told, if anybody is.
+    pub tell: Option<&'w mut dyn FnMut(&str)>,
+}
+
+impl Warnings<'_> {
+    pub(crate) fn say(&mut self, text: &str) {
+        self.all.push(text.to_string());
+        if let Some(tell) = &mut self.tell {
+            tell(text);
+        }
+    }
 }
 
 /// The records of a scene, each with a name of its own.
@@ -124,6 +144,7 @@ impl<'a> Recorder<'a> {
             events: Vec::new(),
             remeshed: Vec::new(),
             saver: None,
+            warnings: Warnings::default(),
         }
     }
 
@@ -164,7 +185,7 @@ impl<'a> Recorder<'a> {
                 track.push(positions(s.model, &s.at));
             }
         }
-        self.keep(s.at.t, || lines(s.model, &s.at))
+        self.keep(s.at.t, || Shape::of(s.model, &s.at))
     }
 
     /// Takes a row of a process, which made a step of `h` since the last.
@@ -173,19 +194,17 @@ impl<'a> Recorder<'a> {
         if let Some(progress) = &mut self.progress {
             progress.step(t, h, 0);
         }
-        if self.is_to_stop() {
-            self.stop = Some(Ending::Interrupted);
-            return ControlFlow::Break(());
-        }
         self.row.clear();
         self.row.push(t);
         process.sample(&mut self.row);
-        let kept = self.keep(t, || process.line());
-        self.go_on(kept)
+        let name = self.scene.processes.first().map_or("", |p| p.name());
+        let kept = self.keep(t, || Shape { t, lines: vec![Line::of_process(name, process)] });
+        self.go_on(kept)?;
+        self.look_for_end()
     }
 
     /// Keeps the row, and the shape if one is due.
-    fn keep(&mut self, t: f64, lines: impl FnOnce() -> Vec<V3<f64>>) -> Result<(), Error> {
+    fn keep(&mut self, t: f64, shape: impl FnOnce() -> Shape) -> Result<(), Error> {
         self.table.push_row(&self.row)?;
         if let Some(writer) = &mut self.writer {
             writer.push(&self.row)?;
@@ -196,30 +215,26 @@ impl<'a> Recorder<'a> {
             while self.due.last().is_some_and(|due| *due <= now) {
                 self.due.pop();
             }
-            self.shapes.push((t, lines()));
+            self.shapes.push(shape());
         }
         Ok(())
     }
 
     /// Keeps the shape in which the run ended, unless it is there already.
     pub(crate) fn last_shape(&mut self, model: &Model, state: &State) {
-        let missing = self.shapes.last().is_some_and(|(t, _)| *t < state.t);
+        let missing = self.shapes.last().is_some_and(|last| last.t < state.t);
         if missing && !self.due.is_empty() && self.scene.processes.is_empty() {
-            self.shapes.push((state.t, lines(model, &state.at())));
+            self.shapes.push(Shape::of(model, &state.at()));
         }
     }
 
-    /// The last value of every record, what happened, and the number of rows.
+    /// The last value of every column, what happened, and the number of rows.
     pub(crate) fn finals(&self, summary: &mut Summary) {
         summary.events.clone_from(&self.events);
         summary.rows = self.table.rows();
-        for f in &self.figures {
-            let last = |k: usize| self.table.columns[k].values.last().copied();
-            let values: Vec<f64> = f.columns.clone().filter_map(last).collect();
-            match values.as_slice() {
-                [] => {}
-                [one] => summary.set(&f.name, *one),
-                many => summary.set(&f.name, many),
+        for column in &self.table.columns {
+            if let Some(last) = column.values.last() {
+                summary.set(&column.name, *last);
             }
         }
     }
@@ -231,6 +246,15 @@ impl<'a> Recorder<'a> {
 
     fn is_to_stop(&self) -> bool {
         self.interrupt.is_some_and(Interrupt::requested) || self.deadline.is_some_and(|d| Instant::now() >= d)
+    }
+
+    /// Ends the run if that is asked for.
+    fn look_for_end(&mut self) -> ControlFlow<()> {
+        if !self.is_to_stop() {
+            return ControlFlow::Continue(());
+        }
+        self.stop = Some(Ending::Interrupted);
+        ControlFlow::Break(())
     }
 
     fn go_on(&mut self, result: Result<(), Error>) -> ControlFlow<()> {
@@ -252,18 +276,16 @@ impl Observer for Recorder<'_> {
         if let Some(saver) = &mut self.saver {
             saver.step();
         }
-        if self.is_to_stop() {
-            self.stop = Some(Ending::Interrupted);
-            return ControlFlow::Break(());
-        }
         let bound = self.bind(model);
-        self.go_on(bound)
+        self.go_on(bound)?;
+        self.look_for_end()
     }
     fn needs_forces(&self) -> bool {
         self.needs_forces
     }
     fn wants_checkpoint(&mut self) -> bool {
-        self.saver.as_ref().is_some_and(Saver::is_due)
+        let ending = matches!(self.stop, Some(Ending::Interrupted));
+        self.saver.as_ref().is_some_and(|saver| saver.is_due(ending))
     }
     fn checkpoint(&mut self, checkpoint: Checkpoint) -> ControlFlow<()> {
         if let Some(mut saver) = self.saver.take() {
@@ -271,6 +293,12 @@ impl Observer for Recorder<'_> {
             self.saver = Some(saver);
         }
         ControlFlow::Continue(())
+    }
+    fn warn(&mut self, text: &str) {
+        self.warnings.say(text);
+        if let Some(saver) = &mut self.saver {
+            saver.warnings.push(text.to_string());
+        }
     }
     fn event(&mut self, name: &str, t: f64) {
         self.events.push(Happened { name: name.into(), t });
@@ -282,18 +310,6 @@ impl Observer for Recorder<'_> {
         let recorded = self.record(sample);
         self.go_on(recorded)
     }
-}
-
-fn lines(model: &Model, at: &At<'_>) -> Vec<V3<f64>> {
-    let mut all = Vec::new();
-    for part in model.parts() {
-        let line = part.line(at);
-        if !all.is_empty() && !line.is_empty() {
-            all.push([f64::NAN; 3]);
-        }
-        all.extend(line);
-    }
-    all
 }
 
 fn positions(model: &Model, at: &At<'_>) -> Vec<V3<f64>> {

@@ -1,7 +1,7 @@
 //! What is said on the terminal when a run has ended.
 
 use super::Recorder;
-use crate::output::{Happened, RunFolder, Summary, number, rough};
+use crate::output::{Column, Happened, RunFolder, Summary, number, rough};
 use crate::read::SceneFile;
 use ropewalk_core::Analysis;
 use std::fmt::Write;
@@ -74,13 +74,11 @@ pub(crate) fn report(
         };
         line(if k == 0 { "events" } else { "" }, format!("{name} {when}"));
     }
-    let wide = recorder.figures.iter().map(|f| f.name.chars().count()).max().unwrap_or(0);
-    for (k, f) in recorder.figures.iter().enumerate() {
-        let columns = &recorder.table.columns[f.columns.clone()];
-        let values: Vec<String> =
-            columns.iter().filter_map(|c| c.values.last()).map(|x| number(*x)).collect();
-        let unit = columns.first().map_or("", |c| c.unit.as_str());
-        line(if k == 0 { "final" } else { "" }, format!("{:<wide$}  {} {unit}", f.name, values.join(", ")));
+    let finals: Vec<_> =
+        recorder.figures.iter().flat_map(|f| finals(&recorder.table.columns[f.columns.clone()])).collect();
+    let wide = finals.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    for (k, (name, values)) in finals.iter().enumerate() {
+        line(if k == 0 { "final" } else { "" }, format!("{name:<wide$}  {values}"));
     }
     if let Some(profile) = &summary.profile {
         let mut entries: Vec<_> = profile.iter().collect();
@@ -100,6 +98,28 @@ pub(crate) fn report(
     out
 }
 
+/// The last values of a record, under the names that its columns have in the history: those that differ only behind
+/// their last point, as `hose.end.x` and `hose.end.y`, on one line, and each unit once.
+fn finals(columns: &[Column]) -> Vec<(String, String)> {
+    let value = |c: &Column| c.values.last().map_or("-".to_string(), |x| number(*x));
+    let stem = |c: &Column| c.name.rsplit_once('.').map(|(stem, _)| stem.to_string());
+    let shared = columns
+        .first()
+        .and_then(stem)
+        .filter(|first| columns.len() > 1 && columns.iter().all(|c| stem(c).as_ref() == Some(first)));
+    let Some(stem) = shared else {
+        let alone = |c: &Column| (c.name.clone(), format!("{} {}", value(c), c.unit).trim_end().to_string());
+        return columns.iter().map(alone).collect();
+    };
+    let of = |k: usize| {
+        let c = &columns[k];
+        let unit = if columns.get(k + 1).is_some_and(|next| next.unit == c.unit) { "" } else { &c.unit };
+        format!("{} {} {unit}", &c.name[stem.len() + 1..], value(c)).trim_end().to_string()
+    };
+    let values: Vec<String> = (0..columns.len()).map(of).collect();
+    vec![(stem, values.join(", "))]
+}
+
 /// The times of each kind of event, in the order in which they came first.
 fn by_name(events: &[Happened]) -> Vec<(&str, Vec<f64>)> {
     let mut all: Vec<(&str, Vec<f64>)> = Vec::new();
@@ -110,4 +130,19 @@ fn by_name(events: &[Happened]) -> Vec<(&str, Vec<f64>)> {
         }
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_last_value_has_its_name_and_its_unit() {
+        let column = |name: &str, unit: &str| Column { values: vec![2.5], ..Column::new(name, unit) };
+        let reaction = [column("ship.fx", "N"), column("ship.magnitude", "N"), column("ship.mx", "N m")];
+        assert_eq!(finals(&reaction), [("ship".into(), "fx 2.5, magnitude 2.5 N, mx 2.5 N m".into())]);
+        assert_eq!(finals(&[column("hose.end.x", "m")]), [("hose.end.x".into(), "2.5 m".into())]);
+        let apart = [column("drag.cd", ""), column("lift", "N")];
+        assert_eq!(finals(&apart), [("drag.cd".into(), "2.5".into()), ("lift".into(), "2.5 N".into())]);
+    }
 }

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::output::{Counts, CriticalLoad, ProfileEntry};
 use crate::read::SceneFile;
 use crate::scene::Fault;
-use ropewalk_core::integrator::{StepError, StepReport};
+use ropewalk_core::integrator::{StepError, StepReport, Stepping};
 use ropewalk_core::statics::{Critical, Statics};
 use ropewalk_core::{
     Analysis, Audit, End, Model, Observer, Process, Sample, Scene, Simulation, SolveError, State, Unfit,
@@ -94,11 +94,19 @@ impl Started {
                      many ways are given with the least norm"
                 ));
             }
+            if let Stepping::Fixed { h } = scene.solver.stepping {
+                all.extend(s.faster_than(h, scene.run.duration).into_iter().map(|(name, t)| {
+                    format!(
+                        "`{name}` changes at t = {t:.6} s faster than steps of {h:e} s follow: what it does between two of \
+                         them isn't seen. Take a smaller `h`, or error control"
+                    )
+                }));
+            }
             let c = s.correction;
             if c.position > 1e-8 * s.model.length() || c.velocity > 1e-6 {
                 all.push(format!(
                     "the start was moved onto the constraints: positions by {:.1e} m, velocities by {:.1e} m/s \
-                     (root mean square over the mass)",
+                     (root mean square along the part that is moved most)",
                     c.position, c.velocity
                 ));
             }
@@ -111,16 +119,13 @@ impl Started {
 
     /// What only the run could tell: equilibria that aren't stable, multipliers that ring.
     pub(crate) fn afterthought(&self) -> Vec<String> {
-        let flutter = match self {
+        let (flutter, counts, ringing) = match self {
             Started::Process(process, _) => return process.warnings(),
-            Started::Dynamics(s, ..) if s.ringing > 0.0 => {
-                return vec![format!(
-                    "the multipliers rang: from step to step they swung by up to {:.1e} of their size",
-                    s.ringing
-                )];
-            }
-            Started::Dynamics(_, flutter, _) => *flutter,
-            Started::Statics(done) => done.flutter,
+            Started::Dynamics(s, flutter, _) => (*flutter, s.work.counts, s.ringing),
+            Started::Statics(done) => (done.flutter, Default::default(), 0.0),
+        };
+        let rang = || {
+            format!("the multipliers rang: from step to step they swung by up to {ringing:.1e} of their size")
         };
         let unstable = || {
             format!(
@@ -129,22 +134,30 @@ impl Started {
                 1.0 / flutter
             )
         };
-        let unmet = match self {
-            Started::Dynamics(s, ..) => s.work.counts.unmet,
-            _ => 0,
-        };
+        let (unmet, cut, steps) = (counts.unmet, counts.cut, counts.steps);
         let stopped = || {
             format!(
-                "{unmet} steps never met the absolute stopping test: rounding leaves more than it allows. They are as \
-                 good as they get; the `relative` test wouldn't have gone on in vain"
+                "{unmet} steps never met the stopping test of Newton's method: rounding leaves more than it allows. They \
+                 are as good as they get"
             )
         };
-        let flutter = (flutter > 0.0).then(unstable);
+        let shorter = || {
+            format!(
+                "{cut} of {steps} steps are shorter than `h`, since longer ones failed: they didn't converge, or the motion \
+                 jumped. Take a smaller `h`, or error control"
+            )
+        };
         let remarks = match self {
             Started::Statics(done) => done.remarks.clone(),
             _ => Vec::new(),
         };
-        flutter.into_iter().chain((unmet > 0).then(stopped)).chain(remarks).collect()
+        let all = [
+            (ringing > 0.0).then(rang),
+            (flutter > 0.0 && ringing == 0.0).then(unstable),
+            (unmet > 0 && ringing == 0.0).then(stopped),
+            (cut > 0).then(shorter),
+        ];
+        all.into_iter().flatten().chain(remarks).collect()
     }
 
     /// Measures the time of every term from now on.

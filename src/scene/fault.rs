@@ -5,10 +5,10 @@ use std::fmt;
 
 /// One thing that is wrong with a scene, and where.
 ///
-/// Displayed, it is all that a user needs to see:
+/// Displayed, it is all that a user needs to see; the command line puts `error: ` in front.
 ///
 /// ```text
-/// error: unknown field `eI`, expected `ea` or `ei`
+/// unknown field `eI`, expected `ea` or `ei`
 ///   --> scene.toml:12:1 (elements[0].section)
 ///    |
 /// 12 | eI = 3
@@ -63,7 +63,7 @@ impl Fault {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "error: {}", self.message)?;
+        f.write_str(&self.message)?;
         let mut margin = String::from(" ");
         if let Some(p) = &self.place {
             let number = p.line.to_string();
@@ -167,7 +167,7 @@ mod tests {
                 .with_note("used at scene.toml:1:1")
                 .with_help("did you mean `ei`?");
         let shown = "\
-error: unknown field `eI`, expected `ea` or `ei`
+unknown field `eI`, expected `ea` or `ei`
   --> scene.toml:12:1 (elements[0].section)
    |
 12 | eI = 3
@@ -175,6 +175,6 @@ error: unknown field `eI`, expected `ea` or `ei`
    = note: used at scene.toml:1:1
    = help: did you mean `ei`?";
         assert_eq!(fault.to_string(), shown);
-        assert_eq!(Fault::new("no file").to_string(), "error: no file");
+        assert_eq!(Fault::new("no file").to_string(), "no file");
     }
 }

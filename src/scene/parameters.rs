@@ -48,7 +48,8 @@ pub struct Parameter {
     pub value: Value,
     /// Whether the value was set from outside.
     pub set: bool,
-    /// Whether the scene uses it, directly or by way of other parameters.
+    /// Whether the scene uses it, directly or by way of other parameters. One that it would use if it had chosen otherwise
+    /// counts too, unless it was set, which then has no effect.
     pub used: bool,
 }
 
@@ -77,7 +78,7 @@ pub(super) fn resolve(
     };
     r.table(root)?;
     for definition in &mut r.definitions {
-        definition.used = definition.done.is_some();
+        definition.used = definition.done.is_some() || definition.passed_over && !definition.set;
     }
     // the others have to make sense as well
     for i in 0..r.definitions.len() {
@@ -97,6 +98,8 @@ struct Definition {
     description: Option<String>,
     written: Option<Value>,
     set: bool,
+    /// Whether it stands in what `choose` didn't take.
+    passed_over: bool,
     used: bool,
     done: Option<Done>,
 }
@@ -141,7 +144,15 @@ fn definition(key: Key, value: Value, sources: &Sources) -> Result<Definition, F
             .with_path(TABLE)
             .with_help("a name consists of letters, digits, `_` and `-`, and begins with a letter or `_`"));
     }
-    let mut d = Definition { key, description: None, written: None, set: false, used: false, done: None };
+    let mut d = Definition {
+        key,
+        description: None,
+        written: None,
+        set: false,
+        passed_over: false,
+        used: false,
+        done: None,
+    };
     let Kind::Table(mut table) = value.kind else {
         d.written = Some(value).filter(|v| v.kind != Kind::Null);
         return Ok(d);
@@ -285,8 +296,29 @@ impl Resolver<'_> {
             let help = format!("add it, or `{OTHERWISE}` for all that isn't named");
             return Err(self.fault(message, key.span).with_help(help));
         };
+        self.pass_over(Value::new(Kind::Table(table), span));
         self.value(&mut value)?;
         Ok(value)
+    }
+
+    /// Notes the parameters in a value that isn't taken, and those in their values.
+    fn pass_over(&mut self, value: Value) {
+        let mut values = vec![value];
+        while let Some(value) = values.pop() {
+            match value.kind {
+                Kind::Table(table) => values.extend(table.0.into_iter().map(|(_, value)| value)),
+                Kind::Array(list) => values.extend(list),
+                Kind::String(text) => {
+                    let i = text.strip_prefix('$').and_then(|name| self.index.get(name).copied());
+                    let definition = i.map(|i| &mut self.definitions[i]).filter(|d| !d.passed_over);
+                    if let Some(definition) = definition {
+                        definition.passed_over = true;
+                        values.extend(definition.written.clone());
+                    }
+                }
+                _ => {}
+            }
+        }
     }
 
     fn used(&mut self, name: &str, span: Span) -> Result<Value, Fault> {

@@ -246,6 +246,12 @@ fn files_from(value: &mut Value, folder: &Path) {
     }
 }
 
+/// Whether a path is that of a file which is open already, such as a pipe from another program: opening a pipe by name
+/// waits for somebody to write into it.
+fn is_descriptor(path: &Path) -> bool {
+    path == Path::new("/dev/stdin") || path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd")
+}
+
 /// Reads the text of a `.toml` or `.json` file, and tells which of them it is.
 ///
 /// # Errors
@@ -261,6 +267,10 @@ pub(crate) fn read_text(path: &Path) -> Result<(String, Format), Fault> {
     let about = std::fs::metadata(path).map_err(fault)?;
     if about.is_dir() {
         return Err(Fault::new(format!("{quoted} is a directory, not a scene file")));
+    }
+    if !about.is_file() && !is_descriptor(path) {
+        return Err(Fault::new(format!("{quoted} is a pipe or a device, not a scene file"))
+            .with_help("what another program writes is read from `/dev/stdin`"));
     }
     let format = match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
         Some("toml") => Some(Format::Toml),

@@ -59,7 +59,7 @@ pub(crate) fn measure(file: &SceneFile, with_positions: bool, watch: Watch, prog
         Ok(Ok(measured)) => measured,
         Ok(Err(e)) => Measured::failed(match e {
             Error::File(fault) => fault.message,
-            e => e.to_string().trim_start_matches("error: ").to_string(),
+            e => e.to_string(),
         }),
         Err(_) => Measured::failed("an internal error, see above: please report it".into()),
     };
@@ -81,7 +81,7 @@ fn go(file: &SceneFile, with_positions: bool, watch: Watch, progress: Progress) 
         progress.finish("");
     }
     let failure = match &ending {
-        Ending::Failed(e) => Some(e.to_string().trim_start_matches("error: ").to_string()),
+        Ending::Failed(e) => Some(e.to_string()),
         _ => None,
     };
     let positions = recorder.track.take().unwrap_or_default();

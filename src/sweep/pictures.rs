@@ -98,7 +98,8 @@ fn shapes(
     titles: &Titles,
 ) -> Vec<(String, LinePlot)> {
     let run = |k: usize| RunFolder::earlier(folder.run(grid.name(k)));
-    let ends: Vec<_> = lines.iter().filter_map(|(k, _)| Some((*k, last_shape(&run(*k)).ok()?))).collect();
+    let ends: Vec<_> =
+        lines.iter().filter_map(|(k, _)| Some((*k, last_shape(&run(*k)).ok()?.points()))).collect();
     let together = [(0.0, ends.iter().flat_map(|(_, line)| line.iter().copied()).collect())];
     let seen = planes(&together);
     let asked = |plane: &Plane| seen.contains(plane) || titles.has(view(*plane).0);

@@ -1,58 +1,71 @@
-//! What scene files can't say: parts by the dozen, and a motion by a formula.
+//! What scene files of the suite don't say: parts by the dozen, and a motion by a formula.
 
-use ropewalk_constraints::{PointOnLineSpec, RevoluteSpec};
 use ropewalk_core::build::BuildError;
-use ropewalk_core::{MarkerRef, Motion, MotionSpec, Moving, Scene, V3};
-use ropewalk_elements::RigidBodySpec;
+use ropewalk_core::{Motion, MotionSpec, Moving};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::FRAC_PI_2;
+use std::fmt::Write;
 use std::sync::Arc;
 
-/// Completes a scene.
-pub(super) fn complete(by: &str, scene: &mut Scene) -> Result<(), String> {
+/// The text of a scene with what completes it.
+pub(super) fn complete(by: &str, text: &str) -> Result<String, String> {
     match by {
-        "forty four-bars" => four_bars(scene, 40),
-        other => return Err(format!("there is no builder `{other}`")),
+        "forty four-bars" => Ok(format!("{text}{}", four_bars(40))),
+        other => Err(format!("there is no builder `{other}`")),
     }
-    Ok(())
 }
 
 /// A homogeneous slender rod of 1 m and 1 kg in the plane; what it resists turning about itself is as good as nothing.
-fn rod(name: String, at: V3<f64>, angle: f64) -> RigidBodySpec {
+fn rod(out: &mut String, name: &str, [x, y]: [usize; 2], angle: &str, velocity: &str) {
     let j = 1.0 / 12.0;
-    let spec = RigidBodySpec {
-        angles: [0.0, 0.0, angle],
-        centre: [0.5, 0.0, 0.0],
-        ..RigidBodySpec::new(&name, at, 1.0, [1e-6 * j, j, j])
-    };
-    spec.with_point("end", [1.0, 0.0, 0.0])
+    _ = write!(
+        out,
+        "
+[[elements]]
+type = \"rigid_body\"
+name = \"{name}\"
+position = [{x}, {y}, 0]
+angles = [0, 0, \"{angle}\"]
+{velocity}
+mass = 1
+inertia = [{:?}, {j:?}, {j:?}]
+centre = [0.5, 0, 0]
+points = {{ end = [1, 0, 0] }}
+",
+        1e-6 * j
+    );
 }
 
-fn hinge(name: String, marker: &str, to: impl Into<MarkerRef>) -> RevoluteSpec {
-    RevoluteSpec { name, marker: marker.into(), to: Some(to.into()), axis: [0.0, 0.0, 1.0] }
+/// A joint about the z axis.
+fn joint(out: &mut String, kind: &str, name: &str, marker: &str, to: &str) {
+    _ = write!(
+        out,
+        "
+[[constraints]]
+type = \"{kind}\"
+name = \"{name}\"
+marker = \"{marker}\"
+to = {to}
+axis = [0, 0, 1]
+"
+    );
 }
 
 /// `n + 1` cranks in a row, joined by `n` couplers; loops are closed by the two equations that a plane needs.
-fn four_bars(scene: &mut Scene, n: usize) {
+fn four_bars(n: usize) -> String {
+    let mut out = String::new();
     for k in 0..=n {
-        let (crank, foot) = (format!("crank{k}"), [k as f64, 0.0, 0.0]);
-        let body =
-            RigidBodySpec { angular_velocity: [0.0, 0.0, -1.0], ..rod(crank.clone(), foot, FRAC_PI_2) };
-        scene.element(body).constraint(hinge(format!("ground{k}"), &crank, foot));
+        let crank = format!("crank{k}");
+        rod(&mut out, &crank, [k, 0], "90 deg", "angular_velocity = [0, 0, -1]");
+        joint(&mut out, "revolute", &format!("ground{k}"), &crank, &format!("[{k}, 0, 0]"));
     }
     for k in 0..n {
-        let (coupler, left) = (format!("coupler{k}"), [k as f64, 1.0, 0.0]);
-        let right = PointOnLineSpec {
-            name: format!("right{k}"),
-            marker: format!("{coupler}.end").as_str().into(),
-            to: Some(format!("crank{}.end", k + 1).as_str().into()),
-            axis: [0.0, 0.0, 1.0],
-        };
-        scene
-            .element(RigidBodySpec { velocity: [1.0, 0.0, 0.0], ..rod(coupler.clone(), left, 0.0) })
-            .constraint(hinge(format!("left{k}"), &coupler, format!("crank{k}.end").as_str()))
-            .constraint(right);
+        let coupler = format!("coupler{k}");
+        rod(&mut out, &coupler, [k, 1], "0 deg", "velocity = [1, 0, 0]");
+        joint(&mut out, "revolute", &format!("left{k}"), &coupler, &format!("\"crank{k}.end\""));
+        let right = format!("\"crank{}.end\"", k + 1);
+        joint(&mut out, "point_on_line", &format!("right{k}"), &format!("{coupler}.end"), &right);
     }
+    out
 }
 
 /// The angle `0.8 t² exp(-t) + 0.3 sin 5t - 1.5 t` of the driven rod. A type of scenes, but for that one only: it isn't listed.

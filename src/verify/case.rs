@@ -39,7 +39,7 @@ struct Run {
     /// Parameters, each `name=value`.
     #[serde(default)]
     set: Vec<String>,
-    /// What completes the scene that a file can't say.
+    /// What completes the scene that its file doesn't say.
     #[serde(default)]
     completed_by: Option<String>,
     /// So many vibration modes instead of a run.
@@ -115,9 +115,16 @@ impl Case {
         self
     }
 
-    /// The scenes that it runs, each with its name and text.
-    pub fn scenes(&self) -> Vec<(&'static str, &'static str)> {
-        SCENES.iter().filter(|(name, _)| self.runs.iter().any(|r| r.scene == *name)).copied().collect()
+    /// The scenes that it runs, each with its name and its whole text.
+    ///
+    /// # Panics
+    /// Never: the tests complete the same files.
+    pub fn scenes(&self) -> Vec<(&'static str, String)> {
+        let of = |&(name, text): &(&'static str, &'static str)| {
+            let run = self.runs.iter().find(|r| r.scene == name)?;
+            Some((name, run.complete(text).unwrap_or_else(|e| panic!("{name}.toml: {e}"))))
+        };
+        SCENES.iter().filter_map(of).collect()
     }
 
     /// How many references are compared with.
@@ -156,14 +163,20 @@ impl Run {
         [std::slice::from_ref(&self.scene), self.set.as_slice()].concat().join(" ")
     }
 
+    /// The text of its scene with what completes it.
+    fn complete(&self, text: &str) -> Result<String, String> {
+        match &self.completed_by {
+            Some(by) => builders::complete(by, text),
+            None => Ok(text.to_string()),
+        }
+    }
+
     /// The history of its scene, or its modes.
     fn results(&self, followed: Followed) -> Result<Table, Error> {
         let missing = || Fault::new(format!("there is no scene `{}`", self.scene));
         let (name, text) = SCENES.iter().find(|(name, _)| *name == self.scene).ok_or_else(missing)?;
-        let mut scene = SceneFile::parse(text, name, Format::Toml, &self.set)?.into_scene();
-        if let Some(by) = &self.completed_by {
-            builders::complete(by, &mut scene).map_err(Fault::new)?;
-        }
+        let text = self.complete(text).map_err(Fault::new)?;
+        let scene = SceneFile::parse(&text, name, Format::Toml, &self.set)?.into_scene();
         if let Some(count) = self.modes {
             return Ok(modes_showing(&scene, count, followed.interrupt)?.table());
         }
@@ -245,5 +258,16 @@ mod tests {
         // and each scene belongs to a case
         let used: Vec<&str> = cases().iter().flat_map(Case::scenes).map(|(name, _)| name).collect();
         assert!(SCENES.iter().all(|(name, _)| used.contains(name) || cfg!(not(feature = "contact"))));
+    }
+
+    #[test]
+    fn every_scene_that_is_written_can_be_run() {
+        for (name, text) in cases().iter().flat_map(Case::scenes) {
+            let file =
+                SceneFile::parse(&text, name, Format::Toml, &[]).unwrap_or_else(|e| panic!("{name}: {e}"));
+            let model = file.build().unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert!(model.velocities() > 0 && file.document().unused_parameters().is_empty(), "{name}");
+            file.records(&model).unwrap_or_else(|e| panic!("{name}: {e}"));
+        }
     }
 }

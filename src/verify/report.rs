@@ -25,7 +25,7 @@ pub fn heading(o: &Outcome) -> String {
 /// All that it compared, a line each: measured, reference, tolerance, error in parts of the tolerance.
 pub fn lines(o: &Outcome) -> Vec<String> {
     let mut out: Vec<String> = o.measured.iter().map(line).collect();
-    out.extend(o.trouble.iter().map(|t| format!("    failed: {}", t.trim_start_matches("error: "))));
+    out.extend(o.trouble.iter().map(|t| format!("    failed: {t}")));
     let left = o.case.left_out.iter();
     out.extend(left.map(|l| format!("    not run ({}): {}: {}", l.count, l.quantity, l.reason)));
     out

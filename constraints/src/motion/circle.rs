@@ -3,7 +3,8 @@
 use super::plane::{Course, Side};
 use super::smooth::Rise;
 use ropewalk_core::build::{BuildError, positive};
-use ropewalk_core::{Motion, Moving, SteadyFrame, V3};
+use ropewalk_core::{Motion, Moving, SteadyFrame, V3, reach};
+use std::f64::consts::TAU;
 
 /// From rest to a steady speed on a circle: `R sin φ` ahead and `R (1 - cos φ)` to the side, with `dφ/dt = U(t)/R` and
 /// the smooth rise of the speed `U` of [`Straight`](super::Straight).
@@ -50,6 +51,10 @@ impl Motion for Circle {
             v: self.course.vector(speed * cos, speed * sin),
             a: self.course.vector(thrust * cos - c * sin, thrust * sin + c * cos),
         }
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        let round = reach::period(TAU * self.radius / self.rise.top, h);
+        Some(reach::after(self.rise.start, t, self.rise.reach(t, h), round))
     }
     fn steady(&self, t: f64) -> Option<SteadyFrame> {
         (t >= self.rise.end()).then(|| SteadyFrame {

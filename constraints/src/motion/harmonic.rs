@@ -2,7 +2,7 @@
 
 use super::smooth::{step, step_second};
 use ropewalk_core::build::{BuildError, finite, positive};
-use ropewalk_core::{Motion, Moving, V3};
+use ropewalk_core::{Motion, Moving, V3, reach};
 use std::f64::consts::TAU;
 
 /// `X = S(u) A sin(2π f (t - start) + phase)`, faded in by the quintic smooth step `S` of `u = (t - start) / ramp`.
@@ -64,5 +64,13 @@ impl Motion for Harmonic {
             v: along(s1 * sin + s * w * cos),
             a: along(s2 * sin + 2.0 * s1 * w * cos - s * w * w * sin),
         }
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        let swing = reach::period(1.0 / self.frequency, h);
+        if self.ramp == 0.0 {
+            return Some(swing);
+        }
+        let rise = reach::rise(self.start, self.start + self.ramp, t, h);
+        Some(reach::after(self.start, t, rise, swing))
     }
 }

@@ -5,6 +5,7 @@
 //! from the first moment on).
 
 mod circle;
+mod csv;
 mod harmonic;
 mod plane;
 mod rest;

@@ -1,6 +1,7 @@
 //! Speeds that rise smoothly.
 
 use ropewalk_core::build::{BuildError, finite, positive};
+use ropewalk_core::reach;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -79,6 +80,10 @@ impl Rise {
             Shape::Cycloidal => cycloid(u),
         };
         [self.top * self.ramp * sum, self.top * rate, self.top / self.ramp * rise]
+    }
+    /// How much of a step `h` from `t` doesn't leap over it.
+    pub fn reach(&self, t: f64, h: f64) -> f64 {
+        reach::rise(self.start, self.end(), t, h)
     }
     /// When it is constant.
     pub fn end(&self) -> f64 {

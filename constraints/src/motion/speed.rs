@@ -1,9 +1,10 @@
 //! A measured speed.
 
+use super::csv;
 use crate::check::unit;
 use ropewalk_core::build::{BuildError, finite};
 use ropewalk_core::quantity::kind;
-use ropewalk_core::{Motion, MotionSpec, Moving, V3, quantity, register_spec};
+use ropewalk_core::{Motion, MotionSpec, Moving, V3, quantity, reach, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -113,6 +114,10 @@ impl Motion for SpeedTable {
         let along = |s: f64| self.direction.map(|d| s * d);
         Moving { x: along(x), v: along(v), a: along(a) }
     }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        let size = self.v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        Some(reach::knots(&self.t, |k| [self.v[k], 0.0, 0.0], size, t, h))
+    }
     fn range(&self) -> (f64, f64) {
         (self.t[0], self.t[self.t.len() - 1])
     }
@@ -146,53 +151,9 @@ register_spec!(Motion, "speed_table", SpeedTableSpec);
 
 /// Reads the columns `t` and `v` of a CSV file; the error gives file and line.
 fn read(path: &str) -> Result<Vec<[f64; 2]>, String> {
-    let text = std::fs::read_to_string(path).map_err(|e| format!("can't read {path}: {e}"))?;
-    let at = |line: usize, message: String| format!("{path}, line {line}: {message}");
-    let mut lines =
-        text.trim_start_matches('\u{feff}').lines().enumerate().filter(|(_, l)| !l.trim().is_empty());
-    let Some((_, header)) = lines.next() else { return Err(at(1, "the file is empty".into())) };
-    let headings: Vec<(&str, &str)> = header
-        .split(',')
-        .map(|h| {
-            let h = h.trim().trim_matches('"');
-            match h.strip_suffix(']').and_then(|h| h.split_once('[')) {
-                Some((name, unit)) => (name.trim(), unit.trim()),
-                None => (h, ""),
-            }
-        })
-        .collect();
-    let column = |name: &str, kind: &quantity::Kind| {
-        let Some(k) = headings.iter().position(|h| h.0 == name) else {
-            let message = format!("there is no column `{name}`; the first line must be like `t [s],v [m/s]`");
-            return Err(at(1, message));
-        };
-        let unit = headings[k].1;
-        if !unit.is_empty() {
-            kind.parse(&format!("1 {unit}")).map_err(|e| at(1, format!("column `{name}`: {e}")))?;
-        }
-        Ok((k, unit))
-    };
-    let columns = [(column("t", &kind::TIME)?, &kind::TIME), (column("v", &kind::SPEED)?, &kind::SPEED)];
-    let mut rows = Vec::new();
-    let mut numbers = Vec::new();
-    for (n, line) in lines {
-        let cells: Vec<&str> = line.split(',').map(|c| c.trim().trim_matches('"')).collect();
-        let mut row = [0.0; 2];
-        for (x, ((k, unit), kind)) in row.iter_mut().zip(&columns) {
-            let Some(cell) = cells.get(*k) else {
-                return Err(at(n + 1, format!("there are {} columns, not {}", cells.len(), headings.len())));
-            };
-            *x = if unit.is_empty() {
-                cell.parse().map_err(|_| at(n + 1, format!("`{cell}` is not a number")))?
-            } else {
-                kind.parse(&format!("{cell} {unit}")).map_err(|e| at(n + 1, e))?
-            };
-        }
-        rows.push(row);
-        numbers.push(n + 1);
-    }
+    let (rows, lines) = csv::columns(path, [("t", &kind::TIME), ("v", &kind::SPEED)])?;
     check(&rows).map_err(|(row, message)| match row {
-        Some(k) => at(numbers[k], message),
+        Some(k) => format!("{path}, line {}: {message}", lines[k]),
         None => format!("{path}: {message}"),
     })?;
     Ok(rows)

@@ -2,9 +2,10 @@
 
 use super::smooth::{Rise, Shape};
 use ropewalk_core::build::{BuildError, finite};
-use ropewalk_core::{Motion, MotionSpec, Moving, quantity, register_spec};
+use ropewalk_core::{Motion, MotionSpec, Moving, quantity, reach, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// An angle, the x component, whose rate rises smoothly to a steady one or has it from the first moment on.
@@ -47,6 +48,10 @@ impl Motion for Spin {
     fn at(&self, t: f64) -> Moving {
         let [x, v, a] = self.rise.map_or([self.rate * t, self.rate, 0.0], |rise| rise.at(t));
         Moving { x: [x, 0.0, 0.0], v: [v, 0.0, 0.0], a: [a, 0.0, 0.0] }
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        let round = reach::period(TAU / self.rate, h);
+        Some(self.rise.map_or(round, |rise| reach::after(rise.start, t, rise.reach(t, h), round)))
     }
 }
 

@@ -31,6 +31,9 @@ impl Motion for Straight {
         let [x, v, a] = self.rise.at(t).map(|s| self.direction.map(|d| s * d));
         Moving { x, v, a }
     }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(self.rise.reach(t, h))
+    }
     fn steady(&self, t: f64) -> Option<SteadyFrame> {
         (t >= self.rise.end()).then(|| SteadyFrame {
             velocity: self.direction.map(|d| self.rise.top * d),

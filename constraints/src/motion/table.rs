@@ -1,7 +1,7 @@
 //! A measured or computed motion.
 
 use ropewalk_core::build::{BuildError, finite, need};
-use ropewalk_core::{Motion, Moving, V3};
+use ropewalk_core::{Motion, Moving, V3, reach};
 
 /// What a [`Table`] does at its ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -99,6 +99,11 @@ impl Motion for Table {
             m.a[c] = p * a0 + q * a1;
         }
         m
+    }
+    /// The accelerations of the rows are joined by straight lines.
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        let size = self.a.iter().flatten().fold(0.0, |m: f64, a| m.max(a.abs()));
+        Some(reach::knots(&self.t, |k| self.a[k], size, t, h))
     }
     fn range(&self) -> (f64, f64) {
         (self.t[0], self.t[self.t.len() - 1])

@@ -3,7 +3,8 @@
 use super::plane::{Course, Side};
 use super::smooth::Rise;
 use ropewalk_core::build::{BuildError, positive};
-use ropewalk_core::{Motion, Moving, SteadyFrame, V3};
+use ropewalk_core::{Motion, Moving, SteadyFrame, V3, reach};
+use std::f64::consts::TAU;
 
 /// The numbers of a [`Turn`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,6 +143,10 @@ impl Motion for Turn {
             v: self.course.vector(speed * cos, speed * sin),
             a: self.course.vector(thrust * cos - c * sin, thrust * sin + c * cos),
         }
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        let round = reach::period(TAU / self.yaw.top, h);
+        Some(reach::after(self.yaw.start, t, self.yaw.reach(t, self.speed.reach(t, h)), round))
     }
     fn steady(&self, t: f64) -> Option<SteadyFrame> {
         (t >= self.circle_from()).then(|| SteadyFrame {

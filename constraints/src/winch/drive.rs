@@ -30,6 +30,9 @@ impl Motion for Haul {
         }
         x
     }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        [Some(&self.rise), self.fall.as_ref()].into_iter().flatten().try_fold(h, |h, m| m.reach(t, h))
+    }
 }
 
 impl WinchSpec {

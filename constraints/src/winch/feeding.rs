@@ -48,6 +48,12 @@ impl Constraint for Feeding {
         let moving = self.motion.at(at.t);
         (rate[0], bias[0]) = (-moving.v[0], -moving.a[0]);
     }
+    fn moves(&self) -> bool {
+        true
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.motion.reach(t, h)
+    }
     fn prescribes(&self) -> Option<(usize, usize)> {
         Some((self.front.q, self.front.v))
     }

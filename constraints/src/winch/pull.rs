@@ -64,6 +64,12 @@ impl Term for Pull {
     fn symmetric(&self) -> bool {
         false
     }
+    fn timed(&self) -> bool {
+        self.pace.is_some()
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.pace.as_ref().map_or(Some(h), |motion| motion.reach(t, h))
+    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let (front, slope) = (&self.front, self.slope(at));
         let (stretch, (pull, by_u)) = (front.stretch(at), self.pull(at.t, front.rate(at)));

@@ -6,8 +6,8 @@ use super::scales::Scaled;
 use super::start::{anew, settle};
 use super::workspace::Which;
 use super::{
-    Coefficients, ConstraintForm, Integrator, NewtonPolicy, Options, StepError, StepReport, Stepping, Units,
-    Workspace,
+    Coefficients, ConstraintForm, Integrator, Limits, NewtonPolicy, Options, StepError, StepReport, Stepping,
+    Units, Workspace,
 };
 use crate::model::Model;
 use crate::solver::SolveError;
@@ -16,7 +16,9 @@ use crate::state::State;
 /// Integrator of the Newmark, HHT-α and generalized-α family on index-3 equations.
 pub struct Alpha {
     options: Options,
+    limits: Limits,
     scheme: Coefficients,
+    /// Time over which errors may add up [s].
     horizon: f64,
     units: Units,
     warning: Option<String>,
@@ -53,7 +55,8 @@ impl Alpha {
         let units = options.scales.map_or(Ok(Units::SI), |scales| Units::of(scales, model));
         let units = units.map_err(StepError::Scheme)?;
         let horizon = options.horizon_in(duration);
-        Ok(Alpha { options: options.clone(), scheme, horizon, units, warning })
+        let limits = options.limits(duration);
+        Ok(Alpha { options: options.clone(), limits, scheme, horizon, units, warning })
     }
 
     /// Its numbers.
@@ -61,18 +64,18 @@ impl Alpha {
         &self.scheme
     }
 
+    /// Tolerance of what Newton's method leaves of positions, relative to the length of each part.
     fn newton_tolerance(&self, model: &Model, h: f64) -> f64 {
-        let length = model.length();
         // on short elements, what is left of an iteration strains more, and would spoil the next prediction
         let fine = (COARSE / model.finest().max(1) as f64).min(1.0).powi(2);
         self.options.newton_tolerance
             * fine
             * match self.options.stepping {
-                Stepping::Fixed { .. } => (1e-4 * h * h * length).min(1e-7 * length),
+                Stepping::Fixed { .. } => 1e-7,
                 // what is left in velocities adds up in a mechanism, which has nothing that takes it away
                 Stepping::Controlled { tolerance } => {
                     let steps = if model.is_mechanism() { (10.0 * h / self.horizon).min(1.0) } else { 1.0 };
-                    1e-4 * steps * tolerance.min(1e-3) * length
+                    1e-4 * steps * tolerance.min(1e-3)
                 }
             }
     }
@@ -125,7 +128,7 @@ impl Alpha {
         // where there is no past yet, its weight is zero
         let one = if state.control.backs > 0 { &one[..n] } else { a };
         let two = if state.control.backs > 1 { &two[..n] } else { a };
-        let (new, mass) = (&work.trial.a[..n], &work.weight[..n]);
+        let (new, mass) = (&work.trial.a[..n], &work.norms.weights()[..n]);
         let ([x1, y1, _], [x2, y2, z2]) = (past.continued(1), past.continued(2));
         let mut miss = [0.0; 3];
         for i in 0..n {
@@ -140,18 +143,10 @@ impl Alpha {
         (1..=backs).fold(0, |best, k| if miss[k] < miss[best] { k } else { best })
     }
 
-    /// Estimated error of the trial over the tolerance: `|Cq h² (a₊ - a)|`, without what the constraints and the
-    /// numerical damping take away, per unit step.
-    fn error(
-        &self,
-        model: &Model,
-        modes: &[f64],
-        work: &mut Workspace,
-        h: f64,
-        tolerance: f64,
-    ) -> Result<f64, SolveError> {
+    /// Estimated error of the trial, relative to the part where it is largest: `|Cq h² (a₊ - a)|`, without what the
+    /// constraints and the numerical damping take away.
+    fn error(&self, model: &Model, modes: &[f64], work: &mut Workspace, h: f64) -> Result<f64, SolveError> {
         let factor = self.scheme.error_constant() * h * h;
-        let turn = model.turn(&work.trial.d);
         let (nv, mut e, mut rhs) =
             (model.velocities(), std::mem::take(&mut work.trial.d), std::mem::take(&mut work.trial.rhs));
         let t = &work.trial;
@@ -164,12 +159,10 @@ impl Alpha {
         rhs.resize(model.structure().n, 0.0);
         work.times_mass(model, &e, &mut rhs[..nv]);
         let solved = work.solve(model, Which::Iteration, &mut rhs);
-        let size = work.norm(&rhs[..nv]);
+        let size = work.norms.relative(&rhs[..nv]);
         (work.trial.d, work.trial.rhs) = (e, rhs);
         solved?;
-        let error = size * (self.horizon / h) / (tolerance.min(1e-3) * model.length());
-        // a body that is driven has no error, but a larger turn may end on another branch of its joint
-        Ok(if turn > 1.0 { error + turn * turn } else { error })
+        Ok(size)
     }
 
     /// Whether a trial that converged is to be accepted.
@@ -192,9 +185,14 @@ impl Alpha {
             }
             Stepping::Fixed { .. } => Ok(Verdict::Good { error: 0.0 }),
             Stepping::Controlled { tolerance } => {
-                let error = self
-                    .error(model, &state.modes, work, h, tolerance)
+                let turn = model.turn(&work.trial.d);
+                let local = self
+                    .error(model, &state.modes, work, h)
                     .map_err(|source| linear(model, state.t, source))?;
+                // per unit step
+                let error = local * (self.horizon / h) / tolerance.min(1e-3);
+                // a body that is driven has no error, but a larger turn may end on another branch of its joint
+                let error = if turn > 1.0 { error + turn * turn } else { error };
                 match error {
                     e if e <= 1.0 => Ok(Verdict::Good { error }),
                     e if e.is_nan() => bad("the error estimate is not a number"),
@@ -214,6 +212,7 @@ impl Alpha {
         one.clear();
         one.extend_from_slice(&state.a);
         c.backs = (c.backs + 1).min(2);
+        work.forces.keep(&mut c.forces);
         c.h_last = h;
         c.eta = rate.eta;
         c.theta = rate.theta.unwrap_or(c.theta);
@@ -286,10 +285,11 @@ impl Past {
 /// Whether velocities change within the step by half of what they are, although they hardly did in the step before: no
 /// smooth motion does that. Steps with error control see it by themselves.
 fn jumps(state: &State, work: &Workspace) -> bool {
-    let change = work.norm_of(|i| work.trial.v[i] - state.v[i]);
-    let (before, after) = (work.norm(&state.v), work.norm(&work.trial.v));
+    let norms = &work.norms;
+    let change = norms.relative_of(|i| work.trial.v[i] - state.v[i]);
+    let (before, after) = (norms.relative(&state.v), norms.relative(&work.trial.v));
     let last = state.control.h_last;
-    last > 0.0 && last * work.norm(&state.a) < 0.05 * before && change > 0.5 * before.max(after)
+    last > 0.0 && last * norms.relative(&state.a) < 0.05 * before && change > 0.5 * before.max(after)
 }
 
 pub(super) fn linear(model: &Model, t: f64, source: SolveError) -> StepError {
@@ -308,6 +308,10 @@ pub(super) fn linear(model: &Model, t: f64, source: SolveError) -> StepError {
 impl Integrator for Alpha {
     fn options(&self) -> &Options {
         &self.options
+    }
+
+    fn limits(&self) -> Limits {
+        self.limits
     }
 
     fn warning(&self) -> Option<&str> {
@@ -348,7 +352,7 @@ impl Integrator for Alpha {
         }
         let linear_constraints = !model.is_mechanism();
         let controlled = matches!(self.options.stepping, Stepping::Controlled { .. });
-        let limit = h_max.min(self.options.h_max);
+        let limit = h_max.min(self.limits.most);
         let mut h = match self.options.stepping {
             Stepping::Fixed { h } => {
                 let cap = if state.control.h_cap > 0.0 { state.control.h_cap } else { f64::INFINITY };
@@ -356,7 +360,7 @@ impl Integrator for Alpha {
             }
             Stepping::Controlled { .. } => {
                 let wish =
-                    if state.control.h_next > 0.0 { state.control.h_next } else { self.options.h_start };
+                    if state.control.h_next > 0.0 { state.control.h_next } else { state.control.h_start };
                 let cap = if state.control.h_cap > 0.0 { state.control.h_cap } else { f64::INFINITY };
                 wish.min(cap).min(limit)
             }
@@ -370,19 +374,17 @@ impl Integrator for Alpha {
             self.rescale(state, h, &mut aux);
             work.trial.aux_old = aux;
             self.predict(state, h, work);
+            // where kept factors failed, the matrix changes too much even within a step
+            let full = stale || state.control.renew > 0 || self.options.newton == NewtonPolicy::Full;
             let newton = Newton {
                 model,
                 state,
                 scheme: self.scheme,
                 h,
-                // where kept factors failed, the matrix changes too much even within a step
-                policy: if stale || state.control.renew > 0 {
-                    NewtonPolicy::Full
-                } else {
-                    self.options.newton
-                },
+                policy: if full { NewtonPolicy::Full } else { NewtonPolicy::Modified },
                 max_iterations: self.options.max_iterations,
                 tolerance: self.newton_tolerance(model, h),
+                force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
                 stopping: self.options.stopping,
                 units: self.units,
                 linear_constraints,
@@ -420,7 +422,7 @@ impl Integrator for Alpha {
                             report.rejected += 1;
                             work.counts.rejected += 1;
                             h *= growth(error).min(0.9);
-                            if h < self.options.h_min {
+                            if h < self.limits.least {
                                 return Err(StepError::NoConvergence {
                                     t: state.t,
                                     h,
@@ -443,13 +445,19 @@ impl Integrator for Alpha {
                     work.soften(model);
                     continue;
                 }
+                // kept factors may be what fails, where forces turn much within a step
+                Outcome::Failed { .. } if !full => {
+                    stale = true;
+                    work.factored = None;
+                    continue;
+                }
                 // a mechanism may be about to end next to a singular position, which a smaller step needn't avoid
                 Outcome::Failed { .. } if failures == 0 && !careful && !linear_constraints => {
                     careful = true;
                     work.factored = None;
                     continue;
                 }
-                Outcome::Linear(source) if h <= self.options.h_min => {
+                Outcome::Linear(source) if h <= self.limits.least => {
                     return Err(linear(model, state.t, source));
                 }
                 Outcome::Linear(source) => source.to_string(),
@@ -462,13 +470,7 @@ impl Integrator for Alpha {
             failures += 1;
             careful = false;
             let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
-            if smaller < self.options.h_min {
-                let why = match model.redundancy() {
-                    Some(r) => {
-                        format!("{why} (do the redundant constraints contradict each other here? {r})")
-                    }
-                    None => why,
-                };
+            if smaller < self.limits.least {
                 return Err(StepError::NoConvergence { t: state.t, h, why, equation });
             }
             state.control.h_cap = 0.7 * h;

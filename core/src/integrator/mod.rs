@@ -1,7 +1,9 @@
 //! Time integration: schemes, Newton's method, step-size control, consistent starts.
 
 mod alpha;
+mod forces;
 mod newton;
+mod norm;
 mod options;
 mod radau;
 mod scales;
@@ -10,7 +12,7 @@ mod start;
 mod workspace;
 
 pub use alpha::Alpha;
-pub use options::{ConstraintForm, NewtonPolicy, Options, Stepping};
+pub use options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
 pub use radau::Radau;
 pub use scales::{Scales, Stopping, Units};
 pub use scheme::{Coefficients, Scheme};
@@ -65,6 +67,19 @@ pub enum StepError {
         /// The unknown at the pivot.
         unknown: String,
     },
+    /// Constraints that take part in a redundancy ask for different things.
+    #[error(
+        "at t = {t:.6} s the constraints {constraints} contradict each other: they can't all be met, and the nearest \
+         that the model can come leaves {off:.1e} m (or rad). Remove one of them or correct it"
+    )]
+    Contradiction {
+        /// Time to which the step was to lead [s].
+        t: f64,
+        /// Their names.
+        constraints: String,
+        /// By how much the most violated one is off [m, directions times the model's length].
+        off: f64,
+    },
     /// An event can't do what it should.
     #[error("at t = {t:.6} s, {event}: {why}")]
     Event {
@@ -81,12 +96,18 @@ pub enum StepError {
     /// The scheme is refused, or its parameters are wrong.
     #[error("{0}")]
     Scheme(String),
+    /// The state is that of another model.
+    #[error("the state belongs to another model: {0}")]
+    Foreign(String),
 }
 
 /// An implicit scheme at work. Its memory between steps is in the [`State`].
 pub trait Integrator: Send {
     /// The options that it was made with.
     fn options(&self) -> &Options;
+
+    /// Bounds of its steps.
+    fn limits(&self) -> Limits;
 
     /// What the user should know although the run goes on.
     fn warning(&self) -> Option<&str> {

@@ -43,7 +43,7 @@ pub(crate) struct Rate {
     pub theta: Option<f64>,
     /// Whether kept factors had to be replaced on the way.
     pub kept_failed: bool,
-    /// Whether an absolute stopping test was given up, since only rounding is left.
+    /// Whether the stopping test was given up, since only rounding is left.
     pub unmet: bool,
 }
 
@@ -75,8 +75,10 @@ pub(crate) struct Newton<'a> {
     pub h: f64,
     pub policy: NewtonPolicy,
     pub max_iterations: u32,
-    /// Tolerance of displacements [m].
+    /// Tolerance of displacements, relative to the length of each part.
     pub tolerance: f64,
+    /// Tolerance of what is left of the equations of motion, relative to the forces at work in each part.
+    pub force_tolerance: f64,
     /// When to stop, and the units of absolute tests.
     pub stopping: Stopping,
     pub units: Units,
@@ -128,6 +130,7 @@ impl Newton<'_> {
 
     /// Factors the iteration matrix that was assembled at the trial.
     fn factor(&self, work: &mut Workspace, careful: bool) -> Result<(), SolveError> {
+        work.round_forces(self.model, self.weights());
         if careful {
             Softening::new(self.model, self.model.structure()).blunt(&mut work.system.values);
             work.system.approximate = true;
@@ -139,7 +142,7 @@ impl Newton<'_> {
     pub fn solve(&self, work: &mut Workspace, mut eta: f64) -> Outcome {
         let nv = self.model.velocities();
         let beta_h2 = self.scheme.beta.max(1.0 / 12.0) * self.h * self.h;
-        let floor = 4.0 * self.model.rounding();
+        let floor = 4.0 * work.norms.rounding();
         let stop = self.tolerance.max(floor);
         // below this, corrections wander instead of falling
         let noise = 30.0 * floor;
@@ -149,7 +152,16 @@ impl Newton<'_> {
         let multiplier_scale = 1.0 / (self.scheme.beta * self.h * self.h);
         let kinks = self.leaps && self.model.kinked();
         let (mut approximate, mut approximated) = (false, false);
+        // positions are right; and by how much forces were off before the last iteration
+        let (mut settled, mut force_before) = (false, None);
+        // what the iteration says of its matrix
+        let seen = |since: i32, before: f64, theta: f64, renewals: u32| {
+            if since > 1 && before > noise { Some(theta) } else { (renewals > 0).then_some(0.0) }
+        };
+        let mut last_before = 0.0;
+        let test_forces = self.stopping == Stopping::Relative;
         self.kinematics(work);
+        work.forces.look(self.model, self.state);
         for k in 0..self.max_iterations {
             let stale = work.factored != Some(self.weights());
             // an iteration that would go on for long with its matrix gets a new one
@@ -157,6 +169,16 @@ impl Newton<'_> {
             let refresh = stale || self.policy == NewtonPolicy::Full || slow || approximated;
             let careful = self.careful && k < CAREFUL;
             let refresh = refresh || k == 0 && work.trial.kinked || self.careful && k <= CAREFUL;
+            if settled {
+                self.evaluate(work, false, None);
+                let force = self.force(work);
+                let stuck = last <= noise && force_before.is_some_and(|before: f64| force > 0.5 * before);
+                if (force <= 1.0 || stuck) && self.constraints_hold(work) {
+                    let theta = seen(since, last_before, theta, renewals);
+                    let unmet = !(force <= 1.0);
+                    return Outcome::Converged(Rate { iterations: k, eta, theta, kept_failed, unmet });
+                }
+            }
             let before = std::mem::take(&mut work.trial.v_before);
             let leap = match k {
                 _ if !kinks => None,
@@ -165,8 +187,11 @@ impl Newton<'_> {
                 k if k % 2 == 0 && refresh => Some(Leap { v: &before, predicted: false }),
                 _ => None,
             };
-            self.evaluate(work, refresh, leap);
+            if !settled || refresh || leap.is_some() {
+                self.evaluate(work, refresh, leap);
+            }
             work.trial.v_before = before;
+            let force = if test_forces { self.force(work) } else { 0.0 };
             let test = self.absolute(work);
             if test == Some(Test::Met) && !work.system.approximate {
                 let theta = (renewals > 0).then_some(0.0);
@@ -207,7 +232,7 @@ impl Newton<'_> {
                 return Outcome::Linear(e);
             }
             s.add_restored(&work.x, &mut work.trial.aux, &mut work.trial.lambda);
-            let mut size = beta_h2 * work.norm_of_solution();
+            let mut size = beta_h2 * work.norms.relative_ordered(&work.x);
             if self.stabilised {
                 match self.shift(work, multiplier_scale) {
                     Ok(shift) => size += shift,
@@ -226,24 +251,24 @@ impl Newton<'_> {
                 theta = 0.0;
                 eta = eta.clamp(1e-16, TRUST).powf(0.8);
             }
-            let last_before = std::mem::replace(&mut last, size);
+            last_before = std::mem::replace(&mut last, size);
             // a rate that wasn't seen for some steps has to be seen again before it is trusted
             let trusted = since > 1 || eta <= TRUST;
+            // forces fall as they did in the iteration before, if that had the same matrix; what a first iteration leaves of
+            // them is of second order, which no rate tells
+            let force_left = match force_before.replace(force) {
+                Some(before) if since > 1 => force * (force / before).min(1.0),
+                _ => force,
+            };
+            settled =
+                test_forces && (trusted && size * eta.min(1e3) <= stop || size <= floor) && !approximate;
             let done = match test {
-                None => {
-                    (trusted && size * eta.min(1e3) <= stop || size <= floor)
-                        && !approximate
-                        && self.constraints_hold(work)
-                }
+                None => settled && force_left <= 1.0 && self.constraints_hold(work),
                 Some(Test::Increment(limit)) => !approximate && self.increment(work) < limit,
                 Some(_) => false,
             };
             if done {
-                let theta = if since > 1 && last_before > noise {
-                    Some(theta)
-                } else {
-                    (renewals > 0).then_some(0.0)
-                };
+                let theta = seen(since, last_before, theta, renewals);
                 return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed, unmet: false });
             }
             if theta >= 1.0 && (test.is_none() || size > noise) {
@@ -255,7 +280,7 @@ impl Newton<'_> {
                         eta: 1.0,
                         theta,
                         kept_failed,
-                        unmet: false,
+                        unmet: !(force_left <= 1.0),
                     });
                 }
                 match renewals {
@@ -271,6 +296,12 @@ impl Newton<'_> {
             return Outcome::Converged(Rate { iterations, eta, theta, kept_failed, unmet: true });
         }
         Outcome::Failed { why: format!("{} Newton iterations were not enough", self.max_iterations) }
+    }
+
+    /// What is left of the equations of motion, as they were just assembled, over its tolerance.
+    fn force(&self, work: &mut Workspace) -> f64 {
+        let t = &work.trial;
+        work.forces.ratio(&work.norms, &work.system.residual, &t.a, &t.lambda, self.force_tolerance)
     }
 
     /// What an absolute stopping test says of the equations, as they were just assembled.
@@ -310,7 +341,7 @@ impl Newton<'_> {
     }
 
     /// Moves positions onto the constraints beside their motion, by the shortest way in the metric of the iteration
-    /// matrix. Gives the size of the move [m].
+    /// matrix. Gives the size of the move, relative to the part that it moves most.
     fn shift(&self, work: &mut Workspace, multiplier_scale: f64) -> Result<f64, SolveError> {
         let (nv, s) = (self.model.velocities(), self.model.structure());
         work.x.fill(0.0);
@@ -322,7 +353,7 @@ impl Newton<'_> {
         for (shift, &p) in work.trial.shift.iter_mut().zip(&s.position[..nv]) {
             *shift += scale * work.x[p];
         }
-        Ok(scale * work.norm_of_solution())
+        Ok(scale * work.norms.relative_ordered(&work.x))
     }
 
     fn constraints_hold(&self, work: &mut Workspace) -> bool {
@@ -339,7 +370,7 @@ impl Newton<'_> {
         }
         // what is left of them shakes the multipliers by its square of the step
         let (most, least) = (1e-10 * self.model.length(), 8.0 * self.model.rounding());
-        let limit = (10.0 * self.tolerance).min(most).max(least);
+        let limit = (10.0 * self.tolerance * self.model.length()).min(most).max(least);
         let mut g = std::mem::take(&mut work.trial.g);
         self.model.violations(&self.place(&work.trial), &mut work.system, &mut g);
         let fine = g.iter().zip(self.model.row_scale()).all(|(g, s)| g.abs() <= limit * s);

@@ -21,6 +21,26 @@ pub enum Stepping {
     },
 }
 
+/// What fixed steps leave of the equations of motion, relative to the forces at work: no error of time hides it.
+const FIXED_FORCE: f64 = 1e-5;
+/// A year [s].
+const YEAR: f64 = 3.2e7;
+/// What a step takes at the very least for each unknown, on any machine [s].
+const LEAST_WORK: f64 = 1e-7;
+
+/// Bounds of the step size [s].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Smallest step before the run gives up.
+    pub least: f64,
+    /// Largest step.
+    pub most: f64,
+    /// First step, if it was asked for.
+    pub start: Option<f64>,
+    /// First step where the motion doesn't ask for a smaller one.
+    pub guess: f64,
+}
+
 /// By how much of itself a fixed step grows to end where it has to, rather than leave a rest behind.
 const STRETCH: f64 = 1e-3;
 
@@ -64,18 +84,20 @@ pub struct Options {
     pub newton: NewtonPolicy,
     /// In which form constraints are met; Radau IIA meets both positions and velocities in any case.
     pub constraints: ConstraintForm,
+    /// Error of tensions and reactions, relative to the largest in their part.
+    pub force_tolerance: f64,
     /// Accept a scheme that is unstable on constrained systems, with a warning.
     pub allow_unstable: bool,
-    /// Largest step [s].
-    #[serde(deserialize_with = "crate::quantity::time")]
-    pub h_max: f64,
-    /// Smallest step before the run gives up [s].
-    #[serde(deserialize_with = "crate::quantity::time")]
-    pub h_min: f64,
-    /// First step of error control [s].
-    #[serde(deserialize_with = "crate::quantity::time")]
-    pub h_start: f64,
-    /// Time over which errors add up [s]; 0 takes the length of the run.
+    /// Largest step [s]; if not given, a twentieth of the run.
+    #[serde(deserialize_with = "crate::quantity::optional::time", skip_serializing_if = "Option::is_none")]
+    pub h_max: Option<f64>,
+    /// Smallest step before the run gives up [s]; if not given, 1e-12 of the run.
+    #[serde(deserialize_with = "crate::quantity::optional::time", skip_serializing_if = "Option::is_none")]
+    pub h_min: Option<f64>,
+    /// First step of error control [s]; if not given, it follows from the motion at the start.
+    #[serde(deserialize_with = "crate::quantity::optional::time", skip_serializing_if = "Option::is_none")]
+    pub h_start: Option<f64>,
+    /// Time over which errors add up [s]; 0 takes what the run is seen to remember, and at most its length.
     #[serde(deserialize_with = "crate::quantity::time")]
     pub horizon: f64,
     /// Move an inconsistent start onto the constraints however far away it is.
@@ -102,10 +124,11 @@ impl Default for Options {
             stepping: Stepping::Controlled { tolerance: 1e-4 },
             newton: NewtonPolicy::default(),
             constraints: ConstraintForm::default(),
+            force_tolerance: 1e-2,
             allow_unstable: false,
-            h_max: 1.0,
-            h_min: 1e-10,
-            h_start: 1e-3,
+            h_max: None,
+            h_min: None,
+            h_start: None,
             horizon: 0.0,
             project: false,
             filter_start: true,
@@ -124,10 +147,44 @@ impl Options {
     /// # Errors
     /// The options are wrong, or the scheme doesn't suit the model.
     pub fn integrator(&self, model: &Model, duration: f64) -> Result<Box<dyn Integrator>, StepError> {
+        self.check().and_then(|()| self.check_work(model, duration)).map_err(StepError::Scheme)?;
         Ok(match self.scheme {
             Scheme::RadauIia5 => Box::new(Radau::new(self, duration)?),
             _ => Box::new(Alpha::new(self, model, duration)?),
         })
+    }
+
+    /// What Newton's method may leave of the equations of motion, relative to the forces at work in each part.
+    pub(crate) fn newton_force_tolerance(&self) -> f64 {
+        match self.stepping {
+            Stepping::Fixed { .. } => FIXED_FORCE,
+            Stepping::Controlled { .. } => 0.1 * self.force_tolerance,
+        }
+    }
+
+    /// Refuses steps so short that the run would surely take longer than a year.
+    fn check_work(&self, model: &Model, duration: f64) -> Result<(), String> {
+        let (name, h) = match self.stepping {
+            Stepping::Fixed { h } => ("h", h),
+            Stepping::Controlled { .. } => ("h_max", self.limits(duration).most),
+        };
+        let (steps, least) = (duration / h, YEAR / (LEAST_WORK * model.velocities().max(1) as f64));
+        if steps > least {
+            return Err(format!(
+                "`{name}` = {h:e} s makes {steps:.0e} steps of a run of {duration} s: more than a year of computing. \
+                 Take a larger one"
+            ));
+        }
+        Ok(())
+    }
+
+    /// Bounds of the step in a run of this length [s].
+    pub(crate) fn limits(&self, duration: f64) -> Limits {
+        // a run of no length says nothing of its steps
+        let duration = if duration > 0.0 { duration } else { 1.0 };
+        let least = self.h_min.unwrap_or(1e-12 * duration);
+        let most = self.h_max.unwrap_or(duration / 20.0);
+        Limits { least, most, start: self.h_start, guess: (1e-3 * duration).min(most) }
     }
 
     /// The time over which errors add up [s].
@@ -144,10 +201,16 @@ impl Options {
         let positive = |name: &str, x: f64| {
             if x > 0.0 && x.is_finite() { Ok(()) } else { Err(format!("`{name}` must be positive, not {x}")) }
         };
-        positive("h_max", self.h_max)?;
-        positive("h_min", self.h_min)?;
-        positive("h_start", self.h_start)?;
+        for (name, h) in [("h_max", self.h_max), ("h_min", self.h_min), ("h_start", self.h_start)] {
+            h.map_or(Ok(()), |h| positive(name, h))?;
+        }
         positive("newton_tolerance", self.newton_tolerance)?;
+        if let (Some(least), Some(most)) = (self.h_min, self.h_max)
+            && least > most
+        {
+            return Err(format!("`h_min` = {least} s must not be above `h_max` = {most} s"));
+        }
+        positive("force_tolerance", self.force_tolerance)?;
         if !(self.horizon >= 0.0 && self.horizon.is_finite()) {
             return Err(format!("`horizon` must not be negative, but is {}", self.horizon));
         }

@@ -7,7 +7,7 @@ use crate::node::retract;
 use crate::solver::SolveError;
 use crate::state::{At, State};
 
-/// How far a start had to be moved, as root mean squares over the mass.
+/// How far a start had to be moved: the part that was moved most, as a root mean square along it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Correction {
     /// Of positions [m].
@@ -18,6 +18,10 @@ pub struct Correction {
 
 /// Relative displacement of a start onto the constraints that is taken as meant.
 const SMALL: f64 = 1e-3;
+/// First step under error control, in parts of the time in which the part that moves most goes its own length.
+const FIRST: f64 = 1e-2;
+/// Solutions that move velocities onto the constraints.
+const MOST_PROJECTIONS: usize = 4;
 /// Relative change of velocities that is taken as meant.
 const SMALL_VELOCITY: f64 = 0.05;
 
@@ -51,10 +55,12 @@ pub(crate) fn restart(
     anew(model, state, work, integrator, first_step(integrator), true)
 }
 
+/// The first step, or a guess that the motion at the start may make smaller.
 fn first_step(integrator: &dyn Integrator) -> f64 {
+    let limits = integrator.limits();
     match integrator.options().stepping {
         Stepping::Fixed { h } => h,
-        Stepping::Controlled { .. } => integrator.options().h_start,
+        Stepping::Controlled { .. } => limits.start.unwrap_or(limits.guess),
     }
 }
 
@@ -80,22 +86,47 @@ pub(super) fn anew(
 
     let position = project_positions(model, state, work)
         .map_err(|e| linear(t, e, "the constraints: are some redundant or impossible to meet?"))?;
-    let length = model.length();
-    if position > SMALL * length && !lenient {
-        return Err(StepError::Inconsistent(inconsistent(model, "positions", position, "m", state, work)));
+    if position.relative > SMALL && !lenient {
+        return Err(StepError::Inconsistent(inconsistent(
+            model,
+            "positions",
+            position.size,
+            "m",
+            state,
+            work,
+        )));
     }
     let velocity = project_velocities(model, state, work)
         .map_err(|e| linear(t, e, "the constraints: are some redundant?"))?;
 
-    let stiff = if options.filter_start { integrator.filter(h) } else { 0.0 };
     let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
-    accelerations(model, &state.at(), work, stiff, &mut a, &mut lambda)
-        .map_err(|e| linear(t, e, "the initial accelerations"))?;
+    let mut accelerate = |h: f64, state: &State, work: &mut Workspace| {
+        let stiff = if options.filter_start { integrator.filter(h) } else { 0.0 };
+        let done = accelerations(model, &state.at(), work, stiff, &mut a, &mut lambda);
+        done.map(|()| (stiff, work.norms.relative(&a)))
+    };
+    let failed = |e| linear(t, e, "the initial accelerations");
+    let (mut stiff, mut rate) = accelerate(h, state, work).map_err(failed)?;
+    let mut h = h;
+    if integrator.limits().start.is_none() && matches!(options.stepping, Stepping::Controlled { .. }) {
+        let natural = FIRST / work.norms.relative(&state.v).max(rate.sqrt()).max(f64::MIN_POSITIVE);
+        if natural < h {
+            h = natural.max(integrator.limits().least);
+            (stiff, rate) = accelerate(h, state, work).map_err(failed)?;
+        }
+    }
+    state.control.h_start = h;
 
-    let own = state.v.clone();
-    let scale = work.norm(&own) + (work.norm(&a) * length).sqrt();
-    if velocity > SMALL_VELOCITY * scale && !lenient {
-        return Err(StepError::Inconsistent(inconsistent(model, "velocities", velocity, "m/s", state, work)));
+    let scale = work.norms.relative(&state.v) + rate.sqrt();
+    if velocity.relative > SMALL_VELOCITY * scale && !lenient {
+        return Err(StepError::Inconsistent(inconsistent(
+            model,
+            "velocities",
+            velocity.size,
+            "m/s",
+            state,
+            work,
+        )));
     }
     state.a.copy_from_slice(&a);
     state.lambda.copy_from_slice(&lambda);
@@ -104,14 +135,18 @@ pub(super) fn anew(
     work.has_mass = false;
     work.ensure_mass(model, &state.at(), &state.lambda).map_err(|e| linear(t, e, "the mass matrix"))?;
     if state.is_finite() {
-        Ok(Correction { position, velocity })
+        Ok(Correction { position: position.size, velocity: velocity.size })
     } else {
         Err(linear(t, SolveError::NotFinite, "the initial accelerations"))
     }
 }
 
-/// Replaces velocities, accelerations and multipliers by those for output: velocities projected onto the
-/// constraints, and what the index-1 system gives there. The integrator's own are noisier.
+/// Replaces velocities, accelerations and multipliers by those for output: velocities moved onto the constraints, and what
+/// the index-1 system gives there. The integrator's own are noisier.
+///
+/// Velocities are moved in the metric of the iteration matrix, `M + γh C + βh² K`: what is next to a driven end moves along
+/// with it. In the metric of the mass alone it would be strained at a rate of its own, and damping along a stiff cable
+/// makes a large force of that.
 ///
 /// # Errors
 /// The mass matrix with the constraints is singular; the state is as it was.
@@ -120,10 +155,19 @@ pub fn consistent(model: &Model, state: &mut State, work: &mut Workspace) -> Res
     let mut v = state.v.clone();
     work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
     if model.multipliers() > 0 {
-        let mut rhs = velocity_rhs(model, state, work);
-        work.solve(model, Which::Mass, &mut rhs)?;
-        for (v, d) in v.iter_mut().zip(&rhs) {
-            *v += d;
+        // without factors of a step this is a start, which meets the constraints already
+        let metric = if work.factored.is_some() { Which::Iteration } else { Which::Mass };
+        for _ in 0..MOST_PROJECTIONS {
+            let mut rhs = velocity_rhs(model, &At { v: &v, ..state.at() }, work);
+            work.solve(model, metric, &mut rhs)?;
+            for (v, d) in v.iter_mut().zip(&rhs) {
+                *v += d;
+            }
+            // kept factors hold the constraints of a configuration a little earlier
+            let size = work.norms.relative(&v);
+            if work.norms.relative(&rhs[..v.len()]) <= 1e-12 * size {
+                break;
+            }
         }
     }
     let zero = vec![0.0; model.velocities()];
@@ -151,15 +195,31 @@ fn inconsistent(
         worst.map_or(String::new(), |(c, _)| format!(" (most in `{}`)", model.constraints()[c].name()));
     format!(
         "the initial {what} don't meet the constraints: meeting them moves the model by {size:.3e} {unit} \
-         (root mean square over the mass){name}. Correct the start, or set `project = true` to accept it"
+         (root mean square along the part that is moved most){name}. Correct the start, or set `project = true` to accept it"
     )
 }
 
+/// By how much the part that is moved most has been moved.
+#[derive(Clone, Copy, Default)]
+struct Moved {
+    /// Relative to its length.
+    relative: f64,
+    /// As it is [m], or [m/s].
+    size: f64,
+}
+
+impl Moved {
+    fn by(d: &[f64], work: &Workspace) -> Self {
+        let (part, relative) = work.norms.worst(d);
+        Moved { relative, size: relative * work.norms.groups[part].length }
+    }
+}
+
 /// Moves positions to the point on the constraints that is nearest in the norm of the mass.
-fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> Result<f64, SolveError> {
+fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> Result<Moved, SolveError> {
     let (nv, m) = (model.velocities(), model.multipliers());
     if m == 0 {
-        return Ok(0.0);
+        return Ok(Moved::default());
     }
     let start = state.q.clone();
     let (mut d, mut md) = (vec![0.0; nv], vec![0.0; nv]);
@@ -170,8 +230,8 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
         let g = &work.mass.residual[nv..];
         let fine = g.iter().zip(model.row_scale()).all(|(g, s)| g.abs() <= limit * s);
         // on the constraints what is left of the way is rounding, which no system can be solved for
-        if fine && last <= 1e-10 * model.length() {
-            return Ok(work.norm(&d));
+        if fine && last <= 1e-10 {
+            return Ok(Moved::by(&d, work));
         }
         let mut rhs: Vec<f64> = vec![0.0; nv];
         rhs.extend(g.iter().map(|g| -g));
@@ -180,7 +240,7 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
             *r = -md;
         }
         work.solve(model, Which::Mass, &mut rhs)?;
-        let step = work.norm(&rhs[..nv]);
+        let step = work.norms.relative(&rhs[..nv]);
         for (d, r) in d.iter_mut().zip(&rhs) {
             *d += r;
         }
@@ -188,8 +248,8 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
         if !step.is_finite() {
             return Err(SolveError::NotFinite);
         }
-        if step <= limit {
-            return Ok(work.norm(&d));
+        if step <= 100.0 * work.norms.rounding() {
+            return Ok(Moved::by(&d, work));
         }
         last = step;
     }
@@ -197,12 +257,12 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
 }
 
 /// Right-hand side that removes `G v + ∂g/∂t`.
-fn velocity_rhs(model: &Model, state: &State, work: &mut Workspace) -> Vec<f64> {
+fn velocity_rhs(model: &Model, at: &At<'_>, work: &mut Workspace) -> Vec<f64> {
     let (nv, m) = (model.velocities(), model.multipliers());
     let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
-    model.rates(&state.at(), &mut rate, &mut bias);
+    model.rates(at, &mut rate, &mut bias);
     let mut rhs = vec![0.0; nv];
-    rhs.extend(times_jacobian(model, work, &state.v).iter().zip(&rate).map(|(gv, gt)| -gv - gt));
+    rhs.extend(times_jacobian(model, work, at.v).iter().zip(&rate).map(|(gv, gt)| -gv - gt));
     rhs
 }
 
@@ -213,18 +273,18 @@ fn times_jacobian(model: &Model, work: &mut Workspace, x: &[f64]) -> Vec<f64> {
     all.split_off(model.velocities())
 }
 
-fn project_velocities(model: &Model, state: &mut State, work: &mut Workspace) -> Result<f64, SolveError> {
+fn project_velocities(model: &Model, state: &mut State, work: &mut Workspace) -> Result<Moved, SolveError> {
     if model.multipliers() == 0 {
-        return Ok(0.0);
+        return Ok(Moved::default());
     }
     work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
-    let mut rhs = velocity_rhs(model, state, work);
+    let mut rhs = velocity_rhs(model, &state.at(), work);
     work.solve(model, Which::Mass, &mut rhs)?;
-    let size = work.norm(&rhs[..model.velocities()]);
+    let moved = Moved::by(&rhs[..model.velocities()], work);
     for (v, d) in state.v.iter_mut().zip(&rhs) {
         *v += d;
     }
-    if size.is_finite() { Ok(size) } else { Err(SolveError::NotFinite) }
+    if moved.size.is_finite() { Ok(moved) } else { Err(SolveError::NotFinite) }
 }
 
 /// Solves `[M + stiff K, Gᵀ; G, 0] [a; λ] = [F; -bias]` at a place of evaluation.

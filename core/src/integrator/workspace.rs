@@ -1,5 +1,7 @@
 //! Scratch and caches of an integration. Dropping it changes cost, never what is accepted.
 
+use super::forces::Forces;
+use super::norm::Norms;
 use super::radau::Stages;
 use super::scales::Scaled;
 use crate::model::{Model, System};
@@ -27,7 +29,10 @@ pub struct Counts {
     pub factorizations: u64,
     /// Factorisations without pivoting that were not good enough and were repeated with it.
     pub fallbacks: u64,
-    /// Steps that an absolute stopping test was never met in, since rounding leaves more.
+    /// Fixed steps that had to be cut, since they failed.
+    #[serde(default)]
+    pub cut: u64,
+    /// Steps whose stopping test was never met, since rounding leaves more.
     pub unmet: u64,
 }
 
@@ -46,10 +51,12 @@ pub struct Workspace {
     mass_factored: Vec<f64>,
     /// Whether `mass.values` holds the mass matrix of the start, for norms.
     pub(crate) has_mass: bool,
-    pub(crate) total_mass: f64,
-    /// What each velocity weighs in norms, and the same in elimination order with nothing for multipliers.
-    pub(crate) weight: Vec<f64>,
-    weight_ordered: Vec<f64>,
+    /// What counts as large, part by part; empty before the mass matrix is known.
+    pub(crate) norms: Norms,
+    /// What forces are compared with.
+    pub(crate) forces: Forces,
+    /// Diagonal of the mass matrix of the start.
+    mass_diagonal: Vec<f64>,
     /// In elimination order.
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
@@ -105,9 +112,9 @@ impl Workspace {
             mass_solver: Guard::new(s)?,
             mass_factored: Vec::new(),
             has_mass: false,
-            total_mass: 0.0,
-            weight: zero(),
-            weight_ordered: vec![0.0; s.n],
+            norms: Norms::default(),
+            forces: Forces::default(),
+            mass_diagonal: Vec::new(),
             x: vec![0.0; s.n],
             y: vec![0.0; s.n],
             counts: Counts::default(),
@@ -296,8 +303,18 @@ impl Workspace {
         Ok(())
     }
 
+    /// Notes what rounding leaves of forces, from the iteration matrix that was assembled into `system` with these weights.
+    pub(crate) fn round_forces(&mut self, model: &Model, weights: Weights) {
+        if !(weights.q > 0.0) {
+            return;
+        }
+        let (diagonal, values, mass) =
+            (&model.structure().diagonal, &self.system.values, &self.mass_diagonal);
+        self.forces.round(&self.norms, |i| (values[diagonal[i] as usize] - weights.a * mass[i]) / weights.q);
+    }
+
     /// Replaces a right-hand side (velocities, then multipliers) by the solution with the factors of the iteration
-    /// matrix. The first solution after [`Workspace::factor`] is checked, later ones trust the factors.
+    /// matrix. Where entries have grown, the first solution after [`Workspace::factor`] is checked.
     ///
     /// # Errors
     /// The solution is not good enough, even with pivoting.
@@ -338,12 +355,11 @@ impl Workspace {
         s.multiply(values, &self.x, &mut self.y);
     }
 
-    /// `sqrt(dᵀ M d / total mass)` with this mass matrix: a length that doesn't depend on the mesh [m].
+    /// Size of an increment relative to the part that it moves most, by `dᵀ M d` with this mass matrix.
     pub(crate) fn norm_with(&mut self, s: &Structure, mass: &[f64], d: &[f64]) -> f64 {
         self.product(s, mass, d);
-        let sum: f64 = d.iter().zip(&s.position).map(|(d, &p)| d * self.y[p]).sum();
         // a NaN stays a NaN; rounding may make a tiny sum negative
-        if sum < 0.0 { 0.0 } else { (sum / self.total_mass).sqrt() }
+        self.norms.relative_with(d, |i| self.y[s.position[i]])
     }
 
     /// The equation with the largest residual of the last evaluation.
@@ -381,22 +397,6 @@ impl Workspace {
         moving.fold([0.0; 3], |sum, n| std::array::from_fn(|i| sum[i] + all[n.v + i]))
     }
 
-    /// `sqrt(dᵀ M d / total mass)` with the lumped mass matrix: a length that doesn't depend on the mesh [m].
-    pub(crate) fn norm(&self, d: &[f64]) -> f64 {
-        (weighted_square(&self.weight, d) / self.total_mass).sqrt()
-    }
-
-    /// The same of a vector that is nowhere stored.
-    pub(crate) fn norm_of(&self, d: impl Fn(usize) -> f64) -> f64 {
-        let sum: f64 = self.weight.iter().enumerate().map(|(i, w)| w * d(i) * d(i)).sum();
-        (sum / self.total_mass).sqrt()
-    }
-
-    /// The same for the velocities of the solution in `x`.
-    pub(crate) fn norm_of_solution(&self) -> f64 {
-        (weighted_square(&self.weight_ordered, &self.x) / self.total_mass).sqrt()
-    }
-
     /// Makes sure that norms have a mass matrix: assembled once, at the first state seen.
     pub(crate) fn ensure_mass(
         &mut self,
@@ -404,47 +404,34 @@ impl Workspace {
         at: &At<'_>,
         lambda: &[f64],
     ) -> Result<(), SolveError> {
-        if self.has_mass && self.total_mass > 0.0 {
+        if self.has_mass && !self.norms.groups.is_empty() {
             return Ok(());
         }
         self.assemble_mass(model, at, lambda, 0.0, false)?;
         // translations weigh what they move, everything else its diagonal entry
-        for (m, &p) in self.weight.iter_mut().zip(&model.structure().diagonal) {
-            *m = self.mass.values[p as usize];
-        }
+        let diagonal = model.structure().diagonal.iter();
+        self.mass_diagonal =
+            diagonal.take(model.velocities()).map(|&p| self.mass.values[p as usize]).collect();
+        let mut mass = self.mass_diagonal.clone();
         let mut unit = vec![0.0; model.velocities()];
         let mut out = vec![0.0; model.velocities()];
-        let mut sum = 0.0;
+        let mut total = 0.0;
         for direction in 0..3 {
             unit.fill(0.0);
             for n in model.nodes().iter().filter(|n| n.kind.velocities() >= 3) {
                 unit[n.v + direction] = 1.0;
             }
             self.times_mass(model, &unit, &mut out);
-            // as the mean over three directions: added mass depends on the direction
-            sum += unit.iter().zip(&out).map(|(u, m)| u * m).sum::<f64>() / 3.0;
             for i in 0..out.len() {
-                self.weight[i] = self.weight[i].max(unit[i] * out[i]);
+                mass[i] = mass[i].max(unit[i] * out[i]);
+                total += unit[i] * out[i];
             }
         }
-        self.total_mass = sum;
-        self.weight_ordered.fill(0.0);
-        model.structure().order(&self.weight, &mut self.weight_ordered);
-        if self.total_mass > 0.0 { Ok(()) } else { Err(SolveError::Singular(0)) }
+        self.norms = Norms::new(model, &mass);
+        self.norms.order(model.structure());
+        self.forces = Forces::new(model, &self.norms);
+        if total > 0.0 { Ok(()) } else { Err(SolveError::Singular(0)) }
     }
-}
-
-/// `Σ w x²`; in four sums, which don't wait for each other. A NaN stays a NaN.
-fn weighted_square(w: &[f64], x: &[f64]) -> f64 {
-    let ((w, w_rest), (x, x_rest)) = (w.as_chunks::<4>(), x.as_chunks::<4>());
-    let mut sums = [0.0; 4];
-    for (w, x) in w.iter().zip(x) {
-        for i in 0..4 {
-            sums[i] += w[i] * (x[i] * x[i]);
-        }
-    }
-    let rest: f64 = w_rest.iter().zip(x_rest).map(|(w, x)| w * (x * x)).sum();
-    sums.iter().sum::<f64>() + rest
 }
 
 /// Which matrix to solve with.

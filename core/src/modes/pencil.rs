@@ -4,7 +4,7 @@ use super::ModesError;
 use super::krylov::dot;
 use crate::model::Model;
 use crate::redundancy::Softening;
-use crate::solver::{Guard, Profile, SolveError};
+use crate::solver::{Guard, SolveError};
 use crate::statics::Linear;
 use crate::structure::Structure;
 
@@ -46,13 +46,7 @@ impl Pencil {
         let symmetric = s.symmetric || (is_symmetric(s, &linear.stiffness) && is_symmetric(s, &linear.mass));
         // below the diagonal of symmetric matrices nothing counts
         let damped = s.rows().any(|(_, _, at)| linear.damping[at].iter().any(|x| *x != 0.0));
-        // the profile solver knows the signs of its pivots for unsymmetric matrices too
-        let solver = if !s.chain && !s.symmetric && Profile::size(s) < 20 * s.entries() {
-            Guard::with(s, Box::new(Profile::default()))
-        } else {
-            Guard::new(s)
-        };
-        let solver = solver.map_err(ModesError::Solver)?;
+        let solver = Guard::new(s).map_err(ModesError::Solver)?;
         let softening = model.redundancy().map(|_| Softening::new(model, s));
         let fastest = fastest(&linear);
         let mut pencil =

@@ -99,7 +99,15 @@ const SYMBOLS: &[(&str, Unit, bool)] = &[
     ("min", Unit::new(60.0, 1.0, 0, dim(0, 0, 1, 0)), false),
     ("h", Unit::new(3600.0, 1.0, 0, dim(0, 0, 1, 0)), false),
     ("kn", Unit::new(1852.0, 3600.0, 0, dim(0, 1, -1, 0)), false),
+    ("kmh", Unit::new(1000.0, 3600.0, 0, dim(0, 1, -1, 0)), false),
+    ("mph", Unit::new(1609.344, 3600.0, 0, dim(0, 1, -1, 0)), false),
     ("nmi", Unit::new(1852.0, 1.0, 0, dim(0, 1, 0, 0)), false),
+    ("mi", Unit::new(1609.344, 1.0, 0, dim(0, 1, 0, 0)), false),
+    ("yd", Unit::new(0.9144, 1.0, 0, dim(0, 1, 0, 0)), false),
+    ("ft", Unit::new(0.3048, 1.0, 0, dim(0, 1, 0, 0)), false),
+    ("in", Unit::new(0.0254, 1.0, 0, dim(0, 1, 0, 0)), false),
+    ("lb", Unit::new(0.453_592_37, 1.0, 0, dim(1, 0, 0, 0)), false),
+    ("lbf", Unit::new(4.448_221_615_260_5, 1.0, 0, dim(1, 1, -2, 0)), false),
     ("%", Unit::new(1.0, 1.0, -2, dim(0, 0, 0, 0)), false),
 ];
 
@@ -119,37 +127,54 @@ const PREFIXES: &[(&str, i32)] = &[
     ("T", 12),
 ];
 
-const OTHER_SPELLINGS: &[(&str, &[&str])] = &[
+/// Words for symbols that nobody takes for anything else.
+const WORDS: &[(&str, &[&str])] = &[
     ("kn", &["kt", "kts", "knot", "knots"]),
+    ("kmh", &["kph"]),
     ("s", &["sec", "secs", "second", "seconds"]),
     ("min", &["mins", "minute", "minutes"]),
     ("h", &["hr", "hrs", "hour", "hours"]),
-    ("m", &["meter", "meters", "metre", "metres", "mtr"]),
-    ("kg", &["kgs", "kilo", "kilogram", "kilograms"]),
-    ("t", &["ton", "tons", "tonne", "tonnes", "te"]),
+    ("m", &["meter", "meters", "metre", "metres"]),
+    ("ft", &["foot", "feet"]),
+    ("in", &["inch", "inches"]),
+    ("kg", &["kilogram", "kilograms"]),
+    ("t", &["tonne", "tonnes"]),
+    ("lb", &["lbs"]),
     ("N", &["newton", "newtons"]),
     ("Pa", &["pascal", "pascals"]),
-    ("deg", &["degree", "degrees", "grad"]),
+    ("deg", &["degree", "degrees"]),
     ("rad", &["radian", "radians"]),
-    ("rev", &["turn", "turns", "revs"]),
-    ("Hz", &["hertz", "cps"]),
+    ("rev", &["revs"]),
+    ("Hz", &["hertz"]),
+];
+
+/// Symbols and words that may mean something else, and what they probably mean.
+const GUESSES: &[(&str, &[&str])] = &[
+    ("m", &["mtr"]),
+    ("kg", &["kgs", "kilo"]),
+    ("t", &["ton", "tons", "te"]),
+    ("deg", &["grad"]),
+    ("rev", &["turn", "turns"]),
+    ("Hz", &["cps"]),
 ];
 
 fn lookup(symbol: &str) -> Option<Unit> {
     if let Some(&(_, unit, _)) = SYMBOLS.iter().find(|(s, ..)| *s == symbol) {
         return Some(unit);
     }
-    PREFIXES.iter().find_map(|(prefix, ten)| {
+    let prefixed = |(prefix, ten): &(&str, i32)| {
         let base = symbol.strip_prefix(prefix)?;
         let &(_, unit, _) = SYMBOLS.iter().find(|(s, _, prefixed)| *prefixed && *s == base)?;
         Some(Unit { ten: unit.ten + ten, ..unit })
-    })
+    };
+    let word = || WORDS.iter().find(|(_, words)| words.contains(&symbol)).and_then(|(s, _)| lookup(s));
+    PREFIXES.iter().find_map(prefixed).or_else(word)
 }
 
 fn unknown(symbol: &str) -> String {
-    if let Some((good, _)) =
-        OTHER_SPELLINGS.iter().find(|(_, bad)| bad.contains(&symbol.to_lowercase().as_str()))
-    {
+    let lower = symbol.to_lowercase();
+    let meant = |(_, words): &&(&str, &[&str])| words.contains(&lower.as_str());
+    if let Some((good, _)) = WORDS.iter().chain(GUESSES).find(meant) {
         return format!("has the unknown unit `{symbol}` (did you mean `{good}`?)");
     }
     // `Nm`, `kNm`: two units that want a space

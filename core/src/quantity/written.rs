@@ -67,7 +67,7 @@ mod tests {
             let w = Written::parse(text).unwrap();
             assert_eq!((w.number, w.unit, w.si, w.si_unit()), (number, unit, si, si_unit));
         }
-        for text in ["", "kn", "3e", "nan", "inf", "1e999", "5 knots", "1 2", "[1]", "\"5 kn\""] {
+        for text in ["", "kn", "3e", "nan", "inf", "1e999", "5 nots", "1 2", "[1]", "\"5 kn\""] {
             assert_eq!(Written::parse(text), None, "{text}");
         }
     }

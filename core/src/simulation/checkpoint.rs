@@ -33,6 +33,7 @@ pub struct Checkpoint {
     events: Vec<f64>,
     ringing: f64,
     change: Vec<f64>,
+    created: Option<f64>,
     keep_audit: bool,
     /// Whether constraints had to be solved as if some were redundant.
     softened: bool,
@@ -84,6 +85,7 @@ impl Simulation {
             events: self.events.iter().map(|e| e.1).collect(),
             ringing: self.ringing,
             change: self.change.clone(),
+            created: self.created,
             keep_audit: self.keep_audit,
             softened: self.work.softening.is_some(),
             sampled: self.sampled,
@@ -127,6 +129,7 @@ impl Simulation {
             audit: c.audit,
             ringing: c.ringing,
             change: c.change,
+            created: c.created,
             keep_audit: c.keep_audit,
             power,
             events,

@@ -6,6 +6,7 @@
 //! with six unknowns each, is unrolled and runs in vector registers; a symmetric matrix needs half of it. The order of
 //! [`Structure`] keeps this stable (multipliers follow their nodes); the [`Guard`](super::Guard) checks.
 
+use super::growth::{Growth, Share};
 use super::{LinearSolver, Scalar, SolveError};
 use crate::lane::{LaneTask, Real, Width, run};
 use crate::structure::{Block, LARGEST, Structure};
@@ -23,6 +24,7 @@ pub struct Chain<T = f64> {
     /// Reciprocal pivots.
     inverse: Vec<T>,
     negative: usize,
+    growth: Growth,
     /// Position of the first shared unknown, and storage of the entries between shared unknowns.
     first_shared: usize,
     corner: Vec<u32>,
@@ -123,12 +125,14 @@ impl<T: Scalar> LinearSolver<T> for Chain<T> {
         self.upper = vec![T::default(); factors];
         self.lower = vec![T::default(); if s.symmetric { 0 } else { factors }];
         self.inverse = vec![T::default(); s.n];
+        self.growth = Growth::new(s);
         Ok(())
     }
 
-    fn factor(&mut self, _: &Structure, values: &[T]) -> Result<(), SolveError> {
+    fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
         let mut result = Ok(());
         run(Width::best(), Factor { chain: self, values, result: &mut result });
+        self.growth.finish(s, values);
         result
     }
 
@@ -138,6 +142,10 @@ impl<T: Scalar> LinearSolver<T> for Chain<T> {
 
     fn negative_pivots(&self) -> Option<usize> {
         Some(self.negative)
+    }
+
+    fn growth(&self) -> f64 {
+        self.growth.largest
     }
 }
 
@@ -179,6 +187,7 @@ impl<T: Scalar> Chain<T> {
     fn eliminate<const FUSED: bool>(&mut self, values: &[T]) -> Result<(), SolveError> {
         let mut carried: Carried<T> = [[T::default(); LARGEST]; LARGEST];
         self.negative = 0;
+        self.growth.start();
         for k in 0..self.steps.len() {
             let s = self.steps[k];
             match (s.width, s.size, s.next, s.border) {
@@ -240,6 +249,7 @@ impl<T: Scalar> Chain<T> {
                 front[place(i)][place(j)] += carried[i][j];
             }
         }
+        let mut grown = [0.0; W];
         for p in 0..size {
             let pivot = front[p][p];
             if pivot.size() == 0.0 || !pivot.is_finite() {
@@ -268,7 +278,19 @@ impl<T: Scalar> Chain<T> {
             }
             let upper = &mut self.upper[s.factors + p * W..][..W];
             upper[p + 1..].copy_from_slice(&row[p + 1..]);
+            // both are zero up to the diagonal
+            let share = Share::of(pivot, inverse);
+            grown[p] += share.pivot;
+            if self.symmetric {
+                (0..W).for_each(|j| grown[j] += share.of_one(upper[j]));
+            } else {
+                let lower = &self.lower[s.factors + p * W..][..W];
+                (0..W).for_each(|j| grown[j] += share.of_pair(lower[j], upper[j]));
+            }
         }
+        let (own, shared) = grown[..all].split_at(ahead);
+        self.growth.add_run(s.first, own);
+        self.growth.add_run(self.first_shared, shared);
         for i in 0..s.next + s.border {
             for j in 0..s.next + s.border {
                 carried[i][j] = front[size + i][size + j];

@@ -1,4 +1,4 @@
-//! Sparse LU with partial pivoting, by faer: the fallback, and the general unsymmetric path.
+//! Sparse LU with partial pivoting, by faer: what steps in where elimination without pivoting isn't good enough.
 
 use super::{LinearSolver, Scalar, SolveError};
 use crate::structure::Structure;

@@ -1,19 +1,18 @@
-//! Linear solvers behind one trait, and the guard that uses them: factor, check the backward error, refine once,
-//! and fall back to LU with pivoting.
+//! Linear solvers behind one trait, and the guard that uses them: factor without pivoting, check the backward error
+//! where entries have grown, refine once, and fall back to LU with pivoting.
 
 mod chain;
 mod check;
 mod dense;
-mod ldlt;
+mod fronts;
+mod growth;
 mod lu;
-mod profile;
 mod scalar;
 
 pub use chain::Chain;
 pub use dense::Dense;
-pub use ldlt::Ldlt;
+pub use fronts::Fronts;
 pub use lu::Lu;
-pub use profile::Profile;
 pub use scalar::Scalar;
 
 use crate::structure::Structure;
@@ -55,6 +54,11 @@ pub trait LinearSolver<T: Scalar = f64>: Send {
     fn negative_pivots(&self) -> Option<usize> {
         None
     }
+    /// How much entries grew in the last factorisation, relative to what they belong to: solutions are right to rounding
+    /// times this number. Infinite where the solver doesn't watch it.
+    fn growth(&self) -> f64 {
+        f64::INFINITY
+    }
 }
 
 /// Solves systems of one structure and never returns a bad solution unnoticed.
@@ -72,43 +76,37 @@ pub struct Guard<T: Scalar = f64> {
     pub fallbacks: u64,
 }
 
+/// Growth of the entries up to which a factorisation without pivoting needs no check: a backward error of some 1e-13.
+const HARMLESS: f64 = 100.0;
 /// Backward error that a factorisation without pivoting is allowed before it is refined [componentwise].
 const REFINE: f64 = 1e-12;
 /// Backward error after refinement from which on LU with pivoting takes over.
 const GIVE_UP: f64 = 1e-9;
 
 impl Guard {
-    /// The solver that suits a structure: block elimination for chains; else LDLᵀ for symmetric matrices and for
-    /// unsymmetric ones LU along the profile, or faer's sparse LU where the profile would fill in much more.
+    /// The solver that suits a structure: block elimination along the chain, or along the tree where there are branches
+    /// and rings.
     pub fn new(s: &Structure) -> Result<Self, SolveError> {
-        let primary: Box<dyn LinearSolver> = if s.chain {
-            Box::new(Chain::default())
-        } else if s.symmetric {
-            Box::new(Ldlt::default())
-        } else if Profile::size(s) < 6 * s.entries() {
-            Box::new(Profile::default())
-        } else {
-            Box::new(Lu::default())
-        };
-        Self::with(s, primary)
+        Self::suiting(s)
     }
 }
 
 impl Guard<c64> {
-    /// As [`Guard::new`], for complex matrices; faer's LDLᵀ would take a symmetric one for Hermitian.
+    /// As [`Guard::new`], for complex matrices.
     pub fn complex(s: &Structure) -> Result<Self, SolveError> {
-        let primary: Box<dyn LinearSolver<c64>> = if s.chain {
-            Box::new(Chain::default())
-        } else if Profile::size(s) < 12 * s.entries() {
-            Box::new(Profile::default())
-        } else {
-            Box::new(Lu::default())
-        };
-        Self::with(s, primary)
+        Self::suiting(s)
     }
 }
 
 impl<T: Scalar> Guard<T> {
+    fn suiting(s: &Structure) -> Result<Self, SolveError> {
+        if s.chain {
+            Self::with(s, Box::new(Chain::default()))
+        } else {
+            Self::with(s, Box::new(Fronts::default()))
+        }
+    }
+
     /// A guard around a solver of one's own choice.
     pub fn with(s: &Structure, mut primary: Box<dyn LinearSolver<T>>) -> Result<Self, SolveError> {
         primary.analyse(s)?;
@@ -136,7 +134,11 @@ impl<T: Scalar> Guard<T> {
         self.unchecked = true;
         self.use_fallback = false;
         match self.primary.factor(s, values) {
-            Ok(()) => Ok(()),
+            Ok(()) => {
+                // a NaN is no small growth
+                self.unchecked = !(self.primary.growth() <= HARMLESS);
+                Ok(())
+            }
             Err(_) => self.fall_back(s, values),
         }
     }
@@ -156,8 +158,9 @@ impl<T: Scalar> Guard<T> {
         if self.use_fallback { self.fallback.solve(x) } else { self.primary.solve(x) }
     }
 
-    /// Replaces `x`, holding the right-hand side, by the solution. The first solution with each factorisation is
-    /// checked, refined once if need be, and taken from LU with pivoting, refined as well, if that doesn't help.
+    /// Replaces `x`, holding the right-hand side, by the solution. Where entries have grown, the first solution with each
+    /// factorisation is checked, refined once if need be, and taken from LU with pivoting, refined as well, if that
+    /// doesn't help.
     pub fn solve(&mut self, s: &Structure, values: &[T], x: &mut [T]) -> Result<(), SolveError> {
         if !self.unchecked {
             self.raw_solve(x);
@@ -200,5 +203,7 @@ impl<T: Scalar> Guard<T> {
     }
 }
 
+#[cfg(test)]
+mod samples;
 #[cfg(test)]
 mod tests;

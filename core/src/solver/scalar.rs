@@ -35,11 +35,36 @@ pub trait Scalar:
     fn is_finite(self) -> bool;
     /// Its real part.
     fn real(self) -> f64;
+    /// Eight numbers side by side, as vector registers hold them.
+    type Eight: Copy;
+    /// The first eight of a slice.
+    fn eight(from: &[Self]) -> Self::Eight;
+    /// Writes eight numbers to the beginning of a slice.
+    fn write(eight: &Self::Eight, to: &mut [Self]);
+    /// `eight -= a b`, as [`Scalar::minus`].
+    fn eight_minus<const FUSED: bool>(eight: &mut Self::Eight, a: Self, b: &Self::Eight);
     /// Its size: the absolute value, of a complex number the sum of those of its parts.
     fn size(self) -> f64;
 }
 
 impl Scalar for f64 {
+    type Eight = [f64; 8];
+    #[inline(always)]
+    fn eight(from: &[Self]) -> [f64; 8] {
+        let mut eight = [0.0; 8];
+        eight.copy_from_slice(&from[..8]);
+        eight
+    }
+    #[inline(always)]
+    fn write(eight: &[f64; 8], to: &mut [Self]) {
+        to[..8].copy_from_slice(eight);
+    }
+    #[inline(always)]
+    fn eight_minus<const FUSED: bool>(eight: &mut [f64; 8], a: Self, b: &[f64; 8]) {
+        for i in 0..8 {
+            eight[i] = eight[i].minus::<FUSED>(a, b[i]);
+        }
+    }
     #[inline(always)]
     fn inverse(self) -> Self {
         1.0 / self
@@ -63,6 +88,33 @@ impl Scalar for f64 {
 }
 
 impl Scalar for c64 {
+    /// Real parts and imaginary parts.
+    type Eight = [[f64; 8]; 2];
+    #[inline(always)]
+    fn eight(from: &[Self]) -> [[f64; 8]; 2] {
+        // a closure would not be compiled for the processor's vectors
+        let (from, mut eight) = (&from[..8], [[0.0; 8]; 2]);
+        for i in 0..8 {
+            (eight[0][i], eight[1][i]) = (from[i].re, from[i].im);
+        }
+        eight
+    }
+    #[inline(always)]
+    fn write([re, im]: &[[f64; 8]; 2], to: &mut [Self]) {
+        let to = &mut to[..8];
+        for i in 0..8 {
+            to[i] = c64 { re: re[i], im: im[i] };
+        }
+    }
+    #[inline(always)]
+    fn eight_minus<const FUSED: bool>([re, im]: &mut [[f64; 8]; 2], a: Self, b: &[[f64; 8]; 2]) {
+        for i in 0..8 {
+            re[i] = re[i].minus::<FUSED>(a.re, b[0][i]).minus::<FUSED>(-a.im, b[1][i]);
+        }
+        for i in 0..8 {
+            im[i] = im[i].minus::<FUSED>(a.re, b[1][i]).minus::<FUSED>(a.im, b[0][i]);
+        }
+    }
     #[inline(always)]
     fn inverse(self) -> Self {
         self.inv()

@@ -26,7 +26,7 @@ use crate::build::{BuildError, positive};
 use crate::model::{Model, System};
 use crate::motion::SteadyFrame;
 use crate::redundancy::Softening;
-use crate::solver::{Guard, Profile, SolveError};
+use crate::solver::{Guard, SolveError};
 use crate::state::State;
 use crate::structure::Structure;
 use crate::times::{Clocks, Times};
@@ -173,12 +173,7 @@ impl<'a> Statics<'a> {
     ) -> Result<Self, SolveError> {
         let turning = frame.is_some_and(|f| f.omega != [0.0; 3]);
         let structure = if turning { model.unsymmetric_structure() } else { model.structure().clone() };
-        // the profile solver knows the signs of its pivots for unsymmetric matrices too
-        let solver = if !structure.chain && Profile::size(&structure) < 20 * structure.entries() {
-            Guard::with(&structure, Box::new(Profile::default()))?
-        } else {
-            Guard::new(&structure)?
-        };
+        let solver = Guard::new(&structure)?;
         let zero = vec![0.0; model.velocities()];
         Ok(Statics {
             model,

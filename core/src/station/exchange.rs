@@ -129,6 +129,8 @@ pub(super) trait ErasedLaw: Send + Sync {
     /// The power of the loads in the first `lanes` lanes of a batch.
     fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power;
     fn coefficient(&self, at: &Station<f64>) -> Option<f64>;
+    fn timed(&self) -> bool;
+    fn reach(&self, t: f64, h: f64) -> Option<f64>;
 }
 
 struct LoadAll<'a, L> {
@@ -188,6 +190,12 @@ impl<L: Law> ErasedLaw for L {
     }
     fn coefficient(&self, at: &Station<f64>) -> Option<f64> {
         Law::coefficient(self, at)
+    }
+    fn timed(&self) -> bool {
+        Law::timed(self)
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Law::reach(self, t, h)
     }
 }
 

@@ -13,7 +13,7 @@ fn chain_keeps_its_order_and_rows_follow_their_last_node() {
         p.clique(3 * k..3 * k + 6);
     }
     p.clique((3..6).chain(12..15));
-    let rows = vec![Rows { count: 3, nodes: vec![NodeId(1)] }];
+    let rows = vec![Rows { count: 3, nodes: vec![NodeId(1)], jacobian: Vec::new() }];
     let s = Structure::new(&nodes, &rows, &p, true);
     assert!(s.chain);
     assert_eq!(&s.position[..6], &[0, 1, 2, 3, 4, 5]);
@@ -60,6 +60,33 @@ fn star_eliminates_its_leaves_first_and_shared_nodes_last() {
     nodes[2].shared = true;
     let s = Structure::new(&nodes, &[], &p, true);
     assert_eq!(&s.position[6..9], &[12, 13, 14]);
+}
+
+#[test]
+fn joints_of_a_hub_follow_its_lines_and_what_they_hold_already_does_not_count() {
+    // a hub, four lines, and each line's joint with the hub; the first line is pinned as well
+    let nodes = points(5);
+    let mut p = Pattern::default();
+    let rows: Vec<Rows> = (1..6)
+        .map(|line| {
+            let own = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+            if line == 5 {
+                return Rows { count: 3, nodes: vec![NodeId(1)], jacobian: own.to_vec() };
+            }
+            let both = own.chunks(3).flat_map(|row| row.iter().map(|x| -x).chain(row.iter().copied()));
+            Rows { count: 3, nodes: vec![NodeId(0), NodeId(line)], jacobian: both.collect() }
+        })
+        .collect();
+    let multiplier = |c: usize| 15 + 3 * c..18 + 3 * c;
+    for c in 0..4 {
+        p.clique((0..3).chain(3 * c + 3..3 * c + 6).chain(multiplier(c)));
+    }
+    p.clique((3..6).chain(multiplier(4)));
+    let s = Structure::new(&nodes, &rows, &p, false);
+    assert!(!s.chain);
+    let behind = |c: usize, node: usize| (s.position[multiplier(c).start] - s.position[3 * node]) / 3;
+    assert_eq!([behind(1, 2), behind(2, 3), behind(3, 4)], [1, 1, 1]);
+    assert_eq!([behind(4, 1), behind(0, 0)], [1, 1]);
 }
 
 /// Nodes in a row, coupled with the next, and with one a long way off where it isn't to be a chain.

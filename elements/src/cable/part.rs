@@ -63,6 +63,14 @@ impl CablePart {
         }
     }
 
+    /// The points that are drawn: their elements, and the places inside them.
+    fn drawn(&self) -> impl Iterator<Item = (usize, f64)> {
+        let elements = self.mesh.len() - 1;
+        let per = (200 / elements).clamp(1, 8);
+        let of = move |k| (0..per).map(move |i| (k, i as f64 / per as f64));
+        (0..elements).flat_map(of).chain([(elements - 1, 1.0)])
+    }
+
     /// The element at arc length `s` from the start, and the place inside it.
     fn find(&self, s: f64, q: &[f64]) -> Option<(usize, f64, f64)> {
         let mesh = self.material(q);
@@ -335,17 +343,16 @@ impl Part for CablePart {
     }
 
     fn line(&self, at: &At<'_>) -> Vec<V3<f64>> {
-        let elements = self.mesh.len() - 1;
-        let per = (200 / elements).clamp(1, 8);
         let mesh = self.material(at.q);
-        let mut points = Vec::with_capacity(elements * per + 1);
-        for k in 0..elements {
-            let l = mesh[k + 1] - mesh[k];
-            let e = self.dofs(k, at.q);
-            let last = if k + 1 == elements { per } else { per - 1 };
-            points.extend((0..=last).map(|i| interpolate(hermite::<f64>(i as f64 / per as f64, l), &e)));
-        }
-        points
+        let point = |(k, xi): (usize, f64)| {
+            interpolate(hermite::<f64>(xi, mesh[k + 1] - mesh[k]), &self.dofs(k, at.q))
+        };
+        self.drawn().map(point).collect()
+    }
+
+    fn arc_lengths(&self, at: &At<'_>) -> Vec<f64> {
+        let mesh = self.material(at.q);
+        self.drawn().map(|(k, xi)| mesh[k] - mesh[0] + xi * (mesh[k + 1] - mesh[k])).collect()
     }
 
     fn end_element(&self, end: usize, at: &At<'_>) -> Option<f64> {

@@ -102,10 +102,10 @@ pub struct CableSpec {
     /// Name by which the rest of the scene refers to it.
     pub name: String,
     /// Points along which it is laid, from start to end [m]: straight lines between them.
-    #[serde(default, deserialize_with = "crate::path::points")]
+    #[serde(default, deserialize_with = "quantity::points")]
     pub points: Vec<V3<f64>>,
     /// Points of a smooth curve along which it is laid [m], instead of `points`.
-    #[serde(default, deserialize_with = "crate::path::points")]
+    #[serde(default, deserialize_with = "quantity::points")]
     pub curve: Vec<V3<f64>>,
     /// Unstretched length [m]; left out, that of the path. A different length is spread evenly over the path.
     #[serde(default, deserialize_with = "quantity::optional::length")]
@@ -306,6 +306,9 @@ fn stations(
     Ok(Arc::new(stations))
 }
 
+/// Stretches that a cable may be laid with.
+const STRETCHES: std::ops::RangeInclusive<f64> = 0.1..=10.0;
+
 struct Pools<'a> {
     builder: &'a mut Builder,
     result: Result<(), BuildError>,
@@ -329,6 +332,11 @@ impl ElementSpec for CableSpec {
         s.check()?;
         finite("velocity", &self.velocity)?;
         finite("strain", &[self.strain])?;
+        if !STRETCHES.contains(&(1.0 + self.strain)) {
+            let message =
+                format!("a strain at rest of {} is no cable's: give one between -0.9 and 9", self.strain);
+            return Err(BuildError::at("strain", message));
+        }
         finite("curvature", &[self.curvature])?;
         if self.elements == 0 || self.elements > 1_000_000 {
             let message = format!("`elements` must be between 1 and 1000000, not {}", self.elements);
@@ -338,6 +346,14 @@ impl ElementSpec for CableSpec {
         let (path, _) = self.path()?;
         let length = self.unstretched_length(path.length())?;
         let stretch = path.length() / length;
+        if !STRETCHES.contains(&stretch) {
+            let field = if self.tension.is_some() { "tension" } else { "length" };
+            let message = format!(
+                "a cable of {length:e} m on a path of {} m would be stretched to {stretch:.1e} times its length",
+                path.length()
+            );
+            return Err(BuildError::at(field, message));
+        }
         let mut pins = b.pins(&self.name);
         pins.extend(path.corners().iter().map(|c| c / stretch));
         pins.sort_by(f64::total_cmp);

@@ -107,6 +107,9 @@ impl Part for ChainPart {
         let starts = (0..self.seats.len()).map(|k| self.place(k, -half, at));
         starts.chain([self.place(self.seats.len() - 1, half, at)]).collect()
     }
+    fn arc_lengths(&self, _: &At<'_>) -> Vec<f64> {
+        (0..=self.seats.len()).map(|k| k as f64 * self.link).collect()
+    }
     fn place_of(&self, node: NodeId) -> Option<String> {
         self.nodes.iter().position(|&n| n == node).map(|k| format!("link {}", k + 1))
     }

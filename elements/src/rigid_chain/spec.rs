@@ -122,10 +122,10 @@ pub struct RigidChainSpec {
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub length: Option<f64>,
     /// Points along which it is laid, from start to end [m]: straight lines between them.
-    #[serde(default, deserialize_with = "crate::path::points")]
+    #[serde(default, deserialize_with = "quantity::points")]
     pub points: Vec<V3<f64>>,
     /// Points of a smooth curve along which it is laid [m], instead of `points`.
-    #[serde(default, deserialize_with = "crate::path::points")]
+    #[serde(default, deserialize_with = "quantity::points")]
     pub curve: Vec<V3<f64>>,
     /// The spool on which it goes on after the last of the points.
     #[serde(default)]

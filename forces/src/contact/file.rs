@@ -1,7 +1,7 @@
 //! Triangles from STL and OBJ files.
 
 use super::mesh::{MOST_TRIANGLES, Soup};
-use ropewalk_core::V3;
+use ropewalk_core::{V3, file};
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
@@ -19,7 +19,7 @@ const LONGEST: u64 = 60 * MOST_TRIANGLES as u64;
 /// What is wrong with the file, without its name.
 pub fn read(path: &Path) -> Result<Soup, String> {
     let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let open = || File::open(path).map_err(|e| e.to_string());
+    let open = || file::open(path);
     match kind.as_str() {
         "stl" => stl(open()?),
         "obj" => obj(open()?),

@@ -66,6 +66,7 @@ pub enum ShapeSpec {
     /// The convex hull of points.
     Hull {
         /// The points from the marker [m].
+        #[serde(deserialize_with = "quantity::points")]
         points: Vec<V3<f64>>,
     },
     /// Triangles from a file.

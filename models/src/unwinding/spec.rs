@@ -92,7 +92,7 @@ pub struct UnwindingSpec {
     pub rule: RuleSpec,
     /// Shape at the start, at rest: points from the eyelet to the lift-off point [m]. Left out, the steady balloon of the
     /// speed and the tension at the start; without speed and weight, a straight line.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, deserialize_with = "quantity::points", skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<V3<f64>>,
     /// Drag of the water; left out, none.
     #[serde(default, skip_serializing_if = "Option::is_none")]

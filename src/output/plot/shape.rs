@@ -21,7 +21,7 @@ const LINE_WIDTH: f64 = 1.5;
 /// A cable at one time.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Snapshot {
-    /// Time, in seconds.
+    /// Time, in seconds, or what else [`ShapePlot::t_label`] says.
     pub t: f64,
     /// Points along the cable in the plane, in metres and in order. One that isn't finite breaks the
     /// line.
@@ -99,6 +99,8 @@ pub struct ShapePlot {
     pub y_label: String,
     /// The cable at several times, in order.
     pub snapshots: Vec<Snapshot>,
+    /// What goes on from one snapshot to the next, such as `load factor [-]`; left empty, time.
+    pub t_label: String,
     /// What the legend calls the snapshots; left empty, their times.
     pub names: Vec<String>,
     /// Directions of x, y and z in the plane, drawn as a small cross of axes if there are any.
@@ -119,6 +121,7 @@ impl ShapePlot {
             x_label: x_label.into(),
             y_label: y_label.into(),
             snapshots: positions.iter().map(snapshot).collect(),
+            t_label: String::new(),
             names: Vec::new(),
             directions: match plane {
                 Plane::Oblique => {
@@ -159,8 +162,8 @@ impl ShapePlot {
             x,
             y,
             equal: true,
-            legend: legend(&shown, &self.names),
-            bar: bar(&shown),
+            legend: legend(&shown, &self.names, &self.t_label),
+            bar: bar(&shown, &self.t_label),
         };
         frame.draw(|canvas, area| {
             for snapshot in &shown {
@@ -226,7 +229,7 @@ fn age(snapshot: &Snapshot, shown: &[&Snapshot]) -> f64 {
     if last > first { (snapshot.t - first) / (last - first) } else { 0.0 }
 }
 
-fn legend(shown: &[&Snapshot], names: &[String]) -> Vec<Entry> {
+fn legend(shown: &[&Snapshot], names: &[String], t_label: &str) -> Vec<Entry> {
     if !(2..=MOST_ENTRIES).contains(&shown.len()) {
         return Vec::new();
     }
@@ -246,8 +249,13 @@ fn legend(shown: &[&Snapshot], names: &[String]) -> Vec<Entry> {
             true => text.trim_end_matches('0').trim_end_matches('.'),
             false => &text,
         };
+        let text = text.replace('-', "−");
         Entry {
-            label: format!("{text} s").replace('-', "−"),
+            label: match t_label.split_once(" [") {
+                None => format!("{text} s"),
+                Some((name, "-]")) => format!("{name} {text}"),
+                Some((name, unit)) => format!("{name} {text} {}", unit.trim_end_matches(']')),
+            },
             colour: colour::ramp(age(snapshot, shown)),
             mark: Mark::Line,
         }
@@ -255,12 +263,12 @@ fn legend(shown: &[&Snapshot], names: &[String]) -> Vec<Entry> {
     shown.iter().map(entry).collect()
 }
 
-fn bar(shown: &[&Snapshot]) -> Option<Bar> {
+fn bar(shown: &[&Snapshot], t_label: &str) -> Option<Bar> {
     if shown.len() <= MOST_ENTRIES {
         return None;
     }
     let axis = Axis::covering(shown.iter().map(|s| s.t), false, 0.0)?;
-    Some(Bar { label: "t [s]".into(), axis })
+    Some(Bar { label: if t_label.is_empty() { "t [s]" } else { t_label }.into(), axis })
 }
 
 #[cfg(test)]
@@ -287,6 +295,10 @@ mod tests {
         assert!(few.contains("0.25 s") && !few.contains("t [s]"));
         let many = swing(30, 30).svg().unwrap();
         assert!(many.contains("t [s]") && !many.contains("0.5 s"));
+        let loads =
+            |count| ShapePlot { t_label: "load factor [-]".into(), ..swing(count, 30) }.svg().unwrap();
+        assert!(loads(4).contains("load factor 0.25") && !loads(4).contains("0.25 s"));
+        assert!(loads(30).contains("load factor [-]") && !loads(30).contains("t [s]"));
         let one = swing(1, 30).svg().unwrap();
         assert!(!one.contains("t [s]") && !one.contains("0 s"));
     }

@@ -5,7 +5,7 @@ fn a_message_shows_place_path_and_guess() {
     assert_eq!(
         spoilt("ei = 0.01", "eI = 0.01").to_string(),
         "\
-error: unknown field `eI`, expected one of `ea`, `ei`, `shape`
+unknown field `eI`, expected one of `ea`, `ei`, `shape`
   --> scene.toml:18:1 (elements[0].section)
    |
 18 | eI = 0.01
@@ -15,7 +15,7 @@ error: unknown field `eI`, expected one of `ea`, `ei`, `shape`
     assert_eq!(
         spoilt("\"2 t\"", "\"2 m\"").to_string(),
         "\
-error: \"2 m\" is a length, expected a mass like \"1.5 t\" or a number in kg
+\"2 m\" is a length, expected a mass like \"1.5 t\" or a number in kg
   --> scene.toml:31:8 (elements[2].mass)
    |
 31 | mass = \"2 m\"
@@ -24,7 +24,7 @@ error: \"2 m\" is a length, expected a mass like \"1.5 t\" or a number in kg
     assert_eq!(
         spoilt("depth = \"30 m\"", "depth = \"30 s\"").to_string(),
         "\
-error: \"30 s\" is a time, expected a length like \"30 m\" or a number in m
+\"30 s\" is a time, expected a length like \"30 m\" or a number in m
  --> scene.toml:6:9 (elements[1].from[1])
   |
 6 | depth = \"30 s\"
@@ -251,10 +251,7 @@ fn missing_tables_are_said_or_found_misspelt() {
     assert_eq!(fault.message, "missing `solver` in `s.toml`");
     assert_eq!((fault.place.map(|p| p.line), fault.help.as_deref()), (Some(1), Some("is `solver` meant?")));
     let fault = document.require::<Solver>("gravity").unwrap_err();
-    assert_eq!(
-        fault.to_string(),
-        "error: missing `gravity` in `s.toml`\n  = help: the scene has solvr, water"
-    );
+    assert_eq!(fault.to_string(), "missing `gravity` in `s.toml`\n  = help: the scene has solvr, water");
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn faults_of_set_values_point_at_the_command_line() {
     assert_eq!(
         scene(&mut document).unwrap_err().to_string(),
         "\
-error: expected a length like \"30 m\" or a number in m, found a list
+expected a length like \"30 m\" or a number in m, found a list
  --> --set:1:9 (elements[1].from[1])
   |
 1 | depth = [1, true]
@@ -89,6 +89,15 @@ fn parameters_are_listed_with_values_and_use() {
     );
     assert_eq!(document.parameters()[3].description.as_deref(), Some("D"));
     assert_eq!(document.unused_parameters(), ["c", "d"]);
+}
+
+#[test]
+fn parameters_of_what_was_not_chosen_are_used_unless_they_were_set() {
+    let scene =
+        "x = { choose = '$a', 1 = '$b', 2 = ['$c'] }\n[parameters]\na = 1\nb = 0\nc = '$d'\nd = 3\ne = 4\n";
+    assert_eq!(parse(scene, &[]).unwrap().unused_parameters(), ["e"]);
+    assert_eq!(parse(scene, &["d=5"]).unwrap().unused_parameters(), ["d", "e"]);
+    assert_eq!(parse(scene, &["d=5", "a=2"]).unwrap().unused_parameters(), ["e"]);
 }
 
 #[test]

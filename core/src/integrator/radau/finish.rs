@@ -10,7 +10,7 @@ use crate::solver::SolveError;
 use crate::state::{At, State};
 
 impl Stages {
-    /// Estimated errors of positions [m] and velocities [m/s], of order 3 and without what the constraints and the
+    /// Estimated errors of positions and velocities [1/s] relative to each part's length, of order 3 and without what the constraints and the
     /// damping of unresolved motion take away: the embedded formula, filtered with the real system.
     pub(super) fn errors(
         &mut self,

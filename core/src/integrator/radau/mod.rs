@@ -14,7 +14,7 @@ pub(crate) use stages::Stages;
 
 use super::alpha::linear;
 use super::options::fixed_step;
-use super::{Integrator, Options, StepError, StepReport, Stepping, Workspace};
+use super::{Integrator, Limits, Options, StepError, StepReport, Stepping, Workspace};
 use crate::integrator::workspace::Which;
 use crate::model::Model;
 use crate::solver::SolveError;
@@ -25,6 +25,7 @@ use tableau::GAMMA;
 /// Integrator Radau IIA of order 5.
 pub struct Radau {
     options: Options,
+    limits: Limits,
     horizon: f64,
 }
 
@@ -37,6 +38,9 @@ const SAFETY: f64 = 0.9;
 const MOST_ITERATIONS: u32 = 10;
 /// Weight of velocities in the error beside positions, in parts of the horizon.
 const VELOCITY: f64 = 0.1;
+/// What the iteration may leave, in parts of the tolerance. It adds up over the steps: 0.03 left loops of stiff joints off
+/// by hundreds of times the tolerance.
+const ITERATION: f64 = 0.003;
 /// The tolerance whose iteration error fixed steps are given.
 const FIXED: f64 = 1e-8;
 
@@ -48,7 +52,8 @@ impl Radau {
     /// The options are wrong.
     pub fn new(options: &Options, duration: f64) -> Result<Self, StepError> {
         options.check().map_err(StepError::Scheme)?;
-        Ok(Radau { options: options.clone(), horizon: options.horizon_in(duration) })
+        let (limits, horizon) = (options.limits(duration), options.horizon_in(duration));
+        Ok(Radau { options: options.clone(), limits, horizon })
     }
 
     /// Size of the first try, and the size that the controller would like.
@@ -61,8 +66,8 @@ impl Radau {
                 (fixed_step(h, h_max), h)
             }
             Stepping::Controlled { .. } => {
-                let wish = if c.h_next > 0.0 { c.h_next } else { self.options.h_start };
-                let wish = wish.min(cap).min(self.options.h_max);
+                let wish = if c.h_next > 0.0 { c.h_next } else { state.control.h_start };
+                let wish = wish.min(cap).min(self.limits.most);
                 let rest = if h_max < 2.0 * wish { 0.5 * h_max } else { wish };
                 (if h_max <= wish { h_max } else { rest }, wish)
             }
@@ -102,7 +107,7 @@ impl Radau {
             Stepping::Fixed { .. } => FIXED,
             Stepping::Controlled { tolerance } => tolerance.min(1e-3),
         };
-        let (length, time) = (model.length(), VELOCITY * self.horizon);
+        let time = VELOCITY * self.horizon;
         // velocities are increments over the step: their tolerance asks for a tighter one in shorter steps
         let newton = Newton {
             model,
@@ -110,7 +115,8 @@ impl Radau {
             h,
             policy: self.options.newton,
             max_iterations: self.options.max_iterations.min(MOST_ITERATIONS),
-            tolerance: self.options.newton_tolerance * 0.03 * tolerance * length * (h / time).min(1.0),
+            tolerance: self.options.newton_tolerance * ITERATION * tolerance * (h / time).min(1.0),
+            force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
             linear_constraints: !model.is_mechanism(),
         };
         let converged = newton.solve(work, s)?;
@@ -118,7 +124,7 @@ impl Radau {
         if let Stepping::Controlled { .. } = self.options.stepping {
             let [q, v] = s.errors(model, state, work, h)?;
             // max() would swallow a NaN
-            error = if q >= time * v { q } else { time * v } / (tolerance * length);
+            error = if q >= time * v { q } else { time * v } / tolerance;
             // a body that is driven has no error, but a larger turn may end on another branch of its joint
             let turn = model.turn(&s.z[2]);
             if turn > 1.0 {
@@ -153,6 +159,7 @@ impl Radau {
                     (report.h, report.iterations, report.error) = (h, done.iterations, error);
                     let next = self.next(state, h, error, done.iterations, report.rejected > 0);
                     s.accept(model, state, h);
+                    work.forces.keep(&mut state.control.forces);
                     let c = &mut state.control;
                     c.h_next = if cut && report.rejected == 0 { next.max(wish) } else { next };
                     (c.h_last, c.eta, c.theta, c.error) = (h, done.eta, done.theta, error);
@@ -164,7 +171,7 @@ impl Radau {
                     report.rejected += 1;
                     work.counts.rejected += 1;
                     h *= self.growth(error, done.iterations).clamp(0.2, 0.9);
-                    if h < self.options.h_min {
+                    if h < self.limits.least {
                         return Err(StepError::NoConvergence {
                             t: state.t,
                             h,
@@ -181,7 +188,7 @@ impl Radau {
             work.counts.rejected += 1;
             failures += 1;
             let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
-            if smaller < self.options.h_min {
+            if smaller < self.limits.least {
                 return Err(match failure {
                     Failure::Newton(why) => StepError::NoConvergence { t: state.t, h, why, equation },
                     Failure::Linear(source) => linear(model, state.t, source),
@@ -196,6 +203,10 @@ impl Radau {
 impl Integrator for Radau {
     fn options(&self) -> &Options {
         &self.options
+    }
+
+    fn limits(&self) -> Limits {
+        self.limits
     }
 
     fn filter(&self, h: f64) -> f64 {

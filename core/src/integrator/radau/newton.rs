@@ -41,15 +41,17 @@ pub(super) struct Newton<'a> {
     pub h: f64,
     pub policy: NewtonPolicy,
     pub max_iterations: u32,
-    /// Tolerance of displacements [m].
+    /// Tolerance of displacements, relative to the length of each part.
     pub tolerance: f64,
+    /// Tolerance of what is left of the equations of motion, relative to the forces at work in each part.
+    pub force_tolerance: f64,
     /// Whether every constraint is linear, so that one iteration meets it.
     pub linear_constraints: bool,
 }
 
 impl Newton<'_> {
     pub fn solve(&self, work: &mut Workspace, s: &mut Stages) -> Result<Converged, Failure> {
-        let floor = 4.0 * self.model.rounding();
+        let floor = 4.0 * work.norms.rounding();
         let stop = self.tolerance.max(floor);
         let control = &self.state.control;
         let mut eta = if control.h_last > 0.0 { control.eta.max(1e-3).powf(0.8) } else { 1.0 };
@@ -62,12 +64,13 @@ impl Newton<'_> {
             s.differentiate(self.model, work, self.state, self.h)?;
         }
         // changes since the matrix was last evaluated
-        let (mut k, mut last) = (0, 0.0);
+        let (mut k, mut last, mut force_last) = (0, 0.0, 0.0);
+        work.forces.look(self.model, self.state);
         for iterations in 1..=self.max_iterations {
             if full && iterations > 1 {
                 s.differentiate(self.model, work, self.state, self.h)?;
             }
-            let size = self.iterate(work, s)?;
+            let (size, force) = self.iterate(work, s)?;
             if !size.is_finite() {
                 return Err(Failure::Newton("the iteration left the finite numbers".into()));
             }
@@ -75,8 +78,14 @@ impl Newton<'_> {
                 theta = size / last;
                 eta = theta / (1.0 - theta).max(1e-3);
             }
-            (k, last) = (k + 1, size);
-            if (size * eta.min(1e3) <= stop || size <= floor) && self.constraints_hold(work, s) {
+            // forces fall as they did in the iteration before
+            let force_left = if k > 0 { force * (force / force_last).min(1.0) } else { force };
+            (k, last, force_last) = (k + 1, size, force);
+            let forces_right = force_left <= 1.0 || size <= floor && k > 1;
+            if (size * eta.min(1e3) <= stop || size <= floor)
+                && forces_right
+                && self.constraints_hold(work, s)
+            {
                 return Ok(Converged { iterations, eta, theta });
             }
             if k == 1 {
@@ -109,8 +118,9 @@ impl Newton<'_> {
         Err(Failure::Newton(format!("{} Newton iterations were not enough", self.max_iterations)))
     }
 
-    /// One iteration; gives the size of the change of positions: the largest of the three stages [m].
-    fn iterate(&self, work: &mut Workspace, s: &mut Stages) -> Result<f64, Failure> {
+    /// One iteration; gives the size of the change of positions, relative to the part that it moves most, and what was left
+    /// of the equations of motion before it, over its tolerance: each the largest of the three stages.
+    fn iterate(&self, work: &mut Workspace, s: &mut Stages) -> Result<(f64, f64), Failure> {
         let (model, nv) = (self.model, self.model.velocities());
         work.counts.newton_iterations += 1;
         for i in 0..3 {
@@ -122,6 +132,15 @@ impl Newton<'_> {
         }
         if s.residual.iter().flatten().any(|r| !r.is_finite()) {
             return Err(Failure::Newton("the residual is not finite".into()));
+        }
+        let mut force = 0.0;
+        for i in 0..3 {
+            let left =
+                work.forces.ratio(&work.norms, &s.residual[i], &s.a[i], &s.lambda[i], self.force_tolerance);
+            // max() would swallow a NaN
+            if !(left <= force) {
+                force = left;
+            }
         }
         let g = (self.h / GAMMA).powi(2);
         let inverse = ALPHA.inv() * self.h;
@@ -147,14 +166,14 @@ impl Newton<'_> {
                 s.d[k] = T[i][0] * x + T[i][1] * y.re + T[i][2] * y.im;
                 s.z[i][k] += s.d[k];
             }
-            let change = work.norm(&s.d);
+            let change = work.norms.relative(&s.d);
             // max() would swallow a NaN
             if !(change <= size) {
                 size = change;
             }
         }
         s.kinematics(model, self.state, self.h);
-        Ok(size)
+        Ok((size, force))
     }
 
     fn constraints_hold(&self, work: &mut Workspace, s: &mut Stages) -> bool {
@@ -162,7 +181,7 @@ impl Newton<'_> {
             return true;
         }
         let length = self.model.length();
-        let limit = (1e-10 * length).min(self.tolerance).max(8.0 * self.model.rounding());
+        let limit = (1e-10 * length).min(self.tolerance * length).max(8.0 * self.model.rounding());
         let mut g = std::mem::take(&mut s.rate);
         let fine = (0..3).all(|i| {
             self.model.violations(&s.at(self.state, self.h, i), &mut work.system, &mut g);

@@ -210,7 +210,9 @@ impl Stages {
         if let Some(softening) = &work.softening {
             softening.apply(&mut self.values);
         }
-        work.factor(model, Weights { q: g * g, v: g, a: 1.0 })?;
+        let weights = Weights { q: g * g, v: g, a: 1.0 };
+        work.round_forces(model, weights);
+        work.factor(model, weights)?;
         let begin = work.clocks.start();
         self.solver.factor(s, &self.values)?;
         work.clocks.stop(Phase::Factorisation, begin);

@@ -1,0 +1,99 @@
+//! Columns of CSV files.
+
+use ropewalk_core::{file, quantity};
+use std::path::Path;
+
+/// A table longer than this [bytes] is surely none that drives a motion.
+const LARGEST: u64 = 256 << 20;
+
+/// A cell: what stands there, and its first column in the line, counted in characters from 1.
+struct Cell {
+    text: String,
+    column: usize,
+}
+
+/// The cells of a line, without spaces around them; what stands in quotes may hold commas.
+fn cells(line: &str) -> Vec<Cell> {
+    let mut all = vec![Cell { text: String::new(), column: 1 }];
+    let mut quoted = false;
+    for (k, c) in line.chars().enumerate() {
+        match (c, all.last_mut()) {
+            ('"', _) => quoted = !quoted,
+            (',', _) if !quoted => all.push(Cell { text: String::new(), column: k + 2 }),
+            (c, Some(cell)) => cell.text.push(c),
+            (_, None) => {}
+        }
+    }
+    for cell in &mut all {
+        cell.text = cell.text.trim().to_string();
+    }
+    all
+}
+
+/// Reads columns of these names and kinds; others are left alone. The first line of the file names them, with their units
+/// in brackets or without in SI units. Gives the rows and their lines in the file, counted from 1.
+///
+/// # Errors
+/// The file can't be read; a column is missing or there twice; a line has more or fewer cells than the first, or one that
+/// is no number. With file, line and column.
+pub(super) fn columns<const N: usize>(
+    path: &str,
+    wanted: [(&str, &quantity::Kind); N],
+) -> Result<(Vec<[f64; N]>, Vec<usize>), String> {
+    let text = file::text(Path::new(path), LARGEST).map_err(|e| format!("can't read {path}: {e}"))?;
+    let at = |line: usize, message: String| format!("{path}, line {line}: {message}");
+    let inside = |line: usize, cell: &Cell, message: &str| {
+        format!("{path}, line {line}, column {}: {message}", cell.column)
+    };
+    let mut lines =
+        text.trim_start_matches('\u{feff}').lines().enumerate().filter(|(_, l)| !l.trim().is_empty());
+    let Some((first, header)) = lines.next() else { return Err(at(1, "the file is empty".into())) };
+    let first = first + 1;
+    let header = cells(header);
+    let headings: Vec<(&str, &str)> = header
+        .iter()
+        .map(|h| match h.text.strip_suffix(']').and_then(|h| h.split_once('[')) {
+            Some((name, unit)) => (name.trim(), unit.trim()),
+            None => (h.text.as_str(), ""),
+        })
+        .collect();
+    let mut found = [(0, ""); N];
+    for (place, (name, kind)) in found.iter_mut().zip(&wanted) {
+        let mut all = (0..headings.len()).filter(|k| headings[*k].0 == *name);
+        let Some(k) = all.next() else {
+            let message = format!("there is no column `{name}`; the first line must be like `t [s],v [m/s]`");
+            return Err(at(first, message));
+        };
+        if let Some(twice) = all.next() {
+            return Err(inside(first, &header[twice], &format!("there is a column `{name}` already")));
+        }
+        let unit = headings[k].1;
+        if !unit.is_empty() {
+            let wrong = |e| inside(first, &header[k], &format!("column `{name}`: {e}"));
+            kind.parse(&format!("1 {unit}")).map_err(wrong)?;
+        }
+        *place = (k, unit);
+    }
+    let (mut rows, mut numbers) = (Vec::new(), Vec::new());
+    for (n, line) in lines {
+        let (n, cells) = (n + 1, cells(line));
+        if cells.len() != headings.len() {
+            return Err(at(n, format!("there are {} columns, not {}", cells.len(), headings.len())));
+        }
+        let mut row = [0.0; N];
+        for (x, ((k, unit), (_, kind))) in row.iter_mut().zip(found.iter().zip(&wanted)) {
+            let cell = &cells[*k];
+            let number = cell.text.parse::<f64>().map_err(|_| {
+                let hint = if cell.text.contains(',') { ": write a decimal point" } else { "" };
+                inside(n, cell, &format!("`{}` is not a number{hint}", cell.text))
+            })?;
+            *x = match unit.is_empty() {
+                true => number,
+                false => kind.parse(&format!("{} {unit}", cell.text)).map_err(|e| inside(n, cell, &e))?,
+            };
+        }
+        rows.push(row);
+        numbers.push(n);
+    }
+    Ok((rows, numbers))
+}

@@ -1,0 +1,158 @@
+//! What steps must not leap over: what terms see ahead in the state, and what changes with time of its own accord.
+
+use super::Simulation;
+use crate::constraint::Constraint;
+use crate::integrator::{StepError, restart};
+use crate::model::Model;
+use crate::reach::{SAME, shown};
+use crate::state::At;
+use crate::term::Term;
+
+/// What would be left of the way to a kink after a whole step, in parts of the step, that is shared out between the two.
+const SLIVER: f64 = 0.2;
+/// How much of a motion or a load is looked through for what fixed steps don't follow.
+const MOST_PIECES: usize = 100_000;
+
+impl Simulation {
+    /// The longest step from here that leaps over nothing, where `left` are left.
+    pub(super) fn limit(&self, left: f64) -> f64 {
+        let (model, at) = (&self.model, self.state.at());
+        let left = left.min(model.horizon(&at));
+        if !model.is_timed() {
+            return left;
+        }
+        // steps end just before a jump
+        let left = left.min(model.jump(at.t) * (1.0 - 0.5 * SAME) - at.t);
+        let wish = match self.state.control.h_next {
+            h if h > 0.0 => h.min(self.integrator.options().h_max.unwrap_or(left)).min(left),
+            _ => left,
+        };
+        let reach = model.reach(&at, wish);
+        if reach < wish {
+            return reach;
+        }
+        let rest = model.reach(&At { t: at.t + wish, ..at }, wish);
+        if rest < SLIVER * wish && wish + rest < left { 0.5 * (wish + rest) } else { left }
+    }
+
+    /// Starts anew where a force jumps, if it does so here.
+    pub(super) fn leap(&mut self) -> Result<(), StepError> {
+        if !self.model.is_timed() {
+            return Ok(());
+        }
+        let jump = self.model.jump(self.state.t);
+        if jump - self.state.t <= SAME * self.state.t.abs() {
+            let h = self.state.control.h_last;
+            self.state.t = jump;
+            restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
+            self.state.control.h_next = 0.1 * h;
+            self.power = self.model.power(&self.state.at(), &self.state.lambda);
+        }
+        Ok(())
+    }
+
+    /// The names of loads and constraints that change faster than fixed steps `h` follow until `end`, with the time at
+    /// which they first do: what they do between two steps isn't seen.
+    pub fn faster_than(&self, h: f64, end: f64) -> Vec<(String, f64)> {
+        let (model, from) = (&self.model, self.state.t);
+        let terms = model.timed_terms().map(|term| {
+            let missed = missed(|t, h| term.reach(t, h), h, from, end);
+            missed.map(|t| (term.label(), t))
+        });
+        let constraints = model.moving_constraints().map(|(_, c)| {
+            let missed = missed(|t, h| c.reach(t, h), h, from, end);
+            missed.map(|t| (c.name().to_string(), t))
+        });
+        terms.chain(constraints).flatten().collect()
+    }
+}
+
+/// When two changes first come within a step `h`.
+fn missed(reach: impl Fn(f64, f64) -> Option<f64>, h: f64, from: f64, end: f64) -> Option<f64> {
+    let (mut t, mut before) = (from, f64::INFINITY);
+    for _ in 0..MOST_PIECES {
+        let piece = reach(t, end - t)?;
+        let ends = t + piece >= end;
+        if before + piece < h && !ends {
+            return Some(t - before);
+        }
+        if ends || !(piece > 0.0) {
+            break;
+        }
+        (t, before) = (t + piece, piece);
+    }
+    None
+}
+
+impl Model {
+    /// The part of a step `h` from a state that leaps over nothing that time does.
+    fn reach(&self, at: &At<'_>, h: f64) -> f64 {
+        // a kink that the last step ended at is passed
+        let part = |told: f64, h: f64| if told > SAME * at.t.abs() { told.min(h) } else { h };
+        let h = self.timed_terms().fold(h, |h, term| match term.reach(at.t, h) {
+            Some(told) => part(told, h),
+            None => self.shown_by(term, at, h),
+        });
+        let holding = self.moving_constraints().filter(|(c, _)| self.holds(*c, at.modes));
+        holding.fold(h, |h, (_, constraint)| match constraint.reach(at.t, h) {
+            Some(told) => part(told, h),
+            None => self.shown_in(constraint, at, h),
+        })
+    }
+
+    /// When a force jumps next.
+    fn jump(&self, t: f64) -> f64 {
+        self.timed_terms().map(|term| term.jump(t)).filter(|&jump| jump > t).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The part of a step within which the force of a term looks smooth while everything stays where it is.
+    fn shown_by(&self, term: &dyn Term, at: &At<'_>, h: f64) -> f64 {
+        let now = self.share_of(term, at);
+        shown(h, |step| {
+            let later = |x: f64| self.share_of(term, &At { t: at.t + x * step, ..*at });
+            let end = later(1.0);
+            let (mut off, mut size) = (0.0, 0.0);
+            for x in [0.25, 0.5, 0.75] {
+                for ((f, a), b) in later(x).iter().zip(&now).zip(&end) {
+                    off = largest(off, f - (a + x * (b - a)));
+                    size = largest(largest(size, *f), largest(*a, *b));
+                }
+            }
+            if off <= 1e-9 * size { 0.0 } else { off / size }
+        })
+    }
+
+    /// The part of a step within which a constraint follows the cubic through the ends while everything stays where it is.
+    fn shown_in(&self, constraint: &dyn Constraint, at: &At<'_>, h: f64) -> f64 {
+        let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+        let m = constraint.rows().len();
+        let see = |t: f64| {
+            let (mut g, mut rate) = (vec![0.0; m], vec![0.0; m]);
+            let at = At { t, ..*at };
+            constraint.jacobian(self.nodes(), &at, &mut g, &mut vec![0.0; m * n]);
+            constraint.rates(self.nodes(), &at, &mut rate, &mut vec![0.0; m]);
+            (g, rate)
+        };
+        let (now, slope) = see(at.t);
+        shown(h, |step| {
+            let (end, end_slope) = see(at.t + step);
+            let (mut off, mut size) = (0.0, 0.0);
+            for x in [0.25, 0.5, 0.75_f64] {
+                let (y, g) = (1.0 - x, see(at.t + x * step).0);
+                for r in 0..m {
+                    let cubic = y * y * (1.0 + 2.0 * x) * now[r]
+                        + x * x * (1.0 + 2.0 * y) * end[r]
+                        + step * x * y * (y * slope[r] - x * end_slope[r]);
+                    off = largest(off, g[r] - cubic);
+                    size = largest(largest(size, g[r] - now[r]), end[r] - now[r]);
+                }
+            }
+            if off <= 1e-9 * self.length() { 0.0 } else { off / size }
+        })
+    }
+}
+
+/// The larger of two sizes; a NaN stays a NaN.
+fn largest(size: f64, x: f64) -> f64 {
+    if x.abs() <= size { size } else { x.abs() }
+}

@@ -1,0 +1,111 @@
+//! What is watched while a run goes on: constraints that contradict each other, energy from nowhere, steps that are cut.
+
+use super::{Observer, Simulation};
+use crate::integrator::{StepError, Stepping};
+
+/// What may be left of constraints after a step, in parts of the model's length: ten times what Newton's method leaves.
+const LEFT: f64 = 1e-9;
+/// What a constraint that takes part in a contradiction is violated by, in parts of the most violated one.
+const PART: f64 = 1e-3;
+/// A step shorter than this, in parts of what it should be, was cut.
+const CUT: f64 = 1.0 - 1e-6;
+/// Steps after which a run has begun.
+const BEGUN: u64 = 50;
+/// So many steps are worth a word.
+const MANY: u64 = 100_000;
+/// What has moved by no more than this since the run began, in parts of its own length, has no energy to speak of.
+const REST: f64 = 1e-7;
+
+impl Simulation {
+    /// Where constraints are solved as redundant they are met as well as they can be: checks that this is well enough.
+    /// If not, the state is that before the step.
+    pub(super) fn check_constraints(&mut self) -> Result<(), StepError> {
+        if self.work.softening.is_none() {
+            return Ok(());
+        }
+        let model = &self.model;
+        let mut g = vec![0.0; model.multipliers()];
+        model.violations(&self.state.at(), &mut self.work.system, &mut g);
+        g.iter_mut().zip(model.row_scale()).for_each(|(g, s)| *g = g.abs() / s);
+        // a NaN counts as the worst of all
+        let worst = g.iter().fold(0.0, |worst, &g| if g <= worst { worst } else { g });
+        if worst <= (LEFT * model.length()).max(100.0 * model.rounding()) {
+            return Ok(());
+        }
+        let mut names = model.constraints_where(|r| !(g[r] <= PART * worst));
+        if let ([one], Some(r)) = (names.as_slice(), model.redundancy()) {
+            let one = *one;
+            names.extend(r.constraints.iter().map(String::as_str).filter(|n| *n != one));
+        }
+        let constraints = names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
+        let error = StepError::Contradiction { t: self.state.t, constraints, off: worst };
+        self.state.clone_from(&self.previous);
+        Err(error)
+    }
+
+    /// Names the constraints that may be to blame for a step that failed, since they contradict each other there.
+    pub(super) fn suspect(&self, error: StepError) -> StepError {
+        let Some(redundancy) = self.model.redundancy() else { return error };
+        let who = format!("do the redundant constraints contradict each other here? {redundancy}");
+        match error {
+            StepError::NoConvergence { t, h, why, equation } => {
+                StepError::NoConvergence { t, h, why: format!("{why} ({who})"), equation }
+            }
+            StepError::Linear { t, source, unknown } => {
+                StepError::Linear { t, source, unknown: format!("{unknown} ({who})") }
+            }
+            e => e,
+        }
+    }
+
+    /// Counts a fixed step that was cut since it failed.
+    pub(super) fn count_cut(&mut self, h: f64, left: f64) {
+        if let Stepping::Fixed { h: whole } = self.integrator.options().stepping
+            && h < CUT * whole.min(left)
+        {
+            self.work.counts.cut += 1;
+        }
+    }
+
+    /// Warns once of a run that takes very many steps: something that isn't asked for may drive them.
+    pub(super) fn watch_steps(&self, end: f64, observer: &mut dyn Observer) {
+        if self.work.counts.steps != MANY
+            || !matches!(self.integrator.options().stepping, Stepping::Controlled { .. })
+        {
+            return;
+        }
+        let (t, h) = (self.state.t, self.state.control.h_last);
+        observer.warn(&format!(
+            "{MANY} steps so far, at t = {t:.4} s of {end} s, the last of {h:.1e} s: fast motion that nothing damps asks for \
+             them. A little `axial_damping` or `bending_damping`, a looser `tolerance`, a shorter `horizon` or Radau IIA \
+             need fewer"
+        ));
+    }
+
+    /// Warns the first time that energy has appeared from nowhere.
+    pub(super) fn watch_energy(&mut self, end: f64, observer: &mut dyn Observer) {
+        // a run that has hardly begun has no energy yet that another could be compared with
+        let begun = self.work.counts.steps >= BEGUN || self.state.t >= 0.01 * end;
+        if !self.keep_audit || self.created.is_some() || !begun {
+            return;
+        }
+        let still = |length: f64, mass: f64| mass * (REST * length / self.state.t).powi(2);
+        let noise = self.work.norms.groups.iter().map(|g| still(g.length, g.mass)).sum();
+        if !self.audit.is_created(noise) {
+            return;
+        }
+        self.created = Some(self.state.t);
+        let remedy = match self.integrator.options().stepping {
+            Stepping::Fixed { .. } => "a smaller `h`, error control, Radau IIA or `rho_inf` of 0.5 and below",
+            Stepping::Controlled { .. } => "a smaller `tolerance`",
+        };
+        observer.warn(&format!(
+            "at t = {:.6} s energy has appeared from nowhere: {:.1e} J more than loads brought in, where the largest \
+             energy or work so far is {:.1e} J. What follows can't be trusted; take {remedy}. (A term of your own whose \
+             energy and power aren't told looks like this too.)",
+            self.state.t,
+            self.audit.imbalance(),
+            self.audit.scale,
+        ));
+    }
+}

@@ -1,0 +1,102 @@
+//! Energy that appears from nowhere is told at once, and steps that had to be cut are counted.
+
+use ropewalk::SceneFile;
+use ropewalk::scene::Format;
+use ropewalk_core::integrator::{Options, Scheme, StepReport, Stepping};
+use ropewalk_core::{Model, Observer, Simulation, State};
+use std::ops::ControlFlow;
+
+/// Watches for the first warning, and how much energy there was by then.
+#[derive(Default)]
+struct Watch {
+    said: Option<String>,
+}
+
+impl Observer for Watch {
+    fn warn(&mut self, text: &str) {
+        self.said = Some(text.into());
+    }
+    fn step(&mut self, _: &Model, _: &State, _: &StepReport) -> ControlFlow<()> {
+        if self.said.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// A rope that is let go horizontally: mass per length [kg/m], EA [N], EI [N m²], length [m].
+fn swing(mass: f64, ea: f64, ei: f64, length: f64) -> String {
+    format!(
+        "[[elements]]\ntype='cable'\nname='c'\npoints=[[0,0,0],[{length},0,0]]\nelements=20\n\
+         section={{ mass={mass}, ea={ea}, ei={ei} }}\n\
+         [[constraints]]\ntype='spherical'\nname='h'\nmarker='c.start'\n[[forces]]\ntype='gravity'\n"
+    )
+}
+
+/// The warning of a run, if there is one, and the energy that was missing then over the weight times the length.
+fn watched(text: &str, options: &Options, duration: f64) -> (Option<String>, Simulation) {
+    let file = SceneFile::parse(text, "swing", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let model = file.build().unwrap_or_else(|e| panic!("{e}"));
+    let mut s = Simulation::new(model, options, duration).unwrap_or_else(|e| panic!("{e}"));
+    let mut watch = Watch::default();
+    s.advance(duration, f64::INFINITY, &mut watch).unwrap_or_else(|e| panic!("{e}"));
+    (watch.said, s)
+}
+
+fn fixed(h: f64) -> Options {
+    Options { stepping: Stepping::Fixed { h }, ..Options::default() }
+}
+
+#[test]
+fn fixed_steps_that_make_energy_are_told_at_once() {
+    for (rope, h, text, energy) in [
+        ("nylon, 12 mm", 5e-3, swing(0.1, 5e4, 0.01, 10.0), 0.1 * 9.81 * 10.0 * 5.0),
+        ("steel wire, 6 mm", 10e-3, swing(0.14, 1.5e6, 0.1, 10.0), 0.14 * 9.81 * 10.0 * 5.0),
+        ("Dyneema, 100 m", 20e-3, swing(0.06, 2e6, 0.01, 100.0), 0.06 * 9.81 * 100.0 * 50.0),
+    ] {
+        let (said, s) = watched(&text, &fixed(h), 10.0);
+        println!("{rope}: {said:?}, {} J of {energy} J at {} s", s.audit.imbalance(), s.state.t);
+        let said = said.unwrap_or_else(|| panic!("{rope}: silent"));
+        assert!(said.contains("appeared from nowhere") && said.contains("smaller `h`"), "{said}");
+    }
+}
+
+#[test]
+fn right_runs_are_not_suspected() {
+    let radau = Options { scheme: Scheme::RadauIia5, ..Options::default() };
+    for (text, duration) in [
+        (swing(0.1, 5e4, 0.01, 10.0), 2.0),
+        (swing(0.14, 1.5e6, 0.1, 10.0), 1.0),
+        // at rest for all time
+        (
+            "[[elements]]\ntype='rigid_body'\nname='b'\nposition=[0,0,0]\nmass=1\ninertia=[1,1,1]\n".into(),
+            10.0,
+        ),
+        (
+            "[[elements]]\ntype='cable'\nname='c'\npoints=[[3,0,0],[3,0,1]]\nelements=4\n\
+          section={ mass=0.5, ea=1e6, ei=0.1 }\n"
+                .into(),
+            10.0,
+        ),
+    ] {
+        for options in [Options::default(), radau.clone(), fixed(1e-3)] {
+            let (said, _) = watched(&text, &options, duration);
+            assert_eq!(said, None, "{text}");
+        }
+    }
+}
+
+/// A crank that turns by more than its joint can tell apart in one step of 20 ms.
+#[test]
+fn fixed_steps_that_are_cut_are_counted() {
+    let crank = |rate: f64| {
+        let text = format!(
+            "[[elements]]\ntype='rigid_body'\nname='b'\nposition=[0,0,0]\nmass=1\ninertia=[1,1,1]\n\
+             angular_velocity=[0,0,{rate}]\n[[motions]]\ntype='spin'\nname='turn'\nrate={rate}\nramp=0\n\
+             [[constraints]]\ntype='revolute'\nname='hinge'\nmarker='b'\naxis=[0,0,1]\n\
+             [[constraints]]\ntype='rotation'\nname='drive'\nmarker='b'\naxis=[0,0,1]\nmotion='turn'\n"
+        );
+        let (_, s) = watched(&text, &fixed(20e-3), 0.2);
+        (s.work.counts.cut, s.work.counts.steps)
+    };
+    assert_eq!(crank(10.0), (0, 10));
+    let (cut, steps) = crank(100.0);
+    assert!(cut > 5 && steps > 10, "{cut} of {steps}");
+}
