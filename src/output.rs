@@ -28,6 +28,6 @@ pub use plot::{Bar, BarPlot, LinePlot, Mark, Plane, Series, ShapePlot, Snapshot}
 pub(crate) use progress::new_bar;
 pub use progress::{Progress, ProgressMode, SweepProgress};
 pub use stopwatch::{Elapsed, Stopwatch};
-pub use summary::{Counts, EnergyTotals, Happened, ProfileEntry, Summary};
+pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, Summary};
 pub use table::{Column, Table, TableWriter};
 pub(crate) use table::{cells, push_cell, push_number};

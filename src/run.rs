@@ -146,7 +146,7 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let file = SceneFile::open(&path.display().to_string(), &[], &[])?.named(&saved.name);
     let stopwatch = Stopwatch::start();
     let started = Started::resumed(&file, &saved)?;
-    let Started::Dynamics(simulation, _) = &started else { unreachable!("only runs in time are resumed") };
+    let Started::Dynamics(simulation, ..) = &started else { unreachable!("only runs in time are resumed") };
     let mut recorder = Recorder::new(file.scene(), file.records(&simulation.model)?);
     recorder.take_up(&saved).map_err(Fault::new)?;
     let warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
@@ -229,6 +229,7 @@ impl<'a> Course<'a> {
             (Ok(started), ending) => {
                 let done = started.done();
                 recorder.last_shape(&done.model, &done.state);
+                summary.critical = done.critical_loads();
                 (summary.counts, summary.energy) = (done.counts, energy(&done.audit));
                 ending.unwrap_or(Ending::Finished)
             }
@@ -251,7 +252,8 @@ impl<'a> Course<'a> {
             writer.finish().unwrap_or_else(|e| warnings.say(&e.to_string()));
         }
         recorder.finals(&mut summary);
-        let pictures = pictures::draw(&folder, file.title(), &recorder, &mut |w| warnings.say(w));
+        let pictures =
+            pictures::draw(&folder, file.title(), &recorder, &summary.critical, &mut |w| warnings.say(w));
         shapes::write(&folder, &recorder.table.columns[0], &recorder.shapes)
             .unwrap_or_else(|e| warnings.say(&e.to_string()));
         let tables = tables::write(&folder, &recorder, &mut |w| warnings.say(w));

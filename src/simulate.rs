@@ -1,7 +1,7 @@
 //! A scene run in memory, for use from Rust.
 
 use crate::error::Error;
-use crate::output::{Counts, Interrupt, Progress, Table};
+use crate::output::{Counts, CriticalLoad, Interrupt, Progress, Table};
 use crate::run::{Ending, Recorder, Started, records};
 use ropewalk_core::{Audit, Model, Scene, State};
 use std::sync::Arc;
@@ -18,6 +18,8 @@ pub struct History {
     pub audit: Audit,
     /// How much work it was.
     pub counts: Counts,
+    /// Loads at which equilibria lost their stability, in the order of the path.
+    pub critical: Vec<CriticalLoad>,
     /// What stopped the run before its end, if anything did.
     pub stopped_by: Option<String>,
     /// What one should know although the run went on.
@@ -72,6 +74,7 @@ pub(crate) fn simulate_showing(
         Ending::Failed(error) => return Err(error),
     };
     let (table, done) = (recorder.table, started.done());
+    let critical = done.critical_loads();
     let (state, model, audit, counts) = (done.state, done.model, done.audit, done.counts);
-    Ok(History { table, state, model, audit, counts, stopped_by, warnings })
+    Ok(History { table, state, model, audit, counts, critical, stopped_by, warnings })
 }

@@ -130,6 +130,9 @@ pub trait Law: Send + Sync + 'static {
 pub trait StationElement<const Q: usize, const N: usize, const S: usize>:
     Clone + Send + Sync + 'static
 {
+    /// Whether loads go back to the nodes in the same way whatever the shape: then a load without derivatives has no
+    /// tangent.
+    const FIXED: bool = false;
     /// The element's numbers over lanes.
     type Lanes<R: Real>;
     /// Brings the numbers of a batch of elements side by side.
@@ -155,6 +158,10 @@ pub trait Stations: Send + Sync {
     fn pattern(&self, p: &mut Pattern);
     /// Whether there is anything to load.
     fn is_empty(&self) -> bool;
+    /// Whether loads go back to the nodes in the same way whatever the shape, see [`StationElement::FIXED`].
+    fn fixed(&self) -> bool {
+        false
+    }
     /// Calls `f` with every station.
     fn each(&self, at: &At<'_>, f: &mut dyn FnMut(&Station<f64>));
     /// The power of all laws.
@@ -197,7 +204,8 @@ impl Term for FieldTerm {
         self.stations.pattern(p);
     }
     fn symmetric(&self) -> bool {
-        false
+        // a dead load has no derivatives at all
+        self.stations.fixed() && self.laws.0.iter().all(|l| l.gives() == Gives::NOTHING)
     }
     fn is_load(&self) -> bool {
         true

@@ -1,6 +1,7 @@
 //! `summary.json`: the few numbers that say how a run ended.
 
 use crate::certificate::Certificate;
+use ropewalk_core::statics::CriticalKind;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
@@ -24,6 +25,9 @@ pub struct Summary {
     /// Events of the run: what broke or let go, and when.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<Happened>,
+    /// Loads at which equilibria lost their stability, in the order of the path.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub critical: Vec<CriticalLoad>,
     /// Rows of `history.csv`, from which one can tell whether the file is whole.
     #[serde(default)]
     pub rows: usize,
@@ -70,6 +74,19 @@ pub struct Happened {
     pub name: String,
     /// When it was, located between two steps [s].
     pub t: f64,
+}
+
+/// A load at which equilibria lost their stability.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CriticalLoad {
+    /// The load factor.
+    pub load_factor: f64,
+    /// What happens there: beyond a `limit` the model snaps through, at a `bifurcation` it buckles.
+    pub kind: CriticalKind,
+    /// In how many directions at once: two where a round column buckles.
+    pub directions: usize,
+    /// What moves and how.
+    pub what: String,
 }
 
 /// How much work a run was.

@@ -97,7 +97,7 @@ impl Saver {
         stopwatch: Stopwatch,
     ) -> Result<Self, Error> {
         let (flutter, steps) = match started {
-            Started::Dynamics(s, flutter) => (*flutter, s.work.counts.steps),
+            Started::Dynamics(s, flutter, _) => (*flutter, s.work.counts.steps),
             Started::Statics(done) | Started::Process(_, done) => (done.flutter, 0),
         };
         Ok(Saver {

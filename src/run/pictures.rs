@@ -2,7 +2,7 @@
 
 use super::Recorder;
 use super::recorder::Figure;
-use crate::output::{LinePlot, OutputError, Plane, RunFolder, Series, ShapePlot};
+use crate::output::{CriticalLoad, LinePlot, Mark, OutputError, Plane, RunFolder, Series, ShapePlot};
 use ropewalk_core::{ShapeTitles, V3};
 
 /// All ways to look at shapes.
@@ -13,6 +13,7 @@ pub(crate) fn draw(
     folder: &RunFolder,
     title: &str,
     recorder: &Recorder<'_>,
+    critical: &[CriticalLoad],
     warn: &mut dyn FnMut(&str),
 ) -> Vec<String> {
     let mut drawn = Vec::new();
@@ -23,7 +24,7 @@ pub(crate) fn draw(
         Err(e) => warn(&e.to_string()),
     };
     for figure in &recorder.figures {
-        for (name, plot) in histories(figure, recorder) {
+        for (name, plot) in histories(figure, recorder, critical) {
             let written = folder.plot_file(&name).and_then(|path| plot.write(&path));
             keep(name, written);
         }
@@ -75,8 +76,8 @@ fn shape_title(titles: &ShapeTitles, plane: Plane) -> Option<&String> {
     }
 }
 
-/// A plot of each unit that the record has: one axis can't show metres and newtons.
-fn histories(figure: &Figure, recorder: &Recorder<'_>) -> Vec<(String, LinePlot)> {
+/// A plot of each unit that the record has: one axis can't show metres and newtons. Dots mark critical loads.
+fn histories(figure: &Figure, recorder: &Recorder<'_>, critical: &[CriticalLoad]) -> Vec<(String, LinePlot)> {
     let columns = &recorder.table.columns;
     let Some(time) = columns.first() else { return Vec::new() };
     let mut units: Vec<&str> = Vec::new();
@@ -93,6 +94,13 @@ fn histories(figure: &Figure, recorder: &Recorder<'_>) -> Vec<(String, LinePlot)
         let series = shown.iter().zip(&labels).map(|(c, label)| {
             Series::new(label, time.values.iter().copied().zip(c.values.iter().copied()).collect())
         });
+        let at_critical = |x: f64| critical.iter().any(|c| (c.load_factor - x).abs() <= 1e-9 * x.abs());
+        let dots: Vec<(f64, f64)> = shown
+            .iter()
+            .flat_map(|c| time.values.iter().copied().zip(c.values.iter().copied()))
+            .filter(|(x, _)| at_critical(*x))
+            .collect();
+        let dots = (!dots.is_empty()).then(|| Series::new("critical", dots).with_mark(Mark::Dots));
         let name = match units.as_slice() {
             [_] => figure.name.clone(),
             _ => format!("{}.{}", figure.name, labels.join("-")),
@@ -101,7 +109,7 @@ fn histories(figure: &Figure, recorder: &Recorder<'_>) -> Vec<(String, LinePlot)
             title: figure.title.clone(),
             x_label: time.heading(),
             y_label: format!("{} [{}]", labels.join(", "), if unit.is_empty() { "-" } else { unit }),
-            series: series.collect(),
+            series: series.chain(dots).collect(),
             ..LinePlot::default()
         };
         (name, plot)

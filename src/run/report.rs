@@ -59,6 +59,11 @@ pub(crate) fn report(
     for (k, note) in summary.notes.iter().enumerate() {
         line(if k == 0 { "notes" } else { "" }, note.clone());
     }
+    for (k, c) in summary.critical.iter().enumerate() {
+        let many = if c.directions > 1 { format!(" in {} directions", c.directions) } else { String::new() };
+        let text = format!("load factor {}, {}{many}: {}", number(c.load_factor), c.kind, c.what);
+        line(if k == 0 { "critical" } else { "" }, text);
+    }
     for (k, (name, times)) in by_name(&summary.events).into_iter().enumerate() {
         let when = match times.as_slice() {
             [one] => format!("at t = {} s", number(*one)),

@@ -3,11 +3,11 @@
 use super::Recorder;
 use super::checkpoint::Saved;
 use crate::error::Error;
-use crate::output::{Counts, ProfileEntry};
+use crate::output::{Counts, CriticalLoad, ProfileEntry};
 use crate::read::SceneFile;
 use crate::scene::Fault;
 use ropewalk_core::integrator::{StepError, StepReport, Stepping};
-use ropewalk_core::statics::Statics;
+use ropewalk_core::statics::{Critical, Statics};
 use ropewalk_core::{
     Analysis, Audit, End, Model, Observer, Process, Sample, Scene, Simulation, SolveError, State, Unfit,
 };
@@ -37,6 +37,10 @@ pub(crate) struct Done {
     pub audit: Audit,
     pub counts: Counts,
     pub flutter: Flutter,
+    /// Loads at which equilibria lost their stability.
+    critical: Vec<Critical>,
+    /// What else is to be said about the equilibria.
+    remarks: Vec<String>,
     /// Where the time of statics went, if that was asked for.
     times: Option<Vec<Spent>>,
 }
@@ -46,8 +50,8 @@ type Spent = (String, u64, Duration);
 
 /// An analysis that is ready to go.
 pub(crate) enum Started {
-    /// Motion in time.
-    Dynamics(Box<Simulation>, Flutter),
+    /// Motion in time, and what is to be said about the equilibrium that it starts from.
+    Dynamics(Box<Simulation>, Flutter, Vec<String>),
     /// Equilibria while time runs as the load factor.
     Statics(Box<Done>),
     /// A problem of its own, beside a model without anything in it.
@@ -66,21 +70,23 @@ impl Started {
         }
         // an unsuitable scheme should not have to wait for the equilibrium
         scene.solver.integrator(&model, run.duration)?;
-        let (mut state, mut flutter) = (model.state(), 0.0);
+        let (mut state, mut flutter, mut remarks) = (model.state(), 0.0, Vec::new());
         if run.from_equilibrium {
             state.v.fill(0.0);
             let mut search = Statics::new(&model, &scene.statics).map_err(no_memory)?;
             flutter = search.find(&mut state, true)?.flutter;
+            remarks = remarks_on(&search);
         }
         let mut simulation = Simulation::from(model, state, &scene.solver, run.duration)?;
         simulation.keep_audit(run.audit);
-        Ok(Started::Dynamics(Box::new(simulation), flutter))
+        Ok(Started::Dynamics(Box::new(simulation), flutter, remarks))
     }
 
     /// What one should know although the run goes on.
     pub(crate) fn warnings(&self, scene: &Scene) -> Vec<String> {
         let mut all = Vec::new();
-        if let Started::Dynamics(s, _) = self {
+        if let Started::Dynamics(s, _, remarks) = self {
+            all.extend(remarks.iter().cloned());
             all.extend(s.integrator.warning().map(str::to_string));
             if let Some(r) = s.model.redundancy() {
                 all.push(format!(
@@ -115,7 +121,7 @@ impl Started {
     pub(crate) fn afterthought(&self) -> Vec<String> {
         let (flutter, counts, ringing) = match self {
             Started::Process(process, _) => return process.warnings(),
-            Started::Dynamics(s, flutter) => (*flutter, s.work.counts, s.ringing),
+            Started::Dynamics(s, flutter, _) => (*flutter, s.work.counts, s.ringing),
             Started::Statics(done) => (done.flutter, Default::default(), 0.0),
         };
         let rang = || {
@@ -141,19 +147,23 @@ impl Started {
                  jumped. Take a smaller `h`, or error control"
             )
         };
+        let remarks = match self {
+            Started::Statics(done) => done.remarks.clone(),
+            _ => Vec::new(),
+        };
         let all = [
             (ringing > 0.0).then(rang),
             (flutter > 0.0 && ringing == 0.0).then(unstable),
             (unmet > 0 && ringing == 0.0).then(stopped),
             (cut > 0).then(shorter),
         ];
-        all.into_iter().flatten().collect()
+        all.into_iter().flatten().chain(remarks).collect()
     }
 
     /// Measures the time of every term from now on.
     pub(crate) fn profile(&mut self) {
         match self {
-            Started::Dynamics(s, _) => s.work.profile(),
+            Started::Dynamics(s, ..) => s.work.profile(),
             Started::Statics(done) => done.times = Some(Vec::new()),
             Started::Process(..) => {}
         }
@@ -162,7 +172,7 @@ impl Started {
     /// The measured times.
     pub(crate) fn times(&self) -> Vec<ProfileEntry> {
         let times = match self {
-            Started::Dynamics(s, _) => s.work.times(&s.model),
+            Started::Dynamics(s, ..) => s.work.times(&s.model),
             Started::Statics(done) => done.times.clone().unwrap_or_default(),
             Started::Process(..) => Vec::new(),
         };
@@ -183,7 +193,7 @@ impl Started {
             model = scene.build_on(&checkpoint.meshes)?;
         }
         match Simulation::restore(model, &scene.solver, scene.run.duration, checkpoint) {
-            Ok(simulation) => Ok(Started::Dynamics(Box::new(simulation), saved.flutter)),
+            Ok(simulation) => Ok(Started::Dynamics(Box::new(simulation), saved.flutter, Vec::new())),
             Err(Unfit::Step(e)) => Err(e.into()),
             Err(e) => Err(Fault::new(e.to_string()).into()),
         }
@@ -193,7 +203,7 @@ impl Started {
     pub(crate) fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>, resumed: bool) -> Ending {
         let (duration, interval) = (scene.run.duration, scene.run.interval());
         let end = match self {
-            Started::Dynamics(s, _) if resumed => s.go_on(duration, interval, recorder).map_err(Error::from),
+            Started::Dynamics(s, ..) if resumed => s.go_on(duration, interval, recorder).map_err(Error::from),
             Started::Process(process, _) => through(process.as_mut(), scene, recorder),
             _ => self.drive(scene, recorder),
         };
@@ -208,7 +218,7 @@ impl Started {
     /// Moves a model to its end under the eyes of an observer. A process has no model to look at: it stays as it is.
     pub(crate) fn drive(&mut self, scene: &Scene, observer: &mut dyn Observer) -> Result<End, Error> {
         match self {
-            Started::Dynamics(s, _) => {
+            Started::Dynamics(s, ..) => {
                 s.advance(scene.run.duration, scene.run.interval(), observer).map_err(Error::from)
             }
             Started::Statics(path) => path.go(scene, observer),
@@ -221,9 +231,11 @@ impl Started {
         match self {
             Started::Statics(done) => *done,
             Started::Process(process, done) => Done { counts: counts(process.counts()), ..*done },
-            Started::Dynamics(s, _) => {
+            Started::Dynamics(s, ..) => {
                 let counts = counts(s.work.counts);
-                Done { model: s.model, state: s.state, audit: s.audit, counts, flutter: 0.0, times: None }
+                let (critical, remarks) = (Vec::new(), Vec::new());
+                let (model, state, audit) = (s.model, s.state, s.audit);
+                Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None }
             }
         }
     }
@@ -261,7 +273,20 @@ impl Done {
         let mut state = model.state();
         state.v.fill(0.0);
         let audit = Audit::start(model.energy(&state.at()));
-        Done { model: Arc::new(model), state, audit, counts: Counts::default(), flutter: 0.0, times: None }
+        let (critical, remarks) = (Vec::new(), Vec::new());
+        let (model, counts) = (Arc::new(model), Counts::default());
+        Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None }
+    }
+
+    /// The critical loads for summaries.
+    pub(crate) fn critical_loads(&self) -> Vec<CriticalLoad> {
+        let load = |c: &Critical| CriticalLoad {
+            load_factor: c.t,
+            kind: c.kind,
+            directions: c.directions,
+            what: c.what.clone(),
+        };
+        self.critical.iter().map(load).collect()
     }
 
     /// One equilibrium after the other; each starts from the one before.
@@ -288,9 +313,22 @@ impl Done {
         for k in 0..=steps {
             let before = self.state.t;
             let found = match k {
-                0 => search.find(&mut self.state, true)?,
-                _ => search.follow(&mut self.state, scene.run.duration * k as f64 / steps as f64)?,
+                0 => search.find(&mut self.state, true),
+                _ => search.follow(&mut self.state, scene.run.duration * k as f64 / steps as f64),
             };
+            // what was met on the way is part of the path, also of one that ends there
+            for critical in search.critical().iter().skip(self.critical.len()) {
+                if self.show(&critical.state, observer).is_break() {
+                    return Ok(End::Stopped { by: "observer".into() });
+                }
+            }
+            self.critical = search.critical().to_vec();
+            let found = found?;
+            for remark in remarks_on(search) {
+                if !self.remarks.contains(&remark) {
+                    self.remarks.push(remark);
+                }
+            }
             self.flutter = self.flutter.max(found.flutter);
             self.counts.steps += 1;
             self.counts.newton_iterations += u64::from(found.iterations);
@@ -302,19 +340,31 @@ impl Done {
                 iterations: found.iterations,
                 ..StepReport::default()
             };
-            let sample = Sample {
-                model: &self.model,
-                at: self.state.at(),
-                lambda: &self.state.lambda,
-                audit: &self.audit,
-            };
-            let flow = [observer.sample(&sample), observer.step(&self.model, &self.state, &report)];
+            let flow = [self.show(&self.state, observer), observer.step(&self.model, &self.state, &report)];
             if flow.iter().any(ControlFlow::is_break) {
                 return Ok(End::Stopped { by: "observer".into() });
             }
         }
         Ok(End::Done)
     }
+
+    /// Shows an equilibrium to the observer.
+    fn show(&self, state: &State, observer: &mut dyn Observer) -> ControlFlow<()> {
+        let sample = Sample { model: &self.model, at: state.at(), lambda: &state.lambda, audit: &self.audit };
+        observer.sample(&sample)
+    }
+}
+
+/// What one should know about the last equilibrium of a search.
+fn remarks_on(search: &Statics<'_>) -> Vec<String> {
+    let free = search.neutral().iter().map(|n| {
+        format!(
+            "nothing holds the equilibrium in one direction, and nothing drives it there: {}. A constraint or a spring \
+             against this motion would hold it",
+            n.what
+        )
+    });
+    free.chain(search.doubt().map(String::from)).collect()
 }
 
 fn no_memory(source: SolveError) -> Error {

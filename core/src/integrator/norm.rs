@@ -218,7 +218,7 @@ fn owners(model: &Model) -> Vec<usize> {
 
 fn group(model: &Model, owner: &[usize], g: usize, mass: &[f64]) -> Group {
     let own = || model.nodes().iter().zip(owner).filter(|(_, o)| **o == g).map(|(n, _)| n);
-    let moving = || own().filter(|n| n.kind.velocities() >= 3);
+    let moving = || own().filter(|n| n.kind.has_position());
     let total: f64 = moving().map(|n| mass[n.v..n.v + 3].iter().sum::<f64>() / 3.0).sum();
     // plain numbers alone weigh themselves
     let total = if total > 0.0 { total } else { own().flat_map(|n| &mass[n.dofs()]).sum() };
@@ -245,7 +245,7 @@ fn lengths(model: &Model, owner: &[usize], sizes: &[f64], g: usize) -> (f64, f64
     for c in model.constraints() {
         let Some(&own) = c.nodes().iter().find(|k| owner[k.0 as usize] == g) else { continue };
         let n = model.node(own);
-        if n.kind.velocities() >= 3 {
+        if n.kind.has_position() {
             let x = &q[n.q..n.q + 3];
             for marker in c.markers() {
                 let place = marker.place(model.nodes(), q, |_| 0.0).x;

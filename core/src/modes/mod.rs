@@ -15,7 +15,7 @@ use crate::motion::SteadyFrame;
 use crate::node::{Node, NodeKind};
 use crate::solver::SolveError;
 use crate::state::{At, State};
-use crate::statics::{Statics, StaticsError, StaticsOptions};
+use crate::statics::{Linear, Statics, StaticsError, StaticsOptions};
 pub use buckling::Critical;
 use pencil::Pencil;
 use std::ops::ControlFlow;
@@ -259,6 +259,18 @@ pub fn modes(
     };
     let Found { missing, of, .. } = found;
     Ok(Modes { modes, damped: pencil.damped, of, missing, critical, hidden })
+}
+
+/// The `count` modes of smallest `|λ|` of equations that are linearised already, whether a state may vibrate or not.
+pub(crate) fn slowest(
+    model: &Model,
+    modes: &[f64],
+    linear: Linear,
+    count: usize,
+) -> Result<Vec<Mode>, ModesError> {
+    let mut pencil = Pencil::new(model, modes, linear)?;
+    let found = quadratic::find(&mut pencil, count, &mut Watch(&mut |_, _, _| ControlFlow::Continue(())))?;
+    Ok(found.modes.into_iter().map(|raw| finish(model, &pencil, raw)).collect())
 }
 
 /// What is held still moves with the frame; what is driven must move like it, or not at all.

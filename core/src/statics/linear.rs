@@ -53,6 +53,14 @@ impl Statics<'_> {
         (self.system.residual.clone(), self.system.values.clone())
     }
 
+    /// A state with the velocities and accelerations of the frame.
+    pub(super) fn riding(&mut self, state: &State) -> State {
+        let mut out = state.clone();
+        self.ride(&mut out);
+        out.aux.clone_from(&out.a);
+        out
+    }
+
     /// Sets velocities and accelerations of a state to those of the frame.
     pub(crate) fn ride(&mut self, state: &mut State) {
         self.follow_frame(&state.q);

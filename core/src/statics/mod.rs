@@ -1,18 +1,27 @@
 //! Equilibria: at rest, along a load path, or relative to a frame that moves steadily.
 //!
-//! Newton's method with the remedies of [`Relaxed`]: geometric stiffness from the stress linearised at the iterate
-//! before; a floor of tension where the tangent isn't positive; a cap of the stiff modulus at the first iterations.
-//! An equilibrium is accepted if it is stable and not folded: by the inertia of the factors where the tangent is
-//! symmetric, else by what becomes of a small disturbance.
+//! Newton's method with the remedies of [`Relaxed`](crate::Relaxed): geometric stiffness from the stress linearised at
+//! the iterate before; a floor of tension where the tangent isn't positive; a cap of the stiff modulus at the first
+//! iterations. An equilibrium is accepted if it is stable and not folded. Where Newton's method finds none, the model
+//! creeps downhill to one; along a path of loads it follows the arc through bends and leaves critical points for the
+//! stable path behind them.
 
+mod creep;
+mod critical;
+mod disturbance;
 mod flow;
 mod linear;
+mod naming;
+mod neutral;
+mod path;
 mod search;
 mod stability;
 mod tangent;
 
+pub use critical::{Critical, CriticalKind};
+pub use disturbance::Disturbance;
 pub(crate) use linear::Linear;
-pub use stability::Disturbance;
+pub use neutral::Neutral;
 
 use crate::build::{BuildError, positive};
 use crate::model::{Model, System};
@@ -24,6 +33,7 @@ use crate::structure::Structure;
 use crate::times::{Clocks, Times};
 use search::FOLD;
 use serde::{Deserialize, Serialize};
+use stability::Judgement;
 use std::time::Duration;
 
 /// How equilibria are found.
@@ -124,6 +134,8 @@ impl StaticsError {
         )
     }
 }
+/// How often the arc of a path is tried before shorter steps are.
+const ARCS: u32 = 3;
 
 /// Searches equilibria of one model. Keeps its scratch between searches.
 pub struct Statics<'a> {
@@ -137,6 +149,8 @@ pub struct Statics<'a> {
     system: System,
     damping: System,
     mass: System,
+    /// The residual a little later, for its rate.
+    ahead: System,
     clocks: Clocks,
     v: Vec<f64>,
     a: Vec<f64>,
@@ -144,6 +158,17 @@ pub struct Statics<'a> {
     /// front's velocity and coordinate, and its rate.
     flows: bool,
     flow: Vec<(usize, usize, f64)>,
+    /// Directions that nothing holds, as forces that would, in elimination order: no correction moves along them.
+    free: Vec<Vec<f64>>,
+    /// What the last equilibrium that was found is like.
+    unstable: usize,
+    neutral: Vec<Neutral>,
+    doubt: Option<String>,
+    judged: Judgement,
+    /// Critical loads met so far.
+    critical: Vec<Critical>,
+    /// Longest stretch of time that was to be followed.
+    span: f64,
 }
 
 impl<'a> Statics<'a> {
@@ -182,11 +207,19 @@ impl<'a> Statics<'a> {
             system: System::default(),
             damping: System::default(),
             mass: System::default(),
+            ahead: System::default(),
             clocks: Clocks::default(),
             v: zero.clone(),
             a: zero,
             flows: true,
             flow: Vec::new(),
+            free: Vec::new(),
+            unstable: 0,
+            neutral: Vec::new(),
+            doubt: None,
+            judged: Judgement { potential: true, ..Judgement::default() },
+            critical: Vec::new(),
+            span: 0.0,
         })
     }
 
@@ -205,6 +238,21 @@ impl<'a> Statics<'a> {
         Times::default().adding(self.model, systems, &self.clocks).list()
     }
 
+    /// Directions in which nothing holds the last equilibrium and nothing drives it.
+    pub fn neutral(&self) -> &[Neutral] {
+        &self.neutral
+    }
+
+    /// What can't be told about the stability of the last equilibrium.
+    pub fn doubt(&self) -> Option<&str> {
+        self.doubt.as_deref()
+    }
+
+    /// Critical loads that [`Statics::follow`] has met, in the order of the path.
+    pub fn critical(&self) -> &[Critical] {
+        &self.critical
+    }
+
     /// Moves `state` to the equilibrium at its time. `cold` says that no equilibrium nearby is known: the first of a
     /// path, or a guess.
     ///
@@ -220,78 +268,164 @@ impl<'a> Statics<'a> {
 
     fn seek(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
         let before = state.clone();
-        let mut first = self.search(state, cold, cold);
+        self.free.clear();
+        let mut first = self.search(state, cold, cold, true);
         if first.is_err() && !cold {
             // from a neighbouring equilibrium the bare iteration nearly always gets there, and faster
             state.clone_from(&before);
-            first = self.search(state, false, true);
+            first = self.search(state, false, true, true);
         }
         let suspicious = match &first {
             Ok(_) => cold && self.options.stable && self.folded(state) < FOLD,
             Err(_) => cold,
         };
-        if !suspicious {
-            if first.is_err() {
-                *state = before;
-            }
-            return first;
+        if suspicious {
+            first = self.find_straight(state, &before, first);
         }
-        // a guess can lead into a fold or nowhere; straight cables between their ends rarely do
+        first.or_else(|e| self.find_otherwise(state, before, cold, e))
+    }
+
+    /// A guess can lead into a fold or nowhere; straight cables between their ends rarely do.
+    fn find_straight(
+        &mut self,
+        state: &mut State,
+        before: &State,
+        first: Result<Found, StaticsError>,
+    ) -> Result<Found, StaticsError> {
+        let (neutral, doubt) = (self.neutral.clone(), self.doubt.clone());
         let mut other = before.clone();
         other.lambda.fill(0.0);
         for part in self.model.parts() {
             part.straighten(&mut other.q);
         }
-        let second = self.search(&mut other, true, true);
+        let second = self.search(&mut other, true, true, true);
         match (first, second) {
-            (Ok(found), Ok(again)) => {
-                if self.folded(&other) > self.folded(state) {
-                    *state = other;
-                    Ok(Found { straightened: true, ..again })
-                } else {
-                    Ok(found)
-                }
+            (Ok(found), Ok(again)) if self.folded(&other) <= self.folded(state) => {
+                _ = again;
+                (self.neutral, self.doubt) = (neutral, doubt);
+                Ok(found)
             }
-            (Err(_), Ok(again)) => {
+            (_, Ok(again)) => {
                 *state = other;
                 Ok(Found { straightened: true, ..again })
             }
-            (Ok(found), Err(_)) => Ok(found),
-            (Err(e), Err(_)) => {
-                *state = before;
-                Err(e)
+            (Ok(found), Err(_)) => {
+                (self.neutral, self.doubt) = (neutral, doubt);
+                Ok(found)
             }
+            (Err(e), Err(_)) => Err(e),
         }
     }
 
-    /// Moves the state from one equilibrium to that at time `t`, in one step if that converges, else in as many
-    /// smaller ones as it needs. Returns the work of all of them.
+    /// Where Newton's method finds nothing from a guess: something may be free to move, or the guess is far away.
+    fn find_otherwise(
+        &mut self,
+        state: &mut State,
+        before: State,
+        cold: bool,
+        first: StaticsError,
+    ) -> Result<Found, StaticsError> {
+        let mut found = Found { iterations: first.iterations, ..Found::default() };
+        state.clone_from(&before);
+        if self.set_free(state)
+            && let Ok(more) = self.search(state, cold, cold, true)
+        {
+            found.add(&more);
+            return Ok(found);
+        }
+        self.free.clear();
+        if cold && self.options.stable {
+            state.clone_from(&before);
+            if self.creep(state, &mut found, true).is_ok() {
+                return Ok(found);
+            }
+        }
+        *state = before;
+        Err(self.explain(state, first))
+    }
+
+    /// Moves the state from one equilibrium to that at time `t`: in one step if that converges, else in as many smaller
+    /// ones as it needs, along the arc of the path where the load can't be raised. Critical loads are passed to where the
+    /// path is stable again, and kept in [`Statics::critical`]. Returns the work of all of them.
     ///
     /// # Errors
     /// The path could not be followed; the state is the last equilibrium that was found.
     pub fn follow(&mut self, state: &mut State, t: f64) -> Result<Found, StaticsError> {
         let (mut h, mut sum) = (t - state.t, Found::default());
+        self.span = self.span.max(h.abs());
         let least = h.abs() / 256.0;
+        // shorter steps of the load come before the arc, which costs more
+        let short = h.abs() / 4.5;
+        let mut arcs = 0;
         while state.t != t {
-            let last = state.clone();
-            let from = state.t;
-            state.t = if (t - from).abs() <= 1.001 * h.abs() { t } else { from + h };
-            self.run_on(state, state.t - from);
-            match self.find(state, false) {
+            let before = state.clone();
+            let swings = self.judged.flutter > 0.0;
+            state.t = if (t - before.t).abs() <= 1.001 * h.abs() { t } else { before.t + h };
+            let to = state.t;
+            self.run_on(state, to - before.t);
+            let e = match self.step_on(state) {
                 Ok(found) => {
                     sum.add(&found);
-                    h *= 2.0;
-                }
-                Err(e) => {
-                    *state = last;
-                    h *= 0.5;
-                    // what was refused isn't found by smaller steps either
-                    if h.abs() < least || e.iterations == 0 {
-                        return Err(e);
+                    if self.judged.flutter > 0.0 && !swings {
+                        self.locate_by_load(&before, state, &mut sum);
+                    } else if self.leapt(&before, state) {
+                        self.go_round(&before, state, &mut sum)?;
                     }
+                    h *= 2.0;
+                    continue;
                 }
+                // what was refused isn't found by smaller steps either
+                Err(e) if e.iterations == 0 => {
+                    *state = before;
+                    return Err(e);
+                }
+                Err(e) => e,
+            };
+            let unstable = self.unstable > 0;
+            let beyond = state.clone();
+            state.clone_from(&before);
+            if self.options.stable && unstable && !self.judged.potential {
+                self.locate_by_load(&before, &beyond, &mut sum);
+                self.leave_last(state, to, &mut sum)?;
+                continue;
+            }
+            if self.options.stable && (h.abs() <= short || unstable) && arcs < ARCS {
+                arcs += 1;
+                let known = self.critical.len();
+                match self.trace(state, to, &mut sum) {
+                    Ok(()) => {
+                        arcs = 0;
+                        continue;
+                    }
+                    // a critical load is an answer, if not the one that was hoped for
+                    Err(e) if self.critical.len() > known => return Err(e),
+                    Err(_) => state.clone_from(&before),
+                }
+            }
+            h *= 0.5;
+            if h.abs() < least {
+                return Err(e);
             }
         }
         Ok(sum)
     }
+
+    /// One step of [`Statics::follow`]: a stable equilibrium at the time of the state.
+    fn step_on(&mut self, state: &mut State) -> Result<Found, StaticsError> {
+        let before = state.clone();
+        let mut first = self.search(state, false, false, false);
+        if first.is_err() {
+            state.clone_from(&before);
+            first = self.search(state, false, true, false);
+        }
+        let found = first?;
+        if self.unstable > 0 {
+            let why = format!("it is unstable in {} directions", self.unstable);
+            return Err(StaticsError { why, ..self.fail(state, "", found.iterations) });
+        }
+        Ok(found)
+    }
 }
+
+#[cfg(test)]
+mod tests;

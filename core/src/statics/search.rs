@@ -5,16 +5,20 @@ use super::{Found, Statics, StaticsError};
 use crate::lane::V3;
 use crate::node::retract;
 use crate::state::{Relaxation, State};
+use crate::times::Phase;
 
 /// Cosine between neighbouring chords below which a cable counts as folded.
 pub(super) const FOLD: f64 = 0.5;
 
 impl Statics<'_> {
+    /// Newton's method from `state`. Unstable equilibria are left by a push if `leave` says so, else found as they are:
+    /// then [`Statics::unstable`] isn't zero.
     pub(super) fn search(
         &mut self,
         state: &mut State,
         cold: bool,
         mut careful: bool,
+        leave: bool,
     ) -> Result<Found, StaticsError> {
         let (model, nv) = (self.model, self.model.velocities());
         let length = model.length();
@@ -30,16 +34,10 @@ impl Statics<'_> {
         let mut floor = 0.5 * load;
         let mut last: Option<Vec<f64>> = None;
         let (mut size_before, mut theta) = (None, 1.0);
-        let fail = |s: &Self, why: &str, found: &Found| {
-            let (k, r) = s.worst();
-            Err(StaticsError {
-                t: state.t,
-                why: why.to_string(),
-                iterations: found.iterations,
-                residual: r,
-                equation: model.unknown_name(k),
-            })
-        };
+        self.unstable = 0;
+        self.neutral.clear();
+        self.doubt = None;
+        let fail = |s: &Self, why: &str, found: &Found| Err(s.fail(state, why, found.iterations));
         let mut q = state.q.clone();
         let mut lambda = state.lambda.clone();
         let mut next = q.clone();
@@ -89,37 +87,46 @@ impl Statics<'_> {
             if ramping || !done {
                 continue;
             }
-            // what is accepted is checked at the point itself; with a stiff EA even now only the smooth stress is
-            // good enough to tell stable from unstable
-            let how = Relaxation {
-                smooth: true,
-                ramp: f64::INFINITY,
-                ramp_before: f64::INFINITY,
-                load,
-                floor: None,
+            // what is accepted is checked at the point itself
+            let mut there = state.clone();
+            (there.q, there.lambda) = (q.clone(), lambda.clone());
+            let begin = self.clocks.start();
+            let judged = if self.options.stable {
+                self.judge(&there, last.as_deref(), load, found.pushes + 1)
+            } else {
+                self.check(&there, last.as_deref(), load)
             };
-            let check = match self.newton(state, &q, &lambda, last.as_deref(), how) {
-                Ok(t) => t,
+            self.clocks.stop(Phase::Stability, begin);
+            let mut judged = match judged {
+                Ok(judged) => judged,
                 Err(e) => return fail(self, &e.to_string(), &found),
             };
-            found.residual = self.worst().1;
+            if let Some(what) = &judged.driven {
+                return fail(self, &format!("the load drives what nothing holds: {what}"), &found);
+            }
+            found.residual = judged.residual;
             let mut push = None;
-            if self.options.stable && self.unstable(&check) {
-                push = Some(self.softest(found.pushes + 1));
-            } else if self.size(&check.d[..nv]) <= 1e3 * tolerance {
-                let mut there = state.clone();
-                (there.q, there.lambda) = (q.clone(), lambda.clone());
+            if leave && judged.unstable > 0 {
+                push = judged.way_out.take().map(|d| self.small(d));
+            } else if self.size(&judged.correction[..nv]) <= 1e3 * tolerance {
+                self.follow_frame(&q);
                 there.v.clone_from(&self.v);
                 there.a.clone_from(&self.a);
                 there.aux.clone_from(&self.a);
+                found.flutter = judged.flutter;
                 if cold && self.options.stable && !self.structure.symmetric {
                     match self.disturb(&there) {
                         Ok(d) if d.unstable && d.one_way => push = Some(self.small(d.shape)),
-                        Ok(d) => found.flutter = if d.unstable { d.rate } else { 0.0 },
+                        Ok(d) if d.unstable => found.flutter = found.flutter.max(d.rate),
+                        Ok(_) => {}
                         Err(e) => return fail(self, &e.to_string(), &found),
                     }
                 }
                 if push.is_none() {
+                    self.unstable = judged.unstable;
+                    self.neutral = std::mem::take(&mut judged.neutral);
+                    self.doubt = judged.doubt.take();
+                    self.judged = judged;
                     *state = there;
                     return Ok(found);
                 }
@@ -138,18 +145,15 @@ impl Statics<'_> {
         fail(self, "the iterations did not converge", &found)
     }
 
-    /// Whether the last factors show an instability: Sylvester's law where the tangent is symmetric; where it isn't,
-    /// a negative determinant, which means a real eigenvalue on the wrong side.
-    fn unstable(&self, trial: &Trial) -> bool {
-        if self.structure.symmetric {
-            return trial.negative;
-        }
-        let negative = self.solver.negative_pivots().map(|n| n + self.model.multipliers());
-        negative.is_some_and(|n| n % 2 == 1)
+    /// Why a search gives up, with the equation that is met least.
+    pub(super) fn fail(&self, state: &State, why: &str, iterations: u32) -> StaticsError {
+        let (k, residual) = self.worst();
+        let equation = self.model.unknown_name(k);
+        StaticsError { t: state.t, why: why.into(), iterations, residual, equation }
     }
 
     /// Largest position and slope of an increment, relative to the reference length.
-    fn size(&self, d: &[f64]) -> f64 {
+    pub(super) fn size(&self, d: &[f64]) -> f64 {
         let length = self.model.length();
         let mut worst = 0.0;
         for n in self.model.nodes() {
@@ -165,7 +169,7 @@ impl Statics<'_> {
         worst
     }
 
-    fn position_size(&self, d: &[f64]) -> f64 {
+    pub(super) fn position_size(&self, d: &[f64]) -> f64 {
         let nodes = self.model.nodes().iter();
         nodes
             .filter(|n| n.kind.has_position())
@@ -173,7 +177,7 @@ impl Statics<'_> {
             .fold(0.0, |m: f64, x| m.max(x.abs()))
     }
 
-    fn worst(&self) -> (usize, f64) {
+    pub(super) fn worst(&self) -> (usize, f64) {
         let mut worst = (0, 0.0);
         for (i, r) in self.system.residual.iter().enumerate() {
             if !r.is_finite() || r.abs() > worst.1 {
@@ -185,8 +189,7 @@ impl Statics<'_> {
 
     /// The direction in which the last factored tangent resists least, by inverse iteration, as a small increment.
     pub(super) fn softest(&mut self, seed: u32) -> Vec<f64> {
-        let s = &self.structure;
-        let nv = self.model.velocities();
+        let (nv, s) = (self.model.velocities(), &self.structure);
         let mut random = 0x2545_F491_4F6C_DD1Du64.wrapping_mul(u64::from(seed) | 1);
         let mut x: Vec<f64> = (0..s.n)
             .map(|p| {
@@ -197,9 +200,11 @@ impl Statics<'_> {
             })
             .collect();
         for _ in 0..4 {
-            if self.solver.solve(s, &self.system.values, &mut x).is_err() {
+            let solved = self.solver.solve(&self.structure, &self.system.values, &mut x);
+            if solved.is_err() || self.hold(&mut x, &vec![0.0; self.free.len()]).is_err() {
                 break;
             }
+            let s = &self.structure;
             let mut largest = 0.0;
             for p in 0..s.n {
                 if s.is_multiplier[p] {
@@ -209,11 +214,11 @@ impl Statics<'_> {
             }
             x.iter_mut().for_each(|x| *x /= largest.max(f64::MIN_POSITIVE));
         }
-        self.small((0..nv).map(|i| x[s.position[i]]).collect())
+        self.small((0..nv).map(|i| x[self.structure.position[i]]).collect())
     }
 
     /// A push in a direction: large enough to leave an equilibrium, small enough to stay near.
-    fn small(&self, mut d: Vec<f64>) -> Vec<f64> {
+    pub(super) fn small(&self, mut d: Vec<f64>) -> Vec<f64> {
         let size = self.size(&d).max(f64::MIN_POSITIVE);
         d.iter_mut().for_each(|d| *d *= 0.05 / size);
         d

@@ -1,180 +1,309 @@
-//! Whether an equilibrium is stable where the inertia of the tangent doesn't tell: the linearised equations of
-//! motion are integrated from a small disturbance, in the frame of the equilibrium.
+//! Whether an equilibrium is stable.
+//!
+//! Where loads have a potential the tangent is symmetric, and Sylvester's law of inertia tells: on the motions that the
+//! constraints leave, as many eigenvalues are negative as there are negative pivots beside those of the multipliers.
+//! That holds for pairs too, such as the two planes that a round cable buckles in, where the sign of a determinant says
+//! nothing. Counted are the pivots of `K - m W` and `K + m W`, with what rounding makes of `K` for `m W`: what lies
+//! between the two counts is neutral as far as the matrix can tell, and is pushed by a finite amount instead
+//! ([`super::neutral`]).
+//!
+//! Where loads have no potential (drag, forces that follow), eigenvalues of the linearised motion tell
+//! ([`crate::modes`]), and a disturbance that is followed for a while ([`super::disturbance`]).
 
-use super::Statics;
-use crate::integrator::Scheme;
-use crate::solver::{Guard, SolveError};
-use crate::state::State;
-use crate::times::Phase;
+use super::naming::describe;
+use super::neutral::Leaning;
+use super::{Neutral, Statics};
+use crate::modes::slowest;
+use crate::node::NodeKind;
+use crate::solver::SolveError;
+use crate::state::{Relaxation, Relaxed, State};
 
-/// What becomes of a small disturbance of an equilibrium.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Disturbance {
-    /// Rate at which it grows in the end [1/s]; negative if it dies out.
-    pub rate: f64,
-    /// Whether it goes one way only (divergence), instead of to and fro (flutter).
-    pub one_way: bool,
-    /// Its shape in the end, as an increment.
-    pub shape: Vec<f64>,
-    /// Whether it grew enough to call the equilibrium unstable.
-    pub unstable: bool,
+/// Part of the diagonal of the tangent that is taken for rounding of it, and stands in for stiffness that is missing.
+pub(super) const MARGIN: f64 = 1e-12;
+/// Difference of entries that mirror each other, as part of their diagonals, up to which a tangent is symmetric.
+const MIRRORED: f64 = 1e-11;
+/// How many eigenvalues are asked for where loads have no potential.
+const SLOWEST: usize = 8;
+
+/// What an equilibrium is like.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Judgement {
+    /// Newton's correction there.
+    pub correction: Vec<f64>,
+    /// Largest residual force [N].
+    pub residual: f64,
+    /// How many directions it can be left in by itself.
+    pub unstable: usize,
+    /// One of them, as an increment.
+    pub way_out: Option<Vec<f64>>,
+    /// Directions in which nothing holds it and nothing drives it.
+    pub neutral: Vec<Neutral>,
+    /// Rate at which disturbances swing ever wider [1/s], 0 if none does; and their shape.
+    pub flutter: f64,
+    pub swing: Vec<f64>,
+    /// Whether loads have a potential there.
+    pub potential: bool,
+    /// What the load moves, since nothing holds it: this is no equilibrium.
+    pub driven: Option<String>,
+    /// What can't be told.
+    pub doubt: Option<String>,
 }
-
-/// Steps of the integration, and their number per characteristic time.
-const STEPS: usize = 800;
-const PER_TIME: f64 = 20.0;
-/// Growth over the second half of the steps from which on the equilibrium is unstable.
-const GROWTH: f64 = 3.0;
-/// How often the steps are made smaller to resolve a fast growth.
-const REFINEMENTS: u32 = 12;
 
 impl Statics<'_> {
-    /// Follows a small disturbance of the equilibrium in `state` for a few tens of its characteristic time
-    /// `√(m L / F)`, with `M ẍ + (C + 2 M W) ẋ + (K + C W + M W²) x + Gᵀλ = 0`, `G x = 0` in the frame of the
-    /// search. An unstable equilibrium isn't wrong, but it will not be seen: a limp hose whose tension is below
-    /// `m U²` flutters behind its ship.
-    ///
-    /// # Errors
-    /// The matrices can't be factored.
-    pub fn disturb(&mut self, state: &State) -> Result<Disturbance, SolveError> {
-        let model = self.model;
-        let load = self.load(state);
-        if load <= f64::MIN_POSITIVE {
-            // nothing pulls, so nothing can tip over; there is no characteristic time either
-            let shape = vec![0.0; model.velocities()];
-            return Ok(Disturbance { rate: 0.0, one_way: false, shape, unstable: false });
-        }
-        self.assemble(state, &state.q, &state.lambda, None, true);
-        let n = self.structure.n;
-        let order = |d: &[f64], x: &mut Vec<f64>, s: &crate::structure::Structure| {
-            x.clear();
-            x.resize(s.n, 0.0);
-            for (i, d) in d.iter().enumerate() {
-                x[s.position[i]] = *d;
-            }
+    /// Judges the equilibrium in `there`, which Newton's method came to by the increment `last`; `seed` varies the way out.
+    pub(super) fn judge(
+        &mut self,
+        there: &State,
+        last: Option<&[f64]>,
+        load: f64,
+        seed: u32,
+    ) -> Result<Judgement, SolveError> {
+        // with a stiff EA even now only the smooth stress is good enough to tell stable from unstable
+        let how = Relaxation {
+            smooth: last.is_some(),
+            ramp: f64::INFINITY,
+            ramp_before: f64::INFINITY,
+            load,
+            floor: None,
         };
-        let mass: f64 = {
-            let (mut x, mut y) = (Vec::new(), vec![0.0; n]);
-            let mut unit = vec![0.0; model.velocities()];
-            for node in model.nodes().iter().filter(|n| n.kind.has_position()) {
-                unit[node.v] = 1.0;
-            }
-            order(&unit, &mut x, &self.structure);
-            self.structure.multiply(&self.mass.values, &x, &mut y);
-            x.iter().zip(&y).map(|(x, y)| x * y).sum()
-        };
-        let time = (mass * model.length() / load).sqrt();
-        let mut h = time / PER_TIME;
-        let begin = self.clocks.start();
-        let mut found = self.integrate(h, time)?;
-        for _ in 0..REFINEMENTS {
-            // a growth that the steps don't resolve changes sign at each of them
-            if !found.unstable || found.one_way || found.rate * h < 0.3 {
-                break;
-            }
-            h *= 0.25;
-            found = self.integrate(h, time)?;
+        self.assemble(there, &there.q, &there.lambda, Some(Relaxed { last, how }), false);
+        let symmetric = self.structure.symmetric || self.is_mirrored();
+        self.prepare();
+        let w = self.weights();
+        let mut out = Judgement { residual: self.worst().1, potential: symmetric, ..Judgement::default() };
+        if !symmetric {
+            self.free.clear();
+            self.factor()?;
+            out.correction = self.correction()?;
+            self.judge_motion(there, &mut out)?;
+            return Ok(out);
         }
-        self.clocks.stop(Phase::Stability, begin);
-        Ok(found)
+        let held = self.held(there);
+        let count = |s: &Self| s.solver.negative_pivots().map(|n| n.saturating_sub(held));
+        self.shift(&w, -MARGIN);
+        self.factor()?;
+        let below = count(self);
+        if below == Some(0) {
+            self.free.clear();
+            out.correction = self.correction()?;
+            return Ok(out);
+        }
+        self.shift(&w, 2.0 * MARGIN);
+        self.factor()?;
+        let (Some(below), Some(unstable)) = (below, count(self)) else {
+            // pivoting hides the signs of the pivots
+            self.free.clear();
+            out.correction = self.correction()?;
+            self.judge_motion(there, &mut out)?;
+            return Ok(out);
+        };
+        let near = below.saturating_sub(unstable);
+        let lowest = self.lowest(&w, near.max(usize::from(unstable > 0)))?;
+        self.free = lowest.iter().take(near).map(|x| self.weighed(&w, x)).collect();
+        out.correction = self.correction()?;
+        out.unstable = unstable;
+        if unstable > 0 {
+            out.way_out = Some(self.softest(seed));
+            return Ok(out);
+        }
+        // what a load drives where nothing holds is no equilibrium
+        for x in lowest.iter().take(near) {
+            let shape = self.increment(x);
+            let work: f64 = shape.iter().zip(&self.system.residual).map(|(d, r)| d * r).sum();
+            let position = &self.structure.position;
+            let rounding: f64 = shape.iter().zip(position).map(|(d, &p)| MARGIN * w[p] * d * d).sum();
+            if work.abs() > (1e-6 * load * self.size(&shape) * self.model.length()).max(rounding) {
+                out.driven = Some(describe(self.model, &there.q, &shape));
+                return Ok(out);
+            }
+        }
+        // by the matrix alone these can't be told: rounding is as large as they are
+        for k in 0..near {
+            let shape = self.increment(&lowest[k]);
+            match self.lean(there, &shape, k, load) {
+                Leaning::Stays => {
+                    out.neutral.push(Neutral::new(self.model, there, shape));
+                }
+                Leaning::Returns => {}
+                Leaning::Leaves => {
+                    out.unstable += 1;
+                    out.way_out.get_or_insert(shape);
+                }
+                Leaning::Unknown => {
+                    let what = Neutral::new(self.model, there, shape).what;
+                    out.doubt =
+                        Some(format!("whether it is stable can't be told: {what}, as far as can be seen"));
+                }
+            }
+        }
+        Ok(out)
     }
 
-    /// Integrates with `STEPS` steps of `h`; `time` weighs velocities against positions.
-    fn integrate(&self, h: f64, time: f64) -> Result<Disturbance, SolveError> {
-        let (n, nv) = (self.structure.n, self.model.velocities());
-        let c = Scheme::GeneralizedAlpha { rho_inf: 0.9 }.coefficients().unwrap_or_else(|_| unreachable!());
-
-        let mut values = vec![0.0; self.structure.entries()];
-        for (r, columns, at) in self.structure.rows() {
-            for (i, p) in at.enumerate() {
-                let (k, d, m) = (self.system.values[p], self.damping.values[p], self.mass.values[p]);
-                let constrains =
-                    self.structure.is_multiplier[r] || self.structure.is_multiplier[columns.get(i)];
-                values[p] = if constrains { k } else { c.beta * h * h * k + c.gamma * h * d + c.mass() * m };
-            }
-        }
-        if let Some(softening) = &self.softening {
-            softening.apply(&mut values);
-        }
-        let mut solver = Guard::new(&self.structure)?;
-        solver.factor(&self.structure, &values)?;
-
-        // a disturbance that holds everything, and respects the constraints
-        let mut v: Vec<f64> =
-            (0..n).map(|p| if self.structure.is_multiplier[p] { 0.0 } else { noise(p) }).collect();
-        let mut y = vec![0.0; n];
-        self.structure.multiply(&self.mass.values, &v, &mut y);
-        zero_rows(&self.structure, &mut y);
-        solver.solve(&self.structure, &values, &mut y)?;
-        zero_rows(&self.structure, &mut y);
-        v.copy_from_slice(&y);
-
-        let (mut x, mut a, mut vd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        let (mut p, mut pv, mut pa, mut r) = (vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        let size = |x: &[f64], v: &[f64]| {
-            x.iter().zip(v).map(|(x, v)| x * x + time * time * v * v).sum::<f64>().sqrt()
+    /// Checks an equilibrium without asking for its stability.
+    pub(super) fn check(
+        &mut self,
+        there: &State,
+        last: Option<&[f64]>,
+        load: f64,
+    ) -> Result<Judgement, SolveError> {
+        let how = Relaxation {
+            smooth: last.is_some(),
+            ramp: f64::INFINITY,
+            ramp_before: f64::INFINITY,
+            load,
+            floor: None,
         };
-        let (mut middle, mut turns, mut scaled) = (0.0, 0, 0.0);
-        let mut before = x.clone();
-        for step in 0..STEPS {
-            for i in 0..n {
-                p[i] = x[i] + h * v[i] + h * h * (0.5 - c.beta) * a[i];
-                pv[i] = v[i] + h * (1.0 - c.gamma) * a[i];
-                pa[i] = (c.alpha_m * a[i] - c.alpha_f * vd[i]) / (1.0 - c.alpha_f);
-            }
-            r.fill(0.0);
-            for (matrix, x) in [(&self.system, &p), (&self.damping, &pv), (&self.mass, &pa)] {
-                self.structure.multiply(&matrix.values, x, &mut y);
-                for i in 0..n {
-                    // the rows of constraints stand in every matrix; they hold for positions
-                    if !self.structure.is_multiplier[i] {
-                        r[i] -= y[i];
-                    } else if std::ptr::eq(matrix, &self.system) {
-                        r[i] = -y[i] / (c.beta * h * h);
+        let correction = self.solve_at(there, &there.q, &there.lambda, Some(Relaxed { last, how }))?.d;
+        Ok(Judgement { correction, residual: self.worst().1, ..Judgement::default() })
+    }
+
+    /// How many directions the equilibrium in `there` can be left in, neutral ones not counted; leaves the factors of
+    /// its tangent. `None` where the pivots don't tell.
+    pub(super) fn count(&mut self, there: &State, last: Option<&[f64]>, load: f64) -> Option<usize> {
+        let how = Relaxation {
+            smooth: last.is_some(),
+            ramp: f64::INFINITY,
+            ramp_before: f64::INFINITY,
+            load,
+            floor: None,
+        };
+        self.assemble(there, &there.q, &there.lambda, Some(Relaxed { last, how }), false);
+        if !self.structure.symmetric && !self.is_mirrored() {
+            return None;
+        }
+        self.prepare();
+        let w = self.weights();
+        self.shift(&w, MARGIN);
+        self.factor().ok()?;
+        self.solver.negative_pivots().map(|n| n.saturating_sub(self.held(there)))
+    }
+
+    /// Judges by the eigenvalues of the linearised motion.
+    fn judge_motion(&mut self, there: &State, out: &mut Judgement) -> Result<(), SolveError> {
+        let upright = self.is_upright(there);
+        let linear = self.linearise(there);
+        match slowest(self.model, &there.modes, linear, SLOWEST) {
+            Ok(mut rates) => {
+                // rounding leaves motions among them that the constraints forbid
+                rates.retain(|m| self.is_allowed(&m.shape) && self.is_allowed(&m.quadrature));
+                for mode in rates.iter().filter(|m| m.is_unstable()) {
+                    if mode.omega == 0.0 {
+                        out.unstable += 1;
+                        out.way_out.get_or_insert_with(|| mode.shape.clone());
+                    } else if mode.growth > out.flutter {
+                        out.flutter = mode.growth;
+                        out.swing.clone_from(&mode.shape);
                     }
                 }
-            }
-            solver.solve(&self.structure, &values, &mut r)?;
-            zero_rows(&self.structure, &mut r);
-            for i in 0..n {
-                x[i] = p[i] + h * h * c.beta * r[i];
-                v[i] = pv[i] + h * c.gamma * r[i];
-                vd[i] = pa[i] + c.mass() * r[i];
-            }
-            std::mem::swap(&mut a, &mut r);
-            let now = size(&x, &v);
-            if now > 1e6 {
-                // linear: only the shape and the logarithm of the size matter
-                for y in [&mut x, &mut v, &mut a, &mut vd, &mut before] {
-                    y.iter_mut().for_each(|y| *y /= now);
+                for mode in rates.iter().filter(|m| m.rigid) {
+                    out.neutral.push(Neutral::new(self.model, there, mode.shape.clone()));
                 }
-                scaled += now.ln();
             }
-            if step + 1 == STEPS / 2 {
-                middle = size(&x, &v).ln() + scaled;
-                before.copy_from_slice(&x);
-            } else if step > STEPS / 2 && x.iter().zip(&before).map(|(x, b)| x * b).sum::<f64>() < 0.0 {
-                turns += 1;
-                before.copy_from_slice(&x);
+            // what has no mass can't swing
+            Err(_) if upright => {}
+            Err(e) => {
+                out.doubt = Some(format!("whether it is stable can't be told: {e}"));
             }
         }
-        let growth = size(&x, &v).ln() + scaled - middle;
-        let shape = (0..nv).map(|i| x[self.structure.position[i]]).collect();
-        let rate = growth / (h * (STEPS / 2) as f64);
-        Ok(Disturbance { rate, one_way: turns == 0, shape, unstable: growth > GROWTH.ln() })
+        Ok(())
     }
-}
 
-fn zero_rows(s: &crate::structure::Structure, x: &mut [f64]) {
-    for (x, &multiplier) in x.iter_mut().zip(&s.is_multiplier) {
-        if multiplier {
-            *x = 0.0;
+    /// Whether the symmetric part of the assembled tangent is positive where the constraints leave motions: then no real
+    /// eigenvalue is negative (Bendixson), and nothing goes one way only.
+    fn is_upright(&mut self, there: &State) -> bool {
+        let s = &self.structure;
+        let mut mean = self.system.values.clone();
+        if !s.symmetric {
+            for (r, columns, at) in s.rows() {
+                for (k, p) in at.enumerate() {
+                    mean[p] = 0.5 * (mean[p] + self.system.values[s.slot(columns.get(k), r)]);
+                }
+            }
+        }
+        let factored = self.solver.factor(s, &mean).is_ok();
+        factored && self.solver.negative_pivots() == Some(self.held(there))
+    }
+
+    /// Whether the constraints allow an increment; their Jacobian stands in the assembled tangent.
+    fn is_allowed(&self, d: &[f64]) -> bool {
+        let s = &self.structure;
+        let mut x = vec![0.0; s.n];
+        s.order(d, &mut x);
+        let (mut against, mut size) = (vec![0.0; s.n], vec![0.0; s.n]);
+        for (r, columns, at) in s.rows().filter(|(r, ..)| s.is_multiplier[*r]) {
+            for (k, p) in at.enumerate() {
+                let c = columns.get(k);
+                against[r] += self.system.values[p] * x[c];
+                size[r] += (self.system.values[p] * x[c]).abs();
+            }
+        }
+        let largest = x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let multipliers = (0..s.n).filter(|&r| s.is_multiplier[r]);
+        multipliers.map(|r| (against[r], size[r])).all(|(g, size)| g.abs() <= 1e-6 * size.max(1e-6 * largest))
+    }
+
+    /// Whether the assembled tangent is its own mirror image, to rounding. The rotations of a body don't commute: what
+    /// is left of the moment on it stands in its tangent without a mirror image, and is no property of a load.
+    pub(super) fn is_mirrored(&self) -> bool {
+        let (s, values) = (&self.structure, &self.system.values);
+        let mut body = vec![u32::MAX; s.n];
+        for (k, n) in self.model.nodes().iter().enumerate().filter(|(_, n)| n.kind == NodeKind::Frame) {
+            for i in 3..6 {
+                body[s.position[n.v + i]] = k as u32;
+            }
+        }
+        let w = self.weights();
+        s.rows().filter(|(r, ..)| !s.is_multiplier[*r]).all(|(r, columns, at)| {
+            at.enumerate().all(|(k, p)| {
+                let c = columns.get(k);
+                if c <= r || s.is_multiplier[c] {
+                    return true;
+                }
+                let same = body[r] != u32::MAX && body[r] == body[c];
+                let allowed = if same { 1e-6 } else { MIRRORED };
+                let off = (values[p] - values[s.slot(c, r)]).abs();
+                off <= allowed * (w[r] * w[c]).sqrt() || off <= f64::EPSILON * (w[r] + w[c])
+            })
+        })
+    }
+
+    /// What each unknown weighs where eigenvalues are compared with rounding: the size of its diagonal entry.
+    pub(super) fn weights(&self) -> Vec<f64> {
+        let s = &self.structure;
+        let diagonal = |i: usize| self.system.values[s.diagonal[i] as usize].abs();
+        // positions, and what else there is: slopes, rotations, coordinates
+        let kind = |i: usize, n: &crate::node::Node| usize::from(i - n.v >= 3 || n.kind.velocities() < 3);
+        let mut largest = [0.0_f64; 2];
+        for n in self.model.nodes() {
+            for i in n.dofs() {
+                largest[kind(i, n)] = largest[kind(i, n)].max(diagonal(i));
+            }
+        }
+        if !(largest[0] > 0.0) {
+            largest[0] = 1.0;
+        }
+        if !(largest[1] > 0.0) {
+            largest[1] = largest[0] * (1e-3 * self.model.length()).powi(2);
+        }
+        let mut w = vec![0.0; s.n];
+        for n in self.model.nodes() {
+            for i in n.dofs() {
+                w[s.position[i]] = diagonal(i).max(1e-6 * largest[kind(i, n)]);
+            }
+        }
+        w
+    }
+
+    /// Adds `m W` to the tangent.
+    pub(super) fn shift(&mut self, w: &[f64], m: f64) {
+        for (p, w) in w.iter().enumerate() {
+            self.system.values[self.structure.diagonal_at[p] as usize] += m * w;
         }
     }
-}
 
-/// Numbers between -1 and 1 without a pattern.
-fn noise(k: usize) -> f64 {
-    let x = (k as f64 * 12.9898).sin() * 43_758.545;
-    2.0 * (x - x.floor()) - 1.0
+    /// Equations of constraints that hold.
+    pub(super) fn held(&self, there: &State) -> usize {
+        let all = 0..self.model.constraints().len();
+        all.filter(|&c| self.model.holds(c, &there.modes)).map(|c| self.model.rows_of(c).len()).sum()
+    }
 }

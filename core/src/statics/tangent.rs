@@ -1,6 +1,7 @@
 //! One linear system of the search: assembly, in a frame that may move, factorisation and solution.
 
 use super::Statics;
+use super::stability::MARGIN;
 use crate::lane::V3;
 use crate::marker::frame;
 use crate::node::NodeKind;
@@ -38,24 +39,49 @@ impl Statics<'_> {
         relaxed: Option<Relaxed<'_>>,
     ) -> Result<Trial, SolveError> {
         self.assemble(state, q, lambda, relaxed, false);
+        self.prepare();
+        if !self.free.is_empty() {
+            let w = self.weights();
+            self.shift(&w, MARGIN);
+        }
+        self.factor()?;
+        let negative = self.solver.negative_pivots().is_none_or(|n| n != self.held(state));
+        Ok(Trial { d: self.correction()?, negative })
+    }
+
+    /// Makes the assembled tangent fit for elimination without pivoting.
+    pub(super) fn prepare(&mut self) {
         self.brace();
         if let Some(softening) = &self.softening {
             softening.apply(&mut self.system.values);
         }
+    }
+
+    /// Factors the tangent.
+    pub(super) fn factor(&mut self) -> Result<(), SolveError> {
         let begin = self.clocks.start();
         self.solver.factor(&self.structure, &self.system.values)?;
         self.clocks.stop(Phase::Factorisation, begin);
-        let negative = self.solver.negative_pivots().is_none_or(|n| n != self.model.multipliers());
-        let s = &self.structure;
-        let mut x = vec![0.0; s.n];
-        for (i, &p) in s.position.iter().enumerate() {
-            x[p] = -self.system.residual[i];
-        }
+        Ok(())
+    }
+
+    /// Newton's correction with the factored tangent, velocities and then multipliers; free directions stay where they
+    /// are.
+    pub(super) fn correction(&mut self) -> Result<Vec<f64>, SolveError> {
+        let residual: Vec<f64> = self.system.residual.iter().map(|r| -r).collect();
+        self.solve(&residual)
+    }
+
+    /// The solution for a right-hand side (velocities, then multipliers) with the factored tangent; free directions stay
+    /// where they are.
+    pub(super) fn solve(&mut self, rhs: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let mut x = vec![0.0; self.structure.n];
+        self.structure.order(rhs, &mut x);
         let begin = self.clocks.start();
-        self.solver.solve(s, &self.system.values, &mut x)?;
+        self.solver.solve(&self.structure, &self.system.values, &mut x)?;
+        self.hold(&mut x, &vec![0.0; self.free.len()])?;
         self.clocks.stop(Phase::Solution, begin);
-        let d: Vec<f64> = s.position.iter().map(|&p| x[p]).collect();
-        Ok(Trial { d, negative })
+        Ok(self.structure.position.iter().map(|&p| x[p]).collect())
     }
 
     /// Residual and stiffness as seen from the frame; with `motion` damping and mass as well.
@@ -84,13 +110,16 @@ impl Statics<'_> {
     /// Adds `ρ GᵀG` to the stiffness and `ρ Gᵀ g` to the residual. The solution is the same, and no node is left
     /// without stiffness before its constraint is reached in the elimination.
     pub(super) fn brace(&mut self) {
-        if self.model.multipliers() == 0 {
-            return;
+        if self.model.multipliers() > 0 {
+            self.model.add_brace(&self.structure, self.brace_scale(), &mut self.system);
         }
-        let s = &self.structure;
-        let nv = self.model.velocities();
-        let scale = (0..nv).map(|i| self.system.values[s.diagonal[i] as usize].abs()).fold(0.0, f64::max);
-        self.model.add_brace(s, scale.max(f64::MIN_POSITIVE), &mut self.system);
+    }
+
+    /// Largest diagonal entry of the assembled stiffness.
+    pub(super) fn brace_scale(&self) -> f64 {
+        let diagonal = self.structure.diagonal[..self.model.velocities()].iter();
+        let largest = diagonal.map(|&p| self.system.values[p as usize].abs()).fold(0.0, f64::max);
+        largest.max(f64::MIN_POSITIVE)
     }
 
     /// Velocities and accelerations of the frame at a configuration.

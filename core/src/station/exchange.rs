@@ -123,6 +123,7 @@ thread_local! {
 /// A [`Law`] behind a virtual call that serves a whole batch.
 pub(super) trait ErasedLaw: Send + Sync {
     fn label(&self) -> String;
+    fn gives(&self) -> Gives;
     /// Loads a batch; `width` must be that of the element's own code.
     fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange);
     /// The power of the loads in the first `lanes` lanes of a batch.
@@ -175,6 +176,9 @@ impl<L: Law> LaneTask for LoadAll<'_, L> {
 impl<L: Law> ErasedLaw for L {
     fn label(&self) -> String {
         Law::label(self)
+    }
+    fn gives(&self) -> Gives {
+        Law::gives(self)
     }
     fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange) {
         run(width, LoadAll { law: self, t, tangent, x });

@@ -127,6 +127,9 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     fn is_empty(&self) -> bool {
         self.elements.is_empty()
     }
+    fn fixed(&self) -> bool {
+        E::FIXED
+    }
     fn each(&self, at: &At<'_>, f: &mut dyn FnMut(&Station<f64>)) {
         for (e, seat) in self.elements.iter().zip(&self.seats) {
             let p = E::lanes::<f64>(&Batch(std::slice::from_ref(e)));

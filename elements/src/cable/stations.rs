@@ -30,6 +30,7 @@ fn interpolate<R: Real>(s: &[R; 4], e: &[R; 12]) -> V3<R> {
 }
 
 impl StationElement<12, 12, 4> for CableStations {
+    const FIXED: bool = true;
     type Lanes<R: Real> = CableStations<R>;
 
     #[inline(always)]
