@@ -319,6 +319,12 @@ impl Structure {
         b.base + (row - b.first) * b.width() + index.unwrap_or(0)
     }
 
+    /// The entry of these positions; zero where nothing couples them.
+    pub(crate) fn entry(&self, values: &[f64], row: usize, column: usize) -> f64 {
+        let b = &self.blocks[self.block_of(row)];
+        self.index_in(b, column).map_or(0.0, |k| values[b.base + (row - b.first) * b.width() + k])
+    }
+
     /// The tiles of a clique.
     #[inline(always)]
     pub(crate) fn tiles(&self, clique: usize) -> &[Tile] {

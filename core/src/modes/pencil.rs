@@ -210,7 +210,7 @@ fn is_symmetric(s: &Structure, values: &[f64]) -> bool {
     s.rows().all(|(r, columns, at)| {
         at.enumerate().all(|(k, p)| {
             let c = columns.get(k);
-            c <= r || (values[p] - values[s.slot(c, r)]).abs() <= 1e-8 * largest[r].max(largest[c])
+            c <= r || (values[p] - s.entry(values, c, r)).abs() <= 1e-8 * largest[r].max(largest[c])
         })
     })
 }

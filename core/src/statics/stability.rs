@@ -216,7 +216,7 @@ impl Statics<'_> {
         if !s.symmetric {
             for (r, columns, at) in s.rows() {
                 for (k, p) in at.enumerate() {
-                    mean[p] = 0.5 * (mean[p] + self.system.values[s.slot(columns.get(k), r)]);
+                    mean[p] = 0.5 * (mean[p] + s.entry(&self.system.values, columns.get(k), r));
                 }
             }
         }
@@ -261,7 +261,7 @@ impl Statics<'_> {
                 }
                 let same = body[r] != u32::MAX && body[r] == body[c];
                 let allowed = if same { 1e-6 } else { MIRRORED };
-                let off = (values[p] - values[s.slot(c, r)]).abs();
+                let off = (values[p] - s.entry(values, c, r)).abs();
                 off <= allowed * (w[r] * w[c]).sqrt() || off <= f64::EPSILON * (w[r] + w[c])
             })
         })
