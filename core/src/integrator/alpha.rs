@@ -144,8 +144,7 @@ impl Alpha {
     }
 
     /// Estimated error of the trial, relative to the part where it is largest: `|Cq h² (a₊ - a)|`, without what the
-    /// constraints and the numerical damping take away. With it by what tensions are off for it, relative to the forces at
-    /// work.
+    /// constraints and the numerical damping take away. With it by what tensions are off for it, over their tolerance.
     fn error(
         &self,
         model: &Model,
@@ -167,7 +166,7 @@ impl Alpha {
         work.times_mass(model, &e, &mut rhs[..nv]);
         let solved = work.solve(model, Which::Iteration, &mut rhs);
         let size = work.norms.relative(&rhs[..nv]);
-        let strained = work.forces.strained(&work.trial.q, &rhs[..nv]);
+        let strained = work.forces.strained(&work.trial.q, &rhs[..nv], self.options.force_tolerance);
         (work.trial.d, work.trial.rhs) = (e, rhs);
         solved?;
         Ok([size, strained])
@@ -194,12 +193,11 @@ impl Alpha {
             Stepping::Fixed { .. } => Ok(Verdict::Good { error: 0.0 }),
             Stepping::Controlled { tolerance } => {
                 let turn = model.turn(&work.trial.d);
-                let [local, strained] = self
+                let [local, force] = self
                     .error(model, &state.modes, work, h)
                     .map_err(|source| linear(model, state.t, source))?;
                 // errors of positions add up, per unit step; stiff directions follow what moves them, and forget
                 let position = local * (self.horizon / h) / tolerance.min(1e-3);
-                let force = strained / self.options.force_tolerance;
                 // max() would swallow a NaN
                 let error = if position >= force { position } else { force };
                 // a body that is driven has no error, but a larger turn may end on another branch of its joint

@@ -147,9 +147,9 @@ impl Forces {
         worst
     }
 
-    /// What an increment `d` of the configuration `q` changes tensions by, relative to the forces at work as of the last
-    /// [`Forces::ratio`], in the cable where that is largest: at nodes and in the middle of elements.
-    pub fn strained(&self, q: &[f64], d: &[f64]) -> f64 {
+    /// What an increment `d` of the configuration `q` changes tensions by, over `tolerance` times the forces at work as of
+    /// the last [`Forces::ratio`], in the cable where that is largest: at nodes and in the middle of elements.
+    pub fn strained(&self, q: &[f64], d: &[f64], tolerance: f64) -> f64 {
         let mut worst = 0.0f64;
         for line in &self.cables {
             let mut most = 0.0f64;
@@ -170,7 +170,9 @@ impl Forces {
                     most = most.max(along(middle(q, x, y), middle(d, i, j)));
                 }
             }
-            worst = worst.max(line.ea * most / self.at_work(line.part).max(f64::MIN_POSITIVE));
+            // where nothing pulls, what iterations leave is all there is
+            let limit = tolerance * self.at_work(line.part) + 10.0 * self.rounding[line.part];
+            worst = worst.max(line.ea * most / limit.max(f64::MIN_POSITIVE));
         }
         worst
     }
