@@ -9,8 +9,9 @@ const LEFT: f64 = 1e-9;
 const PART: f64 = 1e-3;
 /// A step shorter than this, in parts of what it should be, was cut.
 const CUT: f64 = 1.0 - 1e-6;
-/// Steps after which a run has begun.
+/// Steps after which a run has begun, and part of its time.
 const BEGUN: u64 = 50;
+const BEGUN_TIME: f64 = 0.05;
 /// So many steps are worth a word.
 const MANY: u64 = 100_000;
 /// What has moved by no more than this since the run began, in parts of its own length, has no energy to speak of.
@@ -85,7 +86,7 @@ impl Simulation {
     /// Warns the first time that energy has appeared from nowhere.
     pub(super) fn watch_energy(&mut self, end: f64, observer: &mut dyn Observer) {
         // a run that has hardly begun has no energy yet that another could be compared with
-        let begun = self.work.counts.steps >= BEGUN || self.state.t >= 0.01 * end;
+        let begun = self.work.counts.steps >= BEGUN && self.state.t >= BEGUN_TIME * end;
         if !self.keep_audit || self.created.is_some() || !begun {
             return;
         }
