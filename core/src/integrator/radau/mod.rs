@@ -42,7 +42,7 @@ const VELOCITY: f64 = 0.1;
 /// by hundreds of times the tolerance.
 const ITERATION: f64 = 0.003;
 /// The tolerance whose iteration error fixed steps are given.
-const FIXED: f64 = 1e-8;
+const FIXED: f64 = 1e-7;
 
 impl Radau {
     /// Checks the options. `duration` is the length of the run, over which errors add up unless the options say

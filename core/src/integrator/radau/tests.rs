@@ -54,7 +54,7 @@ fn tumble(h: f64) -> Vec<f64> {
     let options = Options {
         scheme: Scheme::RadauIia5,
         stepping: Stepping::Fixed { h },
-        newton_tolerance: 1e-3,
+        newton_tolerance: 1e-4,
         ..Options::default()
     };
     let mut radau = Radau::new(&options, 2.0).unwrap();
