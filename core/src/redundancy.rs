@@ -39,11 +39,12 @@ pub struct Redundancy {
 }
 
 /// Where the entries of the constraints stand in the matrix.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Softening {
     rows: Vec<Row>,
 }
 
+#[derive(Clone)]
 struct Row {
     /// The diagonal entry of the multiplier.
     own: usize,

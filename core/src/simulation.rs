@@ -1,6 +1,7 @@
 //! A run in time: steps, outputs, events, the audit of energy.
 
 mod ahead;
+mod between;
 mod checkpoint;
 mod watch;
 
@@ -149,6 +150,8 @@ pub struct Simulation {
     events: Vec<(Arc<dyn Event>, f64)>,
     previous: State,
     scratch: State,
+    /// Scratch of samples between steps that take a step of their own.
+    aside: Option<Box<Workspace>>,
     /// Time at which the present advance began, and the number of its next sample.
     sampled: (f64, u64),
 }
@@ -197,6 +200,7 @@ impl Simulation {
             events,
             previous,
             scratch,
+            aside: None,
             sampled: (0.0, 0),
         })
     }
@@ -344,9 +348,7 @@ impl Simulation {
     /// Samples at time `t` inside the last step, or at the present state.
     fn sample(&mut self, observer: &mut dyn Observer, t: Option<f64>) -> Result<ControlFlow<()>, StepError> {
         match t {
-            Some(t) if t < self.state.t => {
-                Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
-            }
+            Some(t) if t < self.state.t => self.between(t, observer.needs_forces()),
             _ => {
                 self.scratch.clone_from(&self.state);
                 self.scratch.t = t.unwrap_or(self.state.t);
@@ -461,6 +463,7 @@ impl Simulation {
                 let event = self.events[k].0.clone();
                 let before = self.measure(event.as_ref());
                 self.state = model.carry(&self.model, &self.state);
+                self.aside = None;
                 self.work.change_mesh(&self.model, &model).map_err(|source| StepError::Linear {
                     t: self.state.t,
                     source,

@@ -135,6 +135,7 @@ impl Simulation {
             events,
             previous,
             scratch,
+            aside: None,
             sampled: c.sampled,
         })
     }
