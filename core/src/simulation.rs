@@ -1,15 +1,15 @@
 //! A run in time: steps, outputs, events, the audit of energy.
 
 mod ahead;
-mod between;
 mod checkpoint;
+mod forces;
 mod watch;
 
 pub use checkpoint::{Checkpoint, Unfit};
 
 use crate::dense::Dense;
 use crate::integrator::{
-    Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, consistent, prepare, restart,
+    Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, prepare, restart,
 };
 use crate::model::Model;
 use crate::part::Quantity;
@@ -150,7 +150,7 @@ pub struct Simulation {
     events: Vec<(Arc<dyn Event>, f64)>,
     previous: State,
     scratch: State,
-    /// Scratch of samples between steps that take a step of their own.
+    /// Scratch of samples that take more than a look; made when first needed.
     aside: Option<Box<Workspace>>,
     /// Time at which the present advance began, and the number of its next sample.
     sampled: (f64, u64),
@@ -348,7 +348,9 @@ impl Simulation {
     /// Samples at time `t` inside the last step, or at the present state.
     fn sample(&mut self, observer: &mut dyn Observer, t: Option<f64>) -> Result<ControlFlow<()>, StepError> {
         match t {
-            Some(t) if t < self.state.t => self.between(t, observer.needs_forces()),
+            Some(t) if t < self.state.t => {
+                Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+            }
             _ => {
                 self.scratch.clone_from(&self.state);
                 self.scratch.t = t.unwrap_or(self.state.t);
@@ -356,8 +358,10 @@ impl Simulation {
         }
         if observer.needs_forces() {
             let t = self.scratch.t;
-            consistent(&self.model, &mut self.scratch, &mut self.work).map_err(|source| {
-                StepError::Linear { t, source, unknown: "the accelerations for output".into() }
+            self.find_forces().map_err(|source| StepError::Linear {
+                t,
+                source,
+                unknown: "the accelerations for output".into(),
             })?;
         }
         let sample = Sample {

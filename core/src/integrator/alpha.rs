@@ -10,6 +10,7 @@ use super::{
     Units, Workspace,
 };
 use crate::model::Model;
+use crate::node::NodeKind;
 use crate::solver::SolveError;
 use crate::state::State;
 
@@ -28,6 +29,11 @@ pub struct Alpha {
 const REFRESH: f64 = 0.1;
 /// Elements along a cable up to which Newton's tolerance doesn't depend on their number.
 const COARSE: f64 = 64.0;
+/// What the error of a body counts for, and how much more for every radian that it turns within the horizon.
+const BODY: f64 = 2.0;
+const TURNING: f64 = 0.1;
+/// A body that turns for ever is no reason for steps without end.
+const MOST_TURNING: f64 = 100.0;
 /// Largest rotation of a body in a fixed step [rad]: from a quarter turn on a driven joint may end on another branch.
 const MOST_TURN: f64 = 1.5;
 /// Safety factor of the step-size controller.
@@ -148,7 +154,7 @@ impl Alpha {
     fn error(
         &self,
         model: &Model,
-        modes: &[f64],
+        state: &State,
         work: &mut Workspace,
         h: f64,
     ) -> Result<[f64; 2], SolveError> {
@@ -159,8 +165,9 @@ impl Alpha {
         for (e, (new, old)) in e.iter_mut().zip(t.aux.iter().zip(&t.aux_old)) {
             *e = factor * self.scheme.mass() * (new - old);
         }
+        self.weigh_turning(model, work, &mut e);
         // what is prescribed has no error
-        model.without_driven(modes, &mut e);
+        model.without_driven(&state.modes, &mut e);
         rhs.clear();
         rhs.resize(model.structure().n, 0.0);
         work.times_mass(model, &e, &mut rhs[..nv]);
@@ -170,6 +177,25 @@ impl Alpha {
         (work.trial.d, work.trial.rhs) = (e, rhs);
         solved?;
         Ok([size, strained])
+    }
+
+    /// Counts the error of a body by how far it turns in the run: what is wrong in its own axes turns with it, and adds up
+    /// to a rate of turning that nothing brings back. Waves along a cable come and go.
+    fn weigh_turning(&self, model: &Model, work: &Workspace, e: &mut [f64]) {
+        let (v, weights) = (&work.trial.v, work.norms.weights());
+        for node in model.nodes().iter().filter(|n| n.kind == NodeKind::Frame) {
+            let (mut square, mut sum) = (0.0, 0.0);
+            // the links of a chain are held by their neighbours; and what has no inertia doesn't count
+            if work.norms.groups[work.norms.of(node.v)].single {
+                for i in node.dofs().skip(3) {
+                    square += weights[i] * v[i] * v[i];
+                    sum += weights[i];
+                }
+            }
+            let rate = if sum > 0.0 { (square / sum).sqrt() } else { 0.0 };
+            let factor = BODY + (TURNING * self.horizon * rate).min(MOST_TURNING);
+            node.dofs().for_each(|i| e[i] *= factor);
+        }
     }
 
     /// Whether a trial that converged is to be accepted.
@@ -193,9 +219,8 @@ impl Alpha {
             Stepping::Fixed { .. } => Ok(Verdict::Good { error: 0.0 }),
             Stepping::Controlled { tolerance } => {
                 let turn = model.turn(&work.trial.d);
-                let [local, force] = self
-                    .error(model, &state.modes, work, h)
-                    .map_err(|source| linear(model, state.t, source))?;
+                let [local, force] =
+                    self.error(model, state, work, h).map_err(|source| linear(model, state.t, source))?;
                 // errors of positions add up, per unit step; stiff directions follow what moves them, and forget
                 let position = local * (self.horizon / h) / tolerance.min(1e-3);
                 // max() would swallow a NaN

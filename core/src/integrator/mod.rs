@@ -18,6 +18,7 @@ pub use scales::{Scales, Stopping, Units};
 pub use scheme::{Coefficients, Scheme};
 pub(crate) use start::restart;
 pub use start::{Correction, consistent, prepare};
+pub(crate) use start::{consistent_by_iteration, consistent_by_mass};
 pub use workspace::{Counts, Workspace};
 
 use crate::model::Model;

@@ -22,6 +22,8 @@ pub(crate) struct Group {
     pub size: f64,
     /// Its mass [kg].
     pub mass: f64,
+    /// Whether it is a single node: a body, and no chain or cable.
+    pub single: bool,
     /// Rounding of its coordinates where it starts, relative to its length.
     pub rounding: f64,
 }
@@ -228,7 +230,7 @@ fn group(model: &Model, owner: &[usize], g: usize, mass: &[f64]) -> Group {
         None => (own().next().map_or(String::new(), |n| model.unknown_name(n.v)), 0.0),
     };
     // for the moment what rounding is a part of
-    Group { name, length: 0.0, size, mass: total, rounding: farthest }
+    Group { name, length: 0.0, size, mass: total, single: moving().count() == 1, rounding: farthest }
 }
 
 /// What the positions and the rotations of a group are relative to.

@@ -6,6 +6,7 @@ use crate::model::Model;
 use crate::node::retract;
 use crate::solver::SolveError;
 use crate::state::{At, State};
+use crate::term::Weights;
 
 /// How far a start had to be moved: the part that was moved most, as a root mean square along it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -20,8 +21,8 @@ pub struct Correction {
 const SMALL: f64 = 1e-3;
 /// First step under error control, in parts of the time in which the part that moves most goes its own length.
 const FIRST: f64 = 1e-2;
-/// Solutions that move velocities onto the constraints.
-const MOST_PROJECTIONS: usize = 4;
+/// What moving velocities onto the constraints may change of forces, in parts of those at work.
+const STRAINED: f64 = 1e-3;
 /// Relative change of velocities that is taken as meant.
 const SMALL_VELOCITY: f64 = 0.05;
 
@@ -144,32 +145,88 @@ pub(super) fn anew(
 /// Replaces velocities, accelerations and multipliers by those for output: velocities moved onto the constraints, and what
 /// the index-1 system gives there. The integrator's own are noisier.
 ///
-/// Velocities are moved in the metric of the iteration matrix, `M + γh C + βh² K`: what is next to a driven end moves along
-/// with it. In the metric of the mass alone it would be strained at a rate of its own, and damping along a stiff cable
-/// makes a large force of that.
+/// Velocities are moved in the metric of the mass unless that strains: what is next to a driven end would be strained at a
+/// rate of its own, and damping along a stiff cable makes a large force of that. Then it is the metric of the iteration
+/// matrix at this state, `M + γh C + βh² K`, in which it moves along.
 ///
 /// # Errors
-/// The mass matrix with the constraints is singular; the state is as it was.
+/// A matrix is singular; the state is as it was.
 pub fn consistent(model: &Model, state: &mut State, work: &mut Workspace) -> Result<(), SolveError> {
-    let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
-    let mut v = state.v.clone();
-    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
-    if model.multipliers() > 0 {
-        // without factors of a step this is a start, which meets the constraints already
-        let metric = if work.factored.is_some() { Which::Iteration } else { Which::Mass };
-        for _ in 0..MOST_PROJECTIONS {
-            let mut rhs = velocity_rhs(model, &At { v: &v, ..state.at() }, work);
-            work.solve(model, metric, &mut rhs)?;
-            for (v, d) in v.iter_mut().zip(&rhs) {
-                *v += d;
-            }
-            // kept factors hold the constraints of a configuration a little earlier
-            let size = work.norms.relative(&v);
-            if work.norms.relative(&rhs[..v.len()]) <= 1e-12 * size {
-                break;
-            }
-        }
+    let weights = work.factored;
+    if consistent_by_mass(model, state, work)? {
+        return Ok(());
     }
+    consistent_by_iteration(model, state, work, weights.unwrap_or_default())
+}
+
+/// The same in the metric of the mass alone; `false` if that would change forces, and nothing is changed.
+pub(crate) fn consistent_by_mass(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+) -> Result<bool, SolveError> {
+    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+    let v = on_constraints(model, state, work, Which::Mass)?;
+    // without factors of a step this is a start, which meets the constraints already
+    if work.factored.is_some() && v != state.v && strains(model, state, &v, work) {
+        return Ok(false);
+    }
+    at_index_one(model, state, v, work)?;
+    Ok(true)
+}
+
+/// The same in the metric of the iteration matrix with these weights.
+pub(crate) fn consistent_by_iteration(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+    weights: Weights,
+) -> Result<(), SolveError> {
+    model.assemble(&state.at(), &state.lambda, Some(weights), &mut work.system);
+    work.factor(model, weights)?;
+    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+    let v = on_constraints(model, state, work, Which::Iteration)?;
+    at_index_one(model, state, v, work)
+}
+
+/// The velocities nearest to those of a state that the constraints allow.
+fn on_constraints(
+    model: &Model,
+    state: &State,
+    work: &mut Workspace,
+    metric: Which,
+) -> Result<Vec<f64>, SolveError> {
+    let mut v = state.v.clone();
+    if model.multipliers() == 0 {
+        return Ok(v);
+    }
+    let mut rhs = velocity_rhs(model, &At { v: &v, ..state.at() }, work);
+    work.solve(model, metric, &mut rhs)?;
+    for (v, d) in v.iter_mut().zip(&rhs) {
+        *v += d;
+    }
+    Ok(v)
+}
+
+/// Whether other velocities change forces by more than a share of those at work.
+fn strains(model: &Model, state: &State, v: &[f64], work: &mut Workspace) -> bool {
+    model.assemble(&At { v, ..state.at() }, &state.lambda, None, &mut work.system);
+    let mut change = work.system.residual.clone();
+    model.assemble(&state.at(), &state.lambda, None, &mut work.system);
+    for (c, r) in change.iter_mut().zip(&work.system.residual) {
+        *c -= r;
+    }
+    !(work.forces.ratio(&work.norms, &change, &state.a, &state.lambda, STRAINED) <= 1.0)
+}
+
+/// Takes these velocities, and the accelerations and multipliers that the equations of motion have there.
+fn at_index_one(
+    model: &Model,
+    state: &mut State,
+    v: Vec<f64>,
+    work: &mut Workspace,
+) -> Result<(), SolveError> {
+    let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
     let zero = vec![0.0; model.velocities()];
     let at = At { v: &v, a: &zero, ..state.at() };
     solve_accelerations(model, &at, work, &mut a, &mut lambda)?;

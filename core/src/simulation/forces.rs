@@ -1,0 +1,101 @@
+//! Forces of samples.
+//!
+//! Positions between steps are interpolated. Forces can't always be had from them: a stiff cable makes `EA/l` of force of
+//! every metre that an interpolation is off. An interpolated state that doesn't balance is moved until it does. What is done aside has a workspace of its own: looking at a run doesn't change it.
+
+use super::Simulation;
+use crate::integrator::{Workspace, consistent_by_iteration, consistent_by_mass};
+use crate::node::retract;
+use crate::solver::SolveError;
+use crate::term::Weights;
+
+/// What an interpolated state may leave of the equations of motion, in parts of the tolerance of forces.
+const BALANCED: f64 = 0.1;
+/// What is left of them once it has been moved into balance, in parts of the forces at work.
+const FINE: f64 = 1e-5;
+/// Iterations that should do for that.
+const MOST_ITERATIONS: usize = 10;
+
+impl Simulation {
+    /// Gives the scratch state, which lies inside the last step or at its end, the forces of the motion.
+    pub(super) fn find_forces(&mut self) -> Result<(), SolveError> {
+        let weights = self.work.factored.filter(|weights| weights.q > 0.0);
+        if let Some(weights) = weights
+            && self.scratch.t < self.state.t
+            && !self.balances()
+        {
+            self.balance(weights)?;
+        }
+        if consistent_by_mass(&self.model, &mut self.scratch, &mut self.work)? {
+            return Ok(());
+        }
+        let mut aside = self.take_aside()?;
+        let weights = weights.unwrap_or_default();
+        let done = consistent_by_iteration(&self.model, &mut self.scratch, &mut aside, weights);
+        self.aside = Some(aside);
+        done
+    }
+
+    /// Whether the scratch state meets the equations of motion well enough for its forces to be those of the motion.
+    fn balances(&mut self) -> bool {
+        let (state, work) = (&self.scratch, &mut self.work);
+        self.model.assemble(&state.at(), &state.lambda, None, &mut work.system);
+        let tolerance = BALANCED * self.integrator.options().force_tolerance;
+        let residual = &work.system.residual;
+        work.forces.ratio(&work.norms, residual, &state.a, &state.lambda, tolerance) <= 1.0
+    }
+
+    /// Moves the scratch state into balance as Newton's method would at the end of a step like the last one: stiff
+    /// directions find their equilibrium, soft ones stay where they are.
+    ///
+    /// A step of its own, from the start of the last one to here, would do for most. But it may be much shorter, and would
+    /// see what the longer steps leave of velocities as the waves that those don't resolve.
+    fn balance(&mut self, weights: Weights) -> Result<(), SolveError> {
+        let mut aside = self.take_aside()?;
+        let done = self.iterate(weights, &mut aside);
+        self.aside = Some(aside);
+        done
+    }
+
+    fn iterate(&mut self, weights: Weights, aside: &mut Workspace) -> Result<(), SolveError> {
+        let (model, s) = (&self.model, &mut self.scratch);
+        let (nv, start) = (model.velocities(), s.clone());
+        let mut d = vec![0.0; nv];
+        for k in 0..MOST_ITERATIONS {
+            // where the interpolation is far off, no matrix serves twice
+            let renew = k < 2 || k % 2 == 0;
+            model.assemble(&s.at(), &s.lambda, renew.then_some(weights), &mut aside.system);
+            let (work, residual) = (&mut self.work, &aside.system.residual);
+            let left = work.forces.ratio(&work.norms, residual, &s.a, &s.lambda, FINE);
+            if k > 0 && left <= 1.0 {
+                return Ok(());
+            }
+            let mut x: Vec<f64> = residual.iter().map(|r| -r).collect();
+            x[nv..].iter_mut().for_each(|x| *x /= weights.q);
+            if renew && aside.factor(model, weights).is_err() || aside.solve_iteration(model, &mut x).is_err()
+            {
+                break;
+            }
+            for i in 0..nv {
+                d[i] += weights.q * x[i];
+                s.v[i] += weights.v * x[i];
+                s.a[i] += weights.a * x[i];
+            }
+            s.lambda.iter_mut().zip(&x[nv..]).for_each(|(l, x)| *l += x);
+            retract(model.nodes(), &start.q, &d, &mut s.q);
+            model.drive(s.t, &s.modes, &mut s.q, &mut s.v, &mut s.a);
+        }
+        // an iteration that doesn't come to its end leaves the interpolation
+        *s = start;
+        Ok(())
+    }
+
+    fn take_aside(&mut self) -> Result<Box<Workspace>, SolveError> {
+        let mut aside = match self.aside.take() {
+            Some(aside) => aside,
+            None => Box::new(Workspace::new(&self.model)?),
+        };
+        aside.softening = self.work.softening.clone();
+        Ok(aside)
+    }
+}
