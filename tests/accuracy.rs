@@ -106,8 +106,8 @@ fn what_a_part_is_not_coupled_with_does_not_change_its_error() {
             let own = apart(&run(&pendulum("", scheme)), &exact, &SWING);
             let off = apart(&run(&pendulum(&beside, scheme)), &exact, &SWING);
             println!("{scheme} {own:.2e} {off:.2e}");
-            // a tenth of the tolerance is what other steps may change of an error far below it
-            assert!(off <= 1.1 * own + 1e-5, "{beside}: {off:e} instead of {own:e}");
+            // where both are about the tolerance of 1e-4 or below, other steps are luck
+            assert!(off <= (1.1 * own).max(1.5e-4), "{beside}: {off:e} instead of {own:e}");
         }
     }
 }
@@ -150,7 +150,7 @@ fn accuracy_is_relative_to_a_part_s_own_length() {
         let asked = run(&scene(&format!("stepping = {{ controlled = {{ tolerance = {tolerance} }} }}")));
         let ratio = apart(&asked, &exact, &columns) / length / tolerance;
         println!("{length} m: {ratio:.2} of the tolerance");
-        assert!((0.01..=6.0).contains(&ratio), "{length} m: {ratio}");
+        assert!((0.01..=3.0).contains(&ratio), "{length} m: {ratio}");
     }
 }
 
@@ -277,10 +277,17 @@ fn tow(ea: f64, elements: usize, duration: f64, solver: &str) -> String {
 /// A hose towed steadily: the force at the ship is a constant, and that of the hose.
 #[test]
 fn forces_of_a_steady_tow_are_steady_and_those_of_the_hose() {
-    for solver in
-        ["", "constraints = \"ggl\"", "scheme = \"radau-iia-5\"", "stepping = { fixed = { h = 0.05 } }"]
-    {
-        let h = run(&tow(1e6, 20, 60.0, solver));
+    let fixed = "stepping = { fixed = { h = 0.05 } }";
+    for (ea, solver) in [
+        (1e6, ""),
+        (1e6, "constraints = \"ggl\""),
+        (1e6, "scheme = \"radau-iia-5\""),
+        (1e6, fixed),
+        // where an interpolated state would pull with twice the force
+        (1e8, ""),
+        (1e8, fixed),
+    ] {
+        let h = run(&tow(ea, 20, 60.0, solver));
         let column = |name: &str| {
             let all = h.column(name).unwrap_or_else(|| panic!("no {name}"));
             all[all.len() - 41..].to_vec()
@@ -292,10 +299,11 @@ fn forces_of_a_steady_tow_are_steady_and_those_of_the_hose() {
             (most - least) / most
         };
         let apart = tension.iter().zip(&force).fold(0.0, |m: f64, (t, f)| m.max((t / f - 1.0).abs()));
-        println!("`{solver}`: {:.2} N ± {:.1e}, apart {apart:.1e}", force[0], range(&force));
-        assert!(range(&force) < 1e-2 && range(&tension) < 1e-2, "`{solver}`: {force:?}");
-        // what is left between the two is the shear force of bending, and interpolation between steps
-        assert!(apart < 5e-3, "`{solver}`: {apart:e}");
+        println!("{ea:e} `{solver}`: {:.2} N ± {:.1e}, apart {apart:.1e}", force[0], range(&force));
+        assert!(range(&force) < 1e-2, "{ea:e} `{solver}`: {force:?}");
+        // what is left between the two is the shear force of bending; twenty elements don't resolve how a stiffer hose bends
+        // at the ship
+        assert!(ea > 1e7 || apart < 5e-3 && range(&tension) < 1e-2, "{ea:e} `{solver}`: {apart:e}");
     }
 }
 
@@ -306,4 +314,83 @@ fn stiffness_along_a_hose_does_not_cut_steps() {
     let h = run(&tow(1e8, 80, 30.0, ""));
     println!("{:?}", h.counts);
     assert!(h.counts.steps < 1500 && h.counts.rejected < 150, "{:?}", h.counts);
+}
+
+/// True errors over the tolerance: mechanisms of bodies, where nothing forgets an error.
+#[test]
+fn errors_of_mechanisms_are_within_three_times_the_tolerance() {
+    let rod = |name: &str, place: [f64; 2], angle: f64, motion: &str| {
+        format!(
+            r#"
+            [[elements]]
+            type = "rigid_body"
+            name = "{name}"
+            position = [{}, {}, 0]
+            angles = [0, 0, {angle}]
+            {motion}
+            mass = 1
+            inertia = [1e-4, 0.08333333333, 0.08333333333]
+            centre = [0.5, 0, 0]
+            points = {{ end = [1, 0, 0] }}
+            "#,
+            place[0], place[1]
+        )
+    };
+    let joint = |kind: &str, name: &str, marker: &str, more: &str| {
+        format!("[[constraints]]\ntype = \"{kind}\"\nname = \"{name}\"\nmarker = \"{marker}\"\n{more}\n")
+    };
+    let gravity = "[[forces]]\ntype = \"gravity\"\ng = [0, -9.81, 0]\n";
+    let hinge = "to = [0, 0, 0]\naxis = [0, 0, 1]";
+    let half = f64::sqrt(0.5);
+    let pendulum = rod("rod", [0.0; 2], 0.0, "") + &joint("revolute", "hinge", "rod", hinge) + gravity;
+    // arms of equal length, which fold onto each other and pass through
+    let crank = rod("crank", [0.0; 2], std::f64::consts::FRAC_PI_4, "angular_velocity = [0, 0, 4]")
+        + &rod(
+            "rod",
+            [half, half],
+            -std::f64::consts::FRAC_PI_4,
+            &format!("angular_velocity = [0, 0, -4]\nvelocity = [{}, {}, 0]", -4.0 * half, 4.0 * half),
+        )
+        + &joint("revolute", "hinge", "crank", hinge)
+        + &joint("revolute", "pin", "rod", "to = \"crank.end\"\naxis = [0, 0, 1]")
+        + &joint("point_on_line", "line", "rod.end", "axis = [1, 0, 0]")
+        + gravity;
+    let top = r#"
+        [[elements]]
+        type = "rigid_body"
+        name = "rod"
+        position = [0, 0, 0]
+        angular_velocity = [0, 150, -4.61538]
+        mass = 15
+        inertia = [0.234375, 0.46875, 0.234375]
+        centre = [0, 1, 0]
+        points = { end = [0, 1, 0] }
+        [[constraints]]
+        type = "spherical"
+        name = "foot"
+        marker = "rod"
+        to = [0, 0, 0]
+        [[forces]]
+        type = "gravity"
+        "#;
+    for (what, scene, duration) in
+        [("pendulum", pendulum.as_str(), 2.0), ("slider crank", crank.as_str(), 2.0), ("top", top, 1.0)]
+    {
+        let with = |solver: &str| {
+            run(&format!(
+                "[run]\nduration = \"{duration} s\"\noutput = \"0.05 s\"\n[solver]\n{solver}\n{scene}\n\
+                 [[records]]\ntype = \"position\"\nof = \"rod.end\"\n"
+            ))
+        };
+        let exact = with(TIGHT);
+        for scheme in ["", "scheme = \"radau-iia-5\""] {
+            for tolerance in [1e-3, 1e-4] {
+                let asked =
+                    with(&format!("{scheme}\nstepping = {{ controlled = {{ tolerance = {tolerance} }} }}"));
+                let ratio = apart(&asked, &exact, &SWING) / tolerance;
+                println!("{what} `{scheme}` {tolerance:e}: {ratio:.3} of the tolerance");
+                assert!((0.01..=3.0).contains(&ratio), "{what} `{scheme}` {tolerance:e}: {ratio}");
+            }
+        }
+    }
 }

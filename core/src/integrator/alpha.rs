@@ -165,13 +165,14 @@ impl Alpha {
         for (e, (new, old)) in e.iter_mut().zip(t.aux.iter().zip(&t.aux_old)) {
             *e = factor * self.scheme.mass() * (new - old);
         }
-        self.weigh_turning(model, work, &mut e);
         // what is prescribed has no error
         model.without_driven(&state.modes, &mut e);
         rhs.clear();
         rhs.resize(model.structure().n, 0.0);
         work.times_mass(model, &e, &mut rhs[..nv]);
         let solved = work.solve(model, Which::Iteration, &mut rhs);
+        // once constraints have taken out what rounding and iterations leave across them
+        self.weigh_turning(model, work, &mut rhs);
         let size = work.norms.relative(&rhs[..nv]);
         let strained = work.forces.strained(&work.trial.q, &rhs[..nv], self.options.force_tolerance);
         (work.trial.d, work.trial.rhs) = (e, rhs);
@@ -183,10 +184,14 @@ impl Alpha {
     /// to a rate of turning that nothing brings back. Waves along a cable come and go.
     fn weigh_turning(&self, model: &Model, work: &Workspace, e: &mut [f64]) {
         let (v, weights) = (&work.trial.v, work.norms.weights());
-        for node in model.nodes().iter().filter(|n| n.kind == NodeKind::Frame) {
+        for node in model.nodes().iter().filter(|n| n.kind.has_position()) {
+            let single = work.norms.groups[work.norms.of(node.v)].single;
+            if node.kind != NodeKind::Frame && !single {
+                continue;
+            }
             let (mut square, mut sum) = (0.0, 0.0);
             // the links of a chain are held by their neighbours; and what has no inertia doesn't count
-            if work.norms.groups[work.norms.of(node.v)].single {
+            if single && node.kind == NodeKind::Frame {
                 for i in node.dofs().skip(3) {
                     square += weights[i] * v[i] * v[i];
                     sum += weights[i];
