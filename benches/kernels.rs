@@ -39,7 +39,7 @@ const OTHERS: [Kernel; 5] = [
         pool(m, AxialDamping::<L4, <LockingFree as Rule>::Axial>::new(1.0 / ELEMENTS as f64, 5.0))
     }),
     Kernel::Other("bending damping", |m| {
-        pool(m, BendingDamping::<T3, <LockingFree as Rule>::Bending>::new(1.0 / ELEMENTS as f64, 1e-4))
+        pool(m, BendingDamping::<<LockingFree as Rule>::Bending>::new(1.0 / ELEMENTS as f64, 1e-4))
     }),
 ];
 

@@ -123,6 +123,30 @@ fn damped_oscillator_has_its_ratio_and_creeps_beyond_the_critical_one() {
     }
 }
 
+/// Kelvin–Voigt damping of bending: `ζ = ηω/2` in both planes, on every mesh.
+#[test]
+fn bending_is_damped_in_proportion_to_the_frequency() {
+    let eta = 2e-4;
+    for elements in [8, 16, 64] {
+        let section = Section { bending_damping: eta, ..Section::new(1.0, 1e7, 1.0) };
+        let mut scene = Scene::new();
+        scene
+            .element(CableSpec::straight("beam", [0.0; 3], [1.0, 0.0, 0.0], elements, section))
+            .constraint(SphericalSpec::pin("pin", "beam.start"))
+            .constraint(ClampSpec::new("clamp", "beam.start"));
+        let found = find(&scene, 10);
+        for (k, exact) in [3.516_015, 22.034_492, 61.697_214, 120.901_916, 199.859_530].iter().enumerate() {
+            for m in &found[2 * k..2 * k + 2] {
+                let own = m.omega / (1.0 - m.damping_ratio().powi(2)).sqrt();
+                if elements >= 16 {
+                    close("frequency", own, *exact, 1e-3);
+                }
+                close("damping ratio", m.damping_ratio(), 0.5 * eta * own, 1e-6);
+            }
+        }
+    }
+}
+
 fn find_all(scene: &Scene) -> Vec<Mode> {
     modes(scene, &ModesOptions::default()).unwrap_or_else(|e| panic!("{e}")).modes
 }

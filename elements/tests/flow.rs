@@ -213,7 +213,7 @@ where
 fn tangents_agree_with_differences() {
     let x = motion();
     let axial = AxialDamping::<L4, ropewalk_elements::cable::quadrature::Lobatto3>::new(1.0, 3.0);
-    let bending = BendingDamping::<T3, ropewalk_elements::cable::quadrature::Gauss2>::new(1.0, 0.6);
+    let bending = BendingDamping::<ropewalk_elements::cable::quadrature::Gauss2>::new(1.0, 0.6);
     let one = FlowStations::<1> { by: ONE, slip: [1.0], diameter: 0.1, area: 0.01 };
     let two = FlowStations::<2> { by: TWO, slip: [0.7, 0.3], diameter: 0.1, area: 0.01 };
     let terms: Vec<(usize, Box<dyn Term>)> = vec![

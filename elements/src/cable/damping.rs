@@ -1,14 +1,15 @@
 //! Kelvin–Voigt damping: material that resists the rate of its strain and of its curvature.
 //!
-//! Dissipated power `∫ [η EA ε̇² + η EI κ̇²] dx` (Garcia-Vallejo, Mayo, Escalona & Dominguez, Nonlinear Dyn. 35, 2004).
-//! Strain and curvature don't see rigid motion, so neither does the damping: a bent cable that spins loses nothing.
+//! Dissipated power `∫ [η EA ε̇² + η EI |κ̇|²] dx` (Garcia-Vallejo, Mayo, Escalona & Dominguez, Nonlinear Dyn. 35, 2004),
+//! with the rate of the curvature vector as [`BendingDamping`] has it.
 
+use super::bending_damping::BendingDamping;
 use super::longitudinal::{Longitudinal, Strain};
 use super::model::{CableModel, LongitudinalModel, Sink, WithModels, with_models};
 use super::quadrature::{Quadrature, Rule};
 use super::reduced::{Reduced, add_product};
-use super::shape::{Natural, dot9, natural};
-use super::transverse::{Curve, Transverse};
+use super::shape::{Natural, natural};
+use super::transverse::Transverse;
 use ropewalk_core::{Batch, Element, Local, NodeId, Power, Real, Share, Weights};
 use std::marker::PhantomData;
 
@@ -95,85 +96,6 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
     }
 }
 
-/// Damping of bending: the moment `η EI κ̇` besides the elastic one.
-///
-/// Curvature here has no sign, so its rate jumps where the cable bends through straight. It is therefore taken of
-/// `√(κ² + κ₀²)`: below `κ₀` the damping fades out, and a straight cable feels none.
-#[derive(Clone, Copy, Debug)]
-pub struct BendingDamping<T, Q> {
-    /// Unstretched length [m].
-    pub l: f64,
-    /// `η EI` [N m² s].
-    pub eta_ei: f64,
-    /// Curvature below which the damping fades out [1/m].
-    pub kappa_0: f64,
-    models: PhantomData<(T, Q)>,
-}
-
-impl<T: Transverse, Q: Quadrature> BendingDamping<T, Q> {
-    /// For an element of length `l`; it fades out where the element bends by less than 1e-4 rad.
-    pub fn new(l: f64, eta_ei: f64) -> Self {
-        BendingDamping { l, eta_ei, kappa_0: 1e-4 / l, models: PhantomData }
-    }
-}
-
-impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingDamping<T, Q> {
-    /// `[L, η EI, κ₀]`
-    type Lanes<R: Real> = [R; 3];
-    const SYMMETRIC: bool = false;
-
-    fn label() -> String {
-        format!("bending damping {} {}", T::LABEL, Q::LABEL)
-    }
-    #[inline(always)]
-    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> [R; 3] {
-        [batch.get(|e| e.l), batch.get(|e| e.eta_ei), batch.get(|e| e.kappa_0)]
-    }
-    #[inline(always)]
-    fn add<R: Real, const TANGENT: bool>(
-        &[l, eta_ei, kappa_0]: &[R; 3],
-        x: &Local<R, 12, 12>,
-        w: &Weights,
-        out: &mut Share<R, 12>,
-    ) {
-        let il = R::of(1.0) / l;
-        let (q, v) = (natural(&x.q, il), natural(&x.v, il));
-        let mut local = Reduced::zero();
-        for at in Q::POINTS {
-            let curve = Curve::new::<T>(&q, at, il);
-            let gradient = curve.gradient();
-            // with κ̇ = (κ²)˙/2κ the force is m (κ²)˙ ∂κ², and no root is needed
-            let i = R::of(1.0) / kappa_0.fma(kappa_0, curve.square.value);
-            let m = eta_ei * l * R::of(0.25 * at.w) * i;
-            let rate = dot9(&gradient, &v);
-            local.add_force(m * rate, &gradient);
-            if TANGENT {
-                let wq = R::of(w.q);
-                let rate_by = blend(wq, &curve.turn(&v), R::of(w.v) - wq * rate * i, &gradient);
-                add_product(m, &gradient, &rate_by, il, out);
-                curve.add_hessian(wq * m * rate, &mut local);
-            }
-        }
-        local.spread_force::<false>(il, out);
-        if TANGENT {
-            local.spread_tangent::<false>(il, R::of(1.0), out);
-        }
-    }
-    #[inline(always)]
-    fn power<R: Real>(&[l, eta_ei, kappa_0]: &[R; 3], x: &Local<R, 12, 12>) -> Power<R> {
-        let il = R::of(1.0) / l;
-        let (q, v) = (natural(&x.q, il), natural(&x.v, il));
-        let mut dissipated = R::zero();
-        for at in Q::POINTS {
-            let curve = Curve::new::<T>(&q, at, il);
-            let rate = dot9(&curve.gradient(), &v);
-            let m = eta_ei * l * R::of(0.25 * at.w);
-            dissipated += m * rate * rate / kappa_0.fma(kappa_0, curve.square.value);
-        }
-        Power { dissipated, ..Power::zero() }
-    }
-}
-
 struct Push<'a, S> {
     sink: &'a mut S,
     bending: bool,
@@ -186,7 +108,7 @@ impl<S: Sink> WithModels for Push<'_, S> {
     type Output = ();
     fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) {
         if self.bending {
-            self.sink.push(BendingDamping::<T, Q::Bending>::new(self.l, self.eta), self.nodes);
+            self.sink.push(BendingDamping::<Q::Bending>::new(self.l, self.eta), self.nodes);
         } else {
             self.sink.push(AxialDamping::<L, Q::Axial>::new(self.l, self.eta), self.nodes);
         }

@@ -4,6 +4,7 @@
 //! - [`longitudinal`] with L1 … L4 and [`transverse`] with T1 … T3: the strain measures, a file for each.
 //! - [`Cable`]: elastic force and mass. [`CableModel`] chooses its models at run time, [`push_cable`] makes it.
 
+mod bending_damping;
 mod damping;
 pub(crate) mod directed;
 mod element;
@@ -29,7 +30,8 @@ mod t2;
 mod t3;
 pub mod transverse;
 
-pub use damping::{AxialDamping, BendingDamping};
+pub use bending_damping::BendingDamping;
+pub use damping::AxialDamping;
 pub use directed::{Directed, DirectedLanes, DirectedParams};
 pub use element::{Cable, CableParams, mass};
 pub use l1::L1;

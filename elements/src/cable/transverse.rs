@@ -119,16 +119,9 @@ impl<R: Real> Curve<R> {
         Curve { p, q, phi: at.phi, psi: at.psi, il, square: T::square(&i) }
     }
 
-    /// The natural force of a force `gp` on `r'` and `gq` on `r''`.
     #[inline(always)]
     fn lift(&self, gp: &V3<R>, gq: &V3<R>) -> Natural<R> {
-        let mut g = [*gp; 3];
-        for i in 1..3 {
-            for c in 0..3 {
-                g[i][c] = R::of(self.phi[i]).fma(gp[c], self.il * R::of(self.psi[i - 1]) * gq[c]);
-            }
-        }
-        g
+        lift_by(&self.phi, &self.psi, self.il, gp, gq)
     }
 
     /// Gradient of κ².
@@ -214,6 +207,23 @@ impl<R: Real> Curve<R> {
             }
         }
     }
+}
+
+/// The natural force of a force `gp` on `r'` and `gq` on `r''` at a point.
+#[inline(always)]
+pub(super) fn lift<R: Real>(at: &Point, il: R, gp: &V3<R>, gq: &V3<R>) -> Natural<R> {
+    lift_by(&at.phi, &at.psi, il, gp, gq)
+}
+
+#[inline(always)]
+fn lift_by<R: Real>(phi: &[f64; 3], psi: &[f64; 2], il: R, gp: &V3<R>, gq: &V3<R>) -> Natural<R> {
+    let mut g = [*gp; 3];
+    for i in 1..3 {
+        for c in 0..3 {
+            g[i][c] = R::of(phi[i]).fma(gp[c], il * R::of(psi[i - 1]) * gq[c]);
+        }
+    }
+    g
 }
 
 /// `a x + b y + c z`

@@ -5,10 +5,10 @@ use super::embedding::{Embedding, Grid};
 use super::for_fronts;
 use super::rule::close;
 use super::transport::{Transport, nodal};
-use crate::cable::damping::{AxialDamping, BendingDamping};
+use crate::cable::bending_damping::BendingDamping;
+use crate::cable::damping::AxialDamping;
 use crate::cable::longitudinal::Longitudinal;
 use crate::cable::quadrature::Quadrature;
-use crate::cable::transverse::Transverse;
 use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, V3, Weights};
 
 /// A force of an element on its own material, which needs coordinates, velocities of the material, and the length.
@@ -35,18 +35,18 @@ impl<L: Longitudinal, Q: Quadrature> Material for AxialDamping<L, Q> {
         [l, Dual::constant(p[1])]
     }
 }
-impl<T: Transverse, Q: Quadrature> Material for BendingDamping<T, Q> {
+impl<Q: Quadrature> Material for BendingDamping<Q> {
     #[inline(always)]
-    fn numbers<R: Real>(get: impl Fn(fn(&Self) -> f64) -> R) -> [R; 3] {
-        [get(|e| e.l), get(|e| e.eta_ei), get(|e| e.kappa_0)]
+    fn numbers<R: Real>(get: impl Fn(fn(&Self) -> f64) -> R) -> [R; 2] {
+        [get(|e| e.l), get(|e| e.eta_ei)]
     }
     #[inline(always)]
-    fn at_length<R: Real>(p: &[R; 3], l: R) -> [R; 3] {
-        [l, p[1], p[2]]
+    fn at_length<R: Real>(p: &[R; 2], l: R) -> [R; 2] {
+        [l, p[1]]
     }
     #[inline(always)]
-    fn lift<R: Real>(p: &[R; 3], l: Dual<R>) -> [Dual<R>; 3] {
-        [l, Dual::constant(p[1]), Dual::constant(p[2])]
+    fn lift<R: Real>(p: &[R; 2], l: Dual<R>) -> [Dual<R>; 2] {
+        [l, Dual::constant(p[1])]
     }
 }
 

@@ -66,7 +66,7 @@ macro_rules! push {
         }
         if s.bending_damping > 0.0 && s.ei > 0.0 {
             let damping =
-                BendingDamping::<$T, <$Q as Rule>::Bending>::new($self.params.l, s.bending_damping * s.ei);
+                BendingDamping::<<$Q as Rule>::Bending>::new($self.params.l, s.bending_damping * s.ei);
             $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
         }
         Ok(())

@@ -1,0 +1,156 @@
+//! Kelvin–Voigt damping of bending.
+
+use super::quadrature::{Point, Quadrature};
+use super::reduced::{Reduced, add_product};
+use super::shape::{Natural, combine, natural, second};
+use super::transverse::lift;
+use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, V3, Weights, dot};
+use std::marker::PhantomData;
+
+/// Damping of bending: the moment `η EI` times the rate of the curvature vector, besides the elastic one.
+///
+/// The rate is that relative to a frame which turns with the tangent `t` and doesn't spin about it: with
+/// `ṫ = P ṙ'/λ`, `P = I - t tᵀ` and `λ = |r'|` it is
+///
+/// `β = P ∂ṫ/∂x = [P ṙ'' - (t·r''/λ) P ṙ' - (t·ṙ'/λ) P r'']/λ`,
+///
+/// and the dissipated power is `∫ η EI |β|² dx`. Damping is the same for a straight cable and a bent one, in its plane and
+/// out of it, however small the motion: small vibrations of a straight cable have damping ratios of `ηω/2`. A shape that
+/// whirls about the line between its ends is damped too, for its fibres are strained to and fro. A bent cable that turns as
+/// a rigid body loses nothing unless it turns about its own tangent, which its centre line can't tell from whirling.
+#[derive(Clone, Copy, Debug)]
+pub struct BendingDamping<Q> {
+    /// Unstretched length [m].
+    pub l: f64,
+    /// `η EI` [N m² s].
+    pub eta_ei: f64,
+    quadrature: PhantomData<Q>,
+}
+
+impl<Q: Quadrature> BendingDamping<Q> {
+    /// For an element of length `l`.
+    pub fn new(l: f64, eta_ei: f64) -> Self {
+        BendingDamping { l, eta_ei, quadrature: PhantomData }
+    }
+}
+
+/// A point of the curve: `r'` and `r''`, and their rates.
+struct Bend<R> {
+    slope: V3<R>,
+    second: V3<R>,
+    slope_rate: V3<R>,
+    second_rate: V3<R>,
+}
+
+impl<R: Real> Bend<R> {
+    #[inline(always)]
+    fn new(at: &Point, il: R, q: &Natural<R>, v: &Natural<R>) -> Self {
+        Bend {
+            slope: combine(&at.phi, q),
+            second: second(&at.psi, il, q),
+            slope_rate: combine(&at.phi, v),
+            second_rate: second(&at.psi, il, v),
+        }
+    }
+
+    /// `1/λ`, `t`, `t·r''` and `β`.
+    #[inline(always)]
+    fn rate(&self) -> (R, V3<R>, R, V3<R>) {
+        let i = R::of(1.0) / dot(&self.slope, &self.slope).sqrt();
+        let t = self.slope.map(|x| i * x);
+        let (along, spread) = (dot(&t, &self.second), dot(&t, &self.slope_rate));
+        let mut beta = self.second_rate;
+        for c in 0..3 {
+            beta[c] -= i * along.fma(self.slope_rate[c], spread * self.second[c]);
+        }
+        let axial = dot(&t, &beta);
+        for c in 0..3 {
+            beta[c] = i * (beta[c] - axial * t[c]);
+        }
+        (i, t, along, beta)
+    }
+
+    /// The forces `β ∂β/∂ṙ'` and `β ∂β/∂ṙ''`, conjugate to `r'` and `r''`.
+    #[inline(always)]
+    fn forces(&self) -> [V3<R>; 2] {
+        let (i, t, along, beta) = self.rate();
+        let bent = dot(&beta, &self.second);
+        let (mut on_slope, mut on_second) = (beta, beta);
+        for c in 0..3 {
+            on_slope[c] = -(i * i) * along.fma(beta[c], bent * t[c]);
+            on_second[c] = i * beta[c];
+        }
+        [on_slope, on_second]
+    }
+
+    /// Its derivatives by component `c` of `r'` (`which` = 0) or `r''`, with these weights of coordinates and rates.
+    #[inline(always)]
+    fn towards(&self, which: usize, c: usize, w: &Weights) -> Bend<Dual<R>> {
+        let mut d = Bend {
+            slope: Dual::constants(&self.slope),
+            second: Dual::constants(&self.second),
+            slope_rate: Dual::constants(&self.slope_rate),
+            second_rate: Dual::constants(&self.second_rate),
+        };
+        let (x, rate) = match which {
+            0 => (&mut d.slope, &mut d.slope_rate),
+            _ => (&mut d.second, &mut d.second_rate),
+        };
+        (x[c].eps, rate[c].eps) = (R::of(w.q), R::of(w.v));
+        d
+    }
+}
+
+impl<Q: Quadrature> Element<12, 12> for BendingDamping<Q> {
+    /// `[L, η EI]`
+    type Lanes<R: Real> = [R; 2];
+    const SYMMETRIC: bool = false;
+
+    fn label() -> String {
+        format!("bending damping {}", Q::LABEL)
+    }
+    #[inline(always)]
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> [R; 2] {
+        [batch.get(|e| e.l), batch.get(|e| e.eta_ei)]
+    }
+    #[inline(always)]
+    fn add<R: Real, const TANGENT: bool>(
+        &[l, eta_ei]: &[R; 2],
+        x: &Local<R, 12, 12>,
+        w: &Weights,
+        out: &mut Share<R, 12>,
+    ) {
+        let il = R::of(1.0) / l;
+        let (q, v) = (natural(&x.q, il), natural(&x.v, il));
+        let mut local = Reduced::zero();
+        for at in Q::POINTS {
+            let bend = Bend::new(at, il, &q, &v);
+            let s = eta_ei * l * R::of(at.w);
+            let [on_slope, on_second] = bend.forces();
+            local.add_force(s, &lift(at, il, &on_slope, &on_second));
+            if TANGENT {
+                for c in 0..3 {
+                    for which in 0..2 {
+                        let d = bend.towards(which, c, w).forces().map(|f| f.map(|x| x.eps));
+                        let mut unit = [[R::zero(); 3]; 2];
+                        unit[which][c] = R::of(1.0);
+                        let (column, row) = (lift(at, il, &d[0], &d[1]), lift(at, il, &unit[0], &unit[1]));
+                        add_product(s, &column, &row, il, out);
+                    }
+                }
+            }
+        }
+        local.spread_force::<false>(il, out);
+    }
+    #[inline(always)]
+    fn power<R: Real>(&[l, eta_ei]: &[R; 2], x: &Local<R, 12, 12>) -> Power<R> {
+        let il = R::of(1.0) / l;
+        let (q, v) = (natural(&x.q, il), natural(&x.v, il));
+        let mut dissipated = R::zero();
+        for at in Q::POINTS {
+            let (_, _, _, beta) = Bend::new(at, il, &q, &v).rate();
+            dissipated += eta_ei * l * R::of(at.w) * dot(&beta, &beta);
+        }
+        Power { dissipated, ..Power::zero() }
+    }
+}
