@@ -7,7 +7,7 @@ use ropewalk::Error;
 use ropewalk::bench::{FullIteration, Pendulum, models};
 use ropewalk::core::{Element, FieldTerm, Laws, Model, NodeId, Pool, Start, Term, Width};
 use ropewalk::elements::cable::quadrature::Rule;
-use ropewalk::elements::cable::{AxialDamping, BendingDamping, CableModel, L4, LockingFree, T3};
+use ropewalk::elements::cable::{AxialDamping, BendingDamping, CableModel, L4, LockingFree};
 use ropewalk::forces::{AddedMass, Drag, NormalLaw, TangentialLaw};
 use std::fmt;
 

@@ -10,7 +10,7 @@ use ropewalk::core::integrator::{Options, Stepping};
 use ropewalk::core::records::PositionSpec;
 use ropewalk::core::{
     Assembly, At, BuildError, Builder, Energy, ForceSpec, Gives, Law, Load, Pattern, Power, Real, Station,
-    Term, V3, register_spec,
+    Term, register_spec,
 };
 use ropewalk::forces::{AddedMass, DragSpec, Spring};
 use ropewalk::scene::Format;
@@ -181,9 +181,9 @@ impl Law for CountedLaw {
         LOADED.fetch_add(1, Ordering::Relaxed);
         self.0.load::<R, TANGENT>(t, at, out);
     }
-    fn power<R: Real>(&self, t: f64, at: &Station<R>, f: &V3<R>) -> Power<R> {
+    fn power<R: Real>(&self, t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
         LOADED.fetch_add(1, Ordering::Relaxed);
-        self.0.power(t, at, f)
+        self.0.power(t, at, load)
     }
 }
 

@@ -402,9 +402,27 @@ impl Builder {
 
     /// Makes a law act on the stations of parts; all parts that have stations if none is named.
     pub fn load<L: Law + Clone>(&mut self, on: &[String], law: L) -> Result<(), BuildError> {
+        self.load_by(on, |_| law.clone())
+    }
+
+    /// The same with a law for each part.
+    pub fn load_by<L: Law>(
+        &mut self,
+        on: &[String],
+        law_of: impl Fn(&dyn Part) -> L,
+    ) -> Result<(), BuildError> {
         let mut any = false;
         for (k, part) in self.parts(on)? {
             if let Some(stations) = part.stations().filter(|s| !s.is_empty()) {
+                let law = law_of(part.as_ref());
+                if law.gives().couple && !stations.couples() {
+                    let message = format!(
+                        "{} has a force conjugate to the slope, which `{}` can't carry",
+                        law.label(),
+                        part.name()
+                    );
+                    return Err(BuildError::at("on", message));
+                }
                 if L::NEEDS_DIAMETER && self.least_diameter(stations.as_ref()) == 0.0 {
                     let message = format!(
                         "{} needs a diameter, and `{}` has none: give its section a `diameter`, or name in `on` what \
@@ -414,7 +432,7 @@ impl Builder {
                     );
                     return Err(BuildError::at("on", message));
                 }
-                self.laws.entry(k).or_default().push(law.clone());
+                self.laws.entry(k).or_default().push(law);
                 any = true;
             } else if !on.is_empty() {
                 return Err(BuildError::at("on", format!("`{}` carries no distributed load", part.name())));
@@ -433,6 +451,11 @@ impl Builder {
         let mut least = f64::INFINITY;
         stations.each(&at, &mut |s| least = least.min(s.diameter));
         least
+    }
+
+    /// Whether a constraint acts on a node; those of the scene are there before its forces.
+    pub fn is_held(&self, node: NodeId) -> bool {
+        self.constraints.iter().any(|c| c.nodes().contains(&node))
     }
 
     /// The water, which the scene must have for what acts in it.

@@ -12,7 +12,7 @@ use crate::lane::{Real, V3, dot};
 use crate::pattern::Pattern;
 use crate::pool::{Batch, Local, Share};
 use crate::state::At;
-use crate::term::{Assembly, Power, Term, Weights};
+use crate::term::{Assembly, Energy, Power, Term, Weights};
 use exchange::ErasedLaw;
 use std::sync::Arc;
 
@@ -27,6 +27,8 @@ pub struct Station<R> {
     pub a: V3<R>,
     /// Slope r' = dr/ds along the body, `|r'|` being the stretch.
     pub slope: V3<R>,
+    /// Its rate `dv/ds` [1/s].
+    pub slope_rate: V3<R>,
     /// Velocity of the curve that the body draws in space; differs from `v` where material flows along it [m/s].
     pub curve_v: V3<R>,
     /// Arc length from the body's start, unstretched [m].
@@ -39,11 +41,14 @@ pub struct Station<R> {
     pub area: R,
 }
 
-/// Force per unstretched length on a station [N/m], with its derivatives; `d_x[i][j] = ∂f_i/∂x_j`.
+/// Force per unstretched length on a station [N/m] and what is conjugate to its slope [N], with their derivatives;
+/// `d_x[i][j] = ∂f_i/∂x_j`. Their work is `∫ (f·δr + g·δr') ds`.
 #[derive(Clone, Copy, Debug)]
 pub struct Load<R> {
     /// Force per unstretched length [N/m].
     pub f: V3<R>,
+    /// Force conjugate to the slope [N]: across the axis it is a moment per length.
+    pub g: V3<R>,
     /// By position.
     pub d_x: [V3<R>; 3],
     /// By slope.
@@ -52,6 +57,14 @@ pub struct Load<R> {
     pub d_v: [V3<R>; 3],
     /// By acceleration: minus the added mass.
     pub d_a: [V3<R>; 3],
+    /// By the rate of the slope.
+    pub d_rate: [V3<R>; 3],
+    /// Derivatives of `g` by position.
+    pub g_x: [V3<R>; 3],
+    /// By slope.
+    pub g_slope: [V3<R>; 3],
+    /// By velocity.
+    pub g_v: [V3<R>; 3],
 }
 
 impl<R: Real> Load<R> {
@@ -59,7 +72,7 @@ impl<R: Real> Load<R> {
     #[inline(always)]
     pub fn zero() -> Self {
         let m = [[R::zero(); 3]; 3];
-        Load { f: m[0], d_x: m, d_slope: m, d_v: m, d_a: m }
+        Load { f: m[0], g: m[0], d_x: m, d_slope: m, d_v: m, d_a: m, d_rate: m, g_x: m, g_slope: m, g_v: m }
     }
 }
 
@@ -74,13 +87,15 @@ pub struct Gives {
     pub v: bool,
     /// By acceleration.
     pub a: bool,
+    /// By the rate of the slope; and `g` with all of its derivatives.
+    pub couple: bool,
 }
 
 impl Gives {
     /// None of them.
-    pub const NOTHING: Gives = Gives { x: false, slope: false, v: false, a: false };
+    pub const NOTHING: Gives = Gives { x: false, slope: false, v: false, a: false, couple: false };
     /// All of them.
-    pub const ALL: Gives = Gives { x: true, slope: true, v: true, a: true };
+    pub const ALL: Gives = Gives { x: true, slope: true, v: true, a: true, couple: true };
 
     #[inline(always)]
     fn and(self, other: Gives) -> Gives {
@@ -89,6 +104,7 @@ impl Gives {
             slope: self.slope || other.slope,
             v: self.v || other.v,
             a: self.a || other.a,
+            couple: self.couple || other.couple,
         }
     }
 }
@@ -114,10 +130,15 @@ pub trait Law: Send + Sync + 'static {
     }
     /// Adds the force per unstretched length at a station, and its derivatives if `TANGENT`.
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>);
-    /// The power of the load `f` per unstretched length [W/m]. By default all of it is supplied from outside.
+    /// The power of a load per unstretched length [W/m]. By default all of it is supplied from outside.
     #[inline(always)]
-    fn power<R: Real>(&self, _t: f64, at: &Station<R>, f: &V3<R>) -> Power<R> {
-        Power { supplied: dot(f, &at.v), ..Power::zero() }
+    fn power<R: Real>(&self, _t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
+        Power { supplied: dot(&load.f, &at.v), ..Power::zero() }
+    }
+    /// The kinetic energy of what it moves besides the body, per unstretched length [J/m].
+    #[inline(always)]
+    fn energy<R: Real>(&self, _t: f64, _at: &Station<R>) -> R {
+        R::zero()
     }
     /// The drag coefficient of the flow across the body there, if this is a law of drag; NaN in flow so slow that it is
     /// of no use.
@@ -133,6 +154,8 @@ pub trait StationElement<const Q: usize, const N: usize, const S: usize>:
     /// Whether loads go back to the nodes in the same way whatever the shape: then a load without derivatives has no
     /// tangent.
     const FIXED: bool = false;
+    /// Whether it carries what is conjugate to the slope, [`Load::g`].
+    const COUPLES: bool = false;
     /// The element's numbers over lanes.
     type Lanes<R: Real>;
     /// Brings the numbers of a batch of elements side by side.
@@ -162,10 +185,16 @@ pub trait Stations: Send + Sync {
     fn fixed(&self) -> bool {
         false
     }
+    /// Whether it carries what is conjugate to the slope, see [`StationElement::COUPLES`].
+    fn couples(&self) -> bool {
+        false
+    }
     /// Calls `f` with every station.
     fn each(&self, at: &At<'_>, f: &mut dyn FnMut(&Station<f64>));
     /// The power of all laws.
     fn power(&self, laws: &Laws, at: &At<'_>) -> Power;
+    /// The kinetic energy of all laws [J].
+    fn energy(&self, laws: &Laws, at: &At<'_>) -> f64;
     /// Applies all laws and adds what comes of it.
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>);
 }
@@ -221,6 +250,9 @@ impl Term for FieldTerm {
     }
     fn power(&self, at: &At<'_>) -> Power {
         self.stations.power(&self.laws, at)
+    }
+    fn energy(&self, at: &At<'_>) -> Energy {
+        Energy { kinetic: self.stations.energy(&self.laws, at), ..Energy::default() }
     }
     fn coefficient(&self, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
         if part != self.part {

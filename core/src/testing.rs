@@ -98,25 +98,34 @@ pub fn check_law(law: &impl Law, t: f64, at: &Station<f64>) -> f64 {
     let force = |at: &Station<f64>| {
         let mut load = Load::zero();
         law.load::<f64, false>(t, at, &mut load);
-        load.f.to_vec()
+        [load.f, load.g].concat()
     };
-    let size = largest(&load.f);
-    let mut worst = column_error(&[load.f.to_vec()], &[plain.f.to_vec()], size);
-    let gives = law.gives();
-    let kept = [(gives.x, load.d_x), (gives.slope, load.d_slope), (gives.v, load.d_v), (gives.a, load.d_a)];
+    let size = largest(&[load.f, load.g].concat());
+    let mut worst = column_error(&[[load.f, load.g].concat()], &[[plain.f, plain.g].concat()], size);
+    let (gives, nought) = (law.gives(), [[0.0; 3]; 3]);
+    let kept = [
+        (gives.x, load.d_x),
+        (gives.slope, load.d_slope),
+        (gives.v, load.d_v),
+        (gives.a, load.d_a),
+        (gives.couple, load.d_rate),
+        (gives.couple, [load.g, nought[0], nought[0]]),
+    ];
     if kept.iter().any(|(given, d)| !given && d.iter().flatten().any(|&x| x != 0.0)) {
         // nobody would read it
         return f64::INFINITY;
     }
     type Field = fn(&mut Station<f64>) -> &mut V3<f64>;
-    let fields: [(Field, [V3<f64>; 3]); 4] = [
-        (|s| &mut s.x, load.d_x),
-        (|s| &mut s.slope, load.d_slope),
-        (|s| &mut s.v, load.d_v),
-        (|s| &mut s.a, load.d_a),
+    let fields: [(Field, [V3<f64>; 3], [V3<f64>; 3]); 5] = [
+        (|s| &mut s.x, load.d_x, load.g_x),
+        (|s| &mut s.slope, load.d_slope, load.g_slope),
+        (|s| &mut s.v, load.d_v, load.g_v),
+        (|s| &mut s.a, load.d_a, nought),
+        (|s| &mut s.slope_rate, load.d_rate, nought),
     ];
-    for (field, exact) in fields {
-        let columns: Vec<Vec<f64>> = (0..3).map(|j| exact.iter().map(|row| row[j]).collect()).collect();
+    for (field, of_f, of_g) in fields {
+        let columns: Vec<Vec<f64>> =
+            (0..3).map(|j| of_f.iter().chain(&of_g).map(|row| row[j]).collect()).collect();
         let numeric: Vec<Vec<f64>> = (0..3)
             .map(|j| {
                 difference(|h| {
@@ -225,8 +234,10 @@ fn largest(x: &[f64]) -> f64 {
 
 /// All numbers of one lane of a load.
 fn numbers<R: Real>(load: &Load<R>, lane: usize) -> Vec<f64> {
-    let matrices = [&load.d_x, &load.d_slope, &load.d_v, &load.d_a];
-    let all = load.f.iter().chain(matrices.into_iter().flatten().flatten());
+    let forces = [&load.f, &load.g];
+    let by =
+        [&load.d_x, &load.d_slope, &load.d_v, &load.d_a, &load.d_rate, &load.g_x, &load.g_slope, &load.g_v];
+    let all = forces.into_iter().flatten().chain(by.into_iter().flatten().flatten());
     all.map(|x| x.lane(lane)).collect()
 }
 
@@ -237,6 +248,7 @@ fn spread<R: Real>(at: &Station<f64>) -> Station<R> {
         v: at.v.map(R::of),
         a: at.a.map(R::of),
         slope: at.slope.map(R::of),
+        slope_rate: at.slope_rate.map(R::of),
         curve_v: at.curve_v.map(R::of),
         s: R::of(at.s),
         weight: R::of(at.weight),
@@ -314,8 +326,18 @@ mod tests {
     #[test]
     fn wrong_laws_are_seen() {
         let v = [1.0, 2.0, 3.0];
-        let at =
-            Station { x: v, v, a: v, slope: v, curve_v: v, s: 0.0, weight: 1.0, diameter: 1.0, area: 1.0 };
+        let at = Station {
+            x: v,
+            v,
+            a: v,
+            slope: v,
+            slope_rate: v,
+            curve_v: v,
+            s: 0.0,
+            weight: 1.0,
+            diameter: 1.0,
+            area: 1.0,
+        };
         assert!(check_law(&Square(1.0, true), 0.0, &at) < 1e-9);
         assert!((check_law(&Square(1.01, true), 0.0, &at) - 0.01).abs() < 1e-3);
         assert_eq!(check_law(&Square(1.0, false), 0.0, &at), f64::INFINITY);

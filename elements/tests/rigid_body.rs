@@ -72,6 +72,12 @@ impl ropewalk_core::Law for Everything {
                 out.d_v[i][j] += m[j][i] * at.v[k];
                 out.d_v[i][k] += m[j][i] * at.v[j];
                 out.d_a[i][j] -= m[i][j];
+                out.f[i] += m[i][k] * at.slope_rate[j];
+                out.d_rate[i][j] += m[i][k];
+                out.g[i] += m[i][j] * at.x[j] * at.slope[k] + m[j][i] * at.v[j];
+                out.g_x[i][j] += m[i][j] * at.slope[k];
+                out.g_slope[i][k] += m[i][j] * at.x[j];
+                out.g_v[i][j] += m[j][i];
             }
         }
     }
@@ -154,8 +160,8 @@ fn loads_come_back_as_force_and_moment() {
             let f = load.f.map(|f| station.weight * f);
             let arm = std::array::from_fn(|i| station.x[i] - x0[i]);
             (0..3).for_each(|i| force[i] += f[i]);
-            let m = cross(&arm, &f);
-            (0..3).for_each(|i| moment[i] += m[i]);
+            let (m, turn) = (cross(&arm, &f), cross(&station.slope, &load.g.map(|g| station.weight * g)));
+            (0..3).for_each(|i| moment[i] += m[i] + turn[i]);
         }
         k += 1;
     });

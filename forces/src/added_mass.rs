@@ -1,49 +1,88 @@
 //! Added mass: the water that a slender body pushes aside.
 
 use ropewalk_core::build::{BuildError, not_negative};
-use ropewalk_core::{Gives, Law, Load, Real, Station, dot, scaled};
+use ropewalk_core::held::three;
+use ropewalk_core::{
+    Assembly, At, Current, Dual, Gives, Law, Load, Node, NodeId, NodeKind, Pattern, Power, Real, Station,
+    Term, V3, dot, scaled,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Added mass of a slender body in still water, `f = -m_a (I - t tᵀ) a` per unstretched length, with
-/// `m_a = Ca ρ π d²/4` and `t = r'/|r'|` (Morison's inertia term; `Ca` = 1 for a circular cylinder).
+/// What the water that a body pushes aside answers with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Theory {
+    /// All that follows from the kinetic energy of the water: inertia, and what flow along a body does that turns or
+    /// bends (Munk's moment on a hull; the terms of Lighthill and Païdoussis on a cable, which act like compression).
+    #[default]
+    Energy,
+    /// Morison's inertia term alone, as most codes have it: for comparison, and for cables that change their length.
+    Morison,
+}
+
+/// Added mass of a slender body: the kinetic energy of the water is `½ m_a |P (v - u)|²` per unstretched length, with
+/// `m_a = Ca ρ π d²/4`, `P = I - t tᵀ` and `t = r'/|r'|` (slender-body theory after Munk and Lighthill; `Ca` = 1 for a
+/// circular cylinder).
 ///
-/// Use it beside [`Drag`](crate::Drag) for cables and hoses in water. `d` is the hydrodynamic diameter of the station,
-/// so a hollow or flooded section is counted by its outside. Its power is `f·v`, given by the water to the body: the
-/// kinetic energy of the water is not part of the energy balance.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Lagrange's equations give, with `w = v - u`, `n = P w`, `λ = |r'|` and `θ = P ∂v/∂s / λ`, the rate at which the tangent
+/// turns,
+///
+/// `f = -m_a [P a - (w·t) θ - (θ·n) t]` and `g = -m_a (w·t)/λ n`, conjugate to `r'`;
+///
+/// [`Theory::Morison`] leaves `f = -m_a P a`. How the current changes from place to place acts through `u` alone: what
+/// a shear does to the added mass itself is outside the theory. `d` is the hydrodynamic diameter of the station, so a
+/// hollow or flooded section is counted by its outside. Use it beside [`Drag`](crate::Drag). With the energy the water's
+/// share is part of the kinetic energy; without, its power `f·v` is given by the water to the body.
+#[derive(Clone, Debug, PartialEq)]
 pub struct AddedMass {
     /// Density of the fluid `ρ` [kg/m³].
     pub density: f64,
     /// Added mass coefficient `Ca`.
     pub coefficient: f64,
+    /// Velocity of the fluid.
+    pub current: Current,
+    /// What the water answers with.
+    pub theory: Theory,
 }
 
 impl AddedMass {
-    /// Added mass in a fluid of the given density.
+    /// Added mass in still fluid of the given density.
     ///
     /// # Errors
     /// Negative or infinite numbers.
     pub fn new(density: f64, coefficient: f64) -> Result<Self, BuildError> {
         not_negative("density of the fluid", density)?;
         not_negative("added mass coefficient", coefficient)?;
-        Ok(AddedMass { density, coefficient })
+        Ok(AddedMass { density, coefficient, current: Current::Still, theory: Theory::Energy })
     }
-}
 
-impl Law for AddedMass {
-    const NEEDS_DIAMETER: bool = true;
-    fn label(&self) -> String {
-        "added mass".into()
+    /// The same in a current.
+    ///
+    /// # Errors
+    /// A bad current.
+    pub fn in_current(self, current: Current) -> Result<Self, BuildError> {
+        current.check()?;
+        Ok(AddedMass { current, ..self })
     }
-    fn gives(&self) -> Gives {
-        Gives { slope: true, a: true, ..Gives::NOTHING }
+
+    /// The same by another theory.
+    #[must_use]
+    pub fn by(self, theory: Theory) -> Self {
+        AddedMass { theory, ..self }
+    }
+
+    /// `m_a` [kg/m].
+    #[inline(always)]
+    pub(crate) fn mass<R: Real>(&self, diameter: R) -> R {
+        R::of(self.coefficient * self.density * PI / 4.0) * diameter * diameter
     }
 
     #[inline(always)]
-    fn load<R: Real, const TANGENT: bool>(&self, _t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let mass = R::of(self.coefficient * self.density * PI / 4.0) * at.diameter * at.diameter;
-        let stretch = dot(&at.slope, &at.slope).sqrt();
-        let inverse = R::of(1.0) / stretch;
+    fn inertia<R: Real, const TANGENT: bool>(&self, at: &Station<R>, out: &mut Load<R>) {
+        let mass = self.mass(at.diameter);
+        let inverse = R::of(1.0) / dot(&at.slope, &at.slope).sqrt();
         let t = scaled(inverse, &at.slope);
         let axial = dot(&at.a, &t);
         let mut normal = at.a;
@@ -62,5 +101,226 @@ impl Law for AddedMass {
                 }
             }
         }
+    }
+
+    #[inline(always)]
+    fn flow<R: Real, const TANGENT: bool>(&self, at: &Station<R>, out: &mut Load<R>) {
+        let mass = self.mass(at.diameter);
+        let inverse = R::of(1.0) / dot(&at.slope, &at.slope).sqrt();
+        let t = scaled(inverse, &at.slope);
+        let (u, du) = self.current.at(at.x[2]);
+        let mut w = at.v;
+        for i in 0..3 {
+            w[i] -= u[i];
+        }
+        let (along, spread) = (dot(&w, &t), dot(&at.slope_rate, &t) * inverse);
+        let (mut n, mut theta) = (w, scaled(inverse, &at.slope_rate));
+        for i in 0..3 {
+            n[i] -= along * t[i];
+            theta[i] -= spread * t[i];
+        }
+        let both = dot(&theta, &n);
+        let per = mass * inverse;
+        for i in 0..3 {
+            out.f[i] += mass * along.fma(theta[i], both * t[i]);
+            out.g[i] -= per * along * n[i];
+        }
+        if !TANGENT {
+            return;
+        }
+        let (mut by_w, mut g_by_w) = ([[R::zero(); 3]; 3], [[R::zero(); 3]; 3]);
+        for i in 0..3 {
+            for j in 0..3 {
+                let p = if i == j { R::of(1.0) - t[i] * t[j] } else { -(t[i] * t[j]) };
+                by_w[i][j] = mass * theta[i].fma(t[j], t[i] * theta[j]);
+                g_by_w[i][j] = -(per * along.fma(p, n[i] * t[j]));
+                out.d_v[i][j] += by_w[i][j];
+                out.g_v[i][j] += g_by_w[i][j];
+                out.d_rate[i][j] += per * along.fma(p, t[i] * n[j]);
+                let turned = along.fma(theta[i], both * t[i]);
+                let stretched = (along + along).fma(theta[j], spread * n[j]);
+                let still = (both - along * spread).fma(p, theta[i] * n[j]);
+                out.d_slope[i][j] += per * (still - turned * t[j] - t[i] * stretched);
+                let normal = n[i] * n[j] - along * along * p;
+                out.g_slope[i][j] -= per * inverse * (normal - along * t[i].fma(n[j], n[i] * t[j]));
+            }
+        }
+        if !self.current.is_uniform() {
+            // the current changes with height alone
+            for i in 0..3 {
+                out.d_x[i][2] -= dot(&by_w[i], &du);
+                out.g_x[i][2] -= dot(&g_by_w[i], &du);
+            }
+        }
+    }
+
+    /// `n`, the part of the velocity relative to the water that is across the axis, and the gradient of the current.
+    #[inline(always)]
+    fn across<R: Real>(&self, at: &Station<R>) -> [V3<R>; 3] {
+        let (u, du) = self.current.at(at.x[2]);
+        let square = dot(&at.slope, &at.slope);
+        let mut n = at.v;
+        for i in 0..3 {
+            n[i] -= u[i];
+        }
+        let along = dot(&n, &at.slope) / square;
+        for i in 0..3 {
+            n[i] -= along * at.slope[i];
+        }
+        [n, u, du]
+    }
+}
+
+impl Law for AddedMass {
+    const NEEDS_DIAMETER: bool = true;
+    fn label(&self) -> String {
+        match self.theory {
+            Theory::Energy => "added mass".into(),
+            Theory::Morison => "added mass (Morison)".into(),
+        }
+    }
+    fn gives(&self) -> Gives {
+        match self.theory {
+            Theory::Energy => Gives { x: !self.current.is_uniform(), ..Gives::ALL },
+            Theory::Morison => Gives { slope: true, a: true, ..Gives::NOTHING },
+        }
+    }
+
+    #[inline(always)]
+    fn load<R: Real, const TANGENT: bool>(&self, _t: f64, at: &Station<R>, out: &mut Load<R>) {
+        self.inertia::<R, TANGENT>(at, out);
+        if self.theory == Theory::Energy {
+            self.flow::<R, TANGENT>(at, out);
+        }
+    }
+
+    #[inline(always)]
+    fn power<R: Real>(&self, _t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
+        let supplied = match self.theory {
+            Theory::Morison => dot(&load.f, &at.v),
+            // what a body takes along in a shear isn't part of the theory: nor is its energy
+            Theory::Energy => {
+                let [n, u, du] = self.across(at);
+                dot(&load.f, &u) - self.mass(at.diameter) * at.v[2] * dot(&n, &du)
+            }
+        };
+        Power { supplied, ..Power::zero() }
+    }
+
+    #[inline(always)]
+    fn energy<R: Real>(&self, _t: f64, at: &Station<R>) -> R {
+        match self.theory {
+            Theory::Morison => R::zero(),
+            Theory::Energy => {
+                let [n, _, _] = self.across(at);
+                R::of(0.5) * self.mass(at.diameter) * dot(&n, &n)
+            }
+        }
+    }
+}
+
+/// Water that leaves a blunt end takes momentum along (Lighthill 1971).
+///
+/// Without it a cable would end as a tail that tapers to a point. Where water leaves at an end, with the outward tangent
+/// `t_o` and `w·t_o < 0`, the wake takes
+///
+/// `F = (1 - f) m_a/λ [(w·t_o) n - ½ s |n|² t_o]`, `s = |w·t_o|/|w|`,
+///
+/// off the end: `f` = 1 for a tail that tapers, 0 for one that is cut off; between them as Païdoussis has it. `s` lets the
+/// force vanish smoothly where the water comes from the side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BluntEnd {
+    /// The water, and the added mass.
+    pub added_mass: AddedMass,
+    /// Hydrodynamic diameter of the cable [m].
+    pub diameter: f64,
+    /// Share of the momentum that a tapering tail gets back.
+    pub taper: f64,
+    /// Whether this is the first end, whose tangent leads inwards.
+    pub first: bool,
+}
+
+impl BluntEnd {
+    /// The force on the end at height `z`, with velocity `v` and slope `slope`; over single numbers.
+    pub fn force<R: Real>(&self, z: R, v: &V3<R>, slope: &V3<R>) -> V3<R> {
+        let (u, _) = self.added_mass.current.at(z);
+        let w: V3<R> = std::array::from_fn(|i| v[i] - u[i]);
+        let inverse = R::of(1.0) / dot(slope, slope).sqrt();
+        let out = scaled(if self.first { -inverse } else { inverse }, slope);
+        let (along, speed) = (dot(&w, &out), dot(&w, &w).sqrt());
+        if !(along.lane(0) < 0.0) {
+            return [R::zero(); 3];
+        }
+        let per = R::of(1.0 - self.taper) * self.added_mass.mass(R::of(self.diameter)) * inverse;
+        let n: V3<R> = std::array::from_fn(|i| w[i] - along * out[i]);
+        let pull = R::of(0.5) * dot(&n, &n) * (-along / speed);
+        std::array::from_fn(|i| per * (along * n[i] - pull * out[i]))
+    }
+}
+
+/// A [`BluntEnd`] on a node of a cable.
+struct Wake {
+    label: String,
+    end: BluntEnd,
+    /// First coordinate and velocity of the node.
+    q: usize,
+    v: usize,
+}
+
+impl BluntEnd {
+    /// The term of this end on its node; `None` if the node has no slope.
+    pub fn on(self, part: &str, nodes: &[Node], node: NodeId) -> Option<Box<dyn Term>> {
+        let node = nodes.get(node.0 as usize).filter(|n| n.kind == NodeKind::Slope)?;
+        let label = format!("{part}: wake of a blunt end");
+        Some(Box::new(Wake { label, end: self, q: node.q, v: node.v }))
+    }
+}
+
+impl Wake {
+    fn force(&self, at: &At<'_>) -> V3<f64> {
+        self.end.force(at.q[self.q + 2], &three(at.v, self.v), &three(at.q, self.q + 3))
+    }
+}
+
+impl Term for Wake {
+    fn label(&self) -> String {
+        self.label.clone()
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        p.clique(self.v..self.v + 6);
+    }
+    fn symmetric(&self) -> bool {
+        false
+    }
+    fn is_load(&self) -> bool {
+        true
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        for (i, f) in self.force(at).iter().enumerate() {
+            out.add(self.v + i, -f);
+        }
+        if !out.wants_tangent() {
+            return;
+        }
+        let w = out.weights();
+        let by: [V3<f64>; 6] = std::array::from_fn(|j| {
+            let mut z = Dual::constant(at.q[self.q + 2]);
+            let mut v = Dual::constants(&three(at.v, self.v));
+            let mut slope = Dual::constants(&three(at.q, self.q + 3));
+            if j < 3 {
+                v[j].eps = w.v;
+                z.eps = if j == 2 { w.q } else { 0.0 };
+            } else {
+                slope[j - 3].eps = w.q;
+            }
+            self.end.force(z, &v, &slope).map(|f| f.eps)
+        });
+        out.add_block(0, 6, |i, j| if i < 3 { -by[j][i] } else { 0.0 });
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        let (f, v) = (self.force(at), three(at.v, self.v));
+        let (u, _) = self.end.added_mass.current.at(at.q[self.q + 2]);
+        let supplied = dot(&f, &u);
+        Power { dissipated: supplied - dot(&f, &v), supplied, carried: 0.0 }
     }
 }

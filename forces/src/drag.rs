@@ -173,7 +173,7 @@ impl Law for Drag {
         "drag".into()
     }
     fn gives(&self) -> Gives {
-        Gives { x: !self.current.is_uniform(), slope: true, v: true, a: false }
+        Gives { x: !self.current.is_uniform(), slope: true, v: true, ..Gives::NOTHING }
     }
 
     #[inline(always)]
@@ -244,10 +244,10 @@ impl Law for Drag {
 
     /// What the fluid takes by friction, `-f·(v - u)`, is dissipated; what it carries along, `f·u`, is supplied.
     #[inline(always)]
-    fn power<R: Real>(&self, _t: f64, at: &Station<R>, f: &V3<R>) -> Power<R> {
+    fn power<R: Real>(&self, _t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
         let (u, _) = self.current.at(at.x[2]);
-        let supplied = dot(f, &u);
-        Power { dissipated: supplied - dot(f, &at.v), supplied, carried: R::zero() }
+        let supplied = dot(&load.f, &u);
+        Power { dissipated: supplied - dot(&load.f, &at.v), supplied, carried: R::zero() }
     }
 }
 

@@ -16,7 +16,7 @@ mod spec;
 mod spring;
 mod time;
 
-pub use added_mass::AddedMass;
+pub use added_mass::{AddedMass, BluntEnd, Theory};
 pub use bushing::{Bushing, BushingSpec, RotationalSpring, RotationalSpringSpec};
 pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
 pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};

@@ -1,11 +1,11 @@
 //! What a scene says about forces.
 
 use crate::{
-    AddedMass, Drag, LineLoad, NormalLaw, PerLength, PointForce, PointMoment, Spring, TangentialLaw,
-    TimeFunction,
+    AddedMass, BluntEnd, Drag, LineLoad, NormalLaw, PerLength, PointForce, PointMoment, Spring,
+    TangentialLaw, Theory, TimeFunction,
 };
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
-use ropewalk_core::{ForceSpec, MarkerRef, Per, V3, Water, quantity, register_spec};
+use ropewalk_core::{At, ForceSpec, MarkerRef, Part, Per, Spot, V3, Water, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -178,14 +178,25 @@ fn one() -> f64 {
     1.0
 }
 
-/// Water that a cable carries along when it accelerates across its axis.
+/// Water that a cable or a hull pushes aside: its inertia, and what it does in flow along the body.
+///
+/// It has the kinetic energy of the water, so a hull at an angle to the flow is turned (Munk's moment), and flow along a
+/// cable acts like compression and can make it flutter. `theory = "morison"` leaves inertia alone, for comparison with
+/// codes that have only that; cables that change their length are always taken so.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AddedMassSpec {
     /// Coefficient: mass over that of the water in a circle of the hydrodynamic diameter.
     #[serde(default = "one", deserialize_with = "quantity::number")]
     pub ca: f64,
-    /// Cables that it acts on; left out, all.
+    /// `energy` or `morison`; left out, `energy` but for cables that change their length.
+    #[serde(default)]
+    pub theory: Option<Theory>,
+    /// Share of its momentum that the water gives back at the free ends of cables: 0 for ends that are cut off, about 0.8
+    /// for ends that taper, 1 for a perfect tail.
+    #[serde(default, deserialize_with = "quantity::number")]
+    pub tail: f64,
+    /// Parts that it acts on; left out, all.
     #[serde(default)]
     pub on: Vec<String>,
 }
@@ -193,7 +204,7 @@ register_spec!(Force, "added_mass", AddedMassSpec);
 
 impl Default for AddedMassSpec {
     fn default() -> Self {
-        AddedMassSpec { ca: 1.0, on: Vec::new() }
+        AddedMassSpec { ca: 1.0, theory: None, tail: 0.0, on: Vec::new() }
     }
 }
 
@@ -201,8 +212,53 @@ impl Default for AddedMassSpec {
 impl ForceSpec for AddedMassSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         not_negative("ca", self.ca)?;
-        let density = b.water()?.density;
-        b.load(&self.on, AddedMass::new(density, self.ca)?)
+        if !(0.0..=1.0).contains(&self.tail) {
+            return Err(BuildError::at("tail", format!("`tail` must be between 0 and 1, not {}", self.tail)));
+        }
+        let water = b.water()?;
+        let law = AddedMass::new(water.density, self.ca)?.in_current(water.current()?)?;
+        let feeds = |b: &Builder, part: &str| b.feeding(part).iter().any(Option::is_some);
+        for (_, part) in b.parts(&self.on)? {
+            let fed = feeds(b, part.name());
+            if fed && self.theory == Some(Theory::Energy) {
+                let message = format!(
+                    "`{}` changes its length, and the energy of the water beside such a cable isn't there yet: leave \
+                     `theory` out, or name in `on` the other parts",
+                    part.name()
+                );
+                return Err(BuildError::at("theory", message));
+            }
+            if fed || self.theory == Some(Theory::Morison) {
+                continue;
+            }
+            self.add_wakes(b, part.as_ref(), &law);
+        }
+        let known: Vec<String> =
+            b.parts(&[])?.iter().map(|(_, p)| p.name().to_string()).filter(|n| feeds(b, n)).collect();
+        let theory = self.theory;
+        b.load_by(&self.on, |part| {
+            let morison = known.iter().any(|n| n == part.name());
+            law.clone().by(if morison { Theory::Morison } else { theory.unwrap_or_default() })
+        })
+    }
+}
+
+impl AddedMassSpec {
+    /// Water leaves at the ends of a cable that nothing holds.
+    fn add_wakes(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass) {
+        let Some(stations) = part.stations() else { return };
+        let (q, v) = (b.coordinates().to_vec(), vec![0.0; b.coordinates().len()]);
+        let at = At { t: 0.0, q: &q, v: &v, a: &v, modes: &[], relaxed: None };
+        let mut diameter = 0.0;
+        stations.each(&at, &mut |s| diameter = s.diameter);
+        for (spot, first) in [(Spot::Named("start".into()), true), (Spot::Named("end".into()), false)] {
+            let Ok(marker) = part.marker(&spot) else { continue };
+            let Some(node) = marker.on().filter(|n| !b.is_held(*n)) else { continue };
+            let end = BluntEnd { added_mass: law.clone(), diameter, taper: self.tail, first };
+            if let Some(term) = end.on(part.name(), b.nodes(), node) {
+                b.term(term);
+            }
+        }
     }
 }
 

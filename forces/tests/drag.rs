@@ -3,11 +3,11 @@
 mod random;
 
 use random::{Random, rotate};
-use ropewalk_core::testing::check_law;
-use ropewalk_core::{Current, Law, Load, Station, dot};
+use ropewalk_core::testing::{check_law, check_tangent, dense};
+use ropewalk_core::{At, Current, Law, Load, Node, NodeId, NodeKind, Station, Weights, Width, dot};
 use ropewalk_forces::{
-    AddedMass, Drag, LineLoad, NormalLaw, PerLength, TangentialLaw, TimeFunction, choo_casarella_cn,
-    choo_casarella_ct_over_mu,
+    AddedMass, BluntEnd, Drag, LineLoad, NormalLaw, PerLength, TangentialLaw, Theory, TimeFunction,
+    choo_casarella_cn, choo_casarella_ct_over_mu,
 };
 
 const NORMAL: [NormalLaw; 2] = [NormalLaw::Constant(1.2), NormalLaw::ChooCasarella];
@@ -19,6 +19,7 @@ fn station(r: &mut Random, speed: f64) -> Station<f64> {
         v: r.vector(speed),
         a: r.vector(3.0),
         slope: r.vector(1.0),
+        slope_rate: r.vector(4.0),
         curve_v: [0.0; 3],
         s: 0.5,
         weight: 0.1,
@@ -27,13 +28,17 @@ fn station(r: &mut Random, speed: f64) -> Station<f64> {
     }
 }
 
-fn laws() -> Vec<Drag> {
-    let currents = [
+fn currents() -> [Current; 4] {
+    [
         Current::Still,
         Current::Uniform([0.4, -0.2, 0.1]),
         Current::Linear { z0: 1.0, velocity: [0.4, 0.1, 0.0], gradient: [0.1, -0.3, 0.05] },
         Current::profile(vec![-2.0, 0.0, 2.0], vec![[0.0; 3], [0.5, 0.1, 0.0], [0.9, -0.5, 0.2]]).unwrap(),
-    ];
+    ]
+}
+
+fn laws() -> Vec<Drag> {
+    let currents = currents();
     let mut all = Vec::new();
     for normal in NORMAL {
         for tangential in TANGENTIAL {
@@ -106,7 +111,11 @@ fn derivatives_are_exact_and_all_widths_agree() {
     let ramp = TimeFunction::Ramp { from: 0.0, to: 1.0, t0: 0.0, t1: 1.0 };
     for _ in 0..20 {
         let at = station(&mut r, 2.0);
-        worst = worst.max(check_law(&AddedMass::new(1025.0, 1.0).unwrap(), 0.7, &at));
+        for current in currents() {
+            let law = AddedMass::new(1025.0, 1.0).unwrap().in_current(current).unwrap();
+            worst = worst.max(check_law(&law, 0.7, &at));
+            worst = worst.max(check_law(&law.by(Theory::Morison), 0.7, &at));
+        }
         for per in [PerLength::Unstretched, PerLength::Stretched] {
             worst =
                 worst.max(check_law(&LineLoad::new([1.0, 2.0, -3.0], per, ramp.clone()).unwrap(), 0.7, &at));
@@ -204,7 +213,7 @@ fn friction_only_dissipates_and_the_power_is_complete() {
         for _ in 0..10 {
             let at = station(&mut r, 2.0);
             let f = force(&law, &at);
-            let p = Law::power(&law, 0.7, &at, &f);
+            let p = Law::power(&law, 0.7, &at, &Load { f, ..Load::zero() });
             assert!(p.dissipated >= 0.0);
             approx::assert_relative_eq!(
                 p.supplied - p.dissipated,
@@ -250,14 +259,40 @@ fn per_stretched_length_counts_the_stretch() {
 }
 
 #[test]
-fn added_mass_resists_normal_acceleration_only() {
-    let law = AddedMass::new(1025.0, 1.0).unwrap();
+fn added_mass_of_morison_resists_normal_acceleration_only() {
+    let law = AddedMass::new(1025.0, 1.0).unwrap().by(Theory::Morison);
     let mut at = station(&mut Random(1), 1.0);
     (at.slope, at.a) = ([0.0, 0.0, 1.1], [2.0, 0.0, 5.0]);
     let f = force(&law, &at);
     // 0.4259 kg/m for the default hose
     approx::assert_relative_eq!(f[0], -2.0 * 0.425_86, max_relative = 1e-4);
     assert_eq!([f[1], f[2]].map(f64::abs), [0.0, 0.0]);
+}
+
+/// The wake of a blunt end takes energy and no more, and its tangent is exact.
+#[test]
+fn blunt_ends_shed_energy() {
+    let nodes = [Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false }];
+    let mut r = Random(3);
+    for (k, current) in currents().into_iter().cycle().take(40).enumerate() {
+        let added_mass = AddedMass::new(1025.0, 1.0).unwrap().in_current(current).unwrap();
+        let end = BluntEnd { added_mass, diameter: 0.1, taper: 0.3, first: k % 2 == 0 };
+        let term = end.on("cable", &nodes, NodeId(0)).expect("a slope");
+        let (q, v) = ([r.vector(3.0), r.vector(1.0)].concat(), [r.vector(2.0), r.vector(2.0)].concat());
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 6], modes: &[], relaxed: None };
+        let error = check_tangent(term.as_ref(), &nodes, &at, Width::One);
+        assert!(error < 1e-6, "{error:e}");
+        let power = term.power(&at);
+        let f = dense(term.as_ref(), &nodes, &at, Weights::default(), Width::One).0;
+        let done: f64 = f.iter().zip(&v).map(|(f, v)| -f * v).sum();
+        assert!(power.dissipated >= 0.0);
+        approx::assert_relative_eq!(
+            power.supplied - power.dissipated,
+            done,
+            max_relative = 1e-12,
+            epsilon = 1e-12
+        );
+    }
 }
 
 #[test]

@@ -7,13 +7,19 @@ use crate::term::Power;
 use std::cell::RefCell;
 
 /// How many numbers make a station, and a load.
-pub(super) const STATION: usize = 19;
-pub(super) const LOAD: usize = 39;
+pub(super) const STATION: usize = 22;
+pub(super) const LOAD: usize = 78;
 /// Where the derivatives stand in a load.
 const D_X: usize = 3;
 const D_SLOPE: usize = 12;
 const D_V: usize = 21;
 const D_A: usize = 30;
+/// From here on only laws with a couple write and read.
+const G: usize = 39;
+const D_RATE: usize = 42;
+const G_X: usize = 51;
+const G_SLOPE: usize = 60;
+const G_V: usize = 69;
 
 /// Number `i` of a row of numbers over lanes.
 #[inline(always)]
@@ -57,7 +63,8 @@ impl<R: Real> Station<R> {
         put(row, 6, &self.a);
         put(row, 9, &self.slope);
         put(row, 12, &self.curve_v);
-        put(row, 15, &[self.s, self.weight, self.diameter, self.area]);
+        put(row, 15, &self.slope_rate);
+        put(row, 18, &[self.s, self.weight, self.diameter, self.area]);
     }
     #[inline(always)]
     pub(super) fn read(row: &[f64]) -> Self {
@@ -67,10 +74,11 @@ impl<R: Real> Station<R> {
             a: vector(row, 6),
             slope: vector(row, 9),
             curve_v: vector(row, 12),
-            s: number(row, 15),
-            weight: number(row, 16),
-            diameter: number(row, 17),
-            area: number(row, 18),
+            slope_rate: vector(row, 15),
+            s: number(row, 18),
+            weight: number(row, 19),
+            diameter: number(row, 20),
+            area: number(row, 21),
         }
     }
 }
@@ -91,6 +99,13 @@ impl<R: Real> Load<R> {
         }
         if gives.a {
             self.d_a = matrix(D_A);
+        }
+        if gives.couple {
+            self.g = vector(row, G);
+            self.d_rate = matrix(D_RATE);
+            self.g_x = matrix(G_X);
+            self.g_slope = matrix(G_SLOPE);
+            self.g_v = matrix(G_V);
         }
     }
 }
@@ -128,6 +143,8 @@ pub(super) trait ErasedLaw: Send + Sync {
     fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange);
     /// The power of the loads in the first `lanes` lanes of a batch.
     fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power;
+    /// The energy of the stations in the first `lanes` lanes of a batch.
+    fn energy(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> f64;
     fn coefficient(&self, at: &Station<f64>) -> Option<f64>;
     fn timed(&self) -> bool;
     fn reach(&self, t: f64, h: f64) -> Option<f64>;
@@ -143,7 +160,8 @@ struct LoadAll<'a, L> {
 impl<L: Law> LoadAll<'_, L> {
     #[inline(always)]
     fn all<R: Real, const TANGENT: bool>(self) {
-        let (x, gives) = (self.x, if TANGENT { self.law.gives() } else { Gives::NOTHING });
+        let (x, all) = (self.x, self.law.gives());
+        let gives = if TANGENT { all } else { Gives { couple: all.couple, ..Gives::NOTHING } };
         let rows = x.stations.chunks_exact(STATION * R::LANES).zip(x.loads.chunks_exact_mut(LOAD * R::LANES));
         for (station, out) in rows {
             let mut load = Load::zero();
@@ -160,6 +178,15 @@ impl<L: Law> LoadAll<'_, L> {
             }
             if gives.a {
                 add_matrix(out, D_A, x.given.a, &load.d_a);
+            }
+            if gives.couple {
+                add(out, G, x.given.couple, &load.g);
+            }
+            if gives.couple && TANGENT {
+                add_matrix(out, D_RATE, x.given.couple, &load.d_rate);
+                add_matrix(out, G_X, x.given.couple, &load.g_x);
+                add_matrix(out, G_SLOPE, x.given.couple, &load.g_slope);
+                add_matrix(out, G_V, x.given.couple, &load.g_v);
             }
         }
         (x.loaded, x.given) = (true, x.given.and(gives));
@@ -188,6 +215,11 @@ impl<L: Law> ErasedLaw for L {
         run(width, PowerOf { law: self, t, x, lanes, out: &mut out });
         out
     }
+    fn energy(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> f64 {
+        let mut out = 0.0;
+        run(width, EnergyOf { law: self, t, x, lanes, out: &mut out });
+        out
+    }
     fn coefficient(&self, at: &Station<f64>) -> Option<f64> {
         Law::coefficient(self, at)
     }
@@ -214,10 +246,30 @@ impl<L: Law> LaneTask for PowerOf<'_, L> {
         for row in self.x.stations.chunks_exact(STATION * R::LANES) {
             let (at, mut load) = (Station::read(row), Load::zero());
             self.law.load::<R, false>(self.t, &at, &mut load);
-            let power = self.law.power(self.t, &at, &load.f);
+            let power = self.law.power(self.t, &at, &load);
             sum.dissipated = at.weight.fma(power.dissipated, sum.dissipated);
             sum.supplied = at.weight.fma(power.supplied, sum.supplied);
             sum.carried = at.weight.fma(power.carried, sum.carried);
+        }
+        (0..self.lanes).for_each(|l| *self.out += sum.lane(l));
+    }
+}
+
+struct EnergyOf<'a, L> {
+    law: &'a L,
+    t: f64,
+    x: &'a Exchange,
+    lanes: usize,
+    out: &'a mut f64,
+}
+
+impl<L: Law> LaneTask for EnergyOf<'_, L> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        let mut sum = R::zero();
+        for row in self.x.stations.chunks_exact(STATION * R::LANES) {
+            let at = Station::<R>::read(row);
+            sum = at.weight.fma(self.law.energy(self.t, &at), sum);
         }
         (0..self.lanes).for_each(|l| *self.out += sum.lane(l));
     }

@@ -92,25 +92,32 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     }
 }
 
-struct PowerAll<'a, E, const Q: usize, const N: usize, const S: usize> {
+/// Power and kinetic energy of all laws.
+struct WorkAll<'a, E, const Q: usize, const N: usize, const S: usize> {
     pool: &'a StationPool<E, Q, N, S>,
     laws: &'a Laws,
     at: &'a At<'a>,
-    total: &'a mut Power,
+    power: Option<&'a mut Power>,
+    energy: Option<&'a mut f64>,
     exchange: &'a mut Exchange,
 }
 
 impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize> LaneTask
-    for PowerAll<'_, E, Q, N, S>
+    for WorkAll<'_, E, Q, N, S>
 {
     #[inline(always)]
-    fn go<R: Real>(self) {
+    fn go<R: Real>(mut self) {
         self.exchange.resize::<R>(S);
         for (elements, seats) in self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES)) {
             let (p, x) = (E::lanes::<R>(&Batch(elements)), Seat::gather::<R>(seats, self.at));
             write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
             for law in &self.laws.0 {
-                *self.total += law.power(Width::best(), self.at.t, self.exchange, seats.len());
+                if let Some(total) = &mut self.power {
+                    **total += law.power(Width::best(), self.at.t, self.exchange, seats.len());
+                }
+                if let Some(total) = &mut self.energy {
+                    **total += law.energy(Width::best(), self.at.t, self.exchange, seats.len());
+                }
             }
         }
     }
@@ -129,6 +136,9 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     }
     fn fixed(&self) -> bool {
         E::FIXED
+    }
+    fn couples(&self) -> bool {
+        E::COUPLES
     }
     fn each(&self, at: &At<'_>, f: &mut dyn FnMut(&Station<f64>)) {
         for (e, seat) in self.elements.iter().zip(&self.seats) {
@@ -149,8 +159,20 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     fn power(&self, laws: &Laws, at: &At<'_>) -> Power {
         let mut total = Power::default();
         EXCHANGE.with_borrow_mut(|exchange| {
-            run(Width::best(), PowerAll { pool: self, laws, at, total: &mut total, exchange });
+            let power = Some(&mut total);
+            run(Width::best(), WorkAll { pool: self, laws, at, power, energy: None, exchange });
         });
+        total
+    }
+    fn energy(&self, laws: &Laws, at: &At<'_>) -> f64 {
+        let mut total = 0.0;
+        // most laws move nothing besides the body
+        if laws.0.iter().any(|law| law.gives().couple) {
+            EXCHANGE.with_borrow_mut(|exchange| {
+                let energy = Some(&mut total);
+                run(Width::best(), WorkAll { pool: self, laws, at, power: None, energy, exchange });
+            });
+        }
         total
     }
 }

@@ -31,6 +31,7 @@ fn interpolate<R: Real>(s: &[R; 4], e: &[R; 12]) -> V3<R> {
 
 impl StationElement<12, 12, 4> for CableStations {
     const FIXED: bool = true;
+    const COUPLES: bool = true;
     type Lanes<R: Real> = CableStations<R>;
 
     #[inline(always)]
@@ -46,13 +47,15 @@ impl StationElement<12, 12, 4> for CableStations {
     #[inline(always)]
     fn station<R: Real>(p: &CableStations<R>, x: &Local<R, 12, 12>, k: usize) -> Station<R> {
         let at = &Gauss4::POINTS[k];
-        let (s, q) = (hermite(at.xi, p.l), natural(&x.q, R::of(1.0) / p.l));
+        let il = R::of(1.0) / p.l;
+        let s = hermite(at.xi, p.l);
         let v = interpolate(&s, &x.v);
         Station {
             x: interpolate(&s, &x.q),
             v,
             a: interpolate(&s, &x.a),
-            slope: combine(&at.phi, &q),
+            slope: combine(&at.phi, &natural(&x.q, il)),
+            slope_rate: combine(&at.phi, &natural(&x.v, il)),
             curve_v: v,
             s: R::of(at.xi).fma(p.l, p.s0),
             weight: R::of(at.w) * p.l,
@@ -84,6 +87,12 @@ impl StationElement<12, 12, 4> for CableStations {
                 for i in 0..4 {
                     r[i] = s[k][i].fma(f, r[i]);
                 }
+                if gives.couple {
+                    let g = weight[k] * loads[k].g[c];
+                    for i in 0..4 {
+                        r[i] = d[k][i].fma(g, r[i]);
+                    }
+                }
             }
             for i in 0..4 {
                 out.r[3 * i + c] = r[i];
@@ -110,11 +119,24 @@ impl StationElement<12, 12, 4> for CableStations {
                     if gives.slope {
                         by_slope = weight[k] * wq * load.d_slope[r][c];
                     }
+                    if gives.couple {
+                        by_slope = (weight[k] * wv).fma(load.d_rate[r][c], by_slope);
+                    }
                     by_x = weight[k] * by_x;
                     for j in 0..4 {
                         let column = s[k][j].fma(by_x, d[k][j] * by_slope);
                         for i in 0..4 {
                             block[i][j] = s[k][i].fma(column, block[i][j]);
+                        }
+                    }
+                    if gives.couple {
+                        let by_x = weight[k] * wq.fma(load.g_x[r][c], wv * load.g_v[r][c]);
+                        let by_slope = weight[k] * wq * load.g_slope[r][c];
+                        for j in 0..4 {
+                            let column = s[k][j].fma(by_x, d[k][j] * by_slope);
+                            for i in 0..4 {
+                                block[i][j] = d[k][i].fma(column, block[i][j]);
+                            }
                         }
                     }
                 }

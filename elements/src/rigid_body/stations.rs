@@ -59,6 +59,7 @@ fn sum<R: Real>(a: V3<R>, b: V3<R>) -> V3<R> {
 }
 
 impl StationElement<7, 6, 4> for Hull {
+    const COUPLES: bool = true;
     type Lanes<R: Real> = Hull<R>;
 
     #[inline(always)]
@@ -89,6 +90,7 @@ impl StationElement<7, 6, 4> for Hull {
             v,
             a: sum([x.a[0], x.a[1], x.a[2]], times(&r, &swing(&omega, &alpha, &s))),
             slope: times(&r, &p.direction()),
+            slope_rate: times(&r, &cross(&omega, &p.direction())),
             curve_v: v,
             s: R::of(GAUSS[k].0).fma(p.length, p.s0),
             weight: R::of(GAUSS[k].1) * p.length,
@@ -120,6 +122,16 @@ impl StationElement<7, 6, 4> for Hull {
                 out.r[i] += f[i];
                 out.r[3 + i] += moment[i];
             }
+            // a couple turns the axis
+            let axis = p.direction();
+            let mut couple = [R::zero(); 3];
+            if gives.couple {
+                couple = transposed_times(&r, &load.g.map(|g| weight * g));
+                let moment = cross(&axis, &couple);
+                for i in 0..3 {
+                    out.r[3 + i] += moment[i];
+                }
+            }
             if !TANGENT {
                 continue;
             }
@@ -127,13 +139,15 @@ impl StationElement<7, 6, 4> for Hull {
             for j in 0..6 {
                 // what a change of unknown j changes the load by: by its place, slope, velocity, acceleration
                 let (mut unit, mut by_slope) = ([R::zero(); 3], [R::zero(); 3]);
-                let (mut v_by_q, mut a_by_v, mut a_by_q) = (by_slope, by_slope, by_slope);
+                let (mut v_by_q, mut a_by_v, mut a_by_q, mut rate_by_q) =
+                    (by_slope, by_slope, by_slope, by_slope);
                 unit[j % 3] = R::of(1.0);
                 if j >= 3 {
                     let e = unit;
                     unit = times(&r, &cross(&e, &s));
                     by_slope = times(&r, &cross(&e, &p.direction()));
                     v_by_q = times(&r, &cross(&e, &turning));
+                    rate_by_q = times(&r, &cross(&e, &cross(&omega, &axis)));
                     let (one, two) = (cross(&e, &turning), cross(&omega, &cross(&e, &s)));
                     a_by_v = times(&r, &sum(one, two));
                     a_by_q = times(&r, &cross(&e, &centripetal));
@@ -154,16 +168,30 @@ impl StationElement<7, 6, 4> for Hull {
                             + wv * dot(&load.d_a[i], &a_by_v)
                             + wq * dot(&load.d_a[i], &a_by_q);
                     }
+                    if gives.couple {
+                        // the slope's rate by a velocity is what the slope is by a coordinate
+                        d[i] += wv * dot(&load.d_rate[i], &by_slope) + wq * dot(&load.d_rate[i], &rate_by_q);
+                    }
                     d[i] = weight * d[i];
                 }
                 let mut turn = transposed_times(&r, &d);
+                let mut e = [R::zero(); 3];
                 if j >= 3 {
                     // the load stays in space while the body turns under it
-                    let mut e = [R::zero(); 3];
                     e[j - 3] = wq;
                     turn = sum(turn, cross(&own, &e));
                 }
-                let turn = cross(&s, &turn);
+                let mut turn = cross(&s, &turn);
+                if gives.couple {
+                    let mut d = [R::zero(); 3];
+                    for i in 0..3 {
+                        d[i] = wq * (dot(&load.g_x[i], &unit) + dot(&load.g_slope[i], &by_slope))
+                            + wv * dot(&load.g_v[i], &unit)
+                            + wq * dot(&load.g_v[i], &v_by_q);
+                        d[i] = weight * d[i];
+                    }
+                    turn = sum(turn, cross(&axis, &sum(transposed_times(&r, &d), cross(&couple, &e))));
+                }
                 for i in 0..3 {
                     out.k[i][j] += d[i];
                     out.k[3 + i][j] += turn[i];

@@ -197,6 +197,17 @@ impl Unwinding {
     pub(super) fn station(&self, x: V3<f64>, v: V3<f64>, slope: V3<f64>) -> Station<f64> {
         let d = self.cable.diameter;
         let area = PI / 4.0 * d * d;
-        Station { x, v, a: [0.0; 3], slope, curve_v: v, s: 0.0, weight: 1.0, diameter: d, area }
+        Station {
+            x,
+            v,
+            a: [0.0; 3],
+            slope,
+            slope_rate: [0.0; 3],
+            curve_v: v,
+            s: 0.0,
+            weight: 1.0,
+            diameter: d,
+            area,
+        }
     }
 }

@@ -33,6 +33,7 @@ struct Place<R> {
     bend: Row<R>,
     x: V3<R>,
     slope: V3<R>,
+    slope_rate: V3<R>,
     v: V3<R>,
     a: V3<R>,
 }
@@ -48,7 +49,16 @@ impl<R: Real> Place<R> {
         for i in 0..3 {
             a[i] += c * (v_p[i] + v_p[i] + c * r2[i]);
         }
-        Place { x: row_times(&s, e), slope: row_times(&ds, e), v: row_times(&s, &t.v), a, s, ds, bend }
+        Place {
+            x: row_times(&s, e),
+            slope: row_times(&ds, e),
+            slope_rate: v_p,
+            v: row_times(&s, &t.v),
+            a,
+            s,
+            ds,
+            bend,
+        }
     }
 }
 
@@ -111,6 +121,7 @@ macro_rules! stations {
                     v: place.v,
                     a: place.a,
                     slope: place.slope,
+                    slope_rate: place.slope_rate,
                     curve_v,
                     s: R::of(at.xi).fma(g.l, g.p),
                     weight: R::of(at.w) * g.l,
