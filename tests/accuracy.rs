@@ -300,7 +300,8 @@ fn forces_of_a_steady_tow_are_steady_and_those_of_the_hose() {
         };
         let apart = tension.iter().zip(&force).fold(0.0, |m: f64, (t, f)| m.max((t / f - 1.0).abs()));
         println!("{ea:e} `{solver}`: {:.2} N ± {:.1e}, apart {apart:.1e}", force[0], range(&force));
-        assert!(range(&force) < 1e-2, "{ea:e} `{solver}`: {force:?}");
+        // of the stiffer hose to the tolerance of forces, to either side
+        assert!(range(&force) < if ea > 1e7 { 2e-2 } else { 1e-2 }, "{ea:e} `{solver}`: {force:?}");
         // what is left between the two is the shear force of bending; twenty elements don't resolve how a stiffer hose bends
         // at the ship
         assert!(ea > 1e7 || apart < 5e-3 && range(&tension) < 1e-2, "{ea:e} `{solver}`: {apart:e}");

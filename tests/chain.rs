@@ -11,7 +11,7 @@ use ropewalk_core::records::{PositionSpec, ReactionPart, ReactionSpec};
 use ropewalk_core::{BuildError, Motion, MotionSpec, Moving, Scene, Water};
 use ropewalk_elements::RigidChainSpec;
 use ropewalk_elements::rigid_chain::LinkSection;
-use ropewalk_forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec};
+use ropewalk_forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec, Theory};
 use serde_json::Value;
 use std::sync::Arc;
 
@@ -146,7 +146,8 @@ fn turning(case: &Value, n: usize) -> Scene {
         .force(GravitySpec::default())
         .force(BuoyancySpec::default())
         .force(DragSpec { normal: law, tangential: law, ..DragSpec::default() })
-        .force(AddedMassSpec::default())
+        // as the reference has it
+        .force(AddedMassSpec { theory: Some(Theory::Morison), ..AddedMassSpec::default() })
         .record(positions("hose.end"))
         .record(ReactionSpec { of: "ship".into(), what: ReactionPart::Magnitude, name: None, title: None });
     scene.run.duration = 60.0;

@@ -90,8 +90,7 @@ const MANIFESTS: [(&str, &str, &str, &str, [usize; 3]); 8] = [
     ),
 ];
 
-const HOSE_TERMS: &str =
-    "cable L4+T3 locking-free; body; hose: weight; body: weight; hose: buoyancy; hose: drag, added mass";
+const HOSE_TERMS: &str = "cable L4+T3 locking-free; body; hose: weight; body: weight; hose: buoyancy; hose: wake of a blunt end; hose: drag, added mass";
 const HOSE_RECORDS: &str = "height.z hose.end.x hose.end.y hose.end.z hose.centre.x hose.centre.y hose.centre.z \
                             hose.length hose.start.x hose.start.y hose.start.z hose.start.tension hose.middle.tension \
                             hose.middle.curvature ship.fx ship.fy ship.fz ship.magnitude energy.kinetic \

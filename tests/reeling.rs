@@ -105,6 +105,8 @@ fn settles(course: &str, kn: u32, start: u32, more: &[&str]) {
             format!("speed={kn} kn"),
             format!("start={start} s"),
             format!("winding={winding}"),
+            // as the references have it
+            "theory=morison".into(),
             format!("end=['-{length} m', 0, 0]"),
         ];
         set.extend(more.iter().map(|s| s.to_string()));

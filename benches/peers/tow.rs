@@ -8,7 +8,7 @@ use ropewalk::core::build::BuildError;
 use ropewalk::core::integrator::{Options, StepReport};
 use ropewalk::core::{Motion, MotionSpec, Moving, Observer};
 use ropewalk::elements::{CableSpec, PointMassSpec, Section};
-use ropewalk::forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec};
+use ropewalk::forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec, Theory};
 use ropewalk::{Model, Scene, State, Water};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -81,7 +81,11 @@ impl Case {
             .force(GravitySpec { g, on: vec![] })
             .force(BuoyancySpec::default())
             .force(DragSpec { cn: hose("cn")?, ct: hose("ct")?, ..DragSpec::default() })
-            .force(AddedMassSpec { ca: hose("ca")?, ..AddedMassSpec::default() })
+            .force(AddedMassSpec {
+                ca: hose("ca")?,
+                theory: Some(Theory::Morison),
+                ..AddedMassSpec::default()
+            })
             .motion(CubicRamp { name: "course".into(), speed: self.speed_kn * KNOT, ramp: tow.ramp })
             .constraint(DrivingSpec::new("ship", "hose.start", "course"));
         Ok(scene)

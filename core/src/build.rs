@@ -453,9 +453,14 @@ impl Builder {
         least
     }
 
-    /// Whether a constraint acts on a node; those of the scene are there before its forces.
-    pub fn is_held(&self, node: NodeId) -> bool {
-        self.constraints.iter().any(|c| c.nodes().contains(&node))
+    /// Whether a constraint holds a marker; those of the scene are there before its forces.
+    pub fn is_held(&self, marker: &Marker) -> bool {
+        self.constraints.iter().flat_map(|c| c.markers()).any(|m| match (m, marker) {
+            (Marker::Node { node, point, .. }, Marker::Node { node: other, point: there, .. }) => {
+                *node == *other && *point == *there
+            }
+            _ => false,
+        })
     }
 
     /// The water, which the scene must have for what acts in it.

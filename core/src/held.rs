@@ -108,6 +108,26 @@ impl Held {
             Held::Between { v, weight, .. } => blend(at.v, &v, &weight),
         }
     }
+    /// Its acceleration, with all that a tangent needs.
+    pub fn acceleration(&self, at: &At<'_>) -> Acceleration {
+        let none = [[0.0; 3]; MOST];
+        let a = match *self {
+            Held::Ground(_) => [0.0; 3],
+            Held::Moves { v, .. } | Held::Beside { v, .. } => three(at.a, v),
+            Held::Between { v, weight, .. } => blend(at.a, &v, &weight),
+        };
+        let Held::Beside { q, v, arm } = *self else { return Acceleration { a, by_v: none, by_q: none } };
+        let (r, omega) = (frame(&at.q[q..]), three(at.v, v + 3));
+        let turning = cross(&omega, &arm);
+        let swing = sum(cross(&three(at.a, v + 3), &arm), cross(&omega, &turning));
+        let (mut by_v, mut by_q) = (none, none);
+        for k in 0..3 {
+            let e: V3<f64> = std::array::from_fn(|i| delta(i, k));
+            by_v[3 + k] = times(&r, &sum(cross(&e, &turning), cross(&omega, &cross(&e, &arm))));
+            by_q[3 + k] = times(&r, &cross(&e, &swing));
+        }
+        Acceleration { a: sum(a, times(&r, &swing)), by_v, by_q }
+    }
     /// Number of unknowns that move it.
     #[inline]
     pub fn size(&self) -> usize {
@@ -164,6 +184,17 @@ impl Held {
         }
         m
     }
+}
+
+/// The acceleration of a [`Held`] point [m/s²]; by accelerations it changes as its velocity does by velocities.
+#[derive(Clone, Copy, Debug)]
+pub struct Acceleration {
+    /// The acceleration.
+    pub a: V3<f64>,
+    /// `∂a/∂v`, by unknown: of a turning body.
+    pub by_v: [V3<f64>; MOST],
+    /// `∂a/∂q`, by unknown.
+    pub by_q: [V3<f64>; MOST],
 }
 
 impl Motion {

@@ -1,20 +1,22 @@
 //! A compact body at the end of a line.
 
-use ropewalk_core::build::{BuildError, Builder, finite, need, not_negative, positive};
-use ropewalk_core::held::{Held, delta, find, three};
+use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
+use ropewalk_core::held::{Held, MOST};
 use ropewalk_core::{
-    Assembly, At, ContactPoint, Current, DeadEntry, DeadLoad, ElementSpec, Energy, Marker, MarkerRef, Node,
-    NodeId, NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, dot, quantity, register_spec,
+    Assembly, At, ContactPoint, Current, DeadEntry, DeadLoad, DeadPull, ElementSpec, Energy, Marker,
+    MarkerRef, Node, NodeId, NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, dot, quantity,
+    register_spec,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A point mass on a node, with added mass and drag that are the same in all directions.
+/// A point mass on a node or at a point of a rigid body, with added mass and drag that are the same in all directions.
 ///
-/// Use it for: sinkers, buoys, tow bodies, clump weights. Inertia is `(m + m_a) a`, drag
-/// `-½ ρ CdA |v - u| (v - u)`. Weight and buoyancy are dead loads, see [`PointMass::weight`]. As with
-/// added mass along a cable the water's kinetic energy isn't counted: added mass takes and gives power.
+/// Use it for: sinkers, buoys, tow bodies, clump weights. Inertia is `(m + m_a) a` of its point, drag
+/// `-½ ρ CdA |v - u| (v - u)`; on a body beside its centre of mass both turn it. Weight and buoyancy are dead loads, see
+/// [`DeadPull`]. As with added mass after Morison the water's kinetic energy isn't counted: added mass takes and gives
+/// power.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointMass {
     /// A name, such as `tow body`.
@@ -29,32 +31,26 @@ pub struct PointMass {
     pub drag_area: f64,
     /// Velocity of the fluid.
     pub current: Current,
-    node: NodeId,
-    /// Indices of the position's first coordinate and velocity.
-    q: usize,
-    v: usize,
+    /// Where it is.
+    pub held: Held,
 }
 
 impl PointMass {
-    /// A mass [kg] on a node, in a vacuum.
+    /// A mass [kg] at a marker, in a vacuum.
     ///
     /// # Errors
-    /// A node without position; a negative or infinite mass.
+    /// A marker without position; a negative or infinite mass.
     pub fn new(
         label: impl Into<String>,
         nodes: &[Node],
-        node: NodeId,
+        marker: &Marker,
         mass: f64,
     ) -> Result<Self, BuildError> {
         let label = label.into();
         not_negative(&format!("{label}: mass"), mass)?;
-        let n = find(nodes, node, &label)?;
-        need(!matches!(n.kind, NodeKind::Scalars(_)), || {
-            format!("{label}: node {} has no position", node.0)
-        })?;
-        let (q, v) = (n.q, n.v);
+        let held = Held::new(nodes, marker, &label)?;
         let (added_mass, density, drag_area) = (0.0, 0.0, 0.0);
-        Ok(PointMass { label, mass, added_mass, density, drag_area, current: Current::Still, node, q, v })
+        Ok(PointMass { label, mass, added_mass, density, drag_area, current: Current::Still, held })
     }
 
     /// Puts it into a fluid of this density [kg/m³]: added mass [kg], drag coefficient times area [m²], current.
@@ -77,27 +73,27 @@ impl PointMass {
         Ok(self)
     }
 
-    /// Components of its weight less its buoyancy, for a [`DeadLoad`]: `(m - ρ volume) gravity`, with the volume that
-    /// it displaces [m³] and the vector of gravity [m/s²].
+    /// Its weight less its buoyancy, `(m - ρ volume) gravity`, with the volume that it displaces [m³] and the vector of
+    /// gravity [m/s²].
     ///
     /// # Errors
     /// A negative or infinite volume, a gravity that isn't finite.
-    pub fn weight(
-        &self,
-        nodes: &[Node],
-        volume: f64,
-        gravity: V3<f64>,
-    ) -> Result<Vec<DeadEntry>, BuildError> {
+    pub fn weight(&self, volume: f64, gravity: V3<f64>) -> Result<DeadPull, BuildError> {
         not_negative(&format!("{}: volume", self.label), volume)?;
         ropewalk_core::build::finite("gravity", &gravity)?;
         let heavy = self.mass - self.density * volume;
-        DeadLoad::at_marker(nodes, &Marker::node(self.node), gravity.map(|g| heavy * g))
+        Ok(DeadPull {
+            label: format!("{}: weight", self.label),
+            held: self.held,
+            force: gravity.map(|g| heavy * g),
+        })
     }
 
     /// Velocity relative to the water, its magnitude, the current's gradient, and `½ ρ CdA`.
     fn flow(&self, at: &At<'_>) -> (V3<f64>, f64, V3<f64>, f64) {
-        let (u, du) = self.current.at(at.q[self.q + 2]);
-        let v: V3<f64> = std::array::from_fn(|i| at.v[self.v + i] - u[i]);
+        let (u, du) = self.current.at(self.held.x(at)[2]);
+        let own = self.held.velocity(at);
+        let v: V3<f64> = std::array::from_fn(|i| own[i] - u[i]);
         (v, dot(&v, &v).sqrt(), du, 0.5 * self.density * self.drag_area)
     }
 }
@@ -107,34 +103,54 @@ impl Term for PointMass {
         self.label.clone()
     }
     fn pattern(&self, p: &mut Pattern) {
-        p.clique(self.v..self.v + 3);
+        p.clique(self.held.dofs());
     }
     fn symmetric(&self) -> bool {
-        self.current.is_uniform() || self.density * self.drag_area == 0.0
+        // the inertia of what turns with a body isn't
+        let turns = matches!(self.held, Held::Beside { .. });
+        !turns && (self.current.is_uniform() || self.density * self.drag_area == 0.0)
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let inertia = self.mass + self.added_mass;
         let (v, speed, du, c) = self.flow(at);
-        for i in 0..3 {
-            out.add(self.v + i, inertia * at.a[self.v + i] + c * speed * v[i]);
+        let (motion, swing) = (self.held.motion(at), self.held.acceleration(at));
+        let force: V3<f64> = std::array::from_fn(|i| inertia * swing.a[i] + c * speed * v[i]);
+        for k in 0..motion.n {
+            out.add(motion.dof[k], motion.carry(k, &force));
         }
-        if out.wants_tangent() {
-            let w = out.weights();
-            let inverse = if speed > 0.0 { 1.0 / speed } else { 0.0 };
-            let damping = |i: usize, j: usize| c * (speed * delta(i, j) + v[i] * v[j] * inverse);
-            let shear: V3<f64> = std::array::from_fn(|i| (0..3).map(|j| damping(i, j) * du[j]).sum());
-            out.add_block(0, 3, |i, j| {
-                w.a * inertia * delta(i, j) + w.v * damping(i, j) - w.q * shear[i] * delta(2, j)
-            });
+        if !out.wants_tangent() {
+            return;
         }
+        let w = out.weights();
+        let inverse = if speed > 0.0 { 1.0 / speed } else { 0.0 };
+        let damping = |x: &V3<f64>| -> V3<f64> {
+            let along = dot(&v, x) * inverse;
+            std::array::from_fn(|i| c * (speed * x[i] + v[i] * along))
+        };
+        let shear = damping(&du);
+        let by: [V3<f64>; MOST] = std::array::from_fn(|k| {
+            let (x, turn) = (&motion.by_q[k], damping(&motion.v_by_q[k]));
+            let rate = damping(x);
+            std::array::from_fn(|i| {
+                w.a * inertia * x[i]
+                    + w.v * (rate[i] + inertia * swing.by_v[k][i])
+                    + w.q * (turn[i] + inertia * swing.by_q[k][i] - shear[i] * x[2])
+            })
+        });
+        // the force stays in space while the body turns under it
+        let turning = motion.turning(&force);
+        out.add_block(0, motion.n, |i, j| {
+            let turn = turning.filter(|_| i >= 3 && j >= 3).map_or(0.0, |t| t[i - 3][j - 3]);
+            motion.carry(i, &by[j]) + w.q * turn
+        });
     }
     fn energy(&self, at: &At<'_>) -> Energy {
-        let v = three(at.v, self.v);
+        let v = self.held.velocity(at);
         Energy { kinetic: 0.5 * self.mass * dot(&v, &v), ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
         let (relative, speed, _, c) = self.flow(at);
-        let (v, a) = (three(at.v, self.v), three(at.a, self.v));
+        let (v, a) = (self.held.velocity(at), self.held.acceleration(at).a);
         let dissipated = c * speed * speed * speed;
         // drag gives f·v in all, of which the current brings in f·u = f·v + dissipated
         let drag = -c * speed * dot(&relative, &v);
@@ -144,7 +160,8 @@ impl Term for PointMass {
 
 /// A compact body: a sinker, a buoy, the load at the end of a hose.
 ///
-/// On a marker of a cable it is part of that node; with a position it is a point of its own. Marker: `name`.
+/// On a marker of a cable it is part of that node; at a named point of a body or a link it moves and turns with it; with a
+/// position it is a point of its own. Marker: `name`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMassSpec {
@@ -201,33 +218,35 @@ impl ElementSpec for PointMassSpec {
             not_negative(name, x)?;
         }
         finite("velocity", &self.velocity)?;
-        let (node, own) = match &self.at {
-            MarkerRef::Point(x) => (b.node(NodeKind::Point, x, &self.velocity)?, true),
+        let (marker, own) = match &self.at {
+            MarkerRef::Point(x) => (Marker::node(b.node(NodeKind::Point, x, &self.velocity)?), true),
             MarkerRef::Name(_) if self.velocity != [0.0; 3] => {
                 return Err(BuildError::at(
                     "velocity",
                     "a mass on a marker moves with it: leave `velocity` out",
                 ));
             }
-            name @ MarkerRef::Name(_) => match b.marker("at", name)?.on() {
-                Some(node) => (node, false),
-                None => return Err(BuildError::at("at", "a mass needs a marker on a part, or a position")),
-            },
+            name @ MarkerRef::Name(_) => (b.marker("at", name)?, false),
         };
-        let mut mass = PointMass::new(&self.name, b.nodes(), node, self.mass)?;
+        let Some(node) = marker.on() else {
+            return Err(BuildError::at("at", "a mass needs a marker on a part, or a position"));
+        };
+        let mut mass = PointMass::new(&self.name, b.nodes(), &marker, self.mass)?;
         if self.added_mass > 0.0 || self.drag_area > 0.0 {
             let water = b.water()?.clone();
             mass = mass.in_fluid(water.density, self.added_mass, self.drag_area, water.current()?)?;
         }
-        let seat = b.nodes()[node.0 as usize];
+        let (seat, held) = (b.nodes()[node.0 as usize], mass.held);
         b.term(Box::new(mass));
-        b.part(Arc::new(Body { spec: self.clone(), node, own, q: seat.q, v: seat.v }))
+        b.part(Arc::new(Body { spec: self.clone(), marker, held, node, own, q: seat.q, v: seat.v }))
     }
 }
 
 /// A point mass as a part of a model.
 struct Body {
     spec: PointMassSpec,
+    marker: Marker,
+    held: Held,
     node: NodeId,
     /// Whether the node is its own.
     own: bool,
@@ -244,13 +263,12 @@ impl Part for Body {
     }
     fn marker(&self, spot: &Spot) -> Result<Marker, String> {
         match spot {
-            Spot::Named(n) if n.is_empty() => Ok(Marker::node(self.node)),
+            Spot::Named(n) if n.is_empty() => Ok(self.marker),
             _ => Err(format!("a point mass has only one place: `{}`", self.spec.name)),
         }
     }
     fn contact_points(&self, _: usize) -> Vec<ContactPoint> {
-        let held = Held::Moves { q: self.q, v: self.v };
-        vec![ContactPoint { held, radius: 0.0, length: 0.0, s: 0.0 }]
+        vec![ContactPoint { held: self.held, radius: 0.0, length: 0.0, s: 0.0 }]
     }
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
         let (what, amount) = match per {
@@ -260,15 +278,21 @@ impl Part for Body {
         if amount == 0.0 {
             return None;
         }
-        let entries = (0..3)
-            .filter(|&i| load[i] != 0.0)
-            .map(|i| DeadEntry { dof: self.v + i, coordinate: self.q + i, value: amount * load[i] })
-            .collect();
-        let load = DeadLoad::new(format!("{}: {what}", self.spec.name), entries).ok()?;
-        Some(Box::new(load))
+        let (label, force) = (format!("{}: {what}", self.spec.name), load.map(|x| amount * x));
+        match self.held {
+            // on a node of its own it is constant
+            Held::Moves { q, v } => {
+                let entries = (0..3)
+                    .filter(|&i| force[i] != 0.0)
+                    .map(|i| DeadEntry { dof: v + i, coordinate: q + i, value: force[i] })
+                    .collect();
+                DeadLoad::new(label, entries).ok().map(|load| Box::new(load) as Box<dyn Term>)
+            }
+            held => Some(Box::new(DeadPull { label, held, force })),
+        }
     }
     fn point(&self, _: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
-        Some((three(at.q, self.q), three(at.v, self.v)))
+        Some((self.held.x(at), self.held.velocity(at)))
     }
     fn length(&self) -> f64 {
         0.0

@@ -1,9 +1,10 @@
 //! Added mass: the water that a slender body pushes aside.
 
 use ropewalk_core::build::{BuildError, not_negative};
-use ropewalk_core::held::three;
+use ropewalk_core::held::{Held, three};
+use ropewalk_core::rotation::{cross, matrix, times};
 use ropewalk_core::{
-    Assembly, At, Current, Dual, Gives, Law, Load, Node, NodeId, NodeKind, Pattern, Power, Real, Station,
+    Assembly, At, Current, Dual, Gives, Law, Load, Marker, Node, NodeKind, Pattern, Power, Real, Station,
     Term, V3, dot, scaled,
 };
 use schemars::JsonSchema;
@@ -258,28 +259,58 @@ impl BluntEnd {
     }
 }
 
-/// A [`BluntEnd`] on a node of a cable.
+/// A [`BluntEnd`] on a part of a model.
 struct Wake {
     label: String,
     end: BluntEnd,
-    /// First coordinate and velocity of the node.
-    q: usize,
-    v: usize,
+    held: Held,
+    slope: Slope,
+}
+
+/// Where the slope at an end comes from.
+enum Slope {
+    /// The coordinates of a cable, and its first velocity.
+    Node { q: usize, v: usize },
+    /// The axis of a rigid body, in its own axes, and the body's first coordinate.
+    Axis { axis: V3<f64>, q: usize },
 }
 
 impl BluntEnd {
-    /// The term of this end on its node; `None` if the node has no slope.
-    pub fn on(self, part: &str, nodes: &[Node], node: NodeId) -> Option<Box<dyn Term>> {
-        let node = nodes.get(node.0 as usize).filter(|n| n.kind == NodeKind::Slope)?;
+    /// The term of this end at a marker: of a cable, whose node knows its slope, or of a rigid body, whose `axis` it is in
+    /// the body's axes. `None` where there is no slope.
+    pub fn on(self, part: &str, nodes: &[Node], marker: &Marker, axis: V3<f64>) -> Option<Box<dyn Term>> {
+        let node = nodes.get(marker.on()?.0 as usize)?;
+        let slope = match node.kind {
+            NodeKind::Slope => Slope::Node { q: node.q + 3, v: node.v + 3 },
+            NodeKind::Frame => Slope::Axis { axis, q: node.q },
+            _ => return None,
+        };
         let label = format!("{part}: wake of a blunt end");
-        Some(Box::new(Wake { label, end: self, q: node.q, v: node.v }))
+        let held = Held::new(nodes, marker, &label).ok()?;
+        Some(Box::new(Wake { label, end: self, held, slope }))
     }
 }
 
 impl Wake {
-    fn force(&self, at: &At<'_>) -> V3<f64> {
-        self.end.force(at.q[self.q + 2], &three(at.v, self.v), &three(at.q, self.q + 3))
+    fn slope(&self, at: &At<'_>) -> V3<f64> {
+        match self.slope {
+            Slope::Node { q, .. } => three(at.q, q),
+            Slope::Axis { axis, q } => times(&frame(at, q), &axis),
+        }
     }
+    fn force(&self, at: &At<'_>) -> V3<f64> {
+        self.end.force(self.held.x(at)[2], &self.held.velocity(at), &self.slope(at))
+    }
+    /// How the force changes with height, velocity and slope.
+    fn by(&self, at: &At<'_>, dz: f64, dv: &V3<f64>, ds: &V3<f64>) -> V3<f64> {
+        let (v, s) = (self.held.velocity(at), self.slope(at));
+        let both = |x: &V3<f64>, d: &V3<f64>| std::array::from_fn(|i| Dual::new(x[i], d[i]));
+        self.end.force(Dual::new(self.held.x(at)[2], dz), &both(&v, dv), &both(&s, ds)).map(|f| f.eps)
+    }
+}
+
+fn frame(at: &At<'_>, q: usize) -> [V3<f64>; 3] {
+    matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]])
 }
 
 impl Term for Wake {
@@ -287,7 +318,13 @@ impl Term for Wake {
         self.label.clone()
     }
     fn pattern(&self, p: &mut Pattern) {
-        p.clique(self.v..self.v + 6);
+        match self.slope {
+            Slope::Node { v, .. } => p.clique(v - 3..v + 3),
+            Slope::Axis { .. } => {
+                let first = self.held.dof(0);
+                p.clique(first..first + 6);
+            }
+        }
     }
     fn symmetric(&self) -> bool {
         false
@@ -296,30 +333,40 @@ impl Term for Wake {
         true
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        for (i, f) in self.force(at).iter().enumerate() {
-            out.add(self.v + i, -f);
+        let (motion, force) = (self.held.motion(at), self.force(at));
+        for k in 0..motion.n {
+            out.add(motion.dof[k], -motion.carry(k, &force));
         }
         if !out.wants_tangent() {
             return;
         }
         let w = out.weights();
-        let by: [V3<f64>; 6] = std::array::from_fn(|j| {
-            let mut z = Dual::constant(at.q[self.q + 2]);
-            let mut v = Dual::constants(&three(at.v, self.v));
-            let mut slope = Dual::constants(&three(at.q, self.q + 3));
-            if j < 3 {
-                v[j].eps = w.v;
-                z.eps = if j == 2 { w.q } else { 0.0 };
-            } else {
-                slope[j - 3].eps = w.q;
+        let nought = [0.0; 3];
+        let by: [V3<f64>; 6] = std::array::from_fn(|k| {
+            let unit: V3<f64> = std::array::from_fn(|i| if i == k % 3 { 1.0 } else { 0.0 });
+            let mut ds = nought;
+            if k >= 3 {
+                ds = match self.slope {
+                    Slope::Node { .. } => unit,
+                    Slope::Axis { axis, q } => times(&frame(at, q), &cross(&unit, &axis)),
+                };
             }
-            self.end.force(z, &v, &slope).map(|f| f.eps)
+            let (x, turn) = if k < motion.n { (motion.by_q[k], motion.v_by_q[k]) } else { (nought, nought) };
+            let dv = std::array::from_fn(|i| w.v * x[i] + w.q * turn[i]);
+            self.by(at, w.q * x[2], &dv, &ds.map(|d| w.q * d))
         });
-        out.add_block(0, 6, |i, j| if i < 3 { -by[j][i] } else { 0.0 });
+        let turning = motion.turning(&force);
+        out.add_block(0, 6, |i, j| {
+            if i >= motion.n {
+                return 0.0;
+            }
+            let turn = turning.filter(|_| i >= 3 && j >= 3).map_or(0.0, |t| t[i - 3][j - 3]);
+            -(motion.carry(i, &by[j]) + w.q * turn)
+        });
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let (f, v) = (self.force(at), three(at.v, self.v));
-        let (u, _) = self.end.added_mass.current.at(at.q[self.q + 2]);
+        let (f, v) = (self.force(at), self.held.velocity(at));
+        let (u, _) = self.end.added_mass.current.at(self.held.x(at)[2]);
         let supplied = dot(&f, &u);
         Power { dissipated: supplied - dot(&f, &v), supplied, carried: 0.0 }
     }

@@ -244,18 +244,23 @@ impl ForceSpec for AddedMassSpec {
 }
 
 impl AddedMassSpec {
-    /// Water leaves at the ends of a cable that nothing holds.
+    /// Water leaves at the ends of a cable or a chain that nothing holds. Hulls of single bodies keep what it has, as
+    /// Kirchhoff's equations have it.
     fn add_wakes(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass) {
-        let Some(stations) = part.stations() else { return };
+        let Some(stations) = part.stations().filter(|_| part.kind() != "rigid_body") else { return };
         let (q, v) = (b.coordinates().to_vec(), vec![0.0; b.coordinates().len()]);
         let at = At { t: 0.0, q: &q, v: &v, a: &v, modes: &[], relaxed: None };
         let mut diameter = 0.0;
         stations.each(&at, &mut |s| diameter = s.diameter);
-        for (spot, first) in [(Spot::Named("start".into()), true), (Spot::Named("end".into()), false)] {
-            let Ok(marker) = part.marker(&spot) else { continue };
-            let Some(node) = marker.on().filter(|n| !b.is_held(*n)) else { continue };
+        for (name, first) in [("start", true), ("end", false)] {
+            let Ok(marker) = part.marker(&Spot::Named(name.into())) else { continue };
+            if b.is_held(&marker) {
+                continue;
+            }
+            // a link's axis leads along the chain
+            let axis = [1.0, 0.0, 0.0];
             let end = BluntEnd { added_mass: law.clone(), diameter, taper: self.tail, first };
-            if let Some(term) = end.on(part.name(), b.nodes(), node) {
+            if let Some(term) = end.on(part.name(), b.nodes(), &marker, axis) {
                 b.term(term);
             }
         }

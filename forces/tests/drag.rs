@@ -4,7 +4,7 @@ mod random;
 
 use random::{Random, rotate};
 use ropewalk_core::testing::{check_law, check_tangent, dense};
-use ropewalk_core::{At, Current, Law, Load, Node, NodeId, NodeKind, Station, Weights, Width, dot};
+use ropewalk_core::{At, Current, Law, Load, Marker, Node, NodeId, NodeKind, Station, Weights, Width, dot};
 use ropewalk_forces::{
     AddedMass, BluntEnd, Drag, LineLoad, NormalLaw, PerLength, TangentialLaw, Theory, TimeFunction,
     choo_casarella_cn, choo_casarella_ct_over_mu,
@@ -272,18 +272,29 @@ fn added_mass_of_morison_resists_normal_acceleration_only() {
 /// The wake of a blunt end takes energy and no more, and its tangent is exact.
 #[test]
 fn blunt_ends_shed_energy() {
-    let nodes = [Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false }];
+    let cable = [Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false }];
+    let body = [Node { kind: NodeKind::Frame, ..cable[0] }];
+    let on_cable = Marker::node(NodeId(0));
+    let on_body = Marker::beside(NodeId(0), [0.4, -0.1, 0.2]);
     let mut r = Random(3);
     for (k, current) in currents().into_iter().cycle().take(40).enumerate() {
         let added_mass = AddedMass::new(1025.0, 1.0).unwrap().in_current(current).unwrap();
         let end = BluntEnd { added_mass, diameter: 0.1, taper: 0.3, first: k % 2 == 0 };
-        let term = end.on("cable", &nodes, NodeId(0)).expect("a slope");
-        let (q, v) = ([r.vector(3.0), r.vector(1.0)].concat(), [r.vector(2.0), r.vector(2.0)].concat());
+        let v = [r.vector(2.0), r.vector(2.0)].concat();
+        let (nodes, marker, q) = if k % 3 == 0 {
+            let turn = [[r.number(1.0)].to_vec(), r.vector(1.0).to_vec()].concat();
+            let size = turn.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let turn: Vec<f64> = turn.iter().map(|x| x / size).collect();
+            (&body, on_body, [r.vector(3.0).to_vec(), turn].concat())
+        } else {
+            (&cable, on_cable, [r.vector(3.0), r.vector(1.0)].concat())
+        };
+        let term = end.on("part", nodes, &marker, [0.6, 0.0, -0.8]).expect("a slope");
         let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 6], modes: &[], relaxed: None };
-        let error = check_tangent(term.as_ref(), &nodes, &at, Width::One);
+        let error = check_tangent(term.as_ref(), nodes, &at, Width::One);
         assert!(error < 1e-6, "{error:e}");
         let power = term.power(&at);
-        let f = dense(term.as_ref(), &nodes, &at, Weights::default(), Width::One).0;
+        let f = dense(term.as_ref(), nodes, &at, Weights::default(), Width::One).0;
         let done: f64 = f.iter().zip(&v).map(|(f, v)| -f * v).sum();
         assert!(power.dissipated >= 0.0);
         approx::assert_relative_eq!(

@@ -7,7 +7,8 @@ use ropewalk_core::{Model, Scene, State, Water};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{
-    AddedMassSpec, BuoyancySpec, DragLaw, DragSpec, GravitySpec, PointForceSpec, SpringSpec, TimeFunction,
+    AddedMassSpec, BuoyancySpec, DragLaw, DragSpec, GravitySpec, PointForceSpec, SpringSpec, Theory,
+    TimeFunction,
 };
 use serde_json::Value;
 
@@ -122,7 +123,8 @@ pub fn towed(from: [f64; 3], to: [f64; 3], n: usize, section: Section, law: Drag
         .force(GravitySpec::default())
         .force(BuoyancySpec::default())
         .force(DragSpec { normal: law, tangential: law, ..DragSpec::default() })
-        .force(AddedMassSpec::default());
+        // as the references have it
+        .force(AddedMassSpec { theory: Some(Theory::Morison), ..AddedMassSpec::default() });
     scene
 }
 

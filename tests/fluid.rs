@@ -1,0 +1,252 @@
+//! The energy of the water that slender bodies push aside.
+
+use ropewalk::scene::Format;
+use ropewalk::{History, ModesOptions, SceneFile, modes, simulate};
+use ropewalk_core::{At, Model, System};
+
+fn scene(text: &str) -> SceneFile {
+    SceneFile::parse(text, "fluid", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn run(text: &str) -> History {
+    simulate(scene(text).scene()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn last(h: &History, name: &str) -> f64 {
+    *h.column(name).unwrap_or_else(|| panic!("no {name}")).last().expect("a row")
+}
+
+/// Numbers that look random and are the same every time.
+fn noise(n: usize, seed: u64, size: f64) -> Vec<f64> {
+    let mut x = 0x9E37_79B9_7F4A_7C15u64.wrapping_mul(seed);
+    let mut next = || {
+        x ^= x << 13;
+        x ^= x >> 7;
+        x ^= x << 17;
+        size * ((x >> 11) as f64 / (1u64 << 53) as f64 - 0.5)
+    };
+    (0..n).map(|_| next()).collect()
+}
+
+fn kinetic(model: &Model, q: &[f64], v: &[f64]) -> f64 {
+    let a = vec![0.0; v.len()];
+    model.energy(&At { t: 0.0, q, v, a: &a, modes: &[], relaxed: None }).kinetic
+}
+
+/// Lagrange's equations of the kinetic energy, by differences, are what the forces are: for a cable that moves in any way in
+/// water that flows evenly.
+#[test]
+fn forces_are_those_of_the_energy() {
+    for current in ["[0, 0, 0]", "[0.7, -0.4, 0.2]"] {
+        let text = format!(
+            r#"
+            [water]
+            current = {current}
+            [[elements]]
+            type = "cable"
+            name = "cable"
+            points = [[0, 0, 0], [2, 0, 0]]
+            elements = 2
+            section = {{ mass = 1.0, ea = 1.0, ei = 0.0, diameter = 0.1 }}
+            [[forces]]
+            type = "added_mass"
+            tail = 1
+            "#
+        );
+        let model = scene(&text).scene().build().unwrap_or_else(|e| panic!("{e}"));
+        let n = model.velocities();
+        let q: Vec<f64> = model.state().q.iter().zip(noise(n, 1, 0.5)).map(|(q, d)| q + d).collect();
+        let (v, a) = (noise(n, 2, 2.0), noise(n, 3, 5.0));
+        let moved = |x: &[f64], i: usize, h: f64| {
+            let mut x = x.to_vec();
+            x[i] += h;
+            x
+        };
+        // quadratic in velocities: any step is exact
+        let momentum = |q: &[f64], v: &[f64], i: usize| {
+            0.5 * (kinetic(&model, q, &moved(v, i, 1.0)) - kinetic(&model, q, &moved(v, i, -1.0)))
+        };
+        let later = |h: f64| -> (Vec<f64>, Vec<f64>) {
+            let q = (0..n).map(|i| q[i] + h * v[i] + 0.5 * h * h * a[i]).collect();
+            (q, (0..n).map(|i| v[i] + h * a[i]).collect())
+        };
+        let fourth = |f: &dyn Fn(f64) -> f64| {
+            let h = 1e-3;
+            (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
+        };
+        let mut sys = System::default();
+        let rest = vec![0.0; n];
+        let mut residual = |v: &[f64], a: &[f64]| {
+            let at = At { t: 0.0, q: &q, v, a, modes: &[], relaxed: None };
+            model.assemble(&at, &[], None, &mut sys);
+            sys.residual.clone()
+        };
+        let moving = residual(&v, &a);
+        // the elastic forces alone: what is left where everything moves along with the water
+        let u: Vec<f64> = match current {
+            "[0, 0, 0]" => rest.clone(),
+            _ => (0..n).map(|i| if i % 6 < 3 { [0.7, -0.4, 0.2][i % 6] } else { 0.0 }).collect(),
+        };
+        let elastic = residual(&u, &rest);
+        let scale = moving.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        for i in 0..n {
+            let rate = fourth(&|h| {
+                let (q, v) = later(h);
+                momentum(&q, &v, i)
+            });
+            let slope = fourth(&|h| kinetic(&model, &moved(&q, i, h), &v));
+            let off = (rate - slope + elastic[i] - moving[i]).abs();
+            assert!(off < 1e-8 * scale, "{current}: equation {i} is off by {off:e} of {scale:e}");
+        }
+    }
+}
+
+fn hull(spin: f64, solver: &str) -> History {
+    run(&format!(
+        r#"
+        [run]
+        duration = "4 s"
+        output = "0.5 s"
+        [solver]
+        {solver}
+        [water]
+        [[elements]]
+        type = "rigid_body"
+        name = "hull"
+        position = [0, 0, 0]
+        angles = [0, "10 deg", 0]
+        angular_velocity = [0, {spin}, 0]
+        velocity = [1, 0, 0]
+        mass = 64.4
+        inertia = [0.32, 21.5, 21.5]
+        hull = {{ from = [-1, 0, 0], to = [1, 0, 0], diameter = 0.2 }}
+        [[forces]]
+        type = "added_mass"
+        [[records]]
+        type = "orientation"
+        of = "hull"
+        [[records]]
+        type = "energy"
+        "#
+    ))
+}
+
+/// A hull at an angle to its way turns across it (Munk's moment). Reference: Kirchhoff's equations with the closed added
+/// mass of the cylinder, by another integrator.
+#[test]
+fn a_hull_turns_as_kirchhoff_says() {
+    for (solver, tolerance) in
+        [("", 1e-4), ("scheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-8 } }", 1e-5)]
+    {
+        let h = hull(0.0, solver);
+        let angles = h.column("hull.phi2").expect("angles").to_vec();
+        let t =
+            h.column("t").map_or_else(|| (0..angles.len()).map(|k| 0.5 * k as f64).collect(), |t| t.to_vec());
+        for (at, exact) in [(2.0, 0.77785), (4.0, std::f64::consts::PI - 2.26976)] {
+            let k = t.iter().position(|t: &f64| (t - at).abs() < 1e-6).expect("a sample");
+            println!("{at} s: {} instead of {exact}", angles[k]);
+            assert!((angles[k] - exact).abs() < tolerance + 1e-5, "{solver} {at} s: {}", angles[k]);
+        }
+    }
+    let h = hull(1.0, "scheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-9 } }");
+    for e in h.column("energy.kinetic").expect("energy") {
+        assert!((e / 53.6838 - 1.0).abs() < 2e-6, "{e} J");
+    }
+}
+
+/// A free cable that bends and whips through still water: what its ends shed is all that it loses.
+#[test]
+fn a_free_cable_keeps_what_its_ends_do_not_shed() {
+    for tail in [0.0, 0.5, 1.0] {
+        let h = run(&format!(
+            r#"
+            [run]
+            duration = "2 s"
+            output = "0.1 s"
+            [solver]
+            scheme = "radau-iia-5"
+            stepping = {{ controlled = {{ tolerance = 1e-8 }} }}
+            [water]
+            current = [0.3, 0.2, 0]
+            [[elements]]
+            type = "cable"
+            name = "cable"
+            curve = [[0, 0, 0], [0.5, 0.2, 0], [1, 0, 0.1], [1.5, 0, 0]]
+            elements = 6
+            velocity = [1, 0.5, 0]
+            section = {{ mass = 2.0, ea = 1e3, ei = 0.5, diameter = 0.05 }}
+            [[forces]]
+            type = "added_mass"
+            tail = {tail}
+            [[records]]
+            type = "energy"
+            "#
+        ));
+        let (lost, imbalance) = (last(&h, "energy.dissipated"), last(&h, "energy.imbalance"));
+        let kinetic = last(&h, "energy.kinetic");
+        println!("tail {tail}: {kinetic:.4} J left, {lost:.4} J shed, imbalance {imbalance:.1e} J");
+        assert!(imbalance.abs() < 1e-5 * kinetic, "{imbalance} J");
+        assert!(if tail < 1.0 { lost > 1e-3 } else { lost.abs() < 1e-9 }, "{lost} J");
+    }
+}
+
+/// Cylinders in axial flow, `u = U √(m_a/EI) L`: the largest growth of any mode [1/s].
+fn growth(ends: &str, beta: f64, u: f64, tail: f64) -> f64 {
+    // EI = L = m + m_a = 1; the tension that keeps it straight is none
+    let mass = 1.0 - beta;
+    let diameter = (4.0 * beta / (std::f64::consts::PI * 1000.0)).sqrt();
+    let speed = u / beta.sqrt();
+    let clamp = |end: &str| {
+        format!(
+            "[[constraints]]\ntype = \"spherical\"\nname = \"pin {end}\"\nmarker = \"cylinder.{end}\"\n\
+             [[constraints]]\ntype = \"clamp\"\nname = \"clamp {end}\"\nmarker = \"cylinder.{end}\"\n"
+        )
+    };
+    let pin = |end: &str| {
+        format!("[[constraints]]\ntype = \"spherical\"\nname = \"pin {end}\"\nmarker = \"cylinder.{end}\"\n")
+    };
+    let held = match ends {
+        "clamped-free" => clamp("start"),
+        "pinned-pinned" => pin("start") + &pin("end"),
+        _ => clamp("start") + &clamp("end"),
+    };
+    let text = format!(
+        r#"
+        [water]
+        density = 1000
+        current = [{speed}, 0, 0]
+        [[elements]]
+        type = "cable"
+        name = "cylinder"
+        points = [[0, 0, 0], [1, 0, 0]]
+        elements = 24
+        section = {{ mass = {mass}, ea = 1e6, ei = 1, diameter = {diameter} }}
+        [[forces]]
+        type = "added_mass"
+        tail = {tail}
+        {held}
+        "#
+    );
+    let found = modes(scene(&text).scene(), &ModesOptions { count: 6, ..ModesOptions::default() });
+    let found = found.unwrap_or_else(|e| panic!("{e}"));
+    let most = found.modes.iter().map(|m| m.growth).fold(f64::NEG_INFINITY, f64::max);
+    println!("{ends} beta {beta} u {u} tail {tail}: {most:.4} {:?}", found.warnings);
+    most
+}
+
+/// Divergence and flutter of cylinders in axial flow as Païdoussis has them: pinned and clamped at both ends they buckle at
+/// π and 2π; cut off at the tail, a cantilever flutters like a pipe that conveys fluid.
+#[test]
+fn cylinders_in_axial_flow_lose_stability_where_they_should() {
+    for (ends, beta, tail, critical) in [
+        ("pinned-pinned", 0.48, 0.0, std::f64::consts::PI),
+        ("clamped-clamped", 0.48, 0.0, std::f64::consts::TAU),
+        ("clamped-free", 0.2, 0.0, 5.591),
+        // divergence at cos u = -(1 - f)/f
+        ("clamped-free", 0.48, 0.8, f64::acos(-0.25)),
+    ] {
+        let below = growth(ends, beta, 0.995 * critical, tail);
+        let above = growth(ends, beta, 1.005 * critical, tail);
+        assert!(below < 1e-6 && above > 1e-3, "{ends}: {below} below and {above} above {critical}");
+    }
+}
