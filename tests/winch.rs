@@ -98,6 +98,7 @@ fn steadily(name: &str, speed: f64) -> ropewalk_constraints::motion::SpeedTableS
         file: None,
         t: vec![0.0, 1e6],
         v: vec![speed; 2],
+        join: ropewalk_core::Join::Linear,
     }
 }
 
@@ -293,6 +294,7 @@ fn haul(way: f64) -> ropewalk_constraints::motion::SpeedTableSpec {
         file: None,
         t: vec![0.0, 2.0, way, turn, turn + 2.0, turn + 4.0, turn + 2.0 + way, 2.0 * way + 6.0],
         v: vec![0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0, 0.0],
+        join: ropewalk_core::Join::Monotone,
     }
 }
 

@@ -238,7 +238,8 @@ mod tests {
     #[test]
     fn splines_reproduce_the_cubics_that_their_ends_allow() {
         let cubic = |t: f64| t * t * (3.0 - t);
-        let clamped = of(cubic, Join::Cubic, [EndSlope::Given(0.0), EndSlope::Given(3.1 * (6.0 - 3.0 * 3.1))]);
+        let clamped =
+            of(cubic, Join::Cubic, [EndSlope::Given(0.0), EndSlope::Given(3.1 * (6.0 - 3.0 * 3.1))]);
         let smooth = of(cubic, Join::Cubic, [EndSlope::Smooth; 2]);
         let mixed = of(cubic, Join::Cubic, [EndSlope::Given(0.0), EndSlope::Smooth]);
         let line = of(|t| 1.0 + 2.0 * t, Join::Cubic, NATURAL);
