@@ -33,14 +33,7 @@ fn strained(model: &Model) -> (f64, f64) {
 fn a_sharp_corner_is_refused_with_its_place_and_what_to_do() {
     let fault = laid(CORNER, "").err().expect("a corner");
     let said = fault.to_string();
-    for words in [
-        "90 degrees",
-        "(50, 0, 0) m",
-        "50 m along it",
-        "`radius`",
-        "`curve`",
-        "as-laid",
-    ] {
+    for words in ["90 degrees", "(50, 0, 0) m", "50 m along it", "`radius`", "`curve`", "as-laid"] {
         assert!(said.contains(words), "no {words}: {said}");
     }
     assert_eq!(fault.place.map(|p| p.line), Some(4));
@@ -100,7 +93,7 @@ fn a_curve_keeps_its_curvature_and_takes_directions_at_its_ends() {
         let model = laid(&curve, more).unwrap_or_else(|e| panic!("{e}"));
         for s in [0.0, 0.1, 7.0, 15.6] {
             let k = curvature(&model, s);
-            assert!((k - 0.1).abs() < 2e-3, "{k} 1/m at {s} m with `{more}`");
+            assert!((k - 0.1).abs() < 4e-3, "{k} 1/m at {s} m with `{more}`");
         }
     }
     let model = laid(&curve, "start_direction = [1, 0, 1]").unwrap_or_else(|e| panic!("{e}"));

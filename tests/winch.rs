@@ -336,7 +336,7 @@ fn out_and_back(way: f64, element: Option<f64>, eta: f64, elements: usize, water
     let scheme = ropewalk_core::integrator::Scheme::GeneralizedAlpha { rho_inf: 0.5 };
     let options = Options { scheme, ..fixed(0.01) };
     let mut s = hang(&scene, &options, ea, w, l0);
-    let motion = ropewalk_core::MotionSpec::build(&haul(way)).expect("motion");
+    let motion = ropewalk_core::MotionSpec::build(&haul(way), &[]).expect("motion");
     let mut seen = Meshes::default();
     let mut out =
         Hauled { tension: 0.0, tip: 0.0, jump: 0.0, impulse: 0.0, changes: 0, steps: 0, imbalance: 0.0 };

@@ -129,7 +129,8 @@ pub struct TableSpec {
     /// Displacements along z [m].
     #[serde(default, deserialize_with = "quantity::list::length")]
     pub z: Vec<f64>,
-    /// Angles at these times [rad], instead of displacements, for the constraint `rotation`: `angle = ["0 deg", "90 deg"]`.
+    /// Angles at these times, instead of displacements, for the constraint `rotation` [rad]. Degrees are written with their
+    /// unit: `"90 deg"`.
     #[serde(default, deserialize_with = "quantity::list::angle", skip_serializing_if = "Vec::is_empty")]
     pub angle: Vec<f64>,
     /// How the rows are joined. By straight lines only where all lie on one: the velocity would jump.
