@@ -72,7 +72,7 @@ pub struct TimeTable {
     pub join: Join,
     /// The curve through them, and what steps must not leap over of it; made when it is first asked for.
     #[serde(skip)]
-    curve: OnceLock<(Interpolation, Knots)>,
+    curve: OnceLock<Box<(Interpolation, Knots)>>,
 }
 
 impl TimeTable {
@@ -96,7 +96,7 @@ impl TimeTable {
                 Join::Linear => Knots::at_rows(&self.t, at),
                 Join::Monotone | Join::Cubic => Knots::halfway(&self.t, at),
             };
-            (curve, knots)
+            Box::new((curve, knots))
         })
     }
     fn at(&self, t: f64) -> f64 {
