@@ -13,8 +13,11 @@ const PERIOD: Duration = Duration::from_secs(1);
 /// … and takes at most this share of the time.
 const SHARE: u32 = 20;
 
+/// One of the values that a run leaves of a column.
+type Pick = fn(&Values) -> f64;
+
 /// The columns of the table for every record: last value, extremes of the run, and what its last part holds.
-const VALUES: [(&str, fn(&Values) -> f64); 6] = [
+const VALUES: [(&str, Pick); 6] = [
     ("final", |v| v.last),
     ("min", |v| v.least),
     ("max", |v| v.largest),
