@@ -18,6 +18,7 @@
 use crate::commands::{self, Exit};
 use crate::error::Error;
 use crate::run::Every;
+use crate::sweep::{Over, Report};
 use clap::{Parser, Subcommand};
 use ropewalk_models::Bundled;
 use std::ffi::OsString;
@@ -81,6 +82,7 @@ enum Command {
         ropewalk sweep scene.toml --vary law=constant,choo-casarella --vary 'end=[\"1 m\",0,0],[\"2 m\",0,0]'\n\n\
         A range is FROM:TO:STEP and includes its ends. The folder holds sweep.json (scenes and parameters), table.csv\n\
         (a row for each run), plots/*.svg (over all runs) and runs/NAME (what `ropewalk run` leaves behind).\n\
+        Last values that aren't steady are named: `--report mean` takes the mean over the last tenth of each run instead.\n\
         The same command again computes only what is missing, failed or was interrupted.")]
     Sweep(SweepArgs),
     /// Vibration modes about the equilibrium of a scene: frequencies, damping, and a picture of each shape
@@ -186,6 +188,12 @@ pub(crate) struct SweepArgs {
     /// Runs at the same time [default: as many as there are cores]
     #[arg(long, short, value_name = "N", value_parser = at_least_one)]
     pub(crate) jobs: Option<usize>,
+    /// Value that stands for a run in the report, in tables/ and in pictures over a parameter
+    #[arg(long, value_enum, default_value = "last")]
+    pub(crate) report: Report,
+    /// Last part of a run that mean, least and largest are taken over, and that tells whether last values are steady
+    #[arg(long, value_name = "SHARE", default_value = "10 %")]
+    pub(crate) over: Over,
     /// Say nothing but errors and warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,

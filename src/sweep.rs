@@ -10,8 +10,10 @@ mod manifest;
 mod pictures;
 mod report;
 mod results;
+mod tail;
 
 pub(crate) use grid::Grid;
+pub(crate) use tail::{Over, Report};
 
 use crate::error::Error;
 use crate::output::{Interrupt, ProgressMode, RunFolder, Stopwatch, Summary, SweepProgress, Table};
@@ -40,6 +42,10 @@ pub(crate) struct SweepOptions {
     pub jobs: Option<usize>,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// Which value of a column stands for a run …
+    pub report: Report,
+    /// … and over which last part of it.
+    pub over: Over,
 }
 
 /// How a sweep ended.
@@ -67,6 +73,7 @@ pub(crate) fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome,
     let stopwatch = Stopwatch::start();
     let mut sweep = Sweep {
         grid,
+        over: options.over,
         folder: &folder,
         progress: SweepProgress::new(grid.len(), options.progress),
         interrupt: None,
@@ -87,15 +94,15 @@ pub(crate) fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome,
     let (mut results, progress) = sweep.end();
     results.save()?;
     let mut warn = |text: &str| progress.say(&format!("warning: {text}"));
-    let pictures = pictures::draw(&folder, grid, &axes, &results, &mut warn);
-    let tables = finals::write(&folder, grid, &axes, &results, &mut warn);
+    let pictures = pictures::draw(&folder, grid, &axes, &results, options.report, &mut warn);
+    let tables = finals::write(&folder, grid, &axes, &results, options.report, &mut warn);
     progress.finish();
 
     let interrupted = results.count("interrupted") > 0 || results.len() < grid.len();
     let failed = results.count("failed") + results.count("refused");
     let complete = results.rows().filter(|(_, row)| row.is_complete()).count();
-    let report =
-        report::report(&results, &folder, stopwatch.elapsed().wall_s, grid.len(), [tables, pictures]);
+    let (wall_s, reported) = (stopwatch.elapsed().wall_s, (options.report, options.over));
+    let report = report::report(&results, &folder, wall_s, grid.len(), reported, [tables, pictures]);
     let runs = (grid.len(), complete);
     Ok(SweepOutcome { interrupted, failed, runs, folder: folder.path().to_path_buf(), report })
 }
@@ -103,6 +110,7 @@ pub(crate) fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome,
 /// What all threads share.
 struct Sweep<'a> {
     grid: &'a Grid,
+    over: Over,
     folder: &'a StudyFolder,
     progress: SweepProgress,
     interrupt: Option<Interrupt>,
@@ -122,7 +130,7 @@ impl Sweep<'_> {
         let row = match self.grid.file(k) {
             Err(fault) => Row::refused(fault.message),
             Ok(file) => match complete(&folder, &file) {
-                Some((summary, history)) => Row::new(&summary, &history, true),
+                Some((summary, history)) => Row::new(&summary, &history, self.over, true),
                 None => self.compute(&file, name, &folder),
             },
         };
@@ -160,7 +168,7 @@ impl Sweep<'_> {
         };
         // a defect that shows in one run must not take the others with it
         match catch_unwind(AssertUnwindSafe(|| run_showing(file, &options, &progress, &mut warn))) {
-            Ok(Ok(outcome)) => Row::new(&outcome.summary, &outcome.history, false),
+            Ok(Ok(outcome)) => Row::new(&outcome.summary, &outcome.history, self.over, false),
             Ok(Err(Error::File(fault))) => Row::refused(fault.message),
             Ok(Err(e)) => Row::refused(e.to_string()),
             Err(_) => Row::refused("an internal error, see above: please report it".into()),

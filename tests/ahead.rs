@@ -81,7 +81,7 @@ fn a_pulse_on_a_hanging_cable_is_seen() {
 fn steps_end_at_the_kinks_of_a_table_that_is_coarser_than_they_are() {
     let t = vec![0.37, 1.11, 1.93, 2.9];
     let mut scene = mass();
-    let table = TimeFunction::Table { t: t.clone(), value: vec![0.0, 2.0, -1.0, 0.0] };
+    let table = TimeFunction::table(t.clone(), vec![0.0, 2.0, -1.0, 0.0]);
     scene.force(PointForceSpec::new("ball", [1.0, 0.0, 0.0], table));
     for options in schemes() {
         let (s, ends) = run(&scene, &options, 4.0);
@@ -110,7 +110,7 @@ fn a_fine_table_does_not_hold_up_the_steps() {
         phase: 0.0,
     };
     let mut counts = Vec::new();
-    for time in [formula, TimeFunction::Table { t, value }] {
+    for time in [formula, TimeFunction::table(t, value)] {
         let mut scene = mass();
         scene.force(PointForceSpec::new("ball", [1.0, 0.0, 0.0], time));
         let (s, ends) = run(&scene, &Options::default(), 20.0);
@@ -216,7 +216,7 @@ impl MotionSpec for Bump {
     fn name(&self) -> &str {
         "bump"
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         Ok(Arc::new(self.clone()))
     }
 }
@@ -249,7 +249,7 @@ fn fixed_steps_say_what_they_do_not_follow() {
     let pulse = |width: f64| TimeFunction::Triangle { t0: 10.0, peak: 10.0 + 0.5 * width, t1: 10.0 + width };
     let hum = |frequency: f64| TimeFunction::Harmonic { mean: 0.0, amplitude: 1.0, frequency, phase: 0.0 };
     // a table may jump within a step, but not go to and fro
-    let table = |t: Vec<f64>| TimeFunction::Table { t, value: vec![0.0, 1.0, 0.0, 0.0] };
+    let table = |t: Vec<f64>| TimeFunction::table(t, vec![0.0, 1.0, 0.0, 0.0]);
     for (time, expected) in [
         (pulse(1e-3), Some(10.0)),
         (pulse(0.5), None),

@@ -27,7 +27,7 @@ impl MotionSpec for Sway {
     fn name(&self) -> &str {
         "sway"
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         Ok(Arc::new(Sway { ..*self }))
     }
 }

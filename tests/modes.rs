@@ -215,7 +215,7 @@ fn what_is_buckled_or_upside_down_is_called_unstable() {
             .force(PointForceSpec::new(
                 "column.end",
                 [0.0, 0.0, -load * euler],
-                TimeFunction::Table { t: vec![0.0, 1.0], value: vec![0.0, 1.0] },
+                TimeFunction::table(vec![0.0, 1.0], vec![0.0, 1.0]),
             ));
         scene.run.analysis = Analysis::Statics;
         scene.statics.stable = false;
@@ -473,6 +473,7 @@ fn a_running_string_has_its_frequencies() {
         file: None,
         t: vec![0.0, 1.0],
         v: vec![v; 2],
+        join: ropewalk_core::Join::Linear,
     };
     let scene = |out: f64, drawn: f64, elements: usize| {
         let section = Section::new(mass, 1e4 * tension, 0.0);

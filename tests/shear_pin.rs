@@ -149,6 +149,7 @@ fn a_pin_breaks_at_its_strength_at_a_time_that_is_located() {
             t: (0..=20).map(|k| 0.05 * f64::from(k)).collect(),
             // v = 5 t², a = 10 t
             v: (0..=20).map(|k| 5.0 * (0.05 * f64::from(k)).powi(2)).collect(),
+            join: ropewalk_core::Join::Monotone,
         })
         .constraint(DrivingSpec::new("pin", "weight", "jerk"))
         .constraint(BreakSpec { name: "shear".into(), of: "pin".into(), force: mass * (g + 5.0) })

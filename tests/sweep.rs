@@ -126,6 +126,73 @@ fn cells(line: &str) -> Vec<String> {
     cells
 }
 
+/// A pendulum swings on and a weight that is damped doesn't: the one is named, and its mean is that of its last tenth.
+#[test]
+fn last_values_that_are_not_steady_are_said_and_may_be_means() {
+    const SCENE: &str = r#"
+[parameters]
+mass = { default = "1 kg", description = "mass of both" }
+[run]
+duration = "60 s"
+output = "0.05 s"
+[[elements]]
+type = "point_mass"
+name = "swinging"
+at = [1, 0, 0]
+mass = "$mass"
+[[elements]]
+type = "point_mass"
+name = "damped"
+at = [1, 0, 5]
+mass = "$mass"
+[[forces]]
+type = "spring"
+name = "free"
+marker = "swinging"
+to = [0, 0, 0]
+stiffness = 10
+length = 0.8
+[[forces]]
+type = "spring"
+name = "braked"
+marker = "damped"
+to = [0, 0, 5]
+stiffness = 10
+damping = 5
+length = 0.8
+[[records]]
+type = "position"
+of = "swinging"
+[[records]]
+type = "position"
+of = "damped"
+"#;
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("swing.toml"), SCENE).unwrap();
+    let report = done(sweep(folder.path(), "--vary mass=1,2"));
+    assert!(report.contains("unsteady  swinging.x in 2 of 2 runs"), "{report}");
+    assert!(report.contains("over the last 10 % of the run") && report.contains("--report mean"), "{report}");
+    assert!(!report.contains("damped.x in") && !report.contains("swinging.y in"), "{report}");
+    let out = folder.path().join("runs/swing-sweep");
+    let rows = table(out.join("table.csv"));
+    let value = |row: usize, what: &str| rows[row][&format!("{what} swinging.x [m]")].parse::<f64>().unwrap();
+    for row in 0..2 {
+        assert!(value(row, "tail max") - value(row, "tail min") > 0.3);
+        assert!((value(row, "tail mean") - 0.8).abs() < 0.05, "{}", value(row, "tail mean"));
+    }
+    // nothing is computed again for another value of the same runs
+    let before = times(&out);
+    let report = done(sweep(folder.path(), "--vary mass=1,2 --report mean --over 50%"));
+    assert_eq!(times(&out), before);
+    assert!(!report.contains("unsteady") && report.contains("mean of the last 50 % of the run"), "{report}");
+    let means = table(out.join("tables/swinging.x-mean.csv"));
+    let again = table(out.join("table.csv"));
+    assert_eq!(means[0]["swinging.x [m]"], again[0]["tail mean swinging.x [m]"]);
+    assert!(out.join("plots/swinging.x-mean.svg").exists());
+    let said = sweep(folder.path(), "--vary mass=1,2 --over 2");
+    assert!(said.code == Some(2) && said.stderr.contains("expected a share of the run"), "{}", said.stderr);
+}
+
 /// When files were written, by path below the folder of the runs.
 fn times(out: &Path) -> HashMap<PathBuf, SystemTime> {
     let runs = fs::read_dir(out.join("runs")).unwrap().map(|e| e.unwrap().path());

@@ -181,6 +181,7 @@ fn laid(c: &Case, off: Off, n: usize, eta: f64) -> (Model, State, Vec<V3<f64>>) 
         file: None,
         t: vec![0.0, 1e6],
         v: vec![v; 2],
+        join: ropewalk_core::Join::Linear,
     };
     scene
         .element(CableSpec {
@@ -560,9 +561,12 @@ fn finite_differences_and_finite_elements_agree_from_rest_to_15_knots() {
         name: "peel".into(),
         t: history.rows.iter().map(|r| r.t).collect(),
         x: history.rows.iter().map(|r| r.peeled).collect(),
-        y: vec![0.0; history.rows.len()],
-        z: vec![0.0; history.rows.len()],
-        ends: ropewalk_constraints::motion::TableEnds::FromRest,
+        y: Vec::new(),
+        z: Vec::new(),
+        angle: Vec::new(),
+        file: None,
+        join: ropewalk_core::Join::Cubic,
+        ends: ropewalk_constraints::motion::Ends::FromRest,
     };
     scene
         .element(

@@ -98,6 +98,7 @@ fn steadily(name: &str, speed: f64) -> ropewalk_constraints::motion::SpeedTableS
         file: None,
         t: vec![0.0, 1e6],
         v: vec![speed; 2],
+        join: ropewalk_core::Join::Linear,
     }
 }
 
@@ -293,6 +294,7 @@ fn haul(way: f64) -> ropewalk_constraints::motion::SpeedTableSpec {
         file: None,
         t: vec![0.0, 2.0, way, turn, turn + 2.0, turn + 4.0, turn + 2.0 + way, 2.0 * way + 6.0],
         v: vec![0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0, 0.0],
+        join: ropewalk_core::Join::Monotone,
     }
 }
 
@@ -334,7 +336,7 @@ fn out_and_back(way: f64, element: Option<f64>, eta: f64, elements: usize, water
     let scheme = ropewalk_core::integrator::Scheme::GeneralizedAlpha { rho_inf: 0.5 };
     let options = Options { scheme, ..fixed(0.01) };
     let mut s = hang(&scene, &options, ea, w, l0);
-    let motion = ropewalk_core::MotionSpec::build(&haul(way)).expect("motion");
+    let motion = ropewalk_core::MotionSpec::build(&haul(way), &[]).expect("motion");
     let mut seen = Meshes::default();
     let mut out =
         Hauled { tension: 0.0, tip: 0.0, jump: 0.0, impulse: 0.0, changes: 0, steps: 0, imbalance: 0.0 };

@@ -194,7 +194,8 @@ fn clamp_holds_the_direction_and_leaves_the_stretch() {
 #[test]
 fn driven_joint_is_defined_for_as_long_as_its_motion() {
     let rows = [[0.0; 4], [1.0, 0.1, 0.0, 0.0], [3.0, 0.2, 0.0, 0.0]];
-    let table: Arc<dyn Motion> = Arc::new(Table::new(&rows, Default::default()).unwrap());
+    let table: Arc<dyn Motion> =
+        Arc::new(Table::new(&rows, ropewalk_core::Join::Cubic, Default::default()).unwrap());
     let joint = driving("ship", &nodes(), [ground(), Marker::node(POINT)], table.clone()).unwrap();
     assert_eq!(joint.range(), (0.0, 3.0));
     let plane = coordinate("x", &nodes(), [ground(), Marker::node(POINT)], [1.0, 0.0, 0.0], Some(table));

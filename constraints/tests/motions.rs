@@ -1,8 +1,11 @@
 //! Motions: derivatives against differences, continuity, exact circles.
 
-use ropewalk_constraints::motion::{Circle, Ends, Harmonic, Manoeuvre, Rest, Side, Straight, Table, Turn};
+use ropewalk_constraints::motion::{
+    Circle, Ends, Harmonic, Manoeuvre, Rest, Side, SpeedTable, Straight, Sum, Table, Turn,
+};
 use ropewalk_core::testing::difference;
-use ropewalk_core::{Motion, V3};
+use ropewalk_core::{Join, Motion, V3};
+use std::sync::Arc;
 
 const MANOEUVRE: Manoeuvre = Manoeuvre {
     heading: [3.0, 4.0, 0.0],
@@ -31,8 +34,13 @@ fn motions() -> Vec<(Box<dyn Motion>, Vec<f64>)> {
         (Box::new(Harmonic::new([0.5, 0.0, 1.0], 0.4, 0.3, 1.0, 2.0).unwrap()), vec![1.0, 3.0]),
     ];
     for ends in [Ends::Natural, Ends::AtRest, Ends::FromRest] {
-        all.push((Box::new(Table::new(&rows, ends).unwrap()), vec![0.5, 2.0, 5.0]));
+        all.push((Box::new(Table::new(&rows, Join::Cubic, ends).unwrap()), vec![0.5, 2.0, 5.0]));
     }
+    let parts: Vec<Arc<dyn Motion>> = vec![
+        Arc::new(Straight::new([1.0, 2.0, -2.0], 12.9, 1.0, 2.0).unwrap()),
+        Arc::new(Harmonic::new([0.5, 0.0, 1.0], 0.4, 0.3, 1.5, 2.0).unwrap()),
+    ];
+    all.push((Box::new(Sum::new(parts)), vec![1.0, 1.5, 3.0, 3.5]));
     for turn in turns() {
         all.push((Box::new(turn), vec![2.0, 4.0, 5.5, 7.0, 10.0, 14.0, 42.0]));
     }
@@ -172,8 +180,8 @@ fn turn_is_the_integral_of_its_velocity() {
 fn table_goes_through_its_rows_and_reproduces_what_it_can() {
     let rows: Vec<[f64; 4]> =
         [0.0, 0.3, 1.0, 1.2, 2.0].map(|t: f64| [t, 1.0 + 2.0 * t, t * t * (3.0 - t), 0.0]).to_vec();
-    let natural = Table::new(&rows, Ends::Natural).unwrap();
-    let rest = Table::new(&rows, Ends::AtRest).unwrap();
+    let natural = Table::new(&rows, Join::Cubic, Ends::Natural).unwrap();
+    let rest = Table::new(&rows, Join::Cubic, Ends::AtRest).unwrap();
     for r in &rows {
         approx::assert_relative_eq!(natural.at(r[0]).x[..], r[1..], epsilon = 1e-13);
     }
@@ -184,12 +192,12 @@ fn table_goes_through_its_rows_and_reproduces_what_it_can() {
     }
     approx::assert_abs_diff_eq!(rest.at(0.0).v[0], 0.0, epsilon = 1e-13);
     approx::assert_abs_diff_eq!(rest.at(2.0).v[0], 0.0, epsilon = 1e-13);
-    let from = Table::new(&rows, Ends::FromRest).unwrap();
+    let from = Table::new(&rows, Join::Cubic, Ends::FromRest).unwrap();
     approx::assert_abs_diff_eq!(from.at(0.0).v[0], 0.0, epsilon = 1e-13);
     approx::assert_abs_diff_eq!(from.at(2.0).a[0], 0.0, epsilon = 1e-13);
     assert_eq!(natural.range(), (0.0, 2.0));
     for ends in [Ends::Natural, Ends::AtRest, Ends::FromRest] {
-        assert_eq!(Table::new(&rows[..2], ends).unwrap().at(0.3).x, [1.6, rows[1][2], 0.0].map(|x: f64| x));
+        assert_eq!(Table::new(&rows[..2], Join::Cubic, ends).unwrap().at(0.3).x, [1.6, rows[1][2], 0.0]);
     }
 }
 
@@ -203,7 +211,97 @@ fn bad_motions_are_refused() {
     assert!(Turn::new(Manoeuvre { turn_start: 1.0, ..MANOEUVRE }).is_err());
     assert!(Turn::new(Manoeuvre { turn_ramp: -1.0, ..MANOEUVRE }).is_err());
     assert!(Harmonic::new([1.0; 3], 0.0, 0.0, 0.0, 1.0).is_err());
-    assert!(Table::new(&[[0.0; 4]], Ends::Natural).is_err());
-    assert!(Table::new(&[[0.0; 4], [0.0; 4]], Ends::Natural).is_err());
-    assert!(Table::new(&[[0.0; 4], [1.0, f64::NAN, 0.0, 0.0]], Ends::Natural).is_err());
+    assert!(Table::new(&[[0.0; 4]], Join::Cubic, Ends::Natural).is_err());
+    assert!(Table::new(&[[0.0; 4], [0.0; 4]], Join::Cubic, Ends::Natural).is_err());
+    assert!(Table::new(&[[0.0; 4], [1.0, f64::NAN, 0.0, 0.0]], Join::Cubic, Ends::Natural).is_err());
+}
+
+/// Position, velocity and acceleration of tables belong together between the rows, and position and velocity go on over
+/// them.
+#[test]
+fn tables_are_consistent_however_their_rows_are_joined() {
+    let t: Vec<f64> = (0..12).map(|k| 0.5 * f64::from(k) + 0.1 * f64::from(k % 3)).collect();
+    let speeds: Vec<[f64; 2]> = t.iter().map(|t| [*t, t.sin()]).collect();
+    let rows: Vec<[f64; 4]> = t.iter().map(|t| [*t, t.sin(), (2.0 * t).cos() - 1.0, 0.1 * t * t]).collect();
+    let line: Vec<[f64; 4]> = t.iter().map(|t| [*t, 0.3 * t, 0.0, -0.7 * t]).collect();
+    let mut all: Vec<Box<dyn Motion>> =
+        vec![Box::new(Table::new(&line, Join::Linear, Ends::Natural).unwrap())];
+    for join in [Join::Linear, Join::Monotone, Join::Cubic] {
+        all.push(Box::new(SpeedTable::new([1.0, -2.0, 2.0], &speeds, join).unwrap()));
+    }
+    for ends in [Ends::Natural, Ends::AtRest, Ends::FromRest] {
+        all.push(Box::new(Table::new(&rows, Join::Monotone, ends).unwrap()));
+    }
+    for motion in &all {
+        for w in t.windows(2) {
+            for x in [0.1, 0.5, 0.9] {
+                let t = w[0] + x * (w[1] - w[0]);
+                let m = motion.at(t);
+                let (v, a) = (
+                    difference(|h| motion.at(t + h).x.to_vec()),
+                    difference(|h| motion.at(t + h).v.to_vec()),
+                );
+                approx::assert_relative_eq!(m.v[..], v[..], epsilon = 1e-7);
+                approx::assert_relative_eq!(m.a[..], a[..], epsilon = 1e-7);
+            }
+        }
+        for t in &t[1..11] {
+            let (a, b) = (motion.at(t - 1e-11), motion.at(*t));
+            approx::assert_relative_eq!(a.x[..], b.x[..], epsilon = 1e-9);
+            approx::assert_relative_eq!(a.v[..], b.v[..], epsilon = 1e-9);
+        }
+    }
+}
+
+/// From rest to 1 m/s in 2 s is 1 m, and 48 m more until 50 s.
+#[test]
+fn a_table_of_speeds_feeds_the_area_under_it() {
+    let rows = [[0.0, 0.0], [2.0, 1.0], [50.0, 1.0]];
+    let way = |join, t| SpeedTable::new([1.0, 0.0, 0.0], &rows, join).unwrap().at(t).x[0];
+    approx::assert_relative_eq!(way(Join::Linear, 2.0), 1.0, epsilon = 1e-14);
+    approx::assert_relative_eq!(way(Join::Linear, 50.0), 49.0, epsilon = 1e-13);
+    // rounded off, it is faster before it has risen
+    assert!(way(Join::Monotone, 2.0) > 1.15);
+}
+
+#[test]
+fn a_table_does_not_overshoot_unless_it_is_a_spline() {
+    let rows = [[0.0, 0.0], [1.0, 0.0], [2.0, 1.5], [3.0, 1.5]].map(|[t, x]| [t, x, 0.0, 0.0]);
+    let largest = |join| {
+        let table = Table::new(&rows, join, Ends::Natural).unwrap();
+        (0..=300).map(|k| table.at(0.01 * f64::from(k)).x[0]).fold(0.0, f64::max)
+    };
+    assert_eq!(largest(Join::Monotone), 1.5);
+    assert!(largest(Join::Cubic) > 1.55);
+    let e = Table::new(&rows, Join::Linear, Ends::Natural).unwrap_err().to_string();
+    assert!(e.contains("row 2") && e.contains("velocity would jump at 1 s") && e.contains("monotone"), "{e}");
+}
+
+#[test]
+fn steps_end_where_tables_bend() {
+    let speeds = [[0.0, 0.0], [2.0, 1.0], [50.0, 1.0]];
+    let speed = SpeedTable::new([1.0, 0.0, 0.0], &speeds, Join::Linear).unwrap();
+    assert_eq!((speed.reach(0.0, 10.0), speed.reach(2.0, 10.0)), (Some(2.0), Some(10.0)));
+    // at rest at every row, but not between them
+    let rows = [[0.0, 0.0], [1.0, 0.0], [2.0, 1.5], [3.0, 1.5]].map(|[t, x]| [t, x, 0.0, 0.0]);
+    let table = Table::new(&rows, Join::Monotone, Ends::Natural).unwrap();
+    assert_eq!((table.reach(0.0, 10.0), table.reach(1.0, 10.0)), (Some(1.0), Some(0.5)));
+    // a sum says what its parts say
+    let swing = Harmonic::new([1.0; 3], 0.1, 0.0, 0.0, 0.0).unwrap();
+    let sum = Sum::new(vec![Arc::new(swing), Arc::new(speed)]);
+    assert_eq!(sum.reach(1.9, 10.0), Some(2.0 - 1.9));
+    assert_eq!(sum.range(), (0.0, 50.0));
+}
+
+#[test]
+fn steady_runs_add_up_and_what_turns_is_steady_beside_what_rests() {
+    let run = || -> Arc<dyn Motion> { Arc::new(Straight::new([1.0, 0.0, 0.0], 2.0, 0.0, 1.0).unwrap()) };
+    let round = || -> Arc<dyn Motion> {
+        Arc::new(Circle::new([1.0, 0.0, 0.0], Side::Left, 3.0, 1.0, 0.0, 1.0).unwrap())
+    };
+    let both = Sum::new(vec![run(), run()]);
+    assert!(both.steady(0.5).is_none());
+    assert_eq!(both.steady(2.0).unwrap().velocity, [4.0, 0.0, 0.0]);
+    assert_eq!(Sum::new(vec![Arc::new(Rest), round()]).steady(2.0), round().steady(2.0));
+    assert!(Sum::new(vec![run(), round()]).steady(2.0).is_none());
 }

@@ -4,7 +4,7 @@ use crate::constraint::Constraint;
 use crate::feed::{Feed, Front};
 use crate::marker::Marker;
 use crate::model::{Model, Start, Switches};
-use crate::motion::Motion;
+use crate::motion::{Motion, Motions, no_motion};
 use crate::node::{Node, NodeId, NodeKind};
 use crate::part::{Part, Spot, split_marker};
 use crate::pool::{Element, Pool};
@@ -117,7 +117,7 @@ pub struct Builder {
     constraints: Vec<Box<dyn Constraint>>,
     parts: Vec<Arc<dyn Part>>,
     laws: BTreeMap<usize, Laws>,
-    motions: HashMap<String, Arc<dyn Motion>>,
+    motions: Motions,
     /// Arc lengths at which a cable needs a node, by part.
     pins: HashMap<String, Vec<f64>>,
     /// Meshes that replace those of the specs, by part.
@@ -474,22 +474,15 @@ impl Builder {
         self.water = water;
     }
 
-    /// Registers a motion under a name.
-    pub(crate) fn add_motion(&mut self, name: &str, motion: Arc<dyn Motion>) -> Result<(), BuildError> {
-        match self.motions.insert(name.to_string(), motion) {
-            None => Ok(()),
-            Some(_) => Err(BuildError::at("name", format!("there are two motions named `{name}`"))),
-        }
+    pub(crate) fn set_motions(&mut self, motions: Motions) {
+        self.motions = motions;
     }
 
     /// The motion of this name.
     pub fn motion(&self, name: &str) -> Result<Arc<dyn Motion>, BuildError> {
-        self.motions.get(name).cloned().ok_or_else(|| {
-            let mut names: Vec<String> = self.motions.keys().map(|n| format!("`{n}`")).collect();
-            names.sort();
-            let names = if names.is_empty() { "none".into() } else { names.join(", ") };
-            BuildError::at("motion", format!("there is no motion `{name}`; the motions are {names}"))
-        })
+        let there = self.motions.keys().map(String::as_str);
+        let missing = || BuildError::at("motion", no_motion(name, there));
+        self.motions.get(name).cloned().ok_or_else(missing)
     }
 
     /// The longest part, or the size of the mechanism that rigid bodies make [m].

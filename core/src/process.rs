@@ -3,7 +3,7 @@
 use crate::build::BuildError;
 use crate::integrator::Counts;
 use crate::lane::V3;
-use crate::motion::Motion;
+use crate::motion::{Motion, no_motion};
 use crate::record::Column;
 use crate::scene::Water;
 use std::collections::BTreeMap;
@@ -27,11 +27,8 @@ impl Surroundings {
     /// # Errors
     /// There is none.
     pub fn motion(&self, field: &str, name: &str) -> Result<Arc<dyn Motion>, BuildError> {
-        self.motions.get(name).cloned().ok_or_else(|| {
-            let names: Vec<&str> = self.motions.keys().map(String::as_str).collect();
-            let names = if names.is_empty() { "none".to_string() } else { names.join(", ") };
-            BuildError::at(field, format!("there is no motion `{name}`; there is {names}"))
-        })
+        let there = self.motions.keys().map(String::as_str);
+        self.motions.get(name).cloned().ok_or_else(|| BuildError::at(field, no_motion(name, there)))
     }
 }
 

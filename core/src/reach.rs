@@ -69,6 +69,40 @@ pub fn knots(times: &[f64], value: impl Fn(usize) -> V3<f64>, size: f64, t: f64,
     reached
 }
 
+/// What steps must not leap over in a table: values that straight lines between these times follow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Knots {
+    times: Vec<f64>,
+    value: Vec<V3<f64>>,
+    size: f64,
+}
+
+impl Knots {
+    /// At the rows of a table.
+    pub fn at_rows(rows: &[f64], value: impl Fn(f64) -> V3<f64>) -> Self {
+        Self::new(rows.to_vec(), value)
+    }
+    /// At the rows and half way between them, for what is curved there.
+    pub fn halfway(rows: &[f64], value: impl Fn(f64) -> V3<f64>) -> Self {
+        let both = rows.windows(2).flat_map(|t| [t[0], 0.5 * (t[0] + t[1])]);
+        Self::new(both.chain(rows.last().copied()).collect(), value)
+    }
+    fn new(times: Vec<f64>, value: impl Fn(f64) -> V3<f64>) -> Self {
+        let value: Vec<V3<f64>> = times.iter().map(|t| value(*t)).collect();
+        let size = (0..3).fold(0.0, |size: f64, i| {
+            let of = |pick: fn(f64, f64) -> f64| value.iter().map(|v| v[i]).reduce(pick).unwrap_or(0.0);
+            let (least, most) = (of(f64::min), of(f64::max));
+            // a constant isn't made of its rounding errors
+            size.max(most - least + 1e-9 * most.abs().max(least.abs()))
+        });
+        Knots { times, value, size }
+    }
+    /// How much of a step `h` from `t` leaps over none of them.
+    pub fn reach(&self, t: f64, h: f64) -> f64 {
+        knots(&self.times, |k| self.value[k], self.size, t, h)
+    }
+}
+
 /// The value at `t` of a table whose next knot is number `next`.
 fn between(times: &[f64], value: &impl Fn(usize) -> V3<f64>, next: usize, t: f64) -> V3<f64> {
     if next == 0 {

@@ -4,14 +4,13 @@ use crate::build::{BuildError, Builder};
 use crate::current::Current;
 use crate::integrator::Options;
 use crate::model::{Model, Start};
-use crate::motion::SteadyFrame;
+use crate::motion::{SteadyFrame, build_all};
 use crate::process::{Process, ProcessSpec, Surroundings};
 use crate::record::Record;
 use crate::remesh::Plan;
 use crate::spec::{ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
 use crate::statics::StaticsOptions;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
@@ -311,14 +310,7 @@ impl Scene {
         }
         self.water.as_ref().map_or(Ok(()), Water::check).map_err(whole)?;
         self.run.check().map_err(whole)?;
-        let mut motions = BTreeMap::new();
-        for (k, m) in self.motions.iter().enumerate() {
-            let motion = m.build().map_err(of(SpecKind::Motion, k))?;
-            if motions.insert(m.name().to_string(), motion).is_some() {
-                let message = format!("there are two motions named `{}`", m.name());
-                return Err(of(SpecKind::Motion, k)(BuildError::at("name", message)));
-            }
-        }
+        let motions = build_all(&self.motions).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
         let around = Surroundings { water: self.water.clone(), motions, duration: self.run.duration };
         spec.build(&around).map(Some).map_err(of(SpecKind::Process, 0))
     }
@@ -353,9 +345,7 @@ impl Scene {
         for (part, mesh) in plan {
             b.remesh(part, mesh.clone());
         }
-        for (k, m) in self.motions.iter().enumerate() {
-            m.build().and_then(|motion| b.add_motion(m.name(), motion)).map_err(of(SpecKind::Motion, k))?;
-        }
+        b.set_motions(build_all(&self.motions).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?);
         for e in &self.elements {
             b.pin(&e.markers());
         }

@@ -63,8 +63,12 @@ pub trait ForceSpec: Debug + Send + Sync {
 pub trait MotionSpec: Debug + Send + Sync {
     /// Its name.
     fn name(&self) -> &str;
-    /// Makes the motion.
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError>;
+    /// Names of other motions that it is made of.
+    fn of(&self) -> &[String] {
+        &[]
+    }
+    /// Makes the motion; `of` are those that it is made of, in their order.
+    fn build(&self, of: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError>;
 }
 
 /// An output of a scene.

@@ -1,7 +1,7 @@
 //! The path along which a cable or a chain is laid: straight lines, a smooth curve through points, turns on a spool.
 
-use ropewalk_core::V3;
 use ropewalk_core::rotation::cross;
+use ropewalk_core::{EndSlope, Interpolation, Join, V3, dot};
 use std::f64::consts::TAU;
 
 /// A path in space by arc length.
@@ -9,9 +9,28 @@ use std::f64::consts::TAU;
 pub struct Path {
     /// Arc length, position and tangent of densely spaced points; corners appear twice, once for each side.
     samples: Vec<(f64, V3<f64>, V3<f64>)>,
-    /// Arc lengths of corners.
-    corners: Vec<f64>,
+    /// Corners that are sharp.
+    corners: Vec<Corner>,
+    /// Arc lengths at which arcs begin and end, and where in between nodes of a mesh have to be.
+    bends: Vec<f64>,
 }
+
+/// Where straight lines meet at an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// Arc length [m].
+    pub s: f64,
+    /// The point.
+    pub at: V3<f64>,
+    /// By how much the direction turns [rad].
+    pub angle: f64,
+}
+
+/// An element that turns by no more than this [rad] is strained by less than 1e-5: with slopes of unit length a cubic is too
+/// short by `5.2e-4` times the fourth power of the angle.
+const TURN: f64 = 1.0 / 3.0;
+/// Directions that differ by less are the same [rad].
+const STRAIGHT: f64 = 1e-9;
 
 impl Path {
     /// Straight lines from point to point.
@@ -21,45 +40,106 @@ impl Path {
     pub fn polyline(points: &[V3<f64>]) -> Result<Self, String> {
         check(points)?;
         let (mut samples, mut corners, mut s) = (Vec::new(), Vec::new(), 0.0);
+        let mut before: Option<V3<f64>> = None;
         for w in points.windows(2) {
-            let d = sub(w[1], w[0]);
-            let length = norm(d);
-            let t = d.map(|x| x / length);
+            let (length, t) = direction(w[0], w[1]);
+            if let Some(before) = before {
+                corners.push(Corner { s, at: w[0], angle: angle(&before, &t) });
+            }
+            before = Some(t);
             samples.push((s, w[0], t));
             s += length;
             samples.push((s, w[1], t));
-            corners.push(s);
         }
-        corners.pop();
-        Ok(Path { samples, corners })
+        Ok(Path { samples, corners, bends: Vec::new() })
     }
 
-    /// A smooth curve through points: a natural cubic spline over the length of the chords.
+    /// Straight lines from point to point, with arcs of this radius [m] for corners.
     ///
     /// # Errors
-    /// As [`Path::polyline`].
-    pub fn spline(points: &[V3<f64>]) -> Result<Self, String> {
+    /// As [`Path::polyline`]; an arc that is longer than the lines beside it leave room for, or a path that turns back.
+    pub fn rounded(points: &[V3<f64>], radius: f64) -> Result<Self, String> {
+        check(points)?;
+        let sides: Vec<(f64, V3<f64>)> = points.windows(2).map(|w| direction(w[0], w[1])).collect();
+        let turn = |k: usize| angle(&sides[k - 1].1, &sides[k].1);
+        // how much of the lines beside a point its arc takes
+        let takes: Vec<f64> = (0..points.len())
+            .map(|k| if k == 0 || k == sides.len() { 0.0 } else { radius * (0.5 * turn(k)).tan() })
+            .collect();
+        for (k, (length, _)) in sides.iter().enumerate() {
+            if !(takes[k] + takes[k + 1] <= length * (1.0 + 1e-12)) {
+                return Err(format!(
+                    "corners of radius {radius} m take {} m of the line from point {} to point {}, which is {length} m \
+                     long: take a smaller `radius`",
+                    takes[k] + takes[k + 1],
+                    k + 1,
+                    k + 2
+                ));
+            }
+        }
+        let (mut samples, mut bends, mut s) = (Vec::new(), Vec::new(), 0.0);
+        for (k, (length, t)) in sides.iter().enumerate() {
+            let along = |x: f64| std::array::from_fn(|i| points[k][i] + x * t[i]);
+            let straight = (length - takes[k] - takes[k + 1]).max(0.0);
+            samples.push((s, along(takes[k]), *t));
+            s += straight;
+            samples.push((s, along(takes[k] + straight), *t));
+            let Some((_, next)) = sides.get(k + 1) else { continue };
+            let angle = turn(k + 1);
+            if angle <= STRAIGHT {
+                continue;
+            }
+            // towards the centre of the arc
+            let inward = unit(std::array::from_fn(|i| next[i] - angle.cos() * t[i]));
+            let from = along(length - takes[k + 1]);
+            let elements = (angle / TURN).ceil();
+            bends.extend((0..=elements as usize).map(|i| s + radius * angle * i as f64 / elements));
+            const FINE: usize = 16;
+            let steps = FINE * elements as usize;
+            for i in 1..=steps {
+                let a = angle * i as f64 / steps as f64;
+                let (sin, cos) = a.sin_cos();
+                let half = (0.5 * a).sin();
+                let point =
+                    std::array::from_fn(|c| from[c] + radius * (sin * t[c] + 2.0 * half * half * inward[c]));
+                let tangent = std::array::from_fn(|c| cos * t[c] + sin * inward[c]);
+                samples.push((s + radius * a, point, tangent));
+            }
+            s += radius * angle;
+        }
+        Ok(Path { samples, corners: Vec::new(), bends })
+    }
+
+    /// A smooth curve through points, a cubic spline over the length of the chords. It begins and ends in these
+    /// directions, of any length; where none is given it is as curved there as the points next to the end are.
+    ///
+    /// # Errors
+    /// As [`Path::polyline`]; a direction without length.
+    pub fn spline(points: &[V3<f64>], directions: [Option<V3<f64>>; 2]) -> Result<Self, String> {
         check(points)?;
         let n = points.len();
         let mut u = vec![0.0];
         for w in points.windows(2) {
-            u.push(u[u.len() - 1] + norm(sub(w[1], w[0])));
+            u.push(u[u.len() - 1] + direction(w[0], w[1]).0);
         }
-        let second: [Vec<f64>; 3] =
-            std::array::from_fn(|c| natural_spline(&u, &points.iter().map(|p| p[c]).collect::<Vec<_>>()));
-        let at = |k: usize, x: f64| -> (V3<f64>, V3<f64>) {
-            let h = u[k + 1] - u[k];
-            let (a, b) = ((u[k + 1] - x) / h, (x - u[k]) / h);
-            let position = std::array::from_fn(|c| {
-                a * points[k][c]
-                    + b * points[k + 1][c]
-                    + ((a * a * a - a) * second[c][k] + (b * b * b - b) * second[c][k + 1]) * h * h / 6.0
-            });
-            let slope = std::array::from_fn(|c| {
-                (points[k + 1][c] - points[k][c]) / h
-                    + ((1.0 - 3.0 * a * a) * second[c][k] + (3.0 * b * b - 1.0) * second[c][k + 1]) * h / 6.0
-            });
-            (position, slope)
+        let mut ends = [[EndSlope::Smooth; 2]; 3];
+        for (end, direction) in directions.iter().enumerate() {
+            let Some(d) = direction else { continue };
+            let size = norm(*d);
+            if !(size > 0.0 && size.is_finite()) {
+                return Err(format!("the direction {d:?} has no length"));
+            }
+            for (c, ends) in ends.iter_mut().enumerate() {
+                ends[end] = EndSlope::Given(d[c] / size);
+            }
+        }
+        let along: [Interpolation; 3] = std::array::from_fn(|c| {
+            let x: Vec<f64> = points.iter().map(|p| p[c]).collect();
+            Interpolation::new(&u, &x, Join::Cubic, ends[c])
+        });
+        let at = |x: f64| -> (V3<f64>, V3<f64>) {
+            let all = [0, 1, 2].map(|c| along[c].at(x));
+            (all.map(|a| a[1]), all.map(|a| a[2]))
         };
         // Gauss quadrature of the arc length, fine enough that linear interpolation of s is far below the mesh
         const STEPS: usize = 64;
@@ -70,19 +150,19 @@ impl Path {
             let h = (u[k + 1] - u[k]) / STEPS as f64;
             for i in 0..STEPS {
                 let x = u[k] + h * i as f64;
-                let (p, d) = at(k, x);
+                let (p, d) = at(x);
                 let speed = norm(d);
                 if speed < 1e-9 {
                     return Err("the curve turns back on itself between its points: give more points".into());
                 }
                 samples.push((s, p, d.map(|x| x / speed)));
-                s += gauss.iter().map(|(g, w)| w * h * norm(at(k, x + g * h).1)).sum::<f64>();
+                s += gauss.iter().map(|(g, w)| w * h * norm(at(x + g * h).1)).sum::<f64>();
             }
         }
-        let (p, d) = at(n - 2, u[n - 1]);
+        let (p, d) = at(u[n - 1]);
         let speed = norm(d);
         samples.push((s, p, d.map(|x| x / speed)));
-        Ok(Path { samples, corners: Vec::new() })
+        Ok(Path { samples, corners: Vec::new(), bends: Vec::new() })
     }
 
     /// Goes on from its end with turns on a spool: a helix about the axis through `centre`, right-handed, that advances
@@ -111,7 +191,9 @@ impl Path {
         let slope = (radius * radius + (pitch / TAU).powi(2)).sqrt();
         // cubics between 128 points a turn are within 2e-8 of the radius
         let steps = (128.0 * turns).ceil();
-        self.corners.push(s0);
+        let before = self.samples[self.samples.len() - 1].2;
+        let start = std::array::from_fn(|i| (side[i] + pitch / TAU * axis[i]) / slope);
+        self.corners.push(Corner { s: s0, at: from, angle: angle(&before, &start) });
         for k in 0..=steps as usize {
             let angle = TAU * turns * k as f64 / steps;
             let (sin, cos) = angle.sin_cos();
@@ -130,14 +212,19 @@ impl Path {
         self.samples[self.samples.len() - 1].0
     }
 
-    /// Arc lengths of its corners.
-    pub fn corners(&self) -> &[f64] {
+    /// Its sharp corners.
+    pub fn corners(&self) -> &[Corner] {
         &self.corners
+    }
+
+    /// Arc lengths at which a mesh needs nodes: at corners, and along arcs often enough that no element turns far.
+    pub fn stops(&self) -> impl Iterator<Item = f64> {
+        self.corners.iter().map(|c| c.s).chain(self.bends.iter().copied())
     }
 
     /// Position and unit tangent at an arc length; at a corner the mean of both sides.
     pub fn at(&self, s: f64) -> (V3<f64>, V3<f64>) {
-        if self.corners.iter().any(|c| (c - s).abs() <= 1e-12 * self.length()) {
+        if self.corners.iter().any(|c| (c.s - s).abs() <= 1e-12 * self.length()) {
             let k = self.samples.partition_point(|x| x.0 < s - 1e-12 * self.length());
             let (before, after) = (self.samples[k], self.samples[(k + 1).min(self.samples.len() - 1)]);
             let sum: V3<f64> = std::array::from_fn(|c| before.2[c] + after.2[c]);
@@ -177,23 +264,20 @@ fn check(points: &[V3<f64>]) -> Result<(), String> {
     }
 }
 
-/// Second derivatives of the natural cubic spline through `(x, y)`.
-fn natural_spline(x: &[f64], y: &[f64]) -> Vec<f64> {
-    let n = x.len();
-    let (mut second, mut u) = (vec![0.0; n], vec![0.0; n]);
-    for i in 1..n - 1 {
-        let sig = (x[i] - x[i - 1]) / (x[i + 1] - x[i - 1]);
-        let p = sig * second[i - 1] + 2.0;
-        let jump = (y[i + 1] - y[i]) / (x[i + 1] - x[i]) - (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
-        second[i] = (sig - 1.0) / p;
-        u[i] = (6.0 * jump / (x[i + 1] - x[i - 1]) - sig * u[i - 1]) / p;
-    }
-    second[n - 1] = 0.0;
-    for i in (0..n - 1).rev() {
-        second[i] = second[i] * second[i + 1] + u[i];
-    }
-    second[0] = 0.0;
-    second
+/// Distance from one point to another, and the direction.
+fn direction(from: V3<f64>, to: V3<f64>) -> (f64, V3<f64>) {
+    let d = sub(to, from);
+    (norm(d), unit(d))
+}
+
+/// The angle between two unit vectors, well also where it is small.
+fn angle(a: &V3<f64>, b: &V3<f64>) -> f64 {
+    norm(cross(a, b)).atan2(dot(a, b))
+}
+
+fn unit(a: V3<f64>) -> V3<f64> {
+    let size = norm(a);
+    a.map(|x| x / size)
 }
 
 fn sub(a: V3<f64>, b: V3<f64>) -> V3<f64> {
@@ -211,7 +295,9 @@ mod tests {
     fn polyline_has_its_length_and_corners() {
         let p = Path::polyline(&[[0.0; 3], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]]).unwrap();
         assert_eq!(p.length(), 7.0);
-        assert_eq!(p.corners(), &[3.0]);
+        assert_eq!(p.corners().len(), 1);
+        assert_eq!((p.corners()[0].s, p.corners()[0].at), (3.0, [3.0, 0.0, 0.0]));
+        approx::assert_relative_eq!(p.corners()[0].angle, TAU / 4.0, epsilon = 1e-15);
         let (x, t) = p.at(1.0);
         approx::assert_relative_eq!(x[..], [1.0, 0.0, 0.0][..], epsilon = 1e-12);
         assert_eq!(t, [1.0, 0.0, 0.0]);
@@ -229,7 +315,7 @@ mod tests {
                 [a.cos(), a.sin(), 0.0]
             })
             .collect();
-        let p = Path::spline(&points).unwrap();
+        let p = Path::spline(&points, [None; 2]).unwrap();
         approx::assert_relative_eq!(p.length(), std::f64::consts::PI, max_relative = 1e-4);
         for k in 1..10 {
             let s = p.length() * f64::from(k) / 10.0;
@@ -259,10 +345,63 @@ mod tests {
         assert!(straight().wind([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], 0.1, f64::NAN).is_err());
     }
 
+    /// Curvature by differences of the tangent.
+    fn curvature(p: &Path, s: f64) -> f64 {
+        let d = 1e-3;
+        norm(sub(p.at(s + d).1, p.at(s - d).1)) / (2.0 * d)
+    }
+
+    #[test]
+    fn spline_through_a_circle_is_as_curved_at_its_ends() {
+        let circle = |k: i32| {
+            let a = 0.5 * std::f64::consts::PI * f64::from(k) / 8.0;
+            [a.sin(), 1.0 - a.cos(), 0.0]
+        };
+        let points: Vec<V3<f64>> = (0..=8).map(circle).collect();
+        for directions in
+            [[None; 2], [Some([2.0, 0.0, 0.0]), None], [Some([1.0, 0.0, 0.0]), Some([0.0, 3.0, 0.0])]]
+        {
+            let p = Path::spline(&points, directions).unwrap();
+            for s in [0.01, 0.1, p.length() - 0.1, p.length() - 0.01] {
+                let k = curvature(&p, s);
+                assert!((k - 1.0).abs() < 0.03, "{k} at {s} with {directions:?}");
+            }
+        }
+        let p = Path::spline(&points, [Some([1.0, 1.0, 0.0]), None]).unwrap();
+        approx::assert_relative_eq!(
+            p.at(0.0).1[..],
+            [0.5f64.sqrt(), 0.5f64.sqrt(), 0.0][..],
+            epsilon = 1e-12
+        );
+        assert!(Path::spline(&points, [Some([0.0; 3]), None]).unwrap_err().contains("no length"));
+    }
+
+    #[test]
+    fn corners_are_rounded_by_arcs() {
+        let p = Path::rounded(&[[0.0; 3], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]], 0.5).unwrap();
+        approx::assert_relative_eq!(p.length(), 7.0 - 1.0 + TAU / 8.0, epsilon = 1e-14);
+        assert!(p.corners().is_empty());
+        let arc: Vec<f64> = p.stops().collect();
+        approx::assert_relative_eq!(arc[0], 2.5, epsilon = 1e-14);
+        approx::assert_relative_eq!(arc[arc.len() - 1], 2.5 + TAU / 8.0, epsilon = 1e-14);
+        assert!(arc.windows(2).all(|s| (s[1] - s[0]) / 0.5 <= TURN + 1e-12));
+        for s in [2.5, 2.6, 3.0, 3.2] {
+            let x = p.at(s).0;
+            approx::assert_relative_eq!((x[0] - 2.5).hypot(x[1] - 0.5), 0.5, epsilon = 1e-8);
+        }
+        approx::assert_relative_eq!(p.at(p.length()).0[..], [3.0, 4.0, 0.0][..], epsilon = 1e-14);
+        let corner = [[0.0; 3], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]];
+        assert!(Path::rounded(&corner, 3.0).is_ok());
+        assert!(
+            Path::rounded(&corner, 3.1).unwrap_err().contains("from point 1 to point 2, which is 3 m long")
+        );
+        assert!(Path::rounded(&[[0.0; 3], [3.0, 0.0, 0.0], [1.0, 0.0, 0.0]], 0.1).is_err());
+    }
+
     #[test]
     fn bad_points_are_refused() {
         assert!(Path::polyline(&[[0.0; 3]]).is_err());
         assert!(Path::polyline(&[[0.0; 3], [0.0; 3]]).is_err());
-        assert!(Path::spline(&[[0.0; 3], [f64::NAN, 0.0, 0.0]]).is_err());
+        assert!(Path::spline(&[[0.0; 3], [f64::NAN, 0.0, 0.0]], [None; 2]).is_err());
     }
 }

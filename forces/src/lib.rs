@@ -28,4 +28,4 @@ pub use spec::{
     PointMomentSpec, SpringSpec,
 };
 pub use spring::Spring;
-pub use time::TimeFunction;
+pub use time::{TimeFunction, TimeTable};

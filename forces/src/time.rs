@@ -1,11 +1,15 @@
 //! Factors that change with time.
 
 use ropewalk_core::build::{BuildError, finite, need};
-use ropewalk_core::{quantity, reach};
+use ropewalk_core::reach::Knots;
+use ropewalk_core::{EndSlope, Interpolation, Join, quantity, reach};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 /// A factor of a load as a function of time.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum TimeFunction {
     /// 1 at all times.
@@ -24,14 +28,9 @@ pub enum TimeFunction {
         #[serde(deserialize_with = "quantity::time")]
         t1: f64,
     },
-    /// Linear between given times, constant before the first and after the last.
-    Table {
-        /// Times [s], ascending.
-        #[serde(deserialize_with = "quantity::list::time")]
-        t: Vec<f64>,
-        /// Value at each time.
-        value: Vec<f64>,
-    },
+    /// Values at given times, joined by straight lines unless `join` says otherwise; constant before the first and after
+    /// the last.
+    Table(TimeTable),
     /// 0 up to `t0`, rises to 1 at `peak`, falls to 0 at `t1` and stays there.
     Triangle {
         /// Start [s].
@@ -59,7 +58,59 @@ pub enum TimeFunction {
     },
 }
 
+/// Values of a load at given times.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TimeTable {
+    /// Times [s], ascending.
+    #[serde(deserialize_with = "quantity::list::time")]
+    pub t: Vec<f64>,
+    /// Value at each time.
+    pub value: Vec<f64>,
+    /// How the values are joined.
+    #[serde(default)]
+    pub join: Join,
+    /// The curve through them, and what steps must not leap over of it; made when it is first asked for.
+    #[serde(skip)]
+    curve: OnceLock<Box<(Interpolation, Knots)>>,
+}
+
+impl TimeTable {
+    /// Joins these values at these times.
+    pub fn new(t: Vec<f64>, value: Vec<f64>, join: Join) -> Self {
+        TimeTable { t, value, join, curve: OnceLock::new() }
+    }
+    fn check(&self) -> Result<(), BuildError> {
+        let (n, m) = (self.t.len(), self.value.len());
+        need(n == m, || format!("table of a load has {n} times but {m} values"))?;
+        need(n > 0, || "table of a load has no entry; give one at least".into())?;
+        finite("times of a load's table", &self.t)?;
+        finite("values of a load's table", &self.value)?;
+        need(self.t.windows(2).all(|t| t[0] < t[1]), || "times of a load's table must ascend".into())
+    }
+    fn curve(&self) -> &(Interpolation, Knots) {
+        self.curve.get_or_init(|| {
+            let curve = Interpolation::new(&self.t, &self.value, self.join, [EndSlope::Natural; 2]);
+            let at = |t: f64| [curve.at(t)[1], 0.0, 0.0];
+            let knots = match self.join {
+                Join::Linear => Knots::at_rows(&self.t, at),
+                Join::Monotone | Join::Cubic => Knots::halfway(&self.t, at),
+            };
+            Box::new((curve, knots))
+        })
+    }
+    fn at(&self, t: f64) -> f64 {
+        let (Some(first), Some(last)) = (self.t.first(), self.t.last()) else { return 0.0 };
+        self.curve().0.at(t.clamp(*first, *last))[1]
+    }
+}
+
 impl TimeFunction {
+    /// A table of values at ascending times [s], joined by straight lines.
+    pub fn table(t: Vec<f64>, value: Vec<f64>) -> Self {
+        TimeFunction::Table(TimeTable::new(t, value, Join::Linear))
+    }
+
     /// Whether its numbers make sense; loads that are given a function ask for this.
     ///
     /// # Errors
@@ -76,14 +127,7 @@ impl TimeFunction {
                 finite("ramp of a load", &[*from, *to, *t0, *t1])?;
                 need(t0 < t1, || format!("ramp of a load must end after its start {t0} s, not at {t1} s"))
             }
-            TimeFunction::Table { t, value } => {
-                let (n, m) = (t.len(), value.len());
-                need(n == m, || format!("table of a load has {n} times but {m} values"))?;
-                need(n > 0, || "table of a load has no entry; give one at least".into())?;
-                finite("times of a load's table", t)?;
-                finite("values of a load's table", value)?;
-                need(t.windows(2).all(|t| t[0] < t[1]), || "times of a load's table must ascend".into())
-            }
+            TimeFunction::Table(table) => table.check(),
             TimeFunction::Triangle { t0, peak, t1 } => {
                 finite("triangle of a load", &[*t0, *peak, *t1])?;
                 need(t0 < peak && peak < t1, || "triangle of a load needs t0 < peak < t1".into())
@@ -101,16 +145,13 @@ impl TimeFunction {
 
     /// How much of a step `h` from `t` may be taken that leaps over nothing [s].
     pub fn reach(&self, t: f64, h: f64) -> f64 {
-        let knots = |times: &[f64], value: &[f64]| {
-            let range =
-                value.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (x.min(a), x.max(b)));
-            reach::knots(times, |k| [value[k], 0.0, 0.0], range.1 - range.0, t, h)
-        };
         match self {
             TimeFunction::Constant => h,
             TimeFunction::Ramp { t0, t1, .. } => reach::rise(*t0, *t1, t, h),
-            TimeFunction::Table { t: times, value } => knots(times, value),
-            TimeFunction::Triangle { t0, peak, t1 } => knots(&[*t0, *peak, *t1], &[0.0, 1.0, 0.0]),
+            TimeFunction::Table(table) => table.curve().1.reach(t, h),
+            TimeFunction::Triangle { t0, peak, t1 } => {
+                reach::knots(&[*t0, *peak, *t1], |k| [[0.0, 1.0, 0.0][k], 0.0, 0.0], 1.0, t, h)
+            }
             TimeFunction::Harmonic { frequency, .. } => reach::period(1.0 / frequency, h),
         }
     }
@@ -124,23 +165,14 @@ impl TimeFunction {
                 let u = ((t - t0) / (t1 - t0)).clamp(0.0, 1.0);
                 from + (to - from) * u * u * u * (10.0 + u * (6.0 * u - 15.0))
             }
-            TimeFunction::Table { t: times, value } => table(times, value, t),
-            TimeFunction::Triangle { t0, peak, t1 } => table(&[*t0, *peak, *t1], &[0.0, 1.0, 0.0], t),
+            TimeFunction::Table(table) => table.at(t),
+            TimeFunction::Triangle { t0, peak, t1 } => {
+                ((t - t0) / (peak - t0)).min((t1 - t) / (t1 - peak)).max(0.0)
+            }
             TimeFunction::Harmonic { mean, amplitude, frequency, phase } => {
                 mean + amplitude * (TAU * frequency * t + phase).sin()
             }
         }
-    }
-}
-
-fn table(times: &[f64], value: &[f64], t: f64) -> f64 {
-    let n = times.len().min(value.len());
-    let k = times[..n].partition_point(|&x| x <= t);
-    match (k, n) {
-        (_, 0) => 0.0,
-        (0, _) => value[0],
-        (k, n) if k == n => value[n - 1],
-        _ => value[k - 1] + (value[k] - value[k - 1]) * (t - times[k - 1]) / (times[k] - times[k - 1]),
     }
 }
 
@@ -160,12 +192,33 @@ mod tests {
     }
 
     #[test]
+    fn tables_are_joined_as_they_say() {
+        let table = |join| {
+            let (t, value) = (vec![0.0, 1.0, 2.0, 3.0], vec![0.0, 0.0, 1.5, 1.5]);
+            TimeFunction::Table(TimeTable::new(t, value, join))
+        };
+        let all = [Join::Linear, Join::Monotone, Join::Cubic].map(table);
+        for f in &all {
+            assert_eq!([-1.0, 0.0, 3.0, 9.0].map(|t| f.at(t)), [0.0, 0.0, 1.5, 1.5]);
+            let halfway = f.at(1.5);
+            assert!((halfway - 0.75).abs() < 1e-15, "{halfway}");
+        }
+        let largest = |f: &TimeFunction| (0..300).map(|k| f.at(0.01 * f64::from(k))).fold(0.0, f64::max);
+        assert_eq!(largest(&all[0]), 1.5);
+        assert_eq!(largest(&all[1]), 1.5);
+        assert!(largest(&all[2]) > 1.55);
+        assert_eq!(all[0].at(1.25), 0.375);
+        // a rise between two rows without slope is not leapt over
+        assert!(all.iter().all(|f| f.reach(0.0, 10.0) <= 1.5 && f.reach(1.0, 10.0) <= 1.0));
+    }
+
+    #[test]
     fn bad_functions_are_refused() {
         let bad = [
             TimeFunction::Ramp { from: 0.0, to: 1.0, t0: 1.0, t1: 1.0 },
-            TimeFunction::Table { t: vec![], value: vec![] },
-            TimeFunction::Table { t: vec![0.0, 0.0], value: vec![1.0, 2.0] },
-            TimeFunction::Table { t: vec![0.0], value: vec![f64::NAN] },
+            TimeFunction::table(vec![], vec![]),
+            TimeFunction::table(vec![0.0, 0.0], vec![1.0, 2.0]),
+            TimeFunction::table(vec![0.0], vec![f64::NAN]),
             TimeFunction::Triangle { t0: 0.0, peak: 3.0, t1: 2.0 },
         ];
         assert!(bad.iter().all(|f| f.check().is_err()));

@@ -10,7 +10,14 @@ use ropewalk_models::Bundled;
 pub(crate) fn sweep(args: SweepArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     let grid = Grid::new(&args.scenes, &args.overrides, &args.vary, bundled)?;
     let progress = if args.quiet { ProgressMode::Quiet } else { ProgressMode::Auto };
-    let options = SweepOptions { out: args.out, fresh: args.fresh, jobs: args.jobs, progress };
+    let options = SweepOptions {
+        out: args.out,
+        fresh: args.fresh,
+        jobs: args.jobs,
+        progress,
+        report: args.report,
+        over: args.over,
+    };
     let outcome = sweep_grid(&grid, &options)?;
     if !args.quiet {
         say(outcome.report.trim_end());

@@ -125,12 +125,12 @@ impl StudyFolder {
         RunFolder::earlier(self.path.clone()).plot_file(name)
     }
 
-    /// `tables/<record>-final.csv`
+    /// `tables/<record>-<ending>.csv`, such as `height-final.csv`
     ///
     /// # Errors
     /// A folder `tables` that can't be made.
-    pub(crate) fn final_file(&self, record: &str) -> Result<PathBuf, OutputError> {
-        RunFolder::earlier(self.path.clone()).table_file(&format!("{record}-final"))
+    pub(crate) fn final_file(&self, record: &str, ending: &str) -> Result<PathBuf, OutputError> {
+        RunFolder::earlier(self.path.clone()).table_file(&format!("{record}-{ending}"))
     }
 
     /// Deletes what a study leaves; that it was one is forgotten last, so that this may be interrupted.

@@ -1,8 +1,9 @@
-//! Where the runs ended: the last value of every record by the first parameter, as tables.
+//! Where the runs ended: the last value of every record, or a mean or an extreme there, by the first parameter, as tables.
 
 use super::axis::Axis;
 use super::grid::Grid;
 use super::results::{Recorded, Results};
+use super::tail::Report;
 use crate::output::{OutputError, push_cell, push_number, write_atomic};
 use crate::study::StudyFolder;
 use std::collections::HashMap;
@@ -11,22 +12,22 @@ use std::collections::HashMap;
 pub(super) struct Line {
     /// What they have in common.
     pub name: String,
-    /// Number of the value of the first parameter, and last value of the record.
+    /// Number of the value of the first parameter, and reported value of the record.
     pub values: Vec<(usize, f64)>,
 }
 
-/// The last values of a column, line by line.
-pub(super) fn finals(column: &Recorded, grid: &Grid, results: &Results) -> Vec<Line> {
+/// The reported values of a column, line by line.
+pub(super) fn finals(column: &Recorded, grid: &Grid, results: &Results, what: Report) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     let mut place: HashMap<String, usize> = HashMap::new();
     for (k, row) in results.rows().filter(|(_, row)| row.is_complete()) {
-        let Some([last, ..]) = Results::values(row, column) else { continue };
+        let Some(values) = Results::values(row, column) else { continue };
         let name = grid.label(k, 1);
         let at = *place.entry(name.clone()).or_insert_with(|| {
             lines.push(Line { name, values: Vec::new() });
             lines.len() - 1
         });
-        lines[at].values.push((grid.choice(k).1[0], last));
+        lines[at].values.push((grid.choice(k).1[0], values.reported(what)));
     }
     lines
 }
@@ -38,18 +39,19 @@ pub(super) fn write(
     grid: &Grid,
     axes: &[Axis],
     results: &Results,
+    what: Report,
     warn: &mut dyn FnMut(&str),
 ) -> usize {
     let Some(axis) = axes.first() else { return 0 };
     let mut written = 0;
     for column in results.recorded().iter().skip(1) {
-        let lines = finals(column, grid, results);
+        let lines = finals(column, grid, results, what);
         if lines.is_empty() {
             continue;
         }
         let text = table(&column.heading, axis, &lines);
         let result: Result<(), OutputError> =
-            folder.final_file(&column.name).and_then(|path| write_atomic(&path, &text));
+            folder.final_file(&column.name, what.ending()).and_then(|path| write_atomic(&path, &text));
         match result {
             Ok(()) => written += 1,
             Err(e) => warn(&e.to_string()),
@@ -58,12 +60,13 @@ pub(super) fn write(
     written
 }
 
-fn table(what: &str, axis: &Axis, lines: &[Line]) -> String {
+fn table(heading: &str, axis: &Axis, lines: &[Line]) -> String {
     let mut text = String::new();
     push_cell(&mut text, &axis.heading);
     for line in lines {
         text.push(',');
-        let name = if line.name.is_empty() { what.to_string() } else { format!("{what}: {}", line.name) };
+        let name =
+            if line.name.is_empty() { heading.to_string() } else { format!("{heading}: {}", line.name) };
         push_cell(&mut text, &name);
     }
     text.push('\n');

@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::finals::finals;
 use super::grid::Grid;
 use super::results::{Recorded, Results, Row};
+use super::tail::Report;
 use crate::output::{LinePlot, Mark, OutputError, Plane, RunFolder, Series, Table};
 use crate::run::{PLANES, last_shape, planes, view};
 use crate::study::StudyFolder;
@@ -20,6 +21,7 @@ pub(super) fn draw(
     grid: &Grid,
     axes: &[Axis],
     results: &Results,
+    what: Report,
     warn: &mut dyn FnMut(&str),
 ) -> usize {
     let recorded = results.recorded();
@@ -27,7 +29,7 @@ pub(super) fn draw(
     let mut plots: Vec<(String, LinePlot)> = Vec::new();
     let with_history: Vec<(usize, &Row)> = results
         .rows()
-        .filter(|(_, row)| Results::values(row, time).is_some_and(|v| v[0].is_finite()))
+        .filter(|(_, row)| Results::values(row, time).is_some_and(|v| v.last.is_finite()))
         .collect();
     let lines = chosen(&with_history);
     let titles = Titles::read(folder, grid, lines.iter().map(|(k, _)| *k));
@@ -63,16 +65,16 @@ pub(super) fn draw(
     }
 
     for (c, axis) in records.iter().flat_map(|c| Some((c, axes.first()?))) {
-        let all = final_series(c, grid, axis, results);
+        let all = final_series(c, grid, axis, results, what);
         let series = chosen(&all);
         let plot = LinePlot {
-            title: titles.of(&c.name, &format!("{} at the end", c.name), series.len(), all.len()),
+            title: titles.of(&c.name, &format!("{} {}", c.name, what.words()), series.len(), all.len()),
             x_label: axis.label(),
             y_label: c.heading.clone(),
             series,
             ..LinePlot::default()
         };
-        plots.push((format!("{}-final", c.name), plot));
+        plots.push((format!("{}-{}", c.name, what.ending()), plot));
     }
 
     plots.extend(shapes(folder, grid, &lines, with_history.len(), &titles));
@@ -152,7 +154,10 @@ impl Titles {
         let what = match (own.as_slice(), shared(&own)) {
             ([first, rest @ ..], _) if rest.iter().all(|title| title == first) => {
                 // what is shown at the end only says so
-                let end = if what.ends_with(" at the end") { ", at the end" } else { "" };
+                let end = match what.strip_suffix(" at the end") {
+                    Some(what) => format!(",{} at the end", what.strip_prefix(picture).unwrap_or_default()),
+                    None => String::new(),
+                };
                 format!("{first}{end}")
             }
             (_, figures) if figures.is_empty() => what.to_string(),
@@ -178,9 +183,9 @@ fn shared<'a>(titles: &[&'a str]) -> Vec<&'a str> {
     each.fold(first, |kept, other| kept.into_iter().filter(|n| other.contains(n)).collect())
 }
 
-/// Last values over the first parameter; runs that differ in nothing else are a line.
-fn final_series(column: &Recorded, grid: &Grid, axis: &Axis, results: &Results) -> Vec<Series> {
-    let lines = finals(column, grid, results).into_iter().map(|line| {
+/// Reported values over the first parameter; runs that differ in nothing else are a line.
+fn final_series(column: &Recorded, grid: &Grid, axis: &Axis, results: &Results, what: Report) -> Vec<Series> {
+    let lines = finals(column, grid, results, what).into_iter().map(|line| {
         let mut points: Vec<_> = line.values.iter().map(|&(i, value)| (axis.numbers[i], value)).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         Series::new(line.name, points).with_mark(Mark::LineAndDots)

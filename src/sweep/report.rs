@@ -1,6 +1,7 @@
 //! What is said on the terminal when a sweep has ended.
 
 use super::results::Results;
+use super::tail::{Over, Report, unsteady};
 use crate::output::{in_columns, number, rough};
 use crate::study::StudyFolder;
 use std::fmt::Write;
@@ -14,6 +15,7 @@ pub(super) fn report(
     folder: &StudyFolder,
     wall_s: f64,
     runs: usize,
+    (what, over): (Report, Over),
     [tables, pictures]: [usize; 2],
 ) -> String {
     let recorded = results.recorded();
@@ -33,7 +35,7 @@ pub(super) fn report(
             let finals = recorded
                 .iter()
                 .skip(1)
-                .map(|c| Results::values(row, c).map_or(String::new(), |v| number(v[0])));
+                .map(|c| Results::values(row, c).map_or(String::new(), |v| number(v.reported(what))));
             results.cells(k).iter().cloned().chain(work).chain(finals).collect()
         })
         .collect();
@@ -48,6 +50,11 @@ pub(super) fn report(
         _ = writeln!(out, "  … and {not_shown} more records in table.csv");
     }
     out.push('\n');
+    if what == Report::Last {
+        out += &unsteady(results, over);
+    } else {
+        _ = writeln!(out, "  values    {} of {over}", what.ending());
+    }
     let mut line = |what: &str, text: String| _ = writeln!(out, "  {what:<9} {text}");
     let mut words = Vec::new();
     for status in ["finished", "stopped", "failed", "refused", "interrupted"] {
@@ -67,7 +74,10 @@ pub(super) fn report(
     line("folder", folder.path().display().to_string());
     line(
         "results",
-        format!("table.csv, runs/, {tables} tables of last values in tables/, {pictures} pictures in plots/"),
+        format!(
+            "table.csv, runs/, {tables} tables of {} values in tables/, {pictures} pictures in plots/",
+            if what == Report::Last { "last" } else { what.ending() }
+        ),
     );
     out
 }

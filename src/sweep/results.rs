@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::grid::Grid;
+use super::tail::{Over, Report, Tail};
 use crate::output::{Counts, OutputError, Summary, Table, push_cell, push_number, write_atomic};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,6 +12,19 @@ use std::time::{Duration, Instant};
 const PERIOD: Duration = Duration::from_secs(1);
 /// … and takes at most this share of the time.
 const SHARE: u32 = 20;
+
+/// One of the values that a run leaves of a column.
+type Pick = fn(&Values) -> f64;
+
+/// The columns of the table for every record: last value, extremes of the run, and what its last part holds.
+const VALUES: [(&str, Pick); 6] = [
+    ("final", |v| v.last),
+    ("min", |v| v.least),
+    ("max", |v| v.largest),
+    ("tail mean", |v| v.tail.mean),
+    ("tail min", |v| v.tail.least),
+    ("tail max", |v| v.tail.largest),
+];
 
 /// What came out of one run.
 pub(super) struct Row {
@@ -22,19 +36,40 @@ pub(super) struct Row {
     pub earlier: bool,
     /// The columns of its history, the first one time.
     columns: Arc<[Recorded]>,
-    /// Last, least and largest value of each column; NaN if there is none, or if a NaN is among them.
-    values: Vec<[f64; 3]>,
+    values: Vec<Values>,
+}
+
+/// What a run leaves of a column; NaN if there is no value, or if a NaN is among them.
+#[derive(Clone, Copy)]
+pub(super) struct Values {
+    pub last: f64,
+    pub least: f64,
+    pub largest: f64,
+    /// The last part of the run.
+    pub tail: Tail,
+}
+
+impl Values {
+    /// The one that stands for the run.
+    pub(super) fn reported(&self, what: Report) -> f64 {
+        match what {
+            Report::Last => self.last,
+            Report::Mean => self.tail.mean,
+            Report::Least => self.tail.least,
+            Report::Largest => self.tail.largest,
+        }
+    }
 }
 
 impl Row {
-    pub(super) fn new(summary: &Summary, history: &Table, earlier: bool) -> Self {
-        let of = |values: &[f64]| {
+    pub(super) fn new(summary: &Summary, history: &Table, over: Over, earlier: bool) -> Self {
+        let of = |values: &[f64], tail: Tail| {
             let last = values.last().copied().unwrap_or(f64::NAN);
             let fold = |pick: fn(f64, f64) -> f64| {
                 let both = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { pick(a, b) };
                 values.iter().copied().reduce(both).unwrap_or(f64::NAN)
             };
-            [last, fold(f64::min), fold(f64::max)]
+            Values { last, least: fold(f64::min), largest: fold(f64::max), tail }
         };
         let mut message: Vec<String> = summary.message.iter().cloned().collect();
         message.extend(summary.notes.iter().cloned());
@@ -50,14 +85,19 @@ impl Row {
                 .iter()
                 .map(|c| Recorded { name: c.name.clone(), heading: c.heading() })
                 .collect(),
-            values: history.columns.iter().map(|c| of(&c.values)).collect(),
+            values: history
+                .columns
+                .iter()
+                .zip(over.tails(history))
+                .map(|(c, tail)| of(&c.values, tail))
+                .collect(),
         }
     }
 
     /// A run that could not begin.
     pub(super) fn refused(message: String) -> Self {
         let summary = Summary { status: "refused".into(), message: Some(message), ..Summary::default() };
-        Self::new(&summary, &Table::default(), false)
+        Self::new(&summary, &Table::default(), Over::default(), false)
     }
 
     /// Whether the run came to its end.
@@ -157,17 +197,17 @@ impl Results {
         all
     }
 
-    /// Last, least and largest value of a column in a run, if the run has it.
-    pub(super) fn values(row: &Row, column: &Recorded) -> Option<[f64; 3]> {
+    /// What a run leaves of a column, if the run has it.
+    pub(super) fn values(row: &Row, column: &Recorded) -> Option<Values> {
         row.columns.iter().position(|c| c == column).map(|k| row.values[k])
     }
 
-    /// The table as CSV: name, parameters, status, work, last, least and largest values, message.
+    /// The table as CSV: name, parameters, status, work, values, message.
     fn to_csv(&self) -> String {
         let recorded = self.recorded();
         let mut text = String::from("run");
         let fixed = ["status", "cpu [s]", "steps", "rejected", "newton iterations"];
-        let values = ["final", "min", "max"].map(|what| {
+        let values = VALUES.map(|(what, _)| {
             let skipped = if what == "final" { 0 } else { 1 };
             recorded.iter().skip(skipped).map(move |c| format!("{what} {}", c.heading))
         });
@@ -185,12 +225,12 @@ impl Results {
             push_number(&mut text, row.cpu_s);
             let c = row.counts;
             text += &format!(",{},{},{}", c.steps, c.rejected, c.newton_iterations);
-            for which in 0..3 {
+            for (what, of) in VALUES {
                 // least and largest time are no news
-                for column in recorded.iter().skip(usize::from(which > 0)) {
+                for column in recorded.iter().skip(usize::from(what != "final")) {
                     text.push(',');
                     if let Some(values) = Self::values(row, column) {
-                        push_number(&mut text, values[which]);
+                        push_number(&mut text, of(&values));
                     }
                 }
             }

@@ -150,7 +150,7 @@ enum Load {
 /// A cantilever of 1 m and EI = 1 N m² under a force of 3 N or a moment of 1 N m: its largest strain and its tip.
 /// `None` where no equilibrium was found.
 fn cantilever(models: CableModel, n: usize, ea: f64, load: Load) -> Option<(f64, V3<f64>)> {
-    let grows = || TimeFunction::Table { t: vec![0.0, 1.0], value: vec![0.0, 1.0] };
+    let grows = || TimeFunction::table(vec![0.0, 1.0], vec![0.0, 1.0]);
     let mut scene = Scene::new();
     scene
         .element(cable(models, n, 1.0, Section::new(1.0, ea, 1.0)))

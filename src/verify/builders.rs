@@ -94,7 +94,7 @@ impl MotionSpec for DrivenRodSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         Ok(Arc::new(DrivenRod))
     }
 }

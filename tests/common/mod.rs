@@ -28,7 +28,7 @@ pub fn number(v: &Value) -> f64 {
 
 /// A ramp of a load over the load factor 0 … 1, linear so that load steps are equal.
 pub fn linear() -> TimeFunction {
-    TimeFunction::Table { t: vec![0.0, 1.0], value: vec![0.0, 1.0] }
+    TimeFunction::table(vec![0.0, 1.0], vec![0.0, 1.0])
 }
 
 pub type Models = (LongitudinalModel, TransverseModel, Integration);

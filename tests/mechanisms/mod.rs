@@ -287,7 +287,7 @@ impl MotionSpec for AngleSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         Ok(Arc::new(self.angle))
     }
 }

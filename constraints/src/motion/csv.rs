@@ -30,16 +30,36 @@ fn cells(line: &str) -> Vec<Cell> {
     all
 }
 
+/// A column that is looked for.
+pub(super) struct Wanted<'a> {
+    pub name: &'a str,
+    pub kind: &'a quantity::Kind,
+    /// Whether it must be there; one that isn't holds zeros.
+    pub needed: bool,
+}
+
+/// What was read.
+pub(super) struct Columns<const N: usize> {
+    pub rows: Vec<[f64; N]>,
+    /// The line of each row, counted from 1.
+    pub lines: Vec<usize>,
+    /// Which columns are there.
+    pub found: [bool; N],
+    /// The line that names the columns.
+    pub header: usize,
+}
+
 /// Reads columns of these names and kinds; others are left alone. The first line of the file names them, with their units
-/// in brackets or without in SI units. Gives the rows and their lines in the file, counted from 1.
+/// in brackets or without in SI units, as in this `example`.
 ///
 /// # Errors
 /// The file can't be read; a column is missing or there twice; a line has more or fewer cells than the first, or one that
 /// is no number. With file, line and column.
 pub(super) fn columns<const N: usize>(
     path: &str,
-    wanted: [(&str, &quantity::Kind); N],
-) -> Result<(Vec<[f64; N]>, Vec<usize>), String> {
+    wanted: [Wanted<'_>; N],
+    example: &str,
+) -> Result<Columns<N>, String> {
     let text = file::text(Path::new(path), LARGEST).map_err(|e| format!("can't read {path}: {e}"))?;
     let at = |line: usize, message: String| format!("{path}, line {line}: {message}");
     let inside = |line: usize, cell: &Cell, message: &str| {
@@ -57,11 +77,14 @@ pub(super) fn columns<const N: usize>(
             None => (h.text.as_str(), ""),
         })
         .collect();
-    let mut found = [(0, ""); N];
-    for (place, (name, kind)) in found.iter_mut().zip(&wanted) {
+    let mut places = [None; N];
+    for (place, Wanted { name, kind, needed }) in places.iter_mut().zip(&wanted) {
         let mut all = (0..headings.len()).filter(|k| headings[*k].0 == *name);
         let Some(k) = all.next() else {
-            let message = format!("there is no column `{name}`; the first line must be like `t [s],v [m/s]`");
+            if !needed {
+                continue;
+            }
+            let message = format!("there is no column `{name}`; the first line must be like `{example}`");
             return Err(at(first, message));
         };
         if let Some(twice) = all.next() {
@@ -72,7 +95,7 @@ pub(super) fn columns<const N: usize>(
             let wrong = |e| inside(first, &header[k], &format!("column `{name}`: {e}"));
             kind.parse(&format!("1 {unit}")).map_err(wrong)?;
         }
-        *place = (k, unit);
+        *place = Some((k, unit));
     }
     let (mut rows, mut numbers) = (Vec::new(), Vec::new());
     for (n, line) in lines {
@@ -81,8 +104,9 @@ pub(super) fn columns<const N: usize>(
             return Err(at(n, format!("there are {} columns, not {}", cells.len(), headings.len())));
         }
         let mut row = [0.0; N];
-        for (x, ((k, unit), (_, kind))) in row.iter_mut().zip(found.iter().zip(&wanted)) {
-            let cell = &cells[*k];
+        for ((x, place), Wanted { kind, .. }) in row.iter_mut().zip(&places).zip(&wanted) {
+            let Some((k, unit)) = *place else { continue };
+            let cell = &cells[k];
             let number = cell.text.parse::<f64>().map_err(|_| {
                 let hint = if cell.text.contains(',') { ": write a decimal point" } else { "" };
                 inside(n, cell, &format!("`{}` is not a number{hint}", cell.text))
@@ -95,5 +119,5 @@ pub(super) fn columns<const N: usize>(
         rows.push(row);
         numbers.push(n);
     }
-    Ok((rows, numbers))
+    Ok(Columns { rows, lines: numbers, found: places.map(|p| p.is_some()), header: first })
 }

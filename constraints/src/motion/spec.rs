@@ -1,6 +1,6 @@
 //! What a scene says about motions.
 
-use super::{Circle, Ends, Harmonic, Manoeuvre, Rest, Side, Straight, Table, Turn};
+use super::{Circle, Harmonic, Manoeuvre, Rest, Side, Straight, Turn};
 use ropewalk_core::build::BuildError;
 use ropewalk_core::{Motion, MotionSpec, V3, quantity, register_spec};
 use schemars::JsonSchema;
@@ -28,7 +28,7 @@ impl MotionSpec for RestSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         Ok(Arc::new(Rest))
     }
 }
@@ -59,7 +59,7 @@ impl MotionSpec for StraightSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         Ok(Arc::new(Straight::new(self.direction, self.speed, self.start, self.ramp)?))
     }
 }
@@ -116,7 +116,7 @@ impl MotionSpec for CircleSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         let side = self.towards.into();
         Ok(Arc::new(Circle::new(self.heading, side, self.radius, self.speed, self.start, self.ramp)?))
     }
@@ -160,7 +160,7 @@ impl MotionSpec for TurnSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         Ok(Arc::new(Turn::new(Manoeuvre {
             heading: self.heading,
             side: self.towards.into(),
@@ -203,69 +203,8 @@ impl MotionSpec for HarmonicSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         let h = Harmonic::new(self.amplitude, self.frequency, self.phase, self.start, self.ramp)?;
         Ok(Arc::new(h))
-    }
-}
-
-/// What a table of motion does at its ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum TableEnds {
-    /// No acceleration at either end: a record cut out of a longer one.
-    #[default]
-    Natural,
-    /// No velocity at either end.
-    AtRest,
-    /// Starts without velocity and ends without acceleration: a manoeuvre from rest.
-    FromRest,
-}
-
-/// Follows a table of displacements, joined by a cubic spline: velocity and acceleration are continuous.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TableSpec {
-    /// Name, by which constraints refer to it.
-    pub name: String,
-    /// Times [s], ascending; the run must not go beyond the last.
-    #[serde(deserialize_with = "quantity::list::time")]
-    pub t: Vec<f64>,
-    /// Displacements along x at these times [m]; left out, none.
-    #[serde(default, deserialize_with = "quantity::list::length")]
-    pub x: Vec<f64>,
-    /// Displacements along y [m].
-    #[serde(default, deserialize_with = "quantity::list::length")]
-    pub y: Vec<f64>,
-    /// Displacements along z [m].
-    #[serde(default, deserialize_with = "quantity::list::length")]
-    pub z: Vec<f64>,
-    /// What it does at its ends.
-    #[serde(default)]
-    pub ends: TableEnds,
-}
-register_spec!(Motion, "table", TableSpec);
-
-#[typetag::serde(name = "table")]
-impl MotionSpec for TableSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
-        for (name, column) in [("x", &self.x), ("y", &self.y), ("z", &self.z)] {
-            if !column.is_empty() && column.len() != self.t.len() {
-                let message = format!("`{name}` has {} entries, but `t` has {}", column.len(), self.t.len());
-                return Err(BuildError::at(name, message));
-            }
-        }
-        let of = |column: &[f64], k: usize| column.get(k).copied().unwrap_or(0.0);
-        let rows: Vec<[f64; 4]> =
-            (0..self.t.len()).map(|k| [self.t[k], of(&self.x, k), of(&self.y, k), of(&self.z, k)]).collect();
-        let ends = match self.ends {
-            TableEnds::Natural => Ends::Natural,
-            TableEnds::AtRest => Ends::AtRest,
-            TableEnds::FromRest => Ends::FromRest,
-        };
-        Ok(Arc::new(Table::new(&rows, ends).map_err(|e| BuildError { field: Some("t".into()), ..e })?))
     }
 }

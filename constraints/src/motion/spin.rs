@@ -85,7 +85,7 @@ impl MotionSpec for SpinSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         Ok(Arc::new(Spin::new(self.rate, self.start, self.ramp)?.rising(self.rise)))
     }
 }

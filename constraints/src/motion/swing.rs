@@ -40,7 +40,7 @@ impl MotionSpec for SwingSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self) -> Result<Arc<dyn Motion>, BuildError> {
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         let amplitude = [self.amplitude, 0.0, 0.0];
         Ok(Arc::new(Harmonic::new(amplitude, self.frequency, self.phase, self.start, self.ramp)?))
     }

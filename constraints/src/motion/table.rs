@@ -1,111 +1,214 @@
 //! A measured or computed motion.
 
-use ropewalk_core::build::{BuildError, finite, need};
-use ropewalk_core::{Motion, Moving, V3, reach};
+use super::csv::{self, Wanted};
+use super::rows::{Wrong, check};
+use ropewalk_core::build::BuildError;
+use ropewalk_core::quantity::kind;
+use ropewalk_core::reach::Knots;
+use ropewalk_core::{EndSlope, Interpolation, Join, Motion, MotionSpec, Moving, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
-/// What a [`Table`] does at its ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What a table of displacements does at its ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Ends {
-    /// No acceleration at either end; the usual choice for a record that is cut out of a longer one.
+    /// It comes and goes as the rows there do: a record cut out of a longer one. A cubic spline has no acceleration there.
     #[default]
     Natural,
     /// No velocity at either end.
     AtRest,
-    /// Starts without velocity and ends without acceleration: a manoeuvre from rest.
+    /// Starts without velocity and ends as it comes: a manoeuvre from rest.
     FromRest,
 }
 
-/// Displacements at given times, joined by a cubic spline with two continuous derivatives.
+/// Displacements at given times, joined by cubics with a continuous velocity.
 ///
 /// Rows are displacements from where the driven marker starts, so the first one is usually zero. It is defined for the
 /// time of its rows only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    t: Vec<f64>,
-    x: Vec<V3<f64>>,
-    /// Acceleration at each time.
-    a: Vec<V3<f64>>,
+    /// Along each axis.
+    along: [Interpolation; 3],
+    knots: Knots,
 }
+
+/// Slopes that differ by less than this part of the largest are the same.
+const SAME_SLOPE: f64 = 1e-9;
 
 impl Table {
-    /// A spline through rows of time [s] and displacement `x, y, z` [m].
+    /// A curve through rows of time [s] and displacement `x, y, z` [m].
     ///
     /// # Errors
-    /// Fewer than two rows, times that don't ascend, numbers that aren't finite.
-    pub fn new(rows: &[[f64; 4]], ends: Ends) -> Result<Self, BuildError> {
-        need(rows.len() >= 2, || format!("motion table: needs two rows or more, not {}", rows.len()))?;
-        for (k, row) in rows.iter().enumerate() {
-            finite(&format!("motion table: row {}", k + 1), row)?;
-        }
-        for (k, w) in rows.windows(2).enumerate() {
-            need(w[0][0] < w[1][0], || {
-                format!(
-                    "motion table: times must ascend, but row {} is at {} s after {} s",
-                    k + 2,
-                    w[1][0],
-                    w[0][0]
-                )
-            })?;
-        }
+    /// Fewer than two rows, times that don't ascend, numbers that aren't finite (the message gives the row, counted from
+    /// 1); straight lines whose velocity jumps.
+    pub fn new(rows: &[[f64; 4]], join: Join, ends: Ends) -> Result<Self, BuildError> {
+        Self::through(rows, join, ends).map_err(Wrong::in_scene)
+    }
+
+    fn through(rows: &[[f64; 4]], join: Join, ends: Ends) -> Result<Self, Wrong> {
+        check(rows)?;
+        let rest = |is: bool| if is { EndSlope::Given(0.0) } else { EndSlope::Natural };
+        let ends = [rest(ends != Ends::Natural), rest(ends == Ends::AtRest)];
         let t: Vec<f64> = rows.iter().map(|r| r[0]).collect();
-        let x: Vec<V3<f64>> = rows.iter().map(|r| [r[1], r[2], r[3]]).collect();
-        let a = accelerations(&t, &x, ends);
-        Ok(Table { t, x, a })
+        let along: [Interpolation; 3] = std::array::from_fn(|c| {
+            let x: Vec<f64> = rows.iter().map(|r| r[c + 1]).collect();
+            Interpolation::new(&t, &x, join, ends)
+        });
+        if let (Join::Linear, Some(k)) = (join, kink(&along)) {
+            let message = format!(
+                "joined by straight lines, the velocity would jump at {} s, which no finite force can follow: take \
+                 `join = \"monotone\"` or `\"cubic\"`, or give speeds in a `speed_table`",
+                t[k]
+            );
+            return Err(Wrong::new(k, message));
+        }
+        let derivative = |order: usize| {
+            let along = &along;
+            move |t: f64| [0, 1, 2].map(|c| along[c].at(t)[1 + order])
+        };
+        let knots = match join {
+            // its acceleration is made of straight lines
+            Join::Cubic => Knots::at_rows(&t, derivative(2)),
+            Join::Linear | Join::Monotone => Knots::halfway(&t, derivative(1)),
+        };
+        Ok(Table { along, knots })
     }
 }
 
-/// Second derivatives of the spline at its knots, by elimination of the tridiagonal system.
-fn accelerations(t: &[f64], x: &[V3<f64>], ends: Ends) -> Vec<V3<f64>> {
-    let n = t.len();
-    let rest = [ends != Ends::Natural, ends == Ends::AtRest];
-    let h = |k: usize| t[k + 1] - t[k];
-    let slope = |k: usize, c: usize| (x[k + 1][c] - x[k][c]) / h(k);
-    let mut above = vec![0.0; n];
-    let mut a = vec![[0.0; 3]; n];
-    for k in 0..n {
-        // row k: lower a[k-1] + middle a[k] + upper a[k+1] = right
-        let (lower, middle, upper, right): (f64, f64, f64, V3<f64>) = if k == 0 && rest[0] {
-            (0.0, 2.0 * h(0), h(0), std::array::from_fn(|c| 6.0 * slope(0, c)))
-        } else if k == n - 1 && rest[1] {
-            (h(k - 1), 2.0 * h(k - 1), 0.0, std::array::from_fn(|c| -6.0 * slope(k - 1, c)))
-        } else if k == 0 || k == n - 1 {
-            (0.0, 1.0, 0.0, [0.0; 3])
-        } else {
-            let right = std::array::from_fn(|c| 6.0 * (slope(k, c) - slope(k - 1, c)));
-            (h(k - 1), 2.0 * (h(k - 1) + h(k)), h(k), right)
-        };
-        let (before, above_before) = if k == 0 { ([0.0; 3], 0.0) } else { (a[k - 1], above[k - 1]) };
-        let pivot = middle - lower * above_before;
-        above[k] = upper / pivot;
-        a[k] = std::array::from_fn(|c| (right[c] - lower * before[c]) / pivot);
-    }
-    for k in (0..n - 1).rev() {
-        a[k] = std::array::from_fn(|c| a[k][c] - above[k] * a[k + 1][c]);
-    }
-    a
+/// The first row at which the slope jumps.
+fn kink(along: &[Interpolation; 3]) -> Option<usize> {
+    let size = along.iter().flat_map(Interpolation::slopes).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let jumps =
+        |k: usize| along.iter().any(|x| (x.slopes()[k][0] - x.slopes()[k - 1][1]).abs() > SAME_SLOPE * size);
+    (1..along[0].slopes().len()).find(|k| jumps(*k))
 }
 
 impl Motion for Table {
     fn at(&self, t: f64) -> Moving {
-        // beyond its ends the first and last pieces go on, so that rounding of the last time does no harm
-        let k = self.t.partition_point(|&x| x <= t).clamp(1, self.t.len() - 1) - 1;
-        let h = self.t[k + 1] - self.t[k];
-        let (p, q) = ((self.t[k + 1] - t) / h, (t - self.t[k]) / h);
-        let mut m = Moving::default();
-        for c in 0..3 {
-            let (x0, x1, a0, a1) = (self.x[k][c], self.x[k + 1][c], self.a[k][c], self.a[k + 1][c]);
-            m.x[c] = p * x0 + q * x1 + h * h / 6.0 * ((p * p * p - p) * a0 + (q * q * q - q) * a1);
-            m.v[c] = (x1 - x0) / h + h / 6.0 * ((3.0 * q * q - 1.0) * a1 - (3.0 * p * p - 1.0) * a0);
-            m.a[c] = p * a0 + q * a1;
-        }
-        m
+        let [x, y, z] = [0, 1, 2].map(|c| self.along[c].at(t));
+        Moving { x: [x[1], y[1], z[1]], v: [x[2], y[2], z[2]], a: [x[3], y[3], z[3]] }
     }
-    /// The accelerations of the rows are joined by straight lines.
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        let size = self.a.iter().flatten().fold(0.0, |m: f64, a| m.max(a.abs()));
-        Some(reach::knots(&self.t, |k| self.a[k], size, t, h))
+        Some(self.knots.reach(t, h))
     }
     fn range(&self) -> (f64, f64) {
-        (self.t[0], self.t[self.t.len() - 1])
+        let t = self.along[0].times();
+        (t[0], t[t.len() - 1])
+    }
+}
+
+fn monotone() -> Join {
+    Join::Monotone
+}
+
+/// Follows a table of displacements, in the scene or in a CSV file, or a table of angles for the constraint `rotation`.
+///
+/// Between the rows it never overshoots. Its acceleration jumps there, unless `join = "cubic"`, which is the better choice
+/// for records of smooth motions with many rows, such as the heave of a ship. A table of speeds is a `speed_table`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TableSpec {
+    /// Name, by which constraints refer to it.
+    pub name: String,
+    /// A CSV file, its path as seen from the scene file. Its first line names the columns, `t` and any of `x`, `y`, `z`, or
+    /// `angle`, with their units in brackets (`t [s],z [cm]`, `t [s],angle [deg]`) or without in s, m and rad; other
+    /// columns are left alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Times [s], ascending, instead of a file; the run must not go beyond the last.
+    #[serde(default, deserialize_with = "quantity::list::time")]
+    pub t: Vec<f64>,
+    /// Displacements along x at these times [m]; left out, none.
+    #[serde(default, deserialize_with = "quantity::list::length")]
+    pub x: Vec<f64>,
+    /// Displacements along y [m].
+    #[serde(default, deserialize_with = "quantity::list::length")]
+    pub y: Vec<f64>,
+    /// Displacements along z [m].
+    #[serde(default, deserialize_with = "quantity::list::length")]
+    pub z: Vec<f64>,
+    /// Angles at these times, instead of displacements, for the constraint `rotation` [rad]. Degrees are written with their
+    /// unit: `"90 deg"`.
+    #[serde(default, deserialize_with = "quantity::list::angle", skip_serializing_if = "Vec::is_empty")]
+    pub angle: Vec<f64>,
+    /// How the rows are joined. By straight lines only where all lie on one: the velocity would jump.
+    #[serde(default = "monotone")]
+    pub join: Join,
+    /// What it does at its ends.
+    #[serde(default)]
+    pub ends: Ends,
+}
+register_spec!(Motion, "table", TableSpec);
+
+const TURNED_AND_MOVED: &str =
+    "give an `angle` or displacements `x`, `y`, `z`, not both: a motion has one unit";
+
+impl TableSpec {
+    /// Rows of time and displacement out of the lists.
+    fn rows(&self) -> Result<Vec<[f64; 4]>, BuildError> {
+        let columns = [("x", &self.x), ("y", &self.y), ("z", &self.z), ("angle", &self.angle)];
+        for (name, column) in columns {
+            if !column.is_empty() && column.len() != self.t.len() {
+                let message = format!("`{name}` has {} entries, but `t` has {}", column.len(), self.t.len());
+                return Err(BuildError::at(name, message));
+            }
+        }
+        let turns = !self.angle.is_empty();
+        if turns && columns[..3].iter().any(|(_, column)| !column.is_empty()) {
+            return Err(BuildError::at("angle", TURNED_AND_MOVED));
+        }
+        let of = |column: &[f64], k: usize| column.get(k).copied().unwrap_or(0.0);
+        let first = if turns { &self.angle } else { &self.x };
+        let row = |k: usize| [self.t[k], of(first, k), of(&self.y, k), of(&self.z, k)];
+        Ok((0..self.t.len()).map(row).collect())
+    }
+}
+
+/// Rows of time and displacement out of a CSV file, and their lines.
+fn read(path: &str) -> Result<(Vec<[f64; 4]>, Vec<usize>), String> {
+    let length = |name| Wanted { name, kind: &kind::LENGTH, needed: false };
+    let wanted = [
+        Wanted { name: "t", kind: &kind::TIME, needed: true },
+        length("x"),
+        length("y"),
+        length("z"),
+        Wanted { name: "angle", kind: &kind::ANGLE, needed: false },
+    ];
+    let csv::Columns { rows, lines, found, header } = csv::columns(path, wanted, "t [s],z [m]")?;
+    match (found[1..4].contains(&true), found[4]) {
+        (true, true) => Err(format!("{path}, line {header}: {TURNED_AND_MOVED}")),
+        (false, false) => Err(format!(
+            "{path}, line {header}: there is no column `x`, `y`, `z` or `angle`; the first line must be like `t [s],z [m]` \
+             or `t [s],angle [deg]`"
+        )),
+        _ => Ok((rows.into_iter().map(|[t, x, y, z, angle]| [t, x + angle, y, z]).collect(), lines)),
+    }
+}
+
+#[typetag::serde(name = "table")]
+impl MotionSpec for TableSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
+        if self.join == Join::Linear && self.ends != Ends::Natural {
+            let message = "straight lines have no other ends: leave `ends` out, or take another `join`";
+            return Err(BuildError::at("ends", message));
+        }
+        let lists = [&self.t, &self.x, &self.y, &self.z, &self.angle];
+        let table = match &self.file {
+            Some(_) if lists.iter().any(|list| !list.is_empty()) => {
+                return Err(BuildError::at("file", "give either a `file` or `t` and displacements"));
+            }
+            Some(file) => {
+                let (rows, lines) = read(file).map_err(|e| BuildError::at("file", e))?;
+                let table = Table::through(&rows, self.join, self.ends);
+                table.map_err(|e| e.in_file(file, &lines).of("file"))?
+            }
+            None => Table::new(&self.rows()?, self.join, self.ends).map_err(|e| e.of("t"))?,
+        };
+        Ok(Arc::new(table))
     }
 }

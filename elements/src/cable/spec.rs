@@ -9,7 +9,7 @@ use super::part::{CablePart, Directors, mesh};
 use super::quadrature::{Gauss2, Gauss5};
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
-use crate::path::Path;
+use crate::path::{Corner, Path};
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
 use ropewalk_core::{
     Element, ElementSpec, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, quantity,
@@ -114,12 +114,26 @@ pub enum StressFree {
 pub struct CableSpec {
     /// Name by which the rest of the scene refers to it.
     pub name: String,
-    /// Points along which it is laid, from start to end [m]: straight lines between them.
+    /// Points along which it is laid, from start to end [m]: straight lines between them. Where they meet at an angle, give
+    /// a `radius`: a cable that is laid round a sharp corner would be strained there.
     #[serde(default, deserialize_with = "quantity::points")]
     pub points: Vec<V3<f64>>,
-    /// Points of a smooth curve along which it is laid [m], instead of `points`.
+    /// Bend radius at the corners of `points` [m]. The arcs cut the corners, and get elements of their own.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub radius: Option<f64>,
+    /// Points of a smooth curve along which it is laid [m], instead of `points`: a cubic spline through them.
     #[serde(default, deserialize_with = "quantity::points")]
     pub curve: Vec<V3<f64>>,
+    /// Direction of `curve` at its start; left out, it is as curved there as its first points say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_direction: Option<V3<f64>>,
+    /// Direction of `curve` at its end, towards which it goes on; left out, it is as curved there as its last points say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub end_direction: Option<V3<f64>>,
     /// Unstretched length [m]; left out, that of the path. A different length is spread evenly over the path.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub length: Option<f64>,
@@ -168,7 +182,10 @@ impl CableSpec {
         CableSpec {
             name: name.into(),
             points: vec![from, to],
+            radius: None,
             curve: Vec::new(),
+            start_direction: None,
+            end_direction: None,
             length: None,
             tension: None,
             elements,
@@ -215,17 +232,52 @@ impl CableSpec {
         }
     }
 
-    fn path(&self) -> Result<(Path, &'static str), BuildError> {
+    fn path(&self) -> Result<Path, BuildError> {
+        let directions = [self.start_direction, self.end_direction];
+        for (field, direction) in ["start_direction", "end_direction"].into_iter().zip(directions) {
+            let Some(direction) = direction else { continue };
+            finite(field, &direction)?;
+            let message = if direction == [0.0; 3] {
+                "a direction must have a length, like [1, 0, 0]"
+            } else if !self.points.is_empty() {
+                "straight lines between `points` have their own directions: lay it along a `curve`"
+            } else {
+                continue;
+            };
+            return Err(BuildError::at(field, message));
+        }
         match (self.points.is_empty(), self.curve.is_empty()) {
             (false, true) => {
-                Path::polyline(&self.points).map(|p| (p, "points")).map_err(|e| BuildError::at("points", e))
+                let Some(radius) = self.radius else { return self.sharp() };
+                let radius = positive("radius", radius)?;
+                // what is wrong with the points themselves
+                Path::polyline(&self.points).map_err(|e| BuildError::at("points", e))?;
+                Path::rounded(&self.points, radius).map_err(|e| BuildError::at("radius", e))
             }
-            (true, false) => {
-                Path::spline(&self.curve).map(|p| (p, "curve")).map_err(|e| BuildError::at("curve", e))
+            (true, false) if self.radius.is_some() => {
+                Err(BuildError::at("radius", "a `curve` has no corners to round: leave `radius` out"))
             }
+            (true, false) => Path::spline(&self.curve, directions).map_err(|e| BuildError::at("curve", e)),
             (true, true) => Err(BuildError::new("a cable needs `points` or `curve`: where is it laid?")),
             (false, false) => Err(BuildError::at("curve", "give `points` or `curve`, not both")),
         }
+    }
+
+    /// Straight lines whose corners aren't rounded: only what is free of stress as it is laid may have any.
+    fn sharp(&self) -> Result<Path, BuildError> {
+        let path = Path::polyline(&self.points).map_err(|e| BuildError::at("points", e))?;
+        let strained = |c: &&Corner| self.stress_free == StressFree::Straight && c.angle > MOST_CORNER;
+        let Some(corner) = path.corners().iter().find(strained) else { return Ok(path) };
+        let round = |x: f64| (1e4 * x).round() / 1e4;
+        let [x, y, z] = corner.at.map(round);
+        let message = format!(
+            "the cable turns by {} degrees at the point ({x}, {y}, {z}) m, {} m along it, and would be strained there from \
+             the start: give the bend radius of its corners, `radius`, or lay it along a smooth `curve`, or let it be free \
+             of stress as it is laid, `stress_free = \"as-laid\"`",
+            round(corner.angle.to_degrees()),
+            round(corner.s)
+        );
+        Err(BuildError::at("points", message))
     }
 }
 
@@ -367,6 +419,10 @@ fn stations(
     Ok(Arc::new(stations))
 }
 
+/// The sharpest corner that is no corner [rad]: at an angle θ the elements beside it are longer than their length by the
+/// strain θ²/60, which is 1e-5 here.
+const MOST_CORNER: f64 = 0.0245;
+
 /// Stretches that a cable may be laid with.
 const STRETCHES: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
@@ -404,7 +460,7 @@ impl ElementSpec for CableSpec {
             return Err(BuildError::at("elements", message));
         }
         legal(self.longitudinal, self.transverse).map_err(|e| BuildError::at("transverse", e))?;
-        let (path, _) = self.path()?;
+        let path = self.path()?;
         let length = self.unstretched_length(path.length())?;
         let stretch = path.length() / length;
         if !STRETCHES.contains(&stretch) {
@@ -416,7 +472,7 @@ impl ElementSpec for CableSpec {
             return Err(BuildError::at(field, message));
         }
         let mut pins = b.pins(&self.name);
-        pins.extend(path.corners().iter().map(|c| c / stretch));
+        pins.extend(path.stops().map(|s| s / stretch));
         pins.sort_by(f64::total_cmp);
         let given = b.mesh(&self.name).cloned();
         let mesh = match &given {

@@ -160,7 +160,7 @@ impl RigidChainSpec {
     fn path(&self) -> Result<Path, BuildError> {
         let path = match (self.points.is_empty(), self.curve.is_empty()) {
             (false, true) => Path::polyline(&self.points).map_err(|e| BuildError::at("points", e)),
-            (true, false) => Path::spline(&self.curve).map_err(|e| BuildError::at("curve", e)),
+            (true, false) => Path::spline(&self.curve, [None; 2]).map_err(|e| BuildError::at("curve", e)),
             (true, true) => Err(BuildError::new("a chain needs `points` or `curve`: where is it laid?")),
             (false, false) => Err(BuildError::at("curve", "give `points` or `curve`, not both")),
         }?;

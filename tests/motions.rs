@@ -1,0 +1,215 @@
+//! Motions in scenes: tables from files, angles in degrees, sums, and what is said of those that can't be.
+
+use ropewalk::scene::Format;
+use ropewalk::{SceneFile, simulate};
+use std::fs;
+use std::path::Path;
+
+/// A ball that follows the motion `path`, or a crank that does.
+const DRIVEN: &str = r#"
+[run]
+duration = "2 s"
+output = "0.1 s"
+[[elements]]
+type = "point_mass"
+name = "ball"
+at = [0, 0, 0]
+mass = 1
+[[constraints]]
+type = "driving"
+name = "hand"
+marker = "ball"
+motion = "path"
+[[records]]
+type = "position"
+of = "ball"
+[[records]]
+type = "reaction"
+of = "hand"
+"#;
+
+fn history(folder: &Path, motions: &str) -> Result<ropewalk::History, String> {
+    let file = folder.join("scene.toml");
+    fs::write(&file, format!("{DRIVEN}{motions}")).unwrap();
+    let scene = ropewalk::read(&file).map_err(|e| e.to_string())?;
+    simulate(&scene).map_err(|e| e.to_string())
+}
+
+fn at(history: &ropewalk::History, column: &str, row: usize) -> f64 {
+    history.column(column).expect(column)[row]
+}
+
+#[test]
+fn a_table_of_displacements_is_read_from_a_file_with_its_units() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("heave.csv"),
+        "t [min],roll [deg],z [cm]\n0,1,0\n0.01,2,0\n0.02,3,150\n0.1,4,150\n",
+    )
+    .unwrap();
+    let h = history(folder.path(), "[[motions]]\ntype = \"table\"\nname = \"path\"\nfile = \"heave.csv\"\n")
+        .unwrap();
+    assert!((at(&h, "ball.z", 6)).abs() < 1e-9 && (at(&h, "ball.z", 12) - 1.5).abs() < 1e-9);
+    let highest = h.column("ball.z").unwrap().iter().fold(0.0_f64, |a, z| a.max(*z));
+    assert!(highest < 1.5 + 1e-9, "{highest}");
+    assert_eq!(at(&h, "ball.x", 12), 0.0);
+}
+
+/// 1 m until 2 s; the force is that of an acceleration of 1/2 m/s².
+#[test]
+fn a_table_of_speeds_moves_by_the_area_under_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let speeds = "[[motions]]\ntype = \"speed_table\"\nname = \"path\"\nt = [0, 1, 2.5]\nv = [0, 0.5, 0.5]\n";
+    let h = history(folder.path(), speeds).unwrap();
+    assert!((at(&h, "ball.x", 10) - 0.25).abs() < 1e-9 && (at(&h, "ball.x", 20) - 0.75).abs() < 1e-9);
+    for (row, force) in [(5, 0.5), (9, 0.5), (11, 0.0), (15, 0.0)] {
+        let f = at(&h, "hand.fx", row);
+        assert!((f.abs() - force).abs() < 1e-6, "{f} N at row {row}");
+    }
+}
+
+#[test]
+fn motions_add_up_whatever_their_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let motions = r#"
+[[motions]]
+type = "sum"
+name = "path"
+of = ["both", "swing"]
+[[motions]]
+type = "sum"
+name = "both"
+of = ["run"]
+[[motions]]
+type = "straight"
+name = "run"
+speed = 1
+ramp = 1
+[[motions]]
+type = "harmonic"
+name = "swing"
+amplitude = [0, 0, 0.5]
+frequency = 1
+ramp = 1
+"#;
+    let h = history(folder.path(), motions).unwrap();
+    assert!((at(&h, "ball.x", 20) - 1.5).abs() < 1e-9, "{}", at(&h, "ball.x", 20));
+    let z = 0.5 * (std::f64::consts::TAU * 1.7).sin();
+    // rows of the history lie between steps
+    assert!((at(&h, "ball.z", 17) - z).abs() < 1e-3, "{}", at(&h, "ball.z", 17));
+}
+
+/// A crank that is turned by a quarter, told in degrees, in the scene and in a file.
+#[test]
+fn angles_are_given_in_degrees() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("turn.csv"), "t [s],angle [deg]\n0,0\n1,90\n2,90\n").unwrap();
+    let crank = |table: &str| {
+        format!(
+            r#"
+[run]
+duration = "2 s"
+output = "0.1 s"
+[[elements]]
+type = "rigid_body"
+name = "crank"
+position = [0, 0, 0]
+mass = 1
+inertia = [1, 1, 1]
+points = {{ tip = [1, 0, 0] }}
+[[constraints]]
+type = "revolute"
+name = "axle"
+marker = "crank"
+axis = [0, 0, 1]
+[[constraints]]
+type = "rotation"
+name = "drive"
+marker = "crank"
+axis = [0, 0, 1]
+motion = "turn"
+[[motions]]
+type = "table"
+name = "turn"
+{table}
+[[records]]
+type = "position"
+of = "crank.tip"
+"#
+        )
+    };
+    for table in [
+        "t = [0, 1, 2]\nangle = [0, \"90 deg\", \"90 deg\"]\nends = \"at-rest\"",
+        "file = \"turn.csv\"\nends = \"at-rest\"",
+    ] {
+        let file = folder.path().join("crank.toml");
+        fs::write(&file, crank(table)).unwrap();
+        let h = simulate(&ropewalk::read(&file).unwrap_or_else(|e| panic!("{e}")))
+            .unwrap_or_else(|e| panic!("{e}"));
+        let tip = [at(&h, "crank.tip.x", 20), at(&h, "crank.tip.y", 20)];
+        assert!(tip[0].abs() < 1e-4 && (tip[1] - 1.0).abs() < 1e-4, "{tip:?}");
+    }
+}
+
+#[test]
+fn motions_that_make_no_sense_are_refused_where_they_stand() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("none.csv", "t [s],roll [deg]\n0,0\n1,1\n");
+    write("both.csv", "t [s],z [m],angle [deg]\n0,0,0\n1,1,1\n");
+    write("unit.csv", "t [s],angle [m]\n0,0\n1,1\n");
+    write("order.csv", "t [s],z\n0,0\n1,1\n\n1,2\n");
+    write("kink.csv", "t [s],z\n0,0\n1,0\n2,3\n");
+    let table = |rest: &str| format!("[[motions]]\ntype = \"table\"\nname = \"path\"\n{rest}\n");
+    let sum = |name: &str, of: &str| format!("[[motions]]\ntype = \"sum\"\nname = \"{name}\"\nof = [{of}]\n");
+    for (motions, line, holds) in [
+        (
+            table("file = \"none.csv\""),
+            "file",
+            &["none.csv, line 1", "no column `x`, `y`, `z` or `angle`"][..],
+        ),
+        (table("file = \"both.csv\""), "file", &["both.csv, line 1", "not both"]),
+        (table("file = \"unit.csv\""), "file", &["unit.csv, line 1, column 7", "expected an angle"]),
+        (table("file = \"order.csv\""), "file", &["order.csv, line 5", "times must ascend"]),
+        (
+            table("file = \"kink.csv\"\njoin = \"linear\""),
+            "file",
+            &["kink.csv, line 3", "velocity would jump at 1 s"],
+        ),
+        (table("file = \"none.csv\"\nt = [0, 1]"), "file", &["either a `file` or `t`"]),
+        (table("t = [0, 1]\nz = [0, 1]\nangle = [0, 1]"), "angle", &["not both"]),
+        (table("t = [0, 1]\nangle = [0, \"1 m\"]"), "angle", &["expected an angle"]),
+        (
+            table("t = [0, 1, 2]\nz = [0, 0, 3]\njoin = \"linear\""),
+            "t",
+            &["row 2", "monotone", "speed_table"],
+        ),
+        (
+            table("t = [0, 1]\nz = [0, 1]\njoin = \"linear\"\nends = \"at-rest\""),
+            "ends",
+            &["leave `ends` out"],
+        ),
+        (sum("path", ""), "of", &["name the motions to add"]),
+        (sum("path", "\"heave\""), "of", &["there is no motion `heave`; the motions are `path`"]),
+        (sum("path", "\"path\""), "of", &["`path` of `path` are made of each other"]),
+        (
+            sum("path", "\"a\"") + &sum("a", "\"b\"") + &sum("b", "\"path\""),
+            "of",
+            &["`path` of `a` of `b` of `path` are made of each other"],
+        ),
+    ] {
+        let text = format!("{DRIVEN}{motions}");
+        let file = folder.path().join("scene.toml");
+        fs::write(&file, &text).unwrap();
+        let fault = match SceneFile::open(&file.to_string_lossy(), &[], &[]) {
+            Err(fault) => fault,
+            Ok(file) => file.build().err().unwrap_or_else(|| panic!("{motions} is accepted")),
+        };
+        let said = fault.to_string();
+        assert!(holds.iter().all(|h| said.contains(h)), "{motions}: {said}");
+        let place = fault.place.as_ref().unwrap_or_else(|| panic!("{said}"));
+        let stands = text.lines().nth(place.line - 1).unwrap();
+        assert!(stands.starts_with(line), "{motions} points at `{stands}`: {said}");
+    }
+    assert!(SceneFile::parse(DRIVEN, "x", Format::Toml, &[]).unwrap().build().is_err());
+}
