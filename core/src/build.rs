@@ -16,7 +16,7 @@ use crate::state::At;
 use crate::station::{FieldTerm, Law, Laws, Stations};
 use crate::term::Term;
 use std::any::{Any, TypeId};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 /// Why a model could not be built, said so that the author of the scene knows what to change.
@@ -125,6 +125,9 @@ pub struct Builder {
     /// What flows through the ends of cables, by part: at its start, at its end.
     feeds: HashMap<String, [Option<Feed>; 2]>,
     water: Option<Water>,
+    /// What acts on which part already and may do so only once.
+    acting: HashSet<(&'static str, usize)>,
+    gravity: Option<V3<f64>>,
     switches: Switches,
     length: f64,
 }
@@ -451,6 +454,37 @@ impl Builder {
         let mut least = f64::INFINITY;
         stations.each(&at, &mut |s| least = least.min(s.diameter));
         least
+    }
+
+    /// Notes that a force of this type acts on a part.
+    ///
+    /// # Errors
+    /// Another one does already: their effects would add up.
+    pub fn acts_once(&mut self, kind: &'static str, part: &Numbered) -> Result<(), BuildError> {
+        if self.acting.insert((kind, part.0)) {
+            return Ok(());
+        }
+        let message = format!(
+            "`{kind}` acts on `{}` twice, and would count twice: name in `on` what each of them is for",
+            part.1.name()
+        );
+        Err(BuildError::at("on", message))
+    }
+
+    /// Notes the gravity of the scene [m/s²], which weight and buoyancy share.
+    ///
+    /// # Errors
+    /// Another force of the scene has another one.
+    pub fn has_gravity(&mut self, g: V3<f64>) -> Result<(), BuildError> {
+        match self.gravity.replace(g) {
+            Some(other) if other != g => {
+                let message = format!(
+                    "a scene has one gravity, and another force says {other:?} m/s² where this says {g:?}"
+                );
+                Err(BuildError::at("g", message))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Whether a constraint holds a marker; those of the scene are there before its forces.

@@ -32,9 +32,17 @@ impl Default for GravitySpec {
     }
 }
 
-fn dead_loads(b: &mut Builder, on: &[String], per: Per, load: V3<f64>) -> Result<(), BuildError> {
-    for (_, part) in b.parts(on)? {
-        if let Some(term) = part.dead_load(per, load) {
+/// Adds a load in a constant direction to parts, once to each.
+fn dead_loads(
+    b: &mut Builder,
+    kind: &'static str,
+    on: &[String],
+    per: Per,
+    load: V3<f64>,
+) -> Result<(), BuildError> {
+    for part in b.parts(on)? {
+        b.acts_once(kind, &part)?;
+        if let Some(term) = part.1.dead_load(per, load) {
             b.term(term);
         }
     }
@@ -45,7 +53,8 @@ fn dead_loads(b: &mut Builder, on: &[String], per: Per, load: V3<f64>) -> Result
 impl ForceSpec for GravitySpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         finite("g", &self.g)?;
-        dead_loads(b, &self.on, Per::Mass, self.g)
+        b.has_gravity(self.g)?;
+        dead_loads(b, "gravity", &self.on, Per::Mass, self.g)
     }
 }
 
@@ -74,7 +83,8 @@ impl ForceSpec for BuoyancySpec {
         finite("g", &self.g)?;
         let density = b.water()?.density;
         positive("density", density)?;
-        dead_loads(b, &self.on, Per::Volume, self.g.map(|g| -density * g))
+        b.has_gravity(self.g)?;
+        dead_loads(b, "buoyancy", &self.on, Per::Volume, self.g.map(|g| -density * g))
     }
 }
 
@@ -218,7 +228,9 @@ impl ForceSpec for AddedMassSpec {
         let water = b.water()?;
         let law = AddedMass::new(water.density, self.ca)?.in_current(water.current()?)?;
         let feeds = |b: &Builder, part: &str| b.feeding(part).iter().any(Option::is_some);
-        for (_, part) in b.parts(&self.on)? {
+        for numbered in b.parts(&self.on)? {
+            b.acts_once("added_mass", &numbered)?;
+            let part = &numbered.1;
             let fed = feeds(b, part.name());
             if fed && self.theory == Some(Theory::Energy) {
                 let message = format!(
