@@ -2,6 +2,7 @@
 
 use crate::constraint::Constraint;
 use crate::feed::{Feed, Front};
+use crate::lane::V3;
 use crate::marker::Marker;
 use crate::model::{Model, Start, Switches};
 use crate::motion::{Motion, Motions, no_motion};
