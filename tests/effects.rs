@@ -61,7 +61,7 @@ const MANIFESTS: [(&str, &str, &str, &str, [usize; 3]); 8] = [
     (
         "shear-pin",
         "rigid bodies; hose: joints; vehicle: weight; connection: weight; hose: weight; connection: buoyancy; \
-         hose: buoyancy; spool; hose: drag, added mass",
+         hose: buoyancy; hose: wake of a blunt end; spool; hose: drag, added mass",
         "299 of hose drive roll yaw trim pin hinge",
         "pin.magnitude drive.imposed_x drive.actual_x drive.imposed_vx drive.actual_vx drive.difference pin.fx pin.fy \
          pin.fz pin.turning.wy hinge.turning.wz hose.centre.x hose.centre.y hose.centre.z spool.released \

@@ -101,7 +101,7 @@ fn forces_are_those_of_the_energy() {
     }
 }
 
-fn hull(spin: f64, solver: &str) -> History {
+fn hull(angle: f64, spin: f64, solver: &str) -> History {
     run(&format!(
         r#"
         [run]
@@ -114,7 +114,7 @@ fn hull(spin: f64, solver: &str) -> History {
         type = "rigid_body"
         name = "hull"
         position = [0, 0, 0]
-        angles = [0, "10 deg", 0]
+        angles = [0, "{angle} deg", 0]
         angular_velocity = [0, {spin}, 0]
         velocity = [1, 0, 0]
         mass = 64.4
@@ -138,7 +138,7 @@ fn a_hull_turns_as_kirchhoff_says() {
     for (solver, tolerance) in
         [("", 1e-4), ("scheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-8 } }", 1e-5)]
     {
-        let h = hull(0.0, solver);
+        let h = hull(10.0, 0.0, solver);
         let angles = h.column("hull.phi2").expect("angles").to_vec();
         let t =
             h.column("t").map_or_else(|| (0..angles.len()).map(|k| 0.5 * k as f64).collect(), |t| t.to_vec());
@@ -148,7 +148,7 @@ fn a_hull_turns_as_kirchhoff_says() {
             assert!((angles[k] - exact).abs() < tolerance + 1e-5, "{solver} {at} s: {}", angles[k]);
         }
     }
-    let h = hull(1.0, "scheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-9 } }");
+    let h = hull(0.0, 1.0, "scheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-9 } }");
     for e in h.column("energy.kinetic").expect("energy") {
         assert!((e / 53.6838 - 1.0).abs() < 2e-6, "{e} J");
     }
@@ -247,6 +247,6 @@ fn cylinders_in_axial_flow_lose_stability_where_they_should() {
     ] {
         let below = growth(ends, beta, 0.995 * critical, tail);
         let above = growth(ends, beta, 1.005 * critical, tail);
-        assert!(below < 1e-6 && above > 1e-3, "{ends}: {below} below and {above} above {critical}");
+        assert!(below < 1e-4 && above > 1e-2, "{ends}: {below} below and {above} above {critical}");
     }
 }

@@ -47,7 +47,11 @@ fn scales_change_nothing_but_rounding() {
                 let off = off.fold(0.0_f64, |a, b| if b > a || b.is_nan() { b } else { a });
                 println!("{name}, {stepping:?}, {scales:?}: {off:.1e}, {:?}", s.work.counts);
                 assert!(off < 1e-9, "{name}, {scales:?}: {off:e}");
-                assert_eq!(s.work.counts, plain.work.counts, "{name}, {scales:?}");
+                let (own, counts) = (s.work.counts, plain.work.counts);
+                assert_eq!((own.steps, own.rejected), (counts.steps, counts.rejected), "{name}, {scales:?}");
+                // where the test is met narrowly, rounding decides whether there is one more iteration
+                let more = own.newton_iterations.abs_diff(counts.newton_iterations);
+                assert!(100 * more <= counts.newton_iterations, "{name}, {scales:?}: {own:?} {counts:?}");
             }
         }
     }

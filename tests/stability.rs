@@ -345,7 +345,8 @@ fn a_run_is_the_same_to_the_last_bit_and_nearly_so_with_other_lanes() {
     let size = largest(best.q.iter().copied());
     let off = largest(best.q.iter().zip(&one.q).map(|(a, b)| a - b)) / size;
     println!("one lane instead of {}: {off:.1e}", Width::best().lanes());
-    assert!(off < 1e-12, "{off:e}");
+    // rounding may decide whether Newton's method makes one more iteration, which is worth 1e-7 of a tolerance
+    assert!(off < 1e-10, "{off:e}");
 }
 
 #[test]

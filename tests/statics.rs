@@ -90,7 +90,7 @@ fn hung(n: usize, length: f64, to: [f64; 3], section: Section, folded: bool) -> 
     if folded {
         let (x, up) = (to[0], 0.2 * length);
         spec.points = vec![[0.0; 3], [0.8 * x, 0.0, up], [0.2 * x, 0.0, up + 0.1 * length], to];
-        spec.radius = Some(0.02 * length);
+        spec.radius = Some(1e-3 * length);
     }
     let mut scene = Scene::new();
     scene
