@@ -180,6 +180,8 @@ fn a_slack_tether_snaps_taut_with_the_force_of_its_energy() {
     let spec = CableSpec {
         points: Vec::new(),
         curve,
+        start_direction: Some([0.0, 0.0, -1.0]),
+        end_direction: Some([0.0, 0.0, 1.0]),
         stress_free: StressFree::Straight,
         ..CableSpec::straight("tether", [0.0; 3], [1.0, 0.0, 0.0], 16, light).unstretched(1.0)
     };
