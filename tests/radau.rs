@@ -410,7 +410,7 @@ fn stepping_does_not_allocate() {
         let few = steps.0 - warm;
         let rejected = s.work.counts.rejected;
         let long = count(&mut s, &mut steps, 0.5);
-        let rejected = (s.work.counts.rejected - rejected) as u64;
+        let rejected = s.work.counts.rejected - rejected;
         let many = steps.0 - warm - few;
         println!("{short} allocations in {few} steps, {long} in {many}");
         assert!(many > 5 * few);

@@ -116,7 +116,8 @@ pub fn check_law(law: &impl Law, t: f64, at: &Station<f64>) -> f64 {
         return f64::INFINITY;
     }
     type Field = fn(&mut Station<f64>) -> &mut V3<f64>;
-    let fields: [(Field, [V3<f64>; 3], [V3<f64>; 3]); 5] = [
+    type By = [V3<f64>; 3];
+    let fields: [(Field, By, By); 5] = [
         (|s| &mut s.x, load.d_x, load.g_x),
         (|s| &mut s.slope, load.d_slope, load.g_slope),
         (|s| &mut s.v, load.d_v, load.g_v),

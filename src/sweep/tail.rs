@@ -178,7 +178,7 @@ mod tests {
             column("swings", "N", |t| 2.0 + (std::f64::consts::TAU * t).sin()),
             column("rounding", "m", |t| 1e-17 * (40.0 * t).sin()),
         ];
-        Table { columns, ..Table::default() }
+        Table { columns }
     }
 
     #[test]
