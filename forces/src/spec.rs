@@ -227,30 +227,29 @@ impl ForceSpec for AddedMassSpec {
         }
         let water = b.water()?;
         let law = AddedMass::new(water.density, self.ca)?.in_current(water.current()?)?;
-        let feeds = |b: &Builder, part: &str| b.feeding(part).iter().any(Option::is_some);
+        let mut fed = Vec::new();
         for numbered in b.parts(&self.on)? {
             b.acts_once("added_mass", &numbered)?;
             let part = &numbered.1;
-            let fed = feeds(b, part.name());
-            if fed && self.theory == Some(Theory::Energy) {
-                let message = format!(
-                    "`{}` changes its length, and the energy of the water beside such a cable isn't there yet: leave \
-                     `theory` out, or name in `on` the other parts",
-                    part.name()
-                );
-                return Err(BuildError::at("theory", message));
+            let feeds = b.feeding(part.name()).iter().any(Option::is_some);
+            match self.theory {
+                Some(Theory::Energy) if feeds => {
+                    let message = format!(
+                        "`{}` changes its length, and the energy of the water beside such a cable isn't there yet: \
+                         leave `theory` out, or name in `on` the other parts",
+                        part.name()
+                    );
+                    return Err(BuildError::at("theory", message));
+                }
+                Some(Theory::Morison) => {}
+                _ if feeds => fed.push(part.name().to_string()),
+                _ => self.add_wakes(b, part.as_ref(), &law),
             }
-            if fed || self.theory == Some(Theory::Morison) {
-                continue;
-            }
-            self.add_wakes(b, part.as_ref(), &law);
         }
-        let known: Vec<String> =
-            b.parts(&[])?.iter().map(|(_, p)| p.name().to_string()).filter(|n| feeds(b, n)).collect();
-        let theory = self.theory;
+        let theory = self.theory.unwrap_or_default();
         b.load_by(&self.on, |part| {
-            let morison = known.iter().any(|n| n == part.name());
-            law.clone().by(if morison { Theory::Morison } else { theory.unwrap_or_default() })
+            let morison = fed.iter().any(|name| name == part.name());
+            law.clone().by(if morison { Theory::Morison } else { theory })
         })
     }
 }

@@ -185,17 +185,16 @@ impl Alpha {
     fn weigh_turning(&self, model: &Model, work: &Workspace, e: &mut [f64]) {
         let (v, weights) = (&work.trial.v, work.norms.weights());
         for node in model.nodes().iter().filter(|n| n.kind.has_position()) {
-            let single = work.norms.groups[work.norms.of(node.v)].single;
-            if node.kind != NodeKind::Frame && !single {
+            let (turns, single) =
+                (node.kind == NodeKind::Frame, work.norms.groups[work.norms.of(node.v)].single);
+            if !turns && !single {
                 continue;
             }
             let (mut square, mut sum) = (0.0, 0.0);
             // the links of a chain are held by their neighbours; and what has no inertia doesn't count
-            if single && node.kind == NodeKind::Frame {
-                for i in node.dofs().skip(3) {
-                    square += weights[i] * v[i] * v[i];
-                    sum += weights[i];
-                }
+            for i in node.dofs().skip(3).filter(|_| turns && single) {
+                square += weights[i] * v[i] * v[i];
+                sum += weights[i];
             }
             let rate = if sum > 0.0 { (square / sum).sqrt() } else { 0.0 };
             let factor = BODY + (TURNING * self.horizon * rate).min(MOST_TURNING);

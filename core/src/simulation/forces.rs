@@ -1,7 +1,8 @@
 //! Forces of samples.
 //!
 //! Positions between steps are interpolated. Forces can't always be had from them: a stiff cable makes `EA/l` of force of
-//! every metre that an interpolation is off. An interpolated state that doesn't balance is moved until it does. What is done aside has a workspace of its own: looking at a run doesn't change it.
+//! every metre that an interpolation is off. An interpolated state that doesn't balance is moved until it does. What is
+//! done aside has a workspace of its own: looking at a run doesn't change it.
 
 use super::Simulation;
 use crate::integrator::{Workspace, consistent_by_iteration, consistent_by_mass};
