@@ -38,7 +38,8 @@ fn scales_change_nothing_but_rounding() {
     let scenes = [("steel", steel(8), 0.3), ("everything", everything(), 1.0)];
     for (name, scene, duration) in &scenes {
         for stepping in [Stepping::Fixed { h: 1e-3 }, Stepping::Controlled { tolerance: 1e-5 }] {
-            let si = Options { stepping, ..Options::default() };
+            // with a new matrix at each iteration none is so near the tolerance that rounding decides about another
+            let si = Options { stepping, newton: NewtonPolicy::Full, ..Options::default() };
             let plain = run(scene, &si, *duration);
             let size = plain.state.q.iter().fold(0.0_f64, |a, q| a.max(q.abs()));
             for scales in [Scales::Bending, Scales::Axial, given] {
@@ -47,11 +48,7 @@ fn scales_change_nothing_but_rounding() {
                 let off = off.fold(0.0_f64, |a, b| if b > a || b.is_nan() { b } else { a });
                 println!("{name}, {stepping:?}, {scales:?}: {off:.1e}, {:?}", s.work.counts);
                 assert!(off < 1e-9, "{name}, {scales:?}: {off:e}");
-                let (own, counts) = (s.work.counts, plain.work.counts);
-                assert_eq!((own.steps, own.rejected), (counts.steps, counts.rejected), "{name}, {scales:?}");
-                // where the test is met narrowly, rounding decides whether there is one more iteration
-                let more = own.newton_iterations.abs_diff(counts.newton_iterations);
-                assert!(100 * more <= counts.newton_iterations, "{name}, {scales:?}: {own:?} {counts:?}");
+                assert_eq!(s.work.counts, plain.work.counts, "{name}, {scales:?}");
             }
         }
     }
