@@ -93,7 +93,8 @@ fn run(case: &str) -> Result<()> {
             let section = Section::new(0.5, 5000.0, 0.1);
             scene
                 .element(CableSpec::straight("cable", [0.0; 3], [1.0, 0.0, 0.0], ELEMENTS, section))
-                .force(GravitySpec { g: G, on: Vec::new() });
+                .set_gravity(G)
+                .force(GravitySpec::default());
             scene.water = (surroundings == "water").then(Water::default);
             count_steps(&scene.build()?)
         }

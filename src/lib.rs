@@ -50,7 +50,7 @@ pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use read::{SceneFile, read};
 pub use ropewalk_core::integrator::Options;
 pub use ropewalk_core::{
-    BuildError, Builder, MarkerRef, Model, Run, Scene, SceneError, Simulation, State, Water,
+    Air, BuildError, Builder, MarkerRef, Model, Run, Scene, SceneError, Simulation, State, Water,
 };
 pub use ropewalk_models::{Bundled, bundled};
 pub use run::{Every, Manifest, Outcome, RunOptions, resume, run};

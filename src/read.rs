@@ -2,8 +2,9 @@
 
 use crate::error::Error;
 use crate::scene::{Document, Fault, Format, did_you_mean, quoted, read_text};
-use ropewalk_core::{Model, Record, Scene, SceneError, SpecKind};
+use ropewalk_core::{GRAVITY, Model, Record, Scene, SceneError, SpecKind, V3, quantity};
 use ropewalk_models::{Bundled, bundled};
+use serde::Deserialize;
 use std::path::{Path, PathBuf, is_separator};
 use std::sync::Arc;
 
@@ -70,6 +71,11 @@ impl SceneText {
     }
 }
 
+/// An acceleration in space as a scene writes it [m/s²].
+#[derive(Deserialize)]
+#[serde(transparent)]
+struct Acceleration(#[serde(deserialize_with = "quantity::vec3::acceleration")] V3<f64>);
+
 /// A scene together with the file that it was read from, so that messages can point at lines.
 #[derive(Debug)]
 pub struct SceneFile {
@@ -102,7 +108,9 @@ impl SceneFile {
         let scene = Scene {
             title: d.take("title")?.unwrap_or_default(),
             description: d.take("description")?.unwrap_or_default(),
+            gravity: d.take("gravity")?.map_or(GRAVITY, |Acceleration(g)| g),
             water: d.take("water")?,
+            air: d.take("air")?,
             run: d.take("run")?.unwrap_or_default(),
             solver: d.take("solver")?.unwrap_or_default(),
             statics: d.take("statics")?.unwrap_or_default(),

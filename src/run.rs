@@ -7,6 +7,7 @@ mod recorder;
 mod report;
 mod shapes;
 mod start;
+mod surfacing;
 mod tables;
 
 pub use checkpoint::Every;

@@ -26,6 +26,7 @@
 mod deserialize;
 mod fault;
 mod json;
+mod moved;
 mod parameters;
 mod read;
 mod source;

@@ -11,6 +11,7 @@ use mechanisms::{
 use ropewalk_core::integrator::Options;
 use ropewalk_core::rotation::{matrix, times};
 use ropewalk_core::{Action, End, Event, Model, Scene, Simulation, State, V3};
+use ropewalk_forces::GravitySpec;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, Mutex};
 
@@ -239,7 +240,8 @@ fn top(precession: f64, spin: f64) -> Scene {
             ..RigidBodySpec::new("top", [0.0; 3], 1.0, [0.02, 0.03, 0.03])
         })
         .constraint(SphericalSpec::new("foot", "top", [0.0; 3]))
-        .force(mechanisms::gravity([0.0, 0.0, -G]));
+        .set_gravity([0.0, 0.0, -G])
+        .force(GravitySpec::default());
     scene
 }
 

@@ -67,7 +67,7 @@ fn swaying(reference: &Value, case: &Value) -> Scene {
     let mut section = LinkSection { gyration: Some(1e-5), ..LinkSection::new(m / l, 0.0) };
     let mut scene = Scene::new();
     let weight = number(&case["weight_factor"]);
-    scene.force(GravitySpec { g: [0.0, 0.0, -weight * p("g")], on: vec![] });
+    scene.set_gravity([0.0, 0.0, -weight * p("g")]).force(GravitySpec::default());
     if let Some(drag) = case["drag"].as_object() {
         section.diameter = number(&drag["dia"]);
         scene.water = Some(Water { density: number(&drag["rho"]), ..Water::default() });

@@ -5,8 +5,8 @@ mod mechanisms;
 
 use common::size;
 use mechanisms::{
-    Stand, chain, energy, fixed, for_output, four_bars, go, gravity, hooke, largest, listed, slider_crank,
-    start, tight,
+    Stand, chain, energy, fixed, for_output, four_bars, go, hooke, largest, listed, slider_crank, start,
+    tight,
 };
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec, UniversalSpec};
 use ropewalk_core::integrator::{ConstraintForm, Options, Scheme, StepReport};
@@ -20,7 +20,9 @@ use ropewalk_core::{
 };
 use ropewalk_elements::rigid_body::{HullSpec, Shape};
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
-use ropewalk_forces::{AddedMassSpec, BuoyancySpec, DragSpec, PointForceSpec, SpringSpec, TimeFunction};
+use ropewalk_forces::{
+    AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec, PointForceSpec, SpringSpec, TimeFunction,
+};
 use std::ops::ControlFlow;
 
 /// Equations of the constraints, `G v + ∂g/∂t` and `G a + bias`, the largest of each.
@@ -256,7 +258,8 @@ fn everything() -> Scene {
             to: Some([-0.3, 0.0, 0.0].into()),
             axis: [0.1, 1.0, 0.3],
         })
-        .force(gravity([0.0, 0.0, -9.81]))
+        .set_gravity([0.0, 0.0, -9.81])
+        .force(GravitySpec::default())
         .force(BuoyancySpec::default())
         .force(DragSpec::default())
         .force(AddedMassSpec::default())
@@ -424,7 +427,8 @@ fn cable_at_rest_stays_at_rest() {
         .element(cable.unstretched(10.0))
         .constraint(SphericalSpec::pin("left", "chain.start"))
         .constraint(SphericalSpec::pin("right", "chain.end"))
-        .force(gravity([0.0, 0.0, -9.81]));
+        .set_gravity([0.0, 0.0, -9.81])
+        .force(GravitySpec::default());
     let model = scene.build().expect("model");
     let mut state = model.state();
     let options = StaticsOptions { tolerance: 1e-13, ..StaticsOptions::default() };

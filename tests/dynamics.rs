@@ -39,7 +39,8 @@ fn rod_pendulum(at: [f64; 3], v: [f64; 3]) -> Scene {
             to: [0.0; 3].into(),
             length: Some(1.0),
         })
-        .force(GravitySpec { g: [0.0, -9.81, 0.0], on: vec![] });
+        .set_gravity([0.0, -9.81, 0.0])
+        .force(GravitySpec::default());
     scene
 }
 

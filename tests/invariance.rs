@@ -6,15 +6,15 @@ mod mechanisms;
 
 use common::{models, place};
 use mechanisms::{
-    Stand, attitude, dzhanibekov, go, gravity, largest, minus, pointing, slider_crank, squeezer,
-    squeezer_angles, start, tight, whereabouts,
+    Stand, attitude, dzhanibekov, go, largest, minus, pointing, slider_crank, squeezer, squeezer_angles,
+    start, tight, whereabouts,
 };
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};
 use ropewalk_core::rotation::{bryant, exp, then};
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Scene, V3};
 use ropewalk_elements::{CableSpec, RigidBodySpec, Section};
-use ropewalk_forces::{PointForceSpec, PointMomentSpec, TimeFunction};
+use ropewalk_forces::{GravitySpec, PointForceSpec, PointMomentSpec, TimeFunction};
 use std::f64::consts::PI;
 
 const FAR: V3<f64> = [1e3, -2e3, 5e2];
@@ -106,7 +106,8 @@ fn catenary_does_not_care_how_it_stands() {
             .element(cable)
             .constraint(SphericalSpec::pin("left", "chain.start"))
             .constraint(SphericalSpec::pin("right", "chain.end"))
-            .force(gravity(stand.vector([0.0, 0.0, -9.81])));
+            .set_gravity(stand.vector([0.0, 0.0, -9.81]))
+            .force(GravitySpec::default());
         let model = scene.build().expect("model");
         let mut state = model.state();
         let options = StaticsOptions { tolerance: 1e-12, ..StaticsOptions::default() };
@@ -186,7 +187,7 @@ fn mixed(swapped: bool) -> Scene {
             .constraint(clamp)
             .constraint(SphericalSpec::new("eye", "bob.eye", far));
     }
-    scene.force(gravity([0.0, 0.0, -9.81]));
+    scene.set_gravity([0.0, 0.0, -9.81]).force(GravitySpec::default());
     scene
 }
 

@@ -14,6 +14,7 @@ use ropewalk_core::integrator::{ConstraintForm, Options};
 use ropewalk_core::rotation::matrix;
 use ropewalk_core::{Observer, Sample, Scene, Simulation, State, V3, dot};
 use ropewalk_elements::{CableSpec, RigidBodySpec, Section};
+use ropewalk_forces::GravitySpec;
 use std::ops::ControlFlow;
 
 #[test]
@@ -88,7 +89,8 @@ fn driven_rod() -> Scene {
     scene
         .element(rod("rod", [0.0; 3], [0.0, -1.5, 0.0], 2.0))
         .constraint(mechanisms::hinge("pivot", "rod", [0.0; 3]))
-        .force(mechanisms::gravity([0.0, -G, 0.0]));
+        .set_gravity([0.0, -G, 0.0])
+        .force(GravitySpec::default());
     drive(&mut scene, "rod", [0.0, 0.0, 1.0], Angle::Rod);
     scene
 }

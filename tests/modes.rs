@@ -434,12 +434,12 @@ fn columns_buckle_at_the_critical_factor_of_their_loads() {
     }
     // Greenhill: a column under its own weight
     let mut heavy = column(0.0, true, [false, false]);
-    heavy.force(GravitySpec { g: [0.0, 0.0, -2.0], on: vec![] });
+    heavy.set_gravity([0.0, 0.0, -2.0]).force(GravitySpec::default());
     let critical = modal(&heavy, 4).critical.expect("a load");
     close("Greenhill", critical.factor.expect("it buckles"), 7.837_347_438_943_38 / 2.0, 1e-4);
     // hung up, it never buckles
     let mut hung = column(0.0, true, [false, false]);
-    hung.force(GravitySpec { g: [0.0, 0.0, 2.0], on: vec![] });
+    hung.set_gravity([0.0, 0.0, 2.0]).force(GravitySpec::default());
     assert_eq!(modal(&hung, 4).critical.expect("a load").factor, None);
     assert!(modal(&column(0.0, true, [false, false]), 4).critical.is_none(), "no load, no factor");
 }

@@ -108,9 +108,16 @@ fn gravity_counts_once_and_is_one() {
         "#;
     let twice = refused(&format!("{ball}\n[[forces]]\ntype = \"gravity\"\n"));
     assert!(twice.contains("`gravity` acts on `ball` twice"), "{twice}");
-    let moon = refused(&format!("{ball}\ng = [0, 0, -1.62]\n[[forces]]\ntype = \"buoyancy\"\n"));
-    assert!(moon.contains("a scene has one gravity"), "{moon}");
-    assert!(moon.contains("-1.62"), "{moon}");
+    // where older scenes had it
+    for kind in ["gravity", "buoyancy"] {
+        let old = format!(
+            "[[elements]]\ntype = \"point_mass\"\nname = \"b\"\nat = [0, 0, 0]\nmass = 1\n[[forces]]\ntype = \"{kind}\"\ng = [0, 0, -1.62]\n"
+        );
+        let moved = refused(&old);
+        assert!(moved.contains("unknown field `g`"), "{moved}");
+        assert!(moved.contains("gravity belongs to the scene"), "{moved}");
+        assert!(moved.contains("world:8:1"), "{moved}");
+    }
     // one for each part is fine
     let apart = format!("{ball}\non = [\"ball\"]\n[[forces]]\ntype = \"buoyancy\"\n");
     SceneFile::parse(&apart, "world", Format::Toml, &[]).unwrap().build().unwrap_or_else(|e| panic!("{e}"));

@@ -290,7 +290,8 @@ fn motion_does_not_depend_on_the_frame() {
                 section,
             ))
             .constraint(SphericalSpec::pin("pin", "cable.start"))
-            .force(GravitySpec { g: map([0.0, 0.0, -9.81], 0.0), on: vec![] })
+            .set_gravity(map([0.0, 0.0, -9.81], 0.0))
+            .force(GravitySpec::default())
             .force(DragSpec::default());
         let mut s = start(&scene, &fixed(1e-3), 0.4);
         go(&mut s, 0.4);

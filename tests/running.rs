@@ -181,7 +181,8 @@ fn motion_does_not_depend_on_the_frame() {
         scene
             .element(CableSpec::straight("cable", base, end, 8, section))
             .constraint(SphericalSpec::pin("pin", "cable.start"))
-            .force(GravitySpec { g, on: vec![] })
+            .set_gravity(g)
+            .force(GravitySpec::default())
             .force(DragSpec::default())
             .force(SpringSpec {
                 name: "spring".into(),

@@ -21,7 +21,8 @@ fn steel(elements: usize) -> Scene {
     scene
         .element(cable.models(l, t, rule))
         .constraint(SphericalSpec::pin("hinge", "rod.start"))
-        .force(GravitySpec { g: [0.0, -9.81, 0.0], on: Vec::new() });
+        .set_gravity([0.0, -9.81, 0.0])
+        .force(GravitySpec::default());
     scene
 }
 

@@ -5,9 +5,7 @@ mod common;
 mod mechanisms;
 
 use common::{cantilever, everything, linear, models, pendulum, place, size};
-use mechanisms::{
-    controlled, fixed, for_output, go, gravity, hooke, largest, listed, minus, squeezer, start, tight,
-};
+use mechanisms::{controlled, fixed, for_output, go, hooke, largest, listed, minus, squeezer, start, tight};
 use ropewalk_constraints::motion::HarmonicSpec;
 use ropewalk_constraints::{ClampSpec, DrivingSpec, SphericalSpec};
 use ropewalk_core::integrator::{NewtonPolicy, Options, Scheme};
@@ -15,7 +13,7 @@ use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Scene, Simulation, State, V3, Width};
 use ropewalk_elements::cable::StressFree;
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
-use ropewalk_forces::{PointForceSpec, PointMomentSpec, SpringSpec};
+use ropewalk_forces::{GravitySpec, PointForceSpec, PointMomentSpec, SpringSpec};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A free cable of 1 m, 1 kg/m and EI = 1 whose state is set to a smooth bend of this amplitude, at rest.
@@ -190,7 +188,8 @@ fn a_slack_tether_snaps_taut_with_the_force_of_its_energy() {
         .element(spec)
         .constraint(SphericalSpec::pin("anchor", "tether.start"))
         .element(PointMassSpec::new("ball", "tether.end", 1.0))
-        .force(gravity([0.0, 0.0, -g]));
+        .set_gravity([0.0, 0.0, -g])
+        .force(GravitySpec::default());
     let mut peak = 0.0_f64;
     let mut s = start(&scene, &controlled(1e-4), 0.62);
     for i in 1..=1240 {
@@ -279,7 +278,8 @@ fn a_whip_cracks_without_breaking_the_balance_of_energy() {
                 ramp: 0.1,
             })
             .constraint(DrivingSpec::new("grip", "whip.start", "hand"))
-            .force(gravity([0.0, 0.0, -9.81]));
+            .set_gravity([0.0, 0.0, -9.81])
+            .force(GravitySpec::default());
         let mut s = start(&scene, &controlled(tolerance), 0.7);
         s.keep_audit(true);
         let (mut fastest, mut path) = (0.0_f64, Vec::new());
@@ -312,7 +312,8 @@ fn a_load_of_a_billion_times_the_mass_of_its_cable_bounces_as_the_closed_form() 
         .element(CableSpec::straight("wire", [0.0; 3], [0.0, 0.0, -1.0], 4, Section::new(1e-3, ea, 1e-3)))
         .element(PointMassSpec::new("load", "wire.end", mass))
         .constraint(SphericalSpec::pin("hook", "wire.start"))
-        .force(gravity([0.0, 0.0, -g]));
+        .set_gravity([0.0, 0.0, -g])
+        .force(GravitySpec::default());
     let omega = (ea / mass).sqrt();
     let sag = mass * g / ea;
     for options in [fixed(1e-4), controlled(1e-6)] {
@@ -372,7 +373,8 @@ fn a_motion_run_backwards_comes_home() {
             length: Some(0.1),
             tension_only: false,
         })
-        .force(gravity([0.0, -9.81, 0.0]));
+        .set_gravity([0.0, -9.81, 0.0])
+        .force(GravitySpec::default());
     let options = Options {
         scheme: Scheme::AverageAcceleration,
         newton_tolerance: 1e-8,

@@ -97,7 +97,8 @@ fn hung(n: usize, length: f64, to: [f64; 3], section: Section, folded: bool) -> 
         .element(spec)
         .constraint(SphericalSpec::pin("left", "cable.start"))
         .constraint(SphericalSpec::pin("right", "cable.end"))
-        .force(GravitySpec { g: [0.0, 0.0, -9.81], on: vec![] });
+        .set_gravity([0.0, 0.0, -9.81])
+        .force(GravitySpec::default());
     scene
 }
 

@@ -27,7 +27,8 @@ fn hanging(length: f64, elements: usize, section: Section, winch: WinchSpec, g: 
         .element(CableSpec::straight("rope", [0.0; 3], [0.0, 0.0, -length], elements, section))
         .constraint(SphericalSpec::new("eyelet", "rope.start", [0.0; 3]))
         .constraint(winch)
-        .force(GravitySpec { g: [0.0, 0.0, -g], on: vec![] });
+        .set_gravity([0.0, 0.0, -g])
+        .force(GravitySpec::default());
     scene
 }
 
@@ -187,7 +188,8 @@ fn heavy_swinging_cable_meets_a_chain_whose_masses_are_born() {
             .constraint(SphericalSpec::new("eyelet", "rope.start", [0.0; 3]))
             .constraint(steady(1.0))
             .motion(steadily("out", 1.0))
-            .force(GravitySpec { g: [0.0, 0.0, -9.81], on: vec![] });
+            .set_gravity([0.0, 0.0, -9.81])
+            .force(GravitySpec::default());
         let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
         // it starts straight, stretched as far as its weight along the line does it, and runs out along the line
         let mut state = model.state();
@@ -238,7 +240,8 @@ fn pendulum_of_changing_length() {
             .constraint(steady(v))
             .motion(steadily("out", v.abs()))
             .motion(steadily("in", -v.abs()))
-            .force(GravitySpec { g: [0.0, 0.0, -g], on: vec![] });
+            .set_gravity([0.0, 0.0, -g])
+            .force(GravitySpec::default());
         let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
         let mut s = Simulation::new(model, &fixed(1e-3), 2.0).unwrap_or_else(|e| panic!("{e}"));
         let mut worst = 0.0_f64;

@@ -21,7 +21,8 @@ pub fn scene(c: &Cable, elements: usize, integration: Integration) -> Scene {
     scene
         .element(CableSpec { integration, ..cable })
         .constraint(SphericalSpec::pin("pin", "cable.start"))
-        .force(GravitySpec { g: [0.0, -c.g, 0.0], on: vec![] });
+        .set_gravity([0.0, -c.g, 0.0])
+        .force(GravitySpec::default());
     scene
 }
 

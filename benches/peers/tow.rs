@@ -78,7 +78,8 @@ impl Case {
             scene.element(PointMassSpec::new("end", "hose.end", self.end_mass));
         }
         scene
-            .force(GravitySpec { g, on: vec![] })
+            .set_gravity(g)
+            .force(GravitySpec::default())
             .force(BuoyancySpec::default())
             .force(DragSpec { cn: hose("cn")?, ct: hose("ct")?, ..DragSpec::default() })
             .force(AddedMassSpec {

@@ -10,12 +10,13 @@ use crate::node::{Node, NodeId, NodeKind};
 use crate::part::{Part, Spot, split_marker};
 use crate::pool::{Element, Pool};
 use crate::remesh::Mesh;
-use crate::scene::Water;
+use crate::scene::GRAVITY;
 use crate::simulation::Event;
 use crate::spec::MarkerRef;
 use crate::state::At;
 use crate::station::{FieldTerm, Law, Laws, Stations};
 use crate::term::Term;
+use crate::water::{Air, Water};
 use std::any::{Any, TypeId};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
@@ -126,6 +127,7 @@ pub struct Builder {
     /// What flows through the ends of cables, by part: at its start, at its end.
     feeds: HashMap<String, [Option<Feed>; 2]>,
     water: Option<Water>,
+    air: Option<Air>,
     /// What acts on which part already and may do so only once.
     acting: HashSet<(&'static str, usize)>,
     gravity: Option<V3<f64>>,
@@ -472,20 +474,9 @@ impl Builder {
         Err(BuildError::at("on", message))
     }
 
-    /// Notes the gravity of the scene [m/s²], which weight and buoyancy share.
-    ///
-    /// # Errors
-    /// Another force of the scene has another one.
-    pub fn has_gravity(&mut self, g: V3<f64>) -> Result<(), BuildError> {
-        match self.gravity.replace(g) {
-            Some(other) if other != g => {
-                let message = format!(
-                    "a scene has one gravity, and another force says {other:?} m/s² where this says {g:?}"
-                );
-                Err(BuildError::at("g", message))
-            }
-            _ => Ok(()),
-        }
+    /// The acceleration of gravity [m/s²].
+    pub fn gravity(&self) -> V3<f64> {
+        self.gravity.unwrap_or(GRAVITY)
     }
 
     /// Whether a constraint holds a marker; those of the scene are there before its forces.
@@ -505,8 +496,13 @@ impl Builder {
         })
     }
 
-    pub(crate) fn set_water(&mut self, water: Option<Water>) {
-        self.water = water;
+    /// The air, if the scene has some.
+    pub fn air(&self) -> Option<&Air> {
+        self.air.as_ref()
+    }
+
+    pub(crate) fn set_world(&mut self, gravity: V3<f64>, water: Option<Water>, air: Option<Air>) {
+        (self.gravity, self.water, self.air) = (Some(gravity), water, air);
     }
 
     pub(crate) fn set_motions(&mut self, motions: Motions) {

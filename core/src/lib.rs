@@ -42,6 +42,7 @@ mod structure;
 mod term;
 pub mod testing;
 mod times;
+mod water;
 
 pub use build::{BuildError, Builder};
 pub use constraint::{Constraint, Joint, Relation, RowKind, lift};
@@ -61,7 +62,7 @@ pub use process::{Channel, Process, ProcessSpec, Surroundings};
 pub use record::{Audit, Column, Record, Sample};
 pub use redundancy::Redundancy;
 pub use remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
-pub use scene::{Analysis, Level, Run, Scene, SceneError, ShapeTitles, TableSpec, Water};
+pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use simulation::{Action, Checkpoint, End, Event, Observer, Simulation, Unfit};
 pub use solver::{Chain, Dense as DenseSolver, Fronts, Guard, LinearSolver, Lu, Scalar, SolveError};
 pub use spec::{
@@ -72,6 +73,7 @@ pub use station::{FieldTerm, Gives, Law, Laws, Load, Station, StationElement, St
 pub use structure::{Block, Columns, Structure};
 pub use term::{Assembly, Energy, Leap, Power, Term, Weights};
 pub use times::Spent;
+pub use water::{Air, Level, Water};
 
 #[doc(hidden)]
 pub use inventory;

@@ -108,6 +108,11 @@ pub trait Part: Send + Sync {
     }
     /// The term of a load in a constant direction, proportional to mass or displaced volume.
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>>;
+    /// The middle and the volume [m³] of what it displaces, if that isn't a slender body along its stations: taken for a
+    /// ball where it matters how it lies in the water.
+    fn ball(&self) -> Option<(Held, f64)> {
+        None
+    }
     /// Something along the part, at unstretched arc length `s`.
     fn observe(&self, _what: Quantity, _s: f64, _at: &At<'_>) -> Option<f64> {
         None

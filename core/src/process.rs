@@ -5,7 +5,7 @@ use crate::integrator::Counts;
 use crate::lane::V3;
 use crate::motion::{Motion, no_motion};
 use crate::record::Column;
-use crate::scene::Water;
+use crate::water::Water;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;

@@ -1,8 +1,8 @@
 //! A scene: what the user wrote, as specs and options. Scene files and Rust code make the same thing.
 
 use crate::build::{BuildError, Builder};
-use crate::current::Current;
 use crate::integrator::Options;
+use crate::lane::V3;
 use crate::model::{Model, Start};
 use crate::motion::{SteadyFrame, build_all};
 use crate::process::{Process, ProcessSpec, Surroundings};
@@ -10,71 +10,9 @@ use crate::record::Record;
 use crate::remesh::Plan;
 use crate::spec::{ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
 use crate::statics::StaticsOptions;
+use crate::water::{Air, Water};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-
-/// The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Water {
-    /// Density [kg/m³].
-    #[serde(deserialize_with = "crate::quantity::density")]
-    pub density: f64,
-    /// Dynamic viscosity [Pa s].
-    #[serde(deserialize_with = "crate::quantity::viscosity")]
-    pub viscosity: f64,
-    /// Velocity of the water, the same everywhere [m/s].
-    #[serde(deserialize_with = "crate::quantity::vec3::speed")]
-    pub current: [f64; 3],
-    /// Velocity of the water by height, instead of `current`: piecewise linear between the levels, constant beyond.
-    pub profile: Vec<Level>,
-}
-
-/// Velocity of the water at one height.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Level {
-    /// Height [m].
-    #[serde(deserialize_with = "crate::quantity::length")]
-    pub z: f64,
-    /// Velocity of the water there [m/s].
-    #[serde(deserialize_with = "crate::quantity::vec3::speed")]
-    pub velocity: [f64; 3],
-}
-
-impl Default for Water {
-    fn default() -> Self {
-        Water { density: 1025.0, viscosity: 1.08e-3, current: [0.0; 3], profile: Vec::new() }
-    }
-}
-
-impl Water {
-    /// Its velocity as a function of height.
-    ///
-    /// # Errors
-    /// Both `current` and `profile` are given, or the levels don't ascend.
-    pub fn current(&self) -> Result<Current, BuildError> {
-        if self.profile.is_empty() {
-            return Ok(if self.current == [0.0; 3] {
-                Current::Still
-            } else {
-                Current::Uniform(self.current)
-            });
-        }
-        if self.current != [0.0; 3] {
-            return Err(BuildError::new("[water] has both `current` and `profile`: give one of them"));
-        }
-        let (z, velocity) = self.profile.iter().map(|l| (l.z, l.velocity)).unzip();
-        Current::profile(z, velocity)
-    }
-    /// What is wrong with the numbers, if anything.
-    pub fn check(&self) -> Result<(), BuildError> {
-        crate::build::positive("density", self.density).map_err(|e| e.of("water.density"))?;
-        crate::build::not_negative("viscosity", self.viscosity).map_err(|e| e.of("water.viscosity"))?;
-        crate::build::finite("current", &self.current).map_err(|e| e.of("water.current"))?;
-        self.current().map(drop).map_err(|e| e.of("water.profile"))
-    }
-}
 
 /// What is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -206,16 +144,24 @@ impl Run {
     }
 }
 
+/// Standard gravity, rounded as most of the field does [m/s²].
+pub const GRAVITY: V3<f64> = [0.0, 0.0, -9.81];
+
 /// A scene: lists of specs, and options. Build a [`Model`] of it, or run it with `ropewalk::simulate`. A clone shares the
 /// specs.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Scene {
     /// One line that says what it shows.
     pub title: String,
     /// More about it.
     pub description: String,
+    /// Acceleration of gravity [m/s²], for weight, buoyancy and all else that asks; by default [`GRAVITY`]. What feels it
+    /// is the choice of the scene's forces.
+    pub gravity: V3<f64>,
     /// The water, if there is any.
     pub water: Option<Water>,
+    /// The air above it, if it counts.
+    pub air: Option<Air>,
     /// Cables, bodies, masses.
     pub elements: Vec<Arc<dyn ElementSpec>>,
     /// What holds them.
@@ -236,6 +182,27 @@ pub struct Scene {
     pub statics: StaticsOptions,
 }
 
+impl Default for Scene {
+    fn default() -> Self {
+        Scene {
+            title: String::new(),
+            description: String::new(),
+            gravity: GRAVITY,
+            water: None,
+            air: None,
+            elements: Vec::new(),
+            constraints: Vec::new(),
+            forces: Vec::new(),
+            motions: Vec::new(),
+            records: Vec::new(),
+            processes: Vec::new(),
+            run: Run::default(),
+            solver: Options::default(),
+            statics: StaticsOptions::default(),
+        }
+    }
+}
+
 /// An error and the spec that it belongs to, as kind and index.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{error}")]
@@ -250,6 +217,12 @@ impl Scene {
     /// An empty scene.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Sets the acceleration of gravity [m/s²]; what feels it says a force, such as that of weight.
+    pub fn set_gravity(&mut self, gravity: V3<f64>) -> &mut Self {
+        self.gravity = gravity;
+        self
     }
 
     /// Adds an element.
@@ -284,6 +257,13 @@ impl Scene {
         self
     }
 
+    /// What is wrong with gravity, water and air, if anything.
+    fn check_world(&self) -> Result<(), BuildError> {
+        crate::build::finite("gravity", &self.gravity)?;
+        self.water.as_ref().map_or(Ok(()), Water::check)?;
+        self.air.as_ref().map_or(Ok(()), |air| air.check(self.water.as_ref()))
+    }
+
     /// The process of the scene at its start, if it is one of a process.
     ///
     /// # Errors
@@ -308,7 +288,7 @@ impl Scene {
             let message = "a process runs in time from the start that it is given itself";
             return Err(whole(BuildError::at("run", message)));
         }
-        self.water.as_ref().map_or(Ok(()), Water::check).map_err(whole)?;
+        self.check_world().map_err(whole)?;
         self.run.check().map_err(whole)?;
         let motions = build_all(&self.motions).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
         let around = Surroundings { water: self.water.clone(), motions, duration: self.run.duration };
@@ -340,8 +320,8 @@ impl Scene {
             let named = self.constraints.iter().position(|c| Some(c.name()) == error.field.as_deref());
             SceneError { spec: named.map(|k| (SpecKind::Constraint, k)), error }
         };
-        self.water.as_ref().map_or(Ok(()), Water::check).map_err(whole)?;
-        b.set_water(self.water.clone());
+        self.check_world().map_err(whole)?;
+        b.set_world(self.gravity, self.water.clone(), self.air.clone());
         for (part, mesh) in plan {
             b.remesh(part, mesh.clone());
         }

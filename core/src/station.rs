@@ -33,8 +33,10 @@ pub struct Station<R> {
     pub curve_v: V3<R>,
     /// Arc length from the body's start, unstretched [m].
     pub s: R,
-    /// Unstretched length that the station stands for [m].
+    /// Unstretched length that the station stands for: its cell [m].
     pub weight: R,
+    /// How much of its cell lies before it, towards the body's start [m].
+    pub before: R,
     /// Hydrodynamic diameter [m].
     pub diameter: R,
     /// Area of the displaced volume per length [m²].
@@ -135,9 +137,15 @@ pub trait Law: Send + Sync + 'static {
     fn power<R: Real>(&self, _t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
         Power { supplied: dot(&load.f, &at.v), ..Power::zero() }
     }
-    /// The kinetic energy of what it moves besides the body, per unstretched length [J/m].
+    /// The kinetic energy of what it moves besides the body, per unstretched length [J/m]; asked of laws with a couple.
     #[inline(always)]
-    fn energy<R: Real>(&self, _t: f64, _at: &Station<R>) -> R {
+    fn kinetic<R: Real>(&self, _t: f64, _at: &Station<R>) -> R {
+        R::zero()
+    }
+    /// Its potential energy per unstretched length [J/m], whose forces are then none of its power; asked of laws with a
+    /// couple.
+    #[inline(always)]
+    fn potential<R: Real>(&self, _t: f64, _at: &Station<R>) -> R {
         R::zero()
     }
     /// The drag coefficient of the flow across the body there, if this is a law of drag; NaN in flow so slow that it is
@@ -193,8 +201,8 @@ pub trait Stations: Send + Sync {
     fn each(&self, at: &At<'_>, f: &mut dyn FnMut(&Station<f64>));
     /// The power of all laws.
     fn power(&self, laws: &Laws, at: &At<'_>) -> Power;
-    /// The kinetic energy of all laws [J].
-    fn energy(&self, laws: &Laws, at: &At<'_>) -> f64;
+    /// The energy of all laws.
+    fn energy(&self, laws: &Laws, at: &At<'_>) -> Energy;
     /// Applies all laws and adds what comes of it.
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>);
 }
@@ -252,7 +260,7 @@ impl Term for FieldTerm {
         self.stations.power(&self.laws, at)
     }
     fn energy(&self, at: &At<'_>) -> Energy {
-        Energy { kinetic: self.stations.energy(&self.laws, at), ..Energy::default() }
+        self.stations.energy(&self.laws, at)
     }
     fn coefficient(&self, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
         if part != self.part {

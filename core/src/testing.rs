@@ -253,6 +253,7 @@ fn spread<R: Real>(at: &Station<f64>) -> Station<R> {
         curve_v: at.curve_v.map(R::of),
         s: R::of(at.s),
         weight: R::of(at.weight),
+        before: R::of(at.before),
         diameter: R::of(at.diameter),
         area: R::of(at.area),
     }
@@ -336,6 +337,7 @@ mod tests {
             curve_v: v,
             s: 0.0,
             weight: 1.0,
+            before: 0.5,
             diameter: 1.0,
             area: 1.0,
         };

@@ -9,6 +9,7 @@ use ropewalk_core::{
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// A point mass on a node or at a point of a rigid body, with added mass and drag that are the same in all directions.
@@ -31,8 +32,27 @@ pub struct PointMass {
     pub drag_area: f64,
     /// Velocity of the fluid.
     pub current: Current,
+    /// The surface of the fluid, if it has one.
+    pub surface: Option<Across>,
     /// Where it is.
     pub held: Held,
+}
+
+/// A ball that may lie across the surface of a fluid: drag and added mass go by the share of its volume below.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Across {
+    /// Height of the surface [m].
+    pub level: f64,
+    /// Radius of the ball [m].
+    pub radius: f64,
+}
+
+impl Across {
+    /// The share below, and what it changes by with height [1/m].
+    fn share(&self, z: f64) -> (f64, f64) {
+        let u = ((self.level - z) / self.radius).clamp(-1.0, 1.0);
+        (0.5 + u * (0.75 - 0.25 * u * u), 0.75 * (u * u - 1.0) / self.radius)
+    }
 }
 
 impl PointMass {
@@ -50,7 +70,16 @@ impl PointMass {
         not_negative(&format!("{label}: mass"), mass)?;
         let held = Held::new(nodes, marker, &label)?;
         let (added_mass, density, drag_area) = (0.0, 0.0, 0.0);
-        Ok(PointMass { label, mass, added_mass, density, drag_area, current: Current::Still, held })
+        Ok(PointMass {
+            label,
+            mass,
+            added_mass,
+            density,
+            drag_area,
+            current: Current::Still,
+            surface: None,
+            held,
+        })
     }
 
     /// Puts it into a fluid of this density [kg/m³]: added mass [kg], drag coefficient times area [m²], current.
@@ -89,6 +118,11 @@ impl PointMass {
         })
     }
 
+    /// The share of it in the fluid, and what it changes by with height [1/m].
+    fn share(&self, at: &At<'_>) -> (f64, f64) {
+        self.surface.map_or((1.0, 0.0), |surface| surface.share(self.held.x(at)[2]))
+    }
+
     /// Velocity relative to the water, its magnitude, the current's gradient, and `½ ρ CdA`.
     fn flow(&self, at: &At<'_>) -> (V3<f64>, f64, V3<f64>, f64) {
         let (u, du) = self.current.at(self.held.x(at)[2]);
@@ -108,11 +142,14 @@ impl Term for PointMass {
     fn symmetric(&self) -> bool {
         // the inertia of what turns with a body isn't
         let turns = matches!(self.held, Held::Beside { .. });
-        !turns && (self.current.is_uniform() || self.density * self.drag_area == 0.0)
+        let drags = self.density * self.drag_area > 0.0;
+        let emerges = self.surface.is_some() && (drags || self.added_mass > 0.0);
+        !turns && !emerges && (self.current.is_uniform() || !drags)
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        let inertia = self.mass + self.added_mass;
-        let (v, speed, du, c) = self.flow(at);
+        let (v, speed, du, whole) = self.flow(at);
+        let (share, by_z) = self.share(at);
+        let (inertia, c) = (self.mass + share * self.added_mass, share * whole);
         let (motion, swing) = (self.held.motion(at), self.held.acceleration(at));
         let force: V3<f64> = std::array::from_fn(|i| inertia * swing.a[i] + c * speed * v[i]);
         for k in 0..motion.n {
@@ -128,13 +165,16 @@ impl Term for PointMass {
             std::array::from_fn(|i| c * (speed * x[i] + v[i] * along))
         };
         let shear = damping(&du);
+        // what more of it in the fluid adds
+        let met: V3<f64> =
+            std::array::from_fn(|i| by_z * (self.added_mass * swing.a[i] + whole * speed * v[i]));
         let by: [V3<f64>; MOST] = std::array::from_fn(|k| {
             let (x, turn) = (&motion.by_q[k], damping(&motion.v_by_q[k]));
             let rate = damping(x);
             std::array::from_fn(|i| {
                 w.a * inertia * x[i]
                     + w.v * (rate[i] + inertia * swing.by_v[k][i])
-                    + w.q * (turn[i] + inertia * swing.by_q[k][i] - shear[i] * x[2])
+                    + w.q * (turn[i] + inertia * swing.by_q[k][i] + (met[i] - shear[i]) * x[2])
             })
         });
         // the force stays in space while the body turns under it
@@ -149,12 +189,18 @@ impl Term for PointMass {
         Energy { kinetic: 0.5 * self.mass * dot(&v, &v), ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let (relative, speed, _, c) = self.flow(at);
+        let (relative, speed, _, whole) = self.flow(at);
+        let share = self.share(at).0;
+        let c = share * whole;
         let (v, a) = (self.held.velocity(at), self.held.acceleration(at).a);
         let dissipated = c * speed * speed * speed;
         // drag gives f·v in all, of which the current brings in f·u = f·v + dissipated
         let drag = -c * speed * dot(&relative, &v);
-        Power { dissipated, supplied: drag + dissipated - self.added_mass * dot(&a, &v), carried: 0.0 }
+        Power {
+            dissipated,
+            supplied: drag + dissipated - share * self.added_mass * dot(&a, &v),
+            carried: 0.0,
+        }
     }
 }
 
@@ -202,6 +248,19 @@ impl PointMassSpec {
     }
 }
 
+impl PointMassSpec {
+    /// The radius of the ball that displaces its volume, or else has its drag area, or its added mass of half a ball of
+    /// fluid.
+    fn radius(&self, density: f64) -> f64 {
+        let of = |volume: f64| (0.75 * volume / PI).cbrt();
+        match (self.volume, self.drag_area) {
+            (volume, _) if volume > 0.0 => of(volume),
+            (_, area) if area > 0.0 => (area / PI).sqrt(),
+            _ => of(2.0 * self.added_mass / density),
+        }
+    }
+}
+
 #[typetag::serde(name = "point_mass")]
 impl ElementSpec for PointMassSpec {
     fn name(&self) -> &str {
@@ -235,6 +294,7 @@ impl ElementSpec for PointMassSpec {
         if self.added_mass > 0.0 || self.drag_area > 0.0 {
             let water = b.water()?.clone();
             mass = mass.in_fluid(water.density, self.added_mass, self.drag_area, water.current()?)?;
+            mass.surface = water.level.map(|level| Across { level, radius: self.radius(water.density) });
         }
         let (seat, held) = (b.nodes()[node.0 as usize], mass.held);
         b.term(Box::new(mass));
@@ -290,6 +350,9 @@ impl Part for Body {
             }
             held => Some(Box::new(DeadPull { label, held, force })),
         }
+    }
+    fn ball(&self) -> Option<(Held, f64)> {
+        Some((self.held, self.spec.volume))
     }
     fn point(&self, _: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         Some((self.held.x(at), self.held.velocity(at)))

@@ -1,5 +1,6 @@
 //! Added mass: the water that a slender body pushes aside.
 
+use crate::Surface;
 use ropewalk_core::build::{BuildError, not_negative};
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{cross, matrix, times};
@@ -209,7 +210,7 @@ impl Law for AddedMass {
     }
 
     #[inline(always)]
-    fn energy<R: Real>(&self, _t: f64, at: &Station<R>) -> R {
+    fn kinetic<R: Real>(&self, _t: f64, at: &Station<R>) -> R {
         match self.theory {
             Theory::Morison => R::zero(),
             Theory::Energy => {
@@ -239,6 +240,8 @@ pub struct BluntEnd {
     pub taper: f64,
     /// Whether this is the first end, whose tangent leads inwards.
     pub first: bool,
+    /// The surface of the water, if it has one: above it the end sheds nothing.
+    pub surface: Option<Surface>,
 }
 
 impl BluntEnd {
@@ -252,7 +255,8 @@ impl BluntEnd {
         if !(along.lane(0) < 0.0) {
             return [R::zero(); 3];
         }
-        let per = R::of(1.0 - self.taper) * self.added_mass.mass(R::of(self.diameter)) * inverse;
+        let wet = self.surface.map_or(R::of(1.0), |surface| surface.ball(z, 0.5 * self.diameter).0);
+        let per = wet * R::of(1.0 - self.taper) * self.added_mass.mass(R::of(self.diameter)) * inverse;
         let n: V3<R> = std::array::from_fn(|i| w[i] - along * out[i]);
         let pull = R::of(0.5) * dot(&n, &n) * (-along / speed);
         std::array::from_fn(|i| per * (along * n[i] - pull * out[i]))

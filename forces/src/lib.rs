@@ -4,6 +4,7 @@
 //! is a term (point forces and moments, springs, bushings, latches).
 
 mod added_mass;
+mod buoyancy;
 mod bushing;
 #[cfg(feature = "contact")]
 pub mod contact;
@@ -14,9 +15,12 @@ mod moment;
 mod point;
 mod spec;
 mod spring;
+mod surface;
 mod time;
+mod wetted;
 
 pub use added_mass::{AddedMass, BluntEnd, Theory};
+pub use buoyancy::{Buoyancy, Float};
 pub use bushing::{Bushing, BushingSpec, RotationalSpring, RotationalSpringSpec};
 pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
 pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
@@ -28,4 +32,6 @@ pub use spec::{
     PointMomentSpec, SpringSpec,
 };
 pub use spring::Spring;
+pub use surface::{Surface, Wet};
 pub use time::{TimeFunction, TimeTable};
+pub use wetted::Wetted;

@@ -1,36 +1,23 @@
 //! What a scene says about forces.
 
 use crate::{
-    AddedMass, BluntEnd, Drag, LineLoad, NormalLaw, PerLength, PointForce, PointMoment, Spring,
-    TangentialLaw, Theory, TimeFunction,
+    AddedMass, BluntEnd, Buoyancy, Drag, Float, LineLoad, NormalLaw, PerLength, PointForce, PointMoment,
+    Spring, Surface, TangentialLaw, Theory, TimeFunction, Wetted,
 };
-use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
-use ropewalk_core::{At, ForceSpec, MarkerRef, Part, Per, Spot, V3, Water, quantity, register_spec};
+use ropewalk_core::build::{BuildError, Builder, finite, not_negative};
+use ropewalk_core::{At, Current, ForceSpec, MarkerRef, Part, Per, Spot, V3, Water, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-fn down() -> V3<f64> {
-    [0.0, 0.0, -9.81]
-}
-
-/// Gravity: pulls at the structural mass of every part.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Weight: the scene's `gravity` pulls at the structural mass of every part.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GravitySpec {
-    /// Acceleration [m/s²]; left out, 9.81 down.
-    #[serde(default = "down", deserialize_with = "quantity::vec3::acceleration")]
-    pub g: V3<f64>,
     /// Parts that it pulls at; left out, all.
     #[serde(default)]
     pub on: Vec<String>,
 }
 register_spec!(Force, "gravity", GravitySpec);
-
-impl Default for GravitySpec {
-    fn default() -> Self {
-        GravitySpec { g: down(), on: Vec::new() }
-    }
-}
 
 /// Adds a load in a constant direction to parts, once to each.
 fn dead_loads(
@@ -52,40 +39,78 @@ fn dead_loads(
 #[typetag::serde(name = "gravity")]
 impl ForceSpec for GravitySpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        finite("g", &self.g)?;
-        b.has_gravity(self.g)?;
-        dead_loads(b, "gravity", &self.on, Per::Mass, self.g)
+        dead_loads(b, "gravity", &self.on, Per::Mass, b.gravity())
     }
 }
 
-/// Buoyancy of the displaced volume, everything under water.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Buoyancy of the displaced volume: of all of it, or, where the water has a `level`, of what is under water.
+///
+/// Cables, hulls and chains are cylinders there, other bodies and point masses balls.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BuoyancySpec {
-    /// Acceleration of gravity [m/s²]; left out, 9.81 down.
-    #[serde(default = "down", deserialize_with = "quantity::vec3::acceleration")]
-    pub g: V3<f64>,
     /// Parts that it lifts; left out, all.
     #[serde(default)]
     pub on: Vec<String>,
 }
 register_spec!(Force, "buoyancy", BuoyancySpec);
 
-impl Default for BuoyancySpec {
-    fn default() -> Self {
-        BuoyancySpec { g: down(), on: Vec::new() }
-    }
-}
-
 #[typetag::serde(name = "buoyancy")]
 impl ForceSpec for BuoyancySpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        finite("g", &self.g)?;
-        let density = b.water()?.density;
-        positive("density", density)?;
-        b.has_gravity(self.g)?;
-        dead_loads(b, "buoyancy", &self.on, Per::Volume, self.g.map(|g| -density * g))
+        let (density, surface) = (b.water()?.density, surface(b)?);
+        let lift = b.gravity().map(|g| -density * g);
+        match surface {
+            None => dead_loads(b, "buoyancy", &self.on, Per::Volume, lift),
+            Some(surface) => self.floating(b, lift, surface),
+        }
     }
+}
+
+impl BuoyancySpec {
+    /// Parts that may lie across the surface.
+    fn floating(&self, b: &mut Builder, lift: V3<f64>, surface: Surface) -> Result<(), BuildError> {
+        let mut slender = Vec::new();
+        for part in b.parts(&self.on)? {
+            b.acts_once("buoyancy", &part)?;
+            let (_, part) = part;
+            if part.dead_load(Per::Volume, lift).is_none() {
+                continue;
+            }
+            match part.ball() {
+                Some((held, volume)) => {
+                    let label = format!("{}: buoyancy", part.name());
+                    b.term(Box::new(Float::new(label, held, volume, lift[2], surface)?));
+                }
+                None => slender.push(part.name().to_string()),
+            }
+        }
+        if slender.is_empty() {
+            return Ok(());
+        }
+        let stiff: Vec<bool> =
+            slender.iter().map(|name| b.feeding(name).iter().all(Option::is_none)).collect();
+        b.load_by(&slender, |part| {
+            let couple = slender.iter().zip(&stiff).any(|(name, stiff)| *stiff && name == part.name());
+            Buoyancy { specific_weight: lift[2], surface, couple }
+        })
+    }
+}
+
+/// The surface of the scene's water, if it has one.
+///
+/// # Errors
+/// Gravity doesn't point down: water at rest isn't level then.
+fn surface(b: &Builder) -> Result<Option<Surface>, BuildError> {
+    let Some(level) = b.water()?.level else { return Ok(None) };
+    let g = b.gravity();
+    if g[0] != 0.0 || g[1] != 0.0 || g[2] > 0.0 {
+        let message = format!(
+            "the water has a `level`, but gravity {g:?} m/s² isn't across it: make it point down, along -z"
+        );
+        return Err(BuildError::at("gravity", message));
+    }
+    Ok(Some(Surface { level }))
 }
 
 /// Law of drag across or along a cable.
@@ -108,7 +133,7 @@ fn tangential_coefficient() -> f64 {
     0.01
 }
 
-/// Drag of the water on cables, across and along, each by its own law.
+/// Drag of the water, and of the air if the scene has some, on cables and hulls, across and along, each by its own law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DragSpec {
@@ -157,6 +182,10 @@ impl DragSpec {
     /// # Errors
     /// Numbers that make no sense.
     pub fn law(&self, water: &Water) -> Result<Drag, BuildError> {
+        self.law_in(water.density, water.viscosity, water.current()?)
+    }
+
+    fn law_in(&self, density: f64, viscosity: f64, current: Current) -> Result<Drag, BuildError> {
         not_negative("cn", self.cn)?;
         not_negative("ct", self.ct)?;
         let normal = match self.normal {
@@ -167,8 +196,8 @@ impl DragSpec {
             DragLaw::Constant => TangentialLaw::Quadratic(self.ct),
             DragLaw::ChooCasarella => TangentialLaw::ChooCasarella,
         };
-        let mut drag = Drag::new(water.density, water.viscosity, normal, tangential)?;
-        drag.current = water.current()?;
+        let mut drag = Drag::new(density, viscosity, normal, tangential)?;
+        drag.current = current;
         drag.per = if self.stretched { PerLength::Stretched } else { PerLength::Unstretched };
         drag.blend = self.blend;
         drag.check()?;
@@ -179,8 +208,22 @@ impl DragSpec {
 #[typetag::serde(name = "drag")]
 impl ForceSpec for DragSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let drag = self.law(b.water()?)?;
-        b.load(&self.on, drag)
+        let air = match b.air() {
+            Some(air) => Some(self.law_in(air.density, air.viscosity, air.wind()?)?),
+            None => None,
+        };
+        // a scene in the air alone has no water
+        if let (Some(air), true) = (&air, b.water().is_err()) {
+            return b.load(&self.on, air.clone());
+        }
+        let water = self.law(b.water()?)?;
+        match surface(b)? {
+            None => b.load(&self.on, water),
+            Some(surface) => {
+                b.load(&self.on, Wetted::below(surface, water))?;
+                air.map_or(Ok(()), |air| b.load(&self.on, Wetted::above(surface, air)))
+            }
+        }
     }
 }
 
@@ -225,6 +268,7 @@ impl ForceSpec for AddedMassSpec {
         if !(0.0..=1.0).contains(&self.tail) {
             return Err(BuildError::at("tail", format!("`tail` must be between 0 and 1, not {}", self.tail)));
         }
+        let surface = surface(b)?;
         let water = b.water()?;
         let law = AddedMass::new(water.density, self.ca)?.in_current(water.current()?)?;
         let mut fed = Vec::new();
@@ -243,21 +287,25 @@ impl ForceSpec for AddedMassSpec {
                 }
                 Some(Theory::Morison) => {}
                 _ if feeds => fed.push(part.name().to_string()),
-                _ => self.add_wakes(b, part.as_ref(), &law),
+                _ => self.add_wakes(b, part.as_ref(), &law, surface),
             }
         }
         let theory = self.theory.unwrap_or_default();
-        b.load_by(&self.on, |part| {
+        let law_of = |part: &dyn Part| {
             let morison = fed.iter().any(|name| name == part.name());
             law.clone().by(if morison { Theory::Morison } else { theory })
-        })
+        };
+        match surface {
+            None => b.load_by(&self.on, law_of),
+            Some(surface) => b.load_by(&self.on, |part| Wetted::below(surface, law_of(part))),
+        }
     }
 }
 
 impl AddedMassSpec {
     /// Water leaves at the ends of a cable or a chain that nothing holds. Hulls of single bodies keep what it has, as
     /// Kirchhoff's equations have it.
-    fn add_wakes(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass) {
+    fn add_wakes(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass, surface: Option<Surface>) {
         let Some(stations) = part.stations().filter(|_| part.kind() != "rigid_body") else { return };
         let (q, v) = (b.coordinates().to_vec(), vec![0.0; b.coordinates().len()]);
         let at = At { t: 0.0, q: &q, v: &v, a: &v, modes: &[], relaxed: None };
@@ -270,7 +318,7 @@ impl AddedMassSpec {
             }
             // a link's axis leads along the chain
             let axis = [1.0, 0.0, 0.0];
-            let end = BluntEnd { added_mass: law.clone(), diameter, taper: self.tail, first };
+            let end = BluntEnd { added_mass: law.clone(), diameter, taper: self.tail, first, surface };
             if let Some(term) = end.on(part.name(), b.nodes(), &marker, axis) {
                 b.term(term);
             }

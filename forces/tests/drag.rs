@@ -23,6 +23,7 @@ fn station(r: &mut Random, speed: f64) -> Station<f64> {
         curve_v: [0.0; 3],
         s: 0.5,
         weight: 0.1,
+        before: 0.04,
         diameter: 0.023,
         area: 4e-4,
     }

@@ -79,13 +79,11 @@ impl Pendulum {
         scene
             .element(cable.models(m.longitudinal, m.transverse, m.integration))
             .constraint(SphericalSpec::pin("pin", "cable.start"))
-            .force(GravitySpec { g, on: Vec::new() });
+            .set_gravity(g)
+            .force(GravitySpec::default());
         if self.water {
             scene.water = Some(Water::default());
-            scene
-                .force(BuoyancySpec { g, on: Vec::new() })
-                .force(DragSpec::default())
-                .force(AddedMassSpec::default());
+            scene.force(BuoyancySpec::default()).force(DragSpec::default()).force(AddedMassSpec::default());
         }
         scene
     }
@@ -108,7 +106,8 @@ impl Links {
         scene
             .element(chain)
             .constraint(SphericalSpec::pin("pin", "chain.start"))
-            .force(GravitySpec { g: [0.0, -9.81, 0.0], on: Vec::new() });
+            .set_gravity([0.0, -9.81, 0.0])
+            .force(GravitySpec::default());
         scene
     }
 }

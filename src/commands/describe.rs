@@ -6,15 +6,16 @@ use crate::read::SceneFile;
 use crate::scene::{Document, Fault, Format, Kind, Parameter, Value, did_you_mean, quoted};
 use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::StaticsOptions;
-use ropewalk_core::{Run, SpecInfo, Water, registered, schemars};
+use ropewalk_core::{Air, Run, SpecInfo, Water, registered, schemars};
 use ropewalk_models::Bundled;
 use std::path::{Path, is_separator};
 
 pub(super) type MakeSchema = fn() -> schemars::Schema;
 
 /// Sections of a scene file that are no lists of parts.
-pub(super) const SECTIONS: [(&str, MakeSchema); 4] = [
+pub(super) const SECTIONS: [(&str, MakeSchema); 5] = [
     ("water", || schemars::schema_for!(Water)),
+    ("air", || schemars::schema_for!(Air)),
     ("run", || schemars::schema_for!(Run)),
     ("solver", || schemars::schema_for!(Options)),
     ("statics", || schemars::schema_for!(StaticsOptions)),

@@ -181,7 +181,7 @@ pub(super) fn absent(scene: &Scene) -> (Vec<Candidate>, Vec<Hint>) {
     let mut hint = |name: &str, text: String| hints.push((name.to_string(), text));
 
     for (kind, note) in [
-        ("gravity", "9.81 m/s^2 down"),
+        ("gravity", "the scene's gravity"),
         ("buoyancy", "of the displaced volume"),
         ("drag", "constant law, cn = 1.2, ct = 0.01"),
         ("added_mass", "ca = 1"),

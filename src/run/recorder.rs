@@ -3,6 +3,7 @@
 use super::checkpoint::{Saved, Saver};
 use super::shapes::{Line, Shape};
 use super::start::Ending;
+use super::surfacing::Surfacing;
 use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
@@ -50,6 +51,8 @@ pub(crate) struct Recorder<'a> {
     pub shapes: Vec<Shape>,
     /// When shapes are still to be kept, last first.
     pub(super) due: Vec<f64>,
+    /// Whether to look for what leaves water without a surface.
+    surfacing: Option<Surfacing>,
     /// Why it stopped the run.
     pub stop: Option<Ending>,
     /// What happened and when.
@@ -140,6 +143,7 @@ impl<'a> Recorder<'a> {
             deadline: None,
             shapes: Vec::new(),
             due: due.collect(),
+            surfacing: Surfacing::of(scene),
             stop: None,
             events: Vec::new(),
             remeshed: Vec::new(),
@@ -307,6 +311,8 @@ impl Observer for Recorder<'_> {
         self.remeshed.push(report.clone());
     }
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
+        let risen = self.surfacing.as_mut().map(|s| s.look(sample.model, &sample.at));
+        risen.into_iter().flatten().for_each(|text| self.warn(&text));
         let recorded = self.record(sample);
         self.go_on(recorded)
     }

@@ -128,7 +128,7 @@ impl Problem {
         };
         let rod = rod.with_point("end", [LENGTH, 0.0, 0.0]);
         let mut scene = Scene::new();
-        scene.element(rod).force(GravitySpec { g: G, on: Vec::new() });
+        scene.element(rod).set_gravity(G).force(GravitySpec::default());
         match self {
             Problem::Revolute => scene.constraint(hinge("rod")),
             Problem::Spherical => scene.constraint(SphericalSpec::pin("joint", "rod")),
@@ -159,7 +159,7 @@ impl Problem {
         let rod = CableSpec::straight("rod", [0.0; 3], [LENGTH, 0.0, 0.0], elements, section);
         let (l, t) = (LongitudinalModel::L4, TransverseModel::T3);
         let mut scene = Scene::new();
-        scene.element(rod.models(l, t, Integration::Full)).force(GravitySpec { g: G, on: Vec::new() });
+        scene.element(rod.models(l, t, Integration::Full)).set_gravity(G).force(GravitySpec::default());
         if self == Problem::Revolute {
             scene.constraint(hinge("rod.start"));
         } else {

@@ -191,7 +191,8 @@ fn fall(models: CableModel, n: usize) -> Result<(V3<f64>, f64), Error> {
     scene
         .element(cable(models, n, ROD, section))
         .constraint(SphericalSpec::pin("hinge", "rod.start"))
-        .force(GravitySpec { g: [0.0, -9.81, 0.0], on: Vec::new() });
+        .set_gravity([0.0, -9.81, 0.0])
+        .force(GravitySpec::default());
     let mut options = Options { newton_tolerance: 1e-2, ..Options::default() };
     options.stepping = ropewalk_core::integrator::Stepping::Controlled { tolerance: 1e-6 };
     let mut s = Simulation::new(scene.build()?, &options, FALL)?;

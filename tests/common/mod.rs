@@ -78,7 +78,8 @@ pub fn pendulum(n: usize, length: f64, section: Section, (l, t, rule): Models, g
     scene
         .element(cable.models(l, t, rule))
         .constraint(SphericalSpec::pin("pin", "cable.start"))
-        .force(GravitySpec { g: [0.0, -g, 0.0], on: vec![] });
+        .set_gravity([0.0, -g, 0.0])
+        .force(GravitySpec::default());
     scene
 }
 

@@ -233,10 +233,6 @@ pub fn close(scene: &mut Scene, redundant: bool, name: &str, marker: &str, to: &
     }
 }
 
-pub fn gravity(g: V3<f64>) -> GravitySpec {
-    GravitySpec { g, on: vec![] }
-}
-
 /// Angles over time that some cases prescribe.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub enum Angle {
@@ -326,7 +322,7 @@ pub fn chain(n: usize, l: f64, mass: f64) -> Scene {
         let before = format!("rod{}.end", k - 1);
         scene.constraint(hinge(&format!("hinge{k}"), &format!("rod{k}"), before.as_str()));
     }
-    scene.force(gravity([0.0, -G, 0.0]));
+    scene.set_gravity([0.0, -G, 0.0]).force(GravitySpec::default());
     scene
 }
 
@@ -336,7 +332,8 @@ pub fn rod_pendulum(mass: f64, length: f64, angle: f64) -> Scene {
     scene
         .element(rod("rod", [0.0; 3], [length * angle.sin(), -length * angle.cos(), 0.0], mass))
         .constraint(hinge("pivot", "rod", [0.0; 3]))
-        .force(gravity([0.0, -G, 0.0]));
+        .set_gravity([0.0, -G, 0.0])
+        .force(GravitySpec::default());
     scene
 }
 
@@ -362,7 +359,7 @@ pub fn four_bars(n: usize, redundant: bool) -> Scene {
         let (coupler, next) = (format!("coupler{k}.end"), format!("crank{}.end", k + 1));
         close(&mut scene, redundant, &format!("right{k}"), &coupler, &next);
     }
-    scene.force(gravity([0.0, -G, 0.0]));
+    scene.set_gravity([0.0, -G, 0.0]).force(GravitySpec::default());
     scene
 }
 
@@ -437,7 +434,7 @@ pub fn slider_crank(axial: f64, stand: &Stand, swapped: bool) -> Scene {
         }
         scene.constraint(revolute).constraint(ball).constraint(universal).constraint(prismatic);
     }
-    scene.force(gravity(stand.vector([0.0, 0.0, -G])));
+    scene.set_gravity(stand.vector([0.0, 0.0, -G])).force(GravitySpec::default());
     scene
 }
 
@@ -590,6 +587,6 @@ pub fn door(angle: f64, hinges: usize) -> (Scene, [V3<f64>; 3]) {
             axis: axes[2],
         });
     }
-    scene.force(gravity([0.0, 0.0, -G]));
+    scene.set_gravity([0.0, 0.0, -G]).force(GravitySpec::default());
     (scene, axes)
 }

@@ -3,11 +3,11 @@
 
 use super::{Gives, Law, Load, Station};
 use crate::lane::{LaneTask, Real, V3, Width, run};
-use crate::term::Power;
+use crate::term::{Energy, Power};
 use std::cell::RefCell;
 
 /// How many numbers make a station, and a load.
-pub(super) const STATION: usize = 22;
+pub(super) const STATION: usize = 23;
 pub(super) const LOAD: usize = 78;
 /// Where the derivatives stand in a load.
 const D_X: usize = 3;
@@ -64,7 +64,7 @@ impl<R: Real> Station<R> {
         put(row, 9, &self.slope);
         put(row, 12, &self.curve_v);
         put(row, 15, &self.slope_rate);
-        put(row, 18, &[self.s, self.weight, self.diameter, self.area]);
+        put(row, 18, &[self.s, self.weight, self.before, self.diameter, self.area]);
     }
     #[inline(always)]
     pub(super) fn read(row: &[f64]) -> Self {
@@ -77,8 +77,9 @@ impl<R: Real> Station<R> {
             slope_rate: vector(row, 15),
             s: number(row, 18),
             weight: number(row, 19),
-            diameter: number(row, 20),
-            area: number(row, 21),
+            before: number(row, 20),
+            diameter: number(row, 21),
+            area: number(row, 22),
         }
     }
 }
@@ -143,8 +144,8 @@ pub(super) trait ErasedLaw: Send + Sync {
     fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange);
     /// The power of the loads in the first `lanes` lanes of a batch.
     fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power;
-    /// The energy of the stations in the first `lanes` lanes of a batch.
-    fn energy(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> f64;
+    /// The kinetic and potential energy of the stations in the first `lanes` lanes of a batch.
+    fn energy(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Energy;
     fn coefficient(&self, at: &Station<f64>) -> Option<f64>;
     fn timed(&self) -> bool;
     fn reach(&self, t: f64, h: f64) -> Option<f64>;
@@ -215,8 +216,8 @@ impl<L: Law> ErasedLaw for L {
         run(width, PowerOf { law: self, t, x, lanes, out: &mut out });
         out
     }
-    fn energy(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> f64 {
-        let mut out = 0.0;
+    fn energy(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Energy {
+        let mut out = Energy::default();
         run(width, EnergyOf { law: self, t, x, lanes, out: &mut out });
         out
     }
@@ -260,17 +261,21 @@ struct EnergyOf<'a, L> {
     t: f64,
     x: &'a Exchange,
     lanes: usize,
-    out: &'a mut f64,
+    out: &'a mut Energy,
 }
 
 impl<L: Law> LaneTask for EnergyOf<'_, L> {
     #[inline(always)]
     fn go<R: Real>(self) {
-        let mut sum = R::zero();
+        let (mut kinetic, mut potential) = (R::zero(), R::zero());
         for row in self.x.stations.chunks_exact(STATION * R::LANES) {
             let at = Station::<R>::read(row);
-            sum = at.weight.fma(self.law.energy(self.t, &at), sum);
+            kinetic = at.weight.fma(self.law.kinetic(self.t, &at), kinetic);
+            potential = at.weight.fma(self.law.potential(self.t, &at), potential);
         }
-        (0..self.lanes).for_each(|l| *self.out += sum.lane(l));
+        for l in 0..self.lanes {
+            self.out.kinetic += kinetic.lane(l);
+            self.out.potential += potential.lane(l);
+        }
     }
 }

@@ -7,7 +7,7 @@ use crate::node::{Node, NodeId};
 use crate::pattern::Pattern;
 use crate::pool::{Batch, Blocks, Local, Seat, Share};
 use crate::state::At;
-use crate::term::{Assembly, Power};
+use crate::term::{Assembly, Energy, Power};
 
 /// All stations of one part, element by element.
 pub struct StationPool<E, const Q: usize, const N: usize, const S: usize> {
@@ -92,13 +92,13 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     }
 }
 
-/// Power and kinetic energy of all laws.
+/// Power and energy of all laws.
 struct WorkAll<'a, E, const Q: usize, const N: usize, const S: usize> {
     pool: &'a StationPool<E, Q, N, S>,
     laws: &'a Laws,
     at: &'a At<'a>,
     power: Option<&'a mut Power>,
-    energy: Option<&'a mut f64>,
+    energy: Option<&'a mut Energy>,
     exchange: &'a mut Exchange,
 }
 
@@ -164,9 +164,9 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         });
         total
     }
-    fn energy(&self, laws: &Laws, at: &At<'_>) -> f64 {
-        let mut total = 0.0;
-        // most laws move nothing besides the body
+    fn energy(&self, laws: &Laws, at: &At<'_>) -> Energy {
+        let mut total = Energy::default();
+        // most laws store nothing
         if laws.0.iter().any(|law| law.gives().couple) {
             EXCHANGE.with_borrow_mut(|exchange| {
                 let energy = Some(&mut total);

@@ -19,6 +19,17 @@ pub struct CableStations<R = f64> {
     pub area: R,
 }
 
+/// How much of its cell lies before each station, in parts of the element: cells are as long as the weights.
+pub(super) const BEFORE: [f64; 4] = {
+    let (mut before, mut start, mut k) = ([0.0; 4], 0.0, 0);
+    while k < 4 {
+        before[k] = Gauss4::POINTS[k].xi - start;
+        start += Gauss4::POINTS[k].w;
+        k += 1;
+    }
+    before
+};
+
 /// `Σ S_i e_i`
 #[inline(always)]
 fn interpolate<R: Real>(s: &[R; 4], e: &[R; 12]) -> V3<R> {
@@ -59,6 +70,7 @@ impl StationElement<12, 12, 4> for CableStations {
             curve_v: v,
             s: R::of(at.xi).fma(p.l, p.s0),
             weight: R::of(at.w) * p.l,
+            before: R::of(BEFORE[k]) * p.l,
             diameter: p.diameter,
             area: p.area,
         }

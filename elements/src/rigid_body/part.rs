@@ -103,6 +103,10 @@ impl Part for BodyPart {
             .collect();
         Some(Box::new(DeadLoad::new(label, entries).ok()?))
     }
+    fn ball(&self) -> Option<(Held, f64)> {
+        let held = Held::Beside { q: self.q, v: self.v, arm: self.centre_of_volume };
+        self.hull.is_none().then_some((held, self.volume))
+    }
     fn point(&self, _: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         let swing = times(&self.rotation(at), &cross(&three(at.v, self.v + 3), &self.origin));
         let v = three(at.v, self.v);

@@ -53,7 +53,8 @@ pub struct RigidBodySpec {
     /// Displaced volume, for buoyancy [m³].
     #[serde(default, deserialize_with = "quantity::volume")]
     pub volume: f64,
-    /// Centre of the displaced volume [m]; left out, the centre of mass.
+    /// Centre of the displaced volume [m]; left out, the centre of mass. Where the water has a `level`, the volume of a body
+    /// with a hull lies along the hull.
     #[serde(default, deserialize_with = "place")]
     pub centre_of_volume: Option<V3<f64>>,
     /// Cylinder along which drag and added mass act; left out, they don't.
@@ -118,6 +119,19 @@ impl RigidBodySpec {
     pub fn with_point(mut self, name: &str, at: V3<f64>) -> Self {
         self.points.insert(name.into(), Point(at));
         self
+    }
+
+    /// Across a surface the buoyancy of a hull is that of its cylinder.
+    fn check_floating(&self, b: &Builder, hull: &HullSpec, length: f64) -> Result<(), BuildError> {
+        let has_surface = b.water().is_ok_and(|water| water.level.is_some());
+        let Some(centre) = self.centre_of_volume.filter(|_| has_surface) else { return Ok(()) };
+        let off: f64 = (0..3).map(|i| (centre[i] - 0.5 * (hull.from[i] + hull.to[i])).powi(2)).sum();
+        if off.sqrt() <= 1e-6 * length {
+            return Ok(());
+        }
+        let message = "the water has a `level`, and then buoyancy is that of the hull: leave `centre_of_volume` out, or put \
+                       it in the middle of the hull";
+        Err(BuildError::at("centre_of_volume", message))
     }
 
     fn properties(&self) -> Result<Inertia, BuildError> {
@@ -192,6 +206,7 @@ impl ElementSpec for RigidBodySpec {
             let axis = from(hull.from, hull.to);
             let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
             positive("length of the hull", length).map_err(|e| e.of("hull"))?;
+            self.check_floating(b, hull, length)?;
             let area = if self.volume > 0.0 {
                 self.volume / length
             } else {

@@ -206,6 +206,7 @@ impl Unwinding {
             curve_v: v,
             s: 0.0,
             weight: 1.0,
+            before: 0.5,
             diameter: d,
             area,
         }

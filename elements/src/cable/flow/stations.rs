@@ -7,6 +7,7 @@ use super::rule::close;
 use super::transport::{Row, Transport, nodal, row_times};
 use crate::cable::quadrature::{Gauss4, Point, Quadrature};
 use crate::cable::shape::{hermite, hermite_slope};
+use crate::cable::stations::BEFORE;
 use ropewalk_core::{Batch, Dual, Gives, Load, Local, Real, Share, Station, StationElement, V3, Weights};
 
 /// The stations of one element of a flowing cable. Loads are per unstretched length and see the velocity of the
@@ -125,6 +126,7 @@ macro_rules! stations {
                     curve_v,
                     s: R::of(at.xi).fma(g.l, g.p),
                     weight: R::of(at.w) * g.l,
+                    before: R::of(BEFORE[k]) * g.l,
                     diameter: p.diameter,
                     area: p.area,
                 }

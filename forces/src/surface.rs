@@ -1,0 +1,272 @@
+//! The surface of water at rest, and how it cuts slender bodies and balls.
+//!
+//! A slender body is a stack of discs across its axis, of radius `r`. A disc whose middle lies at depth `s` is wet by
+//! `φ(s/w)` of its area, `w = r √(1 - t_z²)` being half of its height; a station's cell from depth `s_a` to `s_b` by the
+//! mean of that, which its integrals give exactly: `W = (Y(s_a) - Y(s_b)) / (s_a - s_b)` with `∂²Y/∂s² = φ`. `ρ g A W` is
+//! the potential of buoyancy per length: its share `∂W/∂s` lifts, and what `W` changes by with the slope is the couple
+//! of a tilted waterplane.
+
+use ropewalk_core::{Real, Station, V3, dot};
+use std::f64::consts::PI;
+
+/// The surface of water at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Its height [m].
+    pub level: f64,
+}
+
+/// How a station's cell lies in the water.
+#[derive(Clone, Copy, Debug)]
+pub struct Wet<R> {
+    /// `W`, the mean over the cell of the depth of what is wet [m].
+    pub depth: R,
+    /// `∂W/∂r'` [m].
+    pub depth_by_slope: V3<R>,
+    /// `∂²W/∂r'²` [m].
+    pub depth_by_slopes: [V3<R>; 3],
+    /// Share of its volume that is wet.
+    pub share: R,
+    /// By height [1/m].
+    pub share_by_z: R,
+    /// By slope.
+    pub share_by_slope: V3<R>,
+}
+
+/// An upright disc has no height at all; this part of its radius lets the surface pass it smoothly.
+const UPRIGHT: f64 = 0.01;
+/// Cells whose ends differ in depth by less, in parts of `w`, are integrated by two points: the difference of the integrals
+/// would be rounding.
+const LEVEL: f64 = 0.02;
+/// As many lanes as the widest carrier has.
+const MOST: usize = 8;
+
+impl Surface {
+    /// How a station's cell lies in the water.
+    #[inline(always)]
+    pub fn wet<R: Real>(&self, at: &Station<R>) -> Wet<R> {
+        let mut cells = [Wet::dry(); MOST];
+        for (lane, cell) in cells.iter_mut().enumerate().take(R::LANES) {
+            let radius = match at.area.lane(lane) {
+                area if area > 0.0 => (area / PI).sqrt(),
+                _ => 0.5 * at.diameter.lane(lane),
+            };
+            let before = at.before.lane(lane);
+            *cell = Cell {
+                s: self.level - at.x[2].lane(lane),
+                slope: [at.slope[0].lane(lane), at.slope[1].lane(lane), at.slope[2].lane(lane)],
+                before,
+                behind: at.weight.lane(lane) - before,
+                radius,
+            }
+            .wet();
+        }
+        let vector = |of: &dyn Fn(&Wet<f64>) -> V3<f64>| -> V3<R> {
+            [0, 1, 2].map(|i| R::each(|lane| of(&cells[lane])[i]))
+        };
+        Wet {
+            depth: R::each(|lane| cells[lane].depth),
+            depth_by_slope: vector(&|c| c.depth_by_slope),
+            depth_by_slopes: [0, 1, 2].map(|i| vector(&|c| c.depth_by_slopes[i])),
+            share: R::each(|lane| cells[lane].share),
+            share_by_z: R::each(|lane| cells[lane].share_by_z),
+            share_by_slope: vector(&|c| c.share_by_slope),
+        }
+    }
+
+    /// Share of a ball's volume that is wet, and what it changes by with height [1/m]; `z` is its middle.
+    pub fn ball<R: Real>(&self, z: R, radius: f64) -> (R, R) {
+        let (one, u) = (R::of(1.0), (R::of(self.level) - z) * R::of(1.0 / radius));
+        let u = u.if_gt(one, one, u).if_gt(-one, u.if_gt(one, one, u), -one);
+        // ½ + ¾ u - ¼ u³
+        let share = u.fma(u * u * R::of(-0.25), u.fma(R::of(0.75), R::of(0.5)));
+        (share, (u * u - one) * R::of(0.75 / radius))
+    }
+}
+
+impl Wet<f64> {
+    const fn dry() -> Self {
+        Wet {
+            depth: 0.0,
+            depth_by_slope: [0.0; 3],
+            depth_by_slopes: [[0.0; 3]; 3],
+            share: 0.0,
+            share_by_z: 0.0,
+            share_by_slope: [0.0; 3],
+        }
+    }
+}
+
+/// The cell of a station: its axis at depth `s` there, and how far it reaches to either side.
+struct Cell {
+    s: f64,
+    slope: V3<f64>,
+    before: f64,
+    behind: f64,
+    radius: f64,
+}
+
+impl Cell {
+    fn wet(&self) -> Wet<f64> {
+        let rise = self.slope[2];
+        let ends = [self.s + self.before * rise, self.s - self.behind * rise];
+        if ends[0].max(ends[1]) <= -self.radius {
+            return Wet::dry();
+        }
+        if ends[0].min(ends[1]) >= self.radius {
+            let lever = 0.5 * (self.before - self.behind);
+            return Wet {
+                depth: self.s + lever * rise,
+                depth_by_slope: [0.0, 0.0, lever],
+                share: 1.0,
+                ..Wet::dry()
+            };
+        }
+        self.cut(ends)
+    }
+
+    /// A cell that the surface cuts.
+    fn cut(&self, ends: [f64; 2]) -> Wet<f64> {
+        let length = dot(&self.slope, &self.slope).sqrt();
+        let t = self.slope.map(|x| x / length);
+        let (r2, kappa) = (self.radius * self.radius, 1.0 - UPRIGHT * UPRIGHT);
+        let w = (r2 * (1.0 - kappa * t[2] * t[2])).sqrt();
+        let m = Mean::new(ends, w);
+        // by the depth of the axis and its slope: the ends are s + before r'_z and s - behind r'_z
+        let (a, b) = (self.before, -self.behind);
+        let by_rise = a * m.a + b * m.b;
+        let (s_s, s_rise) = (m.aa + 2.0 * m.ab + m.bb, a * m.aa + (a + b) * m.ab + b * m.bb);
+        let rise_rise = a * a * m.aa + 2.0 * a * b * m.ab + b * b * m.bb;
+        let (s_w, rise_w) = (m.aw + m.bw, a * m.aw + b * m.bw);
+        // by the inclination τ = t_z: ∂τ/∂r' = (e_z - τ t)/|r'|
+        let tau = t[2];
+        let (w1, w2) = (-r2 * kappa * tau / w, -r2 * kappa / w - (r2 * kappa * tau).powi(2) / w.powi(3));
+        let turn: V3<f64> = std::array::from_fn(|i| (up(i) - tau * t[i]) / length);
+        let dw = turn.map(|x| w1 * x);
+        let second = |i: usize, j: usize| {
+            let across = f64::from(i == j) - t[i] * t[j];
+            let ddtau = -(turn[i] * t[j] + t[i] * turn[j] + tau * across / length) / length;
+            let ddw = w2 * turn[i] * turn[j] + w1 * ddtau;
+            rise_rise * up(i) * up(j)
+                + rise_w * (up(i) * dw[j] + dw[i] * up(j))
+                + m.ww * dw[i] * dw[j]
+                + m.w * ddw
+        };
+        Wet {
+            depth: m.value,
+            depth_by_slope: std::array::from_fn(|i| by_rise * up(i) + m.w * dw[i]),
+            depth_by_slopes: std::array::from_fn(|i| std::array::from_fn(|j| second(i, j))),
+            share: m.a + m.b,
+            share_by_z: -s_s,
+            share_by_slope: std::array::from_fn(|i| s_rise * up(i) + s_w * dw[i]),
+        }
+    }
+}
+
+/// `e_z`
+fn up(i: usize) -> f64 {
+    f64::from(i == 2)
+}
+
+/// The mean depth `W(s_a, s_b, w)` of what is wet, with its derivatives by the depths `a` and `b` of the ends and by `w`.
+struct Mean {
+    value: f64,
+    a: f64,
+    b: f64,
+    w: f64,
+    aa: f64,
+    ab: f64,
+    bb: f64,
+    aw: f64,
+    bw: f64,
+    ww: f64,
+}
+
+impl Mean {
+    fn new([a, b]: [f64; 2], w: f64) -> Self {
+        let d = a - b;
+        if d.abs() < LEVEL * w { Mean::by_points(a, b, w) } else { Mean::by_ends(a, b, w) }
+    }
+
+    fn by_ends(a: f64, b: f64, w: f64) -> Self {
+        let ([p, q], d) = ([Disc::new(a, w), Disc::new(b, w)], a - b);
+        let value = (p.y - q.y) / d;
+        let (by_a, by_b, by_w) = ((p.s - value) / d, (value - q.s) / d, (p.w - q.w) / d);
+        Mean {
+            value,
+            a: by_a,
+            b: by_b,
+            w: by_w,
+            aa: (p.ss - 2.0 * by_a) / d,
+            ab: (by_a - by_b) / d,
+            bb: (2.0 * by_b - q.ss) / d,
+            aw: (p.sw - by_w) / d,
+            bw: (by_w - q.sw) / d,
+            ww: (p.ww - q.ww) / d,
+        }
+    }
+
+    /// Gauss' rule of two points.
+    fn by_points(a: f64, b: f64, w: f64) -> Self {
+        let mut m =
+            Mean { value: 0.0, a: 0.0, b: 0.0, w: 0.0, aa: 0.0, ab: 0.0, bb: 0.0, aw: 0.0, bw: 0.0, ww: 0.0 };
+        for g in [0.211_324_865_405_187_1, 0.788_675_134_594_812_9] {
+            let (near, disc) = (1.0 - g, Disc::new(near_depth(a, b, g), w));
+            m.value += 0.5 * disc.s;
+            m.a += 0.5 * near * disc.ss;
+            m.b += 0.5 * g * disc.ss;
+            m.w += 0.5 * disc.sw;
+            m.aa += 0.5 * near * near * disc.sss;
+            m.ab += 0.5 * near * g * disc.sss;
+            m.bb += 0.5 * g * g * disc.sss;
+            m.aw -= 0.5 * near * disc.u * disc.sss;
+            m.bw -= 0.5 * g * disc.u * disc.sss;
+            m.ww += 0.5 * disc.u * disc.u * disc.sss;
+        }
+        m
+    }
+}
+
+fn near_depth(a: f64, b: f64, g: f64) -> f64 {
+    a + g * (b - a)
+}
+
+/// `Y(s, w) = w² X(s/w)`, whose second derivative by the depth `s` is the wet share `φ(s/w)` of a disc, and its derivatives.
+struct Disc {
+    u: f64,
+    y: f64,
+    s: f64,
+    w: f64,
+    ss: f64,
+    sw: f64,
+    ww: f64,
+    sss: f64,
+}
+
+impl Disc {
+    fn new(s: f64, w: f64) -> Self {
+        let u = s / w;
+        if u <= -1.0 {
+            return Disc { u, y: 0.0, s: 0.0, w: 0.0, ss: 0.0, sw: 0.0, ww: 0.0, sss: 0.0 };
+        }
+        if u >= 1.0 {
+            let y = 0.5 * s * s + 0.125 * w * w;
+            return Disc { u, y, s, w: 0.25 * w, ss: 1.0, sw: 0.0, ww: 0.25, sss: 0.0 };
+        }
+        let (angle, c) = ((-u).acos(), (1.0 - u * u).sqrt());
+        let share = (angle + u * c) / PI;
+        let once = (u * angle + c - c.powi(3) / 3.0) / PI;
+        let twice = 1.0 / 16.0
+            + (0.5 * u * u * angle + 0.125 * u.asin() + u * c * (0.75 - (5.0 - 2.0 * u * u) / 24.0)) / PI;
+        Disc {
+            u,
+            y: w * w * twice,
+            s: w * once,
+            w: w * (2.0 * twice - u * once),
+            ss: share,
+            sw: once - u * share,
+            ww: 2.0 * twice - 2.0 * u * once + u * u * share,
+            sss: 2.0 * c / (PI * w),
+        }
+    }
+}

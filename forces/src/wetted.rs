@@ -1,0 +1,128 @@
+//! Loads of water on bodies that may lie across its surface.
+
+use crate::Surface;
+use ropewalk_core::{Gives, Law, Load, Power, Real, Station, V3, dot};
+
+/// A law of a fluid, by the share of each station that is in it: of water below a surface, or of air above.
+///
+/// A body that goes through the surface moves no other water than before: added mass that it meets has its motion already, and
+/// what it leaves takes that along. Slamming isn't part of it, and the energy of that water counts as supplied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wetted<L> {
+    /// The law of the fluid.
+    pub law: L,
+    /// The surface.
+    pub surface: Surface,
+    /// Whether the fluid is the air above it.
+    pub above: bool,
+}
+
+impl<L: Law> Wetted<L> {
+    /// A law of water below a surface.
+    pub fn below(surface: Surface, law: L) -> Self {
+        Wetted { law, surface, above: false }
+    }
+
+    /// A law of air above a surface.
+    pub fn above(surface: Surface, law: L) -> Self {
+        Wetted { law, surface, above: true }
+    }
+
+    /// The share in the fluid, and what it changes by with height and slope.
+    #[inline(always)]
+    fn share<R: Real>(&self, at: &Station<R>) -> (R, R, V3<R>) {
+        let wet = self.surface.wet(at);
+        if self.above {
+            (R::of(1.0) - wet.share, -wet.share_by_z, wet.share_by_slope.map(|x| -x))
+        } else {
+            (wet.share, wet.share_by_z, wet.share_by_slope)
+        }
+    }
+
+    #[inline(always)]
+    fn whole<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>) -> Load<R> {
+        let mut whole = Load::zero();
+        self.law.load::<R, TANGENT>(t, at, &mut whole);
+        whole
+    }
+}
+
+#[inline(always)]
+fn add_scaled<R: Real>(share: R, whole: &[V3<R>; 3], out: &mut [V3<R>; 3]) {
+    for i in 0..3 {
+        for j in 0..3 {
+            out[i][j] = share.fma(whole[i][j], out[i][j]);
+        }
+    }
+}
+
+impl<L: Law> Law for Wetted<L> {
+    const NEEDS_DIAMETER: bool = L::NEEDS_DIAMETER;
+    fn label(&self) -> String {
+        if self.above { format!("{} in air", self.law.label()) } else { self.law.label() }
+    }
+    fn timed(&self) -> bool {
+        self.law.timed()
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.law.reach(t, h)
+    }
+    fn gives(&self) -> Gives {
+        Gives { x: true, slope: true, ..self.law.gives() }
+    }
+
+    #[inline(always)]
+    fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
+        let (share, by_z, by_slope) = self.share(at);
+        let whole = self.whole::<R, TANGENT>(t, at);
+        for i in 0..3 {
+            out.f[i] = share.fma(whole.f[i], out.f[i]);
+            out.g[i] = share.fma(whole.g[i], out.g[i]);
+        }
+        if !TANGENT {
+            return;
+        }
+        add_scaled(share, &whole.d_x, &mut out.d_x);
+        add_scaled(share, &whole.d_slope, &mut out.d_slope);
+        add_scaled(share, &whole.d_v, &mut out.d_v);
+        add_scaled(share, &whole.d_a, &mut out.d_a);
+        add_scaled(share, &whole.d_rate, &mut out.d_rate);
+        add_scaled(share, &whole.g_x, &mut out.g_x);
+        add_scaled(share, &whole.g_slope, &mut out.g_slope);
+        add_scaled(share, &whole.g_v, &mut out.g_v);
+        for i in 0..3 {
+            out.d_x[i][2] += whole.f[i] * by_z;
+            out.g_x[i][2] += whole.g[i] * by_z;
+            for j in 0..3 {
+                out.d_slope[i][j] += whole.f[i] * by_slope[j];
+                out.g_slope[i][j] += whole.g[i] * by_slope[j];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn power<R: Real>(&self, t: f64, at: &Station<R>, _: &Load<R>) -> Power<R> {
+        let (share, by_z, by_slope) = self.share(at);
+        let power = self.law.power(t, at, &self.whole::<R, false>(t, at));
+        let met = by_z.fma(at.v[2], dot(&by_slope, &at.slope_rate)) * self.law.kinetic(t, at);
+        Power {
+            dissipated: share * power.dissipated,
+            supplied: share.fma(power.supplied, met),
+            carried: share * power.carried,
+        }
+    }
+
+    #[inline(always)]
+    fn kinetic<R: Real>(&self, t: f64, at: &Station<R>) -> R {
+        self.share(at).0 * self.law.kinetic(t, at)
+    }
+
+    #[inline(always)]
+    fn potential<R: Real>(&self, t: f64, at: &Station<R>) -> R {
+        self.share(at).0 * self.law.potential(t, at)
+    }
+
+    fn coefficient(&self, at: &Station<f64>) -> Option<f64> {
+        self.law.coefficient(at).filter(|_| self.share(at).0 > 0.5)
+    }
+}
