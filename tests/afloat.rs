@@ -126,7 +126,9 @@ fn an_upright_cylinder_floats_as_in_the_books() {
     let heave = (1000.0 * 9.81 * area / SPAR).sqrt() / TAU;
     let (kb, bm, kg) = (0.5 * draught, (PI / 4.0 * 0.25f64.powi(4)) / (area * draught), 1.2);
     let pitch = (SPAR * 9.81 * (kb + bm - kg) / 300.0).sqrt() / TAU;
-    let all = frequencies(&spar(0.0, "").replace("position = [0, 0, 0]", &format!("position = [0, 0, {}]", com + 0.8)));
+    let all = frequencies(
+        &spar(0.0, "").replace("position = [0, 0, 0]", &format!("position = [0, 0, {}]", com + 0.8)),
+    );
     near(&all, heave, 1e-6, "heave");
     near(&all, pitch, 1e-4, "pitch");
 }
@@ -268,9 +270,56 @@ fn wind_blows_above_the_surface_alone() {
     let per_metre = |density: f64, speed: f64| 0.5 * density * 0.2 * 1.1 * speed * speed;
     let dry = mast("[air]\ndensity = 1.2\nwind = [20, 0, 0]");
     assert!((dry - 4.0 * per_metre(1.2, 20.0)).abs() < 1e-3 * dry, "{dry}");
-    let both = mast("[air]\ndensity = 1.2\nwind = [20, 0, 0]\n[water]\ndensity = 1000\nlevel = 0\ncurrent = [0.5, 0, 0]");
+    let both = mast(
+        "[air]\ndensity = 1.2\nwind = [20, 0, 0]\n[water]\ndensity = 1000\nlevel = 0\ncurrent = [0.5, 0, 0]",
+    );
     let right = 3.0 * per_metre(1.2, 20.0) + per_metre(1000.0, 0.5);
     assert!((both - right).abs() < 2e-3 * right, "{both} for {right}");
+}
+
+/// A hull in a flow along it, across it, and turning: its ends, its side and its skin each take their share.
+#[test]
+fn a_hull_has_the_drag_of_its_faces_its_side_and_its_skin() {
+    let (length, diameter, density) = (3.0, 0.4, 1000.0);
+    let held = |current: &str, drag: &str| {
+        let text = format!(
+            r#"
+            [run]
+            duration = 1
+            [water]
+            density = {density}
+            current = {current}
+            [[elements]]
+            type = "rigid_body"
+            name = "hull"
+            position = [0, 0, 0]
+            mass = 100
+            inertia = [10, 10, 1]
+            hull = {{ from = [0, 0.5, -1], to = [0, 0.5, 2], diameter = {diameter} }}
+            [[constraints]]
+            type = "weld"
+            name = "stand"
+            marker = "hull"
+            to = [0, 0, 0]
+            [[forces]]
+            type = "drag"
+            {drag}
+            [[records]]
+            type = "reaction"
+            of = "stand"
+            "#
+        );
+        let h = run(&text);
+        ["fx", "fy", "fz"].map(|c| -h.last(&format!("stand.{c}")).expect("a reaction"))
+    };
+    let face = PI / 4.0 * diameter * diameter;
+    let [_, _, ends] = held("[0, 0, 2]", "ct = 0\nend = 0.4");
+    assert!((ends - 2.0 * 0.5 * density * 0.4 * face * 4.0).abs() < 1e-6 * ends, "{ends} N");
+    let [_, _, skin] = held("[0, 0, 2]", "ct = 0.004");
+    assert!((skin - 0.5 * density * 0.004 * PI * diameter * length * 4.0).abs() < 1e-6 * skin, "{skin} N");
+    let [side, _, along] = held("[2, 0, 0]", "cn = 1.1\nct = 0.004\nend = 0.4");
+    assert!((side - 0.5 * density * 1.1 * diameter * length * 4.0).abs() < 1e-6 * side, "{side} N");
+    assert!(along.abs() < 1e-9, "{along} N");
 }
 
 #[test]
@@ -282,8 +331,6 @@ fn what_makes_no_sense_is_refused() {
     assert!(air.contains("no air"), "{air}");
     let level = refused(&format!("[water]\nlevel = nan\n{ball}{WEIGHT}"));
     assert!(level.contains("level"), "{level}");
-    let beside = refused(
-        &spar(0.0, "").replace("volume = ", "centre_of_volume = [0, 0, 0.5]\nvolume = "),
-    );
+    let beside = refused(&spar(0.0, "").replace("volume = ", "centre_of_volume = [0, 0, 0.5]\nvolume = "));
     assert!(beside.contains("centre_of_volume"), "{beside}");
 }

@@ -55,7 +55,7 @@ pub use marker::{Jet, Marker, Place};
 pub use model::{Model, Start, Switches, System};
 pub use motion::{Motion, Moving, SteadyFrame};
 pub use node::{Node, NodeId, NodeKind, difference, retract};
-pub use part::{ContactPoint, Part, Per, Quantity, Slender, Spot, split_marker};
+pub use part::{ContactPoint, Part, Per, Quantity, Slender, Spot, Tip, split_marker};
 pub use pattern::Pattern;
 pub use pool::{Batch, Element, Local, Pool, Share};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};

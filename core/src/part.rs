@@ -86,6 +86,23 @@ impl Slender {
     }
 }
 
+/// An end of a slender part, where a fluid may meet or leave it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tip {
+    /// Where it is.
+    pub marker: Marker,
+    /// Direction of the axis there, from the first end to the last, in the axes of the body that it is on; that of a cable is
+    /// the slope of its node.
+    pub axis: V3<f64>,
+    /// Hydrodynamic diameter [m].
+    pub diameter: f64,
+    /// Whether it is the first end, whose axis leads inwards.
+    pub first: bool,
+    /// Whether the water beside the part leaves it there in a wake: not at hulls of single bodies, as Kirchhoff's equations
+    /// have it.
+    pub sheds: bool,
+}
+
 /// A named part of a model: a cable, a point mass, a rigid body.
 pub trait Part: Send + Sync {
     /// Its name in the scene.
@@ -112,6 +129,10 @@ pub trait Part: Send + Sync {
     /// ball where it matters how it lies in the water.
     fn ball(&self) -> Option<(Held, f64)> {
         None
+    }
+    /// Its two ends, if it is slender and has a diameter.
+    fn tips(&self) -> Vec<Tip> {
+        Vec::new()
     }
     /// Something along the part, at unstretched arc length `s`.
     fn observe(&self, _what: Quantity, _s: f64, _at: &At<'_>) -> Option<f64> {

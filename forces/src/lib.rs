@@ -17,9 +17,10 @@ mod spec;
 mod spring;
 mod surface;
 mod time;
+mod tip;
 mod wetted;
 
-pub use added_mass::{AddedMass, BluntEnd, Theory};
+pub use added_mass::{AddedMass, Theory};
 pub use buoyancy::{Buoyancy, Float};
 pub use bushing::{Bushing, BushingSpec, RotationalSpring, RotationalSpringSpec};
 pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
@@ -34,4 +35,5 @@ pub use spec::{
 pub use spring::Spring;
 pub use surface::{Surface, Wet};
 pub use time::{TimeFunction, TimeTable};
+pub use tip::{BluntEnd, EndDrag, TipLaw, at_tip};
 pub use wetted::Wetted;

@@ -1,11 +1,11 @@
 //! What a scene says about forces.
 
 use crate::{
-    AddedMass, BluntEnd, Buoyancy, Drag, Float, LineLoad, NormalLaw, PerLength, PointForce, PointMoment,
-    Spring, Surface, TangentialLaw, Theory, TimeFunction, Wetted,
+    AddedMass, BluntEnd, Buoyancy, Drag, EndDrag, Float, LineLoad, NormalLaw, PerLength, PointForce,
+    PointMoment, Spring, Surface, TangentialLaw, Theory, TimeFunction, Wetted, at_tip,
 };
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative};
-use ropewalk_core::{At, Current, ForceSpec, MarkerRef, Part, Per, Spot, V3, Water, quantity, register_spec};
+use ropewalk_core::{Current, ForceSpec, MarkerRef, Part, Per, Tip, V3, Water, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -149,6 +149,10 @@ pub struct DragSpec {
     /// Coefficient along, for the constant law, on the circumference.
     #[serde(default = "tangential_coefficient", deserialize_with = "quantity::number")]
     pub ct: f64,
+    /// Form drag of each free end of cables, hulls and chains in flow along it: coefficient on the area of its face. Left
+    /// out, none; both ends of a long blunt cylinder have about 0.8 together.
+    #[serde(default, deserialize_with = "quantity::number")]
+    pub end: f64,
     /// Whether drag is per stretched length instead of unstretched.
     #[serde(default)]
     pub stretched: bool,
@@ -169,6 +173,7 @@ impl Default for DragSpec {
             tangential: DragLaw::Constant,
             cn: normal_coefficient(),
             ct: tangential_coefficient(),
+            end: 0.0,
             stretched: false,
             blend: None,
             on: Vec::new(),
@@ -205,6 +210,36 @@ impl DragSpec {
     }
 }
 
+/// The ends of a part that nothing holds.
+fn free_tips(b: &Builder, part: &dyn Part) -> Vec<Tip> {
+    part.tips().into_iter().filter(|tip| !b.is_held(&tip.marker)).collect()
+}
+
+impl DragSpec {
+    /// Form drag of the ends that nothing holds.
+    fn add_ends(
+        &self,
+        b: &mut Builder,
+        fluid: &Drag,
+        surface: Option<(Surface, bool)>,
+    ) -> Result<(), BuildError> {
+        if not_negative("end", self.end)? == 0.0 {
+            return Ok(());
+        }
+        for (_, part) in b.parts(&self.on)? {
+            for tip in free_tips(b, part.as_ref()) {
+                let (density, current) = (fluid.density, fluid.current.clone());
+                let end =
+                    EndDrag { density, current, coefficient: self.end, diameter: tip.diameter, surface };
+                if let Some(term) = at_tip(end, part.name(), b.nodes(), &tip) {
+                    b.term(term);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
 #[typetag::serde(name = "drag")]
 impl ForceSpec for DragSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
@@ -214,16 +249,16 @@ impl ForceSpec for DragSpec {
         };
         // a scene in the air alone has no water
         if let (Some(air), true) = (&air, b.water().is_err()) {
+            self.add_ends(b, air, None)?;
             return b.load(&self.on, air.clone());
         }
-        let water = self.law(b.water()?)?;
-        match surface(b)? {
-            None => b.load(&self.on, water),
-            Some(surface) => {
-                b.load(&self.on, Wetted::below(surface, water))?;
-                air.map_or(Ok(()), |air| b.load(&self.on, Wetted::above(surface, air)))
-            }
-        }
+        let (water, surface) = (self.law(b.water()?)?, surface(b)?);
+        self.add_ends(b, &water, surface.map(|s| (s, false)))?;
+        let Some(surface) = surface else { return b.load(&self.on, water) };
+        b.load(&self.on, Wetted::below(surface, water))?;
+        let Some(air) = air else { return Ok(()) };
+        self.add_ends(b, &air, Some((surface, true)))?;
+        b.load(&self.on, Wetted::above(surface, air))
     }
 }
 
@@ -306,20 +341,10 @@ impl AddedMassSpec {
     /// Water leaves at the ends of a cable or a chain that nothing holds. Hulls of single bodies keep what it has, as
     /// Kirchhoff's equations have it.
     fn add_wakes(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass, surface: Option<Surface>) {
-        let Some(stations) = part.stations().filter(|_| part.kind() != "rigid_body") else { return };
-        let (q, v) = (b.coordinates().to_vec(), vec![0.0; b.coordinates().len()]);
-        let at = At { t: 0.0, q: &q, v: &v, a: &v, modes: &[], relaxed: None };
-        let mut diameter = 0.0;
-        stations.each(&at, &mut |s| diameter = s.diameter);
-        for (name, first) in [("start", true), ("end", false)] {
-            let Ok(marker) = part.marker(&Spot::Named(name.into())) else { continue };
-            if b.is_held(&marker) {
-                continue;
-            }
-            // a link's axis leads along the chain
-            let axis = [1.0, 0.0, 0.0];
-            let end = BluntEnd { added_mass: law.clone(), diameter, taper: self.tail, first, surface };
-            if let Some(term) = end.on(part.name(), b.nodes(), &marker, axis) {
+        for tip in free_tips(b, part).into_iter().filter(|tip| tip.sheds) {
+            let (added_mass, taper) = (law.clone(), self.tail);
+            let end = BluntEnd { added_mass, diameter: tip.diameter, taper, first: tip.first, surface };
+            if let Some(term) = at_tip(end, part.name(), b.nodes(), &tip) {
                 b.term(term);
             }
         }

@@ -3,11 +3,14 @@
 mod random;
 
 use random::{Random, rotate};
+use ropewalk_core::held::Held;
 use ropewalk_core::testing::{check_law, check_tangent, dense};
-use ropewalk_core::{At, Current, Law, Load, Marker, Node, NodeId, NodeKind, Station, Weights, Width, dot};
+use ropewalk_core::{
+    At, Current, Law, Load, Marker, Node, NodeId, NodeKind, Station, Tip, Weights, Width, dot,
+};
 use ropewalk_forces::{
-    AddedMass, BluntEnd, Drag, LineLoad, NormalLaw, PerLength, TangentialLaw, Theory, TimeFunction,
-    choo_casarella_cn, choo_casarella_ct_over_mu,
+    AddedMass, BluntEnd, Drag, EndDrag, LineLoad, NormalLaw, PerLength, Surface, TangentialLaw, Theory,
+    TimeFunction, at_tip, choo_casarella_cn, choo_casarella_ct_over_mu,
 };
 
 const NORMAL: [NormalLaw; 2] = [NormalLaw::Constant(1.2), NormalLaw::ChooCasarella];
@@ -270,17 +273,16 @@ fn added_mass_of_morison_resists_normal_acceleration_only() {
     assert_eq!([f[1], f[2]].map(f64::abs), [0.0, 0.0]);
 }
 
-/// The wake of a blunt end takes energy and no more, and its tangent is exact.
+/// What a fluid does at ends takes energy from the motion relative to it and no more, and its tangent is exact; also where an
+/// end lies across the surface.
 #[test]
-fn blunt_ends_shed_energy() {
+fn ends_take_energy_from_the_flow() {
     let cable = [Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false }];
     let body = [Node { kind: NodeKind::Frame, ..cable[0] }];
     let on_cable = Marker::node(NodeId(0));
     let on_body = Marker::beside(NodeId(0), [0.4, -0.1, 0.2]);
     let mut r = Random(3);
-    for (k, current) in currents().into_iter().cycle().take(40).enumerate() {
-        let added_mass = AddedMass::new(1025.0, 1.0).unwrap().in_current(current).unwrap();
-        let end = BluntEnd { added_mass, diameter: 0.1, taper: 0.3, first: k % 2 == 0 };
+    for (k, current) in currents().into_iter().cycle().take(80).enumerate() {
         let v = [r.vector(2.0), r.vector(2.0)].concat();
         let (nodes, marker, q) = if k % 3 == 0 {
             let turn = [[r.number(1.0)].to_vec(), r.vector(1.0).to_vec()].concat();
@@ -290,8 +292,24 @@ fn blunt_ends_shed_energy() {
         } else {
             (&cable, on_cable, [r.vector(3.0), r.vector(1.0)].concat())
         };
-        let term = end.on("part", nodes, &marker, [0.6, 0.0, -0.8]).expect("a slope");
         let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 6], modes: &[], relaxed: None };
+        let z = Held::new(nodes, &marker, "end").unwrap().x(&at)[2];
+        let surface = (k % 5 < 2).then_some(Surface { level: z + r.number(0.08) });
+        let (diameter, first, axis) = (0.2, k % 2 == 0, [0.6, 0.0, -0.8]);
+        let tip = Tip { marker, axis, diameter, first, sheds: true };
+        let term = if k % 4 < 2 {
+            let added_mass = AddedMass::new(1025.0, 1.0).unwrap().in_current(current).unwrap();
+            at_tip(BluntEnd { added_mass, diameter, taper: 0.3, first, surface }, "part", nodes, &tip)
+        } else {
+            let surface = surface.map(|s| (s, k % 8 < 4));
+            at_tip(
+                EndDrag { density: 1025.0, current, coefficient: 0.4, diameter, surface },
+                "part",
+                nodes,
+                &tip,
+            )
+        };
+        let term = term.expect("a slope");
         let error = check_tangent(term.as_ref(), nodes, &at, Width::One);
         assert!(error < 1e-6, "{error:e}");
         let power = term.power(&at);

@@ -5,9 +5,7 @@ mod random;
 use random::Random;
 use ropewalk_core::testing::check_law;
 use ropewalk_core::{Current, Law, Load, Station, V3, dot};
-use ropewalk_forces::{
-    AddedMass, Buoyancy, Drag, NormalLaw, Surface, TangentialLaw, Theory, Wetted,
-};
+use ropewalk_forces::{AddedMass, Buoyancy, Drag, NormalLaw, Surface, TangentialLaw, Theory, Wetted};
 use std::f64::consts::PI;
 
 const SURFACE: Surface = Surface { level: 0.3 };
@@ -76,9 +74,19 @@ fn the_wet_share_is_that_of_a_cylinder() {
             let wet = SURFACE.wet(&at);
             let (volume, moment) = by_slices(&at);
             let whole = at.area * at.weight;
-            assert!((wet.share - volume / whole).abs() < 2e-3, "{slope:?} {depth}: {} {}", wet.share, volume / whole);
+            assert!(
+                (wet.share - volume / whole).abs() < 2e-3,
+                "{slope:?} {depth}: {} {}",
+                wet.share,
+                volume / whole
+            );
             // where the disc that is a little high when it is upright counts as upright
-            assert!((wet.depth - moment / whole).abs() < 2e-4 * 0.1 + 1e-5, "{slope:?} {depth}: {} {}", wet.depth, moment / whole);
+            assert!(
+                (wet.depth - moment / whole).abs() < 2e-4 * 0.1 + 1e-5,
+                "{slope:?} {depth}: {} {}",
+                wet.depth,
+                moment / whole
+            );
         }
     }
 }
@@ -93,10 +101,16 @@ fn the_share_and_the_couple_are_derivatives_of_the_depth() {
             let wet = SURFACE.wet(&at);
             let moved = |i: usize, h: f64| {
                 let mut at = at;
-                if i < 3 { at.slope[i] += h } else { at.x[2] += h }
+                if i < 3 {
+                    at.slope[i] += h
+                } else {
+                    at.x[2] += h
+                }
                 SURFACE.wet(&at)
             };
-            let by = |i: usize, f: &dyn Fn(&ropewalk_forces::Wet<f64>) -> f64| (f(&moved(i, h)) - f(&moved(i, -h))) / (2.0 * h);
+            let by = |i: usize, f: &dyn Fn(&ropewalk_forces::Wet<f64>) -> f64| {
+                (f(&moved(i, h)) - f(&moved(i, -h))) / (2.0 * h)
+            };
             assert!((-wet.share - by(3, &|w| w.depth)).abs() < 1e-8);
             assert!((wet.share_by_z - by(3, &|w| w.share)).abs() < 1e-4, "{slope:?} {depth}");
             for i in 0..3 {
@@ -104,7 +118,10 @@ fn the_share_and_the_couple_are_derivatives_of_the_depth() {
                 assert!((wet.share_by_slope[i] - by(i, &|w| w.share)).abs() < 1e-5, "{slope:?} {depth}");
                 for j in 0..3 {
                     let exact = wet.depth_by_slopes[i][j];
-                    assert!((exact - by(j, &|w| w.depth_by_slope[i])).abs() < 1e-5, "{slope:?} {depth} {i}{j}");
+                    assert!(
+                        (exact - by(j, &|w| w.depth_by_slope[i])).abs() < 1e-5,
+                        "{slope:?} {depth} {i}{j}"
+                    );
                 }
             }
         }

@@ -10,7 +10,7 @@ use super::{CableModel, CableParams};
 use ropewalk_core::held::Held;
 use ropewalk_core::{
     At, Change, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Mesh, MeshState, Node, NodeId, Part, Per,
-    Prestrain, Quantity, Slender, Spot, Stations, Term, V3,
+    Prestrain, Quantity, Slender, Spot, Stations, Term, Tip, V3,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -350,6 +350,18 @@ impl Part for CablePart {
         let Some(line) = &self.line else { return Some(Box::new(dead)) };
         let flowing = push::weight(&self.all, line, &self.nodes, load.map(|x| density * x))?;
         Some(Box::new(push::Weight { dead, flowing }))
+    }
+
+    fn tips(&self) -> Vec<Tip> {
+        let (last, diameter) = (self.nodes.len() - 1, self.section.diameter);
+        if diameter == 0.0 {
+            return Vec::new();
+        }
+        let tip = |k: usize| {
+            let marker = Marker::node(self.nodes[k]);
+            Tip { marker, axis: [0.0; 3], diameter, first: k == 0, sheds: true }
+        };
+        vec![tip(0), tip(last)]
     }
 
     fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {

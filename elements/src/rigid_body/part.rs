@@ -4,7 +4,7 @@ use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{cross, matrix, times};
 use ropewalk_core::{
     At, ContactPoint, DeadEntry, DeadLoad, DeadPull, Marker, Node, NodeId, Part, Per, Spot, Stations, Term,
-    V3,
+    Tip, V3,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -102,6 +102,17 @@ impl Part for BodyPart {
             .map(|i| DeadEntry { dof: self.v + i, coordinate: self.q + i, value: force[i] })
             .collect();
         Some(Box::new(DeadLoad::new(label, entries).ok()?))
+    }
+    fn tips(&self) -> Vec<Tip> {
+        let Some(ends) = self.hull else { return Vec::new() };
+        let axis: V3<f64> = std::array::from_fn(|i| ends[1][i] - ends[0][i]);
+        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let (axis, diameter) = (axis.map(|x| x / length), self.diameter);
+        let tip = |k: usize| {
+            let marker = Marker::beside(self.node, ends[k]);
+            Tip { marker, axis, diameter, first: k == 0, sheds: false }
+        };
+        vec![tip(0), tip(1)]
     }
     fn ball(&self) -> Option<(Held, f64)> {
         let held = Held::Beside { q: self.q, v: self.v, arm: self.centre_of_volume };

@@ -2,7 +2,9 @@
 
 use ropewalk_core::held::three;
 use ropewalk_core::rotation::{cross, matrix, times};
-use ropewalk_core::{At, DeadEntry, DeadLoad, Marker, Node, NodeId, Part, Per, Spot, Stations, Term, V3};
+use ropewalk_core::{
+    At, DeadEntry, DeadLoad, Marker, Node, NodeId, Part, Per, Spot, Stations, Term, Tip, V3,
+};
 use std::sync::Arc;
 
 /// A chain of rigid links of a model.
@@ -16,6 +18,8 @@ pub struct ChainPart {
     /// Mass that gravity pulls at, and displaced volume, of a link [kg, m³].
     pub(crate) mass: f64,
     pub(crate) volume: f64,
+    /// Hydrodynamic diameter [m].
+    pub(crate) diameter: f64,
     pub(crate) stations: Option<Arc<dyn Stations>>,
 }
 
@@ -93,6 +97,17 @@ impl Part for ChainPart {
             })
         });
         Some(Box::new(DeadLoad::new(format!("{}: {what}", self.name), entries.collect()).ok()?))
+    }
+    fn tips(&self) -> Vec<Tip> {
+        if self.diameter == 0.0 {
+            return Vec::new();
+        }
+        let (half, diameter, axis) = (0.5 * self.link, self.diameter, [1.0, 0.0, 0.0]);
+        let tip = |node: NodeId, along: f64, first: bool| {
+            let marker = Marker::beside(node, [along, 0.0, 0.0]);
+            Tip { marker, axis, diameter, first, sheds: true }
+        };
+        vec![tip(self.nodes[0], -half, true), tip(self.nodes[self.nodes.len() - 1], half, false)]
     }
     fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         let (k, ahead) = self.locate(s)?;

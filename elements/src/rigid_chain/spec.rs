@@ -318,6 +318,7 @@ impl ElementSpec for RigidChainSpec {
             link,
             mass: s.mass * link,
             volume: s.displaced_area() * link,
+            diameter: s.diameter,
             stations: (s.diameter > 0.0).then(|| Arc::new(stations) as _),
         }))
     }

@@ -65,18 +65,8 @@ pub struct WaterplaneSpec {
     /// Height of the cylinder [m].
     #[serde(deserialize_with = "quantity::length")]
     pub height: f64,
-    /// Height of the water's surface [m].
-    #[serde(default, deserialize_with = "quantity::length")]
-    pub surface: f64,
-    /// Acceleration of gravity [m/s²].
-    #[serde(default = "g", deserialize_with = "quantity::acceleration")]
-    pub g: f64,
 }
 register_spec!(Force, "waterplane", WaterplaneSpec);
-
-fn g() -> f64 {
-    9.81
-}
 
 #[typetag::serde(name = "waterplane")]
 impl ForceSpec for WaterplaneSpec {
@@ -84,20 +74,24 @@ impl ForceSpec for WaterplaneSpec {
         vec![&self.marker]
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        for (name, x) in [("diameter", self.diameter), ("height", self.height), ("g", self.g)] {
+        for (name, x) in [("diameter", self.diameter), ("height", self.height)] {
             positive(name, x)?;
         }
         let marker = b.marker("marker", &self.marker)?;
         let Held::Moves { q, v } = Held::new(b.nodes(), &marker, "waterplane")? else {
             return Err(BuildError::at("marker", "a waterplane needs a marker on something that can float"));
         };
-        let k = b.water()?.density * self.g * PI * self.diameter * self.diameter / 4.0;
+        let (water, [_, _, g]) = (b.water()?, b.gravity());
+        let Some(surface) = water.level else {
+            return Err(BuildError::at("type", "a waterplane needs a surface: give [water] a `level`"));
+        };
+        let k = -water.density * g * PI * self.diameter * self.diameter / 4.0;
         let label = format!("{}: lift", self.marker);
         b.term(Box::new(Waterplane {
             label,
             k,
             height: self.height,
-            surface: self.surface,
+            surface,
             z: (q + 2, v + 2),
         }));
         Ok(())
