@@ -190,6 +190,64 @@ fn a_free_cable_keeps_what_its_ends_do_not_shed() {
     }
 }
 
+/// A cable that is fed out or reeled in under water while its eyelet moves: the water beside it is closed, and keeps its balance.
+#[test]
+fn the_water_beside_a_cable_that_feeds_keeps_its_balance() {
+    for (speed, current, element) in
+        [(0.8, "[0, 0, 0]", ""), (-0.5, "[0.3, 0.2, 0]", ""), (0.8, "[0.3, 0.2, 0.1]", "element = 0.25")]
+    {
+        let left = |elements: usize, h: f64| {
+            let h = run(&format!(
+                r#"
+                [run]
+                duration = "1 s"
+                output = "0.02 s"
+                [solver]
+                stepping = {{ fixed = {{ h = {h} }} }}
+                newton_tolerance = 1e-3
+                [water]
+                current = {current}
+                [[elements]]
+                type = "cable"
+                name = "cable"
+                curve = [[0, 0, 0], [0.5, 0.2, 0], [1, 0, 0.1], [1.5, 0, 0]]
+                elements = {elements}
+                section = {{ mass = 2.0, ea = 1e3, ei = 0.5, diameter = 0.05 }}
+                [[motions]]
+                type = "harmonic"
+                name = "sway"
+                amplitude = [0.1, 0.3, 0]
+                frequency = 1
+                ramp = 0.5
+                [[constraints]]
+                type = "driving"
+                name = "eyelet"
+                marker = "cable.start"
+                motion = "sway"
+                [[constraints]]
+                type = "winch"
+                name = "winch"
+                marker = "cable.start"
+                speed = {speed}
+                ramp = 0.2
+                {element}
+                [[forces]]
+                type = "added_mass"
+                [[records]]
+                type = "energy"
+                "#
+            ));
+            let imbalance = h.column("energy.imbalance").expect("energy");
+            let worst =
+                imbalance.iter().fold(0.0, |most: f64, x| if x.abs() <= most { most } else { x.abs() });
+            (worst, last(&h, "energy.kinetic"))
+        };
+        let ((coarse, _), (fine, kinetic)) = (left(12, 4e-3), left(24, 2e-3));
+        println!("{speed} m/s in {current}: imbalance {coarse:.2e} and {fine:.2e} of {kinetic:.3} J");
+        assert!(fine < 1e-3 * kinetic && coarse > 2.5 * fine, "{coarse} {fine} of {kinetic} J");
+    }
+}
+
 /// Cylinders in axial flow, `u = U √(m_a/EI) L`: the largest growth of any mode [1/s].
 fn growth(ends: &str, beta: f64, u: f64, tail: f64) -> f64 {
     // EI = L = m + m_a = 1; the tension that keeps it straight is none

@@ -118,7 +118,8 @@ pub struct Builder {
     terms: Vec<Box<dyn Term>>,
     constraints: Vec<Box<dyn Constraint>>,
     parts: Vec<Arc<dyn Part>>,
-    laws: BTreeMap<usize, Laws>,
+    /// What acts on the stations of a part, or on those that follow its material.
+    laws: BTreeMap<(usize, bool), Laws>,
     motions: Motions,
     /// Arc lengths at which a cable needs a node, by part.
     pins: HashMap<String, Vec<f64>>,
@@ -438,7 +439,8 @@ impl Builder {
                     );
                     return Err(BuildError::at("on", message));
                 }
-                self.laws.entry(k).or_default().push(law);
+                let material = law.follows_material() && (0..2).any(|end| part.front(end).is_some());
+                self.laws.entry((k, material)).or_default().push(law);
                 any = true;
             } else if !on.is_empty() {
                 return Err(BuildError::at("on", format!("`{}` carries no distributed load", part.name())));
@@ -542,9 +544,9 @@ impl Builder {
         let length = self.size();
         let mut terms: Vec<Box<dyn Term>> = self.pools.into_iter().map(|(_, p)| p.into_term()).collect();
         terms.append(&mut self.terms);
-        for (k, laws) in self.laws {
+        for ((k, material), laws) in self.laws {
             let part = &self.parts[k];
-            if let Some(stations) = part.stations() {
+            if let Some(stations) = if material { part.material_stations() } else { part.stations() } {
                 terms.push(Box::new(FieldTerm { part: part.name().to_string(), stations, laws }));
             }
         }

@@ -119,6 +119,10 @@ pub trait Part: Send + Sync {
     fn stations(&self) -> Option<Arc<dyn Stations>> {
         None
     }
+    /// The same with the acceleration of the material, where that runs along the curve.
+    fn material_stations(&self) -> Option<Arc<dyn Stations>> {
+        self.stations()
+    }
     /// The balls by which it touches shapes, about `per_element` on each element of a cable; none if it has no size.
     fn contact_points(&self, _per_element: usize) -> Vec<ContactPoint> {
         Vec::new()

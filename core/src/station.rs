@@ -29,8 +29,6 @@ pub struct Station<R> {
     pub slope: V3<R>,
     /// Its rate `dv/ds` [1/s].
     pub slope_rate: V3<R>,
-    /// Velocity of the curve that the body draws in space; differs from `v` where material flows along it [m/s].
-    pub curve_v: V3<R>,
     /// Arc length from the body's start, unstretched [m].
     pub s: R,
     /// Unstretched length that the station stands for: its cell [m].
@@ -124,6 +122,11 @@ pub trait Law: Send + Sync + 'static {
     /// How much of a step `h` from `t` may be taken that leaps over nothing, as [`Term::reach`].
     fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
         None
+    }
+    /// Whether it asks for the acceleration of the material where that runs along the curve, as on a cable that feeds; else it
+    /// is that of the curve, at a fixed distance from the end that feeds.
+    fn follows_material(&self) -> bool {
+        false
     }
     /// Which derivatives it has; what is left out here is never read. [`check_law`](crate::testing::check_law) tells
     /// if one is missing.

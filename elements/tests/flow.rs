@@ -191,6 +191,13 @@ impl ropewalk_core::Law for Everything {
                 out.d_v[i][j] += m[j][i] * at.v[k];
                 out.d_v[i][k] += m[j][i] * at.v[j];
                 out.d_a[i][j] -= m[i][j];
+                out.f[i] += m[i][k] * at.slope_rate[j];
+                out.d_rate[i][j] += m[i][k];
+                out.g[i] += m[j][k] * at.x[j] * at.slope[k] - m[k][i] * at.v[j] * at.slope[j];
+                out.g_x[i][j] += m[j][k] * at.slope[k];
+                out.g_slope[i][k] += m[j][k] * at.x[j];
+                out.g_v[i][j] -= m[k][i] * at.slope[j];
+                out.g_slope[i][j] -= m[k][i] * at.v[j];
             }
         }
     }
@@ -230,6 +237,7 @@ fn tangents_agree_with_differences() {
         (2, Box::new(pool::<_, 14>(FlowDamping { damping: bending, by: TWO }))),
         (1, Box::new(loaded(one))),
         (2, Box::new(loaded(two))),
+        (2, Box::new(loaded(FlowStations { slip: [0.0; 2], ..two }))),
     ];
     for (fronts, term) in terms {
         let x = x.clone().map(|mut x| {

@@ -175,6 +175,9 @@ impl Law for AddedMass {
             Theory::Morison => "added mass (Morison)".into(),
         }
     }
+    fn follows_material(&self) -> bool {
+        self.theory == Theory::Energy
+    }
     fn gives(&self) -> Gives {
         match self.theory {
             Theory::Energy => Gives { x: !self.current.is_uniform(), ..Gives::ALL },

@@ -35,5 +35,5 @@ pub use spec::{
 pub use spring::Spring;
 pub use surface::{Surface, Wet};
 pub use time::{TimeFunction, TimeTable};
-pub use tip::{BluntEnd, EndDrag, TipLaw, at_tip};
+pub use tip::{BluntEnd, EndDrag, FeedingEnd, TipLaw, at_tip};
 pub use wetted::Wetted;

@@ -1,8 +1,8 @@
 //! What a scene says about forces.
 
 use crate::{
-    AddedMass, BluntEnd, Buoyancy, Drag, EndDrag, Float, LineLoad, NormalLaw, PerLength, PointForce,
-    PointMoment, Spring, Surface, TangentialLaw, Theory, TimeFunction, Wetted, at_tip,
+    AddedMass, BluntEnd, Buoyancy, Drag, EndDrag, FeedingEnd, Float, LineLoad, NormalLaw, PerLength,
+    PointForce, PointMoment, Spring, Surface, TangentialLaw, Theory, TimeFunction, Wetted, at_tip,
 };
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative};
 use ropewalk_core::{Current, ForceSpec, MarkerRef, Part, Per, Tip, V3, Water, quantity, register_spec};
@@ -270,14 +270,14 @@ fn one() -> f64 {
 ///
 /// It has the kinetic energy of the water, so a hull at an angle to the flow is turned (Munk's moment), and flow along a
 /// cable acts like compression and can make it flutter. `theory = "morison"` leaves inertia alone, for comparison with
-/// codes that have only that; cables that change their length are always taken so.
+/// codes that have only that.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AddedMassSpec {
     /// Coefficient: mass over that of the water in a circle of the hydrodynamic diameter.
     #[serde(default = "one", deserialize_with = "quantity::number")]
     pub ca: f64,
-    /// `energy` or `morison`; left out, `energy` but for cables that change their length.
+    /// `energy` or `morison`; left out, `energy`.
     #[serde(default)]
     pub theory: Option<Theory>,
     /// Share of its momentum that the water gives back at the free ends of cables: 0 for ends that are cut off, about 0.8
@@ -306,46 +306,38 @@ impl ForceSpec for AddedMassSpec {
         let surface = surface(b)?;
         let water = b.water()?;
         let law = AddedMass::new(water.density, self.ca)?.in_current(water.current()?)?;
-        let mut fed = Vec::new();
+        let theory = self.theory.unwrap_or_default();
         for numbered in b.parts(&self.on)? {
             b.acts_once("added_mass", &numbered)?;
-            let part = &numbered.1;
-            let feeds = b.feeding(part.name()).iter().any(Option::is_some);
-            match self.theory {
-                Some(Theory::Energy) if feeds => {
-                    let message = format!(
-                        "`{}` changes its length, and the energy of the water beside such a cable isn't there yet: \
-                         leave `theory` out, or name in `on` the other parts",
-                        part.name()
-                    );
-                    return Err(BuildError::at("theory", message));
-                }
-                Some(Theory::Morison) => {}
-                _ if feeds => fed.push(part.name().to_string()),
-                _ => self.add_wakes(b, part.as_ref(), &law, surface),
+            if theory == Theory::Energy {
+                self.add_ends(b, numbered.1.as_ref(), &law, surface);
             }
         }
-        let theory = self.theory.unwrap_or_default();
-        let law_of = |part: &dyn Part| {
-            let morison = fed.iter().any(|name| name == part.name());
-            law.clone().by(if morison { Theory::Morison } else { theory })
-        };
+        let law = law.by(theory);
         match surface {
-            None => b.load_by(&self.on, law_of),
-            Some(surface) => b.load_by(&self.on, |part| Wetted::below(surface, law_of(part))),
+            None => b.load(&self.on, law),
+            Some(surface) => b.load(&self.on, Wetted::below(surface, law)),
         }
     }
 }
 
 impl AddedMassSpec {
     /// Water leaves at the ends of a cable or a chain that nothing holds. Hulls of single bodies keep what it has, as
-    /// Kirchhoff's equations have it.
-    fn add_wakes(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass, surface: Option<Surface>) {
+    /// Kirchhoff's equations have it. Where an end feeds, more or less of the cable has water beside it.
+    fn add_ends(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass, surface: Option<Surface>) {
         for tip in free_tips(b, part).into_iter().filter(|tip| tip.sheds) {
             let (added_mass, taper) = (law.clone(), self.tail);
             let end = BluntEnd { added_mass, diameter: tip.diameter, taper, first: tip.first, surface };
             if let Some(term) = at_tip(end, part.name(), b.nodes(), &tip) {
                 b.term(term);
+            }
+        }
+        let diameter = part.tips().first().map_or(0.0, |tip| tip.diameter);
+        for (end, name) in [(0, "start"), (1, "end")] {
+            if let Some(front) = part.front(end).filter(|_| diameter > 0.0) {
+                let label = format!("{}: water at its {name}", part.name());
+                let added_mass = law.clone();
+                b.term(Box::new(FeedingEnd { label, added_mass, diameter, surface, front }));
             }
         }
     }

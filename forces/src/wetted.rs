@@ -67,6 +67,9 @@ impl<L: Law> Law for Wetted<L> {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.law.reach(t, h)
     }
+    fn follows_material(&self) -> bool {
+        self.law.follows_material()
+    }
     fn gives(&self) -> Gives {
         Gives { x: true, slope: true, ..self.law.gives() }
     }

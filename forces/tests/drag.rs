@@ -23,7 +23,6 @@ fn station(r: &mut Random, speed: f64) -> Station<f64> {
         a: r.vector(3.0),
         slope: r.vector(1.0),
         slope_rate: r.vector(4.0),
-        curve_v: [0.0; 3],
         s: 0.5,
         weight: 0.1,
         before: 0.04,

@@ -19,7 +19,6 @@ fn station(r: &mut Random, depth: f64, slope: V3<f64>) -> Station<f64> {
         a: r.vector(3.0),
         slope,
         slope_rate: r.vector(4.0),
-        curve_v: [0.0; 3],
         s: 0.5,
         weight: 0.25,
         before: 0.09,

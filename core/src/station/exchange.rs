@@ -7,7 +7,7 @@ use crate::term::{Energy, Power};
 use std::cell::RefCell;
 
 /// How many numbers make a station, and a load.
-pub(super) const STATION: usize = 23;
+pub(super) const STATION: usize = 20;
 pub(super) const LOAD: usize = 78;
 /// Where the derivatives stand in a load.
 const D_X: usize = 3;
@@ -62,9 +62,8 @@ impl<R: Real> Station<R> {
         put(row, 3, &self.v);
         put(row, 6, &self.a);
         put(row, 9, &self.slope);
-        put(row, 12, &self.curve_v);
-        put(row, 15, &self.slope_rate);
-        put(row, 18, &[self.s, self.weight, self.before, self.diameter, self.area]);
+        put(row, 12, &self.slope_rate);
+        put(row, 15, &[self.s, self.weight, self.before, self.diameter, self.area]);
     }
     #[inline(always)]
     pub(super) fn read(row: &[f64]) -> Self {
@@ -73,13 +72,12 @@ impl<R: Real> Station<R> {
             v: vector(row, 3),
             a: vector(row, 6),
             slope: vector(row, 9),
-            curve_v: vector(row, 12),
-            slope_rate: vector(row, 15),
-            s: number(row, 18),
-            weight: number(row, 19),
-            before: number(row, 20),
-            diameter: number(row, 21),
-            area: number(row, 22),
+            slope_rate: vector(row, 12),
+            s: number(row, 15),
+            weight: number(row, 16),
+            before: number(row, 17),
+            diameter: number(row, 18),
+            area: number(row, 19),
         }
     }
 }

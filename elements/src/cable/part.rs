@@ -276,6 +276,13 @@ impl Part for CablePart {
         Some(self.stations.clone())
     }
 
+    fn material_stations(&self) -> Option<Arc<dyn Stations>> {
+        match &self.line {
+            Some(line) => push::stations(&self.all, line, &self.nodes, &self.section, true).ok(),
+            None => self.stations(),
+        }
+    }
+
     /// Points of the Gauss–Lobatto rule, which take the uniform weight of a cable up without bending it; those at the
     /// nodes are shared by both elements.
     fn contact_points(&self, per_element: usize) -> Vec<ContactPoint> {

@@ -544,7 +544,7 @@ impl ElementSpec for CableSpec {
         }
         pools.result?;
         let stations = match &line {
-            Some(line) => push::stations(b.nodes(), line, &nodes, s)?,
+            Some(line) => push::stations(b.nodes(), line, &nodes, s, false)?,
             None => stations(b.nodes(), &mesh, &nodes, s)?,
         };
         let directors = self.directed(b, &mesh, &nodes, &shapes)?;

@@ -67,7 +67,6 @@ impl StationElement<12, 12, 4> for CableStations {
             a: interpolate(&s, &x.a),
             slope: combine(&at.phi, &natural(&x.q, il)),
             slope_rate: combine(&at.phi, &natural(&x.v, il)),
-            curve_v: v,
             s: R::of(at.xi).fma(p.l, p.s0),
             weight: R::of(at.w) * p.l,
             before: R::of(BEFORE[k]) * p.l,

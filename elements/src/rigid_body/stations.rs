@@ -91,7 +91,6 @@ impl StationElement<7, 6, 4> for Hull {
             a: sum([x.a[0], x.a[1], x.a[2]], times(&r, &swing(&omega, &alpha, &s))),
             slope: times(&r, &p.direction()),
             slope_rate: times(&r, &cross(&omega, &p.direction())),
-            curve_v: v,
             s: R::of(GAUSS[k].0).fma(p.length, p.s0),
             weight: R::of(GAUSS[k].1) * p.length,
             before: R::of(GAUSS[k].0 - GAUSS[..k].iter().map(|g| g.1).sum::<f64>()) * p.length,

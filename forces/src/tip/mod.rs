@@ -1,9 +1,11 @@
 //! What the fluid does at the ends of slender bodies.
 
 mod end_drag;
+mod feeding;
 mod wake;
 
 pub use end_drag::EndDrag;
+pub use feeding::FeedingEnd;
 pub use wake::BluntEnd;
 
 use ropewalk_core::held::{Held, three};

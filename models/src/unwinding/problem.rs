@@ -203,7 +203,6 @@ impl Unwinding {
             a: [0.0; 3],
             slope,
             slope_rate: [0.0; 3],
-            curve_v: v,
             s: 0.0,
             weight: 1.0,
             before: 0.5,

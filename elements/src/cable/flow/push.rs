@@ -118,18 +118,20 @@ pub(crate) fn fading(
     Ok(())
 }
 
-/// The stations of all elements of a line.
+/// The stations of all elements of a line, which follow the curve or the material.
 pub(crate) fn stations(
     all: &[Node],
     line: &Line,
     nodes: &[NodeId],
     section: &Section,
+    of_material: bool,
 ) -> Result<Arc<dyn Stations>, BuildError> {
     macro_rules! stations {
         ($fronts:literal, $size:literal) => {{
             let mut pool = StationPool::<FlowStations<$fronts>, $size, $size, 4>::new();
             for k in 0..nodes.len() - 1 {
                 let (by, slip) = (line.embedding(k), line.slip(k));
+                let slip = if of_material { [0.0; $fronts] } else { slip };
                 let (diameter, area) = (section.diameter, section.displaced_area());
                 let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
                 if !pool.push(all, FlowStations { by, slip, diameter, area }, &piece.nodes()) {

@@ -11,8 +11,9 @@ use crate::cable::stations::BEFORE;
 use ropewalk_core::{Batch, Dual, Gives, Load, Local, Real, Share, Station, StationElement, V3, Weights};
 
 /// The stations of one element of a flowing cable. Loads are per unstretched length and see the velocity of the
-/// material. The acceleration is that of the curve, taken at a fixed distance along it from the end that feeds: water
-/// that a cable pushes aside doesn't see what runs along inside. Where nothing is fed it is that of the material.
+/// material. The acceleration is that of the material where `slip` is zero; else that of the curve, taken at a fixed distance
+/// along it from the end that feeds, which Morison's added mass asks for: water that a cable pushes aside doesn't see what
+/// runs along inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowStations<const F: usize, R = f64> {
     /// Embedding of the element.
@@ -86,6 +87,7 @@ fn add_times<R: Real>(m: &[V3<R>; 3], x: &V3<Dual<R>>, out: &mut V3<R>) {
 macro_rules! stations {
     ($fronts:literal, $size:literal) => {
         impl StationElement<$size, $size, 4> for FlowStations<$fronts> {
+            const COUPLES: bool = true;
             type Lanes<R: Real> = FlowStations<$fronts, R>;
 
             #[inline(always)]
@@ -112,18 +114,12 @@ macro_rules! stations {
                 let (g, e, ed) = (Grid::new(&p.by, x), nodal(&x.q), nodal(&x.v));
                 let t = Transport::new(&g, &e, &ed, &nodal(&x.a));
                 let place = Place::new(at, &g, slip(p, x), &e, &t);
-                let c = slip(p, x);
-                let mut curve_v = place.v;
-                for i in 0..3 {
-                    curve_v[i] += c * place.slope[i];
-                }
                 Station {
                     x: place.x,
                     v: place.v,
                     a: place.a,
                     slope: place.slope,
                     slope_rate: place.slope_rate,
-                    curve_v,
                     s: R::of(at.xi).fma(g.l, g.p),
                     weight: R::of(at.w) * g.l,
                     before: R::of(BEFORE[k]) * g.l,
@@ -155,6 +151,9 @@ macro_rules! stations {
                     for i in 0..4 {
                         for d in 0..3 {
                             f[i][d] = (weight * place.s[i]).fma(load.f[d], f[i][d]);
+                            if gives.couple {
+                                f[i][d] = (weight * place.ds[i]).fma(load.g[d], f[i][d]);
+                            }
                         }
                     }
                     if !TANGENT {
@@ -165,9 +164,11 @@ macro_rules! stations {
                         // velocity and acceleration by dof j, with the weights of the tangent
                         let mut v = wv * s[j];
                         let mut a = wa.fma(s[j], c * ((wv + wv) * ds[j] + c * wq * place.bend[j]));
+                        let mut rate = wv * ds[j];
                         for i in 0..4 {
                             let by = wq * p4[i][j];
                             v -= s[i] * by;
+                            rate -= ds[i] * by;
                             a += s[i] * (wq * h4[i][j] - (wv + wv) * p4[i][j]) - (c + c) * ds[i] * by;
                         }
                         for r in 0..3 {
@@ -185,9 +186,18 @@ macro_rules! stations {
                                 if gives.a {
                                     sum = a.fma(load.d_a[r][q], sum);
                                 }
+                                let mut couple = R::zero();
+                                if gives.couple {
+                                    sum = rate.fma(load.d_rate[r][q], sum);
+                                    couple = (wq * s[j]).fma(load.g_x[r][q], v * load.g_v[r][q]);
+                                    couple = (wq * ds[j]).fma(load.g_slope[r][q], couple);
+                                }
                                 for i in 0..4 {
                                     let k = &mut out.k[3 * i + r][3 * j + q];
                                     *k = (weight * s[i]).fma(sum, *k);
+                                    if gives.couple {
+                                        *k = (weight * ds[i]).fma(couple, *k);
+                                    }
                                 }
                             }
                         }
@@ -217,10 +227,21 @@ macro_rules! stations {
                             if gives.a {
                                 add_times(&load.d_a, &place.a, &mut d);
                             }
+                            let mut d_g = [R::zero(); 3];
+                            if gives.couple {
+                                add_times(&load.d_rate, &place.slope_rate, &mut d);
+                                add_times(&load.g_x, &place.x, &mut d_g);
+                                add_times(&load.g_slope, &place.slope, &mut d_g);
+                                add_times(&load.g_v, &place.v, &mut d_g);
+                            }
                             for i in 0..4 {
-                                let share = Dual::of(-at.w) * g.l * place.s[i];
+                                let weight = Dual::of(-at.w) * g.l;
+                                let (share, couple) = (weight * place.s[i], weight * place.ds[i]);
                                 for r in 0..3 {
                                     d_f[k][i][r] += share.eps * load.f[r] + share.re * d[r];
+                                    if gives.couple {
+                                        d_f[k][i][r] += couple.eps * load.g[r] + couple.re * d_g[r];
+                                    }
                                 }
                             }
                         }
