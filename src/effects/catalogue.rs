@@ -14,6 +14,10 @@ pub(super) enum Edit {
     DropConstraint(usize),
     /// Water at rest.
     StillWater,
+    /// Water everywhere, and so no air.
+    NoSurface,
+    /// No air.
+    NoAir,
     /// No balance of energy.
     NoAudit,
     /// A field of an element, by pointer, with another value.
@@ -67,6 +71,13 @@ pub(super) fn edited(scene: &Scene, edits: &[Edit]) -> Result<Scene, String> {
                     water.profile.clear();
                 }
             }
+            Edit::NoSurface => {
+                new.air = None;
+                if let Some(water) = &mut new.water {
+                    water.level = None;
+                }
+            }
+            Edit::NoAir => new.air = None,
             Edit::NoAudit => new.run.audit = false,
             Edit::Element(k, at, value) => {
                 let mut spec = serde_json::to_value(&*new.elements[*k]).map_err(|e| e.to_string())?;
@@ -144,7 +155,17 @@ pub(super) fn present(scene: &Scene) -> Vec<Candidate> {
     };
     for (k, force) in scene.forces.iter().enumerate() {
         let of = fields(&**force);
-        push(format!("{}{}", spoken(force.typetag_name()), whereabouts(&of)), Edit::DropForce(k));
+        let (kind, place) = (force.typetag_name(), whereabouts(&of));
+        push(format!("{}{place}", spoken(kind)), Edit::DropForce(k));
+        if kind == "added_mass" && of["theory"] != "morison" {
+            push(
+                format!("flow along what has added mass{place}"),
+                Edit::Force(k, json!({ "theory": "morison" })),
+            );
+        }
+        if kind == "drag" && number(&of, "/end") != 0.0 {
+            push(format!("drag of ends{place}"), Edit::Force(k, json!({ "end": 0.0 })));
+        }
     }
     for (k, element) in scene.elements.iter().enumerate() {
         let of = fields(&**element);
@@ -167,6 +188,12 @@ pub(super) fn present(scene: &Scene) -> Vec<Candidate> {
     }
     if scene.water.as_ref().is_some_and(|w| w.current != [0.0; 3] || !w.profile.is_empty()) {
         push("current".into(), Edit::StillWater);
+    }
+    if scene.water.as_ref().is_some_and(|w| w.level.is_some()) {
+        push("surface of the water".into(), Edit::NoSurface);
+    }
+    if scene.air.is_some() && scene.water.is_some() {
+        push("air".into(), Edit::NoAir);
     }
     if scene.run.audit && scene.run.analysis == Analysis::Dynamics {
         push("audit of energy".into(), Edit::NoAudit);
@@ -249,6 +276,9 @@ pub(super) fn absent(scene: &Scene) -> (Vec<Candidate>, Vec<Hint>) {
     }
     if scene.water.as_ref().is_some_and(|w| w.current == [0.0; 3] && w.profile.is_empty()) {
         hint("current", "`current = [\"0.5 m/s\", 0, 0]` in [water]".into());
+    }
+    if scene.water.as_ref().is_some_and(|w| w.level.is_none()) {
+        hint("surface of the water", "`level = 0` in [water]".into());
     }
     let offered = registered().iter().any(|s| s.name == "contact");
     if offered && !scene.forces.iter().any(|f| f.typetag_name() == "contact") {
