@@ -112,6 +112,11 @@ pub trait Part: Send + Sync {
     fn observe(&self, _what: Quantity, _s: f64, _at: &At<'_>) -> Option<f64> {
         None
     }
+    /// Size of the axial force at unstretched arc length `s` [N], by which Newton's method judges residuals: as
+    /// [`Quantity::Tension`], or what is cheaper and of its order.
+    fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {
+        self.observe(Quantity::Tension, s, at)
+    }
     /// Position and velocity at unstretched arc length `s`.
     fn point(&self, _s: f64, _at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         None
@@ -154,6 +159,10 @@ pub trait Part: Send + Sync {
     /// Its material points where nodes are, by unstretched arc length.
     fn mesh(&self) -> &[f64] {
         &[]
+    }
+    /// Unstretched arc length of each node from the start as it is now [m]: of a cable that feeds, other than its mesh.
+    fn mesh_now(&self, _at: &At<'_>) -> Vec<f64> {
+        self.mesh().to_vec()
     }
     /// Lays its nodes evenly along the straight line between its ends, as the start of another search for
     /// equilibrium. Parts that can't be laid wrong do nothing.

@@ -3,10 +3,11 @@
 use super::directed::curvature;
 use super::flow::change::{self, Snapshot};
 use super::flow::{Line, push};
-use super::output::read;
+use super::output::{Reading, read};
 use super::shape::{hermite, hermite_slope, natural, second};
 use super::spec::Section;
-use super::{CableModel, CableParams};
+use super::transmitted::{self, Unstressed};
+use super::{CableModel, CableParams, DirectedParams};
 use ropewalk_core::held::Held;
 use ropewalk_core::{
     At, Change, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Mesh, MeshState, Node, NodeId, Part, Per,
@@ -25,6 +26,8 @@ pub struct CablePart {
     pub(crate) mesh: Vec<f64>,
     pub(crate) section: Section,
     pub(crate) stations: Arc<dyn Stations>,
+    /// The nodes between which the force in the cable is smooth, ascending: its ends, and where something holds it.
+    pub(crate) breaks: Vec<usize>,
     /// How its nodes move along its material, if an end feeds.
     pub(crate) line: Option<Line>,
     /// Length at the start of the run [m], where an end feeds.
@@ -103,6 +106,71 @@ impl CablePart {
     fn velocities(&self, k: usize, v: &[f64]) -> [f64; 12] {
         let (a, b) = (self.seats[k].1, self.seats[k + 1].1);
         std::array::from_fn(|i| if i < 6 { v[a + i] } else { v[b + i - 6] })
+    }
+
+    /// The elastic force that element `k` of length `l` transmits [N].
+    fn transmits(&self, k: usize, l: f64, at: &At<'_>) -> Option<V3<f64>> {
+        let (s, q) = (&self.section, self.dofs(k, at.q));
+        let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
+        let mut points: Option<Vec<f64>> = None;
+        for p in self.prestrain.iter().filter(|p| p.element == k) {
+            let left = p.left(at.t).0;
+            let sum = points.get_or_insert_with(|| vec![0.0; p.strain.len()]);
+            sum.iter_mut().zip(&p.strain).for_each(|(sum, strain)| *sum += left * strain);
+        }
+        let shape = self.rest.as_ref().map(|r| &r[k]);
+        let (strain, curvature) = self.offset;
+        let unstressed = Unstressed { shape, strain, curvature, points: points.as_deref() };
+        let mut force = transmitted::force(self.model, &params, &q, unstressed).ok()?;
+        if let (Some(directors), Some(shape)) = (&self.directors, shape) {
+            let params = DirectedParams { l, ei: s.ei, gj: s.gj.unwrap_or(s.ei), rho_j: 0.0 };
+            let laid = [directors.laid[k], directors.laid[k + 1]];
+            let (now, rest) = ((&q, directors.at(k, at.q)), (shape, laid));
+            let more = transmitted::directed(self.model.integration, params, now, rest);
+            (0..3).for_each(|i| force[i] += more[i]);
+        }
+        Some(force)
+    }
+
+    /// The tension in element `k` at `xi` [N]: what the force in the cable has along it. `slope` is the curve's there.
+    fn tension(&self, k: usize, xi: f64, slope: &V3<f64>, at: &At<'_>) -> Option<f64> {
+        let mesh = self.material(at.q);
+        let size = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let next = self.breaks.partition_point(|b| *b <= k);
+        let (from, to) = (self.breaks[next - 1], self.breaks[next]);
+        // a parabola through the means of three elements, of fewer where there are no more
+        let count = (to - from).min(3);
+        let first = k.saturating_sub(1).clamp(from, to - count);
+        let place = mesh[k] + xi * (mesh[k + 1] - mesh[k]);
+        let (mut middle, mut length, mut along) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        for i in 0..count {
+            let [a, b] = [mesh[first + i], mesh[first + i + 1]];
+            (middle[i], length[i]) = (0.5 * (a + b) - place, b - a);
+            let force = self.transmits(first + i, b - a, at)?;
+            along[i] = (0..3).map(|c| force[c] * slope[c]).sum::<f64>() / size;
+        }
+        let weights = transmitted::weights(&middle[..count], &length[..count]);
+        let tension: f64 = weights.iter().zip(along).map(|(w, t)| w * t).sum();
+        if count > 1 {
+            return Some(tension);
+        }
+        // one element has its strain to tell how the tension changes along it
+        let there = |xi: f64| self.by_strain(k, length[0], xi, at);
+        let [start, middle, end] = [there(0.0)?, there(0.5)?, there(1.0)?];
+        Some(tension + there(xi)? - middle - 0.1 * (start - 2.0 * middle + end))
+    }
+
+    /// The tension in element `k` of length `l` at `xi` as its strain there has it [N].
+    fn by_strain(&self, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<f64> {
+        let r = self.reading(k, l, xi, at)?;
+        Some(r.tension - self.section.ea * (self.offset.0 + self.fading(k, xi, at.t)))
+    }
+
+    fn reading(&self, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<Reading> {
+        let s = &self.section;
+        let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
+        let rest = self.rest.as_ref().map(|r| &r[k]);
+        read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()
     }
 
     /// What is left of the strain of element `k` that fades out.
@@ -354,16 +422,23 @@ impl Part for CablePart {
 
     fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {
         let (k, l, xi) = self.find(s, at.q)?;
-        let s = &self.section;
-        let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
-        let rest = self.rest.as_ref().map(|r| &r[k]);
-        let r = read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()?;
+        let r = self.reading(k, l, xi, at)?;
         Some(match what {
-            Quantity::Tension => r.tension - s.ea * (self.offset.0 + self.fading(k, xi, at.t)),
+            Quantity::Tension => self.tension(k, xi, &r.slope, at)?,
             Quantity::Strain => r.strain,
             Quantity::Curvature => r.curvature,
-            Quantity::Moment => self.bent(k, l, xi, at.q).unwrap_or(r.moment) - s.ei * self.offset.1,
+            Quantity::Moment => self.bent(k, l, xi, at.q).unwrap_or(r.moment) - self.section.ei * self.offset.1,
         })
+    }
+
+    fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {
+        let (k, l, xi) = self.find(s, at.q)?;
+        self.by_strain(k, l, xi, at)
+    }
+
+    fn mesh_now(&self, at: &At<'_>) -> Vec<f64> {
+        let mesh = self.material(at.q);
+        mesh.iter().map(|p| p - mesh[0]).collect()
     }
 
     fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
@@ -506,37 +581,5 @@ impl Part for CablePart {
         let (k, l, xi) = Self::locate(&self.mesh, s)?;
         let e = if coordinates { self.dofs(k, x) } else { self.velocities(k, x) };
         Some((interpolate(hermite::<f64>(xi, l), &e), interpolate(hermite_slope::<f64>(xi, 1.0 / l), &e)))
-    }
-}
-
-/// Arc lengths of the nodes of a cable: about `elements` of equal length, with a node at each pin.
-pub(crate) fn mesh(length: f64, elements: usize, pins: &[f64]) -> Vec<f64> {
-    let mut stops = vec![0.0];
-    for &p in pins {
-        // a marker on top of another, or of an end, needs no node of its own; whoever asks for one that is off the
-        // cable is refused there
-        if p - stops[stops.len() - 1] > 1e-9 * length && length - p > 1e-9 * length {
-            stops.push(p);
-        }
-    }
-    stops.push(length);
-    let mut mesh = vec![0.0];
-    for w in stops.windows(2) {
-        let n = ((w[1] - w[0]) / length * elements as f64).round().max(1.0) as usize;
-        mesh.extend((1..=n).map(|i| if i == n { w[1] } else { w[0] + (w[1] - w[0]) * i as f64 / n as f64 }));
-    }
-    mesh
-}
-
-#[cfg(test)]
-mod tests {
-    use super::mesh;
-
-    #[test]
-    fn meshes_are_even_and_hold_their_pins() {
-        assert_eq!(mesh(10.0, 5, &[]), vec![0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
-        let m = mesh(10.0, 4, &[3.0, 3.0, 10.0]);
-        assert_eq!(m, vec![0.0, 3.0, 3.0 + 7.0 / 3.0, 3.0 + 14.0 / 3.0, 10.0]);
-        assert_eq!(mesh(10.0, 4, &[-1.0, 11.0, f64::NAN]), mesh(10.0, 4, &[]));
     }
 }
