@@ -179,9 +179,13 @@ pub trait Part: Send + Sync {
     fn looks(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<V3<f64>> {
         None
     }
-    /// Length of the element at an end [m]: 0 the start, 1 the end.
+    /// Length of the element at an end that others are born of [m]: 0 the start, 1 the end.
     fn end_element(&self, _end: usize, _at: &At<'_>) -> Option<f64> {
         None
+    }
+    /// Length of the elements between that one and the end, which keep their lengths [m].
+    fn riding(&self, _end: usize) -> f64 {
+        0.0
     }
     /// Its mesh after a change, with the state that it goes on from; nothing where the mesh of its spec does.
     ///

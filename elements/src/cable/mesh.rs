@@ -111,7 +111,11 @@ impl MeshSpec {
 fn listed(lengths: &[f64], length: f64) -> Result<Vec<f64>, BuildError> {
     counted("mesh", lengths.len())?;
     if let Some(k) = lengths.iter().position(|l| !(*l > 0.0 && l.is_finite())) {
-        return Err(fault(format!("element {} of `mesh` must have a positive length, not {} m", k + 1, lengths[k])));
+        return Err(fault(format!(
+            "element {} of `mesh` must have a positive length, not {} m",
+            k + 1,
+            lengths[k]
+        )));
     }
     let whole: f64 = lengths.iter().sum();
     if (whole - length).abs() <= ROUNDING * length {
@@ -132,11 +136,17 @@ impl Grading {
             positive(name, l.unwrap_or(1.0)).map_err(|e| fault(format!("of the mesh, {}", e.message)))?;
         }
         if n < given.len() + 1 && !given.is_empty() {
-            let message = format!("with lengths at {} of the mesh, give `elements = {}` or more", if given.len() == 1 { "an end" } else { "both ends" }, given.len() + 1);
+            let message = format!(
+                "with lengths at {} of the mesh, give `elements = {}` or more",
+                if given.len() == 1 { "an end" } else { "both ends" },
+                given.len() + 1
+            );
             return Err(fault(message));
         }
         if given.iter().sum::<f64>() >= length {
-            let message = format!("the elements at the ends of the mesh are longer than the cable, which is {length} m long");
+            let message = format!(
+                "the elements at the ends of the mesh are longer than the cable, which is {length} m long"
+            );
             return Err(fault(message));
         }
         let t = |k: usize| k as f64 / (n - 1).max(1) as f64;
@@ -195,7 +205,9 @@ pub(crate) fn pinned(nodes: &[f64], pins: &[f64]) -> Vec<f64> {
     for w in stops.windows(2) {
         let [from, to] = [number(w[0]), number(w[1])];
         let n = (to - from).round().max(1.0) as usize;
-        mesh.extend((1..=n).map(|i| if i == n { w[1] } else { place(from + (to - from) * i as f64 / n as f64) }));
+        mesh.extend(
+            (1..=n).map(|i| if i == n { w[1] } else { place(from + (to - from) * i as f64 / n as f64) }),
+        );
     }
     mesh
 }

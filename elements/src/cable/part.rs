@@ -427,7 +427,9 @@ impl Part for CablePart {
             Quantity::Tension => self.tension(k, xi, &r.slope, at)?,
             Quantity::Strain => r.strain,
             Quantity::Curvature => r.curvature,
-            Quantity::Moment => self.bent(k, l, xi, at.q).unwrap_or(r.moment) - self.section.ei * self.offset.1,
+            Quantity::Moment => {
+                self.bent(k, l, xi, at.q).unwrap_or(r.moment) - self.section.ei * self.offset.1
+            }
         })
     }
 
@@ -461,9 +463,15 @@ impl Part for CablePart {
     }
 
     fn end_element(&self, end: usize, at: &At<'_>) -> Option<f64> {
-        let (line, last) = (self.line.as_ref()?, self.mesh.len() - 1);
-        let k = if end == 0 { 0 } else { last - 1 };
+        let line = self.line.as_ref()?;
+        let k = line.grows(end);
         Some(line.p(k + 1, at.q) - line.p(k, at.q))
+    }
+
+    fn riding(&self, end: usize) -> f64 {
+        let Some(line) = &self.line else { return 0.0 };
+        let (k, last) = (line.grows(end), self.mesh.len() - 1);
+        if end == 0 { self.mesh[k] - self.mesh[0] } else { self.mesh[last] - self.mesh[k + 1] }
     }
 
     fn remesh(&self, what: Change, at: &At<'_>) -> Result<Option<Mesh>, String> {
@@ -477,21 +485,30 @@ impl Part for CablePart {
         match what {
             Change::None => {}
             Change::Split { end, keep, release } => {
-                let k = if end == 0 { 0 } else { last - 1 };
-                let p = if end == 0 { new.p[1] - keep } else { new.p[last - 1] + keep };
+                let k = line.grows(end);
+                let p = if end == 0 { new.p[k + 1] - keep } else { new.p[k] + keep };
                 fading.retain(|p| p.element != k);
                 fading.iter_mut().filter(|p| p.element > k).for_each(|p| p.element += 1);
                 let [a, b] = new.split(k, p, self.model)?;
                 (born, time) = (vec![(k, a), (k + 1, b)], release);
             }
             Change::Merge { end, release } => {
-                if last < 2 {
+                if last < 2 + line.rides[0] + line.rides[1] {
                     return Err("there is but one element left, which can't be merged".into());
                 }
-                let k = if end == 0 { 1 } else { last - 1 };
+                let k = if end == 0 { line.grows(0) + 1 } else { line.grows(1) };
+                // the slope at the end changes, which the element that rides beside it feels too
+                let beside = match end {
+                    0 => (k > 1).then(|| k - 2),
+                    _ => (k + 1 < last).then_some(k),
+                };
                 fading.retain(|p| p.element + 1 != k && p.element != k);
                 fading.iter_mut().filter(|p| p.element >= k).for_each(|p| p.element -= 1);
                 (born, time) = (vec![(k - 1, new.merge(k, end, self.model)?)], release);
+                if let Some(beside) = beside {
+                    fading.retain(|p| p.element != beside);
+                    born.push((beside, new.stress[beside].clone()));
+                }
             }
         }
         for (element, stress) in born {

@@ -4,8 +4,8 @@ use super::damping::{push_axial_damping, push_bending_damping};
 use super::directed::{self, Directed, DirectedParams};
 use super::flow::Line;
 use super::flow::push::{self, Piece};
-use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::mesh::{MeshSpec, counted, even, pinned};
+use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::{CablePart, Directors};
 use super::quadrature::{Gauss2, Gauss5};
 use super::rest::{Rest, push_rest};
@@ -346,8 +346,31 @@ impl CableSpec {
             ));
         }
         let ends = |is: fn(&Feed) -> bool| feeding.map(|f| f.as_ref().is_some_and(is));
-        let line = Line::new(mesh, fronts, ends(|f| f.element.is_some()));
+        let line = Line::new(mesh, fronts, ends(|f| f.element.is_some()), self.rides(mesh, feeding)?);
         Ok(Line { unstrained: ends(|f| f.unstrained), ..line })
+    }
+
+    /// How many elements of a graded mesh ride with each end where others are born: those that are shorter than what is
+    /// swallowed there.
+    fn rides(&self, mesh: &[f64], feeding: [Option<Feed>; 2]) -> Result<[usize; 2], BuildError> {
+        if self.mesh.is_none() {
+            return Ok([0; 2]);
+        }
+        let elements = mesh.len() - 1;
+        let short = |end: usize| {
+            let Some(element) = feeding[end].as_ref().and_then(|f| f.element) else { return 0 };
+            let length = |k: &usize| {
+                let k = if end == 0 { *k } else { elements - 1 - k };
+                mesh[k + 1] - mesh[k]
+            };
+            (0..elements).take_while(|k| length(k) < RIDES * element).count()
+        };
+        let rides = [short(0), short(1)];
+        if rides[0] + rides[1] + 2 > elements {
+            let message = "between the elements of the mesh that are shorter than half of `element`, which stay at the ends                            where cable feeds, there must be two longer ones: grade it less, or take a smaller `element`";
+            return Err(BuildError::at("mesh", message));
+        }
+        Ok(rides)
     }
 
     /// Damping and a stress-free shape of one element, where the scene asks for them.
@@ -454,6 +477,10 @@ fn breaks(mesh: &[f64], held: &[f64]) -> Vec<usize> {
 /// The sharpest corner that is no corner [rad]: at an angle θ the elements beside it are longer than their length by the
 /// strain θ²/60, which is 1e-5 here.
 const MOST_CORNER: f64 = 0.0245;
+
+/// Elements shorter than this part of those that are born at an end stay there; any other is swallowed before it is so
+/// short.
+const RIDES: f64 = 0.45;
 
 /// Stretches that a cable may be laid with.
 const STRETCHES: std::ops::RangeInclusive<f64> = 0.1..=10.0;

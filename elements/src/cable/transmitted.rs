@@ -132,7 +132,13 @@ mod tests {
         (0..=n)
             .map(|k| {
                 let xi = f64::from(k) / f64::from(n);
-                let simpson = if k == 0 || k == n { 1.0 } else if k % 2 == 1 { 4.0 } else { 2.0 };
+                let simpson = if k == 0 || k == n {
+                    1.0
+                } else if k % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
                 simpson / (3.0 * f64::from(n)) * 6.0 * xi * (1.0 - xi) * f(from + l * xi)
             })
             .sum()
