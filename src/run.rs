@@ -206,6 +206,7 @@ impl<'a> Course<'a> {
                 });
                 warnings = std::mem::take(&mut recorder.warnings);
                 started.afterthought().iter().for_each(|w| warnings.say(w));
+                recorder.afterthought().iter().for_each(|w| warnings.say(w));
                 if measure {
                     profile = Some(shares(started.times(), clock.elapsed().as_secs_f64()));
                 }

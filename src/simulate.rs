@@ -67,6 +67,7 @@ pub(crate) fn simulate_showing(
         progress.finish("");
     }
     warnings.extend(started.afterthought());
+    warnings.extend(recorder.afterthought());
     let stopped_by = match ending {
         Ending::Finished => None,
         Ending::Stopped(by) => Some(by),

@@ -1,5 +1,7 @@
 //! A process in a scene: the bundled `unwinding-paper`, and what is wrong with others.
 
+mod common;
+
 use ropewalk::scene::Format;
 use ropewalk::{SceneFile, bundled, simulate};
 
@@ -69,6 +71,93 @@ fn predictions_at_25_knots_are_those_of_both_formulations_and_follow_the_trend()
         let similar = ((high - 0.02) / (low - 0.02)) / (fast / slow).powi(2);
         assert!((similar - 1.0).abs() < 0.01 && (long / short - 1.0).abs() < 0.03, "{trend:?}");
     }
+}
+
+/// The bundled scene as it is, against finite differences of which the limit was taken (`data/flow/lift_off.json`).
+#[test]
+fn lift_off_with_bending_stiffness_is_that_of_finite_differences() {
+    let all = common::data("flow/lift_off.json");
+    for case in all["cases"].as_array().expect("cases") {
+        let text = |key: &str| case[key].as_str().expect(key);
+        let [tension, curvature, length] =
+            ["tension", "curvature", "length"].map(|key| case[key].as_f64().expect(key));
+        let (speed, traverse) = (text("speed"), text("traverse"));
+        let h = history("unwinding", speed, traverse, &["rigidity=tangent"]);
+        let last = |name: &str| h.last(name).unwrap_or_else(|| panic!("no {name}"));
+        let found = [last("lift_off.tension"), last("lift_off.curvature"), last("cable.length")];
+        println!("{speed} {traverse}: {found:?} for {tension} N, {curvature} 1/m, {length} m");
+        assert!((found[0] / tension - 1.0).abs() < 0.02, "{speed} {traverse}: {found:?}");
+        assert!((found[1] / curvature - 1.0).abs() < 0.01, "{speed} {traverse}: {found:?}");
+        assert!((found[2] / length - 1.0).abs() < 0.005, "{speed} {traverse}: {found:?}");
+        assert!(!h.warnings.iter().any(|w| w.contains("√(EI/T)")), "{:?}", h.warnings);
+        let knots: f64 = speed.trim_end_matches(" kn").parse().expect("a speed");
+        let given = 0.02 + 0.0227 * (knots * 1852.0 / 3600.0).powi(2);
+        let pull = last("eyelet.tension");
+        assert!((pull / given - 1.0).abs() < 2e-3, "{speed} {traverse}: {pull} N for {given}");
+    }
+}
+
+#[test]
+fn a_mesh_that_misses_its_layer_is_named_with_the_one_that_would_do() {
+    let set = ["rigidity=tangent", "duration=0.05 s"];
+    let even = [&set[..], &["mesh={ elements = 16 }"]].concat();
+    let h = history("unwinding", "15 kn", "forward", &even);
+    let said = h.warnings.iter().find(|w| w.contains("√(EI/T)")).expect("a warning");
+    assert!(said.contains("`cable`") && said.contains("at its end, held by `package`"), "{said}");
+    let mesh = said.split('`').find(|s| s.starts_with("mesh = ")).expect(said);
+    let better = [&set[..], &[&mesh.replacen(" = ", "=", 1)]].concat();
+    let h = history("unwinding", "15 kn", "forward", &better);
+    assert!(!h.warnings.iter().any(|w| w.contains("√(EI/T)")), "{:?}", h.warnings);
+}
+
+#[test]
+fn a_coarse_stiff_cable_keeps_the_tension_of_its_eyelet() {
+    let set = ["rigidity=tangent", "duration=0.2 s", "ea=13.7 kN", "mesh={ elements = 20 }"];
+    let h = history("unwinding", "15 kn", "backward", &set);
+    let given = 0.02 + 0.0227 * (15.0 * 1852.0 / 3600.0_f64).powi(2);
+    let found = h.last("eyelet.tension").expect("tension");
+    assert!((found / given - 1.0).abs() < 5e-3, "{found} N for {given}");
+}
+
+#[test]
+fn steps_of_the_finite_differences_follow_their_mesh() {
+    let set = ["rigidity=tangent", "duration=0.12 s", "segments=120"];
+    let h = history("unwinding-paper", "15 kn", "forward", &set);
+    let tension = h.column("cable.tension.lift").expect("tension");
+    // it doesn't tremble from row to row, and is that of a coarser mesh but for the error of both
+    let late = &tension[tension.len() - 6..];
+    assert!(late.windows(2).all(|w| (w[1] - w[0]).abs() < 0.02), "{late:?}");
+    assert!(h.counts.steps > 2000 && h.counts.rejected < 20, "{:?}", h.counts);
+    let coarse = history("unwinding-paper", "15 kn", "forward", &[&set[..2], &["segments=60"]].concat());
+    let difference = coarse.last("cable.tension.lift").expect("tension") - late[5];
+    assert!((0.0..0.03).contains(&difference), "{difference}");
+
+    let long = open(&["speed=15 kn", "rigidity=tangent", "segments=160", "step=0.2 ms", "duration=0.1 s"]);
+    let refused = simulate(long.scene()).err().expect("too long a step").to_string();
+    assert!(refused.contains("too long for 160 segments") && refused.contains("leave it out"), "{refused}");
+}
+
+#[test]
+fn contact_with_an_outer_package_is_reported_where_it_is() {
+    let set = ["side=outer", "duration=0.02 s"];
+    let file = {
+        let mut all = vec!["speed=5 kn".to_string()];
+        all.extend(set.iter().map(ToString::to_string));
+        SceneFile::open("unwinding", &all, bundled()).unwrap()
+    };
+    #[derive(Default)]
+    struct Said(Vec<String>);
+    impl ropewalk_core::Observer for Said {
+        fn event(&mut self, name: &str, _: f64) {
+            self.0.push(name.to_string());
+        }
+    }
+    let scene = file.scene();
+    let mut s = ropewalk_core::Simulation::new(scene.build().unwrap(), &scene.solver, 0.02).unwrap();
+    let mut said = Said::default();
+    s.advance(0.02, f64::INFINITY, &mut said).unwrap();
+    let touches = said.0.iter().find(|s| s.contains("touches the package")).expect("a report");
+    assert!(touches.contains("m deep at s = ") && touches.contains("from its start"), "{touches}");
 }
 
 #[test]

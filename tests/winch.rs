@@ -22,9 +22,13 @@ fn go(s: &mut Simulation, t: f64) {
 
 /// A cable that hangs down from a winch at the origin.
 fn hanging(length: f64, elements: usize, section: Section, winch: WinchSpec, g: f64) -> Scene {
+    hung(CableSpec::straight("rope", [0.0; 3], [0.0, 0.0, -length], elements, section), winch, g)
+}
+
+fn hung(rope: CableSpec, winch: WinchSpec, g: f64) -> Scene {
     let mut scene = Scene::new();
     scene
-        .element(CableSpec::straight("rope", [0.0; 3], [0.0, 0.0, -length], elements, section))
+        .element(rope)
         .constraint(SphericalSpec::new("eyelet", "rope.start", [0.0; 3]))
         .constraint(winch)
         .set_gravity([0.0, 0.0, -g])
@@ -320,11 +324,28 @@ struct Hauled {
 
 /// Hangs in air, or in water which slows the ends of ramps a little.
 fn out_and_back(way: f64, element: Option<f64>, eta: f64, elements: usize, water: bool) -> Hauled {
+    hauled(way, element, eta, Divided::Evenly(elements), water)
+}
+
+/// How a cable is divided.
+enum Divided {
+    Evenly(usize),
+    Into(Vec<f64>),
+}
+
+fn hauled(way: f64, element: Option<f64>, eta: f64, divided: Divided, water: bool) -> Hauled {
     let (l0, ea, m) = (1.0, 1e6, 1.0);
     let mut section = Section::new(m, ea, 0.0);
     (section.axial_damping, section.diameter) = (eta, 0.02);
     let winch = WinchSpec { element, ..WinchSpec::motion("winch", "rope.start", "haul") };
-    let mut scene = hanging(l0, elements, section, winch, 9.81);
+    let mut scene = match divided {
+        Divided::Evenly(elements) => hanging(l0, elements, section, winch, 9.81),
+        Divided::Into(lengths) => {
+            let mesh = Some(ropewalk_elements::cable::MeshSpec::Lengths(lengths));
+            let rope = CableSpec::straight("rope", [0.0; 3], [0.0, 0.0, -l0], 0, section);
+            hung(CableSpec { mesh, ..rope }, winch, 9.81)
+        }
+    };
     scene.motion(haul(way));
     let mut w = m * 9.81;
     let (rho, ct) = (1025.0, 0.01);
@@ -375,6 +396,35 @@ fn out_and_back(way: f64, element: Option<f64>, eta: f64, elements: usize, water
     out.steps = s.work.counts.steps;
     out.imbalance = s.audit.imbalance() / s.audit.scale;
     out
+}
+
+/// Short elements at the end that feeds stay there, with their lengths, while others are born and swallowed behind them.
+#[test]
+fn a_graded_end_stays_graded_while_it_feeds() {
+    let lengths = vec![0.02, 0.03, 0.05, 0.5, 0.4];
+    let hauled = hauled(6.0, Some(0.4), 0.01, Divided::Into(lengths.clone()), false);
+    eprintln!("{hauled:?}");
+    assert!(hauled.changes > 10 && hauled.tension < 5e-3 && hauled.tip < 1e-2, "{hauled:?}");
+    assert!(hauled.jump < 5e-3 && hauled.impulse < 1e-4 && hauled.imbalance.abs() < 1e-5, "{hauled:?}");
+
+    let section = Section { axial_damping: 0.01, ..Section::new(1.0, 1e6, 0.0) };
+    let rope = CableSpec {
+        mesh: Some(ropewalk_elements::cable::MeshSpec::Lengths(lengths)),
+        ..CableSpec::straight("rope", [0.0; 3], [0.0, 0.0, -1.0], 0, section)
+    };
+    let winch = WinchSpec { element: Some(0.4), ..WinchSpec::speed("winch", "rope.start", 1.0) };
+    let scene = hung(rope.clone(), winch.clone(), 9.81);
+    let mut s = Simulation::new(scene.build().expect("model"), &fixed(0.01), 4.0).expect("start");
+    go(&mut s, 4.0);
+    let mesh = s.model.part("rope").expect("rope").mesh_now(&s.state.at());
+    assert!(mesh.len() > 9);
+    for (k, l) in [0.02, 0.03, 0.05].into_iter().enumerate() {
+        assert!((mesh[k + 1] - mesh[k] - l).abs() < 1e-9, "{mesh:?}");
+    }
+    let too_fine = WinchSpec { element: Some(0.49), ..winch };
+    let rope = CableSpec { mesh: Some(ropewalk_elements::cable::MeshSpec::Lengths(vec![0.2; 5])), ..rope };
+    let refused = hung(rope, too_fine, 9.81).build().err().expect("all elements are short").error;
+    assert!(refused.message.contains("grade it less"), "{}", refused.message);
 }
 
 #[test]

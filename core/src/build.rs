@@ -121,8 +121,8 @@ pub struct Builder {
     /// What acts on the stations of a part, or on those that follow its material.
     laws: BTreeMap<(usize, bool), Laws>,
     motions: Motions,
-    /// Arc lengths at which a cable needs a node, by part.
-    pins: HashMap<String, Vec<f64>>,
+    /// Places at which a cable needs a node, by part.
+    pins: HashMap<String, Vec<Spot>>,
     /// Meshes that replace those of the specs, by part.
     meshes: HashMap<String, Mesh>,
     /// What flows through the ends of cables, by part: at its start, at its end.
@@ -326,16 +326,21 @@ impl Builder {
     pub(crate) fn pin(&mut self, markers: &[&MarkerRef]) {
         for m in markers {
             if let MarkerRef::Name(name) = m
-                && let Ok((part, Spot::Along(s))) = split_marker(name)
+                && let Ok((part, spot @ (Spot::Along(_) | Spot::Share(_)))) = split_marker(name)
             {
-                self.pins.entry(part.to_string()).or_default().push(s);
+                self.pins.entry(part.to_string()).or_default().push(spot);
             }
         }
     }
 
-    /// Arc lengths at which a part needs nodes, ascending.
-    pub fn pins(&self, part: &str) -> Vec<f64> {
-        let mut pins = self.pins.get(part).cloned().unwrap_or_default();
+    /// Arc lengths at which a part of this length needs nodes, ascending.
+    pub fn pins(&self, part: &str, length: f64) -> Vec<f64> {
+        let place = |spot: &Spot| match spot {
+            Spot::Along(s) => Some(*s),
+            Spot::Share(share) => Some(share * length),
+            Spot::Named(_) => None,
+        };
+        let mut pins: Vec<f64> = self.pins.get(part).into_iter().flatten().filter_map(place).collect();
         pins.sort_by(f64::total_cmp);
         pins.dedup();
         pins

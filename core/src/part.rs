@@ -142,6 +142,11 @@ pub trait Part: Send + Sync {
     fn observe(&self, _what: Quantity, _s: f64, _at: &At<'_>) -> Option<f64> {
         None
     }
+    /// Size of the axial force at unstretched arc length `s` [N], by which Newton's method judges residuals: as
+    /// [`Quantity::Tension`], or what is cheaper and of its order.
+    fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {
+        self.observe(Quantity::Tension, s, at)
+    }
     /// Position and velocity at unstretched arc length `s`.
     fn point(&self, _s: f64, _at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         None
@@ -185,6 +190,10 @@ pub trait Part: Send + Sync {
     fn mesh(&self) -> &[f64] {
         &[]
     }
+    /// Unstretched arc length of each node from the start as it is now [m]: of a cable that feeds, other than its mesh.
+    fn mesh_now(&self, _at: &At<'_>) -> Vec<f64> {
+        self.mesh().to_vec()
+    }
     /// Lays its nodes evenly along the straight line between its ends, as the start of another search for
     /// equilibrium. Parts that can't be laid wrong do nothing.
     fn straighten(&self, _q: &mut [f64]) {}
@@ -200,9 +209,13 @@ pub trait Part: Send + Sync {
     fn looks(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<V3<f64>> {
         None
     }
-    /// Length of the element at an end [m]: 0 the start, 1 the end.
+    /// Length of the element at an end that others are born of [m]: 0 the start, 1 the end.
     fn end_element(&self, _end: usize, _at: &At<'_>) -> Option<f64> {
         None
+    }
+    /// Length of the elements between that one and the end, which keep their lengths [m].
+    fn riding(&self, _end: usize) -> f64 {
+        0.0
     }
     /// Its mesh after a change, with the state that it goes on from; nothing where the mesh of its spec does.
     ///

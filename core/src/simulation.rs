@@ -48,6 +48,10 @@ pub trait Event: Send + Sync {
     }
     /// What happens there.
     fn act(&self, model: &Model, state: &mut State) -> Action;
+    /// What is reported once it is located: its name, and what of the state belongs to it.
+    fn report(&self, _model: &Model, _state: &State) -> String {
+        self.name()
+    }
     /// The part whose mesh it changes, and at which end, for the report.
     fn remeshes(&self) -> Option<(&str, usize)> {
         None
@@ -422,7 +426,8 @@ impl Simulation {
             let action = self.events[event].0.act(&self.model, &mut after);
             let changed = after.modes != self.scratch.modes;
             if !changed && matches!(action, Action::Continue) {
-                observer.event(&self.events[event].0.name(), t);
+                let report = self.events[event].0.report(&self.model, &self.scratch);
+                observer.event(&report, t);
                 from = t;
                 continue;
             }

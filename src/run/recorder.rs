@@ -8,8 +8,8 @@ use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{
-    Analysis, At, BuildError, Channel, Checkpoint, Model, NodeKind, Observer, Process, Record, Remeshed,
-    Sample, Scene, SceneError, SpecKind, State, V3,
+    Analysis, At, BuildError, Channel, Checkpoint, Layers, Model, NodeKind, Observer, Process, Record,
+    Remeshed, Sample, Scene, SceneError, SpecKind, State, V3,
 };
 use std::collections::HashSet;
 use std::ops::ControlFlow;
@@ -63,6 +63,8 @@ pub(crate) struct Recorder<'a> {
     pub saver: Option<Saver>,
     /// Where warnings go while the run goes on.
     pub warnings: Warnings<'a>,
+    /// Bending layers, looked at now and then.
+    layers: Option<Layers>,
 }
 
 /// Warnings are said at once and kept for the summary.
@@ -149,6 +151,7 @@ impl<'a> Recorder<'a> {
             remeshed: Vec::new(),
             saver: None,
             warnings: Warnings::default(),
+            layers: None,
         }
     }
 
@@ -172,6 +175,12 @@ impl<'a> Recorder<'a> {
         if self.bound.is_some_and(|bound| bound != address) {
             self.records = records(self.scene, model)?;
         }
+        if self.bound != Some(address) {
+            match &mut self.layers {
+                Some(layers) => layers.follow(model),
+                None => self.layers = Some(Layers::new(model)),
+            }
+        }
         self.bound = Some(address);
         Ok(())
     }
@@ -183,10 +192,16 @@ impl<'a> Recorder<'a> {
         for record in &self.records {
             record.sample(s, &mut self.row);
         }
-        if let Some(track) = &mut self.track {
-            let rows = self.scene.run.duration / self.scene.run.interval();
-            if self.table.rows().is_multiple_of((rows / TRACKED).ceil().max(1.0) as usize) {
+        let rows = match self.scene.run.analysis {
+            Analysis::Statics => 0.0,
+            _ => self.scene.run.duration / self.scene.run.interval(),
+        };
+        if self.table.rows().is_multiple_of((rows / TRACKED).ceil().max(1.0) as usize) {
+            if let Some(track) = &mut self.track {
                 track.push(positions(s.model, &s.at));
+            }
+            if let Some(layers) = &mut self.layers {
+                layers.look(s.model, &s.at);
             }
         }
         self.keep(s.at.t, || Shape::of(s.model, &s.at))
@@ -241,6 +256,11 @@ impl<'a> Recorder<'a> {
                 summary.set(&column.name, *last);
             }
         }
+    }
+
+    /// What one should know of the mesh, after all that was recorded.
+    pub(crate) fn afterthought(&self) -> Vec<String> {
+        self.layers.iter().flat_map(Layers::remarks).collect()
     }
 
     /// The last instant that was sampled [s].

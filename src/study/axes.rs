@@ -6,8 +6,8 @@
 
 use crate::read::{SceneFile, SceneText};
 use crate::scene::{Fault, Kind, Value};
-use ropewalk_core::Analysis;
 use ropewalk_core::integrator::{Scheme, Stepping};
+use ropewalk_core::{Analysis, quantity};
 use ropewalk_elements::cable::{CableModel, Integration, LongitudinalModel, TransverseModel, legal};
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +30,8 @@ pub(crate) struct Axes<'a> {
     set: Vec<String>,
     /// Number of elements of each part that has one, by its path.
     meshes: Vec<(String, u64)>,
+    /// Lengths at the ends of graded meshes, by their paths [m].
+    ends: Vec<(String, f64)>,
     /// The paths of the cables.
     cables: Vec<String>,
     /// The scene as it is.
@@ -55,13 +57,23 @@ impl<'a> Axes<'a> {
     pub(crate) fn new(text: &'a SceneText, set: &[String]) -> Result<Self, Fault> {
         let file = text.with(set)?;
         let scene = file.scene();
-        let (mut meshes, mut cables, mut models) = (Vec::new(), Vec::new(), None);
+        let (mut meshes, mut ends, mut cables, mut models) = (Vec::new(), Vec::new(), Vec::new(), None);
         let elements = file.document().get("elements").map(|v| &v.kind);
         if let Some(Kind::Array(list)) = elements {
             for (k, table) in list.iter().enumerate().filter_map(|(k, v)| Some((k, v.as_table()?))) {
                 let path = format!("elements[{k}]");
-                if let Some(Kind::Integer(n)) = table.get("elements").map(|v| &v.kind) {
-                    meshes.push((format!("{path}.elements"), u64::try_from(*n).unwrap_or(1)));
+                let graded = table.get("mesh").and_then(Value::as_table);
+                let divided =
+                    [(table.get("elements"), ""), (graded.and_then(|m| m.get("elements")), ".mesh")];
+                for (value, inside) in divided {
+                    if let Some(Kind::Integer(n)) = value.map(|v| &v.kind) {
+                        meshes.push((format!("{path}{inside}.elements"), u64::try_from(*n).unwrap_or(1)));
+                    }
+                }
+                for end in ["first", "last"] {
+                    if let Some(l) = graded.and_then(|m| m.get(end)).and_then(length) {
+                        ends.push((format!("{path}.mesh.{end}"), l));
+                    }
                 }
                 if table.get("type").and_then(Value::as_str) == Some("cable") {
                     let own = |name| table.get(name).and_then(Value::as_str);
@@ -83,7 +95,7 @@ impl<'a> Axes<'a> {
         };
         let horizon = if in_time && scene.solver.horizon == 0.0 { scene.run.duration } else { 0.0 };
         let run = [scene.run.duration, scene.run.interval(), horizon];
-        Ok(Axes { text, set: set.to_vec(), meshes, cables, file, base, run })
+        Ok(Axes { text, set: set.to_vec(), meshes, ends, cables, file, base, run })
     }
 
     /// The scene as it is.
@@ -216,6 +228,10 @@ impl<'a> Axes<'a> {
             for ((path, _), n) in self.meshes.iter().zip(self.elements(settings)) {
                 change(path, n.to_string());
             }
+            // elements at graded ends become shorter as all others do
+            for (path, l) in &self.ends {
+                change(path, format!("{:?}", l / settings.mesh.unwrap_or(1.0)));
+            }
         }
         if let (Some(models), true) = (settings.models, settings.models != self.base.models) {
             for path in &self.cables {
@@ -265,6 +281,15 @@ impl<'a> Axes<'a> {
 fn closed(models: &CableModel) -> bool {
     use LongitudinalModel::{L1, L1n, L2};
     matches!(models.longitudinal, L1 | L1n | L2)
+}
+
+/// A length, as a number or as text with a unit.
+fn length(value: &Value) -> Option<f64> {
+    match &value.kind {
+        Kind::Integer(n) => Some(*n as f64),
+        Kind::Float(x) => Some(*x),
+        _ => quantity::kind::LENGTH.parse(value.as_str()?).ok(),
+    }
 }
 
 /// Two digits, so that the text of a step is the step.

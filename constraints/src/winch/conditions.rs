@@ -66,19 +66,23 @@ impl Condition {
                 points.map(|s| observe(Quantity::Curvature, s)).fold(0.0, f64::max) * limit - 1.0
             }
             What::Contact => {
-                let line = part.line(&at);
-                // the lift-off point itself, and what lies beside it, touches by its nature
-                let (inner, here) = if self.front.sign > 0.0 {
-                    (&line[..line.len() * 7 / 8], line[line.len() - 1])
-                } else {
-                    (&line[line.len() / 8..], line[0])
-                };
-                let radius = self.package.spec().radius;
-                let deepest =
-                    inner.iter().map(|x| self.package.depth(x, &here)).fold(f64::NEG_INFINITY, f64::max);
-                (deepest / radius).max(-1.0) - 1e-6
+                // what lies on the package touches it by its nature, to a hundredth of the diameter
+                let spec = self.package.spec();
+                let (_, depth) = self.deepest(part, state);
+                ((depth - 0.01 * spec.diameter) / spec.radius).max(-1.0)
             }
         }
+    }
+
+    /// The point of the free cable that is deepest in the package: where it is along the cable, and how deep [m].
+    fn deepest(&self, part: &dyn Part, state: &State) -> (f64, f64) {
+        let at = state.at();
+        let line = part.line(&at);
+        let off = if self.front.sign > 0.0 { line.last() } else { line.first() };
+        let Some(off) = off else { return (0.0, f64::NEG_INFINITY) };
+        let depths = line.iter().map(|x| self.package.depth(x, off));
+        let deepest = depths.zip(part.arc_lengths(&at)).max_by(|(a, _), (b, _)| a.total_cmp(b));
+        deepest.map_or((0.0, f64::NEG_INFINITY), |(depth, s)| (s, depth))
     }
 }
 
@@ -92,6 +96,15 @@ impl Event for Condition {
             What::Contact => format!("`{part}` touches the package of `{name}`"),
             What::Bending => format!("`{part}` is bent more than `bend_limit` allows"),
             What::Slack => format!("`{part}`: negative tension where it lifts off from `{name}`"),
+        }
+    }
+    fn report(&self, model: &Model, state: &State) -> String {
+        match (self.what, model.part(&self.part)) {
+            (What::Contact, Some(part)) => {
+                let (s, depth) = self.deepest(part.as_ref(), state);
+                format!("{}: {depth:.1e} m deep at s = {s:.4} m from its start", self.name())
+            }
+            _ => self.name(),
         }
     }
     fn value(&self, model: &Model, state: &State) -> f64 {

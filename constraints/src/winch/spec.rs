@@ -271,7 +271,8 @@ impl ConstraintSpec for WinchSpec {
             return Err(BuildError::at("element", message));
         }
         // an element can't be swallowed by the last one
-        let least = self.element.map_or(0.05 * whole, |e| (2.0 * e).max(0.05 * whole));
+        let riding: f64 = [0, 1].map(|end| part.riding(end)).iter().sum();
+        let least = self.element.map_or(0.05 * whole, |e| (riding + 2.0 * e).max(0.05 * whole));
         let shortest = positive("shortest", self.shortest.unwrap_or(least))?;
         if shortest >= whole {
             let message = format!("the cable is {whole} m long at the start, and `shortest` must be less");
@@ -286,9 +287,11 @@ impl ConstraintSpec for WinchSpec {
         b.event(limit(Side::Short, shortest));
         if let Some(element) = self.element {
             let (element, release) = (positive("element", element)?, positive("release", self.release)?);
-            if self.shortest.is_some_and(|s| s < 2.0 * element) {
+            if self.shortest.is_some_and(|s| s < riding + 2.0 * element) {
+                let besides =
+                    if riding > 0.0 { format!(", and {riding} m of graded mesh,") } else { String::new() };
                 let message = format!(
-                    "elements of {element} m leave no cable shorter than two of them, but `shortest` does"
+                    "elements of {element} m leave no cable shorter than two of them{besides} but `shortest` does"
                 );
                 return Err(BuildError::at("shortest", message));
             }

@@ -7,7 +7,6 @@ use super::norm::Norms;
 use crate::constraint::RowKind;
 use crate::model::Model;
 use crate::node::NodeKind;
-use crate::part::Quantity;
 use crate::state::State;
 
 /// What forces are compared with, group by group.
@@ -96,7 +95,7 @@ impl Forces {
         }
         for Line { part, places, .. } in &self.cables {
             for &s in places {
-                let tension = model.parts()[*part].observe(Quantity::Tension, s, &state.at()).unwrap_or(0.0);
+                let tension = model.parts()[*part].pulls(s, &state.at()).unwrap_or(0.0);
                 self.present[*part] = self.present[*part].max(tension.abs());
             }
         }

@@ -15,6 +15,7 @@ mod l2;
 mod l3;
 mod l4;
 pub mod longitudinal;
+mod mesh;
 mod model;
 mod output;
 mod part;
@@ -28,6 +29,7 @@ mod stations;
 mod t1;
 mod t2;
 mod t3;
+mod transmitted;
 pub mod transverse;
 
 pub use bending_damping::BendingDamping;
@@ -39,6 +41,7 @@ pub use l1n::L1n;
 pub use l2::L2;
 pub use l3::L3;
 pub use l4::L4;
+pub use mesh::{Grading, MeshSpec};
 pub use model::{
     CableModel, Integration, LongitudinalModel, Sink, TransverseModel, WithModels, legal, push_cable,
     with_models,

@@ -3,10 +3,11 @@
 use super::directed::curvature;
 use super::flow::change::{self, Snapshot};
 use super::flow::{Line, push};
-use super::output::read;
+use super::output::{Reading, read};
 use super::shape::{hermite, hermite_slope, natural, second};
 use super::spec::Section;
-use super::{CableModel, CableParams};
+use super::transmitted::{self, Unstressed};
+use super::{CableModel, CableParams, DirectedParams};
 use ropewalk_core::held::Held;
 use ropewalk_core::{
     At, Change, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Mesh, MeshState, Node, NodeId, Part, Per,
@@ -25,6 +26,8 @@ pub struct CablePart {
     pub(crate) mesh: Vec<f64>,
     pub(crate) section: Section,
     pub(crate) stations: Arc<dyn Stations>,
+    /// The nodes between which the force in the cable is smooth, ascending: its ends, and where something holds it.
+    pub(crate) breaks: Vec<usize>,
     /// How its nodes move along its material, if an end feeds.
     pub(crate) line: Option<Line>,
     /// Length at the start of the run [m], where an end feeds.
@@ -103,6 +106,71 @@ impl CablePart {
     fn velocities(&self, k: usize, v: &[f64]) -> [f64; 12] {
         let (a, b) = (self.seats[k].1, self.seats[k + 1].1);
         std::array::from_fn(|i| if i < 6 { v[a + i] } else { v[b + i - 6] })
+    }
+
+    /// The elastic force that element `k` of length `l` transmits [N].
+    fn transmits(&self, k: usize, l: f64, at: &At<'_>) -> Option<V3<f64>> {
+        let (s, q) = (&self.section, self.dofs(k, at.q));
+        let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
+        let mut points: Option<Vec<f64>> = None;
+        for p in self.prestrain.iter().filter(|p| p.element == k) {
+            let left = p.left(at.t).0;
+            let sum = points.get_or_insert_with(|| vec![0.0; p.strain.len()]);
+            sum.iter_mut().zip(&p.strain).for_each(|(sum, strain)| *sum += left * strain);
+        }
+        let shape = self.rest.as_ref().map(|r| &r[k]);
+        let (strain, curvature) = self.offset;
+        let unstressed = Unstressed { shape, strain, curvature, points: points.as_deref() };
+        let mut force = transmitted::force(self.model, &params, &q, unstressed).ok()?;
+        if let (Some(directors), Some(shape)) = (&self.directors, shape) {
+            let params = DirectedParams { l, ei: s.ei, gj: s.gj.unwrap_or(s.ei), rho_j: 0.0 };
+            let laid = [directors.laid[k], directors.laid[k + 1]];
+            let (now, rest) = ((&q, directors.at(k, at.q)), (shape, laid));
+            let more = transmitted::directed(self.model.integration, params, now, rest);
+            (0..3).for_each(|i| force[i] += more[i]);
+        }
+        Some(force)
+    }
+
+    /// The tension in element `k` at `xi` [N]: what the force in the cable has along it. `slope` is the curve's there.
+    fn tension(&self, k: usize, xi: f64, slope: &V3<f64>, at: &At<'_>) -> Option<f64> {
+        let mesh = self.material(at.q);
+        let size = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let next = self.breaks.partition_point(|b| *b <= k);
+        let (from, to) = (self.breaks[next - 1], self.breaks[next]);
+        // a parabola through the means of three elements, of fewer where there are no more
+        let count = (to - from).min(3);
+        let first = k.saturating_sub(1).clamp(from, to - count);
+        let place = mesh[k] + xi * (mesh[k + 1] - mesh[k]);
+        let (mut middle, mut length, mut along) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        for i in 0..count {
+            let [a, b] = [mesh[first + i], mesh[first + i + 1]];
+            (middle[i], length[i]) = (0.5 * (a + b) - place, b - a);
+            let force = self.transmits(first + i, b - a, at)?;
+            along[i] = (0..3).map(|c| force[c] * slope[c]).sum::<f64>() / size;
+        }
+        let weights = transmitted::weights(&middle[..count], &length[..count]);
+        let tension: f64 = weights.iter().zip(along).map(|(w, t)| w * t).sum();
+        if count > 1 {
+            return Some(tension);
+        }
+        // one element has its strain to tell how the tension changes along it
+        let there = |xi: f64| self.by_strain(k, length[0], xi, at);
+        let [start, middle, end] = [there(0.0)?, there(0.5)?, there(1.0)?];
+        Some(tension + there(xi)? - middle - 0.1 * (start - 2.0 * middle + end))
+    }
+
+    /// The tension in element `k` of length `l` at `xi` as its strain there has it [N].
+    fn by_strain(&self, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<f64> {
+        let r = self.reading(k, l, xi, at)?;
+        Some(r.tension - self.section.ea * (self.offset.0 + self.fading(k, xi, at.t)))
+    }
+
+    fn reading(&self, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<Reading> {
+        let s = &self.section;
+        let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
+        let rest = self.rest.as_ref().map(|r| &r[k]);
+        read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()
     }
 
     /// What is left of the strain of element `k` that fades out.
@@ -373,16 +441,25 @@ impl Part for CablePart {
 
     fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {
         let (k, l, xi) = self.find(s, at.q)?;
-        let s = &self.section;
-        let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
-        let rest = self.rest.as_ref().map(|r| &r[k]);
-        let r = read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()?;
+        let r = self.reading(k, l, xi, at)?;
         Some(match what {
-            Quantity::Tension => r.tension - s.ea * (self.offset.0 + self.fading(k, xi, at.t)),
+            Quantity::Tension => self.tension(k, xi, &r.slope, at)?,
             Quantity::Strain => r.strain,
             Quantity::Curvature => r.curvature,
-            Quantity::Moment => self.bent(k, l, xi, at.q).unwrap_or(r.moment) - s.ei * self.offset.1,
+            Quantity::Moment => {
+                self.bent(k, l, xi, at.q).unwrap_or(r.moment) - self.section.ei * self.offset.1
+            }
         })
+    }
+
+    fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {
+        let (k, l, xi) = self.find(s, at.q)?;
+        self.by_strain(k, l, xi, at)
+    }
+
+    fn mesh_now(&self, at: &At<'_>) -> Vec<f64> {
+        let mesh = self.material(at.q);
+        mesh.iter().map(|p| p - mesh[0]).collect()
     }
 
     fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
@@ -405,9 +482,15 @@ impl Part for CablePart {
     }
 
     fn end_element(&self, end: usize, at: &At<'_>) -> Option<f64> {
-        let (line, last) = (self.line.as_ref()?, self.mesh.len() - 1);
-        let k = if end == 0 { 0 } else { last - 1 };
+        let line = self.line.as_ref()?;
+        let k = line.grows(end);
         Some(line.p(k + 1, at.q) - line.p(k, at.q))
+    }
+
+    fn riding(&self, end: usize) -> f64 {
+        let Some(line) = &self.line else { return 0.0 };
+        let (k, last) = (line.grows(end), self.mesh.len() - 1);
+        if end == 0 { self.mesh[k] - self.mesh[0] } else { self.mesh[last] - self.mesh[k + 1] }
     }
 
     fn remesh(&self, what: Change, at: &At<'_>) -> Result<Option<Mesh>, String> {
@@ -421,21 +504,30 @@ impl Part for CablePart {
         match what {
             Change::None => {}
             Change::Split { end, keep, release } => {
-                let k = if end == 0 { 0 } else { last - 1 };
-                let p = if end == 0 { new.p[1] - keep } else { new.p[last - 1] + keep };
+                let k = line.grows(end);
+                let p = if end == 0 { new.p[k + 1] - keep } else { new.p[k] + keep };
                 fading.retain(|p| p.element != k);
                 fading.iter_mut().filter(|p| p.element > k).for_each(|p| p.element += 1);
                 let [a, b] = new.split(k, p, self.model)?;
                 (born, time) = (vec![(k, a), (k + 1, b)], release);
             }
             Change::Merge { end, release } => {
-                if last < 2 {
+                if last < 2 + line.rides[0] + line.rides[1] {
                     return Err("there is but one element left, which can't be merged".into());
                 }
-                let k = if end == 0 { 1 } else { last - 1 };
+                let k = if end == 0 { line.grows(0) + 1 } else { line.grows(1) };
+                // the slope at the end changes, which the element that rides beside it feels too
+                let beside = match end {
+                    0 => (k > 1).then(|| k - 2),
+                    _ => (k + 1 < last).then_some(k),
+                };
                 fading.retain(|p| p.element + 1 != k && p.element != k);
                 fading.iter_mut().filter(|p| p.element >= k).for_each(|p| p.element -= 1);
                 (born, time) = (vec![(k - 1, new.merge(k, end, self.model)?)], release);
+                if let Some(beside) = beside {
+                    fading.retain(|p| p.element != beside);
+                    born.push((beside, new.stress[beside].clone()));
+                }
             }
         }
         for (element, stress) in born {
@@ -525,37 +617,5 @@ impl Part for CablePart {
         let (k, l, xi) = Self::locate(&self.mesh, s)?;
         let e = if coordinates { self.dofs(k, x) } else { self.velocities(k, x) };
         Some((interpolate(hermite::<f64>(xi, l), &e), interpolate(hermite_slope::<f64>(xi, 1.0 / l), &e)))
-    }
-}
-
-/// Arc lengths of the nodes of a cable: about `elements` of equal length, with a node at each pin.
-pub(crate) fn mesh(length: f64, elements: usize, pins: &[f64]) -> Vec<f64> {
-    let mut stops = vec![0.0];
-    for &p in pins {
-        // a marker on top of another, or of an end, needs no node of its own; whoever asks for one that is off the
-        // cable is refused there
-        if p - stops[stops.len() - 1] > 1e-9 * length && length - p > 1e-9 * length {
-            stops.push(p);
-        }
-    }
-    stops.push(length);
-    let mut mesh = vec![0.0];
-    for w in stops.windows(2) {
-        let n = ((w[1] - w[0]) / length * elements as f64).round().max(1.0) as usize;
-        mesh.extend((1..=n).map(|i| if i == n { w[1] } else { w[0] + (w[1] - w[0]) * i as f64 / n as f64 }));
-    }
-    mesh
-}
-
-#[cfg(test)]
-mod tests {
-    use super::mesh;
-
-    #[test]
-    fn meshes_are_even_and_hold_their_pins() {
-        assert_eq!(mesh(10.0, 5, &[]), vec![0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
-        let m = mesh(10.0, 4, &[3.0, 3.0, 10.0]);
-        assert_eq!(m, vec![0.0, 3.0, 3.0 + 7.0 / 3.0, 3.0 + 14.0 / 3.0, 10.0]);
-        assert_eq!(mesh(10.0, 4, &[-1.0, 11.0, f64::NAN]), mesh(10.0, 4, &[]));
     }
 }

@@ -4,8 +4,9 @@ use super::damping::{push_axial_damping, push_bending_damping};
 use super::directed::{self, Directed, DirectedParams};
 use super::flow::Line;
 use super::flow::push::{self, Piece};
+use super::mesh::{MeshSpec, counted, even, pinned};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
-use super::part::{CablePart, Directors, mesh};
+use super::part::{CablePart, Directors};
 use super::quadrature::{Gauss2, Gauss5};
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
@@ -145,8 +146,15 @@ pub struct CableSpec {
         skip_serializing_if = "Option::is_none"
     )]
     pub tension: Option<f64>,
-    /// Number of elements.
+    /// Number of elements of equal length. Give it, or `mesh`.
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub elements: usize,
+    /// Elements of different lengths instead of `elements`: `{ elements = 24, last = "1 mm" }` grades them towards the end,
+    /// `first` towards the start, both towards both; or a list with the length of each, from start to end [m]. Where the
+    /// cable's direction is held, elements should be shorter than its bending layer `√(EI/T)`. A graded end stays graded
+    /// while a winch feeds there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<MeshSpec>,
     /// What it is made of.
     pub section: Section,
     /// Longitudinal stiffness model: L1, L1n, L2, L3 or L4.
@@ -176,6 +184,10 @@ pub struct CableSpec {
 
 register_spec!(Element, "cable", CableSpec);
 
+fn is_zero(x: &usize) -> bool {
+    *x == 0
+}
+
 impl CableSpec {
     /// A cable laid straight between two points, with the default models.
     pub fn straight(name: &str, from: V3<f64>, to: V3<f64>, elements: usize, section: Section) -> Self {
@@ -189,6 +201,7 @@ impl CableSpec {
             length: None,
             tension: None,
             elements,
+            mesh: None,
             section,
             longitudinal: LongitudinalModel::default(),
             transverse: TransverseModel::default(),
@@ -229,6 +242,18 @@ impl CableSpec {
                 let message = format!("a tension of {tension} N would press the cable to nothing");
                 Err(BuildError::at("tension", message))
             }
+        }
+    }
+
+    /// Arc lengths of the nodes of a cable of this length, with one at each of these places.
+    fn divided(&self, length: f64, pins: &[f64]) -> Result<Vec<f64>, BuildError> {
+        match (&self.mesh, self.elements) {
+            (Some(_), n) if n > 0 => {
+                let message = "give `elements` or `mesh`, not both: a mesh has its own number of elements";
+                Err(BuildError::at("mesh", message))
+            }
+            (Some(mesh), _) => Ok(pinned(&mesh.nodes(length)?, pins)),
+            (None, n) => Ok(even(length, counted("elements", n)?, pins)),
         }
     }
 
@@ -321,8 +346,31 @@ impl CableSpec {
             ));
         }
         let ends = |is: fn(&Feed) -> bool| feeding.map(|f| f.as_ref().is_some_and(is));
-        let line = Line::new(mesh, fronts, ends(|f| f.element.is_some()));
+        let line = Line::new(mesh, fronts, ends(|f| f.element.is_some()), self.rides(mesh, feeding)?);
         Ok(Line { unstrained: ends(|f| f.unstrained), ..line })
+    }
+
+    /// How many elements of a graded mesh ride with each end where others are born: those that are shorter than what is
+    /// swallowed there.
+    fn rides(&self, mesh: &[f64], feeding: [Option<Feed>; 2]) -> Result<[usize; 2], BuildError> {
+        if self.mesh.is_none() {
+            return Ok([0; 2]);
+        }
+        let elements = mesh.len() - 1;
+        let short = |end: usize| {
+            let Some(element) = feeding[end].as_ref().and_then(|f| f.element) else { return 0 };
+            let length = |k: &usize| {
+                let k = if end == 0 { *k } else { elements - 1 - k };
+                mesh[k + 1] - mesh[k]
+            };
+            (0..elements).take_while(|k| length(k) < RIDES * element).count()
+        };
+        let rides = [short(0), short(1)];
+        if rides[0] + rides[1] + 2 > elements {
+            let message = "between the elements of the mesh that are shorter than half of `element`, which stay at the ends                            where cable feeds, there must be two longer ones: grade it less, or take a smaller `element`";
+            return Err(BuildError::at("mesh", message));
+        }
+        Ok(rides)
     }
 
     /// Damping and a stress-free shape of one element, where the scene asks for them.
@@ -419,9 +467,20 @@ fn stations(
     Ok(Arc::new(stations))
 }
 
+/// The nodes at which the force in the cable may jump: its ends, and where something holds on to it.
+fn breaks(mesh: &[f64], held: &[f64]) -> Vec<usize> {
+    let (last, near) = (mesh.len() - 1, 1e-9 * (mesh[mesh.len() - 1] - mesh[0]));
+    let inner = (1..last).filter(|&k| held.iter().any(|s| (s - mesh[k]).abs() <= near));
+    std::iter::once(0).chain(inner).chain([last]).collect()
+}
+
 /// The sharpest corner that is no corner [rad]: at an angle θ the elements beside it are longer than their length by the
 /// strain θ²/60, which is 1e-5 here.
 const MOST_CORNER: f64 = 0.0245;
+
+/// Elements shorter than this part of those that are born at an end stay there; any other is swallowed before it is so
+/// short.
+const RIDES: f64 = 0.45;
 
 /// Stretches that a cable may be laid with.
 const STRETCHES: std::ops::RangeInclusive<f64> = 0.1..=10.0;
@@ -455,10 +514,6 @@ impl ElementSpec for CableSpec {
             return Err(BuildError::at("strain", message));
         }
         finite("curvature", &[self.curvature])?;
-        if self.elements == 0 || self.elements > 1_000_000 {
-            let message = format!("`elements` must be between 1 and 1000000, not {}", self.elements);
-            return Err(BuildError::at("elements", message));
-        }
         legal(self.longitudinal, self.transverse).map_err(|e| BuildError::at("transverse", e))?;
         let path = self.path()?;
         let length = self.unstretched_length(path.length())?;
@@ -471,14 +526,13 @@ impl ElementSpec for CableSpec {
             );
             return Err(BuildError::at(field, message));
         }
-        let mut pins = b.pins(&self.name);
+        let mut pins = b.pins(&self.name, length);
+        let concentrated = pins.clone();
         pins.extend(path.stops().map(|s| s / stretch));
         pins.sort_by(f64::total_cmp);
+        let divided = self.divided(length, &pins)?;
         let given = b.mesh(&self.name).cloned();
-        let mesh = match &given {
-            Some(m) => m.nodes.clone(),
-            None => mesh(length, self.elements, &pins),
-        };
+        let mesh = given.as_ref().map_or(divided, |m| m.nodes.clone());
         let feeding = b.feeding(&self.name);
         let feeds = feeding.iter().any(Option::is_some);
         if mesh.len() < 2 || (mesh[0] != 0.0 && !feeds) || mesh.windows(2).any(|w| !(w[1] > w[0])) {
@@ -557,6 +611,7 @@ impl ElementSpec for CableSpec {
             }
         }
         b.part(Arc::new(CablePart {
+            breaks: breaks(&mesh, &concentrated),
             laid: length,
             carried: state.is_some(),
             prestrain,

@@ -15,12 +15,14 @@ pub struct Stepping {
     pub damping: f64,
     /// Smallest step over `h` before the run gives up.
     pub least: f64,
+    /// Whether steps are shortened to what the mesh allows ([`Unwinding::longest_step`]); else a longer `h` is refused.
+    pub follows: bool,
 }
 
 impl Stepping {
     /// Steps of `h` [s] without numerical damping.
     pub fn new(h: f64) -> Self {
-        Stepping { h, damping: 0.0, least: 1e-4 }
+        Stepping { h, damping: 0.0, least: 1e-4, follows: true }
     }
     pub(super) fn check(&self) -> Result<(), BuildError> {
         positive("h", self.h)?;
@@ -47,6 +49,22 @@ pub enum Stopped {
     Taut {
         /// Time [s].
         t: f64,
+    },
+    /// The step is longer than the mesh allows.
+    #[error(
+        "at t = {t:.6} s the step of {h:e} s is too long for {segments} segments: with bending stiffness and a given \
+         tension the lift-off point trembles once waves run over more than two segments in a step, and the tension is \
+         wrong. Take a step of {longest:.1e} s or less, leave it out to have it chosen, or take fewer segments"
+    )]
+    TooLong {
+        /// Time [s].
+        t: f64,
+        /// The step [s].
+        h: f64,
+        /// Number of segments.
+        segments: usize,
+        /// The longest step there [s].
+        longest: f64,
     },
     /// Newton's method failed.
     #[error(
@@ -111,6 +129,14 @@ impl Newmark {
         let mut h = self.stepping.h;
         while self.y.t < t_end - 1e-9 * self.stepping.h {
             let left = t_end - self.y.t;
+            let longest = problem.longest_step(&self.y, &self.now);
+            if h.min(left) > longest * (1.0 + 1e-9) {
+                if !self.stepping.follows {
+                    let (t, h, segments) = (self.y.t, self.stepping.h, problem.segments);
+                    return Err(Stopped::TooLong { t, h, segments, longest });
+                }
+                h = longest;
+            }
             let count = (left / h * (1.0 - 1e-9)).ceil().max(1.0);
             let try_h = left / count;
             match self.attempt(problem, try_h) {
@@ -244,7 +270,23 @@ impl Newmark {
     }
 }
 
+/// Over how many segments a wave may run in a step.
+const REACH: f64 = 2.0;
+
 impl Unwinding {
+    /// The longest step that the mesh allows [s]. Where a given tension finds the lift-off point of a cable with bending
+    /// stiffness, waves may run over two segments in a step: beyond about five the lift-off point trembles instead of
+    /// moving, and the tension there means nothing. Other problems are stable with any step.
+    pub(super) fn longest_step(&self, y: &State, now: &Now) -> f64 {
+        let Rule::Tension(pull) = &self.rule else { return f64::INFINITY };
+        if self.cable.bending == 0.0 {
+            return f64::INFINITY;
+        }
+        let tension = pull.at(now.t, now.speed[0]).max(0.0);
+        let waves = (tension / self.cable.mass).sqrt() + now.speed[0].abs();
+        REACH * y.length[0] / self.segments as f64 / waves
+    }
+
     /// Solves for the accelerations and tensions of a state whose positions and velocities are consistent.
     ///
     /// With a step `h` they are those of a cable that gives way over about this time. The shape at the start is hardly

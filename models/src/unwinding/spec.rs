@@ -12,9 +12,11 @@ use ropewalk_core::{
 };
 use ropewalk_forces::{AddedMass, DragSpec, TimeFunction};
 use schemars::JsonSchema;
+use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::fmt;
 use std::sync::Arc;
 
 /// What finds the lift-off point while the cable is drawn at a given speed.
@@ -58,9 +60,35 @@ const CHANNELS: [&str; 9] =
 fn segments() -> usize {
     40
 }
-fn step() -> f64 {
-    1e-4
+/// Reads a time step, or `auto`, which is none.
+fn chosen<'de, D: Deserializer<'de>>(d: D) -> Result<Option<f64>, D::Error> {
+    struct Step;
+    impl Visitor<'_> for Step {
+        type Value = Option<f64>;
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            write!(f, "a time like `0.1 ms`, or `auto`")
+        }
+        fn visit_str<E: de::Error>(self, text: &str) -> Result<Option<f64>, E> {
+            match text.trim() {
+                "auto" => Ok(None),
+                text => quantity::kind::TIME.parse(text).map(Some).map_err(E::custom),
+            }
+        }
+        fn visit_f64<E: de::Error>(self, h: f64) -> Result<Option<f64>, E> {
+            Ok(Some(h))
+        }
+        fn visit_i64<E: de::Error>(self, h: i64) -> Result<Option<f64>, E> {
+            Ok(Some(h as f64))
+        }
+        fn visit_u64<E: de::Error>(self, h: u64) -> Result<Option<f64>, E> {
+            Ok(Some(h as f64))
+        }
+    }
+    d.deserialize_any(Step)
 }
+
+/// Time step where the mesh allows it [s].
+const STEP: f64 = 2e-4;
 
 /// A cable that is drawn from a package through an eyelet, by finite differences: an inextensible cable, Newmark's method
 /// and a tension that comes from the constraint. It shares no equation with the elements of type `cable`.
@@ -106,9 +134,10 @@ pub struct UnwindingSpec {
     /// Into how many segments the free cable is divided.
     #[serde(default = "segments")]
     pub segments: usize,
-    /// Time step [s].
-    #[serde(default = "step", deserialize_with = "quantity::time")]
-    pub step: f64,
+    /// Time step [s]; `auto` or left out, 0.2 ms, or with bending stiffness and a given tension what the segments allow: two of them
+    /// over the speed of waves. A longer one ends the run there with an error, since the lift-off point would tremble.
+    #[serde(default, deserialize_with = "chosen", skip_serializing_if = "Option::is_none")]
+    pub step: Option<f64>,
     /// Numerical damping of Newmark's method; left out, 0.05 with bending stiffness and 0 without.
     #[serde(default, deserialize_with = "quantity::optional::number")]
     pub damping: Option<f64>,
@@ -178,7 +207,7 @@ impl UnwindingSpec {
     /// The numbers of the time stepping.
     pub fn stepping(&self) -> Stepping {
         let damping = self.damping.unwrap_or(if self.bending > 0.0 { 0.05 } else { 0.0 });
-        Stepping { damping, ..Stepping::new(self.step) }
+        Stepping { damping, follows: self.step.is_none(), ..Stepping::new(self.step.unwrap_or(STEP)) }
     }
 
     /// Names of the channels with title, labels of the columns and their unit.

@@ -21,14 +21,19 @@ pub struct Line {
     pub nodes: Vec<Follows>,
     /// Whether elements are born and swallowed at the ends, the rest staying on its material.
     pub zone: [bool; 2],
+    /// How many elements at each end with a zone keep their lengths and go with the end: those that are born stand behind
+    /// them.
+    pub rides: [usize; 2],
+    /// Where the middle of each element is, as a share of the line.
+    pub middle: Vec<f64>,
     /// Whether what passes the ends is free of strain energy outside; else it takes along what it has inside.
     pub unstrained: [bool; 2],
 }
 
 impl Line {
     /// A line with these material coordinates at the nodes. Where an end has a zone, only its own node moves with its
-    /// front; else all nodes share the movement evenly.
-    pub fn new(mesh: &[f64], fronts: Vec<(usize, Front)>, zone: [bool; 2]) -> Self {
+    /// front, and the elements that ride with it; else all nodes share the movement evenly.
+    pub fn new(mesh: &[f64], fronts: Vec<(usize, Front)>, zone: [bool; 2], rides: [usize; 2]) -> Self {
         let (first, last) = (mesh[0], mesh[mesh.len() - 1]);
         let end = mesh.len() - 1;
         let nodes = (0..mesh.len())
@@ -39,7 +44,7 @@ impl Line {
                 for (k, (at, front)) in fronts.iter().enumerate() {
                     let own = if *at == 0 { 0 } else { end };
                     node.by[k] = match zone[*at] {
-                        true if i == own => 1.0,
+                        true if i.abs_diff(own) <= rides[*at] => 1.0,
                         true => 0.0,
                         false if *at == 0 => 1.0 - share,
                         false => share,
@@ -52,11 +57,13 @@ impl Line {
                     debug_assert!(front.sign == if *at == 0 { -1.0 } else { 1.0 });
                 }
                 // what is a front's alone follows it to the last bit
-                node.fixed = if node.by[..fronts.len()].contains(&1.0) { 0.0 } else { mesh[i] - moved };
+                let alone = (i == 0 || i == end) && node.by[..fronts.len()].contains(&1.0);
+                node.fixed = if alone { 0.0 } else { mesh[i] - moved };
                 node
             })
             .collect();
-        Line { fronts, nodes, zone, unstrained: [false; 2] }
+        let middle = mesh.windows(2).map(|w| (0.5 * (w[0] + w[1]) - first) / (last - first)).collect();
+        Line { fronts, nodes, zone, rides, middle, unstrained: [false; 2] }
     }
 
     fn sum(&self, k: usize, fixed: f64, x: impl Fn(&Front) -> f64) -> f64 {
@@ -70,6 +77,10 @@ impl Line {
     /// Its rate [m/s].
     pub fn rate(&self, k: usize, v: &[f64]) -> f64 {
         self.sum(k, 0.0, |f| v[f.v])
+    }
+    /// The element that grows and shrinks at an end with a zone, where others are born and swallowed.
+    pub fn grows(&self, end: usize) -> usize {
+        if end == 0 { self.rides[0] } else { self.nodes.len() - 2 - self.rides[1] }
     }
     /// The open end at the element behind node `k`: the end of the line, and the number of the front there.
     pub fn opens(&self, k: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
@@ -88,7 +99,7 @@ impl Line {
     }
     /// By how much the feeding of each front makes material run along the element behind node `k`.
     pub fn slip<const F: usize>(&self, k: usize) -> [f64; F] {
-        let share = (k as f64 + 0.5) / (self.nodes.len() - 1) as f64;
+        let share = self.middle[k];
         std::array::from_fn(|f| match (F, self.fronts[f].0) {
             (1, _) => 1.0,
             (_, 0) => 1.0 - share,

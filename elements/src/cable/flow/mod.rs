@@ -12,6 +12,7 @@
 //! The equations are d'Alembert's principle at fixed material points, so no flux stands at the ends; the elastic
 //! energy of what passes an open end does ([`FlowEnd`]), unless it is free of strain outside. There is no `m V²` in the tension of a hanging cable.
 
+mod axial_damping;
 pub(super) mod change;
 mod damping;
 mod element;
@@ -25,6 +26,7 @@ mod stations;
 mod transport;
 mod weight;
 
+pub use axial_damping::FlowAxialDamping;
 pub use damping::{FlowDamping, Material};
 pub use element::FlowCable;
 pub use embedding::{Embedding, Grid};

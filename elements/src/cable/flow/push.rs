@@ -3,7 +3,7 @@
 use super::embedding::Embedding;
 use super::line::Line;
 use super::prestrain::{self, Place};
-use super::{FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight};
+use super::{FlowAxialDamping, FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight};
 use crate::cable::longitudinal::Longitudinal;
 use crate::cable::model::{CableModel, LongitudinalModel, WithModels, with_models};
 use crate::cable::quadrature::Rule;
@@ -60,9 +60,14 @@ macro_rules! push {
             $self.b.element(open, &nodes)?;
         }
         if s.axial_damping > 0.0 {
-            let damping =
-                AxialDamping::<$L, <$Q as Rule>::Axial>::new($self.params.l, s.axial_damping * s.ea);
-            $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
+            let eta_ea = s.axial_damping * s.ea;
+            if $L::points::<<$Q as Rule>::Axial>().len() > 1 {
+                let damping = FlowAxialDamping::<$L, <$Q as Rule>::Axial, $fronts>::new(eta_ea, by);
+                $self.b.element(damping, &nodes)?;
+            } else {
+                let damping = AxialDamping::<$L, <$Q as Rule>::Axial>::new($self.params.l, eta_ea);
+                $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
+            }
         }
         if s.bending_damping > 0.0 && s.ei > 0.0 {
             let damping =

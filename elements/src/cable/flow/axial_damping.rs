@@ -1,0 +1,233 @@
+//! Damping of stretching in a flowing cable, at the strain rate that its material sees.
+//!
+//! Material that runs along an element at `ṗ` is strained at `ε̇ = ∂ε/∂t - ṗ ε'`. The element has its strain at the points of
+//! its quadrature only, so `ε'` is that of the polynomial through them: the curve itself stretches in between by about
+//! `(κL)⁴`, which no force answers to, and `ṗ` times its derivative would be a strain rate that isn't there. Force on dofs
+//! and fronts is that of the dissipated power `∫ η EA ε̇² dx`, whose half is its potential by the rates.
+
+use super::embedding::{Embedding, Grid};
+use super::for_fronts;
+use crate::cable::longitudinal::{Longitudinal, Strain};
+use crate::cable::quadrature::{MOST, Point, Quadrature};
+use crate::cable::reduced::Reduced;
+use crate::cable::shape::{Natural, natural};
+use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, Weights, dot};
+use std::marker::PhantomData;
+
+/// Axial damping of an element through which material flows, for models with a strain at several points.
+#[derive(Clone, Copy, Debug)]
+pub struct FlowAxialDamping<L, Q, const F: usize> {
+    /// `η EA` [N s].
+    pub eta_ea: f64,
+    /// Embedding of the element.
+    pub by: Embedding<F>,
+    models: PhantomData<(L, Q)>,
+}
+
+impl<L, Q, const F: usize> FlowAxialDamping<L, Q, F> {
+    /// The damping of an element with this embedding.
+    pub fn new(eta_ea: f64, by: Embedding<F>) -> Self {
+        FlowAxialDamping { eta_ea, by, models: PhantomData }
+    }
+}
+
+/// Derivative at point `i` of the polynomial that is one at point `k` and zero at the others.
+fn slope(points: &[Point], i: usize, k: usize) -> f64 {
+    let others = |m: usize| (0..points.len()).filter(move |&j| j != k && j != m);
+    let x = |j: usize| points[j].xi;
+    let product = |m: usize| others(m).map(|j| (x(i) - x(j)) / (x(k) - x(j))).product::<f64>();
+    (0..points.len()).filter(|&m| m != k).map(|m| product(m) / (x(k) - x(m))).sum()
+}
+
+/// Strain rate at a point, with what it changes by.
+#[derive(Clone, Copy)]
+struct Rate<R> {
+    value: R,
+    /// By the rates of the natural variables.
+    gradient: Natural<R>,
+    /// By the rates of the material coordinates of both nodes.
+    fronts: [R; 2],
+}
+
+/// The strain rates of the material at all points.
+#[inline(always)]
+fn rates<L: Longitudinal, Q: Quadrature, R: Real>(g: &Grid<R>, q: &[R], v: &[R]) -> [Option<Rate<R>>; MOST] {
+    let take = |x: &[R]| std::array::from_fn::<R, 12, _>(|i| x[i]);
+    let (q, mut rate) = (natural(&take(q), g.il), natural(&take(v), g.il));
+    // the chord per length changes with the length as well
+    let mut longer = [[R::zero(); 3]; 3];
+    for c in 0..3 {
+        let chord = g.il * q[0][c];
+        longer[0][c] = -chord;
+        longer[1][c] = chord;
+        longer[2][c] = chord;
+        for i in 0..3 {
+            rate[i][c] += g.ld * longer[i][c];
+        }
+    }
+    let points = L::points::<Q>();
+    let mut eps = [R::zero(); MOST];
+    for (eps, at) in eps.iter_mut().zip(points) {
+        *eps = L::strain(&q, at).eps();
+    }
+    let mut out = [None; MOST];
+    for (i, at) in points.iter().enumerate() {
+        let strain = L::strain(&q, at);
+        let gradient = strain.gradient();
+        let mut along = R::zero();
+        for k in 0..points.len() {
+            along += R::of(slope(points, i, k)) * eps[k];
+        }
+        along = g.il * along;
+        let by_length =
+            dot(&gradient[0], &longer[0]) + dot(&gradient[1], &longer[1]) + dot(&gradient[2], &longer[2]);
+        let fronts = [-(R::of(1.0 - at.xi) * along) - by_length, by_length - R::of(at.xi) * along];
+        let passing = R::of(1.0 - at.xi).fma(g.pd[0], R::of(at.xi) * g.pd[1]);
+        out[i] = Some(Rate { value: strain.rate(&rate) - passing * along, gradient, fronts });
+    }
+    out
+}
+
+macro_rules! element {
+    ($fronts:literal, $size:literal) => {
+        impl<L: Longitudinal, Q: Quadrature> FlowAxialDamping<L, Q, $fronts> {
+            #[inline(always)]
+            fn force<R: Real>(
+                eta_ea: R,
+                by: &Embedding<$fronts, R>,
+                x: &Local<R, $size, $size>,
+            ) -> [R; $size] {
+                let g = Grid::new(by, x);
+                let (mut local, mut out) = (Reduced::zero(), [R::zero(); $size]);
+                for (rate, at) in rates::<L, Q, R>(&g, &x.q, &x.v).iter().flatten().zip(L::points::<Q>()) {
+                    let force = eta_ea * g.l * R::of(at.w) * rate.value;
+                    local.add_force(force, &rate.gradient);
+                    for k in 0..$fronts {
+                        let moved = by.by[k][0].fma(rate.fronts[0], by.by[k][1] * rate.fronts[1]);
+                        out[12 + k] += force * moved;
+                    }
+                }
+                let mut own = Share::<R, 12>::zero();
+                local.spread_force::<true>(g.il, &mut own);
+                out[..12].copy_from_slice(&own.r);
+                out
+            }
+        }
+
+        impl<L: Longitudinal, Q: Quadrature> Element<$size, $size> for FlowAxialDamping<L, Q, $fronts> {
+            type Lanes<R: Real> = (R, Embedding<$fronts, R>);
+            const SYMMETRIC: bool = false;
+            const WIDE: bool = false;
+
+            fn label() -> String {
+                format!("axial damping {} {} of a flowing cable", L::LABEL, Q::LABEL)
+            }
+            #[inline(always)]
+            fn lanes<R: Real>(b: &Batch<'_, Self>) -> Self::Lanes<R> {
+                (b.get(|e| e.eta_ea), Embedding::lanes(|f, j| b.get(|e| f(&e.by, j))))
+            }
+            #[inline(always)]
+            fn add<R: Real, const TANGENT: bool>(
+                (eta_ea, by): &Self::Lanes<R>,
+                x: &Local<R, $size, $size>,
+                w: &Weights,
+                out: &mut Share<R, $size>,
+            ) {
+                let force = Self::force(*eta_ea, by, x);
+                for i in 0..$size {
+                    out.r[i] += force[i];
+                }
+                if !TANGENT {
+                    return;
+                }
+                let lift = |x: &[R; 2]| x.map(Dual::constant);
+                let by = Embedding { fixed: lift(&by.fixed), by: by.by.each_ref().map(lift) };
+                let mut at = Local {
+                    q: Dual::constants(&x.q),
+                    v: Dual::constants(&x.v),
+                    a: Dual::constants(&x.a),
+                    last: Dual::constants(&x.last),
+                    relaxed: None,
+                };
+                for j in 0..$size {
+                    (at.q[j].eps, at.v[j].eps) = (R::of(w.q), R::of(w.v));
+                    let force = Self::force(Dual::constant(*eta_ea), &by, &at);
+                    (at.q[j].eps, at.v[j].eps) = (R::zero(), R::zero());
+                    for i in 0..$size {
+                        out.k[i][j] += force[i].eps;
+                    }
+                }
+            }
+            #[inline(always)]
+            fn power<R: Real>((eta_ea, by): &Self::Lanes<R>, x: &Local<R, $size, $size>) -> Power<R> {
+                let g = Grid::new(by, x);
+                let mut dissipated = R::zero();
+                for (rate, at) in rates::<L, Q, R>(&g, &x.q, &x.v).iter().flatten().zip(L::points::<Q>()) {
+                    dissipated += *eta_ea * g.l * R::of(at.w) * rate.value * rate.value;
+                }
+                Power { dissipated, ..Power::zero() }
+            }
+        }
+    };
+}
+for_fronts!((1, 13), (2, 14); element);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cable::{L4, LockingFree, quadrature::Rule};
+    use ropewalk_core::testing::check_tangent;
+    use ropewalk_core::{At, Node, NodeId, NodeKind, Pool, Width};
+
+    type Damping = FlowAxialDamping<L4, <LockingFree as Rule>::Axial, 2>;
+
+    fn nodes() -> [Node; 4] {
+        let node = |kind, q, shared| Node { kind, q, v: q, shared };
+        [
+            node(NodeKind::Slope, 0, false),
+            node(NodeKind::Slope, 6, false),
+            node(NodeKind::Scalars(1), 12, true),
+            node(NodeKind::Scalars(1), 13, true),
+        ]
+    }
+    fn pool(by: Embedding<2>) -> Pool<Damping, 14, 14> {
+        let mut pool = Pool::new();
+        assert!(pool.push(&nodes(), Damping::new(3.0, by), &[0, 1, 2, 3].map(NodeId)));
+        pool
+    }
+
+    #[test]
+    fn tangent_agrees_with_differences() {
+        let q = [0.0, 0.1, 0.0, 0.9, 0.3, 0.2, 0.8, 0.3, 0.2, 1.1, -0.2, 0.1, -0.1, 1.2];
+        let v = [0.1, -0.2, 0.3, 0.2, 0.1, -0.3, 0.4, 0.1, 0.2, -0.1, 0.3, 0.2, 0.7, -0.4];
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.1; 14], modes: &[], relaxed: None };
+        let by = Embedding { fixed: [0.05, -0.1], by: [[0.8, 0.3], [0.2, 0.7]] };
+        assert!(check_tangent(&pool(by), &nodes(), &at, Width::One) < 1e-7);
+    }
+
+    /// Material that runs along a curve which stands still and is equally stretched at all points is not strained, though
+    /// the cubic itself stretches in between.
+    #[test]
+    fn a_curve_that_stands_still_strains_nothing_that_runs_along_it() {
+        let (l, angle) = (0.6_f64, 0.6_f64);
+        let (sin, cos) = angle.sin_cos();
+        // symmetric about its middle, where the slope has to be one as at the ends: |1.5 Δ - (s_a + s_b)/4| = 1
+        let half = 0.5 * angle;
+        let chord = (1.0 + 0.5 * half.cos()) / 1.5;
+        let end = [half.cos(), half.sin()].map(|x| x * l * chord);
+        let q = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, end[0], end[1], 0.0, cos, sin, 0.0, 0.0, l];
+        let mut v = [0.0; 14];
+        (v[12], v[13]) = (5.0, 5.0);
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 14], modes: &[], relaxed: None };
+        let by = Embedding { fixed: [0.0; 2], by: [[1.0, 0.0], [0.0, 1.0]] };
+        let power = ropewalk_core::Term::power(&pool(by), &at).dissipated;
+        assert!(power < 1e-24, "{power:e}");
+        // and a stretch that changes along it does strain what runs there: ε' = 0.1/l
+        let mut longer = q;
+        (longer[9], longer[10]) = (1.1 * cos, 1.1 * sin);
+        let at = At { q: &longer, ..at };
+        assert!(
+            ropewalk_core::Term::power(&pool(by), &at).dissipated > 0.1 * 3.0 * l * (5.0 * 0.1 / l).powi(2)
+        );
+    }
+}

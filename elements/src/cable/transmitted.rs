@@ -1,0 +1,162 @@
+//! The force that a cable element transmits, and the tension along the cable that follows from it.
+//!
+//! An element with a displacement `S₃(ξ) δr` of its end only does the work `F·δr`, with the elastic force `F` on that end. By
+//! the equilibrium of its nodes this `F` is a mean of the force in the cable's cross section, `∫ 6ξ(1-ξ) F(ξ) dξ`, however
+//! coarse the mesh: the strain at a point feels the bending of a layer shorter than the element, times `EA/EI`, and `F`
+//! doesn't. So the force at any place is the polynomial with the means of the elements around, and the tension its part
+//! along the tangent.
+
+use super::directed::{Directed, DirectedParams};
+use super::element::CableParams;
+use super::longitudinal::{Longitudinal, Strain, add_axial};
+use super::model::{CableModel, Integration, WithModels, with_models};
+use super::quadrature::{Gauss2, Gauss5, Rule};
+use super::reduced::Reduced;
+use super::rest::{BendingRest, RestLanes};
+use super::shape::natural;
+use super::transverse::Transverse;
+use ropewalk_core::{Element, Local, Share, V3, Weights};
+
+/// What an element is free of stress at besides being straight and unstretched.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Unstressed<'a> {
+    /// The shape in which it is as long as when free of stress.
+    pub shape: Option<&'a [f64; 12]>,
+    /// Strain on top, everywhere.
+    pub strain: f64,
+    /// Curvature on top, without direction [1/m].
+    pub curvature: f64,
+    /// Strain on top, at each of the points of the model.
+    pub points: Option<&'a [f64]>,
+}
+
+struct Force<'a> {
+    params: &'a CableParams,
+    q: &'a [f64; 12],
+    unstressed: Unstressed<'a>,
+}
+
+impl WithModels for Force<'_> {
+    type Output = V3<f64>;
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> V3<f64> {
+        let (CableParams { l, ea, ei, .. }, Unstressed { shape, strain, curvature, points }) =
+            (*self.params, self.unstressed);
+        let il = 1.0 / l;
+        let q = natural(self.q, il);
+        let mut local = Reduced::zero();
+        add_axial::<L, Q::Axial, f64, false>(ea * l, &q, &mut local);
+        T::add::<Q::Bending, f64, false>(ei, l, il, &q, &mut local);
+        let laid = shape.map(|e| natural(e, il));
+        if laid.is_some() || strain != 0.0 || points.is_some() {
+            for (k, at) in L::points::<Q::Axial>().iter().enumerate() {
+                let eps0 = laid.map_or(0.0, |laid| L::strain(&laid, at).eps())
+                    + strain
+                    + points.and_then(|p| p.get(k)).copied().unwrap_or(0.0);
+                local.add_force(-(ea * l * at.w * eps0), &L::strain(&q, at).gradient());
+            }
+        }
+        let mut out = Share::<f64, 12>::zero();
+        local.spread_force::<false>(il, &mut out);
+        if curvature != 0.0 && ei > 0.0 {
+            let x = Local { q: *self.q, v: [0.0; 12], a: [0.0; 12], last: [0.0; 12], relaxed: None };
+            let rest = RestLanes { l, stiffness: ei, rest: [curvature; super::quadrature::MOST] };
+            let w = Weights { q: 0.0, v: 0.0, a: 0.0 };
+            BendingRest::<T, Q::Bending>::add::<f64, false>(&rest, &x, &w, &mut out);
+        }
+        [out.r[6], out.r[7], out.r[8]]
+    }
+}
+
+/// The elastic force that an element with the dofs `q` transmits [N], tension along the cable positive.
+pub(super) fn force(
+    model: CableModel,
+    params: &CableParams,
+    q: &[f64; 12],
+    unstressed: Unstressed<'_>,
+) -> Result<V3<f64>, String> {
+    with_models(model, Force { params, q, unstressed })
+}
+
+/// What its stress-free curvature with a direction adds to that, where `directors` are those of its nodes and `laid` those
+/// with which it was laid, in the shape `rest`.
+pub(super) fn directed(
+    integration: Integration,
+    params: DirectedParams,
+    (q, directors): (&[f64; 12], [V3<f64>; 2]),
+    (rest, laid): (&[f64; 12], [V3<f64>; 2]),
+) -> V3<f64> {
+    let x = std::array::from_fn(|i| if i < 12 { q[i] } else { directors[(i - 12) / 3][i % 3] });
+    let x = Local { q: x, v: [0.0; 18], a: [0.0; 18], last: [0.0; 18], relaxed: None };
+    let (w, mut out) = (Weights { q: 0.0, v: 0.0, a: 0.0 }, Share::zero());
+    match integration {
+        Integration::LockingFree => {
+            let element = Directed::<Gauss2>::at_shape(params, rest, laid).to_lanes();
+            Directed::<Gauss2>::add::<f64, false>(&element, &x, &w, &mut out);
+        }
+        Integration::Full => {
+            let element = Directed::<Gauss5>::at_shape(params, rest, laid).to_lanes();
+            Directed::<Gauss5>::add::<f64, false>(&element, &x, &w, &mut out);
+        }
+    }
+    [out.r[6], out.r[7], out.r[8]]
+}
+
+/// Variance of the weight `6ξ(1-ξ)`.
+const VARIANCE: f64 = 0.05;
+
+/// With what the means of up to three neighbours count in the value at a place: that of the polynomial which has these
+/// means. `middle` are their middles as seen from the place, `length` their lengths.
+pub(super) fn weights(middle: &[f64], length: &[f64]) -> [f64; 3] {
+    match *middle {
+        [_] => [1.0, 0.0, 0.0],
+        [a, b] => [b / (b - a), a / (a - b), 0.0],
+        [a, b, c] => {
+            let square = |k: usize| middle[k] * middle[k] + VARIANCE * length[k] * length[k];
+            let (p, q, r) = (square(0), square(1), square(2));
+            // normal to the means of s and of s²
+            let w = [b * r - c * q, c * p - a * r, a * q - b * p];
+            let sum: f64 = w.iter().sum();
+            w.map(|w| w / sum)
+        }
+        _ => [0.0; 3],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Mean with the weight of an element, by Simpson's rule on a fine grid.
+    fn mean(f: impl Fn(f64) -> f64, from: f64, l: f64) -> f64 {
+        let n = 2000;
+        (0..=n)
+            .map(|k| {
+                let xi = f64::from(k) / f64::from(n);
+                let simpson = if k == 0 || k == n {
+                    1.0
+                } else if k % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
+                simpson / (3.0 * f64::from(n)) * 6.0 * xi * (1.0 - xi) * f(from + l * xi)
+            })
+            .sum()
+    }
+
+    #[test]
+    fn polynomials_are_found_from_their_means() {
+        let (ends, f) = ([0.2, 0.5, 1.4, 1.6], |s: f64| 2.0 - 3.0 * s + 0.7 * s * s);
+        let length = [0.3, 0.9, 0.2];
+        let means: Vec<f64> = (0..3).map(|k| mean(f, ends[k], length[k])).collect();
+        for at in [0.2, 0.7, 1.6] {
+            let middle = [0, 1, 2].map(|k| ends[k] + 0.5 * length[k] - at);
+            let w = weights(&middle, &length);
+            let found: f64 = (0..3).map(|k| w[k] * means[k]).sum();
+            assert!((found - f(at)).abs() < 1e-9, "{found} {}", f(at));
+            let (line, two) = (|s: f64| 1.0 + s, weights(&middle[..2], &length[..2]));
+            let found: f64 = (0..2).map(|k| two[k] * mean(line, ends[k], length[k])).sum();
+            assert!((found - line(at)).abs() < 1e-9);
+        }
+    }
+}
