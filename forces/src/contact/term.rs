@@ -12,7 +12,7 @@ use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{times, transposed_times};
 use ropewalk_core::{
     Assembly, At, Column, ContactPoint, ContactSpan, Energy, Leap, Marker, Node, NodeKind, Pattern, Power,
-    SpanLine, Term, V3, dot,
+    Relaxed, SpanLine, Term, V3, dot,
 };
 
 /// Cables, links, hulls and points that touch a shape, which is fixed in space or on a rigid body and feels the opposite
@@ -31,6 +31,8 @@ pub struct Contact {
     /// Elasticity, damping and friction.
     pub law: ContactLaw,
     pub(super) fixed: Fixed,
+    /// Stiffness of all that is slender together, per depth.
+    per_length: f64,
     groups: Vec<Group>,
 }
 
@@ -107,7 +109,8 @@ impl Contact {
             need(!own, || format!("{label}: a body can't touch a shape of its own"))?;
         }
         let fixed = Fixed { shape, seat, origin, axes };
-        Ok(Contact { label, law, fixed, groups })
+        let per_length = stiffness.per_length * spans.iter().map(|s| s.length).sum::<f64>();
+        Ok(Contact { label, law, fixed, per_length, groups })
     }
 
     /// How deep each point and then each slender piece is at a state [m]; `None` where it doesn't touch.
@@ -150,7 +153,8 @@ impl Contact {
         };
         let pair = Pair { r: frame.r, omega: frame.omega, s, g, carrier };
         let u = pair.velocity(&gap.normal);
-        Some((Touch::new(&self.law, gap, ball.radius, ball.k, &u), pair))
+        let k = self.softened(ball, at);
+        Some((Touch::new(&self.law, gap, ball.radius, k, &u), pair))
     }
 
     /// Whether a ball that slips now may have stopped on the way.
@@ -168,6 +172,18 @@ impl Contact {
             },
         };
         self.law.may_stick(&was, &touch.slip, leap.predicted)
+    }
+
+    /// The stiffness of a ball; on the way to an equilibrium no more than the load can use where the last iteration has
+    /// moved it so far, so that what still comes down isn't thrown up again.
+    fn softened(&self, ball: &Ball, at: &At<'_>) -> f64 {
+        const SHARE: f64 = 10.0;
+        let Some(Relaxed { last: Some(last), how }) = at.relaxed else { return ball.k };
+        let d = ball.held.velocity(&At { v: last, ..*at });
+        let moved = dot(&d, &d).sqrt();
+        let load = SHARE * how.load * if self.per_length > 0.0 { ball.k / self.per_length } else { 1.0 };
+        let most = load / moved.powf(self.law.exponent);
+        if most < ball.k { most } else { ball.k }
     }
 
     /// What to say where cables lie around a shape on elements too long for it. A cubic isn't quite an arc: with the
@@ -241,7 +257,7 @@ impl Contact {
                 (0..3).for_each(|i| out.add(ball.held.dof(3 * a + i), -w * touch.f[i]));
             }
             if out.wants_tangent() {
-                let [x, v] = touch.slopes(&self.law, ball.k);
+                let [x, v] = touch.slopes(&self.law, self.softened(ball, at));
                 let d = std::array::from_fn(|i| std::array::from_fn(|j| w.q * x[i][j] + w.v * v[i][j]));
                 block.add_point(&ball.held, &d);
             }
@@ -259,7 +275,7 @@ impl Contact {
             (0..6).for_each(|i| out.add(v + i, -forces[6 + i]));
         }
         if out.wants_tangent() {
-            let slopes = touch.slopes(&self.law, ball.k);
+            let slopes = touch.slopes(&self.law, self.softened(ball, at));
             block.add_pair(&ball.held, &pair.derivative(&touch, &slopes, w));
         }
     }
