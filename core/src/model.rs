@@ -642,6 +642,11 @@ impl Model {
         }
     }
 
+    /// What one should know of its terms at the end of a run.
+    pub fn remarks(&self, at: &At<'_>) -> Vec<String> {
+        self.terms.iter().filter_map(|t| t.remark(at)).collect()
+    }
+
     /// The longest step from here that leaps over nothing that a term has ahead [s].
     pub fn horizon(&self, at: &At<'_>) -> f64 {
         self.watchful.iter().map(|&k| self.terms[k].horizon(at)).fold(f64::INFINITY, f64::min)

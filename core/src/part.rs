@@ -6,6 +6,7 @@ use crate::lane::V3;
 use crate::marker::Marker;
 use crate::node::{Node, NodeId};
 use crate::remesh::{Change, Mesh};
+use crate::span::ContactSpan;
 use crate::state::At;
 use crate::station::Stations;
 use crate::term::Term;
@@ -48,17 +49,13 @@ impl Quantity {
     }
 }
 
-/// A ball on a part by which it touches shapes.
+/// A ball by which a compact part touches shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
     /// Its centre. On a rigid body always [`Held::Beside`], so that it turns with it.
     pub held: Held,
     /// Its radius [m]; 0 if the part has none.
     pub radius: f64,
-    /// The length of the part that it stands for [m]; 0 for a compact part, which it stands for as a whole.
-    pub length: f64,
-    /// Where on the part it is, as unstretched arc length [m].
-    pub s: f64,
 }
 
 /// An element of a slender part and what it is made of.
@@ -123,8 +120,12 @@ pub trait Part: Send + Sync {
     fn material_stations(&self) -> Option<Arc<dyn Stations>> {
         self.stations()
     }
-    /// The balls by which it touches shapes, about `per_element` on each element of a cable; none if it has no size.
-    fn contact_points(&self, _per_element: usize) -> Vec<ContactPoint> {
+    /// The balls by which it touches shapes, if it is compact.
+    fn contact_points(&self) -> Vec<ContactPoint> {
+        Vec::new()
+    }
+    /// The pieces by which it touches shapes all along, if it is slender.
+    fn contact_spans(&self) -> Vec<ContactSpan> {
         Vec::new()
     }
     /// The term of a load in a constant direction, proportional to mass or displaced volume.

@@ -142,6 +142,10 @@ pub trait Term: Send + Sync {
     fn kinked(&self) -> bool {
         false
     }
+    /// What one should know of it at the end of a run, in a sentence: such as that a mesh is too coarse for it.
+    fn remark(&self, _at: &At<'_>) -> Option<String> {
+        None
+    }
     /// The drag coefficient of the flow across a part at an arc length of its material [m], if it is the drag on this part.
     fn coefficient(&self, _part: &str, _s: f64, _at: &At<'_>) -> Option<f64> {
         None

@@ -327,8 +327,8 @@ impl Part for Body {
             _ => Err(format!("a point mass has only one place: `{}`", self.spec.name)),
         }
     }
-    fn contact_points(&self, _: usize) -> Vec<ContactPoint> {
-        vec![ContactPoint { held: self.held, radius: 0.0, length: 0.0, s: 0.0 }]
+    fn contact_points(&self) -> Vec<ContactPoint> {
+        vec![ContactPoint { held: self.held, radius: 0.0 }]
     }
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
         let (what, amount) = match per {

@@ -147,10 +147,15 @@ impl Started {
                  jumped. Take a smaller `h`, or error control"
             )
         };
-        let remarks = match self {
+        let mut remarks = match self {
             Started::Statics(done) => done.remarks.clone(),
             _ => Vec::new(),
         };
+        remarks.extend(match self {
+            Started::Process(..) => Vec::new(),
+            Started::Dynamics(s, ..) => s.model.remarks(&s.state.at()),
+            Started::Statics(done) => done.model.remarks(&done.state.at()),
+        });
         let all = [
             (ringing > 0.0).then(rang),
             (flutter > 0.0 && ringing == 0.0).then(unstable),

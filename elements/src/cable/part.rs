@@ -8,10 +8,9 @@ use super::shape::{hermite, hermite_slope, natural, second};
 use super::spec::Section;
 use super::transmitted::{self, Unstressed};
 use super::{CableModel, CableParams, DirectedParams};
-use ropewalk_core::held::Held;
 use ropewalk_core::{
-    At, Change, ContactPoint, DeadEntry, DeadLoad, Front, Marker, Mesh, MeshState, Node, NodeId, Part, Per,
-    Prestrain, Quantity, Slender, Spot, Stations, Term, Tip, V3,
+    At, Change, ContactSpan, DeadEntry, DeadLoad, Front, Marker, Mesh, MeshState, Node, NodeId, Part, Per,
+    Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -230,26 +229,6 @@ impl CablePart {
     }
 }
 
-/// Places and weights of the Gauss–Lobatto rule with so many points besides the first: two, three, or else four.
-fn lobatto(besides: usize) -> &'static [(f64, f64)] {
-    match besides {
-        2 => &[(0.0, 1.0 / 6.0), (0.5, 2.0 / 3.0), (1.0, 1.0 / 6.0)],
-        3 => &[
-            (0.0, 1.0 / 12.0),
-            (0.276_393_202_250_021, 5.0 / 12.0),
-            (0.723_606_797_749_979, 5.0 / 12.0),
-            (1.0, 1.0 / 12.0),
-        ],
-        _ => &[
-            (0.0, 0.05),
-            (0.172_673_164_646_011_43, 49.0 / 180.0),
-            (0.5, 16.0 / 45.0),
-            (0.827_326_835_353_988_6, 49.0 / 180.0),
-            (1.0, 0.05),
-        ],
-    }
-}
-
 fn interpolate(c: [f64; 4], e: &[f64; 12]) -> V3<f64> {
     std::array::from_fn(|i| (0..4).map(|n| c[n] * e[3 * n + i]).sum())
 }
@@ -351,43 +330,21 @@ impl Part for CablePart {
         }
     }
 
-    /// Points of the Gauss–Lobatto rule, which take the uniform weight of a cable up without bending it; those at the
-    /// nodes are shared by both elements.
-    fn contact_points(&self, per_element: usize) -> Vec<ContactPoint> {
+    fn contact_spans(&self) -> Vec<ContactSpan> {
         if self.line.is_some() {
-            // its balls would have to be born and swallowed with its elements
+            // its spans would have to be born and swallowed with its elements
             return Vec::new();
         }
-        let rule = lobatto(per_element);
+        let last = self.mesh.len() - 2;
         let radius = 0.5 * self.section.diameter;
-        let last = self.mesh.len() - 1;
-        let span = |k: usize| self.mesh[k + 1] - self.mesh[k];
-        let mut points = Vec::with_capacity(last * per_element + 1);
-        for k in 0..=last {
-            let before = if k > 0 { span(k - 1) } else { 0.0 };
-            let behind = if k < last { span(k) } else { 0.0 };
-            let (q, v) = self.seats[k];
-            let length = rule[0].1 * (before + behind);
-            points.push(ContactPoint { held: Held::Moves { q, v }, radius, length, s: self.mesh[k] });
-            if k == last {
-                break;
-            }
-            let (next_q, next_v) = self.seats[k + 1];
-            for &(xi, weight) in &rule[1..rule.len() - 1] {
-                let held = Held::Between {
-                    q: [q, q + 3, next_q, next_q + 3],
-                    v: [v, v + 3, next_v, next_v + 3],
-                    weight: hermite::<f64>(xi, behind),
-                };
-                points.push(ContactPoint {
-                    held,
-                    radius,
-                    length: weight * behind,
-                    s: self.mesh[k] + xi * behind,
-                });
-            }
-        }
-        points
+        (0..=last)
+            .map(|k| {
+                let ((q0, v0), (q1, v1)) = (self.seats[k], self.seats[k + 1]);
+                let l = self.mesh[k + 1] - self.mesh[k];
+                let line = SpanLine::Cubic { q: [q0, q0 + 3, q1, q1 + 3], v: [v0, v0 + 3, v1, v1 + 3], l };
+                ContactSpan { line, radius, length: l, s: self.mesh[k], tips: [k == 0, k == last] }
+            })
+            .collect()
     }
 
     fn slender(&self) -> Option<Slender> {

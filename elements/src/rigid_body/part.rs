@@ -3,8 +3,8 @@
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{cross, matrix, times};
 use ropewalk_core::{
-    At, ContactPoint, DeadEntry, DeadLoad, DeadPull, Marker, Node, NodeId, Part, Per, Spot, Stations, Term,
-    Tip, V3,
+    At, ContactSpan, DeadEntry, DeadLoad, DeadPull, Marker, Node, NodeId, Part, Per, SpanLine, Spot,
+    Stations, Term, Tip, V3,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -61,28 +61,15 @@ impl Part for BodyPart {
     fn stations(&self) -> Option<Arc<dyn Stations>> {
         self.stations.clone()
     }
-    /// A chain of balls of the hull's diameter along its axis, no farther apart than their radius, the outermost of
-    /// which touch the hull's ends from inside.
-    fn contact_points(&self, _: usize) -> Vec<ContactPoint> {
+    /// The hull with round ends: its line ends a radius before them.
+    fn contact_spans(&self) -> Vec<ContactSpan> {
         let (Some([from, to]), radius) = (self.hull, 0.5 * self.diameter) else { return Vec::new() };
         let axis = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
         let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
         let inset = (radius / length).min(0.5);
-        let spans = ((1.0 - 2.0 * inset) * length / radius).ceil().min(200.0);
-        let n = spans as usize;
-        (0..=n)
-            .map(|k| {
-                let part = match (n, k) {
-                    (0, _) => 1.0,
-                    (_, k) if k == 0 || k == n => 0.5 / spans,
-                    _ => 1.0 / spans,
-                };
-                let along = if n == 0 { 0.5 } else { inset + (1.0 - 2.0 * inset) * k as f64 / spans };
-                let arm = std::array::from_fn(|i| from[i] + along * axis[i]);
-                let held = Held::Beside { q: self.q, v: self.v, arm };
-                ContactPoint { held, radius, length: part * length, s: along * length }
-            })
-            .collect()
+        let ends = [inset, 1.0 - inset].map(|x| std::array::from_fn(|i| from[i] + x * axis[i]));
+        let line = SpanLine::Straight { q: self.q, v: self.v, ends, along: axis.map(|x| x / length) };
+        vec![ContactSpan { line, radius, length, s: 0.0, tips: [true; 2] }]
     }
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
         let (what, amount, arm) = match per {

@@ -3,7 +3,8 @@
 use ropewalk_core::held::three;
 use ropewalk_core::rotation::{cross, matrix, times};
 use ropewalk_core::{
-    At, DeadEntry, DeadLoad, Marker, Node, NodeId, Part, Per, Spot, Stations, Term, Tip, V3,
+    At, ContactSpan, DeadEntry, DeadLoad, Marker, Node, NodeId, Part, Per, SpanLine, Spot, Stations, Term,
+    Tip, V3,
 };
 use std::sync::Arc;
 
@@ -15,11 +16,11 @@ pub struct ChainPart {
     pub(crate) seats: Vec<(usize, usize)>,
     /// Length of a link [m].
     pub(crate) link: f64,
+    /// Its diameter; 0 if it has none [m].
+    pub(crate) diameter: f64,
     /// Mass that gravity pulls at, and displaced volume, of a link [kg, m³].
     pub(crate) mass: f64,
     pub(crate) volume: f64,
-    /// Hydrodynamic diameter [m].
-    pub(crate) diameter: f64,
     pub(crate) stations: Option<Arc<dyn Stations>>,
 }
 
@@ -80,6 +81,19 @@ impl Part for ChainPart {
     }
     fn stations(&self) -> Option<Arc<dyn Stations>> {
         self.stations.clone()
+    }
+    fn contact_spans(&self) -> Vec<ContactSpan> {
+        let (half, last) = (0.5 * self.link, self.seats.len() - 1);
+        let ends = [[-half, 0.0, 0.0], [half, 0.0, 0.0]];
+        let seats = self.seats.iter().enumerate();
+        let span = |(k, &(q, v)): (usize, &(usize, usize))| ContactSpan {
+            line: SpanLine::Straight { q, v, ends, along: [1.0, 0.0, 0.0] },
+            radius: 0.5 * self.diameter,
+            length: self.link,
+            s: k as f64 * self.link,
+            tips: [k == 0, k == last],
+        };
+        seats.map(span).collect()
     }
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
         let (what, amount) = match per {

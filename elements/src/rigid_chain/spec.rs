@@ -316,9 +316,9 @@ impl ElementSpec for RigidChainSpec {
             nodes,
             seats,
             link,
+            diameter: s.diameter,
             mass: s.mass * link,
             volume: s.displaced_area() * link,
-            diameter: s.diameter,
             stations: (s.diameter > 0.0).then(|| Arc::new(stations) as _),
         }))
     }

@@ -1,6 +1,7 @@
 //! Surfaces of triangles: what makes one fit for contact, and the distance to it.
 
 use super::shape::Gap;
+use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags, TrianglePointLocation};
@@ -14,6 +15,11 @@ use std::fmt;
 /// More triangles are refused: no contact with a cable needs such detail.
 pub const MOST_TRIANGLES: usize = 2_000_000;
 
+/// Pairs of triangles and corners that are looked at to see whether a mesh is convex.
+const MOST_COMPARED: usize = 4_000_000;
+/// What lies in one plane but for this part of its size is flat.
+const FLAT: f64 = 1e-9;
+
 /// A surface of triangles whose normals point outwards, counter-clockwise.
 ///
 /// The distance to it is that to its nearest triangle, edge or corner, found through a tree of boxes; it is exact, and
@@ -24,6 +30,7 @@ pub struct Mesh {
     least: V3<f64>,
     most: V3<f64>,
     dropped: usize,
+    convex: bool,
 }
 
 impl fmt::Debug for Mesh {
@@ -90,6 +97,20 @@ impl Soup {
         self.triangles.iter().map(of).sum()
     }
 
+    /// Whether no corner is outside of any triangle; large ones are taken to be not.
+    fn convex(&self, least: V3<f64>, most: V3<f64>) -> bool {
+        if self.triangles.len() * self.corners.len() > MOST_COMPARED {
+            return false;
+        }
+        let size = minus(&most, &least);
+        let slack = FLAT * dot(&size, &size).sqrt();
+        self.triangles.iter().all(|t| {
+            let normal = unit(&self.area(t).0);
+            let level = dot(&normal, &self.corners[t[0] as usize]);
+            self.corners.iter().all(|x| dot(&normal, x) <= level + slack)
+        })
+    }
+
     /// What keeps it from being the surface of a solid, or with `open` from having an outer side.
     fn check(&self, open: bool) -> Result<(), String> {
         if self.triangles.is_empty() {
@@ -146,6 +167,11 @@ impl Soup {
     }
 }
 
+fn unit(x: &V3<f64>) -> V3<f64> {
+    let size = dot(x, x).sqrt();
+    x.map(|x| x / size)
+}
+
 /// Whether two corners of a triangle are the same: it has neither area nor edges.
 fn pinched(t: &[u32; 3]) -> bool {
     t[0] == t[1] || t[1] == t[2] || t[2] == t[0]
@@ -178,10 +204,11 @@ impl Mesh {
                 most[i] = most[i].max(x[i]);
             }
         }
+        let convex = !open && soup.convex(least, most);
         let corners = soup.corners.iter().map(to_parry).collect();
         let surface = TriMesh::with_flags(corners, soup.triangles, TriMeshFlags::ORIENTED)
             .map_err(|e| BuildError::new(e.to_string()))?;
-        Ok(Mesh { surface, least, most, dropped })
+        Ok(Mesh { surface, least, most, dropped, convex })
     }
 
     /// The convex hull of points.
@@ -212,6 +239,36 @@ impl Mesh {
     /// How many triangles had no area and were left out.
     pub fn dropped(&self) -> usize {
         self.dropped
+    }
+
+    /// Whether it is known to be convex.
+    pub(crate) fn convex(&self) -> bool {
+        self.convex
+    }
+
+    /// Zero where all triangles that may be nearer than `reach` to what is within `way` of a point lie in one plane, or
+    /// the mesh is convex; else infinite, since there may be a valley.
+    pub(crate) fn hollow(&self, x: &V3<f64>, way: f64, reach: f64) -> f64 {
+        if self.convex {
+            return 0.0;
+        }
+        let far = way + reach;
+        let (x, far) = (to_parry(x), Vector::new(far, far, far));
+        let around = Aabb::new(x - far, x + far);
+        let mut plane: Option<(V3<f64>, f64)> = None;
+        let slack = FLAT * dot(&self.most, &self.most).max(dot(&self.least, &self.least)).sqrt();
+        for k in self.surface.bvh().intersect_aabb(&around) {
+            let triangle = self.surface.triangle(k);
+            let corners = [triangle.a, triangle.b, triangle.c].map(from_parry);
+            let (normal, level) = *plane.get_or_insert_with(|| {
+                let normal = unit(&cross(&minus(&corners[1], &corners[0]), &minus(&corners[2], &corners[0])));
+                (normal, dot(&normal, &corners[0]))
+            });
+            if corners.iter().any(|x| (dot(&normal, x) - level).abs() > slack) {
+                return f64::INFINITY;
+            }
+        }
+        0.0
     }
 
     /// How far a point is from the box around the mesh, squared, and the way from there.

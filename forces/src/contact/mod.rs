@@ -1,12 +1,18 @@
 //! Contact with shapes: penalty, damping, friction.
 //!
-//! Cables and bodies touch by balls ([`ContactPoint`](ropewalk_core::ContactPoint)s); a [`Shape`] tells how far away
-//! its surface is and how it is curved there, the [`ContactLaw`] what force follows, and [`Contact`] puts both into the
-//! equations of motion.
+//! Cables, links and hulls touch all along ([`ContactSpan`](ropewalk_core::ContactSpan)s), points by balls
+//! ([`ContactPoint`](ropewalk_core::ContactPoint)s); a [`Shape`] tells how far away its surface is and how it is curved
+//! there, a search finds the places that touch, the [`ContactLaw`] says what force follows, and [`Contact`] puts it all
+//! into the equations of motion.
 
+mod ahead;
+mod block;
 mod file;
+mod group;
 mod law;
 mod mesh;
+mod search;
+mod seat;
 mod shape;
 mod spec;
 mod term;
@@ -17,4 +23,4 @@ pub use law::{ContactLaw, Damping, Leaving};
 pub use mesh::{MOST_TRIANGLES, Mesh, Soup};
 pub use shape::{Gap, Shape};
 pub use spec::{ContactSpec, Overlap, ShapeSpec};
-pub use term::Contact;
+pub use term::{Contact, Stiffness};

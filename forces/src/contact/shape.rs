@@ -124,9 +124,33 @@ impl Shape {
         }
     }
 
+    /// How hollow the distance is around the shape within `way` of a point: the largest curvature with which level
+    /// surfaces bend towards whoever is outside, where they are nearer than `reach` [1/m]. Zero around a convex solid,
+    /// infinite where there may be a valley.
+    pub(crate) fn hollow(&self, x: &V3<f64>, way: f64, reach: f64) -> f64 {
+        match self {
+            Shape::Plane | Shape::Ball { .. } | Shape::Cylinder { .. } | Shape::Cuboid { .. } => 0.0,
+            Shape::Tube { .. } => 1.0 / (x[0].hypot(x[1]) - way).max(0.0),
+            Shape::Mesh(mesh) => mesh.hollow(x, way, reach),
+        }
+    }
+
+    /// Points of the Gauss rule that integrates the contact with a piece of this length to what Newton's method and
+    /// the balance of energy can tell: four are exact on a plane where the force is linear, more are for curved ones.
+    pub(crate) fn points(&self, length: f64, linear: bool) -> usize {
+        match self {
+            Shape::Plane if linear => 4,
+            Shape::Plane => 6,
+            Shape::Ball { radius } | Shape::Cylinder { radius, .. } | Shape::Tube { radius, .. } => {
+                if length > *radius { 8 } else { 6 }
+            }
+            Shape::Cuboid { .. } | Shape::Mesh(_) => 8,
+        }
+    }
+
     /// Whether another part of the surface can come nearer than the nearest one now by going along it.
     pub(crate) fn concave(&self) -> bool {
-        matches!(self, Shape::Mesh(_))
+        matches!(self, Shape::Mesh(mesh) if !mesh.convex())
     }
 }
 

@@ -4,12 +4,13 @@ use super::file::read;
 use super::law::{ContactLaw, Damping};
 use super::mesh::Mesh;
 use super::shape::Shape;
-use super::term::Contact;
+use super::term::{Contact, Stiffness};
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
 use ropewalk_core::held::Held;
 use ropewalk_core::rotation::{IDENTITY, M3, around, from_bryant, matrix};
 use ropewalk_core::{
-    At, ContactPoint, ForceSpec, Marker, MarkerRef, NodeKind, V3, dot, quantity, register_spec,
+    At, ContactPoint, ContactSpan, ForceSpec, Marker, MarkerRef, NodeKind, SpanLine, V3, dot, quantity,
+    register_spec,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -92,9 +93,6 @@ fn upwards() -> V3<f64> {
 fn one() -> f64 {
     1.0
 }
-fn two() -> usize {
-    2
-}
 fn slip_speed() -> f64 {
     ContactLaw::default().slip_speed
 }
@@ -112,8 +110,8 @@ pub enum Overlap {
 
 /// Contact of cables and bodies with a shape on the ground or on a rigid body, which feels the opposite force.
 ///
-/// Cables touch by balls of their diameter along them, bodies with a hull by a chain of such balls along it, point
-/// masses and single points of bodies by one ball of the `radius` given. A record of type `force` shows the force.
+/// Cables, links and bodies with a hull touch all along, wherever the shape is nearer than their radius, point masses and
+/// single points of bodies by a ball of the `radius` given. A record of type `force` shows the force.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSpec {
@@ -131,7 +129,7 @@ pub struct ContactSpec {
     /// Where the shape is: a point in space, or a marker on a rigid body that it is part of; left out, the origin.
     #[serde(default = "origin")]
     pub marker: MarkerRef,
-    /// Radius of the balls [m]; left out, half of the diameter of the cable or hull.
+    /// Radius of what touches [m]; left out, half of the diameter of the cable or hull.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub radius: Option<f64>,
     /// Stiffness of a ball that stands for a whole point mass or point [N/m]; with an exponent `p` other than 1, that
@@ -141,6 +139,10 @@ pub struct ContactSpec {
     /// Stiffness per length of cables and hulls [N/m²]; with an exponent other than 1, that at a depth of 1 m.
     #[serde(default, deserialize_with = "quantity::stiffness_per_length")]
     pub stiffness_per_length: f64,
+    /// Stiffness of the tips of cables and hulls, in addition [N/m]; with an exponent other than 1, that at a depth of 1 m.
+    /// Left out, that of a length as long as they are thick; 0 without.
+    #[serde(default, deserialize_with = "quantity::optional::spring_stiffness")]
+    pub end_stiffness: Option<f64>,
     /// Exponent `p` of the elastic force `k d^p`.
     #[serde(default = "one", deserialize_with = "quantity::number")]
     pub exponent: f64,
@@ -153,14 +155,22 @@ pub struct ContactSpec {
     /// Speed of slip from which on friction is full [m/s]. What seems to stick creeps by less than that.
     #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
     pub slip_speed: f64,
-    /// Balls on each element of a cable, counted without its end: 2, 3 or 4.
-    #[serde(default = "two")]
-    pub per_element: usize,
     /// What is done about points that start deep in the shape.
     #[serde(default)]
     pub overlap: Overlap,
+    /// Keys that are gone.
+    #[doc(hidden)]
+    #[serde(default, skip_serializing, rename = "per_element", deserialize_with = "per_element")]
+    #[schemars(skip)]
+    pub gone: (),
 }
 register_spec!(Force, "contact", ContactSpec);
+
+fn per_element<'de, D: serde::Deserializer<'de>>(_: D) -> Result<(), D::Error> {
+    Err(serde::de::Error::custom(
+        "`per_element` is gone: what touches is found wherever it is along an element. Leave it out",
+    ))
+}
 
 fn origin() -> MarkerRef {
     MarkerRef::Point([0.0; 3])
@@ -178,12 +188,13 @@ impl ContactSpec {
             radius: None,
             stiffness: 0.0,
             stiffness_per_length: 0.0,
+            end_stiffness: None,
             exponent: 1.0,
             damping: Damping::None,
             friction: 0.0,
             slip_speed: slip_speed(),
-            per_element: two(),
             overlap: Overlap::Refuse,
+            gone: (),
         }
     }
 
@@ -192,18 +203,24 @@ impl ContactSpec {
         ContactLaw { exponent, damping, friction, slip_speed: self.slip_speed }
     }
 
-    /// The points that touch, each with the part and what it is called in messages.
-    fn points(
-        &self,
-        b: &Builder,
-        own: Option<(usize, usize)>,
-    ) -> Result<Vec<(String, ContactPoint)>, BuildError> {
-        let mut all = Vec::new();
+    /// What touches, each with what it is called in messages.
+    fn touching(&self, b: &Builder, own_seat: Option<(usize, usize)>) -> Result<Touching, BuildError> {
+        let mut all = Touching::default();
         if !self.on.is_empty() || self.at.is_empty() {
             for (_, part) in b.parts(&self.on)? {
-                let own = own.is_some_and(|seat| part.seats() == [seat]);
-                let points = if own { Vec::new() } else { part.contact_points(self.per_element) };
-                if points.is_empty() && !self.on.is_empty() {
+                let own = own_seat.is_some_and(|seat| part.seats() == [seat]);
+                let before = all.len();
+                if !own {
+                    let whole = format!("`{}`", part.name());
+                    all.points.extend(part.contact_points().into_iter().map(|p| (whole.clone(), p)));
+                    let carries = |s: &ContactSpan| match s.line {
+                        SpanLine::Straight { q, v, .. } => own_seat == Some((q, v)),
+                        SpanLine::Cubic { .. } => false,
+                    };
+                    let spans = part.contact_spans().into_iter().filter(|s| !carries(s));
+                    all.spans.extend(spans.map(|s| (part.name().to_string(), s)));
+                }
+                if all.len() == before && !self.on.is_empty() {
                     let message = if own {
                         format!("`{}` carries the shape itself: leave it out of `on`", part.name())
                     } else {
@@ -214,11 +231,6 @@ impl ContactSpec {
                     };
                     return Err(BuildError::at("on", message));
                 }
-                let name = |s: f64| match part.length() > 0.0 {
-                    true => format!("`{}` at {s:.4} m", part.name()),
-                    false => format!("`{}`", part.name()),
-                };
-                all.extend(points.into_iter().map(|p| (name(p.s), p)));
             }
         }
         for name in &self.at {
@@ -231,48 +243,48 @@ impl ContactSpec {
                 (Held::Moves { q, v }, NodeKind::Frame) => Held::Beside { q, v, arm: [0.0; 3] },
                 (held, _) => held,
             };
-            all.push((format!("{name}"), ContactPoint { held, radius: 0.0, length: 0.0, s: 0.0 }));
+            all.points.push((format!("{name}"), ContactPoint { held, radius: 0.0 }));
         }
-        if all.is_empty() {
+        if all.len() == 0 {
             return Err(BuildError::new("there is nothing in the scene that could touch this shape"));
         }
-        for (name, p) in &mut all {
-            if let Some(radius) = self.radius {
-                p.radius = radius;
-            }
-            if !(p.radius > 0.0) {
-                let message = format!(
-                    "{name} has no size to touch with: give the contact a `radius`, or the cable's section a `diameter`"
-                );
-                return Err(BuildError::at("radius", message));
-            }
-            let (field, k) = match p.length > 0.0 {
-                true => ("stiffness_per_length", self.stiffness_per_length),
-                false => ("stiffness", self.stiffness),
-            };
-            if k == 0.0 {
-                let what = if p.length > 0.0 { "along its length" } else { "by a single point" };
-                let message = format!("{name} touches {what}, which needs a `{field}` above zero");
-                return Err(BuildError::at(field, message));
-            }
+        for (name, p) in &mut all.points {
+            self.give_size(name, &mut p.radius)?;
+            needs(name, "by a single point", "stiffness", self.stiffness)?;
+        }
+        for (name, s) in &mut all.spans {
+            let name = format!("`{name}`");
+            self.give_size(&name, &mut s.radius)?;
+            needs(&name, "along its length", "stiffness_per_length", self.stiffness_per_length)?;
         }
         Ok(all)
     }
 
-    /// Refuses points that start deep in the shape.
-    fn check_overlap(
-        &self,
-        b: &Builder,
-        contact: &Contact,
-        points: &[(String, ContactPoint)],
-    ) -> Result<(), BuildError> {
+    fn give_size(&self, name: &str, radius: &mut f64) -> Result<(), BuildError> {
+        *radius = self.radius.unwrap_or(*radius);
+        if *radius > 0.0 {
+            return Ok(());
+        }
+        let message = format!(
+            "{name} has no size to touch with: give the contact a `radius`, or the cable's section a `diameter`"
+        );
+        Err(BuildError::at("radius", message))
+    }
+
+    /// Refuses what starts deep in the shape.
+    fn check_overlap(&self, b: &Builder, contact: &Contact, all: &Touching) -> Result<(), BuildError> {
         let q = b.coordinates();
         // no velocity is needed to see how deep they are
         let still = vec![0.0; q.len()];
         let at = At { t: 0.0, q, v: &still, a: &still, modes: &[], relaxed: None };
-        let deep =
-            contact.depths(&at).zip(points).filter_map(|(depth, p)| depth.map(|d| (d / p.1.radius, d, p)));
-        let Some((share, depth, (name, _))) = deep.max_by(|a, b| a.0.total_cmp(&b.0)) else { return Ok(()) };
+        let points = all.points.iter().map(|(name, p)| (name.clone(), p.radius));
+        let spans = all.spans.iter().map(|(name, s)| {
+            let place = format!("`{name}` between {:.4} m and {:.4} m", s.s, s.s + s.length);
+            (place, s.radius)
+        });
+        let depths = contact.depths(&at).zip(points.chain(spans));
+        let deep = depths.filter_map(|(depth, (name, radius))| depth.map(|d| (d / radius, d, name)));
+        let Some((share, depth, name)) = deep.max_by(|a, b| a.0.total_cmp(&b.0)) else { return Ok(()) };
         if share <= 0.5 {
             return Ok(());
         }
@@ -284,6 +296,27 @@ impl ContactSpec {
         );
         Err(BuildError::at("overlap", message))
     }
+}
+
+/// What touches, with names for messages.
+#[derive(Default)]
+struct Touching {
+    points: Vec<(String, ContactPoint)>,
+    spans: Vec<(String, ContactSpan)>,
+}
+
+impl Touching {
+    fn len(&self) -> usize {
+        self.points.len() + self.spans.len()
+    }
+}
+
+fn needs(name: &str, what: &str, field: &str, k: f64) -> Result<(), BuildError> {
+    if k != 0.0 {
+        return Ok(());
+    }
+    let message = format!("{name} touches {what}, which needs a `{field}` above zero");
+    Err(BuildError::at(field, message))
 }
 
 /// A direction that isn't zero.
@@ -353,12 +386,11 @@ impl ForceSpec for ContactSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         not_negative("stiffness", self.stiffness)?;
         not_negative("stiffness_per_length", self.stiffness_per_length)?;
+        if let Some(k) = self.end_stiffness {
+            not_negative("end_stiffness", k)?;
+        }
         if let Some(radius) = self.radius {
             positive("radius", radius)?;
-        }
-        if !(2..=4).contains(&self.per_element) {
-            let message = format!("`per_element` must be 2, 3 or 4, but is {}", self.per_element);
-            return Err(BuildError::at("per_element", message));
         }
         let (shape, axes) = self.shape.shape().map_err(|e| e.of("shape"))?;
         let marker = match b.marker("marker", &self.marker)? {
@@ -370,15 +402,21 @@ impl ForceSpec for ContactSpec {
             return Err(BuildError::at("marker", "a shape can only be on the ground or on a rigid body"));
         }
         let own = carrier.map(|n| (n.q, n.v));
-        let points = self.points(b, own)?;
-        let balls: Vec<ContactPoint> = points.iter().map(|p| p.1).collect();
-        let stiffness = [self.stiffness, self.stiffness_per_length];
-        let contact = Contact::new(&self.name, b.nodes(), shape, &marker, &balls, stiffness, self.law())?;
+        let touching = self.touching(b, own)?;
+        let points: Vec<ContactPoint> = touching.points.iter().map(|p| p.1).collect();
+        let spans: Vec<ContactSpan> = touching.spans.iter().map(|s| s.1).collect();
+        let stiffness = Stiffness {
+            point: self.stiffness,
+            per_length: self.stiffness_per_length,
+            end: self.end_stiffness,
+        };
+        let all = (&points[..], &spans[..]);
+        let contact = Contact::new(&self.name, b.nodes(), shape, &marker, all, stiffness, self.law())?;
         if self.overlap == Overlap::Refuse {
-            self.check_overlap(b, &contact, &points)?;
+            self.check_overlap(b, &contact, &touching)?;
         }
         if let Some(node) = marker.on()
-            && balls.len() > 2
+            && touching.len() > 2
         {
             b.share(node);
         }

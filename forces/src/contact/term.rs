@@ -1,90 +1,66 @@
 //! The contact of many points with one shape.
 
+use super::block::{Block, weights};
+use super::group::{Ball, Group, Scratch, Span};
 use super::law::ContactLaw;
-use super::shape::{Gap, Shape};
-use super::touch::{PAIR, Pair, Touch};
+use super::search::Search;
+use super::seat::{Fixed, Frame, Seat, minus, rotation};
+use super::shape::Shape;
+use super::touch::{Pair, Touch};
 use ropewalk_core::build::{BuildError, need, positive};
 use ropewalk_core::held::{Held, three};
-use ropewalk_core::rotation::{IDENTITY, M3, cross, matrix, times, transposed_times};
+use ropewalk_core::rotation::{times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Column, ContactPoint, Energy, Leap, Marker, Node, NodeKind, Pattern, Power, Term, V3, dot,
+    Assembly, At, Column, ContactPoint, ContactSpan, Energy, Leap, Marker, Node, NodeKind, Pattern, Power,
+    Relaxed, SpanLine, Term, V3, dot,
 };
-use std::ops::Range;
 
-/// Balls along cables and on bodies that touch a shape, which is fixed in space or on a rigid body and feels the
-/// opposite force.
+/// Cables, links, hulls and points that touch a shape, which is fixed in space or on a rigid body and feels the opposite
+/// force.
 ///
 /// Use it for: sea floors, drums, sheaves, guide tubes, decks. A ball of radius `r` whose centre is at the distance `s`
 /// from the surface is pushed out with `k d^p`, `d = r - s`, is damped by the [`ContactLaw`] and, where it slips, held
-/// back by friction. On a body the force acts where the ball touches, so that a ball rolls; on a cable, which doesn't
-/// know twist, and a point mass it acts at the centre.
+/// back by friction. What is slender is pushed so per length, wherever along it `d` is above zero: the places are
+/// searched for at every evaluation, and the force is integrated over them, so that it follows from an energy and doesn't
+/// depend on where nodes are. On a body the force acts where the ball touches, so that a ball rolls; on a cable, which
+/// doesn't know twist, and a point mass it acts at the centre.
 #[derive(Clone, Debug)]
 pub struct Contact {
     /// A name, such as `drum`.
     pub label: String,
     /// Elasticity, damping and friction.
     pub law: ContactLaw,
-    shape: Shape,
-    seat: Seat,
-    /// Where the shape's own origin is in the axes of what it is on, and its axes there, one after the other.
-    origin: V3<f64>,
-    axes: M3,
-    balls: Vec<Ball>,
-    /// Balls that the same unknowns move.
-    groups: Vec<Range<usize>>,
+    pub(super) fixed: Fixed,
+    /// Stiffness of all that is slender together, per depth.
+    per_length: f64,
+    groups: Vec<Group>,
 }
 
-/// What a shape is fixed to.
+/// How stiff a contact is, with an exponent `p` other than 1 at a depth of 1 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Seat {
-    Ground,
-    /// A rigid body with these first coordinate and velocity.
-    Body {
-        q: usize,
-        v: usize,
-    },
-}
-
-/// A ball that can touch.
-#[derive(Clone, Copy, Debug)]
-struct Ball {
-    held: Held,
-    radius: f64,
-    /// Stiffness of its contact [N/m^p].
-    k: f64,
-}
-
-/// Where the body of a shape is.
-struct Frame {
-    r: M3,
-    x: V3<f64>,
-    v: V3<f64>,
-    omega: V3<f64>,
-}
-
-/// Unknowns of a group: of a cable element and a body.
-const MOST: usize = 18;
-
-/// The part of the radius that a point may go on by in a step once it touches.
-const PRESS: f64 = 0.25;
-
-fn minus(a: &V3<f64>, b: &V3<f64>) -> V3<f64> {
-    std::array::from_fn(|i| a[i] - b[i])
+pub struct Stiffness {
+    /// Of a single point [N/m^p].
+    pub point: f64,
+    /// Of what is slender, per length [N/m^p/m].
+    pub per_length: f64,
+    /// Of the tip of what is slender [N/m^p]; if none is told, that of a length as long as it is thick.
+    pub end: Option<f64>,
 }
 
 impl Contact {
-    /// Contact of points with a shape whose origin and axes are those of a marker on the ground or on a rigid body.
-    /// Each point has the `stiffness` [N/m^p]; one that stands for a length has that per length [N/m^p/m].
+    /// Contact of points and slender pieces with a shape whose origin and axes are those of a marker on the ground or on a
+    /// rigid body.
     ///
     /// # Errors
-    /// A marker on something else, no points, a point without radius or on the shape's own body, bad numbers.
+    /// A marker on something else, nothing that could touch, something without radius or on the shape's own body, bad
+    /// numbers.
     pub fn new(
         label: impl Into<String>,
         nodes: &[Node],
         shape: Shape,
         marker: &Marker,
-        points: &[ContactPoint],
-        stiffness: [f64; 2],
+        touching: (&[ContactPoint], &[ContactSpan]),
+        stiffness: Stiffness,
         law: ContactLaw,
     ) -> Result<Self, BuildError> {
         let label = label.into();
@@ -99,68 +75,70 @@ impl Contact {
                 (Seat::Body { q: n.q, v: n.v }, point, axes)
             }
         };
-        need(!points.is_empty(), || format!("{label}: there is nothing that could touch the shape"))?;
-        let mut balls = Vec::with_capacity(points.len());
-        let mut groups: Vec<Range<usize>> = Vec::new();
+        let (points, spans) = touching;
+        need(!points.is_empty() || !spans.is_empty(), || {
+            format!("{label}: there is nothing that could touch the shape")
+        })?;
+        let mut groups = Vec::with_capacity(points.len() + spans.len());
         for p in points {
-            positive("radius", p.radius)?;
-            let (field, k) = match p.length > 0.0 {
-                true => ("stiffness_per_length", stiffness[1] * p.length),
-                false => ("stiffness", stiffness[0]),
+            let (radius, k) = (positive("radius", p.radius)?, positive("stiffness", stiffness.point)?);
+            groups.push(Group::Ball(Ball { held: p.held, radius, k }));
+        }
+        for s in spans {
+            let radius = positive("radius", s.radius)?;
+            let per_length = positive("stiffness_per_length", stiffness.per_length)?;
+            let end = match stiffness.end {
+                None => per_length * 2.0 * radius,
+                Some(k) => k,
             };
-            positive(field, k)?;
-            let own = matches!((seat, p.held), (Seat::Body { v, .. }, Held::Beside { v: w, .. } | Held::Moves { v: w, .. }) if v == w);
+            let tip = |end_of: usize| {
+                let held = s.line.beyond(end_of, radius);
+                (s.tips[end_of] && end > 0.0).then_some(Ball { held, radius: 0.0, k: end })
+            };
+            groups.push(Group::Span(Span {
+                line: s.line,
+                radius,
+                length: s.length,
+                k: per_length * s.length,
+                tips: [tip(0), tip(1)],
+                points: shape.points(s.length, law.exponent == 1.0),
+            }));
+        }
+        for group in &groups {
+            let own = matches!((seat, group.held()), (Seat::Body { v, .. }, Held::Beside { v: w, .. } | Held::Moves { v: w, .. }) if v == w);
             need(!own, || format!("{label}: a body can't touch a shape of its own"))?;
-            let ball = Ball { held: p.held, radius: p.radius, k };
-            match groups.last_mut() {
-                Some(g) if balls.last().is_some_and(|b: &Ball| b.held.dofs().eq(ball.held.dofs())) => {
-                    g.end += 1
-                }
-                _ => groups.push(balls.len()..balls.len() + 1),
-            }
-            balls.push(ball);
         }
-        Ok(Contact { label, law, shape, seat, origin, axes, balls, groups })
+        let fixed = Fixed { shape, seat, origin, axes };
+        let per_length = stiffness.per_length * spans.iter().map(|s| s.length).sum::<f64>();
+        Ok(Contact { label, law, fixed, per_length, groups })
     }
 
-    /// Depth of each point at a state [m]; `None` where it doesn't touch.
+    /// How deep each point and then each slender piece is at a state [m]; `None` where it doesn't touch.
     pub fn depths<'a>(&'a self, at: &'a At<'_>) -> impl Iterator<Item = Option<f64>> + 'a {
-        let frame = self.frame(at);
-        self.balls.iter().map(move |b| {
-            let s = self.place(&frame, &b.held.x(at));
-            self.gap(&s, b.radius).map(|g| b.radius - g.distance)
-        })
+        let frame = self.fixed.frame(at);
+        let mut scratch = Scratch::default();
+        self.groups.iter().map(move |group| self.depth(group, &frame, at, &mut scratch))
     }
 
-    fn frame(&self, at: &At<'_>) -> Frame {
-        match self.seat {
-            Seat::Ground => Frame { r: IDENTITY, x: [0.0; 3], v: [0.0; 3], omega: [0.0; 3] },
-            Seat::Body { q, v } => {
-                Frame { r: rotation(at, q), x: three(at.q, q), v: three(at.v, v), omega: three(at.v, v + 3) }
+    fn depth(&self, group: &Group, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) -> Option<f64> {
+        group.gather(&self.fixed, frame, at, scratch);
+        match group {
+            Group::Ball(b) => {
+                let s = self.fixed.place(frame, &b.held.x(at));
+                self.fixed.gap(&s, b.radius).map(|g| b.radius - g.distance)
+            }
+            Group::Span(span) => {
+                let curve = span.curve(&self.fixed, frame, at);
+                let search = Search::new(&self.fixed.shape, &curve, span.radius);
+                scratch.found.iter().map(|piece| search.deepest(*piece)).reduce(f64::max)
             }
         }
-    }
-
-    /// A point in the axes of the shape's body.
-    #[inline]
-    fn place(&self, frame: &Frame, x: &V3<f64>) -> V3<f64> {
-        match self.seat {
-            Seat::Ground => *x,
-            Seat::Body { .. } => transposed_times(&frame.r, &minus(x, &frame.x)),
-        }
-    }
-
-    /// The surface as seen from a point in the axes of the shape's body.
-    #[inline]
-    fn gap(&self, s: &V3<f64>, reach: f64) -> Option<Gap> {
-        let gap = self.shape.gap(&times(&self.axes, &minus(s, &self.origin)), reach)?;
-        Some(gap.turned(|x| transposed_times(&self.axes, x)))
     }
 
     #[inline]
     fn touch(&self, ball: &Ball, frame: &Frame, at: &At<'_>) -> Option<(Touch, Pair)> {
-        let s = self.place(frame, &ball.held.x(at));
-        let gap = self.gap(&s, ball.radius)?;
+        let s = self.fixed.place(frame, &ball.held.x(at));
+        let gap = self.fixed.gap(&s, ball.radius)?;
         let (v, carrier) = match ball.held {
             Held::Beside { q, v, arm } => {
                 let omega = three(at.v, v + 3);
@@ -169,25 +147,26 @@ impl Contact {
             }
             held => (held.velocity(at), None),
         };
-        let g = match self.seat {
+        let g = match self.fixed.seat {
             Seat::Ground => v,
             Seat::Body { .. } => transposed_times(&frame.r, &minus(&v, &frame.v)),
         };
         let pair = Pair { r: frame.r, omega: frame.omega, s, g, carrier };
         let u = pair.velocity(&gap.normal);
-        Some((Touch::new(&self.law, gap, ball.radius, ball.k, &u), pair))
+        let k = self.softened(ball, at);
+        Some((Touch::new(&self.law, gap, ball.radius, k, &u), pair))
     }
 
     /// Whether a ball that slips now may have stopped on the way.
     fn may_stick(&self, ball: &Ball, touch: &Touch, leap: Leap<'_>, at: &At<'_>) -> bool {
         let before = At { v: leap.v, ..*at };
-        let was = match (self.seat, ball.held) {
+        let was = match (self.fixed.seat, ball.held) {
             (Seat::Ground, Held::Moves { .. } | Held::Between { .. }) => {
                 let (u, n) = (ball.held.velocity(&before), &touch.gap.normal);
                 let approach = dot(&u, n);
                 std::array::from_fn(|i| u[i] - approach * n[i])
             }
-            _ => match self.touch(ball, &self.frame(&before), &before) {
+            _ => match self.touch(ball, &self.fixed.frame(&before), &before) {
                 Some((was, _)) => was.slip,
                 None => return false,
             },
@@ -195,118 +174,110 @@ impl Contact {
         self.law.may_stick(&was, &touch.slip, leap.predicted)
     }
 
+    /// The stiffness of a ball; on the way to an equilibrium no more than the load can use where the last iteration has
+    /// moved it so far, so that what still comes down isn't thrown up again.
+    fn softened(&self, ball: &Ball, at: &At<'_>) -> f64 {
+        const SHARE: f64 = 10.0;
+        let Some(Relaxed { last: Some(last), how }) = at.relaxed else { return ball.k };
+        let d = ball.held.velocity(&At { v: last, ..*at });
+        let moved = dot(&d, &d).sqrt();
+        let load = SHARE * how.load * if self.per_length > 0.0 { ball.k / self.per_length } else { 1.0 };
+        let most = load / moved.powf(self.law.exponent);
+        if most < ball.k { most } else { ball.k }
+    }
+
+    /// What to say where cables lie around a shape on elements too long for it. A cubic isn't quite an arc: with the
+    /// curvature `κ` on a length `h` it is off by `h⁴ κ³/384` from peak to peak, by which the depth, and with it the
+    /// pressure, swings to and fro.
+    fn coarse(&self, at: &At<'_>) -> Option<String> {
+        const SWING: f64 = 0.1;
+        let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
+        let (mut many, mut worst, mut finer) = (0, 0.0_f64, f64::INFINITY);
+        for group in &self.groups {
+            let Group::Span(span) = group else { continue };
+            group.gather(&self.fixed, &frame, at, &mut scratch);
+            let &[[from, to]] = &scratch.found[..] else { continue };
+            if !matches!(span.line, SpanLine::Cubic { .. }) || to - from < 1.0 {
+                continue;
+            }
+            let depths = scratch.balls.iter().filter(|b| b.radius > 0.0).map(|b| {
+                let s = self.fixed.place(&frame, &b.held.x(at));
+                (self.fixed.gap(&s, b.radius).map_or(0.0, |g| b.radius - g.distance), b.k)
+            });
+            let (sum, k) = depths.fold((0.0, 0.0), |(sum, all), (d, k)| (sum + d * k, all + k));
+            // the normal part of its curvature
+            let curve = span.curve(&self.fixed, &frame, at);
+            let Some(gap) = self.fixed.shape.gap(&curve.at(0.5), f64::INFINITY) else { continue };
+            let curvature = curve.curvature(&gap.normal).max(0.0);
+            let (h, mean) = (span.length, sum / k);
+            let off = h.powi(4) * curvature.powi(3) / 384.0;
+            if off > SWING * mean {
+                many += 1;
+                worst = worst.max(off / mean);
+                finer = finer.min((384.0 * SWING * mean / curvature.powi(3)).powf(0.25));
+            }
+        }
+        (many > 0).then(|| {
+            format!(
+                "`{}`: {many} elements that lie around it are too long to be arcs: along them the pressure swings by up \
+                 to {:.0} % from peak to peak. Take elements of at most {finer:.2e} m there, or a softer contact. What the \
+                 ends and the shape feel is right all the same",
+                self.label,
+                100.0 * worst.min(9.99)
+            )
+        })
+    }
+
     fn each(&self, at: &At<'_>, mut see: impl FnMut(&Ball, &Touch, &Frame)) {
-        let frame = self.frame(at);
-        for ball in &self.balls {
-            if let Some((touch, _)) = self.touch(ball, &frame, at) {
-                see(ball, &touch, &frame);
-            }
-        }
-    }
-
-    /// The longest step from here in which this ball can't get deeper than a part of its radius unseen [s].
-    fn free(&self, ball: &Ball, frame: &Frame, at: &At<'_>) -> f64 {
-        let s = self.place(frame, &ball.held.x(at));
-        let y = times(&self.axes, &minus(&s, &self.origin));
-        let Some(gap) = self.shape.at_least(&y) else { return f64::INFINITY };
-        let gap = gap.turned(|x| transposed_times(&self.axes, x));
-        let (v, mut a) = (ball.held.velocity(at), ball.held.velocity(&At { v: at.a, ..*at }));
-        if let Held::Beside { q, v, arm } = ball.held {
-            let omega = three(at.v, v + 3);
-            let inwards = times(&rotation(at, q), &cross(&omega, &cross(&omega, &arm)));
-            (0..3).for_each(|i| a[i] += inwards[i]);
-        }
-        // as seen from the shape's body
-        let (u, a) = match self.seat {
-            Seat::Ground => (v, a),
-            Seat::Body { v: first, .. } => {
-                let (omega, alpha) = (&frame.omega, three(at.a, first + 3));
-                let swing = cross(omega, &s);
-                let u = minus(&transposed_times(&frame.r, &minus(&v, &frame.v)), &swing);
-                let a = transposed_times(&frame.r, &minus(&a, &three(at.a, first)));
-                let (spun, turned, fled) = (cross(&alpha, &s), cross(omega, &u), cross(omega, &swing));
-                (u, std::array::from_fn(|i| a[i] - spun[i] - 2.0 * turned[i] - fled[i]))
-            }
-        };
-        let room = gap.distance - ball.radius;
-        // `w` towards it and gaining `b`: the room is used up when w t + b t²/2 reaches it
-        let time = |room: f64, w: f64, b: f64| {
-            let (w, b) = (w.max(0.0), b.max(0.0));
-            2.0 * room / (w + (w * w + 2.0 * b * room).sqrt())
-        };
-        let press = room.max(PRESS * ball.radius);
-        // a hollow surface comes nearer to what passes along it; one that curves away is no help for long
-        let hollow = dot(&u, &gap.turn(&u)).min(0.0);
-        let ahead = time(press, -dot(&gap.normal, &u), -dot(&gap.normal, &a) - hollow);
-        if self.shape.concave() {
-            // another side of it can be as near, whichever way the ball goes
-            let size = |x: &V3<f64>| dot(x, x).sqrt();
-            return ahead.min(time(room.max(0.0) + ball.radius, size(&u), size(&a)));
-        }
-        ahead
-    }
-}
-
-fn rotation(at: &At<'_>, q: usize) -> M3 {
-    matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]])
-}
-
-/// The block of a group: what has been added of it so far.
-struct Block {
-    k: [[f64; MOST]; MOST],
-    any: bool,
-}
-
-impl Block {
-    /// Adds the derivative of the force on a ball on the ground, in space.
-    fn add_point(&mut self, held: &Held, d: &M3) {
-        self.any = true;
-        let weights = weights(held);
-        for (a, wa) in weights.iter().enumerate().filter(|w| *w.1 != 0.0) {
-            for (b, wb) in weights.iter().enumerate().filter(|w| *w.1 != 0.0) {
-                let w = wa * wb;
-                for (row, d) in self.k[3 * a..3 * a + 3].iter_mut().zip(d) {
-                    let row = &mut row[3 * b..3 * b + 3];
-                    for j in 0..3 {
-                        row[j] -= w * d[j];
-                    }
+        let frame = self.fixed.frame(at);
+        let mut scratch = Scratch::default();
+        for group in &self.groups {
+            group.gather(&self.fixed, &frame, at, &mut scratch);
+            for ball in &scratch.balls {
+                if let Some((touch, _)) = self.touch(ball, &frame, at) {
+                    see(ball, &touch, &frame);
                 }
             }
         }
     }
-    /// Adds the derivative of the forces of a pair, of whose unknowns the last six are left out on the ground.
-    fn add_pair(&mut self, held: &Held, d: &[[f64; PAIR]; PAIR]) {
-        self.any = true;
-        let n = held.size();
-        if let Held::Beside { .. } = held {
-            for i in 0..PAIR {
-                for j in 0..PAIR {
-                    self.k[i][j] -= d[i][j];
-                }
+
+    /// Adds the force on one ball, and its derivative to the block of its group.
+    fn add_ball(&self, ball: &Ball, frame: &Frame, at: &At<'_>, out: &mut Assembly<'_>, block: &mut Block) {
+        let Some((mut touch, pair)) = self.touch(ball, frame, at) else { return };
+        let w = out.weights();
+        if let Some(leap) = out.leap()
+            && self.law.slips(&touch.slip)
+            && self.may_stick(ball, &touch, leap, at)
+        {
+            touch.hold(&self.law);
+            out.approximates();
+        }
+        if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
+            for (a, w) in weights(&ball.held).iter().enumerate().filter(|w| *w.1 != 0.0) {
+                (0..3).for_each(|i| out.add(ball.held.dof(3 * a + i), -w * touch.f[i]));
+            }
+            if out.wants_tangent() {
+                let [x, v] = touch.slopes(&self.law, self.softened(ball, at));
+                let d = std::array::from_fn(|i| std::array::from_fn(|j| w.q * x[i][j] + w.v * v[i][j]));
+                block.add_point(&ball.held, &d);
             }
             return;
         }
-        let weights = weights(held);
-        self.add_point(held, &std::array::from_fn(|i| std::array::from_fn(|j| d[i][j])));
-        for i in 0..6 {
-            for j in 0..6 {
-                self.k[n + i][n + j] -= d[6 + i][6 + j];
-            }
-            for (a, w) in weights.iter().enumerate() {
-                for j in 0..3 {
-                    self.k[n + i][3 * a + j] -= w * d[6 + i][j];
-                    self.k[3 * a + j][n + i] -= w * d[j][6 + i];
-                }
+        let forces = pair.forces(&touch);
+        if pair.carrier.is_some() {
+            (0..6).for_each(|i| out.add(ball.held.dof(i), -forces[i]));
+        } else {
+            for (a, w) in weights(&ball.held).iter().enumerate() {
+                (0..3).for_each(|i| out.add(ball.held.dof(3 * a + i), -w * forces[i]));
             }
         }
-    }
-}
-
-/// By how much each of the vectors that move a point does so.
-fn weights(held: &Held) -> &[f64] {
-    match held {
-        Held::Between { weight, .. } => weight,
-        _ => &[1.0],
+        if let Seat::Body { v, .. } = self.fixed.seat {
+            (0..6).for_each(|i| out.add(v + i, -forces[6 + i]));
+        }
+        if out.wants_tangent() {
+            let slopes = touch.slopes(&self.law, self.softened(ball, at));
+            block.add_pair(&ball.held, &pair.derivative(&touch, &slopes, w));
+        }
     }
 }
 
@@ -315,67 +286,32 @@ impl Term for Contact {
         self.label.clone()
     }
     fn pattern(&self, p: &mut Pattern) {
-        let body = match self.seat {
+        let body = match self.fixed.seat {
             Seat::Ground => 0..0,
             Seat::Body { v, .. } => v..v + 6,
         };
         for g in &self.groups {
-            p.clique(self.balls[g.start].held.dofs().chain(body.clone()));
+            p.clique(g.held().dofs().chain(body.clone()));
         }
     }
     fn symmetric(&self) -> bool {
-        self.law.conservative()
-            && self.seat == Seat::Ground
-            && !self.balls.iter().any(|b| matches!(b.held, Held::Beside { .. }))
+        let turns = |g: &Group| match g {
+            Group::Ball(b) => matches!(b.held, Held::Beside { .. }),
+            Group::Span(s) => matches!(s.line, SpanLine::Straight { .. }),
+        };
+        self.law.conservative() && self.fixed.seat == Seat::Ground && !self.groups.iter().any(turns)
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        let (frame, w) = (self.frame(at), out.weights());
-        let mut block = Block { k: [[0.0; MOST]; MOST], any: false };
+        let frame = self.fixed.frame(at);
+        let mut block = Block::new();
+        let mut scratch = Scratch::default();
+        let body = if self.fixed.seat == Seat::Ground { 0 } else { 6 };
         for (clique, group) in self.groups.iter().enumerate() {
-            for ball in &self.balls[group.clone()] {
-                let Some((mut touch, pair)) = self.touch(ball, &frame, at) else { continue };
-                if let Some(leap) = out.leap()
-                    && self.law.slips(&touch.slip)
-                    && self.may_stick(ball, &touch, leap, at)
-                {
-                    touch.hold(&self.law);
-                    out.approximates();
-                }
-                if self.seat == Seat::Ground && pair.carrier.is_none() {
-                    for (a, w) in weights(&ball.held).iter().enumerate().filter(|w| *w.1 != 0.0) {
-                        (0..3).for_each(|i| out.add(ball.held.dof(3 * a + i), -w * touch.f[i]));
-                    }
-                    if out.wants_tangent() {
-                        let [x, v] = touch.slopes(&self.law, ball.k);
-                        let d =
-                            std::array::from_fn(|i| std::array::from_fn(|j| w.q * x[i][j] + w.v * v[i][j]));
-                        block.add_point(&ball.held, &d);
-                    }
-                    continue;
-                }
-                let forces = pair.forces(&touch);
-                if pair.carrier.is_some() {
-                    (0..6).for_each(|i| out.add(ball.held.dof(i), -forces[i]));
-                } else {
-                    for (a, w) in weights(&ball.held).iter().enumerate() {
-                        (0..3).for_each(|i| out.add(ball.held.dof(3 * a + i), -w * forces[i]));
-                    }
-                }
-                if let Seat::Body { v, .. } = self.seat {
-                    (0..6).for_each(|i| out.add(v + i, -forces[6 + i]));
-                }
-                if !out.wants_tangent() {
-                    continue;
-                }
-                let slopes = touch.slopes(&self.law, ball.k);
-                block.add_pair(&ball.held, &pair.derivative(&touch, &slopes, w));
+            group.gather(&self.fixed, &frame, at, &mut scratch);
+            for ball in &scratch.balls {
+                self.add_ball(ball, &frame, at, out, &mut block);
             }
-            if block.any {
-                let n = self.balls[group.start].held.size() + if self.seat == Seat::Ground { 0 } else { 6 };
-                out.add_square(clique, &block.k);
-                block.k[..n].iter_mut().for_each(|row| row[..n].fill(0.0));
-                block.any = false;
-            }
+            block.flush(clique, group.held().size() + body, out);
         }
     }
     fn energy(&self, at: &At<'_>) -> Energy {
@@ -397,25 +333,38 @@ impl Term for Contact {
         self.law.friction > 0.0
     }
     fn horizon(&self, at: &At<'_>) -> f64 {
-        let frame = self.frame(at);
-        self.balls.iter().map(|b| self.free(b, &frame, at)).fold(f64::INFINITY, f64::min)
+        let frame = self.fixed.frame(at);
+        self.groups.iter().map(|g| self.free(g, &frame, at)).fold(f64::INFINITY, f64::min)
+    }
+    fn remark(&self, at: &At<'_>) -> Option<String> {
+        self.coarse(at)
     }
     fn columns(&self) -> Vec<Column> {
         let force = |name: &str| Column::new(name, "N");
         let mut all = ["fx", "fy", "fz", "normal"].map(force).to_vec();
-        all.extend([Column::new("depth", "m"), Column::new("points", "1")]);
+        all.extend([Column::new("depth", "m"), Column::new("points", "1"), Column::new("length", "m")]);
         all
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
-        let (mut sum, mut normal, mut deepest, mut count) = ([0.0; 3], 0.0, 0.0_f64, 0.0);
+        let (mut sum, mut normal, mut deepest): (V3<f64>, f64, f64) = ([0.0; 3], 0.0, 0.0);
         self.each(at, |_, touch, frame| {
             let f = times(&frame.r, &touch.f);
             (0..3).for_each(|i| sum[i] += f[i]);
             normal += touch.normal;
-            deepest = deepest.max(touch.depth);
-            count += 1.0;
         });
+        let (mut points, mut length) = (0.0, 0.0);
+        let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
+        for group in &self.groups {
+            let Some(depth) = self.depth(group, &frame, at, &mut scratch) else { continue };
+            deepest = deepest.max(depth);
+            match group {
+                Group::Ball(_) => points += 1.0,
+                Group::Span(s) => {
+                    length += scratch.found.iter().map(|[a, b]| s.length * (b - a)).sum::<f64>()
+                }
+            }
+        }
         out.extend(sum);
-        out.extend([normal, deepest, count]);
+        out.extend([normal, deepest, points, length]);
     }
 }

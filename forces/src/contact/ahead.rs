@@ -1,0 +1,123 @@
+//! How long a step may be that leaps over no contact.
+
+use super::group::{Ball, Group, Span};
+use super::search::Search;
+use super::seat::{Frame, Seat, minus, rotation};
+use super::shape::{Gap, Shape};
+use super::term::Contact;
+use ropewalk_core::held::{Held, three};
+use ropewalk_core::rotation::{cross, times, transposed_times};
+use ropewalk_core::{At, V3, dot};
+
+/// The part of the radius that a point may go on by in a step once it touches.
+const PRESS: f64 = 0.25;
+
+/// A point as seen from the shape's body: where it is, its velocity and its acceleration.
+struct Seen {
+    s: V3<f64>,
+    u: V3<f64>,
+    a: V3<f64>,
+}
+
+fn size(x: &V3<f64>) -> f64 {
+    dot(x, x).sqrt()
+}
+
+/// When the room is used up by what approaches with `w` and gains `b`: `w t + b t²/2` reaches it.
+fn time(room: f64, w: f64, b: f64) -> f64 {
+    let (w, b) = (w.max(0.0), b.max(0.0));
+    2.0 * room / (w + (w * w + 2.0 * b * room).sqrt())
+}
+
+impl Contact {
+    /// The longest step from here in which this group can't get deeper than a part of its radius unseen [s].
+    pub(super) fn free(&self, group: &Group, frame: &Frame, at: &At<'_>) -> f64 {
+        match group {
+            Group::Ball(ball) => self.free_ball(ball, frame, at),
+            Group::Span(span) => self.free_span(span, frame, at),
+        }
+    }
+
+    fn seen(&self, held: &Held, frame: &Frame, at: &At<'_>) -> Seen {
+        let s = self.fixed.place(frame, &held.x(at));
+        let (v, mut a) = (held.velocity(at), held.velocity(&At { v: at.a, ..*at }));
+        if let Held::Beside { q, v, arm } = *held {
+            let omega = three(at.v, v + 3);
+            let inwards = times(&rotation(at, q), &cross(&omega, &cross(&omega, &arm)));
+            (0..3).for_each(|i| a[i] += inwards[i]);
+        }
+        let Seat::Body { v: first, .. } = self.fixed.seat else { return Seen { s, u: v, a } };
+        let (omega, alpha) = (&frame.omega, three(at.a, first + 3));
+        let swing = cross(omega, &s);
+        let u = minus(&transposed_times(&frame.r, &minus(&v, &frame.v)), &swing);
+        let a = transposed_times(&frame.r, &minus(&a, &three(at.a, first)));
+        let (spun, turned, fled) = (cross(&alpha, &s), cross(omega, &u), cross(omega, &swing));
+        Seen { s, u, a: std::array::from_fn(|i| a[i] - spun[i] - 2.0 * turned[i] - fled[i]) }
+    }
+
+    /// The surface as seen from a point, at least as far away as told.
+    fn facing(&self, s: &V3<f64>) -> Option<Gap> {
+        let y = times(&self.fixed.axes, &minus(s, &self.fixed.origin));
+        Some(self.fixed.outwards(self.fixed.shape.at_least(&y)?))
+    }
+
+    fn free_ball(&self, ball: &Ball, frame: &Frame, at: &At<'_>) -> f64 {
+        let Seen { s, u, a } = self.seen(&ball.held, frame, at);
+        let Some(gap) = self.facing(&s) else { return f64::INFINITY };
+        let room = gap.distance - ball.radius;
+        let press = room.max(PRESS * ball.radius);
+        // a hollow surface comes nearer to what passes along it; one that curves away is no help for long
+        let hollow = dot(&u, &gap.turn(&u)).min(0.0);
+        let ahead = time(press, -dot(&gap.normal, &u), -dot(&gap.normal, &a) - hollow);
+        if self.fixed.shape.concave() {
+            // another side of it can be as near, whichever way the ball goes
+            return ahead.min(time(room.max(0.0) + ball.radius, size(&u), size(&a)));
+        }
+        ahead
+    }
+
+    /// The curve lies in the hull of its control points, and beyond the plane on the surface nearest to one of its
+    /// points, a convex shape ends.
+    fn free_span(&self, span: &Span, frame: &Frame, at: &At<'_>) -> f64 {
+        let all = span.line.controls().map(|held| self.seen(&held, frame, at));
+        let curve = span.curve(&self.fixed, frame, at);
+        let most = |of: fn(&Seen) -> &V3<f64>| all.iter().fold(0.0_f64, |m, p| m.max(size(of(p))));
+        let press = PRESS * span.radius;
+        if let Shape::Tube { .. } = self.fixed.shape {
+            // inside, the distance is least at a control point; across its ends, near the curve
+            let near = [0.0, 0.5, 1.0].map(|xi| span.line.held(xi));
+            let all = span.line.controls().into_iter().chain(near);
+            let one = |held| self.free_ball(&Ball { held, radius: span.radius, k: span.k }, frame, at);
+            return all.map(one).fold(f64::INFINITY, f64::min);
+        }
+        if self.fixed.shape.concave() {
+            let room = Search::new(&self.fixed.shape, &curve, span.radius).room();
+            let (u, a) = (most(|p| &p.u), most(|p| &p.a));
+            let anyhow = time(room.max(span.radius), u, a);
+            let nearer = self.facing(&self.fixed.place(frame, &span.line.held(0.5).x(at)));
+            let Some(gap) = nearer else { return f64::INFINITY };
+            // towards the side that it faces
+            let towards = all.iter().map(|p| {
+                let bent = dot(&p.u, &gap.turn(&p.u)).min(0.0);
+                time(room.max(press), -dot(&gap.normal, &p.u), -dot(&gap.normal, &p.a) - bent)
+            });
+            return towards.fold(anyhow, f64::min);
+        }
+        let mut longest = 0.0_f64;
+        for xi in [0.5, 0.0, 1.0] {
+            let s = self.fixed.place(frame, &span.line.held(xi).x(at));
+            let Some(gap) = self.facing(&s) else { return f64::INFINITY };
+            let n = &gap.normal;
+            let level = dot(n, &s) - gap.distance;
+            let one = |p: &Seen| {
+                let room = dot(n, &p.s) - level - span.radius;
+                time(room.max(press), -dot(n, &p.u), -dot(n, &p.a))
+            };
+            longest = longest.max(all.iter().map(one).fold(f64::INFINITY, f64::min));
+            if longest == f64::INFINITY {
+                break;
+            }
+        }
+        longest
+    }
+}

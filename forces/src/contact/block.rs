@@ -1,0 +1,79 @@
+//! The share of what the same unknowns move in the tangent.
+
+use super::touch::PAIR;
+use ropewalk_core::Assembly;
+use ropewalk_core::held::Held;
+use ropewalk_core::rotation::M3;
+
+/// Unknowns of a group: of a cable element and a body.
+const MOST: usize = 18;
+
+/// The block of a group: what has been added of it so far.
+pub(crate) struct Block {
+    k: [[f64; MOST]; MOST],
+    any: bool,
+}
+
+impl Block {
+    pub fn new() -> Self {
+        Block { k: [[0.0; MOST]; MOST], any: false }
+    }
+    /// Puts it into the matrix as that of clique `clique` with `n` unknowns, and is empty again.
+    pub fn flush(&mut self, clique: usize, n: usize, out: &mut Assembly<'_>) {
+        if self.any {
+            out.add_square(clique, &self.k);
+            self.k[..n].iter_mut().for_each(|row| row[..n].fill(0.0));
+            self.any = false;
+        }
+    }
+    /// Adds the derivative of the force on a ball on the ground, in space.
+    pub fn add_point(&mut self, held: &Held, d: &M3) {
+        self.any = true;
+        let weights = weights(held);
+        for (a, wa) in weights.iter().enumerate().filter(|w| *w.1 != 0.0) {
+            for (b, wb) in weights.iter().enumerate().filter(|w| *w.1 != 0.0) {
+                let w = wa * wb;
+                for (row, d) in self.k[3 * a..3 * a + 3].iter_mut().zip(d) {
+                    let row = &mut row[3 * b..3 * b + 3];
+                    for j in 0..3 {
+                        row[j] -= w * d[j];
+                    }
+                }
+            }
+        }
+    }
+    /// Adds the derivative of the forces of a pair, of whose unknowns the last six are left out on the ground.
+    pub fn add_pair(&mut self, held: &Held, d: &[[f64; PAIR]; PAIR]) {
+        self.any = true;
+        let n = held.size();
+        if let Held::Beside { .. } = held {
+            for i in 0..PAIR {
+                for j in 0..PAIR {
+                    self.k[i][j] -= d[i][j];
+                }
+            }
+            return;
+        }
+        let weights = weights(held);
+        self.add_point(held, &std::array::from_fn(|i| std::array::from_fn(|j| d[i][j])));
+        for i in 0..6 {
+            for j in 0..6 {
+                self.k[n + i][n + j] -= d[6 + i][6 + j];
+            }
+            for (a, w) in weights.iter().enumerate() {
+                for j in 0..3 {
+                    self.k[n + i][3 * a + j] -= w * d[6 + i][j];
+                    self.k[3 * a + j][n + i] -= w * d[j][6 + i];
+                }
+            }
+        }
+    }
+}
+
+/// By how much each of the vectors that move a point does so.
+pub(crate) fn weights(held: &Held) -> &[f64] {
+    match held {
+        Held::Between { weight, .. } => weight,
+        _ => &[1.0],
+    }
+}

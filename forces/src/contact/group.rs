@@ -1,0 +1,89 @@
+//! What touches: single balls, and slender pieces whose places of contact are found anew at every evaluation.
+
+use super::search::{Cubic, Look, Search, gauss};
+use super::seat::{Fixed, Frame};
+use ropewalk_core::At;
+use ropewalk_core::SpanLine;
+use ropewalk_core::held::Held;
+
+/// A ball that can touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball {
+    pub held: Held,
+    pub radius: f64,
+    /// Stiffness of its contact [N/m^p].
+    pub k: f64,
+}
+
+/// What the same unknowns move.
+#[derive(Clone, Debug)]
+pub(crate) enum Group {
+    Ball(Ball),
+    Span(Span),
+}
+
+/// A slender piece.
+#[derive(Clone, Debug)]
+pub(crate) struct Span {
+    pub line: SpanLine,
+    pub radius: f64,
+    /// Unstretched length [m].
+    pub length: f64,
+    /// Stiffness of its contact if all of it touches [N/m^p].
+    pub k: f64,
+    /// Its tips, as balls without radius a radius beyond its ends.
+    pub tips: [Option<Ball>; 2],
+    /// Points of the Gauss rule on each interval.
+    pub points: usize,
+}
+
+/// What the search needs and finds.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    pieces: Vec<[Look; 2]>,
+    /// The intervals of the last span that touch.
+    pub found: Vec<[f64; 2]>,
+    /// The balls that stand for them, or for a single one.
+    pub balls: Vec<Ball>,
+}
+
+impl Group {
+    /// A point of it, which all of its unknowns move.
+    pub fn held(&self) -> Held {
+        match self {
+            Group::Ball(ball) => ball.held,
+            Group::Span(span) => span.line.held(0.5),
+        }
+    }
+
+    /// Puts the balls that may touch into `scratch`.
+    pub fn gather(&self, fixed: &Fixed, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) {
+        scratch.balls.clear();
+        scratch.found.clear();
+        let span = match self {
+            Group::Ball(ball) => return scratch.balls.push(*ball),
+            Group::Span(span) => span,
+        };
+        let curve = span.curve(fixed, frame, at);
+        Search::new(&fixed.shape, &curve, span.radius).find(&mut scratch.pieces, &mut scratch.found);
+        for &[from, to] in &scratch.found {
+            let part = to - from;
+            scratch.balls.extend(gauss(span.points).iter().map(|&(place, weight)| Ball {
+                held: span.line.held(from + part * place),
+                radius: span.radius,
+                k: span.k * part * weight,
+            }));
+        }
+        scratch.balls.extend(span.tips.iter().flatten());
+    }
+}
+
+impl Span {
+    /// Its line in the shape's own axes.
+    pub fn curve(&self, fixed: &Fixed, frame: &Frame, at: &At<'_>) -> Cubic {
+        let [a, da, b, db] = self.line.place(at);
+        let [a, b] = [a, b].map(|x| fixed.inside(frame, &x));
+        let [da, db] = [da, db].map(|x| fixed.turned(frame, &x));
+        Cubic([a, da, b, db])
+    }
+}

@@ -1,0 +1,287 @@
+//! Where a curve touches a shape, found for certain.
+//!
+//! The depth `δ(ξ) = r - d(p(ξ))` of a curve `p` of radius `r` below a surface at the distance `d` is known where it is
+//! looked at; what it can be in between is bounded. The distance changes no faster than the point moves, so `|δ'| ≤ B`
+//! with the largest speed `B` of the curve; and around solids without hollows it is convex, so `δ'' ≤ C` with the
+//! largest `|p''|`, to which a hollow of curvature `η` adds `η B²`. Hence on a piece of length `h` the function
+//! `δ + C ξ (h - ξ)/2` is concave: it lies above its chord and below its tangents. A piece that neither bound decides
+//! is halved.
+
+use super::shape::Shape;
+use ropewalk_core::{V3, dot};
+
+/// A cubic over `ξ` from 0 to 1: its ends and its derivatives there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cubic(pub [V3<f64>; 4]);
+
+/// Pieces shorter than this are taken for what their middle is.
+const SHORTEST: f64 = 1e-6;
+/// Around hollows of any kind, such as the valleys of a mesh, what is smaller than this part of the radius isn't looked
+/// for: between two places that far apart the depth changes by a thousandth of it.
+const DETAIL: f64 = 0.125;
+
+/// A place that was looked at: depth, and its derivative by `ξ`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    xi: f64,
+    x: V3<f64>,
+    depth: f64,
+    slope: f64,
+}
+
+/// What is known of a piece.
+enum Piece {
+    Free,
+    Touches,
+    /// It has one end of contact.
+    Crosses,
+    Unknown,
+}
+
+fn blend(w: [f64; 4], p: &[V3<f64>; 4]) -> V3<f64> {
+    std::array::from_fn(|i| w[0] * p[0][i] + w[1] * p[1][i] + w[2] * p[2][i] + w[3] * p[3][i])
+}
+
+impl Cubic {
+    pub fn at(&self, xi: f64) -> V3<f64> {
+        let rest = 1.0 - xi;
+        let s = xi * xi * (3.0 - 2.0 * xi);
+        blend([1.0 - s, xi * rest * rest, s, -xi * xi * rest], &self.0)
+    }
+    fn slope(&self, xi: f64) -> V3<f64> {
+        let s = 6.0 * xi * (1.0 - xi);
+        blend([-s, (1.0 - xi) * (1.0 - 3.0 * xi), s, xi * (3.0 * xi - 2.0)], &self.0)
+    }
+    /// A bound of `|p'|`: that of the control points of its derivative.
+    pub fn speed(&self) -> f64 {
+        let [a, da, b, db] = &self.0;
+        let middle: V3<f64> = std::array::from_fn(|i| 3.0 * (b[i] - a[i]) - da[i] - db[i]);
+        dot(da, da).max(dot(&middle, &middle)).max(dot(db, db)).sqrt()
+    }
+    /// Its curvature in the middle towards the side that a normal comes from [1/m].
+    pub fn curvature(&self, normal: &V3<f64>) -> f64 {
+        let (slope, bend) = (self.slope(0.5), blend([0.0, -1.0, 0.0, 1.0], &self.0));
+        -dot(&bend, normal) / dot(&slope, &slope)
+    }
+    /// The largest `|p''|`, which is at an end.
+    fn bend(&self) -> f64 {
+        let start = blend([-6.0, -4.0, 6.0, -2.0], &self.0);
+        let end = blend([6.0, 2.0, -6.0, 4.0], &self.0);
+        dot(&start, &start).max(dot(&end, &end)).sqrt()
+    }
+}
+
+/// A curve with a thickness, in the axes of the shape that it may touch.
+pub(crate) struct Search<'a> {
+    pub shape: &'a Shape,
+    pub curve: &'a Cubic,
+    pub radius: f64,
+    speed: f64,
+    bend: f64,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(shape: &'a Shape, curve: &'a Cubic, radius: f64) -> Self {
+        Search { shape, curve, radius, speed: curve.speed(), bend: 0.0 }
+    }
+
+    /// The places that touch, from `ξ` to `ξ`, in order, put behind those in `found`. A curve that is farther away than
+    /// it is long costs one look.
+    pub fn find(&mut self, pieces: &mut Vec<[Look; 2]>, found: &mut Vec<[f64; 2]>) {
+        if self.shape.gap(&self.curve.at(0.5), self.radius + 0.5 * self.speed).is_none() {
+            return;
+        }
+        self.bend = self.curve.bend();
+        let (Some(first), Some(last)) = (self.look(0.0), self.look(1.0)) else { return };
+        pieces.clear();
+        pieces.push([first, last]);
+        let mut since: Option<f64> = None;
+        while let Some([a, b]) = pieces.pop() {
+            match self.judge(&a, &b) {
+                Piece::Free => found.extend(since.take().map(|from| [from, a.xi])),
+                Piece::Touches => since = since.or(Some(a.xi)),
+                Piece::Crosses => {
+                    let end = self.end(&a, &b);
+                    if a.depth > 0.0 {
+                        found.push([since.take().unwrap_or(a.xi), end]);
+                    } else {
+                        found.extend(since.take().map(|from| [from, a.xi]));
+                        since = Some(end);
+                    }
+                }
+                Piece::Unknown => {
+                    let Some(middle) = self.look(0.5 * (a.xi + b.xi)) else { return };
+                    if b.xi - a.xi > SHORTEST {
+                        pieces.extend([[middle, b], [a, middle]]);
+                    } else if middle.depth > 0.0 {
+                        since = since.or(Some(a.xi));
+                    } else {
+                        found.extend(since.take().map(|from| [from, a.xi]));
+                    }
+                }
+            }
+        }
+        found.extend(since.map(|from| [from, 1.0]));
+    }
+
+    /// A lower bound of the distance of the curve's surface from the shape [m].
+    pub fn room(&mut self) -> f64 {
+        let Some(gap) = self.shape.at_least(&self.curve.at(0.5)) else { return f64::INFINITY };
+        let far = gap.distance - 0.5 * self.speed - self.radius;
+        if far > 0.0 {
+            return far;
+        }
+        self.bend = self.curve.bend();
+        match (self.look(0.0), self.look(1.0)) {
+            (Some(a), Some(b)) => far.max(-self.bounds(&a, &b).0),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The greatest depth on a piece that touches, as records show it: between the looks next to the deepest.
+    pub fn deepest(&self, [from, to]: [f64; 2]) -> f64 {
+        const LOOKS: usize = 16;
+        let depth = |xi: f64| self.look(xi).map_or(f64::NEG_INFINITY, |l| l.depth);
+        let place = |k: usize| from + (to - from) * k as f64 / LOOKS as f64;
+        let best = (0..=LOOKS).max_by(|&a, &b| depth(place(a)).total_cmp(&depth(place(b)))).unwrap_or(0);
+        let (mut low, mut high) = (place(best.saturating_sub(1)), place((best + 1).min(LOOKS)));
+        for _ in 0..40 {
+            let third = (high - low) / 3.0;
+            if depth(low + third) < depth(high - third) { low += third } else { high -= third }
+        }
+        depth(0.5 * (low + high)).max(depth(place(best)))
+    }
+
+    fn look(&self, xi: f64) -> Option<Look> {
+        let x = self.curve.at(xi);
+        let mut gap = self.shape.gap(&x, f64::INFINITY)?;
+        if gap.distance < 0.0 && self.shape.gap(&x, self.radius).is_none() {
+            // beyond the box of a surface with borders there is no inside
+            (gap.distance, gap.normal) = (-gap.distance, gap.normal.map(|n| -n));
+        }
+        Some(Look {
+            xi,
+            x,
+            depth: self.radius - gap.distance,
+            slope: -dot(&gap.normal, &self.curve.slope(xi)),
+        })
+    }
+
+    /// A bound of `δ''` on a piece; infinite if there is none.
+    fn rise(&self, a: &Look, b: &Look) -> f64 {
+        let way = 0.5 * self.speed * (b.xi - a.xi);
+        let middle: V3<f64> = std::array::from_fn(|i| 0.5 * (a.x[i] + b.x[i]));
+        // every point of the piece is within `way` of the middle of its chord
+        let reach = (self.radius - 0.5 * (a.depth + b.depth)).abs() + way;
+        let hollow = self.shape.hollow(&middle, way, reach);
+        if hollow == 0.0 || hollow.is_infinite() && way < DETAIL * self.radius {
+            return self.bend;
+        }
+        self.bend + hollow * self.speed * self.speed
+    }
+
+    /// Bounds of the depth on a piece: the most and the least.
+    fn bounds(&self, a: &Look, b: &Look) -> (f64, f64) {
+        self.bounds_with(self.rise(a, b), a, b)
+    }
+
+    fn bounds_with(&self, c: f64, a: &Look, b: &Look) -> (f64, f64) {
+        let h = b.xi - a.xi;
+        let (mean, way) = (0.5 * (a.depth + b.depth), 0.5 * self.speed * h);
+        let (mut most, mut least) = (mean + way, mean - way);
+        if c.is_finite() {
+            let (up, down) = (a.slope + 0.5 * c * h, b.slope - 0.5 * c * h);
+            let tangents = if up <= 0.0 {
+                a.depth
+            } else if down >= 0.0 {
+                b.depth
+            } else {
+                let at = ((b.depth - a.depth - down * h) / (up - down)).clamp(0.0, h);
+                a.depth + up * at
+            };
+            most = most.min(tangents);
+            least = least.max(a.depth.min(b.depth) - 0.125 * c * h * h);
+        }
+        (most, least)
+    }
+
+    fn judge(&self, a: &Look, b: &Look) -> Piece {
+        let c = self.rise(a, b);
+        let (most, least) = self.bounds_with(c, a, b);
+        if most <= 0.0 {
+            return Piece::Free;
+        }
+        if least >= 0.0 {
+            return Piece::Touches;
+        }
+        let h = b.xi - a.xi;
+        let (falls, rises) = (a.slope + c * h < 0.0, b.slope - c * h > 0.0);
+        match (a.depth > 0.0, b.depth > 0.0) {
+            (true, false) if falls => Piece::Crosses,
+            (false, true) if rises => Piece::Crosses,
+            (true, true) if falls || rises => Piece::Touches,
+            (false, false) if falls || rises => Piece::Free,
+            _ => Piece::Unknown,
+        }
+    }
+
+    /// The place where the depth passes zero on a piece on which it falls or rises: Newton's method between brackets.
+    fn end(&self, a: &Look, b: &Look) -> f64 {
+        let (mut low, mut high) = (a.xi, b.xi);
+        let mut xi = a.xi + (b.xi - a.xi) * a.depth / (a.depth - b.depth);
+        for _ in 0..60 {
+            let Some(here) = self.look(xi) else { break };
+            if (here.depth > 0.0) == (a.depth > 0.0) {
+                low = xi
+            } else {
+                high = xi
+            }
+            let mut next = xi - here.depth / here.slope;
+            if !(next > low && next < high) {
+                next = 0.5 * (low + high);
+            }
+            let moved = (next - xi).abs();
+            xi = next;
+            if moved < 1e-9 * (b.xi - a.xi) || high - low < 1e-15 {
+                break;
+            }
+        }
+        xi
+    }
+}
+
+/// Places and weights of the Gauss–Legendre rule with so many points on 0 … 1: four, six, or else eight.
+pub(crate) fn gauss(points: usize) -> &'static [(f64, f64)] {
+    match points {
+        4 => &FOUR,
+        6 => &SIX,
+        _ => &EIGHT,
+    }
+}
+
+const FOUR: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_92),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_1),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_1),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_92),
+];
+
+const SIX: [(f64, f64); 6] = [
+    (0.033_765_242_898_423_975, 0.085_662_246_189_585_25),
+    (0.169_395_306_766_867_7, 0.180_380_786_524_069_3),
+    (0.380_690_406_958_401_5, 0.233_956_967_286_345_52),
+    (0.619_309_593_041_598_5, 0.233_956_967_286_345_52),
+    (0.830_604_693_233_132_4, 0.180_380_786_524_069_3),
+    (0.966_234_757_101_576, 0.085_662_246_189_585_25),
+];
+
+const EIGHT: [(f64, f64); 8] = [
+    (0.019_855_071_751_231_856, 0.050_614_268_145_188_09),
+    (0.101_666_761_293_186_58, 0.111_190_517_226_687_23),
+    (0.237_233_795_041_835_5, 0.156_853_322_938_943_7),
+    (0.408_282_678_752_175_1, 0.181_341_891_689_181),
+    (0.591_717_321_247_824_8, 0.181_341_891_689_181),
+    (0.762_766_204_958_164_5, 0.156_853_322_938_943_7),
+    (0.898_333_238_706_813_5, 0.111_190_517_226_687_23),
+    (0.980_144_928_248_768_2, 0.050_614_268_145_188_09),
+];
