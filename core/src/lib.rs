@@ -58,7 +58,7 @@ pub use part::{ContactPoint, Part, Per, Quantity, Slender, Spot, split_marker};
 pub use pattern::Pattern;
 pub use pool::{Batch, Element, Local, Pool, Share};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};
-pub use record::{Audit, Column, Record, Sample};
+pub use record::{Audit, Column, Created, Record, Sample};
 pub use redundancy::Redundancy;
 pub use remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
 pub use scene::{Analysis, Level, Run, Scene, SceneError, ShapeTitles, TableSpec, Water};
