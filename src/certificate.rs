@@ -2,11 +2,14 @@
 //! element length, which divides an error of second order by nine. What that changes is the error of the run.
 //!
 //! Error control bounds the error of each step, not what a motion makes of it: after a snap, or where a motion is chaotic,
-//! small errors grow. Then the difference is far above the tolerance, and the run is called sensitive.
+//! small errors grow. Then the difference is far above the tolerance, and the run is called sensitive. What its error hangs
+//! on is found by more runs ([`Cause`]).
 
 mod accuracy;
+mod cause;
 
 pub(crate) use accuracy::choose;
+pub use cause::Cause;
 
 use crate::error::Error;
 use crate::output::{SweepProgress, rough};
@@ -43,6 +46,9 @@ pub struct Certificate {
     pub records: Vec<Change>,
     /// Whether the changes are more than ten times the tolerance.
     pub sensitive: bool,
+    /// What that hangs on, as far as it was found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<Cause>,
     /// Runs that failed, and why.
     pub failures: Vec<String>,
     /// CPU time that this took beside the run itself [s].
@@ -158,7 +164,6 @@ pub(crate) fn certify(
         tighter: tight.and_then(|s| s.stepping).map(words::step),
         finer: fine.map(|s| format!("{} elements", elements(s))),
         positions: tightened.as_ref().and_then(|tight| moved(&base, tight)),
-        cpu_s: trials.spent() - spent,
         ..Certificate::default()
     };
     let failed = |words: &str, run: &Measured| run.failure.as_ref().map(|why| format!("{words}: {why}"));
@@ -166,18 +171,14 @@ pub(crate) fn certify(
         [("as it is", Some(&base)), ("tighter steps", tightened.as_ref()), ("finer mesh", refined.as_ref())];
     certificate.failures = named.iter().filter_map(|(words, run)| failed(words, (*run)?)).collect();
     for target in records {
-        let (own, size) = (target.of(&base.history), target.size_in(&base.history)?);
-        let change = |other: &Arc<Measured>| {
-            let change = difference(&own, &target.of(&other.history), target.t.is_some()) / size;
-            // runs that failed, or that end at quite another time, don't agree in anything
-            if other.failure.is_some() || change.is_nan() { f64::INFINITY } else { change }
-        };
+        let size = target.size_in(&base.history)?;
+        let change = |other: &Arc<Measured>| differences(target, &base, other);
         certificate.records.push(Change {
             record: target.text.clone(),
             size,
             unit: target.unit.clone(),
-            step: tightened.as_ref().map(change),
-            mesh: refined.as_ref().map(change),
+            step: tightened.as_ref().map(change).transpose()?,
+            mesh: refined.as_ref().map(change).transpose()?,
         });
     }
     let far = FAR * certificate.tolerance;
@@ -187,7 +188,22 @@ pub(crate) fn certify(
     certificate.sensitive = certificate.positions.is_some_and(|x| !(x <= far))
         || asked && certificate.records.iter().any(by_record)
         || certificate.failures.iter().any(|f| f.starts_with("tighter"));
+    if accuracy.is_none() && certificate.failures.is_empty() {
+        certificate.cause = cause::find(trials, settings, records, &certificate)?;
+    }
+    certificate.cpu_s = trials.spent() - spent;
     Ok(Some(certificate))
+}
+
+/// The largest difference of two runs in a record, relative to its size in the first; infinite if they don't agree in
+/// anything, since one failed or ended at quite another time.
+///
+/// # Errors
+/// A record that has no size.
+fn differences(target: &Target, a: &Measured, b: &Measured) -> Result<f64, Error> {
+    let size = target.size_in(&a.history)?;
+    let change = difference(&target.of(&a.history), &target.of(&b.history), target.t.is_some()) / size;
+    Ok(if b.failure.is_some() || change.is_nan() { f64::INFINITY } else { change })
 }
 
 /// The largest distance of two runs on the same mesh over time, as root mean square over all nodes, relative to the length
@@ -247,12 +263,14 @@ impl Certificate {
             line(
                 "sensitive",
                 format!(
-                    "a change of {} is far above the tolerance of {:e}: no more than this is known. Small errors grow in \
-                     this motion; tighten the steps until the certificate falls, or look at an earlier time",
+                    "a change of {} is far above the tolerance of {:e}: no more than this is known",
                     short(worst),
                     self.tolerance
                 ),
             );
+        }
+        if let Some(cause) = self.cause {
+            line("cause", cause.text().into());
         }
         out
     }

@@ -40,7 +40,7 @@ pub use ropewalk_elements as elements;
 pub use ropewalk_forces as forces;
 pub use ropewalk_models as models;
 
-pub use certificate::{Certificate, Change};
+pub use certificate::{Cause, Certificate, Change};
 pub use cost::{CostAdvice, CostOptions, CostOutcome, cost};
 pub use effects::{
     Advice, Deed, EffectsOptions, EffectsOutcome, Ledger, Tried, Verdict, effects, write_effects,

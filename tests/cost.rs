@@ -249,6 +249,34 @@ fn chaos_is_called_sensitive_and_a_swing_is_not() {
     );
 }
 
+/// Runs that are far off, each for another reason.
+#[test]
+fn certificates_name_the_cause() {
+    let there = folder();
+    let at = there.path();
+    let cable = |elements: u32, solver: &str| {
+        format!(
+            "[run]\nduration = '0.5 s'\noutput = '0.01 s'\n[solver]\n{solver}\n[[elements]]\ntype = 'cable'\nname = 'c'\n\
+             points = [[0, 0, 0], [1, 0, 0]]\nelements = {elements}\n\
+             section = {{ mass = 1, ea = 1e4, ei = 0.1, axial_damping = 0.01, bending_damping = 0.01 }}\n\
+             [[constraints]]\ntype = 'spherical'\nname = 'h'\nmarker = 'c.start'\n[[forces]]\ntype = 'gravity'\n\
+             [[records]]\ntype = 'position'\nof = 'c.end'\n"
+        )
+    };
+    let fixed = |h: f64| format!("stepping = {{ fixed = {{ h = {h} }} }}");
+    for (name, text, cause) in [
+        ("steps", cable(8, &fixed(5e-2)), "steps"),
+        ("mesh", cable(1, &fixed(1e-4)), "mesh"),
+        ("motion", DOUBLE.to_string(), "motion"),
+    ] {
+        fs::write(at.join(format!("{name}.toml")), text).unwrap();
+        let said = done(at, &["run", &format!("{name}.toml"), "--certify", "--out", name]);
+        let certificate = &json(&at.join(name).join("summary.json"))["certificate"];
+        assert_eq!(certificate["cause"], cause, "{}{certificate}", said.stdout);
+        assert!(said.stdout.contains("\n  cause "), "{}", said.stdout);
+    }
+}
+
 #[test]
 fn what_is_wrong_is_said_in_one_message() {
     let there = folder();

@@ -1,9 +1,9 @@
-//! Energy that appears from nowhere is told at once, and steps that had to be cut are counted.
+//! Energy that appears from nowhere is told at once and ends the run, and steps that had to be cut are counted.
 
 use ropewalk::SceneFile;
 use ropewalk::scene::Format;
-use ropewalk_core::integrator::{Options, Scheme, StepReport, Stepping};
-use ropewalk_core::{Model, Observer, Simulation, State};
+use ropewalk_core::integrator::{Options, Scheme, StepError, StepReport, Stepping};
+use ropewalk_core::{Model, Observer, Sample, Simulation, State};
 use std::ops::ControlFlow;
 
 /// Watches for the first warning, and how much energy there was by then.
@@ -54,6 +54,53 @@ fn fixed_steps_that_make_energy_are_told_at_once() {
         println!("{rope}: {said:?}, {} J of {energy} J at {} s", s.audit.imbalance(), s.state.t);
         let said = said.unwrap_or_else(|| panic!("{rope}: silent"));
         assert!(said.contains("appeared from nowhere") && said.contains("smaller `h`"), "{said}");
+    }
+}
+
+/// Counts samples, and looks at nothing else.
+#[derive(Default)]
+struct Samples(usize);
+
+impl Observer for Samples {
+    fn sample(&mut self, _: &Sample<'_>) -> ControlFlow<()> {
+        self.0 += 1;
+        ControlFlow::Continue(())
+    }
+}
+
+/// The rope has 49 J to fall by. Left alone, steps of 5 ms make two million of them.
+#[test]
+fn a_run_ends_where_most_of_its_energy_is_from_nowhere() {
+    let file = SceneFile::parse(&swing(0.1, 5e4, 0.01, 10.0), "swing", Format::Toml, &[])
+        .unwrap_or_else(|e| panic!("{e}"));
+    let go = |options: &Options| {
+        let model = file.build().unwrap_or_else(|e| panic!("{e}"));
+        let mut s = Simulation::new(model, options, 3.0).unwrap_or_else(|e| panic!("{e}"));
+        let mut samples = Samples::default();
+        let end = s.advance(3.0, 0.01, &mut samples);
+        (end, s, samples.0)
+    };
+    let (end, s, samples) = go(&fixed(5e-3));
+    let Err(StepError::Energy { t, gained, all, .. }) = end else { panic!("{end:?}") };
+    println!("{}", StepError::Energy { t, gained, all, remedy: "…" });
+    assert!(
+        (1.0..2.0).contains(&t) && gained > 10.0 && gained < 500.0 && gained >= 0.5 * all,
+        "{t} {gained}"
+    );
+    // what came before is there
+    assert!(
+        s.state.t == t && s.state.is_finite() && samples as f64 >= t / 0.01,
+        "{samples} samples until {t}"
+    );
+    let remedies = [
+        Options { scheme: Scheme::RadauIia5, ..fixed(5e-3) },
+        Options { scheme: Scheme::GeneralizedAlpha { rho_inf: 0.5 }, ..fixed(5e-3) },
+        Options::default(),
+    ];
+    for options in remedies {
+        let (end, s, _) = go(&options);
+        assert!(end.is_ok(), "{:?}: {end:?}", options.scheme);
+        assert!(s.audit.imbalance() < 5.0, "{:?}: {} J", options.scheme, s.audit.imbalance());
     }
 }
 

@@ -497,6 +497,18 @@ fn a_running_string_has_its_frequencies() {
         assert!(!found.unstable && found.warnings.is_empty(), "{:?}", found.warnings);
         let first = PI * (wave * wave - speed * speed) / (wave * length);
         close("running string", found.modes[0].omega, first, 1e-4);
+        // up and down as well as to and fro, each with a shape of its own
+        for (k, pair) in found.modes.chunks(2).enumerate() {
+            let [a, b] = pair else { panic!("an odd number of modes") };
+            close("in pairs", a.omega, (k + 1) as f64 * first, 2e-3);
+            close("in pairs", b.omega, a.omega, 1e-8);
+            let parts = |m: &Mode| [m.shape.clone(), m.quadrature.clone()];
+            let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+            let ([p, q], [r, s]) = (parts(a), parts(b));
+            let common = (dot(&p, &r) + dot(&q, &s)).hypot(dot(&p, &s) - dot(&q, &r));
+            let size = ((dot(&p, &p) + dot(&q, &q)) * (dot(&r, &r) + dot(&s, &s))).sqrt();
+            assert!(common < 0.5 * size && a.residual.max(b.residual) < 1e-6, "{common} of {size}");
+        }
         for m in found.modes.iter().filter(|m| m.omega < 3.5 * first) {
             close("running string", m.omega, (m.omega / first).round() * first, 2e-3);
             assert!(m.growth.abs() < 1e-7 * m.omega);

@@ -437,3 +437,31 @@ fn a_spring_of_any_stiffness_leaves_the_slow_motion_alone() {
         assert!(apart.abs() < 0.2 / k.min(1e12) * 1e2, "{k:e}: {apart:e}");
     }
 }
+
+/// A column beyond its critical load of 2.467 N, pushed to one side by a millionth of it: the bent shape of the elastica,
+/// by Runge-Kutta and shooting.
+#[test]
+fn columns_bend_beyond_their_critical_load() {
+    for (load, x, z) in
+        [(2.4, 2.8875e-5, 1.0), (2.5, 0.20380, 0.97396), (2.6, 0.39228, 0.89866), (5.0, 0.79522, 0.05978)]
+    {
+        for steps in [5, 20] {
+            let text = format!(
+                "[run]\nanalysis = 'statics'\n[statics]\nsteps = {steps}\n[[elements]]\ntype = 'cable'\nname = 'column'\n\
+                 points = [[0, 0, 0], [0, 0, 1]]\nelements = 16\nsection = {{ mass = 1, ea = 1e8, ei = 1 }}\n\
+                 [[constraints]]\ntype = 'spherical'\nname = 'root'\nmarker = 'column.start'\n\
+                 [[constraints]]\ntype = 'clamp'\nname = 'clamp'\nmarker = 'column.start'\n\
+                 [[forces]]\ntype = 'point_force'\nmarker = 'column.end'\nforce = [{}, 0, -{load}]\n\
+                 time = {{ table = {{ t = [0, 1], value = [0, 1] }} }}\n[[records]]\ntype = 'position'\nof = 'column.end'\n",
+                1e-6 * load
+            );
+            let file = ropewalk::SceneFile::parse(&text, "column", ropewalk::scene::Format::Toml, &[])
+                .unwrap_or_else(|e| panic!("{e}"));
+            let found =
+                ropewalk::simulate(file.scene()).unwrap_or_else(|e| panic!("{load} N, {steps} steps: {e}"));
+            let last = |name: &str| *found.column(name).expect("column").last().expect("a row");
+            let off = (last("column.end.x").abs() - x).hypot(last("column.end.z") - z);
+            assert!(off < 1e-4, "{load} N, {steps} steps: off by {off:e}");
+        }
+    }
+}

@@ -62,7 +62,7 @@ pub use part::{ContactPoint, Part, Per, Quantity, Slender, Spot, Tip, split_mark
 pub use pattern::Pattern;
 pub use pool::{Batch, Element, Local, Pool, Share};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};
-pub use record::{Audit, Column, Record, Sample};
+pub use record::{Audit, Column, Created, Record, Sample};
 pub use redundancy::Redundancy;
 pub use remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
 pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};

@@ -52,8 +52,21 @@ pub struct Audit {
 const UNSURE: f64 = 0.25;
 /// Imbalance, in parts of the largest energy or work so far, that is no error of an integration any more.
 const CREATED: f64 = 0.1;
+/// The same that makes most of what there is: from here on energy breeds energy.
+const RUNAWAY: f64 = 0.5;
 /// The same in parts of energies as they are, not of their changes: nothing at rest is taken for it.
 const NOTHING: f64 = 1e-9;
+
+/// Energy that has appeared from nowhere, beside all energy and work of a run so far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Created {
+    /// No more than an integration may be wrong by.
+    None,
+    /// More than that: what follows is doubtful.
+    Some,
+    /// Most of what there is: what follows means nothing.
+    Most,
+}
 
 impl Audit {
     /// Starts at an energy.
@@ -84,12 +97,16 @@ impl Audit {
         }
         self.size = self.size.max(e.kinetic.abs() + e.potential.abs());
     }
-    /// Whether energy has appeared from nowhere: more than what may be called an error of the integration.
-    /// `noise` is energy that doesn't count [J].
-    pub fn is_created(&self, noise: f64) -> bool {
+    /// How much energy has appeared from nowhere, beyond what may be called an error of the integration. `noise` is energy
+    /// that doesn't count [J].
+    pub fn created(&self, noise: f64) -> Created {
         let imbalance = self.imbalance() - self.unsure;
         // a NaN is no balance either
-        !(imbalance <= CREATED * self.scale || imbalance <= NOTHING * self.size + noise)
+        match imbalance {
+            x if x <= CREATED * self.scale || x <= NOTHING * self.size + noise => Created::None,
+            x if x <= RUNAWAY * self.scale => Created::Some,
+            _ => Created::Most,
+        }
     }
     /// What the balance misses: energy gained beyond what was supplied and not dissipated [J]. Numerical damping
     /// makes it negative.

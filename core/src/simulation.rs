@@ -3,6 +3,7 @@
 mod ahead;
 mod checkpoint;
 mod forces;
+mod memory;
 mod watch;
 
 pub use checkpoint::{Checkpoint, Unfit};
@@ -18,6 +19,7 @@ use crate::remesh::Remeshed;
 use crate::state::State;
 use crate::term::{Energy, Power};
 use crate::times::Phase;
+use memory::Memory;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -158,6 +160,8 @@ pub struct Simulation {
     aside: Option<Box<Workspace>>,
     /// Time at which the present advance began, and the number of its next sample.
     sampled: (f64, u64),
+    /// Over which time errors add up.
+    memory: Memory,
 }
 
 impl Simulation {
@@ -187,6 +191,7 @@ impl Simulation {
         let audit = Audit::start(model.energy(&state.at()));
         let power = model.power(&state.at(), &state.lambda);
         let (previous, scratch) = (state.clone(), state.clone());
+        let memory = Memory::new(integrator.horizon());
         let events =
             model.events().iter().map(|e| (e.clone(), at_start(e.as_ref(), &model, &state))).collect();
         Ok(Simulation {
@@ -206,6 +211,7 @@ impl Simulation {
             scratch,
             aside: None,
             sampled: (0.0, 0),
+            memory,
         })
     }
 
@@ -281,9 +287,10 @@ impl Simulation {
             }
             let fired = self.locate(observer);
             self.account();
-            self.watch_energy(end, observer);
+            let energy = self.watch_energy(end, observer);
             self.watch_steps(end, observer);
             self.measure_ringing();
+            self.remember(&report);
             // whoever wants to stop gets what this step has brought first
             let stop = observer.step(&self.model, &self.state, &report).is_break();
             while next as f64 * interval <= (end - start) * (1.0 + 1e-12) {
@@ -296,6 +303,7 @@ impl Simulation {
                 }
                 next += 1;
             }
+            energy?;
             if let Some(fired) = fired
                 && let Some(end) = self.fire(fired, observer)?
             {

@@ -146,6 +146,14 @@ pub struct Relaxation {
     pub floor: Option<f64>,
 }
 
+impl Relaxation {
+    /// Nothing is relaxed: an equilibrium is checked under a load [N]; `smooth` says that an iterate before is given. With a
+    /// stiff modulus even there only the smooth stress is good enough to tell stable from unstable.
+    pub(crate) fn check(smooth: bool, load: f64) -> Self {
+        Relaxation { smooth, ramp: f64::INFINITY, ramp_before: f64::INFINITY, load, floor: None }
+    }
+}
+
 impl State {
     /// The state as a place of evaluation.
     pub fn at(&self) -> At<'_> {

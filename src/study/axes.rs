@@ -22,6 +22,9 @@ pub(crate) struct Settings {
     pub scheme: Option<Scheme>,
     /// Step or tolerance.
     pub stepping: Option<Stepping>,
+    /// Tolerance of Newton's method as a fraction of the default.
+    #[serde(default)]
+    pub newton: Option<f64>,
 }
 
 /// What can be varied in a scene.
@@ -92,6 +95,7 @@ impl<'a> Axes<'a> {
             models,
             scheme: in_time.then_some(scene.solver.scheme),
             stepping: in_time.then_some(scene.solver.stepping),
+            newton: in_time.then_some(scene.solver.newton_tolerance),
         };
         let horizon = if in_time && scene.solver.horizon == 0.0 { scene.run.duration } else { 0.0 };
         let run = [scene.run.duration, scene.run.interval(), horizon];
@@ -245,6 +249,9 @@ impl<'a> Axes<'a> {
         if let (Some(scheme), true) = (settings.scheme, settings.scheme != self.base.scheme) {
             change("solver.scheme", toml(&serde_json::json!(scheme)));
         }
+        if let (Some(newton), true) = (settings.newton, settings.newton != self.base.newton) {
+            change("solver.newton_tolerance", format!("{newton:?}"));
+        }
         if let (Some(stepping), true) = (settings.stepping, settings.stepping != self.base.stepping) {
             let (kind, field, x) = match stepping {
                 Stepping::Controlled { tolerance } => ("controlled", "tolerance", tolerance),
@@ -273,6 +280,7 @@ impl<'a> Axes<'a> {
         words.extend((!mesh.is_empty()).then_some(mesh));
         words.extend(settings.stepping.map(words::step));
         words.extend(settings.scheme.map(words::scheme));
+        words.extend((settings.newton != self.base.newton).then(|| "solved to the end".to_string()));
         words.join(", ")
     }
 }

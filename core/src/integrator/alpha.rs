@@ -1,5 +1,6 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
+use super::forces::larger;
 use super::newton::{Newton, Outcome, Rate};
 use super::options::fixed_step;
 use super::scales::Scaled;
@@ -227,8 +228,7 @@ impl Alpha {
                     self.error(model, state, work, h).map_err(|source| linear(model, state.t, source))?;
                 // errors of positions add up, per unit step; stiff directions follow what moves them, and forget
                 let position = local * (self.horizon / h) / tolerance.min(1e-3);
-                // max() would swallow a NaN
-                let error = if position >= force { position } else { force };
+                let error = larger(position, force);
                 // a body that is driven has no error, but a larger turn may end on another branch of its joint
                 let error = if turn > 1.0 { error + turn * turn } else { error };
                 match error {
@@ -350,6 +350,14 @@ impl Integrator for Alpha {
 
     fn limits(&self) -> Limits {
         self.limits
+    }
+
+    fn horizon(&self) -> f64 {
+        self.horizon
+    }
+
+    fn set_horizon(&mut self, horizon: f64) {
+        self.horizon = horizon;
     }
 
     fn warning(&self) -> Option<&str> {

@@ -45,6 +45,18 @@ const MEMORY: f64 = 0.9;
 /// Residuals below so many units of rounding wander instead of falling.
 const NOISE: f64 = 30.0;
 
+/// The larger of two sizes; a NaN counts as the largest.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
+}
+
+/// What an iteration leaves of forces that it found off by `now` times their tolerance, and the one before by `before` if
+/// that had the same matrix: they fall as they did. What a first iteration leaves of them is of second order, which no
+/// rate tells.
+pub(crate) fn left_of(now: f64, before: Option<f64>) -> f64 {
+    before.map_or(now, |before| now * (now / before).min(1.0))
+}
+
 impl Forces {
     pub fn new(model: &Model, norms: &Norms) -> Self {
         let mut rows = Vec::new();
@@ -134,31 +146,25 @@ impl Forces {
                 self.reaction[g] = self.reaction[g].max((scale * l).abs());
             }
         }
-        let mut worst = 0.0;
-        for g in 0..self.residual.len() {
+        (0..self.residual.len()).fold(0.0, |worst, g| {
             let limit = tolerance * self.at_work(g) + self.rounding[g];
-            let ratio = self.residual[g].sqrt() / limit.max(f64::MIN_POSITIVE);
-            // max() would swallow a NaN
-            if !(ratio <= worst) {
-                worst = ratio;
-            }
-        }
-        worst
+            larger(worst, self.residual[g].sqrt() / limit.max(f64::MIN_POSITIVE))
+        })
     }
 
     /// What an increment `d` of the configuration `q` changes tensions by, over `tolerance` times the forces at work as of
     /// the last [`Forces::ratio`], in the cable where that is largest: at nodes and in the middle of elements.
     pub fn strained(&self, q: &[f64], d: &[f64], tolerance: f64) -> f64 {
-        let mut worst = 0.0f64;
+        let mut worst = 0.0;
         for line in &self.cables {
-            let mut most = 0.0f64;
+            let mut most = 0.0;
             for (k, &(x, i, l)) in line.nodes.iter().enumerate() {
                 let along = |slope: [f64; 3], change: [f64; 3]| {
                     slope.iter().zip(change).map(|(s, c)| s * c).sum::<f64>().abs()
                 };
                 let three = |of: &[f64], at: usize| [of[at], of[at + 1], of[at + 2]];
                 let (slope, change) = (three(q, x + 3), three(d, i + 3));
-                most = most.max(along(slope, change));
+                most = larger(most, along(slope, change));
                 if let Some(&(y, j, _)) = line.nodes.get(k + 1) {
                     // the slope of the Hermite cubic in the middle
                     let middle = |of: &[f64], a: usize, b: usize| {
@@ -166,12 +172,12 @@ impl Forces {
                             1.5 * (of[b + c] - of[a + c]) / l - 0.25 * (of[a + 3 + c] + of[b + 3 + c])
                         })
                     };
-                    most = most.max(along(middle(q, x, y), middle(d, i, j)));
+                    most = larger(most, along(middle(q, x, y), middle(d, i, j)));
                 }
             }
             // where nothing pulls, what iterations leave is all there is
             let limit = tolerance * self.at_work(line.part) + 10.0 * self.rounding[line.part];
-            worst = worst.max(line.ea * most / limit.max(f64::MIN_POSITIVE));
+            worst = larger(worst, line.ea * most / limit.max(f64::MIN_POSITIVE));
         }
         worst
     }

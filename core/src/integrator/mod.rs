@@ -18,7 +18,7 @@ pub use scales::{Scales, Stopping, Units};
 pub use scheme::{Coefficients, Scheme};
 pub(crate) use start::restart;
 pub use start::{Correction, consistent, prepare};
-pub(crate) use start::{consistent_by_iteration, consistent_by_mass};
+pub(crate) use start::{assemble_mass_at, consistent_by_iteration, consistent_by_mass};
 pub use workspace::{Counts, Workspace};
 
 use crate::model::Model;
@@ -81,6 +81,22 @@ pub enum StepError {
         /// By how much the most violated one is off [m, directions times the model's length].
         off: f64,
     },
+    /// Most of the energy that there is has appeared from nowhere.
+    #[error(
+        "at t = {t:.6} s energy has appeared from nowhere: {gained:.1e} J more than loads and motions brought in, of \
+         {all:.1e} J that came up in all. The run ends here, since what follows would mean nothing. Take {remedy}. (A term \
+         of your own whose energy and power aren't told looks like this too: `audit = false` in [run] doesn't ask.)"
+    )]
+    Energy {
+        /// When it was seen [s].
+        t: f64,
+        /// How much [J].
+        gained: f64,
+        /// The largest energy or work so far [J].
+        all: f64,
+        /// What to change.
+        remedy: &'static str,
+    },
     /// An event can't do what it should.
     #[error("at t = {t:.6} s, {event}: {why}")]
     Event {
@@ -109,6 +125,12 @@ pub trait Integrator: Send {
 
     /// Bounds of its steps.
     fn limits(&self) -> Limits;
+
+    /// Time over which the errors of steps may add up [s].
+    fn horizon(&self) -> f64;
+
+    /// Sets that time [s].
+    fn set_horizon(&mut self, horizon: f64);
 
     /// What the user should know although the run goes on.
     fn warning(&self) -> Option<&str> {

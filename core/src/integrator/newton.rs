@@ -4,6 +4,7 @@
 //! `δv̇ = (1-αm)/(1-αf) δa` the matrix is `[(1-αm)/(1-αf) M + γ h C + β h² K, Gᵀ; G, 0]`, whose condition doesn't
 //! grow as the step shrinks (Bottasso, Bauchau & Cardona 2007), and β = 0 is no special case.
 
+use super::forces::left_of;
 use super::workspace::{Trial, Which};
 use super::{Coefficients, NewtonPolicy, Stopping, Units, Workspace};
 use crate::model::Model;
@@ -254,12 +255,7 @@ impl Newton<'_> {
             last_before = std::mem::replace(&mut last, size);
             // a rate that wasn't seen for some steps has to be seen again before it is trusted
             let trusted = since > 1 || eta <= TRUST;
-            // forces fall as they did in the iteration before, if that had the same matrix; what a first iteration leaves of
-            // them is of second order, which no rate tells
-            let force_left = match force_before.replace(force) {
-                Some(before) if since > 1 => force * (force / before).min(1.0),
-                _ => force,
-            };
+            let force_left = left_of(force, force_before.replace(force).filter(|_| since > 1));
             settled =
                 test_forces && (trusted && size * eta.min(1e3) <= stop || size <= floor) && !approximate;
             let done = match test {

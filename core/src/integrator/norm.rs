@@ -59,13 +59,10 @@ impl Norms {
         let (nodes, nv) = (model.nodes(), model.velocities());
         let owner = owners(model);
         let count = owner.iter().map(|&g| g + 1).max().unwrap_or(0);
-        let mut groups: Vec<Group> = (0..count).map(|g| group(model, &owner, g, mass)).collect();
-        let sizes: Vec<f64> = groups.iter().map(|g| g.size).collect();
-        for (g, group) in groups.iter_mut().enumerate() {
-            let (length, size) = lengths(model, &owner, &sizes, g);
-            (group.length, group.size) = (length, size);
-            group.rounding = 0.5 * f64::EPSILON * (group.rounding / length).max(1.0);
-        }
+        // a part has its own length; what else there is gets one from what it is joined to
+        let own = |g: usize| model.parts().get(g).map_or(0.0, |part| part.length());
+        let sizes: Vec<f64> = (0..count).map(own).collect();
+        let groups: Vec<Group> = (0..count).map(|g| Group::new(model, &owner, &sizes, g, mass)).collect();
 
         let mut norms =
             Norms { of: vec![0; nv], weight: vec![0.0; nv], arm: vec![1.0; nv], ..Norms::default() };
@@ -218,19 +215,24 @@ fn owners(model: &Model) -> Vec<usize> {
     owner
 }
 
-fn group(model: &Model, owner: &[usize], g: usize, mass: &[f64]) -> Group {
-    let own = || model.nodes().iter().zip(owner).filter(|(_, o)| **o == g).map(|(n, _)| n);
-    let moving = || own().filter(|n| n.kind.has_position());
-    let total: f64 = moving().map(|n| mass[n.v..n.v + 3].iter().sum::<f64>() / 3.0).sum();
-    // plain numbers alone weigh themselves
-    let total = if total > 0.0 { total } else { own().flat_map(|n| &mass[n.dofs()]).sum() };
-    let farthest = moving().flat_map(|n| &model.start.q[n.q..n.q + 3]).fold(0.0, |m: f64, x| m.max(x.abs()));
-    let (name, size) = match model.parts().get(g) {
-        Some(part) => (part.name().to_string(), part.length()),
-        None => (own().next().map_or(String::new(), |n| model.unknown_name(n.v)), 0.0),
-    };
-    // for the moment what rounding is a part of
-    Group { name, length: 0.0, size, mass: total, single: moving().count() == 1, rounding: farthest }
+impl Group {
+    /// Group `g`, where the nodes have these owners and the groups these own sizes.
+    fn new(model: &Model, owner: &[usize], sizes: &[f64], g: usize, mass: &[f64]) -> Self {
+        let own = || model.nodes().iter().zip(owner).filter(|(_, o)| **o == g).map(|(n, _)| n);
+        let moving = || own().filter(|n| n.kind.has_position());
+        let total: f64 = moving().map(|n| mass[n.v..n.v + 3].iter().sum::<f64>() / 3.0).sum();
+        // plain numbers alone weigh themselves
+        let total = if total > 0.0 { total } else { own().flat_map(|n| &mass[n.dofs()]).sum() };
+        let farthest =
+            moving().flat_map(|n| &model.start.q[n.q..n.q + 3]).fold(0.0, |m: f64, x| m.max(x.abs()));
+        let name = match model.parts().get(g) {
+            Some(part) => part.name().to_string(),
+            None => own().next().map_or(String::new(), |n| model.unknown_name(n.v)),
+        };
+        let (length, size) = lengths(model, owner, sizes, g);
+        let rounding = 0.5 * f64::EPSILON * (farthest / length).max(1.0);
+        Group { name, length, size, mass: total, single: moving().count() == 1, rounding }
+    }
 }
 
 /// What the positions and the rotations of a group are relative to.

@@ -97,7 +97,7 @@ pub struct Options {
     /// First step of error control [s]; if not given, it follows from the motion at the start.
     #[serde(deserialize_with = "crate::quantity::optional::time", skip_serializing_if = "Option::is_none")]
     pub h_start: Option<f64>,
-    /// Time over which errors add up [s]; 0 takes what the run is seen to remember, and at most its length.
+    /// Time over which errors add up [s]; 0 takes the length of the run, but for time in which steps err by next to nothing.
     #[serde(deserialize_with = "crate::quantity::time")]
     pub horizon: f64,
     /// Move an inconsistent start onto the constraints however far away it is.

@@ -153,25 +153,52 @@ pub(super) fn anew(
 /// A matrix is singular; the state is as it was.
 pub fn consistent(model: &Model, state: &mut State, work: &mut Workspace) -> Result<(), SolveError> {
     let weights = work.factored;
+    assemble_mass_at(model, state, work)?;
     if consistent_by_mass(model, state, work)? {
         return Ok(());
     }
     consistent_by_iteration(model, state, work, weights.unwrap_or_default())
 }
 
-/// The same in the metric of the mass alone; `false` if that would change forces, and nothing is changed.
+/// Evaluates and factors the mass matrix at a state, with what is left there of the equations of motion.
+pub(crate) fn assemble_mass_at(model: &Model, state: &State, work: &mut Workspace) -> Result<(), SolveError> {
+    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)
+}
+
+/// The same in the metric of the mass alone, at a state where [`assemble_mass_at`] has just evaluated it; `false` if that
+/// would change forces, and nothing is changed.
 pub(crate) fn consistent_by_mass(
     model: &Model,
     state: &mut State,
     work: &mut Workspace,
 ) -> Result<bool, SolveError> {
-    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
     let v = on_constraints(model, state, work, Which::Mass)?;
-    // without factors of a step this is a start, which meets the constraints already
-    if work.factored.is_some() && v != state.v && strains(model, state, &v, work) {
-        return Ok(false);
+    if v != state.v {
+        model.assemble(&At { v: &v, ..state.at() }, &state.lambda, None, &mut work.system);
+        // without factors of a step this is a start, which meets the constraints already
+        if work.factored.is_some() && strains(state, work) {
+            return Ok(false);
+        }
+        std::mem::swap(&mut work.mass.residual, &mut work.system.residual);
     }
-    at_index_one(model, state, v, work)?;
+    // forces and inertia are linear in accelerations and multipliers
+    let nv = model.velocities();
+    let mut rhs = vec![0.0; model.structure().n];
+    let mut known = state.a.clone();
+    known.extend_from_slice(&state.lambda);
+    work.times_mass(model, &known, &mut rhs);
+    let (mut rate, mut bias) = (vec![0.0; model.multipliers()], vec![0.0; model.multipliers()]);
+    model.rates(&At { v: &v, ..state.at() }, &mut rate, &mut bias);
+    for (r, left) in rhs[..nv].iter_mut().zip(&work.mass.residual) {
+        *r -= left;
+    }
+    for (r, b) in rhs[nv..].iter_mut().zip(&bias) {
+        *r = -b;
+    }
+    work.solve(model, Which::Mass, &mut rhs)?;
+    state.v = v;
+    state.a.copy_from_slice(&rhs[..nv]);
+    state.lambda.copy_from_slice(&rhs[nv..]);
     Ok(true)
 }
 
@@ -208,14 +235,10 @@ fn on_constraints(
     Ok(v)
 }
 
-/// Whether other velocities change forces by more than a share of those at work.
-fn strains(model: &Model, state: &State, v: &[f64], work: &mut Workspace) -> bool {
-    model.assemble(&At { v, ..state.at() }, &state.lambda, None, &mut work.system);
-    let mut change = work.system.residual.clone();
-    model.assemble(&state.at(), &state.lambda, None, &mut work.system);
-    for (c, r) in change.iter_mut().zip(&work.system.residual) {
-        *c -= r;
-    }
+/// Whether other velocities, with which the system was just assembled, change forces by more than a share of those at work.
+fn strains(state: &State, work: &mut Workspace) -> bool {
+    let change: Vec<f64> =
+        work.system.residual.iter().zip(&work.mass.residual).map(|(new, old)| new - old).collect();
     !(work.forces.ratio(&work.norms, &change, &state.a, &state.lambda, STRAINED) <= 1.0)
 }
 

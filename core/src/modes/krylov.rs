@@ -5,6 +5,7 @@
 //! be added at any time. All vectors are kept and orthogonalised twice.
 
 use crate::solver::SolveError;
+use faer::linalg::solvers::Solve;
 use faer::{Mat, Side, c64};
 
 /// A linear operator and the inner product `xᵀ W y` in which its basis is orthonormal.
@@ -174,11 +175,15 @@ impl Arnoldi {
         } else {
             let eigen = h.eigen().ok()?;
             let values = eigen.S().column_vector();
-            for k in (0..j).filter(|&k| values[k].im >= 0.0) {
-                let part = |f: fn(&c64) -> f64| (0..j).map(|i| f(&eigen.U()[(i, k)])).collect::<Vec<f64>>();
-                let vector = [part(|z| z.re), part(|z| z.im)];
-                let size = vector.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
-                keep(values[k], vector.map(|v| v.into_iter().map(|x| x / size).collect()));
+            let upper: Vec<usize> = (0..j).filter(|&k| values[k].im >= 0.0).collect();
+            let vector = |k: &usize| (0..j).map(|i| eigen.U()[(i, *k)]).collect();
+            let mut pairs: Vec<Eigenpair> = upper.iter().map(|k| (values[*k], vector(k))).collect();
+            pairs.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
+            mend(&h, &mut pairs);
+            for (value, vector) in &pairs {
+                let size = norm(vector);
+                let part = |f: fn(&c64) -> f64| vector.iter().map(|z| f(z) / size).collect::<Vec<f64>>();
+                keep(*value, [part(|z| z.re), part(|z| z.im)]);
             }
         }
         if all.iter().any(|r| !(r.size().is_finite() && r.residual.is_finite())) {
@@ -204,6 +209,67 @@ impl Arnoldi {
     }
 }
 
+/// An eigenvalue of a projection and its vector.
+type Eigenpair = (c64, Vec<c64>);
+
+/// Eigenvalues that differ by less than this part of themselves are one.
+const ONE: f64 = 1e-8;
+/// What an eigenvector may leave of its equation, in parts of the largest eigenvalue.
+const EXACT: f64 = 1e-12;
+/// How many eigenvectors are looked at: those of the largest eigenvalues.
+const LEADING: usize = 64;
+
+/// Computes eigenvectors anew that belong to one eigenvalue several times, or don't meet their equation: a decomposition
+/// makes them nearly parallel, or anything. Inverse iteration from as many vectors as there are finds what they span.
+/// The largest eigenvalues come first.
+fn mend(h: &Mat<f64>, pairs: &mut [Eigenpair]) {
+    let (j, leading) = (h.nrows(), pairs.len().min(LEADING));
+    let largest = pairs.first().map_or(0.0, |(value, _)| value.norm());
+    let mut done = vec![false; leading];
+    for k in 0..leading {
+        let value = pairs[k].0;
+        let same: Vec<usize> =
+            (k..leading).filter(|&i| !done[i] && (pairs[i].0 - value).norm() <= ONE * value.norm()).collect();
+        if done[k] || same.len() == 1 && off(h, &pairs[k]) <= EXACT * largest {
+            continue;
+        }
+        same.iter().for_each(|&i| done[i] = true);
+        // beside the eigenvalue, where the matrix is only nearly singular
+        let beside = value + c64::new(EXACT * largest, 0.0);
+        let shifted = Mat::from_fn(j, j, |r, c| {
+            c64::new(h[(r, c)], 0.0) - if r == c { beside } else { c64::new(0.0, 0.0) }
+        });
+        let lu = shifted.partial_piv_lu();
+        let mut span = Mat::from_fn(j, same.len(), |r, c| c64::new(start(r, c), 0.0));
+        for _ in 0..3 {
+            span = lu.solve(&span).qr().compute_thin_Q();
+        }
+        for (c, &i) in same.iter().enumerate() {
+            let new = (pairs[i].0, (0..j).map(|r| span[(r, c)]).collect());
+            // what has fewer vectors than values keeps those of the decomposition
+            if off(h, &new) <= off(h, &pairs[i]).max(1e-9 * value.norm()) {
+                pairs[i] = new;
+            }
+        }
+    }
+}
+
+/// An entry of a start vector without pattern.
+fn start(r: usize, c: usize) -> f64 {
+    (1.0 + 0.7 * r as f64 * (1.3 + c as f64) + 2.1 * c as f64).sin()
+}
+
+/// What an eigenvector leaves of its equation.
+fn off(h: &Mat<f64>, (value, vector): &Eigenpair) -> f64 {
+    let j = h.nrows();
+    let row = |r: usize| (0..j).map(|c| vector[c] * h[(r, c)]).sum::<c64>() - *value * vector[r];
+    norm(&(0..j).map(row).collect::<Vec<_>>()) / norm(vector)
+}
+
+fn norm(x: &[c64]) -> f64 {
+    x.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt()
+}
+
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -212,6 +278,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use faer::linalg::solvers::DenseSolveCore;
 
     /// Diagonal blocks: `values` on the diagonal, and a turn between the first two.
     struct Blocks {
@@ -255,6 +322,38 @@ mod tests {
         for (ritz, exact) in found.iter().zip([9.0, 9.0, 9.0, 5.0, 5.0, 3.0, 1.0, 0.5]) {
             assert_relative_eq!(ritz.value[0], exact, max_relative = 1e-11);
             assert!(ritz.residual < 1e-6, "{ritz:?}");
+        }
+    }
+
+    /// Pairs of turns at the same rate, in a basis that hides them: each has to come with as many vectors as there are turns.
+    #[test]
+    fn complex_eigenvalues_that_occur_several_times_have_vectors_of_their_own() {
+        let rates = [9.0, 9.0, 9.0, 4.0, 4.0, 2.0];
+        let j = 2 * rates.len();
+        let turns = Mat::from_fn(j, j, |r, c| match (r / 2 == c / 2, r % 2, c % 2) {
+            (true, 0, 1) => -rates[r / 2],
+            (true, 1, 0) => rates[r / 2],
+            _ => 0.0,
+        });
+        // neither orthogonal nor normal
+        let basis = Mat::from_fn(j, j, |r, c| start(r, c) + if r == c { 4.0 } else { 0.0 });
+        let h = &basis * &turns * basis.partial_piv_lu().inverse();
+        let eigen = h.eigen().unwrap();
+        let values = eigen.S().column_vector();
+        let upper = (0..j).filter(|&k| values[k].im >= 0.0);
+        let mut pairs: Vec<Eigenpair> =
+            upper.map(|k| (values[k], (0..j).map(|i| eigen.U()[(i, k)]).collect())).collect();
+        pairs.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
+        mend(&h, &mut pairs);
+        assert_eq!(pairs.len(), rates.len());
+        for ((value, vector), rate) in pairs.iter().zip(rates) {
+            assert_relative_eq!(value.im, rate, max_relative = 1e-9);
+            assert!(off(&h, &(*value, vector.clone())) < 1e-8, "{value}");
+        }
+        for (a, b) in [(0, 1), (0, 2), (1, 2), (3, 4)] {
+            let (x, y) = (&pairs[a].1, &pairs[b].1);
+            let common = x.iter().zip(y).map(|(x, y)| x.conj() * y).sum::<c64>().norm();
+            assert!(common < 1e-6 * norm(x) * norm(y), "{a} and {b}: {common}");
         }
     }
 

@@ -1,6 +1,7 @@
 //! Checkpoints: all that a simulation needs to go on as if nothing had happened.
 
 use super::Simulation;
+use super::memory::Memory;
 use crate::integrator::{Correction, Counts, Options, StepError, Workspace};
 use crate::model::Model;
 use crate::record::Audit;
@@ -38,6 +39,7 @@ pub struct Checkpoint {
     /// Whether constraints had to be solved as if some were redundant.
     softened: bool,
     sampled: (f64, u64),
+    memory: Memory,
 }
 
 /// Why a checkpoint can't be gone on from with a model.
@@ -89,6 +91,7 @@ impl Simulation {
             keep_audit: self.keep_audit,
             softened: self.work.softening.is_some(),
             sampled: self.sampled,
+            memory: self.memory.clone(),
         })
     }
 
@@ -111,7 +114,8 @@ impl Simulation {
         if mine.len() != c.model.len() || c.events.len() != model.events().len() {
             return Err(Unfit::Other("it has other terms, constraints or events".into()));
         }
-        let integrator = options.integrator(&model, duration)?;
+        let mut integrator = options.integrator(&model, duration)?;
+        integrator.set_horizon(c.memory.horizon());
         let mut work = Workspace::new(&model).map_err(|e| no_memory(c.state.t, e))?;
         if c.softened && work.softening.is_none() {
             work.soften(&model);
@@ -137,6 +141,7 @@ impl Simulation {
             scratch,
             aside: None,
             sampled: c.sampled,
+            memory: c.memory,
         })
     }
 }

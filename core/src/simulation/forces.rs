@@ -5,7 +5,7 @@
 //! done aside has a workspace of its own: looking at a run doesn't change it.
 
 use super::Simulation;
-use crate::integrator::{Workspace, consistent_by_iteration, consistent_by_mass};
+use crate::integrator::{Workspace, assemble_mass_at, consistent_by_iteration, consistent_by_mass};
 use crate::node::retract;
 use crate::solver::SolveError;
 use crate::term::Weights;
@@ -21,11 +21,14 @@ impl Simulation {
     /// Gives the scratch state, which lies inside the last step or at its end, the forces of the motion.
     pub(super) fn find_forces(&mut self) -> Result<(), SolveError> {
         let weights = self.work.factored.filter(|weights| weights.q > 0.0);
+        // what an evaluation with the mass matrix leaves of the equations of motion tells of the balance too
+        assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
         if let Some(weights) = weights
             && self.scratch.t < self.state.t
             && !self.balances()
         {
             self.balance(weights)?;
+            assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
         }
         if consistent_by_mass(&self.model, &mut self.scratch, &mut self.work)? {
             return Ok(());
@@ -37,13 +40,12 @@ impl Simulation {
         done
     }
 
-    /// Whether the scratch state meets the equations of motion well enough for its forces to be those of the motion.
+    /// Whether the scratch state, which the mass matrix was just assembled at, meets the equations of motion well enough
+    /// for its forces to be those of the motion.
     fn balances(&mut self) -> bool {
         let (state, work) = (&self.scratch, &mut self.work);
-        self.model.assemble(&state.at(), &state.lambda, None, &mut work.system);
         let tolerance = BALANCED * self.integrator.options().force_tolerance;
-        let residual = &work.system.residual;
-        work.forces.ratio(&work.norms, residual, &state.a, &state.lambda, tolerance) <= 1.0
+        work.forces.ratio(&work.norms, &work.mass.residual, &state.a, &state.lambda, tolerance) <= 1.0
     }
 
     /// Moves the scratch state into balance as Newton's method would at the end of a step like the last one: stiff

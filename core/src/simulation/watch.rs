@@ -2,6 +2,7 @@
 
 use super::{Observer, Simulation};
 use crate::integrator::{StepError, Stepping};
+use crate::record::Created;
 
 /// What may be left of constraints after a step, in parts of the model's length: ten times what Newton's method leaves.
 const LEFT: f64 = 1e-9;
@@ -83,30 +84,36 @@ impl Simulation {
         ));
     }
 
-    /// Warns the first time that energy has appeared from nowhere.
-    pub(super) fn watch_energy(&mut self, end: f64, observer: &mut dyn Observer) {
-        // a run that has hardly begun has no energy yet that another could be compared with
-        let begun = self.work.counts.steps >= BEGUN && self.state.t >= BEGUN_TIME * end;
-        if !self.keep_audit || self.created.is_some() || !begun {
-            return;
+    /// Looks for energy that has appeared from nowhere: warns the first time that it is too much for an error of the
+    /// integration, and gives up where fixed steps have made most of what there is.
+    ///
+    /// # Errors
+    /// The run had better end.
+    pub(super) fn watch_energy(&mut self, end: f64, observer: &mut dyn Observer) -> Result<(), StepError> {
+        // what has hardly begun has no energy yet that another could be compared with
+        if !self.keep_audit || self.work.counts.steps < BEGUN {
+            return Ok(());
         }
         let still = |length: f64, mass: f64| mass * (REST * length / self.state.t).powi(2);
         let noise = self.work.norms.groups.iter().map(|g| still(g.length, g.mass)).sum();
-        if !self.audit.is_created(noise) {
-            return;
-        }
-        self.created = Some(self.state.t);
-        let remedy = match self.integrator.options().stepping {
-            Stepping::Fixed { .. } => "a smaller `h`, error control, Radau IIA or `rho_inf` of 0.5 and below",
-            Stepping::Controlled { .. } => "a smaller `tolerance`",
+        let (t, gained, all) = (self.state.t, self.audit.imbalance(), self.audit.scale);
+        let fixed = matches!(self.integrator.options().stepping, Stepping::Fixed { .. });
+        let remedy = match fixed {
+            true => "Radau IIA, `rho_inf` of 0.5 and below, error control or a smaller `h`",
+            false => "a smaller `tolerance` or Radau IIA",
         };
-        observer.warn(&format!(
-            "at t = {:.6} s energy has appeared from nowhere: {:.1e} J more than loads brought in, where the largest \
-             energy or work so far is {:.1e} J. What follows can't be trusted; take {remedy}. (A term of your own whose \
-             energy and power aren't told looks like this too.)",
-            self.state.t,
-            self.audit.imbalance(),
-            self.audit.scale,
-        ));
+        match self.audit.created(noise) {
+            // error control holds motions, and may leave the power of what dies out within a step to the trapezoidal rule
+            Created::Most if fixed => return Err(StepError::Energy { t, gained, all, remedy }),
+            Created::Some | Created::Most if self.created.is_none() && t >= BEGUN_TIME * end => {
+                self.created = Some(t);
+                observer.warn(&format!(
+                    "at t = {t:.6} s energy has appeared from nowhere: {gained:.1e} J more than loads and motions brought \
+                     in, of {all:.1e} J that came up in all. What follows can't be trusted; take {remedy}"
+                ));
+            }
+            _ => {}
+        }
+        Ok(())
     }
 }

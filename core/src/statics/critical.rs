@@ -173,7 +173,7 @@ impl Statics<'_> {
         }
         let t = critical.t;
         let e = error.unwrap_or_else(|| self.fail(state, "", found.iterations));
-        Err(StaticsError { why: format!("behind {} at t = {t}, {}", critical.kind, e.why), ..e })
+        Err(StaticsError { why: format!("behind {} at load factor {t}, {}", critical.kind, e.why), ..e })
     }
 
     /// Leaves the last critical point for the stable path behind it.

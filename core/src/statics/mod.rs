@@ -104,8 +104,10 @@ impl Found {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.told())]
 pub struct StaticsError {
-    /// Time, or load factor.
+    /// Time [s], or the load factor.
     pub t: f64,
+    /// Whether that is the load factor of a path.
+    pub on_path: bool,
     /// What went wrong.
     pub why: String,
     /// Iterations spent.
@@ -119,21 +121,31 @@ pub struct StaticsError {
 impl StaticsError {
     /// Nothing was searched, since there is nothing to be found.
     fn refused(t: f64, why: String) -> Self {
-        StaticsError { t, why, iterations: 0, residual: 0.0, equation: String::new() }
+        StaticsError { t, on_path: false, why, iterations: 0, residual: 0.0, equation: String::new() }
+    }
+
+    /// Where on the path, or when.
+    pub(super) fn place(&self) -> String {
+        match (self.on_path, self.t) {
+            (_, 0.0) => "at the start".into(),
+            (true, t) => format!("at load factor {t}"),
+            (false, t) => format!("at t = {t} s"),
+        }
     }
 
     fn told(&self) -> String {
-        let StaticsError { t, why, iterations, residual, equation } = self;
+        let StaticsError { why, iterations, residual, equation, .. } = self;
+        let place = self.place();
         if *iterations == 0 {
-            return format!("there is no equilibrium at t = {t}: {why}");
+            return format!("there is no equilibrium {place}: {why}");
         }
         format!(
-            "no equilibrium was found at t = {t}: {why} (after {iterations} iterations, largest residual \
-             {residual:.2e} in {equation}). Try more load `steps`, a start closer to the solution, or a little bending \
-             stiffness"
+            "no equilibrium was found {place}: {why} (after {iterations} iterations, largest residual {residual:.2e} N in \
+             {equation}). Try more load `steps`, a start closer to the solution, or a little bending stiffness"
         )
     }
 }
+
 /// How often the arc of a path is tried before shorter steps are.
 const ARCS: u32 = 3;
 
@@ -377,7 +389,7 @@ impl<'a> Statics<'a> {
                 // what was refused isn't found by smaller steps either
                 Err(e) if e.iterations == 0 => {
                     *state = before;
-                    return Err(e);
+                    return Err(StaticsError { on_path: true, ..e });
                 }
                 Err(e) => e,
             };

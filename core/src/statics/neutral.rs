@@ -131,13 +131,7 @@ impl Statics<'_> {
         let target = along(&self.free[k], shape, self);
         let (mut before, mut moved) = (f64::INFINITY, vec![0.0; nv]);
         for _ in 0..25 {
-            let how = Relaxation {
-                smooth: true,
-                ramp: f64::INFINITY,
-                ramp_before: f64::INFINITY,
-                load,
-                floor: None,
-            };
+            let how = Relaxation::check(true, load);
             self.assemble(there, &q, &lambda, Some(Relaxed { last: Some(&last), how }), false);
             self.prepare();
             let w = self.weights();

@@ -235,7 +235,11 @@ impl Statics<'_> {
             }
             let theta = size / before;
             last = d[..nv].to_vec();
-            if size <= self.options.tolerance || (k > 1 && size * theta.min(1.0) <= self.options.tolerance) {
+            let tolerance = self.options.tolerance;
+            if size <= tolerance
+                || k > 1 && size * theta.min(1.0) <= tolerance
+                || self.wanders(k, size, theta)
+            {
                 difference(model.nodes(), &here.state.q, &there.q, &mut moved);
                 let went =
                     (self.inner(&moved, &moved) + ((there.t - here.state.t) / way.span).powi(2)).sqrt();
@@ -252,13 +256,7 @@ impl Statics<'_> {
     /// Residual and tangent at an equilibrium or on the way to one, ready for factorisation; returns how the residual
     /// changes with time.
     fn assemble_with_rate(&mut self, state: &State, last: Option<&[f64]>, way: Way) -> Vec<f64> {
-        let how = Relaxation {
-            smooth: last.is_some(),
-            ramp: f64::INFINITY,
-            ramp_before: f64::INFINITY,
-            load: 0.0,
-            floor: None,
-        };
+        let how = Relaxation::check(last.is_some(), 0.0);
         let relaxed = last.map(|_| Relaxed { last, how });
         self.assemble(state, &state.q, &state.lambda, relaxed, false);
         let dt = 1e-5 * way.span * way.sign;

@@ -10,6 +10,9 @@ use crate::times::Phase;
 /// Cosine between neighbouring chords below which a cable counts as folded.
 pub(super) const FOLD: f64 = 0.5;
 
+/// Corrections, in parts of their tolerance, that may be left where rounding allows no less.
+const ROUNDED: f64 = 1e3;
+
 impl Statics<'_> {
     /// Newton's method from `state`. Unstable equilibria are left by a push if `leave` says so, else found as they are:
     /// then [`Statics::unstable`] isn't zero.
@@ -24,13 +27,10 @@ impl Statics<'_> {
         let length = model.length();
         let load = self.load(state);
         let mut found = Found::default();
-        let mut how = Relaxation {
-            smooth: false,
-            ramp: if cold { 1.0 } else { f64::INFINITY },
-            ramp_before: f64::INFINITY,
-            load,
-            floor: None,
-        };
+        let mut how = Relaxation::check(false, load);
+        if cold {
+            how.ramp = 1.0;
+        }
         let mut floor = 0.5 * load;
         let mut last: Option<Vec<f64>> = None;
         let (mut size_before, mut theta) = (None, 1.0);
@@ -82,7 +82,8 @@ impl Statics<'_> {
             how.ramp = if ramping { how.ramp * 100.0 } else { f64::INFINITY };
             size_before = Some(size);
             let tolerance = self.options.tolerance;
-            let done = size <= tolerance || (!bad && found.iterations >= 2 && size * theta <= tolerance);
+            let falls = !bad && found.iterations >= 2 && size * theta <= tolerance;
+            let done = size <= tolerance || falls || !bad && self.wanders(found.iterations, size, theta);
             last = Some(d);
             if ramping || !done {
                 continue;
@@ -108,7 +109,7 @@ impl Statics<'_> {
             let mut push = None;
             if leave && judged.unstable > 0 {
                 push = judged.way_out.take().map(|d| self.small(d));
-            } else if self.size(&judged.correction[..nv]) <= 1e3 * tolerance {
+            } else if self.size(&judged.correction[..nv]) <= ROUNDED * tolerance {
                 self.follow_frame(&q);
                 there.v.clone_from(&self.v);
                 there.a.clone_from(&self.a);
@@ -145,11 +146,17 @@ impl Statics<'_> {
         fail(self, "the iterations did not converge", &found)
     }
 
+    /// Whether corrections no longer fall, since rounding of stiff forces moves what is soft: next to a critical load.
+    pub(super) fn wanders(&self, iterations: u32, size: f64, theta: f64) -> bool {
+        iterations > 3 && size <= ROUNDED * self.options.tolerance && theta > 0.25
+    }
+
     /// Why a search gives up, with the equation that is met least.
     pub(super) fn fail(&self, state: &State, why: &str, iterations: u32) -> StaticsError {
         let (k, residual) = self.worst();
         let equation = self.model.unknown_name(k);
-        StaticsError { t: state.t, why: why.into(), iterations, residual, equation }
+        let on_path = self.span > 0.0;
+        StaticsError { t: state.t, on_path, why: why.into(), iterations, residual, equation }
     }
 
     /// Largest position and slope of an increment, relative to the reference length.

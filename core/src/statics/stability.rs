@@ -58,15 +58,7 @@ impl Statics<'_> {
         load: f64,
         seed: u32,
     ) -> Result<Judgement, SolveError> {
-        // with a stiff EA even now only the smooth stress is good enough to tell stable from unstable
-        let how = Relaxation {
-            smooth: last.is_some(),
-            ramp: f64::INFINITY,
-            ramp_before: f64::INFINITY,
-            load,
-            floor: None,
-        };
-        self.assemble(there, &there.q, &there.lambda, Some(Relaxed { last, how }), false);
+        self.assemble_check(there, last, load);
         let symmetric = self.structure.symmetric || self.is_mirrored();
         self.prepare();
         let w = self.weights();
@@ -146,13 +138,7 @@ impl Statics<'_> {
         last: Option<&[f64]>,
         load: f64,
     ) -> Result<Judgement, SolveError> {
-        let how = Relaxation {
-            smooth: last.is_some(),
-            ramp: f64::INFINITY,
-            ramp_before: f64::INFINITY,
-            load,
-            floor: None,
-        };
+        let how = Relaxation::check(last.is_some(), load);
         let correction = self.solve_at(there, &there.q, &there.lambda, Some(Relaxed { last, how }))?.d;
         Ok(Judgement { correction, residual: self.worst().1, ..Judgement::default() })
     }
@@ -160,14 +146,7 @@ impl Statics<'_> {
     /// How many directions the equilibrium in `there` can be left in, neutral ones not counted; leaves the factors of
     /// its tangent. `None` where the pivots don't tell.
     pub(super) fn count(&mut self, there: &State, last: Option<&[f64]>, load: f64) -> Option<usize> {
-        let how = Relaxation {
-            smooth: last.is_some(),
-            ramp: f64::INFINITY,
-            ramp_before: f64::INFINITY,
-            load,
-            floor: None,
-        };
-        self.assemble(there, &there.q, &there.lambda, Some(Relaxed { last, how }), false);
+        self.assemble_check(there, last, load);
         if !self.structure.symmetric && !self.is_mirrored() {
             return None;
         }
@@ -176,6 +155,12 @@ impl Statics<'_> {
         self.shift(&w, MARGIN);
         self.factor().ok()?;
         self.solver.negative_pivots().map(|n| n.saturating_sub(self.held(there)))
+    }
+
+    /// Assembles residual and tangent at an equilibrium that is to be checked.
+    fn assemble_check(&mut self, there: &State, last: Option<&[f64]>, load: f64) {
+        let how = Relaxation::check(last.is_some(), load);
+        self.assemble(there, &there.q, &there.lambda, Some(Relaxed { last, how }), false);
     }
 
     /// Judges by the eigenvalues of the linearised motion.

@@ -13,6 +13,7 @@ mod tableau;
 pub(crate) use stages::Stages;
 
 use super::alpha::linear;
+use super::forces::larger;
 use super::options::fixed_step;
 use super::{Integrator, Limits, Options, StepError, StepReport, Stepping, Workspace};
 use crate::integrator::workspace::Which;
@@ -123,8 +124,7 @@ impl Radau {
         let mut error = 0.0;
         if let Stepping::Controlled { .. } = self.options.stepping {
             let [q, v] = s.errors(model, state, work, h)?;
-            // max() would swallow a NaN
-            error = if q >= time * v { q } else { time * v } / tolerance;
+            error = larger(q, time * v) / tolerance;
             // a body that is driven has no error, but a larger turn may end on another branch of its joint
             let turn = model.turn(&s.z[2]);
             if turn > 1.0 {
@@ -207,6 +207,14 @@ impl Integrator for Radau {
 
     fn limits(&self) -> Limits {
         self.limits
+    }
+
+    fn horizon(&self) -> f64 {
+        self.horizon
+    }
+
+    fn set_horizon(&mut self, horizon: f64) {
+        self.horizon = horizon;
     }
 
     fn filter(&self, h: f64) -> f64 {

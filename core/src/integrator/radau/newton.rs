@@ -7,6 +7,7 @@
 
 use super::stages::Stages;
 use super::tableau::{ALPHA, GAMMA, T, T_INVERSE};
+use crate::integrator::forces::{larger, left_of};
 use crate::integrator::workspace::Which;
 use crate::integrator::{NewtonPolicy, Workspace};
 use crate::model::Model;
@@ -78,8 +79,7 @@ impl Newton<'_> {
                 theta = size / last;
                 eta = theta / (1.0 - theta).max(1e-3);
             }
-            // forces fall as they did in the iteration before
-            let force_left = if k > 0 { force * (force / force_last).min(1.0) } else { force };
+            let force_left = left_of(force, (k > 0).then_some(force_last));
             (k, last, force_last) = (k + 1, size, force);
             let forces_right = force_left <= 1.0 || size <= floor && k > 1;
             if (size * eta.min(1e3) <= stop || size <= floor)
@@ -137,10 +137,7 @@ impl Newton<'_> {
         for i in 0..3 {
             let left =
                 work.forces.ratio(&work.norms, &s.residual[i], &s.a[i], &s.lambda[i], self.force_tolerance);
-            // max() would swallow a NaN
-            if !(left <= force) {
-                force = left;
-            }
+            force = larger(force, left);
         }
         let g = (self.h / GAMMA).powi(2);
         let inverse = ALPHA.inv() * self.h;
@@ -166,11 +163,7 @@ impl Newton<'_> {
                 s.d[k] = T[i][0] * x + T[i][1] * y.re + T[i][2] * y.im;
                 s.z[i][k] += s.d[k];
             }
-            let change = work.norms.relative(&s.d);
-            // max() would swallow a NaN
-            if !(change <= size) {
-                size = change;
-            }
+            size = larger(size, work.norms.relative(&s.d));
         }
         s.kinematics(model, self.state, self.h);
         Ok((size, force))
