@@ -105,7 +105,8 @@ fn a_mesh_that_misses_its_layer_is_named_with_the_one_that_would_do() {
     let said = h.warnings.iter().find(|w| w.contains("√(EI/T)")).expect("a warning");
     assert!(said.contains("`cable`") && said.contains("at its end, held by `package`"), "{said}");
     let mesh = said.split('`').find(|s| s.starts_with("mesh = ")).expect(said);
-    let better = [&set[..], &[&mesh.replacen(" = ", "=", 1)]].concat();
+    let mesh = mesh.replacen(" = ", "=", 1);
+    let better = [&set[..], &[mesh.as_str()]].concat();
     let h = history("unwinding", "15 kn", "forward", &better);
     assert!(!h.warnings.iter().any(|w| w.contains("√(EI/T)")), "{:?}", h.warnings);
 }
