@@ -99,7 +99,7 @@ fn lift_off_with_bending_stiffness_is_that_of_finite_differences() {
 
 #[test]
 fn a_mesh_that_misses_its_layer_is_named_with_the_one_that_would_do() {
-    let set = ["rigidity=tangent", "duration=0.05 s"];
+    let set = ["rigidity=tangent", "duration=0.12 s"];
     let even = [&set[..], &["mesh={ elements = 16 }"]].concat();
     let h = history("unwinding", "15 kn", "forward", &even);
     let said = h.warnings.iter().find(|w| w.contains("√(EI/T)")).expect("a warning");
