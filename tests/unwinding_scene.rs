@@ -99,7 +99,7 @@ fn lift_off_with_bending_stiffness_is_that_of_finite_differences() {
 
 #[test]
 fn a_mesh_that_misses_its_layer_is_named_with_the_one_that_would_do() {
-    let set = ["rigidity=tangent", "duration=0.05 s"];
+    let set = ["rigidity=tangent", "duration=0.12 s"];
     let even = [&set[..], &["mesh={ elements = 16 }"]].concat();
     let h = history("unwinding", "15 kn", "forward", &even);
     let said = h.warnings.iter().find(|w| w.contains("√(EI/T)")).expect("a warning");
@@ -128,19 +128,22 @@ fn steps_of_the_finite_differences_follow_their_mesh() {
     // it doesn't tremble from row to row, and is that of a coarser mesh but for the error of both
     let late = &tension[tension.len() - 6..];
     assert!(late.windows(2).all(|w| (w[1] - w[0]).abs() < 0.02), "{late:?}");
-    assert!(h.counts.steps > 2000 && h.counts.rejected < 20, "{:?}", h.counts);
+    assert!(h.counts.steps > 1500 && h.counts.rejected < 20, "{:?}", h.counts);
     let coarse = history("unwinding-paper", "15 kn", "forward", &[&set[..2], &["segments=60"]].concat());
     let difference = coarse.last("cable.tension.lift").expect("tension") - late[5];
     assert!((0.0..0.03).contains(&difference), "{difference}");
 
     let long = open(&["speed=15 kn", "rigidity=tangent", "segments=160", "step=0.2 ms", "duration=0.1 s"]);
     let refused = simulate(long.scene()).err().expect("too long a step").to_string();
-    assert!(refused.contains("too long for 160 segments") && refused.contains("leave it out"), "{refused}");
+    assert!(
+        refused.contains("too long for 160 segments") && refused.contains("leave the step out"),
+        "{refused}"
+    );
 }
 
 #[test]
 fn contact_with_an_outer_package_is_reported_where_it_is() {
-    let set = ["side=outer", "duration=0.02 s"];
+    let set = ["side=outer", "traverse=backward", "duration=0.02 s"];
     let file = {
         let mut all = vec!["speed=5 kn".to_string()];
         all.extend(set.iter().map(ToString::to_string));

@@ -54,7 +54,8 @@ pub enum Stopped {
     #[error(
         "at t = {t:.6} s the step of {h:e} s is too long for {segments} segments: with bending stiffness and a given \
          tension the lift-off point trembles once waves run over more than two segments in a step, and the tension is \
-         wrong. Take a step of {longest:.1e} s or less, leave it out to have it chosen, or take fewer segments"
+         wrong. Here {longest:.1e} s would do, and less as the cable gets faster: leave the step out to have it chosen, or take \
+         fewer segments"
     )]
     TooLong {
         /// Time [s].
