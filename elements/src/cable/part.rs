@@ -134,6 +134,10 @@ impl CablePart {
     /// The tension in element `k` at `xi` [N]: what the force in the cable has along it. `slope` is the curve's there.
     fn tension(&self, k: usize, xi: f64, slope: &V3<f64>, at: &At<'_>) -> Option<f64> {
         let mesh = self.material(at.q);
+        // where elements are born and swallowed their means jump, and the strain at a point is kept
+        if (0..2).any(|end| self.makes_elements(end)) {
+            return self.by_strain(k, mesh[k + 1] - mesh[k], xi, at);
+        }
         let size = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
         let next = self.breaks.partition_point(|b| *b <= k);
         let (from, to) = (self.breaks[next - 1], self.breaks[next]);
