@@ -174,16 +174,20 @@ impl Contact {
         self.law.may_stick(&was, &touch.slip, leap.predicted)
     }
 
-    /// The stiffness of a ball; on the way to an equilibrium no more than the load can use where the last iteration has
-    /// moved it so far, so that what still comes down isn't thrown up again.
+    /// The stiffness of a ball; on the way to an equilibrium hardly more than the load can use where the last iteration
+    /// has moved it by more than its radius, so that what still comes down isn't thrown up again.
     fn softened(&self, ball: &Ball, at: &At<'_>) -> f64 {
         const SHARE: f64 = 10.0;
         let Some(Relaxed { last: Some(last), how }) = at.relaxed else { return ball.k };
         let d = ball.held.velocity(&At { v: last, ..*at });
         let moved = dot(&d, &d).sqrt();
-        let load = SHARE * how.load * if self.per_length > 0.0 { ball.k / self.per_length } else { 1.0 };
-        let most = load / moved.powf(self.law.exponent);
-        if most < ball.k { most } else { ball.k }
+        if !(moved > ball.radius) {
+            return ball.k;
+        }
+        let share = if self.per_length > 0.0 { ball.k / self.per_length } else { 1.0 };
+        let most = SHARE * how.load * share / (moved - ball.radius).powf(self.law.exponent);
+        // without a load to speak of, as in a taut cable, it has to hold all the same
+        ball.k.min(most.max(ball.k * (ball.radius / moved).powi(3)))
     }
 
     /// What to say where cables lie around a shape on elements too long for it. A cubic isn't quite an arc: with the
