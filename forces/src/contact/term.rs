@@ -95,14 +95,14 @@ impl Contact {
                 let held = s.line.beyond(end_of, radius);
                 (s.tips[end_of] && end > 0.0).then_some(Ball { held, radius: 0.0, k: end })
             };
-            groups.push(Group::Span(Span {
+            groups.push(Group::Span(Box::new(Span {
                 line: s.line,
                 radius,
                 length: s.length,
                 k: per_length * s.length,
                 tips: [tip(0), tip(1)],
                 points: shape.points(s.length, law.exponent == 1.0),
-            }));
+            })));
         }
         for group in &groups {
             let own = matches!((seat, group.held()), (Seat::Body { v, .. }, Held::Beside { v: w, .. } | Held::Moves { v: w, .. }) if v == w);
