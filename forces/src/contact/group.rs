@@ -19,7 +19,7 @@ pub(crate) struct Ball {
 #[derive(Clone, Debug)]
 pub(crate) enum Group {
     Ball(Ball),
-    Span(Span),
+    Span(Box<Span>),
 }
 
 /// A slender piece.

@@ -95,14 +95,14 @@ impl Contact {
                 let held = s.line.beyond(end_of, radius);
                 (s.tips[end_of] && end > 0.0).then_some(Ball { held, radius: 0.0, k: end })
             };
-            groups.push(Group::Span(Span {
+            groups.push(Group::Span(Box::new(Span {
                 line: s.line,
                 radius,
                 length: s.length,
                 k: per_length * s.length,
                 tips: [tip(0), tip(1)],
                 points: shape.points(s.length, law.exponent == 1.0),
-            }));
+            })));
         }
         for group in &groups {
             let own = matches!((seat, group.held()), (Seat::Body { v, .. }, Held::Beside { v: w, .. } | Held::Moves { v: w, .. }) if v == w);
@@ -174,16 +174,20 @@ impl Contact {
         self.law.may_stick(&was, &touch.slip, leap.predicted)
     }
 
-    /// The stiffness of a ball; on the way to an equilibrium no more than the load can use where the last iteration has
-    /// moved it so far, so that what still comes down isn't thrown up again.
+    /// The stiffness of a ball; on the way to an equilibrium hardly more than the load can use where the last iteration
+    /// has moved it by more than its radius, so that what still comes down isn't thrown up again.
     fn softened(&self, ball: &Ball, at: &At<'_>) -> f64 {
         const SHARE: f64 = 10.0;
         let Some(Relaxed { last: Some(last), how }) = at.relaxed else { return ball.k };
         let d = ball.held.velocity(&At { v: last, ..*at });
         let moved = dot(&d, &d).sqrt();
-        let load = SHARE * how.load * if self.per_length > 0.0 { ball.k / self.per_length } else { 1.0 };
-        let most = load / moved.powf(self.law.exponent);
-        if most < ball.k { most } else { ball.k }
+        if !(moved > ball.radius) {
+            return ball.k;
+        }
+        let share = if self.per_length > 0.0 { ball.k / self.per_length } else { 1.0 };
+        let most = SHARE * how.load * share / (moved - ball.radius).powf(self.law.exponent);
+        // without a load to speak of, as in a taut cable, it has to hold all the same
+        ball.k.min(most.max(ball.k * (ball.radius / moved).powi(3)))
     }
 
     /// What to say where cables lie around a shape on elements too long for it. A cubic isn't quite an arc: with the
