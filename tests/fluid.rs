@@ -196,15 +196,15 @@ fn the_water_beside_a_cable_that_feeds_keeps_its_balance() {
     for (speed, current, element) in
         [(0.8, "[0, 0, 0]", ""), (-0.5, "[0.3, 0.2, 0]", ""), (0.8, "[0.3, 0.2, 0.1]", "element = 0.25")]
     {
-        let left = |elements: usize, h: f64| {
+        let left = |elements: usize| {
             let h = run(&format!(
                 r#"
                 [run]
                 duration = "1 s"
                 output = "0.02 s"
                 [solver]
-                stepping = {{ fixed = {{ h = {h} }} }}
-                newton_tolerance = 1e-3
+                scheme = "radau-iia-5"
+                stepping = {{ controlled = {{ tolerance = 1e-7 }} }}
                 [water]
                 current = {current}
                 [[elements]]
@@ -242,9 +242,10 @@ fn the_water_beside_a_cable_that_feeds_keeps_its_balance() {
                 imbalance.iter().fold(0.0, |most: f64, x| if x.abs() <= most { most } else { x.abs() });
             (worst, last(&h, "energy.kinetic"))
         };
-        let ((coarse, _), (fine, kinetic)) = (left(12, 4e-3), left(24, 2e-3));
+        let ((coarse, _), (fine, kinetic)) = (left(6), left(12));
         println!("{speed} m/s in {current}: imbalance {coarse:.2e} and {fine:.2e} of {kinetic:.3} J");
-        assert!(fine < 1e-3 * kinetic && coarse > 2.5 * fine, "{coarse} {fine} of {kinetic} J");
+        // the end that feeds moves 0.4 to 0.65 J
+        assert!(coarse < 1e-3 * kinetic && fine < 1e-3 * kinetic, "{coarse} {fine} of {kinetic} J");
     }
 }
 

@@ -429,8 +429,9 @@ fn a_cable_that_sticks_peels_at_its_energy() {
 
     let kept = balloon(&c, Off::Peeled, 40, 0.5, 400, 1e-4);
     eprintln!("finite differences {tension:.2e}, {curvature:.2e}; {kept:?}");
-    assert!(kept.tension.abs() < 1e-3 && kept.curvature.abs() < 1e-2, "{kept:?}");
-    assert!((kept.tension - tension).abs() < 1e-2 && (kept.curvature - curvature).abs() < 2e-2, "{kept:?}");
+    // both peel a little too late for the steady balloon, by the same amount
+    assert!(kept.tension.abs() < 2.5e-3 && kept.curvature.abs() < 1e-2, "{kept:?}");
+    assert!((kept.tension - tension).abs() < 2e-4 && (kept.curvature - curvature).abs() < 1e-2, "{kept:?}");
     // peeling by itself, it is a little ahead of where it should be
     assert!(kept.kink < 2e-3 && kept.shape < 2e-3, "{kept:?}");
 }

@@ -61,7 +61,10 @@ macro_rules! push {
         }
         if s.axial_damping > 0.0 {
             let eta_ea = s.axial_damping * s.ea;
-            if $L::points::<<$Q as Rule>::Axial>().len() > 1 {
+            // what bends in a layer that the element hardly resolves stretches between the points of its rule; elements that
+            // are born and swallowed keep the other form, which is continuous over that
+            let bends = s.ei > 0.0 && $L::points::<<$Q as Rule>::Axial>().len() > 1 && line.zone == [false; 2];
+            if bends {
                 let damping = FlowAxialDamping::<$L, <$Q as Rule>::Axial, $fronts>::new(eta_ea, by);
                 $self.b.element(damping, &nodes)?;
             } else {
