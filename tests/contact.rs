@@ -585,7 +585,7 @@ fn keys_that_are_gone_say_what_to_do() {
         per_element = 3
     "#;
     fs::write(&file, text).unwrap();
-    let message = ropewalk::read(&file).err().expect("refused").to_string();
+    let message = ropewalk::read(&file).expect_err("refused").to_string();
     says(&message, &["`per_element` is gone", "Leave it out"]);
 }
 

@@ -13,6 +13,8 @@ use std::sync::Arc;
 /// What a scene gives to its process.
 #[derive(Default)]
 pub struct Surroundings {
+    /// Acceleration of gravity [m/s²].
+    pub gravity: V3<f64>,
     /// The water, if there is any.
     pub water: Option<Water>,
     /// Motions, by name.

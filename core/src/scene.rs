@@ -291,7 +291,8 @@ impl Scene {
         self.check_world().map_err(whole)?;
         self.run.check().map_err(whole)?;
         let motions = build_all(&self.motions).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
-        let around = Surroundings { water: self.water.clone(), motions, duration: self.run.duration };
+        let (gravity, water) = (self.gravity, self.water.clone());
+        let around = Surroundings { gravity, water, motions, duration: self.run.duration };
         spec.build(&around).map(Some).map_err(of(SpecKind::Process, 0))
     }
 

@@ -1,12 +1,17 @@
 //! What older scenes wrote elsewhere.
 
 /// Type, field, and where what it said belongs now.
-const MOVED: [(&str, &str, &str); 2] = [
+const MOVED: [(&str, &str, &str); 3] = [
     ("gravity", "g", "gravity belongs to the scene: write `gravity = [0, 0, -9.81]` above its first section"),
     (
         "buoyancy",
         "g",
         "gravity belongs to the scene: write `gravity = [0, 0, -9.81]` above its first section",
+    ),
+    (
+        "unwound_cable",
+        "gravity",
+        "gravity belongs to the scene: write `weight = true` here, and `gravity = [0, 0, -9.81]` above its first section",
     ),
 ];
 

@@ -15,7 +15,7 @@ pub struct Stepping {
     pub damping: f64,
     /// Smallest step over `h` before the run gives up.
     pub least: f64,
-    /// Whether steps are shortened to what the mesh allows ([`Unwinding::longest_step`]); else a longer `h` is refused.
+    /// Whether steps are shortened to what the mesh allows; else a longer `h` is refused.
     pub follows: bool,
 }
 

@@ -128,9 +128,9 @@ pub struct UnwindingSpec {
     /// Coefficient of the water that the cable carries along across its axis; left out, 0.
     #[serde(default, deserialize_with = "quantity::number")]
     pub added_mass: f64,
-    /// Acceleration of gravity [m/s^2], for weight and buoyancy; left out, none.
-    #[serde(default, deserialize_with = "quantity::vec3::acceleration")]
-    pub gravity: V3<f64>,
+    /// Whether the scene's gravity pulls at it, less the buoyancy of its volume.
+    #[serde(default)]
+    pub weight: bool,
     /// Into how many segments the free cable is divided.
     #[serde(default = "segments")]
     pub segments: usize,
@@ -162,7 +162,6 @@ impl UnwindingSpec {
         let (axis, diameter) = (package.axis(), self.package.diameter);
         let limit = self.package.bend_limit.filter(|r| *r > 0.0).map_or(f64::INFINITY, |r| 1.0 / r);
         positive("mass", self.mass)?;
-        finite("gravity", &self.gravity)?;
         let cable = Cable { mass: self.mass, diameter, bending: self.bending, curvature_limit: limit };
         let feed = around.motion("motion", &self.motion)?;
         let rule = match &self.rule {
@@ -199,7 +198,9 @@ impl UnwindingSpec {
         }
         let displaced =
             around.water.as_ref().map_or(0.0, |w: &Water| w.density * PI / 4.0 * diameter * diameter);
-        p.weight = self.gravity.map(|g| (self.mass - displaced) * g);
+        if self.weight {
+            p.weight = around.gravity.map(|g| (self.mass - displaced) * g);
+        }
         p.check()?;
         Ok(p)
     }
