@@ -5,7 +5,7 @@ use super::newmark::{Stepping, Stopped};
 use super::problem::{Cable, Eyelet, LiftOff, Pull, Rule, Unwinding};
 use super::steady::SteadyError;
 use ropewalk_constraints::package::{Package, PackageSpec};
-use ropewalk_core::build::{BuildError, finite, positive};
+use ropewalk_core::build::{BuildError, positive};
 use ropewalk_core::integrator::Counts;
 use ropewalk_core::{
     Channel, Column, Process, ProcessSpec, Surroundings, V3, Water, dot, quantity, register_spec,
