@@ -87,13 +87,7 @@ impl ForceSpec for WaterplaneSpec {
         };
         let k = -water.density * g * PI * self.diameter * self.diameter / 4.0;
         let label = format!("{}: lift", self.marker);
-        b.term(Box::new(Waterplane {
-            label,
-            k,
-            height: self.height,
-            surface,
-            z: (q + 2, v + 2),
-        }));
+        b.term(Box::new(Waterplane { label, k, height: self.height, surface, z: (q + 2, v + 2) }));
         Ok(())
     }
 }
