@@ -77,7 +77,7 @@ pub use station::{FieldTerm, Gives, Law, Laws, Load, Station, StationElement, St
 pub use structure::{Block, Columns, Structure};
 pub use term::{Assembly, Energy, Leap, Power, Term, Weights};
 pub use times::Spent;
-pub use water::{Air, Level, Water};
+pub use water::{Air, Level, Water, ball_below};
 
 #[doc(hidden)]
 pub use inventory;

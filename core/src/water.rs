@@ -2,6 +2,7 @@
 
 use crate::build::{BuildError, finite, not_negative, positive};
 use crate::current::Current;
+use crate::lane::Real;
 use serde::{Deserialize, Serialize};
 
 /// The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
@@ -117,4 +118,14 @@ fn velocity(uniform: &[f64; 3], profile: &[Level], both: &str) -> Result<Current
     }
     let (z, velocity) = profile.iter().map(|l| (l.z, l.velocity)).unzip();
     Current::profile(z, velocity)
+}
+
+/// Share of a ball's volume that lies below a level, `½ + ¾ u - ¼ u³` at the depth `u` radii of its middle, and what it changes
+/// by with the height `z` of that [1/m].
+#[inline(always)]
+pub fn ball_below<R: Real>(level: f64, z: R, radius: f64) -> (R, R) {
+    let (one, u) = (R::of(1.0), (R::of(level) - z) * R::of(1.0 / radius));
+    let u = u.if_gt(one, one, u.if_gt(-one, u, -one));
+    let share = u.fma(u * u * R::of(-0.25), u.fma(R::of(0.75), R::of(0.5)));
+    (share, (u * u - one) * R::of(0.75 / radius))
 }

@@ -8,6 +8,6 @@ pub mod rigid_chain;
 
 pub use cable::{CableSpec, Section};
 pub use path::Path;
-pub use point_mass::{PointMass, PointMassSpec};
+pub use point_mass::{Across, PointMass, PointMassSpec};
 pub use rigid_body::RigidBodySpec;
 pub use rigid_chain::{LinkSection, RigidChainSpec};

@@ -4,7 +4,7 @@ use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
 use ropewalk_core::held::{Held, MOST};
 use ropewalk_core::{
     Assembly, At, ContactPoint, Current, DeadEntry, DeadLoad, DeadPull, ElementSpec, Energy, Marker,
-    MarkerRef, Node, NodeId, NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, dot, quantity,
+    MarkerRef, Node, NodeId, NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, ball_below, dot, quantity,
     register_spec,
 };
 use schemars::JsonSchema;
@@ -45,14 +45,6 @@ pub struct Across {
     pub level: f64,
     /// Radius of the ball [m].
     pub radius: f64,
-}
-
-impl Across {
-    /// The share below, and what it changes by with height [1/m].
-    fn share(&self, z: f64) -> (f64, f64) {
-        let u = ((self.level - z) / self.radius).clamp(-1.0, 1.0);
-        (0.5 + u * (0.75 - 0.25 * u * u), 0.75 * (u * u - 1.0) / self.radius)
-    }
 }
 
 impl PointMass {
@@ -120,7 +112,7 @@ impl PointMass {
 
     /// The share of it in the fluid, and what it changes by with height [1/m].
     fn share(&self, at: &At<'_>) -> (f64, f64) {
-        self.surface.map_or((1.0, 0.0), |surface| surface.share(self.held.x(at)[2]))
+        self.surface.map_or((1.0, 0.0), |s| ball_below(s.level, self.held.x(at)[2], s.radius))
     }
 
     /// Velocity relative to the water, its magnitude, the current's gradient, and `½ ρ CdA`.

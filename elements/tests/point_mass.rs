@@ -3,7 +3,7 @@
 use ropewalk_core::retract;
 use ropewalk_core::testing::{check_tangent, dense, difference};
 use ropewalk_core::{At, Current, Marker, Node, NodeId, NodeKind, Term, Weights, Width};
-use ropewalk_elements::PointMass;
+use ropewalk_elements::{Across, PointMass};
 
 const CABLE: NodeId = NodeId(1);
 
@@ -50,6 +50,12 @@ fn tangent_is_exact() {
         let at = At { t: 0.0, q: &q, v: &v, a: &a, modes: &[], relaxed: None };
         for mass in masses() {
             assert!(check_tangent(&mass, &nodes(), &at, Width::One) < 1e-8);
+            // and where it lies across the surface
+            for depth in [-0.15, 0.02, 0.18] {
+                let surface = Some(Across { level: mass.held.x(&at)[2] + depth, radius: 0.2 });
+                let error = check_tangent(&PointMass { surface, ..mass.clone() }, &nodes(), &at, Width::One);
+                assert!(error < 1e-7, "{error:e}");
+            }
         }
     }
 }

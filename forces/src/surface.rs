@@ -6,7 +6,7 @@
 //! the potential of buoyancy per length: its share `∂W/∂s` lifts, and what `W` changes by with the slope is the couple
 //! of a tilted waterplane.
 
-use ropewalk_core::{Real, Station, V3, dot};
+use ropewalk_core::{Real, Station, V3, ball_below, dot};
 use std::f64::consts::PI;
 
 /// The surface of water at rest.
@@ -76,11 +76,7 @@ impl Surface {
 
     /// Share of a ball's volume that is wet, and what it changes by with height [1/m]; `z` is its middle.
     pub fn ball<R: Real>(&self, z: R, radius: f64) -> (R, R) {
-        let (one, u) = (R::of(1.0), (R::of(self.level) - z) * R::of(1.0 / radius));
-        let u = u.if_gt(one, one, u).if_gt(-one, u.if_gt(one, one, u), -one);
-        // ½ + ¾ u - ¼ u³
-        let share = u.fma(u * u * R::of(-0.25), u.fma(R::of(0.75), R::of(0.5)));
-        (share, (u * u - one) * R::of(0.75 / radius))
+        ball_below(self.level, z, radius)
     }
 }
 
@@ -211,7 +207,7 @@ impl Mean {
         let mut m =
             Mean { value: 0.0, a: 0.0, b: 0.0, w: 0.0, aa: 0.0, ab: 0.0, bb: 0.0, aw: 0.0, bw: 0.0, ww: 0.0 };
         for g in [0.211_324_865_405_187_1, 0.788_675_134_594_812_9] {
-            let (near, disc) = (1.0 - g, Disc::new(near_depth(a, b, g), w));
+            let (near, disc) = (1.0 - g, Disc::new(a + g * (b - a), w));
             m.value += 0.5 * disc.s;
             m.a += 0.5 * near * disc.ss;
             m.b += 0.5 * g * disc.ss;
@@ -225,10 +221,6 @@ impl Mean {
         }
         m
     }
-}
-
-fn near_depth(a: f64, b: f64, g: f64) -> f64 {
-    a + g * (b - a)
 }
 
 /// `Y(s, w) = w² X(s/w)`, whose second derivative by the depth `s` is the wet share `φ(s/w)` of a disc, and its derivatives.
