@@ -229,10 +229,13 @@ fn fixed_steps_pass_from_slip_to_stick() {
     // a rope that is let go over a drum, slipping here and sticking there
     let section = Section { diameter: 0.02, axial_damping: 1e-3, ..Section::new(1.0, 1e6, 0.5) };
     let mut scene = Scene::new();
-    scene
-        .element(rope(over(0.51, 1.0, 1.2), 100, section))
-        .force(GravitySpec::default())
-        .force(ContactSpec { friction: Some(Friction::new(0.3)), damping: Damping::HuntCrossley(0.3), ..drum(0.5, 1e6) });
+    scene.element(rope(over(0.51, 1.0, 1.2), 100, section)).force(GravitySpec::default()).force(
+        ContactSpec {
+            friction: Some(Friction::new(0.3)),
+            damping: Damping::HuntCrossley(0.3),
+            ..drum(0.5, 1e6)
+        },
+    );
     let mut s = start(&scene, &fixed(1e-3), 0.2);
     go(&mut s, 0.2, &mut ());
     let counts = s.work.counts;

@@ -2,8 +2,8 @@
 
 mod common;
 
-use ropewalk_constraints::motion::HarmonicSpec;
 use ropewalk_constraints::CoordinateSpec;
+use ropewalk_constraints::motion::HarmonicSpec;
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::{End, Scene, Simulation};
 use ropewalk_elements::{PointMassSpec, RigidBodySpec};
@@ -28,7 +28,9 @@ fn run(scene: &Scene, (scheme, stepping): &(Scheme, Stepping), duration: f64) ->
     let options = Options { scheme: scheme.clone(), stepping: *stepping, ..Options::default() };
     let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
     let mut s = Simulation::new(model, &options, duration).unwrap_or_else(|e| panic!("{e}"));
-    let end = s.advance(duration, f64::INFINITY, &mut ()).unwrap_or_else(|e| panic!("{scheme:?} {stepping:?}: {e}"));
+    let end = s
+        .advance(duration, f64::INFINITY, &mut ())
+        .unwrap_or_else(|e| panic!("{scheme:?} {stepping:?}: {e}"));
     assert_eq!(end, End::Done);
     println!("{scheme:?} {stepping:?}: {:?}", s.work.counts);
     s
@@ -55,9 +57,10 @@ fn slope() -> Scene {
     let normal = [-angle.sin(), 0.0, angle.cos()];
     let height = R - G * angle.cos() / k;
     let mut scene = Scene::new();
-    scene.element(PointMassSpec::new("weight", normal.map(|n| height * n), 1.0)).force(GravitySpec::default()).force(
-        ContactSpec { shape: ShapeSpec::Plane { normal }, ..floor(k, Friction::new(0.6)) },
-    );
+    scene
+        .element(PointMassSpec::new("weight", normal.map(|n| height * n), 1.0))
+        .force(GravitySpec::default())
+        .force(ContactSpec { shape: ShapeSpec::Plane { normal }, ..floor(k, Friction::new(0.6)) });
     scene
 }
 
@@ -85,7 +88,9 @@ fn a_block_moved_to_and_fro_loses_what_its_bristle_does_not_give_back() {
     // 4 μ N (A - μ N/k) per cycle after the first: reference data
     let (mass, mu, amplitude, period) = (10.0 / G, 0.3, 0.01, 4000.0);
     let k = 1e5;
-    for (scheme, h) in [(Options::default().scheme, 20.0), (Options::default().scheme, 50.0), (Scheme::RadauIia5, 50.0)] {
+    for (scheme, h) in
+        [(Options::default().scheme, 20.0), (Options::default().scheme, 50.0), (Scheme::RadauIia5, 50.0)]
+    {
         let mut scene = Scene::new();
         scene
             .motion(HarmonicSpec {
@@ -130,7 +135,8 @@ fn a_block_slides_as_far_as_its_energy_lasts() {
 fn a_sphere_that_slides_begins_to_roll() {
     let (v, mu, k, mass, r) = (1.0, 0.2, 1e6, 1.0, 0.1);
     for how in &schemes() {
-        let mut body = RigidBodySpec::new("ball", [0.0, 0.0, r - mass * G / k], mass, [0.4 * mass * r * r; 3]);
+        let mut body =
+            RigidBodySpec::new("ball", [0.0, 0.0, r - mass * G / k], mass, [0.4 * mass * r * r; 3]);
         body.velocity = [v, 0.0, 0.0];
         let mut scene = Scene::new();
         scene.element(body).force(GravitySpec::default()).force(ContactSpec {
@@ -155,7 +161,7 @@ fn a_checkpoint_keeps_what_friction_remembers() {
     one.advance(0.1, f64::INFINITY, &mut ()).unwrap();
     let kept = one.checkpoint().unwrap();
     assert!(kept.state.modes.iter().any(|m| *m != 0.0));
-    let mut two = Simulation::resume(slope().build().unwrap(), kept, &options, 1.0).unwrap();
+    let mut two = Simulation::restore(slope().build().unwrap(), &options, 1.0, kept).unwrap();
     for s in [&mut one, &mut two] {
         s.advance(1.0, f64::INFINITY, &mut ()).unwrap();
     }

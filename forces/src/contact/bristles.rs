@@ -128,13 +128,7 @@ impl Contact {
     }
 
     /// How each cell of a group is pressed.
-    fn press(
-        &self,
-        group: &Group,
-        frame: &Frame,
-        at: &At<'_>,
-        scratch: &mut Scratch,
-    ) -> [Pressed; CELLS] {
+    fn press(&self, group: &Group, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) -> [Pressed; CELLS] {
         let mut cells = [Pressed::NONE; CELLS];
         group.gather(&self.fixed, frame, at, scratch);
         for ball in &scratch.balls {

@@ -121,7 +121,9 @@ impl Group {
                 from = to;
             }
         }
-        scratch.balls.extend(span.tips.iter().flatten().map(|tip| Ball { cell: tip.cell * (cells - 1), ..*tip }));
+        scratch
+            .balls
+            .extend(span.tips.iter().flatten().map(|tip| Ball { cell: tip.cell * (cells - 1), ..*tip }));
     }
 }
 

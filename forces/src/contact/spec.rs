@@ -182,7 +182,10 @@ fn slip_speed<'de, D: serde::Deserializer<'de>>(_: D) -> Result<(), D::Error> {
 
 /// How a scene may write friction.
 #[derive(Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "friction is a coefficient, or `{ mu = 0.3, across = 0.2, elastic_slip = \"0.1 mm\" }`")]
+#[serde(
+    untagged,
+    expecting = "friction is a coefficient, or `{ mu = 0.3, across = 0.2, elastic_slip = \"0.1 mm\" }`"
+)]
 enum Dry {
     Coefficient(#[serde(deserialize_with = "quantity::number")] f64),
     Friction(Friction),
@@ -238,7 +241,12 @@ impl ContactSpec {
                     let ea = part.slender().map_or(0.0, |s| s.ea);
                     let whole = format!("`{}`", part.name());
                     let points = part.contact_points();
-                    all.weights.extend(points.iter().map(|_| Weight { mass, length: 0.0, ea: 0.0, whole: 0.0 }));
+                    all.weights.extend(points.iter().map(|_| Weight {
+                        mass,
+                        length: 0.0,
+                        ea: 0.0,
+                        whole: 0.0,
+                    }));
                     all.points.extend(points.into_iter().map(|p| (whole.clone(), p)));
                     let carries = |s: &ContactSpan| match s.line {
                         SpanLine::Straight { q, v, .. } => own_seat == Some((q, v)),
@@ -305,7 +313,8 @@ impl ContactSpec {
             let stiffness = match friction.elastic_slip {
                 Some(_) if held > 0.0 => held,
                 _ => {
-                    let along = if w.whole > 0.0 { w.ea * w.length / (SMEARED * w.whole).powi(2) } else { 0.0 };
+                    let along =
+                        if w.whole > 0.0 { w.ea * w.length / (SMEARED * w.whole).powi(2) } else { 0.0 };
                     held.max(along).max(if self.exponent == 1.0 { k } else { 0.0 })
                 }
             };

@@ -374,9 +374,7 @@ impl Term for Contact {
             deepest = deepest.max(depth);
             match &group.what {
                 What::Ball(_) => points += 1.0,
-                What::Span(s) => {
-                    length += scratch.found.iter().map(|[a, b]| s.length * (b - a)).sum::<f64>()
-                }
+                What::Span(s) => length += scratch.found.iter().map(|[a, b]| s.length * (b - a)).sum::<f64>(),
             }
         }
         let (mut slipping, mut all) = (0.0, 0.0);
