@@ -142,6 +142,19 @@ pub trait Term: Send + Sync {
     fn kinked(&self) -> bool {
         false
     }
+    /// Whether it remembers something in [`State::modes`](crate::State::modes), such as where dry friction took hold: only
+    /// then is [`Term::remember`] called.
+    fn remembers(&self) -> bool {
+        false
+    }
+    /// Brings what it remembers up to date at a state that was accepted: `memory` is all of the modes, as they were at the
+    /// start of the step, and `at` has none.
+    fn remember(&self, _at: &At<'_>, _memory: &mut [f64]) {}
+    /// What has gone where it can't have gone in a step between two states, such as through a wall; nothing if all is well.
+    /// The step is then repeated smaller, and if that doesn't help the run ends with these words.
+    fn passes(&self, _before: &At<'_>, _after: &At<'_>) -> Option<String> {
+        None
+    }
     /// What one should know of it at the end of a run, in a sentence: such as that a mesh is too coarse for it.
     fn remark(&self, _at: &At<'_>) -> Option<String> {
         None
