@@ -188,7 +188,6 @@ impl Simulation {
             unknown: "the structure of the equations".into(),
         })?;
         let correction = prepare(&model, &mut state, &mut work, integrator.as_ref())?;
-        model.remember(&mut state);
         let audit = Audit::start(model.energy(&state.at()));
         let power = model.power(&state.at(), &state.lambda);
         let (previous, scratch) = (state.clone(), state.clone());

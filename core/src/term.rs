@@ -176,16 +176,16 @@ pub trait Term: Send + Sync {
     fn observe(&self, _at: &At<'_>, _out: &mut Vec<f64>) {}
 }
 
-/// Velocities that an evaluation of Newton's method comes from.
+/// What an evaluation of Newton's method comes from.
 ///
-/// Where a kink lies between them and the present ones, the tangent on this side of it says nothing about the other: a
-/// term may then add the force that leads to the kink instead of its own, and say so with [`Assembly::approximates`].
+/// Where a kink may lie in between, the tangent on this side of it says nothing about the other: a term may then add the
+/// force and the tangent that lead to the kink instead of its own, and say so with [`Assembly::approximates`].
 #[derive(Clone, Copy, Debug)]
-pub struct Leap<'a> {
-    /// The velocities before [m/s].
-    pub v: &'a [f64],
-    /// Whether they are those at the start of the step, and the present ones predicted; else both are iterates.
-    pub predicted: bool,
+pub enum Leap<'a> {
+    /// A prediction from the start of the step.
+    Predicted,
+    /// The iterate with these velocities.
+    From(&'a [f64]),
 }
 
 /// Where the terms add: the residual and, if wanted, the entries of the iteration matrix.

@@ -242,7 +242,7 @@ fn power_and_energy_add_up_to_what_the_force_does() {
 fn rough(way: f64, mut see: impl FnMut(&Contact, &Numbers, &[f64], &str)) {
     let friction = Friction { across: Some(0.25), ..Friction::new(0.4) };
     let law = ContactLaw { friction: Some(friction), ..ContactLaw::default() };
-    let grip = Grip { stiffness: 30.0, damping: 0.4 };
+    let grip = Grip { stiffness: 1e3, damping: 10.0 };
     let mut r = Random(41);
     scenes(law, |contact, s, what| {
         let contact = contact.clone().with_grips(&[grip], 0);
@@ -250,7 +250,8 @@ fn rough(way: f64, mut see: impl FnMut(&Contact, &Numbers, &[f64], &str)) {
         contact.remember(&s.at(), &mut memory);
         assert!(memory[0] == 1.0, "{what}");
         let d = r.list(s.v.len(), way);
-        let mut moved = Numbers { q: s.q.clone(), v: s.v.clone(), a: s.a.clone() };
+        let v = s.v.iter().map(|v| way * v).collect();
+        let mut moved = Numbers { q: s.q.clone(), v, a: s.a.clone() };
         ropewalk_core::retract(&nodes(), &s.q, &d, &mut moved.q);
         see(&contact, &moved, &memory, what);
     });
@@ -258,7 +259,7 @@ fn rough(way: f64, mut see: impl FnMut(&Contact, &Numbers, &[f64], &str)) {
 
 #[test]
 fn tangents_of_friction_are_exact_while_it_holds_and_while_it_slips() {
-    for (way, most) in [(1e-3, 5e-2), (0.1, 0.2)] {
+    for (way, bent) in [(1e-3, 0.05), (3e-2, 0.6)] {
         let (mut worst, mut slip, mut hold) = (0.0_f64, 0, 0);
         rough(way, |contact, s, memory, what| {
             let at = At { modes: memory, ..s.at() };
@@ -273,7 +274,8 @@ fn tangents_of_friction_are_exact_while_it_holds_and_while_it_slips() {
                 hold += 1
             }
             let error = check_tangent(contact, &nodes(), &at, Width::One);
-            // the normal turns the directions in which a stretch counts, which is left out: small as the stretch is
+            // left out is how the normal turns the directions in which a stretch counts: small as the stretch is
+            let most = if what.starts_with("Plane") && !what.contains("Beside") { 1e-5 } else { bent };
             assert!(error < most, "{error:e}: {what}");
             worst = worst.max(error);
         });
@@ -282,13 +284,13 @@ fn tangents_of_friction_are_exact_while_it_holds_and_while_it_slips() {
 }
 
 #[test]
-fn friction_stores_and_heats_what_it_takes() {
+fn what_friction_takes_up_is_told() {
     rough(0.02, |contact, s, memory, what| {
         let nodes = nodes();
         let at = At { modes: memory, ..s.at() };
         let mut shown = Vec::new();
         contact.observe(&at, &mut shown);
-        if shown[7] > 0.0 {
+        if shown[3] == 0.0 {
             return;
         }
         let (r, _) = dense(contact, &nodes, &at, Weights::default(), Width::One);
@@ -300,10 +302,8 @@ fn friction_stores_and_heats_what_it_takes() {
             vec![contact.energy(&At { q: &q, ..at }).potential]
         })[0];
         let lost = contact.power(&at).dissipated;
-        assert!(lost >= 0.0, "{what}");
-        // the normal turns
-        let size = work.abs().max(stored.abs()).max(1.0);
-        assert!((work - stored - lost).abs() < 2e-2 * size, "{work} is not {stored} + {lost}: {what}");
+        let size = work.abs().max(stored.abs()).max(0.1);
+        assert!((work - stored - lost).abs() < 1e-6 * size, "{work} is not {stored} + {lost}: {what}");
     });
 }
 

@@ -57,6 +57,9 @@ impl Contact {
 
     /// What was on one side of the shape before a step and is on the other behind it, through the shape.
     pub(super) fn passed(&self, before: &At<'_>, after: &At<'_>) -> Option<String> {
+        if let Shape::Plane = self.fixed.shape {
+            return None;
+        }
         let frames = [self.fixed.frame(before), self.fixed.frame(after)];
         let place = |held: &Held| {
             [(&frames[0], before), (&frames[1], after)].map(|(f, at)| self.fixed.inside(f, &held.x(at)))
@@ -66,6 +69,10 @@ impl Contact {
         let mut through = |held: &Held, radius: f64| {
             let [a, b] = place(held);
             let way = minus(&b, &a);
+            // what isn't deep goes nowhere in less than what is left of its radius
+            if self.fixed.shape.at_least(&a).is_none_or(|gap| gap.distance > size(&way)) {
+                return false;
+            }
             let curve = Cubic([a, way, b, way]);
             found.clear();
             Search::new(&self.fixed.shape, &curve, radius).find(&mut pieces, &mut found);
@@ -79,15 +86,14 @@ impl Contact {
         let mut gone = |group: &Group| match &group.what {
             What::Ball(ball) => through(&ball.held, ball.radius),
             What::Span(span) => {
-                // what is farther away than it is long and has moved is nowhere near
                 let moved = |held: &Held| {
                     let [a, b] = place(held);
                     size(&minus(&a, &b))
                 };
                 let reach = span.line.controls().iter().map(moved).fold(0.0, f64::max);
-                let middle = self.fixed.inside(&frames[1], &span.line.held(0.5).x(after));
-                let long = span.curve(&self.fixed, &frames[1], after).speed();
-                if self.fixed.shape.gap(&middle, span.radius + 0.5 * long + reach).is_none() {
+                // what was farther from the shape than anything has moved, its radius included, is still on its side
+                let curve = span.curve(&self.fixed, &frames[0], before);
+                if Search::new(&self.fixed.shape, &curve, span.radius).room() + span.radius > reach {
                     return false;
                 }
                 let mut places = vec![0.0, 0.25, 0.5, 0.75, 1.0];

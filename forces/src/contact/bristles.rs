@@ -3,18 +3,23 @@
 use super::block::Block;
 use super::friction::{CELLS, Friction, Grip, Hold, MEMORY, Pressed};
 use super::group::{Bristles, Group, Scratch, What};
-use super::seat::{Frame, Seat, minus, rotation};
+use super::seat::{Frame, Seat, minus};
 use super::term::Contact;
 use super::touch::{Pair, Touch};
 use ropewalk_core::held::{Held, three};
-use ropewalk_core::rotation::{times, transposed_times};
-use ropewalk_core::{Assembly, At, V3};
+use ropewalk_core::rotation::{cross, log, then, transposed_times};
+use ropewalk_core::{Assembly, At, Leap, V3};
 
 /// A bristle that holds: where it is on what touches, how that moves, and what it does.
 struct Bristle {
     held: Held,
     pair: Pair,
     hold: Hold,
+}
+
+/// The rotation that undoes one.
+fn back([w, x, y, z]: [f64; 4]) -> [f64; 4] {
+    [w, -x, -y, -z]
 }
 
 impl Contact {
@@ -53,21 +58,14 @@ impl Contact {
         })
     }
 
-    /// A point on what touches, and how it moves against the shape's body.
-    fn pair(&self, held: &Held, frame: &Frame, at: &At<'_>) -> Pair {
-        let s = self.fixed.place(frame, &held.x(at));
-        let (v, carrier) = match *held {
-            Held::Beside { q, v, arm } => {
-                let omega = three(at.v, v + 3);
-                (three(at.v, v), Some(Pair::carried(&frame.r, &rotation(at, q), &arm, &omega, 0.0)))
-            }
-            held => (held.velocity(at), None),
-        };
-        let g = match self.fixed.seat {
-            Seat::Ground => v,
-            Seat::Body { .. } => transposed_times(&frame.r, &minus(&v, &frame.v)),
-        };
-        Pair { r: frame.r, omega: frame.omega, s, g, carrier }
+    /// The rotation of the body that carries a point, as seen from that of the shape.
+    fn turn(&self, held: &Held, at: &At<'_>) -> Option<[f64; 4]> {
+        let Held::Beside { q: carrier, .. } = *held else { return None };
+        let of = |q: usize| [at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]];
+        Some(match self.fixed.seat {
+            Seat::Ground => of(carrier),
+            Seat::Body { q, .. } => then(back(of(q)), of(carrier)),
+        })
     }
 
     /// The bristle of a cell that something presses, if it has taken hold.
@@ -85,12 +83,15 @@ impl Contact {
         if own[0] == 0.0 {
             return None;
         }
-        let held = match group.station(cell) {
-            Held::Beside { q, v, .. } => Held::Beside { q, v, arm: three(own, 4) },
-            held => held,
-        };
-        let pair = self.pair(&held, frame, at);
-        let e = minus(&pair.s, &three(own, 1));
+        let held = group.station(cell);
+        let pair = self.pair(&held, group.radius(), frame, at);
+        let mut e = minus(&pair.s, &three(own, 1));
+        if let Some(turn) = self.turn(&held, at) {
+            // what has rolled off hasn't slipped
+            let before = back([own[4], own[5], own[6], own[7]]);
+            let rolled = cross(&log(then(turn, before)), &pressed.n);
+            (0..3).for_each(|i| e[i] -= group.radius() * rolled[i]);
+        }
         let u = pair.velocity(&pressed.n);
         let axis = self.directed(friction, group, frame, at);
         let hold = friction.hold(&bristles.grip, pressed, &e, &u, axis.as_ref());
@@ -115,13 +116,35 @@ impl Contact {
             if !pressed.settle() {
                 continue;
             }
-            let Some(Bristle { held, pair, hold }) = self.bristle(group, cell, pressed, frame, at, at.modes)
+            let Some(Bristle { held, pair, mut hold }) =
+                self.bristle(group, cell, pressed, frame, at, at.modes)
             else {
                 continue;
             };
+            if hold.slips
+                && out.wants_tangent()
+                && let Some(leap) = out.leap()
+                && let Some(Bristles { grip, .. }) = &group.bristles
+            {
+                let turned = |before: &[f64]| {
+                    let before = At { v: before, ..*at };
+                    let was = self
+                        .pair(&held, group.radius(), &self.fixed.frame(&before), &before)
+                        .velocity(&pressed.n);
+                    hold.turned(grip, &minus(&pair.velocity(&pressed.n), &was), out.weights())
+                };
+                // what slips may have stopped on the way, of which the tangent of slip knows nothing
+                if match leap {
+                    Leap::Predicted => true,
+                    Leap::From(before) => turned(before),
+                } {
+                    hold.stick(grip, &pressed.n);
+                    out.approximates();
+                }
+            }
             let touch = Touch::at_point(pressed.n, hold.f);
-            self.add_force(&held, &pair, &touch, &[hold.by_s, hold.by_u], out, block);
-            if out.wants_tangent() && hold.slips {
+            self.add_force(&held, &pair, &touch, || hold.slopes(), out, block);
+            if out.wants_tangent() && hold.by_normal != [0.0; 3] {
                 block.add_outer(&self.spread(&held, &pair, &pressed.n, &hold.by_normal), &pressed.by);
             }
         }
@@ -173,13 +196,9 @@ impl Contact {
                 }
                 let stretch = self.bristle(group, cell, pressed, &frame, at, memory).map(|b| b.hold.stretch);
                 let held = group.station(cell);
-                let mut s = self.fixed.place(&frame, &held.x(at));
-                if let Held::Beside { q, .. } = held {
-                    // what touches is below the middle, and changes as a body rolls
-                    (0..3).for_each(|i| s[i] -= group.radius() * pressed.n[i]);
-                    let x = times(&frame.r, &s);
-                    let x: V3<f64> = std::array::from_fn(|i| x[i] + frame.x[i] - at.q[q + i]);
-                    memory[own + 4..own + 7].copy_from_slice(&transposed_times(&rotation(at, q), &x));
+                let s = self.fixed.place(&frame, &held.x(at));
+                if let Some(turn) = self.turn(&held, at) {
+                    memory[own + 4..own + 8].copy_from_slice(&turn);
                 }
                 let stretch = stretch.unwrap_or([0.0; 3]);
                 memory[own] = 1.0;

@@ -6,9 +6,11 @@
 //! no cycle wins energy (see the return mapping of plasticity; Simo & Hughes 1998, Computational Inelasticity).
 
 use super::block::MOST;
+use super::touch::Slopes;
 use ropewalk_core::build::{BuildError, not_negative, positive};
+use ropewalk_core::held::delta;
 use ropewalk_core::rotation::M3;
-use ropewalk_core::{V3, dot, quantity};
+use ropewalk_core::{V3, Weights, dot, quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -64,8 +66,8 @@ pub struct Grip {
 
 /// Cells on each slender piece.
 pub(crate) const CELLS: usize = 4;
-/// Numbers that are remembered of a bristle: whether it holds, its place on the shape, and on the body of what touches.
-pub(crate) const MEMORY: usize = 7;
+/// Numbers that are remembered of a bristle: whether it holds, its place on the shape, and how what touches was turned.
+pub(crate) const MEMORY: usize = 8;
 /// What a force may be beyond the limit and still be held: rounding of the limit itself.
 const SLACK: f64 = 1e-7;
 
@@ -102,17 +104,18 @@ impl Pressed {
 pub(crate) struct Hold {
     /// The force on what touches [N].
     pub f: V3<f64>,
+    /// What it would be if the bristle held, however hard it is pulled [N].
+    trial: V3<f64>,
     /// How far it is stretched elastically [m].
     pub stretch: V3<f64>,
     /// Whether its force is that of slip.
     pub slips: bool,
-    /// `∂f/∂s`, `∂f/∂u` and the derivative by the normal force.
-    pub by_s: M3,
+    /// `∂f/∂x`, `∂f/∂u` and the derivative by the normal force.
+    pub by_x: M3,
     pub by_u: M3,
     pub by_normal: V3<f64>,
-    /// What is turned into heat [W], and what is stored [J].
+    /// What it takes up [W], the little that it stores included.
     pub heat: f64,
-    pub stored: f64,
 }
 
 fn along(k: f64, x: &V3<f64>) -> V3<f64> {
@@ -160,7 +163,6 @@ impl Friction {
         let trial: V3<f64> = std::array::from_fn(|i| -k * e[i] - c * u[i]);
         let (g, by) = self.measure(&trial, axis.as_ref());
         let (elastic, _) = self.measure(&along(k, &e), axis.as_ref());
-        let yields = elastic >= pressed.normal * (1.0 - SLACK);
         let stretch = if elastic > pressed.normal { along(pressed.normal / elastic, &e) } else { e };
         let slips = g > pressed.normal * (1.0 + SLACK);
         let (share, f, by_normal) = if slips {
@@ -169,20 +171,34 @@ impl Friction {
         } else {
             (1.0, trial, [0.0; 3])
         };
-        let (mut by_s, mut by_u) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
-        for i in 0..3 {
-            // along the force nothing more comes of a stretch once it slips
-            let turn = |j: usize| -> f64 {
-                let straight = f64::from(u8::from(i == j));
-                if slips { share * (straight - trial[i] * by[j] / g) } else { straight }
-            };
-            let row = across(&[turn(0), turn(1), turn(2)]);
-            by_s[i] = along(-k, &row);
-            by_u[i] = along(-c, &row);
-        }
-        let storing = if yields { 0.0 } else { k * dot(&e, &u) };
-        let heat = -dot(&f, &u) - storing;
-        let stored = 0.5 * k * dot(&stretch, &stretch);
-        Hold { f, stretch, slips, by_s, by_u, by_normal, heat, stored }
+        // along the force nothing more comes of a stretch once it slips
+        let turn = |i: usize, j: usize| {
+            if slips { share * (delta(i, j) - trial[i] * by[j] / g) } else { delta(i, j) }
+        };
+        let by_e: M3 = std::array::from_fn(|i| across(&std::array::from_fn(|j| turn(i, j))));
+        let (by_x, by_u) = (by_e.map(|row| along(-k, &row)), by_e.map(|row| along(-c, &row)));
+        let heat = -dot(&f, &u);
+        Hold { f, trial, stretch, slips, by_x, by_u, by_normal, heat }
+    }
+}
+
+impl Hold {
+    pub(crate) fn slopes(&self) -> Slopes {
+        Slopes { by_s: [[0.0; 3]; 3], by_x: self.by_x, by_u: self.by_u }
+    }
+
+    /// Whether the force that it would have if it stuck has turned round since an iteration at which its place moved less
+    /// by `du`, where the iteration moves places and velocities by these weights.
+    pub(crate) fn turned(&self, grip: &Grip, du: &V3<f64>, w: Weights) -> bool {
+        let more = grip.stiffness * w.q / w.v + grip.damping;
+        dot(&self.trial, &self.trial) + more * dot(&self.trial, du) < 0.0
+    }
+
+    /// Takes it for one that holds, however hard it is pulled.
+    pub(crate) fn stick(&mut self, grip: &Grip, n: &V3<f64>) {
+        let across =
+            |k: f64| std::array::from_fn(|i| std::array::from_fn(|j| k * (delta(i, j) - n[i] * n[j])));
+        (self.by_x, self.by_u) = (across(-grip.stiffness), across(-grip.damping));
+        (self.f, self.by_normal) = (self.trial, [0.0; 3]);
     }
 }

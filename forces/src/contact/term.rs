@@ -137,15 +137,14 @@ impl Contact {
         }
     }
 
+    /// A ball on what touches, and how it moves against the shape's body.
     #[inline]
-    pub(super) fn touch(&self, ball: &Ball, frame: &Frame, at: &At<'_>) -> Option<(Touch, Pair)> {
-        let s = self.fixed.place(frame, &ball.held.x(at));
-        let gap = self.fixed.gap(&s, ball.radius)?;
-        let (v, carrier) = match ball.held {
+    pub(super) fn pair(&self, held: &Held, radius: f64, frame: &Frame, at: &At<'_>) -> Pair {
+        let s = self.fixed.place(frame, &held.x(at));
+        let (v, carrier) = match *held {
             Held::Beside { q, v, arm } => {
                 let omega = three(at.v, v + 3);
-                let carrier = Pair::carried(&frame.r, &rotation(at, q), &arm, &omega, ball.radius);
-                (three(at.v, v), Some(carrier))
+                (three(at.v, v), Some(Pair::carried(&frame.r, &rotation(at, q), &arm, &omega, radius)))
             }
             held => (held.velocity(at), None),
         };
@@ -153,7 +152,13 @@ impl Contact {
             Seat::Ground => v,
             Seat::Body { .. } => transposed_times(&frame.r, &minus(&v, &frame.v)),
         };
-        let pair = Pair { r: frame.r, omega: frame.omega, s, g, carrier };
+        Pair { r: frame.r, omega: frame.omega, s, g, carrier }
+    }
+
+    #[inline]
+    pub(super) fn touch(&self, ball: &Ball, frame: &Frame, at: &At<'_>) -> Option<(Touch, Pair)> {
+        let gap = self.fixed.gap(&self.fixed.place(frame, &ball.held.x(at)), ball.radius)?;
+        let pair = self.pair(&ball.held, ball.radius, frame, at);
         let u = pair.velocity(&gap.normal);
         let k = self.softened(ball, at);
         Some((Touch::new(&self.law, gap, ball.radius, k, &u), pair))
@@ -241,14 +246,21 @@ impl Contact {
         cells: &mut [Pressed],
     ) {
         let Some((touch, pair)) = self.touch(ball, frame, at) else { return };
-        self.add_force(&ball.held, &pair, &touch, &touch.slopes(), out, block);
+        self.add_force(&ball.held, &pair, &touch, || touch.slopes(), out, block);
         let Some(cell) = cells.get_mut(ball.cell) else { return };
         cell.add(touch.normal, &touch.gap.normal);
         if out.wants_tangent() {
             let w = out.weights();
             let by = -(w.q * touch.by_depth + w.v * touch.by_rate);
-            let force = self.spread(&ball.held, &pair, &touch.gap.normal, &touch.gap.normal);
-            cell.by.iter_mut().zip(&force).for_each(|(sum, f)| *sum += by * f);
+            let n = &touch.gap.normal;
+            if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
+                for (sum, weight) in cell.by.chunks_exact_mut(3).zip(weights(&ball.held)) {
+                    (0..3).for_each(|i| sum[i] += by * weight * n[i]);
+                }
+            } else {
+                let force = self.spread(&ball.held, &pair, n, n);
+                cell.by.iter_mut().zip(&force).for_each(|(sum, f)| *sum += by * f);
+            }
         }
     }
 
@@ -258,7 +270,7 @@ impl Contact {
         held: &Held,
         pair: &Pair,
         touch: &Touch,
-        slopes: &Slopes,
+        slopes: impl FnOnce() -> Slopes,
         out: &mut Assembly<'_>,
         block: &mut Block,
     ) {
@@ -268,8 +280,9 @@ impl Contact {
                 (0..3).for_each(|i| out.add(held.dof(3 * a + i), -w * touch.f[i]));
             }
             if out.wants_tangent() {
-                let [x, v] = slopes;
-                let d = std::array::from_fn(|i| std::array::from_fn(|j| w.q * x[i][j] + w.v * v[i][j]));
+                let Slopes { by_s, by_x, by_u } = slopes();
+                let entry = |i: usize, j: usize| w.q * (by_s[i][j] + by_x[i][j]) + w.v * by_u[i][j];
+                let d = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
                 block.add_point(held, &d);
             }
             return;
@@ -281,7 +294,7 @@ impl Contact {
             (0..6).for_each(|i| out.add(v + i, -force[n + i]));
         }
         if out.wants_tangent() {
-            block.add_pair(held, &pair.derivative(touch, slopes, w));
+            block.add_pair(held, &pair.derivative(touch, &slopes(), w));
         }
     }
 
@@ -343,7 +356,6 @@ impl Term for Contact {
     fn energy(&self, at: &At<'_>) -> Energy {
         let mut potential = 0.0;
         self.each(at, |ball, touch, _| potential += self.law.stored(ball.k, touch.depth));
-        self.each_bristle(at, |hold, _| potential += hold.stored);
         Energy { potential, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
@@ -351,6 +363,9 @@ impl Term for Contact {
         self.each(at, |_, t, _| dissipated += (t.normal - t.elastic) * t.rate);
         self.each_bristle(at, |hold, _| dissipated += hold.heat);
         Power { dissipated, ..Power::default() }
+    }
+    fn kinked(&self) -> bool {
+        self.law.friction.is_some()
     }
     fn remembers(&self) -> bool {
         self.law.friction.is_some()

@@ -35,8 +35,15 @@ fn scaled(k: f64, a: &V3<f64>) -> V3<f64> {
     a.map(|a| k * a)
 }
 
-/// `∂f/∂s` and `∂f/∂u`
-pub(crate) type Slopes = [M3; 2];
+/// The derivatives of a force in the axes of the shape's body.
+pub(crate) struct Slopes {
+    /// By the place of the centre of the ball.
+    pub by_s: M3,
+    /// By how far the ball has moved where it touches.
+    pub by_x: M3,
+    /// By its velocity there.
+    pub by_u: M3,
+}
 
 impl Touch {
     /// The force where the ball of this radius and stiffness has the velocity `u` at its contact point.
@@ -90,7 +97,7 @@ impl Touch {
                 }
             }
         }
-        [x, v]
+        Slopes { by_s: x, by_x: [[0.0; 3]; 3], by_u: v }
     }
 }
 
@@ -163,9 +170,9 @@ impl Pair {
     /// `δu = δg + δΩ × (α - ρ n) + Ω × (δα - ρ H δs) - ω × δc - δω × c`.
     pub fn derivative(&self, touch: &Touch, slopes: &Slopes, w: Weights) -> [[f64; PAIR]; PAIR] {
         let (lever, contact) = self.levers(&touch.gap.normal);
-        let [by_s, by_u] = slopes;
+        let Slopes { by_s, by_x, by_u } = slopes;
         let mut all = [[0.0; PAIR]; PAIR];
-        // `ds`, `dv`: the change of place, and of velocity per rate; `psi`, `theta`: the relative and the body's rotation
+        // `ds`, `dv`: how the centre moves, and what touches there; `psi`, `theta`: the relative and the body's rotation
         let mut column = |j: usize, ds: V3<f64>, dv: V3<f64>, psi: V3<f64>, theta: V3<f64>| {
             let (mut bent, mut du) = ([0.0; 3], [0.0; 3]);
             let mut arm = [0.0; 3];
@@ -177,8 +184,9 @@ impl Pair {
             let moved = add(&ds, &bent);
             du = minus(&du, &add(&cross(&theta, &self.g), &cross(&self.omega, &moved)));
             let f: V3<f64> = {
-                let (x, turning, rate) = (times(by_s, &ds), times(by_u, &du), times(by_u, &dv));
-                std::array::from_fn(|i| w.q * (x[i] + turning[i]) + w.v * rate[i])
+                let (x, turning) = (times(by_s, &ds), times(by_u, &du));
+                let (moved, rate) = (times(by_x, &dv), times(by_u, &dv));
+                std::array::from_fn(|i| w.q * (x[i] + moved[i] + turning[i]) + w.v * rate[i])
             };
             let pull = times(&self.r, &add(&f, &scaled(w.q, &cross(&theta, &touch.f))));
             let back = minus(&scaled(w.q, &cross(&touch.f, &moved)), &cross(&contact, &f));
