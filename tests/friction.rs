@@ -10,7 +10,7 @@ use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::{End, Quantity, Scene, Simulation};
 use ropewalk_elements::rigid_body::HullSpec;
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
-use ropewalk_forces::contact::{ContactSpec, Damping, Friction, ShapeSpec};
+use ropewalk_forces::contact::{ContactSpec, Damping, Friction, Leaving, ShapeSpec};
 use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
 use std::f64::consts::{PI, TAU};
 
@@ -192,7 +192,7 @@ fn a_rope_on_a_drum_slips_where_it_must_and_holds_where_it_can() {
     let section = Section { diameter: d, axial_damping: 5e-3, ..Section::new(0.05, 1e5, 0.0) };
     let mut rope = CableSpec::straight("rope", [0.0; 3], [1.0, 0.0, 0.0], 60, section);
     // as deep in the drum as it will be
-    let k = 1e8;
+    let k = 3e7;
     (rope.points, rope.curve) = (Vec::new(), over(radius - 100.0 / (k * radius), 0.3));
     rope.tension = Some(100.0);
     let times = (0..7).map(f64::from).collect();
@@ -206,7 +206,7 @@ fn a_rope_on_a_drum_slips_where_it_must_and_holds_where_it_can() {
         .force(ContactSpec {
             stiffness_per_length: k,
             friction: Some(Friction::new(mu)),
-            damping: Damping::HuntCrossley(0.5),
+            damping: Damping::KelvinVoigt { time: 1e-3, until: Leaving::Force },
             ..ContactSpec::new("drum", shape)
         });
     let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
@@ -230,6 +230,7 @@ fn a_rope_on_a_drum_slips_where_it_must_and_holds_where_it_can() {
             }
         }
         println!("{t}: {worst:.1e}, {:?}", s.work.counts);
+        // the drum gives way under the load by as much as stretches the rope by less than a hundredth
         assert!(worst < 1e-2, "{t}: {worst}");
     }
 }
