@@ -590,10 +590,10 @@ fn keys_that_are_gone_say_what_to_do() {
     let message = ropewalk::read(&file).expect_err("refused").to_string();
     says(&message, &["`per_element` is gone", "Leave it out"]);
     fs::write(&file, text.replace("per_element = 3", "slip_speed = 1e-3")).unwrap();
-    let message = ropewalk::read(&file).err().expect("refused").to_string();
+    let message = ropewalk::read(&file).expect_err("refused").to_string();
     says(&message, &["`slip_speed` is gone", "`friction = { mu = 0.3, elastic_slip"]);
     fs::write(&file, text.replace("per_element = 3", "friction = \"rough\"")).unwrap();
-    let message = ropewalk::read(&file).err().expect("refused").to_string();
+    let message = ropewalk::read(&file).expect_err("refused").to_string();
     says(&message, &["friction is a coefficient, or `{ mu = 0.3"]);
     let good = "friction = { mu = 0.3, across = 0.2, elastic_slip = \"0.1 mm\" }";
     fs::write(&file, text.replace("per_element = 3", good)).unwrap();
