@@ -219,19 +219,20 @@ fn a_rope_on_a_drum_slips_where_it_must_and_holds_where_it_can() {
     for t in [2.0, 4.0, 6.0] {
         s.advance(t, f64::INFINITY, &mut ()).unwrap_or_else(|e| panic!("{e}"));
         let part = s.model.part("rope").unwrap();
-        let mut worst = 0.0_f64;
+        let (mut worst, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
         for w in part.mesh().windows(2) {
             let mid = 0.5 * (w[0] + w[1]);
             let x = common::place(&s.model, &s.state, "rope", mid);
             let angle = x[2].atan2(x[0]);
             if x[2] > 0.0 && angle < PI - 0.1 {
                 let tension = part.observe(Quantity::Tension, mid, &s.state.at()).unwrap();
-                worst = worst.max((tension / right(t, angle) - 1.0).abs());
+                let off = (tension / right(t, angle) - 1.0).abs();
+                (worst, sum, count) = (worst.max(off), sum + off, count + 1.0);
             }
         }
-        println!("{t}: {worst:.1e}, {:?}", s.work.counts);
-        // the drum gives way under the load by as much as stretches the rope by less than a hundredth
-        assert!(worst < 1.5e-2, "{t}: {worst}");
+        println!("{t}: {worst:.1e}, mean {:.1e}, {:?}", sum / count, s.work.counts);
+        // elastic slip rounds the corners off
+        assert!(worst < 3e-2 && sum / count < 5e-3, "{t}: {worst}");
     }
 }
 
