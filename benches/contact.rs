@@ -7,7 +7,7 @@ use ropewalk::core::integrator::{Options, Stepping};
 use ropewalk::core::{Model, Simulation};
 use ropewalk::elements::{CableSpec, RigidBodySpec, Section};
 use ropewalk::forces::GravitySpec;
-use ropewalk::forces::contact::{ContactSpec, Damping, ShapeSpec};
+use ropewalk::forces::contact::{ContactSpec, Damping, Friction, ShapeSpec};
 use ropewalk::{MarkerRef, Scene};
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -53,9 +53,9 @@ fn scene(case: &str) -> Result<Scene> {
         "smooth" => contact.damping = Damping::None,
         "far" => contact.marker = MarkerRef::Point([0.0, 0.0, -100.0]),
         "damped" => {}
-        "rough" => contact.friction = 0.3,
+        "rough" => contact.friction = Some(Friction::new(0.3)),
         "turning" => {
-            contact.friction = 0.3;
+            contact.friction = Some(Friction::new(0.3));
             contact.marker = "wheel".into();
             scene.element(RigidBodySpec::new("wheel", [0.0; 3], 20.0, [2.0; 3])).constraint(RevoluteSpec {
                 name: "axle".into(),

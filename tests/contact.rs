@@ -9,7 +9,7 @@ use ropewalk_core::integrator::{Options, StepReport, Stepping};
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{End, Model, Observer, Quantity, Scene, Simulation, State};
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
-use ropewalk_forces::contact::{ContactSpec, Damping, Leaving, Overlap, ShapeSpec};
+use ropewalk_forces::contact::{ContactSpec, Damping, Friction, Leaving, Overlap, ShapeSpec};
 use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
 use std::f64::consts::PI;
 use std::fs;
@@ -124,7 +124,7 @@ fn tension_along_a_slipping_rope_falls_exponentially() {
         .constraint(DrivingSpec::new("pull", "rope.end", "winch"))
         .force(PointForceSpec::new("rope.start", [0.0, 0.0, -pull], TimeFunction::default()))
         .force(ContactSpec {
-            friction: mu,
+            friction: Some(Friction::new(mu)),
             damping: Damping::HuntCrossley(0.5),
             ..drum(radius - d / 2.0, 1e6)
         });
@@ -164,7 +164,7 @@ fn a_cable_that_lies_on_the_floor_stays_there() {
         .force(GravitySpec::default())
         .force(ContactSpec {
             stiffness_per_length: k,
-            friction: 0.5,
+            friction: Some(Friction::new(0.5)),
             damping: Damping::HuntCrossley(0.1),
             ..ContactSpec::new("floor", ShapeSpec::Plane { normal: [0.0, 0.0, 1.0] })
         });
@@ -219,7 +219,7 @@ fn fixed_steps_pass_from_slip_to_stick() {
     scene
         .element(ball([0.0, 0.0, R - G / 1e6], [2.0, 0.0, 0.0]))
         .force(GravitySpec::default())
-        .force(ContactSpec { friction: 0.3, ..floor(1e6) });
+        .force(ContactSpec { friction: Some(Friction::new(0.3)), ..floor(1e6) });
     let mut s = start(&scene, &fixed(5e-3), 1.0);
     go(&mut s, 1.0, &mut ());
     near(s.state.q[0], 0.679_578_661_230_037_4, 0.01);
@@ -229,10 +229,13 @@ fn fixed_steps_pass_from_slip_to_stick() {
     // a rope that is let go over a drum, slipping here and sticking there
     let section = Section { diameter: 0.02, axial_damping: 1e-3, ..Section::new(1.0, 1e6, 0.5) };
     let mut scene = Scene::new();
-    scene
-        .element(rope(over(0.51, 1.0, 1.2), 100, section))
-        .force(GravitySpec::default())
-        .force(ContactSpec { friction: 0.3, damping: Damping::HuntCrossley(0.3), ..drum(0.5, 1e6) });
+    scene.element(rope(over(0.51, 1.0, 1.2), 100, section)).force(GravitySpec::default()).force(
+        ContactSpec {
+            friction: Some(Friction::new(0.3)),
+            damping: Damping::HuntCrossley(0.3),
+            ..drum(0.5, 1e6)
+        },
+    );
     let mut s = start(&scene, &fixed(1e-3), 0.2);
     go(&mut s, 0.2, &mut ());
     let counts = s.work.counts;
@@ -265,9 +268,7 @@ fn a_drum_turns_with_the_rope_that_it_carries() {
         .force(ContactSpec {
             on: vec!["rope".into()],
             marker: "wheel".into(),
-            friction: 1.0,
-            // a light rope that sticks hard makes steps small
-            slip_speed: 1e-3,
+            friction: Some(Friction::new(1.0)),
             damping: Damping::KelvinVoigt { time: 1e-3, until: Leaving::Force },
             ..drum(radius - d / 2.0, 1e6)
         });
@@ -296,7 +297,7 @@ fn a_ball_that_slides_begins_to_roll() {
     scene.element(body).force(GravitySpec::default()).force(ContactSpec {
         at: vec!["ball.com".into()],
         radius: Some(radius),
-        friction: mu,
+        friction: Some(Friction::new(mu)),
         ..floor(k)
     });
     let mut s = start(&scene, &controlled(1e-5), 0.5);
@@ -322,7 +323,7 @@ fn a_body_rests_on_its_hull() {
         radius: None,
         stiffness: 0.0,
         stiffness_per_length: k,
-        friction: 0.3,
+        friction: Some(Friction::new(0.3)),
         ..floor(k)
     });
     let mut s = start(&scene, &fixed(1e-3), 1.0);
@@ -358,9 +359,7 @@ fn what_energy_misses_falls_with_the_square_of_the_step() {
             ContactSpec {
                 exponent: 1.5,
                 damping: Damping::HuntCrossley(0.4),
-                friction: 0.1,
-                // friction stays in its smooth range
-                slip_speed: 0.1,
+                friction: Some(Friction::new(0.1)),
                 ..floor(k)
             },
         );
@@ -430,7 +429,7 @@ fn meshes_from_files_act_like_the_shape_that_they_are() {
         scene
             .element(ball([0.3, 0.1, 0.7], [0.5, 0.0, 0.0]))
             .force(GravitySpec::default())
-            .force(ContactSpec { friction: 0.1, ..contact });
+            .force(ContactSpec { friction: Some(Friction::new(0.1)), ..contact });
         let mut s = start(&scene, &fixed(1e-4), 0.5);
         go(&mut s, 0.5, &mut ());
         s.state.q.clone()
@@ -536,7 +535,10 @@ fn contacts_that_make_no_sense_are_refused() {
     says(&refused(floor(-1.0)), &["`stiffness` must not be negative"]);
     says(&refused(ContactSpec { on: vec!["bell".into()], ..floor(1e6) }), &["no part `bell`", "`ball`"]);
     says(&refused(ContactSpec { exponent: 0.5, ..floor(1e6) }), &["`exponent` must be from 1 to 4"]);
-    says(&refused(ContactSpec { slip_speed: 0.0, ..floor(1e6) }), &["`slip_speed` must be positive"]);
+    let rough = |friction| ContactSpec { friction: Some(friction), ..floor(1e6) };
+    says(&refused(rough(Friction::new(-0.1))), &["`friction` must not be negative"]);
+    let loose = Friction { elastic_slip: Some(0.0), ..Friction::new(0.3) };
+    says(&refused(rough(loose)), &["`elastic_slip` of friction must be positive"]);
     says(
         &refused(ContactSpec { marker: "ball".into(), ..floor(1e6) }),
         &["on the ground or on a rigid body"],
@@ -587,6 +589,15 @@ fn keys_that_are_gone_say_what_to_do() {
     fs::write(&file, text).unwrap();
     let message = ropewalk::read(&file).expect_err("refused").to_string();
     says(&message, &["`per_element` is gone", "Leave it out"]);
+    fs::write(&file, text.replace("per_element = 3", "slip_speed = 1e-3")).unwrap();
+    let message = ropewalk::read(&file).expect_err("refused").to_string();
+    says(&message, &["`slip_speed` is gone", "`friction = { mu = 0.3, elastic_slip"]);
+    fs::write(&file, text.replace("per_element = 3", "friction = \"rough\"")).unwrap();
+    let message = ropewalk::read(&file).expect_err("refused").to_string();
+    says(&message, &["friction is a coefficient, or `{ mu = 0.3"]);
+    let good = "friction = { mu = 0.3, across = 0.2, elastic_slip = \"0.1 mm\" }";
+    fs::write(&file, text.replace("per_element = 3", good)).unwrap();
+    ropewalk::read(&file).unwrap_or_else(|e| panic!("{e}"));
 }
 
 #[test]

@@ -240,6 +240,15 @@ impl Builder {
         self.start.modes.len() - 1
     }
 
+    /// Adds modes for what a term remembers, at first all 0. Returns the place of the first in
+    /// [`State::modes`](crate::State::modes).
+    pub fn memory(&mut self, name: &str, size: usize) -> usize {
+        let first = self.start.modes.len();
+        self.switches.modes.extend(std::iter::repeat_n(name.to_string(), size));
+        self.start.modes.resize(first + size, 0.0);
+        first
+    }
+
     /// Adds an event that every run of the model watches for.
     pub fn event(&mut self, event: impl Event + 'static) {
         self.switches.events.push(Arc::new(event));

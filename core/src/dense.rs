@@ -38,7 +38,7 @@ impl<'a> Dense<'a> {
         Dense { model, from, to, d, v, a, derived }
     }
 
-    /// Sets time, positions, velocities, both accelerations and multipliers of `out` to those at time `t` of the step.
+    /// Sets time, positions, velocities, both accelerations, multipliers and modes of `out` to those at time `t` of the step.
     pub fn at(&self, t: f64, out: &mut State) {
         let (a, b) = (self.from, self.to);
         let h = b.t - a.t;
@@ -82,6 +82,8 @@ impl<'a> Dense<'a> {
             out.lambda[i] = a.lambda[i] + x * (b.lambda[i] - a.lambda[i]);
         }
         retract(self.model.nodes(), &a.q, &d, &mut out.q);
+        // modes change at the ends of steps
+        out.modes.clone_from(&a.modes);
         out.t = t;
     }
 }

@@ -61,6 +61,8 @@ pub struct Model {
     driven: Vec<(usize, usize, usize)>,
     /// Whether a term has a kink in velocities.
     kinked: bool,
+    /// Terms that remember something.
+    remembering: Vec<usize>,
 }
 
 /// Where a run starts: configuration and velocities as the scene gives them.
@@ -148,6 +150,7 @@ impl Model {
         let watchful = (0..terms.len()).filter(|&k| terms[k].foresees()).collect();
         let timed = (0..terms.len()).filter(|&k| terms[k].timed()).collect();
         let moving = (0..constraints.len()).filter(|&c| constraints[c].moves()).collect();
+        let remembering = (0..terms.len()).filter(|&k| terms[k].remembers()).collect();
         let kinked = terms.iter().any(|t| t.kinked());
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
         let driven = constraints.iter().enumerate();
@@ -180,6 +183,7 @@ impl Model {
             moving,
             driven,
             kinked,
+            remembering,
         }
     }
 
@@ -640,6 +644,23 @@ impl Model {
             Some(part) => format!("{part}, {what}"),
             None => format!("node {k}, {what}"),
         }
+    }
+
+    /// Lets terms remember what a state that was accepted has changed.
+    pub(crate) fn remember(&self, state: &mut State) {
+        if self.remembering.is_empty() {
+            return;
+        }
+        let mut memory = std::mem::take(&mut state.modes);
+        for &k in &self.remembering {
+            self.terms[k].remember(&state.at(), &mut memory);
+        }
+        state.modes = memory;
+    }
+
+    /// What has gone where it can't have gone in a step.
+    pub(crate) fn passes(&self, before: &At<'_>, after: &At<'_>) -> Option<String> {
+        self.watchful.iter().find_map(|&k| self.terms[k].passes(before, after))
     }
 
     /// What one should know of its terms at the end of a run.

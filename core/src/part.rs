@@ -166,6 +166,10 @@ pub trait Part: Send + Sync {
     }
     /// Unstretched length, or size [m].
     fn length(&self) -> f64;
+    /// Its mass [kg]; 0 if it doesn't tell.
+    fn mass(&self) -> f64 {
+        0.0
+    }
     /// Unstretched length now [m]: what winches have fed out included.
     fn length_now(&self, _at: &At<'_>) -> f64 {
         self.length()

@@ -281,6 +281,10 @@ impl Simulation {
             let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left);
             let report = report.map_err(|e| self.suspect(e))?;
             self.check_constraints()?;
+            if let Some(why) = self.model.passes(&self.previous.at(), &self.state.at()) {
+                self.turn_back(report.h, why)?;
+                continue;
+            }
             self.count_cut(report.h, left);
             if same(self.state.t, end) {
                 self.state.t = end;
@@ -424,6 +428,7 @@ impl Simulation {
         while let Some((event, t)) = self.next_event(from) {
             Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
             self.scratch.control.clone_from(&self.state.control);
+            self.model.remember(&mut self.scratch);
             for (k, (other, value)) in self.events.iter_mut().enumerate() {
                 let (before, now) = (*value, other.value(&self.model, &self.scratch));
                 // what came at the same instant is still due
@@ -442,6 +447,7 @@ impl Simulation {
             std::mem::swap(&mut self.state, &mut self.scratch);
             return Some(Fired { event, action, after, changed });
         }
+        self.model.remember(&mut self.state);
         for (event, value) in &mut self.events {
             *value = event.value(&self.model, &self.state);
         }

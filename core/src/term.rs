@@ -142,6 +142,19 @@ pub trait Term: Send + Sync {
     fn kinked(&self) -> bool {
         false
     }
+    /// Whether it remembers something in [`State::modes`](crate::State::modes), such as where dry friction took hold: only
+    /// then is [`Term::remember`] called.
+    fn remembers(&self) -> bool {
+        false
+    }
+    /// Brings what it remembers up to date at a state that was accepted: `memory` is all of the modes, as they were at the
+    /// start of the step, and `at` has none.
+    fn remember(&self, _at: &At<'_>, _memory: &mut [f64]) {}
+    /// What has gone where it can't have gone in a step between two states, such as through a wall; nothing if all is well.
+    /// The step is then repeated smaller, and if that doesn't help the run ends with these words.
+    fn passes(&self, _before: &At<'_>, _after: &At<'_>) -> Option<String> {
+        None
+    }
     /// What one should know of it at the end of a run, in a sentence: such as that a mesh is too coarse for it.
     fn remark(&self, _at: &At<'_>) -> Option<String> {
         None
@@ -163,16 +176,16 @@ pub trait Term: Send + Sync {
     fn observe(&self, _at: &At<'_>, _out: &mut Vec<f64>) {}
 }
 
-/// Velocities that an evaluation of Newton's method comes from.
+/// What an evaluation of Newton's method comes from.
 ///
-/// Where a kink lies between them and the present ones, the tangent on this side of it says nothing about the other: a
-/// term may then add the force that leads to the kink instead of its own, and say so with [`Assembly::approximates`].
+/// Where a kink may lie in between, the tangent on this side of it says nothing about the other: a term may then add the
+/// force and the tangent that lead to the kink instead of its own, and say so with [`Assembly::approximates`].
 #[derive(Clone, Copy, Debug)]
-pub struct Leap<'a> {
-    /// The velocities before [m/s].
-    pub v: &'a [f64],
-    /// Whether they are those at the start of the step, and the present ones predicted; else both are iterates.
-    pub predicted: bool,
+pub enum Leap<'a> {
+    /// A prediction from the start of the step.
+    Predicted,
+    /// The iterate with these velocities.
+    From(&'a [f64]),
 }
 
 /// Where the terms add: the residual and, if wanted, the entries of the iteration matrix.

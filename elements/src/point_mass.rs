@@ -313,6 +313,9 @@ impl Part for Body {
     fn kind(&self) -> &'static str {
         "point_mass"
     }
+    fn mass(&self) -> f64 {
+        self.spec.mass
+    }
     fn marker(&self, spot: &Spot) -> Result<Marker, String> {
         match spot {
             Spot::Named(n) if n.is_empty() => Ok(self.marker),

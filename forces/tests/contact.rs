@@ -9,7 +9,9 @@ use ropewalk_core::testing::{check_tangent, dense, difference};
 use ropewalk_core::{
     At, ContactPoint, ContactSpan, Marker, Node, NodeId, NodeKind, SpanLine, Term, V3, Weights, Width,
 };
-use ropewalk_forces::contact::{Contact, ContactLaw, Damping, Leaving, Mesh, Shape, Soup, Stiffness};
+use ropewalk_forces::contact::{
+    Contact, ContactLaw, Damping, Friction, Grip, Leaving, Mesh, Shape, Soup, Stiffness,
+};
 use std::sync::Arc;
 
 const RADIUS: f64 = 0.4;
@@ -146,10 +148,7 @@ fn laws() -> Vec<ContactLaw> {
         ContactLaw { exponent: 1.5, ..plain },
         ContactLaw { damping: Damping::HuntCrossley(0.2), ..plain },
         ContactLaw { damping: Damping::KelvinVoigt { time: 0.05, until: Leaving::Depth }, ..plain },
-        // slip below and above the speed of full friction
-        ContactLaw { friction: 0.4, slip_speed: 30.0, ..plain },
-        ContactLaw { friction: 0.4, slip_speed: 0.05, ..plain },
-        ContactLaw { friction: 0.4, slip_speed: 30.0, exponent: 1.5, damping: Damping::HuntCrossley(0.2) },
+        ContactLaw { exponent: 1.5, damping: Damping::HuntCrossley(0.2), ..plain },
     ]
 }
 
@@ -234,19 +233,89 @@ fn power_and_energy_add_up_to_what_the_force_does() {
             let lost = contact.power(&at).dissipated;
             let size = work.abs().max(stored.abs()).max(1.0);
             assert!((work - stored - lost).abs() < 1e-8 * size, "{work} is not {stored} + {lost}: {what}");
-            if law.friction > 0.0 && law.damping == Damping::None {
-                assert!(lost > 0.0, "{what}");
-            }
         });
     }
 }
 
+/// The same with bristles that have taken hold: the contact, the numbers before and after what touches has moved by
+/// about `way`, and what the bristles remember.
+fn rough(way: f64, mut see: impl FnMut(&Contact, &Numbers, &[f64], &str)) {
+    let friction = Friction { across: Some(0.25), ..Friction::new(0.4) };
+    let law = ContactLaw { friction: Some(friction), ..ContactLaw::default() };
+    let grip = Grip { stiffness: 1e3, damping: 10.0 };
+    let mut r = Random(41);
+    scenes(law, |contact, s, what| {
+        let contact = contact.clone().with_grips(&[grip], 0);
+        let mut memory = vec![0.0; Contact::memory(1, 0)];
+        contact.remember(&s.at(), &mut memory);
+        assert!(memory[0] == 1.0, "{what}");
+        let d = r.list(s.v.len(), way);
+        let v = s.v.iter().map(|v| way * v).collect();
+        let mut moved = Numbers { q: s.q.clone(), v, a: s.a.clone() };
+        ropewalk_core::retract(&nodes(), &s.q, &d, &mut moved.q);
+        see(&contact, &moved, &memory, what);
+    });
+}
+
+#[test]
+fn tangents_of_friction_are_exact_while_it_holds_and_while_it_slips() {
+    for (way, bent) in [(1e-3, 0.05), (3e-2, 0.6)] {
+        let (mut worst, mut slip, mut hold) = (0.0_f64, 0, 0);
+        rough(way, |contact, s, memory, what| {
+            let at = At { modes: memory, ..s.at() };
+            let mut shown = Vec::new();
+            contact.observe(&at, &mut shown);
+            if shown[3] == 0.0 {
+                return;
+            }
+            if shown[7] > 0.0 {
+                slip += 1
+            } else {
+                hold += 1
+            }
+            let error = check_tangent(contact, &nodes(), &at, Width::One);
+            // left out is how the normal turns the directions in which a stretch counts: small as the stretch is
+            let most = if what.starts_with("Plane") && !what.contains("Beside") { 1e-5 } else { bent };
+            assert!(error < most, "{error:e}: {what}");
+            worst = worst.max(error);
+        });
+        println!("{way}: {worst:.1e}, {slip} slip, {hold} hold");
+    }
+}
+
+#[test]
+fn what_friction_takes_up_is_told() {
+    rough(0.02, |contact, s, memory, what| {
+        let nodes = nodes();
+        let at = At { modes: memory, ..s.at() };
+        let mut shown = Vec::new();
+        contact.observe(&at, &mut shown);
+        if shown[3] == 0.0 {
+            return;
+        }
+        let (r, _) = dense(contact, &nodes, &at, Weights::default(), Width::One);
+        let work: f64 = r.iter().zip(&s.v).map(|(r, v)| r * v).sum();
+        let stored = difference(|h| {
+            let mut q = s.q.clone();
+            let d: Vec<f64> = s.v.iter().map(|v| h * v).collect();
+            ropewalk_core::retract(&nodes, &s.q, &d, &mut q);
+            vec![contact.energy(&At { q: &q, ..at }).potential]
+        })[0];
+        let lost = contact.power(&at).dissipated;
+        let size = work.abs().max(stored.abs()).max(0.1);
+        assert!((work - stored - lost).abs() < 1e-6 * size, "{work} is not {stored} + {lost}: {what}");
+    });
+}
+
 #[test]
 fn both_sides_get_opposite_forces_and_moments() {
-    let law = ContactLaw { friction: 0.3, slip_speed: 0.1, ..ContactLaw::default() };
-    scenes(law, |contact, s, what| {
+    rough(0.05, |contact, s, memory, what| {
         let nodes = nodes();
-        let (r, _) = dense(contact, &nodes, &s.at(), Weights::default(), Width::One);
+        let at = At { modes: memory, ..s.at() };
+        if contact.depths(&at).next().unwrap().is_none() {
+            return;
+        }
+        let (r, _) = dense(contact, &nodes, &at, Weights::default(), Width::One);
         let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
         for n in &nodes {
             let f = [r[n.v], r[n.v + 1], r[n.v + 2]];
@@ -400,8 +469,7 @@ fn left(what: &str, law: ContactLaw) -> f64 {
     if what.contains("Plane") && law == ContactLaw::default() {
         1e-7
     } else if what.contains("Ball") || what.contains("Plane") || what.contains("half: inf") {
-        // friction that turns within the contact is no polynomial
-        if law.friction > 0.0 || law.exponent != 1.0 { 0.2 } else { 3e-3 }
+        if law.exponent == 1.0 { 3e-3 } else { 0.2 }
     } else {
         0.2
     }

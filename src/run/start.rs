@@ -76,6 +76,7 @@ impl Started {
             let mut search = Statics::new(&model, &scene.statics).map_err(no_memory)?;
             flutter = search.find(&mut state, true)?.flutter;
             remarks = remarks_on(&search);
+            remarks.extend(without_friction(&model));
         }
         let mut simulation = Simulation::from(model, state, &scene.solver, run.duration)?;
         simulation.keep_audit(run.audit);
@@ -151,6 +152,9 @@ impl Started {
             Started::Statics(done) => done.remarks.clone(),
             _ => Vec::new(),
         };
+        if let Started::Statics(done) = self {
+            remarks.extend(without_friction(&done.model));
+        }
         remarks.extend(match self {
             Started::Process(..) => Vec::new(),
             Started::Dynamics(s, ..) => s.model.remarks(&s.state.at()),
@@ -374,4 +378,17 @@ fn remarks_on(search: &Statics<'_>) -> Vec<String> {
 
 fn no_memory(source: SolveError) -> Error {
     Error::Step(StepError::Linear { t: 0.0, source, unknown: "the structure of the equations".into() })
+}
+
+/// What to say of an equilibrium that dry friction takes no part in.
+fn without_friction(model: &Model) -> Option<String> {
+    let rough = model.terms().iter().filter(|t| t.remembers()).map(|t| format!("`{}`", t.label()));
+    let rough: Vec<String> = rough.collect();
+    (!rough.is_empty()).then(|| {
+        format!(
+            "the equilibrium is that without the friction of {}: with it there are many, and which one is reached depends on \
+             the way there. From here on in time friction holds what it can",
+            rough.join(", ")
+        )
+    })
 }

@@ -414,7 +414,7 @@ impl Integrator for Alpha {
         // a step that only fills the rest of an interval says nothing about the next
         let cut = h >= limit && state.control.h_next > limit;
         let mut report = StepReport::default();
-        let (mut failures, mut stale, mut careful) = (0, false, false);
+        let (mut failures, mut stale, mut careful, mut gripping) = (0, false, false, false);
         loop {
             let mut aux = std::mem::take(&mut work.trial.aux_old);
             self.rescale(state, h, &mut aux);
@@ -435,9 +435,10 @@ impl Integrator for Alpha {
                 units: self.units,
                 linear_constraints,
                 stabilised: self.stabilised(model),
-                // a step that leaps over the instant at which a point sticks ends so stiff that the estimate of its error
+                // a step that leaps over the instant at which something sticks ends so stiff that the estimate of its error
                 // is blind: error control has to find that instant
                 leaps: !controlled,
+                gripping,
                 careful,
             };
             // factors that served badly last time are not tried again
@@ -497,6 +498,12 @@ impl Integrator for Alpha {
                     work.factored = None;
                     continue;
                 }
+                // the prediction may go on slipping where something is about to stop
+                Outcome::Failed { .. } if model.kinked() && !controlled && !gripping => {
+                    gripping = true;
+                    work.factored = None;
+                    continue;
+                }
                 // a mechanism may be about to end next to a singular position, which a smaller step needn't avoid
                 Outcome::Failed { .. } if failures == 0 && !careful && !linear_constraints => {
                     careful = true;
@@ -514,7 +521,7 @@ impl Integrator for Alpha {
             work.counts.rejected += 1;
             work.factored = None;
             failures += 1;
-            careful = false;
+            (careful, gripping) = (false, false);
             let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
             if smaller < self.limits.least {
                 return Err(StepError::NoConvergence { t: state.t, h, why, equation });

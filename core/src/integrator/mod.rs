@@ -97,6 +97,14 @@ pub enum StepError {
         /// What to change.
         remedy: &'static str,
     },
+    /// Something has gone where it can't, however short the steps.
+    #[error("at t = {t:.6} s {why}")]
+    Passed {
+        /// Time [s].
+        t: f64,
+        /// What has gone where, and what to do.
+        why: String,
+    },
     /// An event can't do what it should.
     #[error("at t = {t:.6} s, {event}: {why}")]
     Event {

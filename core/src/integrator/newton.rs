@@ -89,6 +89,8 @@ pub(crate) struct Newton<'a> {
     pub stabilised: bool,
     /// Whether terms with kinks are told what an iteration comes from.
     pub leaps: bool,
+    /// Whether to begin as if nothing slipped.
+    pub gripping: bool,
     /// Whether to start carefully because the step may end next to a singular position.
     pub careful: bool,
 }
@@ -183,12 +185,12 @@ impl Newton<'_> {
             let before = std::mem::take(&mut work.trial.v_before);
             let leap = match k {
                 _ if !kinks => None,
-                0 => Some(Leap { v: &self.state.v, predicted: true }),
-                // every other time, so that what was held back can let go
-                k if k % 2 == 0 && refresh => Some(Leap { v: &before, predicted: false }),
-                _ => None,
+                _ if !refresh => None,
+                0 if self.gripping => Some(Leap::Predicted),
+                0 => None,
+                _ => Some(Leap::From(&before)),
             };
-            if !settled || refresh || leap.is_some() {
+            if !settled || refresh {
                 self.evaluate(work, refresh, leap);
             }
             work.trial.v_before = before;

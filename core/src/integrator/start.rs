@@ -97,6 +97,8 @@ pub(super) fn anew(
             work,
         )));
     }
+    // what touches takes hold before it begins to pull
+    model.remember(state);
     let velocity = project_velocities(model, state, work)
         .map_err(|e| linear(t, e, "the constraints: are some redundant?"))?;
 

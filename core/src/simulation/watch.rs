@@ -10,6 +10,8 @@ const LEFT: f64 = 1e-9;
 const PART: f64 = 1e-3;
 /// A step shorter than this, in parts of what it should be, was cut.
 const CUT: f64 = 1.0 - 1e-6;
+/// A step that still goes through something at this part of the longest one goes through it however short it is.
+const SHORT: f64 = 1e-7;
 /// Steps after which a run has begun, and part of its time.
 const BEGUN: u64 = 50;
 const BEGUN_TIME: f64 = 0.05;
@@ -43,6 +45,22 @@ impl Simulation {
         let error = StepError::Contradiction { t: self.state.t, constraints, off: worst };
         self.state.clone_from(&self.previous);
         Err(error)
+    }
+
+    /// Goes back to the state before a step `h` in which something went where it can't, to repeat it half as long.
+    pub(super) fn turn_back(&mut self, h: f64, why: String) -> Result<(), StepError> {
+        let t = self.state.t;
+        let next = self.state.control.h_next;
+        self.state.clone_from(&self.previous);
+        let half = 0.5 * h;
+        if half < self.integrator.limits().least.max(SHORT * self.integrator.limits().most) {
+            return Err(StepError::Passed { t, why });
+        }
+        self.work.counts.rejected += 1;
+        let control = &mut self.state.control;
+        control.h_cap = half;
+        control.h_next = if next > 0.0 { half.min(next) } else { 0.0 };
+        Ok(())
     }
 
     /// Names the constraints that may be to blame for a step that failed, since they contradict each other there.

@@ -248,6 +248,9 @@ impl Part for CablePart {
         // tolerances go by it, so that it doesn't change with the mesh
         if self.line.is_some() { self.laid } else { self.mesh[self.mesh.len() - 1] }
     }
+    fn mass(&self) -> f64 {
+        self.section.mass * self.length()
+    }
     fn length_now(&self, at: &At<'_>) -> f64 {
         match &self.line {
             None => self.length(),

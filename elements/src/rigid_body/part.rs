@@ -45,6 +45,9 @@ impl Part for BodyPart {
     fn kind(&self) -> &'static str {
         "rigid_body"
     }
+    fn mass(&self) -> f64 {
+        self.mass
+    }
     fn marker(&self, spot: &Spot) -> Result<Marker, String> {
         let named = match spot {
             Spot::Named(n) if n.is_empty() => return Ok(Marker::beside(self.node, self.origin)),

@@ -61,6 +61,9 @@ impl Part for ChainPart {
     fn length(&self) -> f64 {
         self.link * self.seats.len() as f64
     }
+    fn mass(&self) -> f64 {
+        self.mass * self.seats.len() as f64
+    }
     fn marker(&self, spot: &Spot) -> Result<Marker, String> {
         let (first, last) = (self.nodes[0], self.nodes[self.nodes.len() - 1]);
         let half = 0.5 * self.link;

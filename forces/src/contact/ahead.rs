@@ -1,7 +1,7 @@
 //! How long a step may be that leaps over no contact.
 
-use super::group::{Ball, Group, Span};
-use super::search::Search;
+use super::group::{Ball, Group, Scratch, Span, What};
+use super::search::{Cubic, Search};
 use super::seat::{Frame, Seat, minus, rotation};
 use super::shape::{Gap, Shape};
 use super::term::Contact;
@@ -32,9 +32,9 @@ fn time(room: f64, w: f64, b: f64) -> f64 {
 impl Contact {
     /// The longest step from here in which this group can't get deeper than a part of its radius unseen [s].
     pub(super) fn free(&self, group: &Group, frame: &Frame, at: &At<'_>) -> f64 {
-        match group {
-            Group::Ball(ball) => self.free_ball(ball, frame, at),
-            Group::Span(span) => self.free_span(span, frame, at),
+        match &group.what {
+            What::Ball(ball) => self.free_ball(ball, frame, at),
+            What::Span(span) => self.free_span(span, frame, at),
         }
     }
 
@@ -53,6 +53,67 @@ impl Contact {
         let a = transposed_times(&frame.r, &minus(&a, &three(at.a, first)));
         let (spun, turned, fled) = (cross(&alpha, &s), cross(omega, &u), cross(omega, &swing));
         Seen { s, u, a: std::array::from_fn(|i| a[i] - spun[i] - 2.0 * turned[i] - fled[i]) }
+    }
+
+    /// What was on one side of the shape before a step and is on the other behind it, through the shape.
+    pub(super) fn passed(&self, before: &At<'_>, after: &At<'_>) -> Option<String> {
+        if let Shape::Plane = self.fixed.shape {
+            return None;
+        }
+        let frames = [self.fixed.frame(before), self.fixed.frame(after)];
+        let place = |held: &Held| {
+            [(&frames[0], before), (&frames[1], after)].map(|(f, at)| self.fixed.inside(f, &held.x(at)))
+        };
+        let (mut pieces, mut found) = (Vec::new(), Vec::new());
+        // the way of a point, as if it were straight, goes in on one side and out on the other
+        let mut through = |held: &Held, radius: f64| {
+            let [a, b] = place(held);
+            let way = minus(&b, &a);
+            // what isn't deep goes nowhere in less than what is left of its radius
+            if self.fixed.shape.at_least(&a).is_none_or(|gap| gap.distance > size(&way)) {
+                return false;
+            }
+            let curve = Cubic([a, way, b, way]);
+            found.clear();
+            Search::new(&self.fixed.shape, &curve, radius).find(&mut pieces, &mut found);
+            let normal = |xi: f64| self.fixed.shape.gap(&curve.at(xi), f64::INFINITY).map(|g| g.normal);
+            found.iter().any(|&[from, to]| match (normal(from), normal(to)) {
+                (Some(a), Some(b)) => dot(&a, &b) < 0.0,
+                _ => false,
+            })
+        };
+        let mut scratch = Scratch::default();
+        let mut gone = |group: &Group| match &group.what {
+            What::Ball(ball) => through(&ball.held, ball.radius),
+            What::Span(span) => {
+                let moved = |held: &Held| {
+                    let [a, b] = place(held);
+                    size(&minus(&a, &b))
+                };
+                let reach = span.line.controls().iter().map(moved).fold(0.0, f64::max);
+                // what was farther from the shape than anything has moved, its radius included, is still on its side
+                let curve = span.curve(&self.fixed, &frames[0], before);
+                if Search::new(&self.fixed.shape, &curve, span.radius).room() + span.radius > reach {
+                    return false;
+                }
+                let mut places = vec![0.0, 0.25, 0.5, 0.75, 1.0];
+                for (frame, at) in [(&frames[0], before), (&frames[1], after)] {
+                    group.gather(&self.fixed, frame, at, &mut scratch);
+                    places.extend(scratch.found.iter().map(|[a, b]| 0.5 * (a + b)));
+                }
+                places.iter().any(|&xi| through(&span.line.held(xi), span.radius))
+            }
+        };
+        let group = self.groups.iter().find(|g| gone(g))?;
+        let (k, what) = match &group.what {
+            What::Ball(ball) => (ball.k, "stiffness"),
+            What::Span(span) => (span.k / span.length, "stiffness_per_length"),
+        };
+        Some(format!(
+            "something is pushed through `{}` and out on its other side, however short the steps: a `{what}` of {k:e} is too \
+             soft for what hits it. How deep a hit goes falls with its root: make it stiffer, or the shape thicker",
+            self.label
+        ))
     }
 
     /// The surface as seen from a point, at least as far away as told.
@@ -87,7 +148,8 @@ impl Contact {
             // inside, the distance is least at a control point; across its ends, near the curve
             let near = [0.0, 0.5, 1.0].map(|xi| span.line.held(xi));
             let all = span.line.controls().into_iter().chain(near);
-            let one = |held| self.free_ball(&Ball { held, radius: span.radius, k: span.k }, frame, at);
+            let one =
+                |held| self.free_ball(&Ball { held, radius: span.radius, k: span.k, cell: 0 }, frame, at);
             return all.map(one).fold(f64::INFINITY, f64::min);
         }
         if self.fixed.shape.concave() {

@@ -6,7 +6,7 @@ use ropewalk_core::held::Held;
 use ropewalk_core::rotation::M3;
 
 /// Unknowns of a group: of a cable element and a body.
-const MOST: usize = 18;
+pub(crate) const MOST: usize = 18;
 
 /// The block of a group: what has been added of it so far.
 pub(crate) struct Block {
@@ -39,6 +39,15 @@ impl Block {
                         row[j] -= w * d[j];
                     }
                 }
+            }
+        }
+    }
+    /// Adds the derivative of a force that acts on the unknowns like `force` and changes with them as `by` says.
+    pub fn add_outer(&mut self, force: &[f64; MOST], by: &[f64; MOST]) {
+        self.any = true;
+        for (row, f) in self.k.iter_mut().zip(force).filter(|(_, f)| **f != 0.0) {
+            for (k, by) in row.iter_mut().zip(by) {
+                *k -= f * by;
             }
         }
     }

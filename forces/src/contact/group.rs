@@ -1,5 +1,6 @@
 //! What touches: single balls, and slender pieces whose places of contact are found anew at every evaluation.
 
+use super::friction::Grip;
 use super::search::{Cubic, Look, Search, gauss};
 use super::seat::{Fixed, Frame};
 use ropewalk_core::At;
@@ -13,13 +14,32 @@ pub(crate) struct Ball {
     pub radius: f64,
     /// Stiffness of its contact [N/m^p].
     pub k: f64,
+    /// The cell that it presses, of those of its group.
+    pub cell: usize,
 }
 
 /// What the same unknowns move.
 #[derive(Clone, Debug)]
-pub(crate) enum Group {
+pub(crate) struct Group {
+    pub what: What,
+    /// Its bristles, one for each cell.
+    pub bristles: Option<Bristles>,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum What {
     Ball(Ball),
     Span(Box<Span>),
+}
+
+/// The bristles of a group.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bristles {
+    /// One of them.
+    pub grip: Grip,
+    /// The place of what the first remembers.
+    pub at: usize,
+    pub cells: usize,
 }
 
 /// A slender piece.
@@ -31,7 +51,7 @@ pub(crate) struct Span {
     pub length: f64,
     /// Stiffness of its contact if all of it touches [N/m^p].
     pub k: f64,
-    /// Its tips, as balls without radius a radius beyond its ends.
+    /// Its tips, as balls without radius a radius beyond its ends, which are told by their cells.
     pub tips: [Option<Ball>; 2],
     /// Points of the Gauss rule on each interval.
     pub points: usize,
@@ -50,9 +70,27 @@ pub(crate) struct Scratch {
 impl Group {
     /// A point of it, which all of its unknowns move.
     pub fn held(&self) -> Held {
-        match self {
-            Group::Ball(ball) => ball.held,
-            Group::Span(span) => span.line.held(0.5),
+        match &self.what {
+            What::Ball(ball) => ball.held,
+            What::Span(span) => span.line.held(0.5),
+        }
+    }
+
+    /// The middle of a cell.
+    pub fn station(&self, cell: usize) -> Held {
+        match &self.what {
+            What::Ball(ball) => ball.held,
+            What::Span(span) => {
+                let cells = self.bristles.map_or(1, |b| b.cells);
+                span.line.held((cell as f64 + 0.5) / cells as f64)
+            }
+        }
+    }
+
+    pub fn radius(&self) -> f64 {
+        match &self.what {
+            What::Ball(ball) => ball.radius,
+            What::Span(span) => span.radius,
         }
     }
 
@@ -60,21 +98,35 @@ impl Group {
     pub fn gather(&self, fixed: &Fixed, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) {
         scratch.balls.clear();
         scratch.found.clear();
-        let span = match self {
-            Group::Ball(ball) => return scratch.balls.push(*ball),
-            Group::Span(span) => span,
+        let span = match &self.what {
+            What::Ball(ball) => return scratch.balls.push(*ball),
+            What::Span(span) => span,
         };
+        let cells = self.bristles.map_or(1, |b| b.cells);
         let curve = span.curve(fixed, frame, at);
         Search::new(&fixed.shape, &curve, span.radius).find(&mut scratch.pieces, &mut scratch.found);
         for &[from, to] in &scratch.found {
-            let part = to - from;
-            scratch.balls.extend(gauss(span.points).iter().map(|&(place, weight)| Ball {
-                held: span.line.held(from + part * place),
-                radius: span.radius,
-                k: span.k * part * weight,
-            }));
+            // cut where one cell ends and the next begins
+            let borders = (1..cells).map(|c| c as f64 / cells as f64).filter(|&b| b > from && b < to);
+            let mut from = from;
+            for to in borders.chain([to]) {
+                let part = to - from;
+                let cell = ((0.5 * (from + to) * cells as f64) as usize).min(cells - 1);
+                // a cell all of which touches is as good as straight
+                let whole = cells > 1 && part * cells as f64 > 1.0 - 1e-9;
+                let points = if whole { 2 } else { span.points };
+                scratch.balls.extend(gauss(points).iter().map(|&(place, weight)| Ball {
+                    held: span.line.held(from + part * place),
+                    radius: span.radius,
+                    k: span.k * part * weight,
+                    cell,
+                }));
+                from = to;
+            }
         }
-        scratch.balls.extend(span.tips.iter().flatten());
+        scratch
+            .balls
+            .extend(span.tips.iter().flatten().map(|tip| Ball { cell: tip.cell * (cells - 1), ..*tip }));
     }
 }
 

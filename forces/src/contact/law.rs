@@ -1,11 +1,8 @@
 //! How hard a shape pushes back, and how it brakes what slides on it.
 
-use ropewalk_core::V3;
-use ropewalk_core::build::{BuildError, not_negative, positive};
-use ropewalk_core::dot;
-use ropewalk_core::held::delta;
+use super::friction::Friction;
+use ropewalk_core::build::{BuildError, not_negative};
 use ropewalk_core::quantity;
-use ropewalk_core::rotation::M3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -52,15 +49,13 @@ pub struct ContactLaw {
     pub exponent: f64,
     /// What it loses along the normal.
     pub damping: Damping,
-    /// Coefficient of friction.
-    pub friction: f64,
-    /// Speed of slip from which on friction has its full force [m/s]; below, it grows smoothly from zero.
-    pub slip_speed: f64,
+    /// Dry friction, if there is any.
+    pub friction: Option<Friction>,
 }
 
 impl Default for ContactLaw {
     fn default() -> Self {
-        ContactLaw { exponent: 1.0, damping: Damping::None, friction: 0.0, slip_speed: 1e-4 }
+        ContactLaw { exponent: 1.0, damping: Damping::None, friction: None }
     }
 }
 
@@ -75,16 +70,6 @@ pub(crate) struct Normal {
     pub by_rate: f64,
     /// Its elastic part [N].
     pub elastic: f64,
-}
-
-/// Friction over the force along the normal, with its derivative by the slip velocity.
-pub(crate) struct Friction {
-    /// `μ g(|t|/v_s) t / v_s`
-    pub pull: V3<f64>,
-    /// `∂pull/∂t` [s/m]
-    pub by_slip: M3,
-    /// `μ g / v_s`, by which a slip normal to the present one changes it [s/m].
-    pub across: f64,
 }
 
 impl ContactLaw {
@@ -103,14 +88,12 @@ impl ContactLaw {
                 not_negative("damping", x)?;
             }
         }
-        not_negative("friction", self.friction)?;
-        positive("slip_speed", self.slip_speed)?;
-        Ok(())
+        self.friction.map_or(Ok(()), |f| f.check())
     }
 
     /// Whether it is the gradient of an energy: no friction, no damping.
     pub(crate) fn conservative(&self) -> bool {
-        self.damping == Damping::None && self.friction == 0.0
+        self.damping == Damping::None && self.friction.is_none()
     }
 
     /// `d^p` and `d^(p-1)`
@@ -154,41 +137,5 @@ impl ContactLaw {
     /// The energy stored at a positive depth [J].
     pub(crate) fn stored(&self, k: f64, depth: f64) -> f64 {
         k * self.powers(depth).0 * depth / (self.exponent + 1.0)
-    }
-
-    /// Whether a point whose slip was `was` and is `now` [m/s] may have stopped in between: predicted from the start of a
-    /// step where it stuck or that it would leave the other way, or reached by an iteration that turned it round. The
-    /// tangent of slip knows nothing of the force that would hold it.
-    pub(crate) fn may_stick(&self, was: &V3<f64>, now: &V3<f64>, predicted: bool) -> bool {
-        let (stuck, turned) = (dot(was, was) < self.slip_speed * self.slip_speed, dot(was, now) <= 0.0);
-        turned && (predicted || self.slips(was)) || predicted && stuck
-    }
-
-    /// Whether a slip is so fast that the force that holds a point hardly grows with it.
-    pub(crate) fn slips(&self, t: &V3<f64>) -> bool {
-        dot(t, t) > 0.5 * self.slip_speed * self.slip_speed
-    }
-
-    /// Coulomb's friction at the slip velocity `t` [m/s], regularised: `g(z) z` is `(3z - z³)/2` up to 1 and 1 beyond,
-    /// so friction and its derivative have no jump and full slip has the full force. Of a point that is `held` it goes on
-    /// as it begins, without end.
-    #[inline]
-    pub(crate) fn friction(&self, t: &V3<f64>, held: bool) -> Friction {
-        let square = dot(t, t) / (self.slip_speed * self.slip_speed);
-        let scale = self.friction / self.slip_speed;
-        // g, and g'(z)/z
-        let (g, bend) = if held {
-            (1.5, 0.0)
-        } else if square < 1.0 {
-            (0.5 * (3.0 - square), -1.0)
-        } else {
-            let inverse = 1.0 / square.sqrt();
-            (inverse, -inverse * inverse * inverse)
-        };
-        let across = scale * g;
-        let bend = scale * bend / (self.slip_speed * self.slip_speed);
-        let by_slip =
-            std::array::from_fn(|i| std::array::from_fn(|j| across * delta(i, j) + bend * t[i] * t[j]));
-        Friction { pull: t.map(|t| across * t), by_slip, across }
     }
 }

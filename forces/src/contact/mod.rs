@@ -7,7 +7,9 @@
 
 mod ahead;
 mod block;
+mod bristles;
 mod file;
+mod friction;
 mod group;
 mod law;
 mod mesh;
@@ -19,6 +21,7 @@ mod term;
 mod touch;
 
 pub use file::read;
+pub use friction::{Friction, Grip};
 pub use law::{ContactLaw, Damping, Leaving};
 pub use mesh::{MOST_TRIANGLES, Mesh, Soup};
 pub use shape::{Gap, Shape};

@@ -250,14 +250,17 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Places and weights of the Gauss–Legendre rule with so many points on 0 … 1: four, six, or else eight.
+/// Places and weights of the Gauss–Legendre rule with so many points on 0 … 1: two, four, six, or else eight.
 pub(crate) fn gauss(points: usize) -> &'static [(f64, f64)] {
     match points {
+        2 => &TWO,
         4 => &FOUR,
         6 => &SIX,
         _ => &EIGHT,
     }
 }
+
+const TWO: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
 
 const FOUR: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_92),

@@ -1,6 +1,7 @@
 //! What a scene says about contact.
 
 use super::file::read;
+use super::friction::{Friction, Grip};
 use super::law::{ContactLaw, Damping};
 use super::mesh::Mesh;
 use super::shape::Shape;
@@ -93,9 +94,6 @@ fn upwards() -> V3<f64> {
 fn one() -> f64 {
     1.0
 }
-fn slip_speed() -> f64 {
-    ContactLaw::default().slip_speed
-}
 
 /// What is done about points that start deep in the shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -149,12 +147,11 @@ pub struct ContactSpec {
     /// What it loses along the normal.
     #[serde(default)]
     pub damping: Damping,
-    /// Coefficient of friction.
-    #[serde(default, deserialize_with = "quantity::number")]
-    pub friction: f64,
-    /// Speed of slip from which on friction is full [m/s]. What seems to stick creeps by less than that.
-    #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
-    pub slip_speed: f64,
+    /// Dry friction: a coefficient, or `{ mu, across, elastic_slip }`. Equilibria are found without it: those with it are
+    /// many.
+    #[serde(default, deserialize_with = "dry")]
+    #[schemars(with = "Option<Dry>")]
+    pub friction: Option<Friction>,
     /// What is done about points that start deep in the shape.
     #[serde(default)]
     pub overlap: Overlap,
@@ -162,7 +159,11 @@ pub struct ContactSpec {
     #[doc(hidden)]
     #[serde(default, skip_serializing, rename = "per_element", deserialize_with = "per_element")]
     #[schemars(skip)]
-    pub gone: (),
+    pub per_element: (),
+    #[doc(hidden)]
+    #[serde(default, skip_serializing, rename = "slip_speed", deserialize_with = "slip_speed")]
+    #[schemars(skip)]
+    pub slip_speed: (),
 }
 register_spec!(Force, "contact", ContactSpec);
 
@@ -170,6 +171,31 @@ fn per_element<'de, D: serde::Deserializer<'de>>(_: D) -> Result<(), D::Error> {
     Err(serde::de::Error::custom(
         "`per_element` is gone: what touches is found wherever it is along an element. Leave it out",
     ))
+}
+
+fn slip_speed<'de, D: serde::Deserializer<'de>>(_: D) -> Result<(), D::Error> {
+    Err(serde::de::Error::custom(
+        "`slip_speed` is gone: friction holds now, by bristles that give way by a length before they slip. Leave it out, \
+         or give that length: `friction = { mu = 0.3, elastic_slip = \"0.1 mm\" }`",
+    ))
+}
+
+/// How a scene may write friction.
+#[derive(Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "friction is a coefficient, or `{ mu = 0.3, across = 0.2, elastic_slip = \"0.1 mm\" }`"
+)]
+enum Dry {
+    Coefficient(#[serde(deserialize_with = "quantity::number")] f64),
+    Friction(Friction),
+}
+
+fn dry<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Option<Friction>, D::Error> {
+    Ok(Some(match Dry::deserialize(d)? {
+        Dry::Coefficient(mu) => Friction::new(mu),
+        Dry::Friction(friction) => friction,
+    }))
 }
 
 fn origin() -> MarkerRef {
@@ -191,16 +217,16 @@ impl ContactSpec {
             end_stiffness: None,
             exponent: 1.0,
             damping: Damping::None,
-            friction: 0.0,
-            slip_speed: slip_speed(),
+            friction: None,
             overlap: Overlap::Refuse,
-            gone: (),
+            per_element: (),
+            slip_speed: (),
         }
     }
 
     fn law(&self) -> ContactLaw {
-        let (exponent, damping, friction) = (self.exponent, self.damping, self.friction);
-        ContactLaw { exponent, damping, friction, slip_speed: self.slip_speed }
+        let friction = self.friction.filter(|f| f.mu != 0.0);
+        ContactLaw { exponent: self.exponent, damping: self.damping, friction }
     }
 
     /// What touches, each with what it is called in messages.
@@ -211,14 +237,27 @@ impl ContactSpec {
                 let own = own_seat.is_some_and(|seat| part.seats() == [seat]);
                 let before = all.len();
                 if !own {
+                    let (mass, length) = (part.mass(), part.length());
+                    let ea = part.slender().map_or(0.0, |s| s.ea);
                     let whole = format!("`{}`", part.name());
-                    all.points.extend(part.contact_points().into_iter().map(|p| (whole.clone(), p)));
+                    let points = part.contact_points();
+                    all.weights.extend(points.iter().map(|_| Weight {
+                        mass,
+                        length: 0.0,
+                        ea: 0.0,
+                        whole: 0.0,
+                    }));
+                    all.points.extend(points.into_iter().map(|p| (whole.clone(), p)));
                     let carries = |s: &ContactSpan| match s.line {
                         SpanLine::Straight { q, v, .. } => own_seat == Some((q, v)),
                         SpanLine::Cubic { .. } => false,
                     };
                     let spans = part.contact_spans().into_iter().filter(|s| !carries(s));
-                    all.spans.extend(spans.map(|s| (part.name().to_string(), s)));
+                    for s in spans {
+                        let mass = mass * if length > 0.0 { (s.length / length).min(1.0) } else { 1.0 };
+                        all.span_weights.push(Weight { mass, length: s.length, ea, whole: length });
+                        all.spans.push((part.name().to_string(), s));
+                    }
                 }
                 if all.len() == before && !self.on.is_empty() {
                     let message = if own {
@@ -244,6 +283,9 @@ impl ContactSpec {
                 (held, _) => held,
             };
             all.points.push((format!("{name}"), ContactPoint { held, radius: 0.0 }));
+            let carrier = b.parts(&[])?.into_iter().find(|(_, part)| part.place_of(node).is_some());
+            let mass = carrier.map_or(0.0, |(_, part)| part.mass());
+            all.weights.push(Weight { mass, length: 0.0, ea: 0.0, whole: 0.0 });
         }
         if all.len() == 0 {
             return Err(BuildError::new("there is nothing in the scene that could touch this shape"));
@@ -258,6 +300,28 @@ impl ContactSpec {
             needs(&name, "along its length", "stiffness_per_length", self.stiffness_per_length)?;
         }
         Ok(all)
+    }
+
+    /// How stiff the friction of each point and slender piece is: so that it gives way by the elastic slip under its
+    /// weight, no softer than the contact itself, and so stiff that slip along a cable begins where it should.
+    fn grips(&self, friction: &Friction, all: &Touching) -> Vec<Grip> {
+        let points = all.points.iter().map(|p| (p.1.radius, self.stiffness)).zip(&all.weights);
+        let spans = all.spans.iter().map(|(_, s)| (s.radius, self.stiffness_per_length * s.length));
+        let grip = |((radius, k), w): ((f64, f64), &Weight)| {
+            let slip = friction.elastic_slip.unwrap_or((SLIP * 2.0 * radius).min(MOST_SLIP));
+            let held = friction.mu * w.mass * G / slip;
+            let stiffness = match friction.elastic_slip {
+                Some(_) if held > 0.0 => held,
+                _ => {
+                    let along =
+                        if w.whole > 0.0 { w.ea * w.length / (SMEARED * w.whole).powi(2) } else { 0.0 };
+                    held.max(along).max(if self.exponent == 1.0 { k } else { 0.0 })
+                }
+            };
+            let stiffness = if stiffness > 0.0 { stiffness } else { k * slip.powf(self.exponent - 1.0) };
+            Grip { stiffness, damping: 2.0 * RATIO * (stiffness * w.mass).sqrt() }
+        };
+        points.chain(spans.zip(&all.span_weights)).map(grip).collect()
     }
 
     fn give_size(&self, name: &str, radius: &mut f64) -> Result<(), BuildError> {
@@ -303,7 +367,31 @@ impl ContactSpec {
 struct Touching {
     points: Vec<(String, ContactPoint)>,
     spans: Vec<(String, ContactSpan)>,
+    /// What the friction of each has to hold.
+    weights: Vec<Weight>,
+    span_weights: Vec<Weight>,
 }
+
+/// What friction has to hold, as far as the part tells.
+struct Weight {
+    /// Mass, of the piece that touches [kg].
+    mass: f64,
+    /// Length of the piece, and of the whole part [m].
+    length: f64,
+    whole: f64,
+    /// Axial stiffness [N].
+    ea: f64,
+}
+
+/// Slip along a cable is smeared out over no more than this part of its length.
+const SMEARED: f64 = 0.05;
+/// Elastic slip, in parts of the thickness, and the most of it [m].
+const SLIP: f64 = 0.01;
+const MOST_SLIP: f64 = 1e-3;
+/// Damping ratio of bristles that hold.
+const RATIO: f64 = 0.5;
+/// What makes weight of mass [m/s²].
+const G: f64 = 9.81;
 
 impl Touching {
     fn len(&self) -> usize {
@@ -415,6 +503,14 @@ impl ForceSpec for ContactSpec {
         if self.overlap == Overlap::Refuse {
             self.check_overlap(b, &contact, &touching)?;
         }
+        let contact = match self.law().friction {
+            Some(friction) => {
+                let size = Contact::memory(points.len(), spans.len());
+                let memory = b.memory(&format!("{}: friction", self.name), size);
+                contact.with_grips(&self.grips(&friction, &touching), memory)
+            }
+            None => contact,
+        };
         if let Some(node) = marker.on()
             && touching.len() > 2
         {

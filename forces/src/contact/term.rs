@@ -1,18 +1,19 @@
 //! The contact of many points with one shape.
 
-use super::block::{Block, weights};
-use super::group::{Ball, Group, Scratch, Span};
+use super::block::{Block, MOST, weights};
+use super::friction::{CELLS, Pressed};
+use super::group::{Ball, Group, Scratch, Span, What};
 use super::law::ContactLaw;
 use super::search::Search;
 use super::seat::{Fixed, Frame, Seat, minus, rotation};
 use super::shape::Shape;
-use super::touch::{Pair, Touch};
+use super::touch::{Pair, Slopes, Touch};
 use ropewalk_core::build::{BuildError, need, positive};
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Column, ContactPoint, ContactSpan, Energy, Leap, Marker, Node, NodeKind, Pattern, Power,
-    Relaxed, SpanLine, Term, V3, dot,
+    Assembly, At, Column, ContactPoint, ContactSpan, Energy, Marker, Node, NodeKind, Pattern, Power, Relaxed,
+    SpanLine, Term, V3, dot,
 };
 
 /// Cables, links, hulls and points that touch a shape, which is fixed in space or on a rigid body and feels the opposite
@@ -33,7 +34,7 @@ pub struct Contact {
     pub(super) fixed: Fixed,
     /// Stiffness of all that is slender together, per depth.
     per_length: f64,
-    groups: Vec<Group>,
+    pub(super) groups: Vec<Group>,
 }
 
 /// How stiff a contact is, with an exponent `p` other than 1 at a depth of 1 m.
@@ -82,7 +83,7 @@ impl Contact {
         let mut groups = Vec::with_capacity(points.len() + spans.len());
         for p in points {
             let (radius, k) = (positive("radius", p.radius)?, positive("stiffness", stiffness.point)?);
-            groups.push(Group::Ball(Ball { held: p.held, radius, k }));
+            groups.push(What::Ball(Ball { held: p.held, radius, k, cell: 0 }));
         }
         for s in spans {
             let radius = positive("radius", s.radius)?;
@@ -93,9 +94,9 @@ impl Contact {
             };
             let tip = |end_of: usize| {
                 let held = s.line.beyond(end_of, radius);
-                (s.tips[end_of] && end > 0.0).then_some(Ball { held, radius: 0.0, k: end })
+                (s.tips[end_of] && end > 0.0).then_some(Ball { held, radius: 0.0, k: end, cell: end_of })
             };
-            groups.push(Group::Span(Box::new(Span {
+            groups.push(What::Span(Box::new(Span {
                 line: s.line,
                 radius,
                 length: s.length,
@@ -104,6 +105,7 @@ impl Contact {
                 points: shape.points(s.length, law.exponent == 1.0),
             })));
         }
+        let groups: Vec<Group> = groups.into_iter().map(|what| Group { what, bristles: None }).collect();
         for group in &groups {
             let own = matches!((seat, group.held()), (Seat::Body { v, .. }, Held::Beside { v: w, .. } | Held::Moves { v: w, .. }) if v == w);
             need(!own, || format!("{label}: a body can't touch a shape of its own"))?;
@@ -122,12 +124,12 @@ impl Contact {
 
     fn depth(&self, group: &Group, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) -> Option<f64> {
         group.gather(&self.fixed, frame, at, scratch);
-        match group {
-            Group::Ball(b) => {
+        match &group.what {
+            What::Ball(b) => {
                 let s = self.fixed.place(frame, &b.held.x(at));
                 self.fixed.gap(&s, b.radius).map(|g| b.radius - g.distance)
             }
-            Group::Span(span) => {
+            What::Span(span) => {
                 let curve = span.curve(&self.fixed, frame, at);
                 let search = Search::new(&self.fixed.shape, &curve, span.radius);
                 scratch.found.iter().map(|piece| search.deepest(*piece)).reduce(f64::max)
@@ -135,15 +137,14 @@ impl Contact {
         }
     }
 
+    /// A ball on what touches, and how it moves against the shape's body.
     #[inline]
-    fn touch(&self, ball: &Ball, frame: &Frame, at: &At<'_>) -> Option<(Touch, Pair)> {
-        let s = self.fixed.place(frame, &ball.held.x(at));
-        let gap = self.fixed.gap(&s, ball.radius)?;
-        let (v, carrier) = match ball.held {
+    pub(super) fn pair(&self, held: &Held, radius: f64, frame: &Frame, at: &At<'_>) -> Pair {
+        let s = self.fixed.place(frame, &held.x(at));
+        let (v, carrier) = match *held {
             Held::Beside { q, v, arm } => {
                 let omega = three(at.v, v + 3);
-                let carrier = Pair::carried(&frame.r, &rotation(at, q), &arm, &omega, ball.radius);
-                (three(at.v, v), Some(carrier))
+                (three(at.v, v), Some(Pair::carried(&frame.r, &rotation(at, q), &arm, &omega, radius)))
             }
             held => (held.velocity(at), None),
         };
@@ -151,27 +152,16 @@ impl Contact {
             Seat::Ground => v,
             Seat::Body { .. } => transposed_times(&frame.r, &minus(&v, &frame.v)),
         };
-        let pair = Pair { r: frame.r, omega: frame.omega, s, g, carrier };
+        Pair { r: frame.r, omega: frame.omega, s, g, carrier }
+    }
+
+    #[inline]
+    pub(super) fn touch(&self, ball: &Ball, frame: &Frame, at: &At<'_>) -> Option<(Touch, Pair)> {
+        let gap = self.fixed.gap(&self.fixed.place(frame, &ball.held.x(at)), ball.radius)?;
+        let pair = self.pair(&ball.held, ball.radius, frame, at);
         let u = pair.velocity(&gap.normal);
         let k = self.softened(ball, at);
         Some((Touch::new(&self.law, gap, ball.radius, k, &u), pair))
-    }
-
-    /// Whether a ball that slips now may have stopped on the way.
-    fn may_stick(&self, ball: &Ball, touch: &Touch, leap: Leap<'_>, at: &At<'_>) -> bool {
-        let before = At { v: leap.v, ..*at };
-        let was = match (self.fixed.seat, ball.held) {
-            (Seat::Ground, Held::Moves { .. } | Held::Between { .. }) => {
-                let (u, n) = (ball.held.velocity(&before), &touch.gap.normal);
-                let approach = dot(&u, n);
-                std::array::from_fn(|i| u[i] - approach * n[i])
-            }
-            _ => match self.touch(ball, &self.fixed.frame(&before), &before) {
-                Some((was, _)) => was.slip,
-                None => return false,
-            },
-        };
-        self.law.may_stick(&was, &touch.slip, leap.predicted)
     }
 
     /// The stiffness of a ball; on the way to an equilibrium hardly more than the load can use where the last iteration
@@ -198,7 +188,7 @@ impl Contact {
         let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
         let (mut many, mut worst, mut finer) = (0, 0.0_f64, f64::INFINITY);
         for group in &self.groups {
-            let Group::Span(span) = group else { continue };
+            let What::Span(span) = &group.what else { continue };
             group.gather(&self.fixed, &frame, at, &mut scratch);
             let &[[from, to]] = &scratch.found[..] else { continue };
             if !matches!(span.line, SpanLine::Cubic { .. }) || to - from < 1.0 {
@@ -245,43 +235,84 @@ impl Contact {
         }
     }
 
-    /// Adds the force on one ball, and its derivative to the block of its group.
-    fn add_ball(&self, ball: &Ball, frame: &Frame, at: &At<'_>, out: &mut Assembly<'_>, block: &mut Block) {
-        let Some((mut touch, pair)) = self.touch(ball, frame, at) else { return };
-        let w = out.weights();
-        if let Some(leap) = out.leap()
-            && self.law.slips(&touch.slip)
-            && self.may_stick(ball, &touch, leap, at)
-        {
-            touch.hold(&self.law);
-            out.approximates();
+    /// Adds the force on one ball, and its derivative to the block of its group; notes how it presses its cell.
+    fn add_ball(
+        &self,
+        ball: &Ball,
+        frame: &Frame,
+        at: &At<'_>,
+        out: &mut Assembly<'_>,
+        block: &mut Block,
+        cells: &mut [Pressed],
+    ) {
+        let Some((touch, pair)) = self.touch(ball, frame, at) else { return };
+        self.add_force(&ball.held, &pair, &touch, || touch.slopes(), out, block);
+        let Some(cell) = cells.get_mut(ball.cell) else { return };
+        cell.add(touch.normal, &touch.gap.normal);
+        if out.wants_tangent() {
+            let w = out.weights();
+            let by = -(w.q * touch.by_depth + w.v * touch.by_rate);
+            let n = &touch.gap.normal;
+            if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
+                for (sum, weight) in cell.by.chunks_exact_mut(3).zip(weights(&ball.held)) {
+                    (0..3).for_each(|i| sum[i] += by * weight * n[i]);
+                }
+            } else {
+                let force = self.spread(&ball.held, &pair, n, n);
+                cell.by.iter_mut().zip(&force).for_each(|(sum, f)| *sum += by * f);
+            }
         }
+    }
+
+    /// Adds a force at a point, and its derivative.
+    pub(super) fn add_force(
+        &self,
+        held: &Held,
+        pair: &Pair,
+        touch: &Touch,
+        slopes: impl FnOnce() -> Slopes,
+        out: &mut Assembly<'_>,
+        block: &mut Block,
+    ) {
+        let w = out.weights();
         if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
-            for (a, w) in weights(&ball.held).iter().enumerate().filter(|w| *w.1 != 0.0) {
-                (0..3).for_each(|i| out.add(ball.held.dof(3 * a + i), -w * touch.f[i]));
+            for (a, w) in weights(held).iter().enumerate().filter(|w| *w.1 != 0.0) {
+                (0..3).for_each(|i| out.add(held.dof(3 * a + i), -w * touch.f[i]));
             }
             if out.wants_tangent() {
-                let [x, v] = touch.slopes(&self.law, self.softened(ball, at));
-                let d = std::array::from_fn(|i| std::array::from_fn(|j| w.q * x[i][j] + w.v * v[i][j]));
-                block.add_point(&ball.held, &d);
+                let Slopes { by_s, by_x, by_u } = slopes();
+                let entry = |i: usize, j: usize| w.q * (by_s[i][j] + by_x[i][j]) + w.v * by_u[i][j];
+                let d = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+                block.add_point(held, &d);
             }
             return;
         }
-        let forces = pair.forces(&touch);
-        if pair.carrier.is_some() {
-            (0..6).for_each(|i| out.add(ball.held.dof(i), -forces[i]));
-        } else {
-            for (a, w) in weights(&ball.held).iter().enumerate() {
-                (0..3).for_each(|i| out.add(ball.held.dof(3 * a + i), -w * forces[i]));
-            }
-        }
+        let n = held.size();
+        let force = self.spread(held, pair, &touch.gap.normal, &touch.f);
+        (0..n).for_each(|i| out.add(held.dof(i), -force[i]));
         if let Seat::Body { v, .. } = self.fixed.seat {
-            (0..6).for_each(|i| out.add(v + i, -forces[6 + i]));
+            (0..6).for_each(|i| out.add(v + i, -force[n + i]));
         }
         if out.wants_tangent() {
-            let slopes = touch.slopes(&self.law, self.softened(ball, at));
-            block.add_pair(&ball.held, &pair.derivative(&touch, &slopes, w));
+            block.add_pair(held, &pair.derivative(touch, &slopes(), w));
         }
+    }
+
+    /// The generalised force of `f` at a point on all unknowns of its group, where the normal is `n`.
+    pub(super) fn spread(&self, held: &Held, pair: &Pair, n: &V3<f64>, f: &V3<f64>) -> [f64; MOST] {
+        let (all, size) = (pair.forces(n, f), held.size());
+        let mut force = [0.0; MOST];
+        if pair.carrier.is_some() {
+            force[..6].copy_from_slice(&all[..6]);
+        } else {
+            for (a, w) in weights(held).iter().enumerate() {
+                (0..3).for_each(|i| force[3 * a + i] = w * all[i]);
+            }
+        }
+        if self.fixed.seat != Seat::Ground {
+            force[size..size + 6].copy_from_slice(&all[6..]);
+        }
+        force
     }
 }
 
@@ -299,9 +330,9 @@ impl Term for Contact {
         }
     }
     fn symmetric(&self) -> bool {
-        let turns = |g: &Group| match g {
-            Group::Ball(b) => matches!(b.held, Held::Beside { .. }),
-            Group::Span(s) => matches!(s.line, SpanLine::Straight { .. }),
+        let turns = |g: &Group| match &g.what {
+            What::Ball(b) => matches!(b.held, Held::Beside { .. }),
+            What::Span(s) => matches!(s.line, SpanLine::Straight { .. }),
         };
         self.law.conservative() && self.fixed.seat == Seat::Ground && !self.groups.iter().any(turns)
     }
@@ -309,12 +340,16 @@ impl Term for Contact {
         let frame = self.fixed.frame(at);
         let mut block = Block::new();
         let mut scratch = Scratch::default();
+        let mut cells = [Pressed::NONE; CELLS];
         let body = if self.fixed.seat == Seat::Ground { 0 } else { 6 };
         for (clique, group) in self.groups.iter().enumerate() {
             group.gather(&self.fixed, &frame, at, &mut scratch);
+            let cells = &mut cells[..group.bristles.map_or(0, |b| b.cells)];
+            cells.fill(Pressed::NONE);
             for ball in &scratch.balls {
-                self.add_ball(ball, &frame, at, out, &mut block);
+                self.add_ball(ball, &frame, at, out, &mut block, cells);
             }
+            self.add_friction(group, &frame, at, cells, out, &mut block);
             block.flush(clique, group.held().size() + body, out);
         }
     }
@@ -325,16 +360,24 @@ impl Term for Contact {
     }
     fn power(&self, at: &At<'_>) -> Power {
         let mut dissipated = 0.0;
-        self.each(at, |_, t, _| {
-            dissipated += (t.normal - t.elastic) * t.rate + t.normal * dot(&t.pull, &t.slip);
-        });
+        self.each(at, |_, t, _| dissipated += (t.normal - t.elastic) * t.rate);
+        self.each_bristle(at, |hold, _| dissipated += hold.heat);
         Power { dissipated, ..Power::default() }
+    }
+    fn kinked(&self) -> bool {
+        self.law.friction.is_some()
+    }
+    fn remembers(&self) -> bool {
+        self.law.friction.is_some()
+    }
+    fn remember(&self, at: &At<'_>, memory: &mut [f64]) {
+        self.move_anchors(at, memory);
+    }
+    fn passes(&self, before: &At<'_>, after: &At<'_>) -> Option<String> {
+        self.passed(before, after)
     }
     fn foresees(&self) -> bool {
         true
-    }
-    fn kinked(&self) -> bool {
-        self.law.friction > 0.0
     }
     fn horizon(&self, at: &At<'_>) -> f64 {
         let frame = self.fixed.frame(at);
@@ -347,6 +390,9 @@ impl Term for Contact {
         let force = |name: &str| Column::new(name, "N");
         let mut all = ["fx", "fy", "fz", "normal"].map(force).to_vec();
         all.extend([Column::new("depth", "m"), Column::new("points", "1"), Column::new("length", "m")]);
+        if self.law.friction.is_some() {
+            all.push(Column::new("slipping", "1"));
+        }
         all
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
@@ -361,14 +407,22 @@ impl Term for Contact {
         for group in &self.groups {
             let Some(depth) = self.depth(group, &frame, at, &mut scratch) else { continue };
             deepest = deepest.max(depth);
-            match group {
-                Group::Ball(_) => points += 1.0,
-                Group::Span(s) => {
-                    length += scratch.found.iter().map(|[a, b]| s.length * (b - a)).sum::<f64>()
-                }
+            match &group.what {
+                What::Ball(_) => points += 1.0,
+                What::Span(s) => length += scratch.found.iter().map(|[a, b]| s.length * (b - a)).sum::<f64>(),
             }
         }
+        let (mut slipping, mut all) = (0.0, 0.0);
+        self.each_bristle(at, |hold, pressed| {
+            let f = times(&frame.r, &hold.f);
+            (0..3).for_each(|i| sum[i] += f[i]);
+            all += pressed;
+            slipping += if hold.slips { pressed } else { 0.0 };
+        });
         out.extend(sum);
         out.extend([normal, deepest, points, length]);
+        if self.law.friction.is_some() {
+            out.push(if all > 0.0 { slipping / all } else { 0.0 });
+        }
     }
 }

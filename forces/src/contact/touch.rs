@@ -1,27 +1,26 @@
 //! One point and one shape: the force between them, and its derivative by all that moves either.
 
-use super::law::ContactLaw;
+use super::law::{ContactLaw, Normal};
 use super::shape::Gap;
 use ropewalk_core::rotation::{M3, cross, product, times, transposed_times};
 use ropewalk_core::{V3, Weights, dot};
 
-/// A force on a point at `s` in the axes of the shape's body, whose contact point slips at `u`.
+/// The force along the normal on a point at `s` in the axes of the shape's body, whose contact point moves at `u`.
 pub(crate) struct Touch {
     pub gap: Gap,
     /// The force [N], in the body's axes.
     pub f: V3<f64>,
-    /// How much it is along the normal, and its elastic part [N].
+    /// How much it is, and its elastic part [N].
     pub normal: f64,
     pub elastic: f64,
     /// Depth [m] and its rate [m/s].
     pub depth: f64,
     pub rate: f64,
     /// Slip velocity.
-    pub slip: V3<f64>,
-    /// Friction over normal force.
-    pub pull: V3<f64>,
-    /// Whether friction is that of a point that is held, however fast it slips.
-    pub held: bool,
+    slip: V3<f64>,
+    /// How it grows with depth [N/m] and rate [N s/m].
+    pub by_depth: f64,
+    pub by_rate: f64,
 }
 
 fn add(a: &V3<f64>, b: &V3<f64>) -> V3<f64> {
@@ -36,76 +35,69 @@ fn scaled(k: f64, a: &V3<f64>) -> V3<f64> {
     a.map(|a| k * a)
 }
 
-/// `∂f/∂s` and `∂f/∂u`
-pub(crate) type Slopes = [M3; 2];
+/// The derivatives of a force in the axes of the shape's body.
+pub(crate) struct Slopes {
+    /// By the place of the centre of the ball.
+    pub by_s: M3,
+    /// By how far the ball has moved where it touches.
+    pub by_x: M3,
+    /// By its velocity there.
+    pub by_u: M3,
+}
 
 impl Touch {
     /// The force where the ball of this radius and stiffness has the velocity `u` at its contact point.
     #[inline]
     pub fn new(law: &ContactLaw, gap: Gap, radius: f64, k: f64, u: &V3<f64>) -> Self {
-        let n = &gap.normal;
-        let approach = dot(u, n);
+        let n = gap.normal;
+        let approach = dot(u, &n);
         let depth = radius - gap.distance;
-        let normal = law.normal(k, depth, -approach);
-        let slip = minus(u, &scaled(approach, n));
-        let pull = if law.friction > 0.0 { law.friction(&slip, false).pull } else { [0.0; 3] };
-        let f = std::array::from_fn(|i| normal.force * (n[i] - pull[i]));
-        let (force, elastic) = (normal.force, normal.elastic);
-        Touch { gap, f, normal: force, elastic, depth, rate: -approach, slip, pull, held: false }
+        let Normal { force, by_depth, by_rate, elastic } = law.normal(k, depth, -approach);
+        let slip = minus(u, &scaled(approach, &n));
+        Touch {
+            gap,
+            f: scaled(force, &n),
+            normal: force,
+            elastic,
+            depth,
+            rate: -approach,
+            slip,
+            by_depth,
+            by_rate,
+        }
     }
 
-    /// Takes friction for that of a point that is held.
-    pub fn hold(&mut self, law: &ContactLaw) {
-        self.held = true;
-        self.pull = law.friction(&self.slip, true).pull;
-        self.f = std::array::from_fn(|i| self.normal * (self.gap.normal[i] - self.pull[i]));
+    /// A force `f` at a point, whatever its depth, where the normal is `n`.
+    pub fn at_point(n: V3<f64>, f: V3<f64>) -> Self {
+        let gap = Gap::flat(0.0, n);
+        let [normal, elastic, depth, rate, by_depth, by_rate] = [0.0; 6];
+        Touch { gap, f, normal, elastic, depth, rate, slip: [0.0; 3], by_depth, by_rate }
     }
 
-    /// The derivative of the force: with `F(d, ḋ)` along the normal `n`, friction `-F p(t)`, `∂n/∂s = H`:
-    /// `∂f/∂s = (n - p) ⊗ ∂F/∂s + F (H - ∂p/∂t ∂t/∂s)`, `∂f/∂u = (n - p) ⊗ ∂F/∂u - F ∂p/∂t (I - n ⊗ n)`.
+    /// The derivative of the force: with `F(d, ḋ)` along the normal `n`, `∂n/∂s = H`:
+    /// `∂f/∂s = n ⊗ ∂F/∂s + F H`, `∂f/∂u = n ⊗ ∂F/∂u`.
     #[inline]
-    pub fn slopes(&self, law: &ContactLaw, k: f64) -> Slopes {
+    pub fn slopes(&self) -> Slopes {
         let n = &self.gap.normal;
-        let normal = law.normal(k, self.depth, self.rate);
         // Hᵀ u = H u = H t
         let bent = self.gap.turn(&self.slip);
-        let aim = minus(n, &self.pull);
-        let by_s: V3<f64> = std::array::from_fn(|i| -normal.by_depth * n[i] - normal.by_rate * bent[i]);
-        let by_u = scaled(-normal.by_rate, n);
+        let by_s: V3<f64> = std::array::from_fn(|i| -self.by_depth * n[i] - self.by_rate * bent[i]);
+        let by_u = scaled(-self.by_rate, n);
         let (mut x, mut v) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
         for i in 0..3 {
             for j in 0..3 {
-                x[i][j] = aim[i] * by_s[j];
-                v[i][j] = aim[i] * by_u[j];
+                x[i][j] = n[i] * by_s[j];
+                v[i][j] = n[i] * by_u[j];
             }
         }
-        let force = normal.force;
         for (kappa, t) in self.gap.bends.iter().filter(|b| b.0 != 0.0) {
             for i in 0..3 {
                 for j in 0..3 {
-                    x[i][j] += force * kappa * t[i] * t[j];
+                    x[i][j] += self.normal * kappa * t[i] * t[j];
                 }
             }
         }
-        if law.friction > 0.0 {
-            let p = law.friction(&self.slip, self.held);
-            // ∂t/∂s = -(n ⊗ H u + (u·n) H), ∂t/∂u = I - n ⊗ n
-            for i in 0..3 {
-                for j in 0..3 {
-                    x[i][j] += force * p.across * n[i] * bent[j];
-                    v[i][j] -= force * (p.by_slip[i][j] - p.across * n[i] * n[j]);
-                }
-            }
-            for (kappa, t) in self.gap.bends.iter().filter(|b| b.0 != 0.0) {
-                let turned = times(&p.by_slip, t);
-                for i in 0..3 {
-                    for j in 0..3 {
-                        x[i][j] -= force * self.rate * kappa * turned[i] * t[j];
-                    }
-                }
-            }
-        }
-        [x, v]
+        Slopes { by_s: x, by_x: [[0.0; 3]; 3], by_u: v }
     }
 }
 
@@ -157,13 +149,12 @@ impl Pair {
         }
     }
 
-    /// The generalised force on all unknowns of the pair.
-    pub fn forces(&self, touch: &Touch) -> [f64; PAIR] {
-        let (lever, contact) = self.levers(&touch.gap.normal);
-        let f = times(&self.r, &touch.f);
-        let twist =
-            self.carrier.as_ref().map_or([0.0; 3], |c| transposed_times(&c.turn, &cross(&lever, &touch.f)));
-        let back = cross(&touch.f, &contact);
+    /// The generalised force of `f` where they touch, with the normal `n`, on all unknowns of the pair.
+    pub fn forces(&self, n: &V3<f64>, f: &V3<f64>) -> [f64; PAIR] {
+        let (lever, contact) = self.levers(n);
+        let twist = self.carrier.as_ref().map_or([0.0; 3], |c| transposed_times(&c.turn, &cross(&lever, f)));
+        let back = cross(f, &contact);
+        let f = times(&self.r, f);
         std::array::from_fn(|i| match i / 3 {
             0 => f[i],
             1 => twist[i - 3],
@@ -179,9 +170,9 @@ impl Pair {
     /// `δu = δg + δΩ × (α - ρ n) + Ω × (δα - ρ H δs) - ω × δc - δω × c`.
     pub fn derivative(&self, touch: &Touch, slopes: &Slopes, w: Weights) -> [[f64; PAIR]; PAIR] {
         let (lever, contact) = self.levers(&touch.gap.normal);
-        let [by_s, by_u] = slopes;
+        let Slopes { by_s, by_x, by_u } = slopes;
         let mut all = [[0.0; PAIR]; PAIR];
-        // `ds`, `dv`: the change of place, and of velocity per rate; `psi`, `theta`: the relative and the body's rotation
+        // `ds`, `dv`: how the centre moves, and what touches there; `psi`, `theta`: the relative and the body's rotation
         let mut column = |j: usize, ds: V3<f64>, dv: V3<f64>, psi: V3<f64>, theta: V3<f64>| {
             let (mut bent, mut du) = ([0.0; 3], [0.0; 3]);
             let mut arm = [0.0; 3];
@@ -193,8 +184,9 @@ impl Pair {
             let moved = add(&ds, &bent);
             du = minus(&du, &add(&cross(&theta, &self.g), &cross(&self.omega, &moved)));
             let f: V3<f64> = {
-                let (x, turning, rate) = (times(by_s, &ds), times(by_u, &du), times(by_u, &dv));
-                std::array::from_fn(|i| w.q * (x[i] + turning[i]) + w.v * rate[i])
+                let (x, turning) = (times(by_s, &ds), times(by_u, &du));
+                let (moved, rate) = (times(by_x, &dv), times(by_u, &dv));
+                std::array::from_fn(|i| w.q * (x[i] + moved[i] + turning[i]) + w.v * rate[i])
             };
             let pull = times(&self.r, &add(&f, &scaled(w.q, &cross(&theta, &touch.f))));
             let back = minus(&scaled(w.q, &cross(&touch.f, &moved)), &cross(&contact, &f));

@@ -1,0 +1,209 @@
+//! Dry friction in the equations of motion: the bristles of all cells, and how their places move.
+
+use super::block::Block;
+use super::friction::{CELLS, Friction, Grip, Hold, MEMORY, Pressed};
+use super::group::{Bristles, Group, Scratch, What};
+use super::seat::{Frame, Seat, minus};
+use super::term::Contact;
+use super::touch::{Pair, Touch};
+use ropewalk_core::held::{Held, three};
+use ropewalk_core::rotation::{cross, log, then, transposed_times};
+use ropewalk_core::{Assembly, At, Leap, V3};
+
+/// A bristle that holds: where it is on what touches, how that moves, and what it does.
+struct Bristle {
+    held: Held,
+    pair: Pair,
+    hold: Hold,
+}
+
+/// The rotation that undoes one.
+fn back([w, x, y, z]: [f64; 4]) -> [f64; 4] {
+    [w, -x, -y, -z]
+}
+
+impl Contact {
+    /// Adds dry friction. Each group, points first and then slender pieces, has bristles as its grip says; what they
+    /// remember is at `memory` of the modes, [`Contact::memory`] numbers.
+    #[must_use]
+    pub fn with_grips(mut self, grips: &[Grip], memory: usize) -> Self {
+        let mut at = memory;
+        for (group, grip) in self.groups.iter_mut().zip(grips) {
+            let cells = match &group.what {
+                What::Ball(_) => 1,
+                What::Span(_) => CELLS,
+            };
+            let share = 1.0 / cells as f64;
+            let grip = Grip { stiffness: share * grip.stiffness, damping: share * grip.damping };
+            group.bristles = Some(Bristles { grip, at, cells });
+            at += MEMORY * cells;
+        }
+        self
+    }
+
+    /// How many numbers the friction of so many points and slender pieces remembers.
+    pub fn memory(points: usize, spans: usize) -> usize {
+        MEMORY * (points + CELLS * spans)
+    }
+
+    /// The direction of what is slender, in the axes of the shape's body.
+    fn axis(&self, group: &Group, frame: &Frame, at: &At<'_>) -> Option<V3<f64>> {
+        let What::Span(span) = &group.what else { return None };
+        let [a, da, b, db] = span.line.place(at);
+        // the slope in the middle
+        let way: V3<f64> = std::array::from_fn(|i| 1.5 * (b[i] - a[i]) - 0.25 * (da[i] + db[i]));
+        Some(match self.fixed.seat {
+            Seat::Ground => way,
+            Seat::Body { .. } => transposed_times(&frame.r, &way),
+        })
+    }
+
+    /// The rotation of the body that carries a point, as seen from that of the shape.
+    fn turn(&self, held: &Held, at: &At<'_>) -> Option<[f64; 4]> {
+        let Held::Beside { q: carrier, .. } = *held else { return None };
+        let of = |q: usize| [at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]];
+        Some(match self.fixed.seat {
+            Seat::Ground => of(carrier),
+            Seat::Body { q, .. } => then(back(of(q)), of(carrier)),
+        })
+    }
+
+    /// The bristle of a cell that something presses, if it has taken hold.
+    fn bristle(
+        &self,
+        group: &Group,
+        cell: usize,
+        pressed: &Pressed,
+        frame: &Frame,
+        at: &At<'_>,
+        memory: &[f64],
+    ) -> Option<Bristle> {
+        let (friction, bristles) = (self.law.friction.as_ref()?, group.bristles.as_ref()?);
+        let own = memory.get(bristles.at + MEMORY * cell..)?.get(..MEMORY)?;
+        if own[0] == 0.0 {
+            return None;
+        }
+        let held = group.station(cell);
+        let pair = self.pair(&held, group.radius(), frame, at);
+        let mut e = minus(&pair.s, &three(own, 1));
+        if let Some(turn) = self.turn(&held, at) {
+            // what has rolled off hasn't slipped
+            let before = back([own[4], own[5], own[6], own[7]]);
+            let rolled = cross(&log(then(turn, before)), &pressed.n);
+            (0..3).for_each(|i| e[i] -= group.radius() * rolled[i]);
+        }
+        let u = pair.velocity(&pressed.n);
+        let axis = self.directed(friction, group, frame, at);
+        let hold = friction.hold(&bristles.grip, pressed, &e, &u, axis.as_ref());
+        Some(Bristle { held, pair, hold })
+    }
+
+    fn directed(&self, friction: &Friction, group: &Group, frame: &Frame, at: &At<'_>) -> Option<V3<f64>> {
+        friction.across.and_then(|_| self.axis(group, frame, at))
+    }
+
+    /// Adds the forces of the bristles of a group.
+    pub(super) fn add_friction(
+        &self,
+        group: &Group,
+        frame: &Frame,
+        at: &At<'_>,
+        cells: &mut [Pressed],
+        out: &mut Assembly<'_>,
+        block: &mut Block,
+    ) {
+        for (cell, pressed) in cells.iter_mut().enumerate() {
+            if !pressed.settle() {
+                continue;
+            }
+            let Some(Bristle { held, pair, mut hold }) =
+                self.bristle(group, cell, pressed, frame, at, at.modes)
+            else {
+                continue;
+            };
+            if hold.slips
+                && out.wants_tangent()
+                && let Some(leap) = out.leap()
+                && let Some(Bristles { grip, .. }) = &group.bristles
+            {
+                let turned = |before: &[f64]| {
+                    let before = At { v: before, ..*at };
+                    let was = self
+                        .pair(&held, group.radius(), &self.fixed.frame(&before), &before)
+                        .velocity(&pressed.n);
+                    hold.turned(grip, &minus(&pair.velocity(&pressed.n), &was), out.weights())
+                };
+                // what slips may have stopped on the way, of which the tangent of slip knows nothing
+                if match leap {
+                    Leap::Predicted => true,
+                    Leap::From(before) => turned(before),
+                } {
+                    hold.stick(grip, &pressed.n);
+                    out.approximates();
+                }
+            }
+            let touch = Touch::at_point(pressed.n, hold.f);
+            self.add_force(&held, &pair, &touch, || hold.slopes(), out, block);
+            if out.wants_tangent() && hold.by_normal != [0.0; 3] {
+                block.add_outer(&self.spread(&held, &pair, &pressed.n, &hold.by_normal), &pressed.by);
+            }
+        }
+    }
+
+    /// How each cell of a group is pressed.
+    fn press(&self, group: &Group, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) -> [Pressed; CELLS] {
+        let mut cells = [Pressed::NONE; CELLS];
+        group.gather(&self.fixed, frame, at, scratch);
+        for ball in &scratch.balls {
+            if let Some((touch, _)) = self.touch(ball, frame, at) {
+                cells[ball.cell].add(touch.normal, &touch.gap.normal);
+            }
+        }
+        cells
+    }
+
+    /// Sees each bristle that holds, with the normal force on its cell.
+    pub(super) fn each_bristle(&self, at: &At<'_>, mut see: impl FnMut(&Hold, f64)) {
+        if self.law.friction.is_none() {
+            return;
+        }
+        let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
+        for group in &self.groups {
+            let Some(bristles) = group.bristles else { continue };
+            let mut cells = self.press(group, &frame, at, &mut scratch);
+            for (cell, pressed) in cells[..bristles.cells].iter_mut().enumerate() {
+                if pressed.settle()
+                    && let Some(b) = self.bristle(group, cell, pressed, &frame, at, at.modes)
+                {
+                    see(&b.hold, pressed.normal);
+                }
+            }
+        }
+    }
+
+    /// Moves the places of the bristles after a step: those that slipped by what they slipped, those that touch anew to
+    /// where they touch.
+    pub(super) fn move_anchors(&self, at: &At<'_>, memory: &mut [f64]) {
+        let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
+        for group in &self.groups {
+            let Some(bristles) = group.bristles else { continue };
+            let mut cells = self.press(group, &frame, at, &mut scratch);
+            for (cell, pressed) in cells[..bristles.cells].iter_mut().enumerate() {
+                let own = bristles.at + MEMORY * cell;
+                if !pressed.settle() {
+                    memory[own] = 0.0;
+                    continue;
+                }
+                let stretch = self.bristle(group, cell, pressed, &frame, at, memory).map(|b| b.hold.stretch);
+                let held = group.station(cell);
+                let s = self.fixed.place(&frame, &held.x(at));
+                if let Some(turn) = self.turn(&held, at) {
+                    memory[own + 4..own + 8].copy_from_slice(&turn);
+                }
+                let stretch = stretch.unwrap_or([0.0; 3]);
+                memory[own] = 1.0;
+                (0..3).for_each(|i| memory[own + 1 + i] = s[i] - stretch[i]);
+            }
+        }
+    }
+}
