@@ -16,6 +16,10 @@ const STEPS: u32 = 400;
 const ITERATIONS: u32 = 14;
 /// Caps of the stiff modulus from stage to stage, as [`Relaxation::ramp`]: first such that the load strains by a tenth.
 const STAGES: [f64; 5] = [1e-3, 1e-2, 1e-1, 1.0, f64::INFINITY];
+/// A step that moves less than this, relative to the reference length, stands still; and how often what stands on a saddle is
+/// pushed off it.
+const STILL: f64 = 1e-3;
+const PUSHES: u32 = 5;
 /// Largest move in one step, relative to the reference length.
 const FARTHEST: f64 = 0.3;
 
@@ -38,6 +42,7 @@ impl Statics<'_> {
         let (mut drag, mut near) = (first, 0_u32);
         let mut stages = STAGES[if far { 0 } else { STAGES.len() - 1 }..].iter();
         let mut stage = *stages.next().unwrap_or(&f64::INFINITY);
+        let (mut still, mut pushes) = (false, 0);
         for _ in 0..STEPS {
             let mut next = state.clone();
             let Some((iterations, positive)) = self.creep_once(&mut next, &masses, [drag, load, stage])
@@ -51,6 +56,10 @@ impl Statics<'_> {
             };
             found.iterations += iterations;
             if !positive {
+                if still && pushes < PUSHES && self.push_off(state, found) {
+                    (still, pushes, drag) = (false, pushes + 1, first);
+                    continue;
+                }
                 drag *= 4.0;
                 if !(drag < 1e14 * first) {
                     return Err(self.fail(state, "the model doesn't creep anywhere", found.iterations));
@@ -60,6 +69,7 @@ impl Statics<'_> {
             let mut moved = vec![0.0; nv];
             difference(self.model.nodes(), &state.q, &next.q, &mut moved);
             let size = self.size(&moved);
+            still = size <= STILL;
             *state = next;
             // where it hardly moves although little holds it back, Newton's method takes over
             if size <= 0.02 && drag <= 1e-2 * first {
@@ -92,6 +102,23 @@ impl Statics<'_> {
             drag = drag.max(1e-12 * first);
         }
         Err(self.fail(state, "the model creeps on and on", found.iterations))
+    }
+
+    /// Pushes what stands at an unstable equilibrium, as what begins in a symmetric place does, in the direction in which it
+    /// would fall. Whether it stood at one.
+    fn push_off(&mut self, state: &mut State, found: &mut Found) -> bool {
+        let mut there = state.clone();
+        let Ok(more) = self.search(&mut there, false, false, false) else { return false };
+        found.add(&more);
+        self.free.clear();
+        if self.unstable == 0 || self.gap(&state.q, &there.q) > 0.3 {
+            return false;
+        }
+        let Some(shapes) = self.soft(&there, self.unstable) else { return false };
+        let push = self.choose(&shapes);
+        retract(self.model.nodes(), &there.q, &push, &mut state.q);
+        state.lambda = there.lambda;
+        true
     }
 
     /// One step; the iterations that it took, and whether it ended where the matrix is positive.

@@ -191,7 +191,7 @@ impl Statics<'_> {
     }
 
     /// The softest directions of an equilibrium, as increments of the size of a push.
-    fn soft(&mut self, state: &State, count: usize) -> Option<Vec<Vec<f64>>> {
+    pub(super) fn soft(&mut self, state: &State, count: usize) -> Option<Vec<Vec<f64>>> {
         let load = self.load(state);
         self.count(state, None, load)?;
         let w = self.weights();
@@ -200,7 +200,7 @@ impl Statics<'_> {
     }
 
     /// Of several directions that all go, one along an axis of space, the first that shows.
-    fn choose(&self, shapes: &[Vec<f64>]) -> Vec<f64> {
+    pub(super) fn choose(&self, shapes: &[Vec<f64>]) -> Vec<f64> {
         if shapes.len() == 1 {
             return shapes[0].clone();
         }

@@ -74,6 +74,15 @@ impl Statics<'_> {
         };
         let mut ds = FIRST.min((end - state.t).abs() / way.span);
         for _ in 0..STEPS {
+            // beyond the end loads may be others
+            let reach = (end - here.state.t) / here.rate;
+            if reach > 0.0 && ds >= reach {
+                if let Some(at_end) = self.arrive(&here, reach, end, found) {
+                    *state = at_end;
+                    return Ok(());
+                }
+                ds = 0.5 * reach;
+            }
             let Some((next, iterations)) = self.step(&here, ds, way) else {
                 ds *= 0.5;
                 if ds < SHORTEST {
@@ -130,6 +139,21 @@ impl Statics<'_> {
         }
         *state = here.state;
         Err(self.fail(state, "the path of equilibria goes on for ever", found.iterations))
+    }
+
+    /// The stable equilibrium at the end of the load, a step `ds` ahead, if it is where the tangent leads.
+    fn arrive(&mut self, here: &Point, ds: f64, end: f64, found: &mut Found) -> Option<State> {
+        let nv = self.model.velocities();
+        let mut there = here.state.clone();
+        let move_on: Vec<f64> = here.slope[..nv].iter().map(|x| ds * x).collect();
+        retract(self.model.nodes(), &here.state.q, &move_on, &mut there.q);
+        there.lambda.iter_mut().zip(&here.slope[nv..]).for_each(|(l, s)| *l += ds * s);
+        there.t = end;
+        let guess = there.q.clone();
+        let more = self.search(&mut there, false, false, false).ok()?;
+        found.add(&more);
+        let near = self.distance(&guess, &there.q) <= 0.1 * self.inner(&move_on, &move_on).sqrt() + 1e-6;
+        (self.unstable == 0 && near).then_some(there)
     }
 
     /// Whether a step of the load may have leapt from one path to another: the tangents at both ends don't explain it.
