@@ -190,7 +190,7 @@ impl Flowing {
         let bent_by_l = [sum(&by_l[0], &e), sum(&by_l[1], &e)];
         let velocity_by_front = |m: usize, k: usize| -> f64 {
             let n = m / 3;
-            if n % 2 == 0 { 0.0 } else { -now.rates[n / 2] * bent_by_l[n / 2][m % 3] * of_front(k) }
+            if n.is_multiple_of(2) { 0.0 } else { -now.rates[n / 2] * bent_by_l[n / 2][m % 3] * of_front(k) }
         };
         let rows = NODES + body.len();
         let mut d = [[0.0; ALL]; MOST];
