@@ -68,7 +68,7 @@ pub use remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
 pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use simulation::{Action, Checkpoint, End, Event, Observer, Simulation, Unfit};
 pub use solver::{Chain, Dense as DenseSolver, Fronts, Guard, LinearSolver, Lu, Scalar, SolveError};
-pub use span::{ContactSpan, SpanLine};
+pub use span::{ContactSpan, SpanFlow, SpanLine};
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MarkerRef, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
 };

@@ -19,6 +19,34 @@ pub struct ContactSpan {
     pub s: f64,
     /// Whether the part ends with it, at its start and at its end: there it has a tip.
     pub tips: [bool; 2],
+    /// How material flows through it, if any does: its line and its length are then those at the start.
+    pub flow: Option<SpanFlow>,
+}
+
+/// How the nodes of a piece stand on a cable whose ends feed: at `p_i = fixed_i + Σ_k by_ki π_k` with its fronts `π`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpanFlow {
+    /// Places of the coordinate and of the rate of each front.
+    pub fronts: [(usize, usize); 2],
+    /// How many fronts there are.
+    pub count: usize,
+    /// What doesn't move with any front [m].
+    pub fixed: [f64; 2],
+    /// Share of each front, by front and node.
+    pub by: [[f64; 2]; 2],
+}
+
+impl SpanFlow {
+    /// Material coordinates of both nodes [m].
+    pub fn places(&self, q: &[f64]) -> [f64; 2] {
+        std::array::from_fn(|i| {
+            (0..self.count).fold(self.fixed[i], |p, k| p + self.by[k][i] * q[self.fronts[k].0])
+        })
+    }
+    /// Their rates [m/s].
+    pub fn rates(&self, v: &[f64]) -> [f64; 2] {
+        std::array::from_fn(|i| (0..self.count).map(|k| self.by[k][i] * v[self.fronts[k].1]).sum())
+    }
 }
 
 /// A line over `ξ` from 0 to 1.

@@ -406,7 +406,8 @@ fn valley() -> Shape {
 fn spans(r: &mut Random) -> Vec<(ContactSpan, Vec<usize>)> {
     let nodes = nodes();
     let ([a, b], body) = ([nodes[1], nodes[2]], nodes[3]);
-    let span = |line| ContactSpan { line, radius: RADIUS, length: 1.1, s: 0.0, tips: [false, true] };
+    let span =
+        |line| ContactSpan { line, radius: RADIUS, length: 1.1, s: 0.0, tips: [false, true], flow: None };
     let cubic = SpanLine::Cubic { q: [a.q, a.q + 3, b.q, b.q + 3], v: [a.v, a.v + 3, b.v, b.v + 3], l: 1.1 };
     let (from, along) = (r.vector(0.5), around(r.vector(1.0))[2]);
     let to = std::array::from_fn(|i| from[i] + 1.3 * along[i]);
@@ -524,7 +525,7 @@ fn the_tangent_under_a_bar_is_exact_but_for_quadrature() {
     let (bar, radius, l) = (0.05, 0.005, 0.25);
     let [a, b] = [nodes[1], nodes[2]];
     let line = SpanLine::Cubic { q: [a.q, a.q + 3, b.q, b.q + 3], v: [a.v, a.v + 3, b.v, b.v + 3], l };
-    let span = ContactSpan { line, radius, length: l, s: 0.0, tips: [false; 2] };
+    let span = ContactSpan { line, radius, length: l, s: 0.0, tips: [false; 2], flow: None };
     let stiff = Stiffness { per_length: 1e6, ..STIFF };
     let mut s = Numbers::new(&mut Random(5));
     for height in [0.0545, 0.054, 0.053] {

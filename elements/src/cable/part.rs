@@ -338,10 +338,6 @@ impl Part for CablePart {
     }
 
     fn contact_spans(&self) -> Vec<ContactSpan> {
-        if self.line.is_some() {
-            // its spans would have to be born and swallowed with its elements
-            return Vec::new();
-        }
         let last = self.mesh.len() - 2;
         let radius = 0.5 * self.section.diameter;
         (0..=last)
@@ -349,7 +345,8 @@ impl Part for CablePart {
                 let ((q0, v0), (q1, v1)) = (self.seats[k], self.seats[k + 1]);
                 let l = self.mesh[k + 1] - self.mesh[k];
                 let line = SpanLine::Cubic { q: [q0, q0 + 3, q1, q1 + 3], v: [v0, v0 + 3, v1, v1 + 3], l };
-                ContactSpan { line, radius, length: l, s: self.mesh[k], tips: [k == 0, k == last] }
+                let flow = self.line.as_ref().filter(|line| line.flows(k)).map(|line| line.span(k));
+                ContactSpan { line, radius, length: l, s: self.mesh[k], tips: [k == 0, k == last], flow }
             })
             .collect()
     }

@@ -72,7 +72,7 @@ impl Part for BodyPart {
         let inset = (radius / length).min(0.5);
         let ends = [inset, 1.0 - inset].map(|x| std::array::from_fn(|i| from[i] + x * axis[i]));
         let line = SpanLine::Straight { q: self.q, v: self.v, ends, along: axis.map(|x| x / length) };
-        vec![ContactSpan { line, radius, length, s: 0.0, tips: [true; 2] }]
+        vec![ContactSpan { line, radius, length, s: 0.0, tips: [true; 2], flow: None }]
     }
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
         let (what, amount, arm) = match per {

@@ -95,6 +95,7 @@ impl Part for ChainPart {
             length: self.link,
             s: k as f64 * self.link,
             tips: [k == 0, k == last],
+            flow: None,
         };
         seats.map(span).collect()
     }

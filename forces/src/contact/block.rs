@@ -10,25 +10,41 @@ pub(crate) const MOST: usize = 18;
 
 /// The block of a group: what has been added of it so far.
 pub(crate) struct Block {
-    k: [[f64; MOST]; MOST],
-    any: bool,
+    /// Residual and tangent, by the unknowns of the group.
+    pub r: [f64; MOST],
+    pub k: [[f64; MOST]; MOST],
+    any: [bool; 2],
 }
 
 impl Block {
     pub fn new() -> Self {
-        Block { k: [[0.0; MOST]; MOST], any: false }
+        Block { r: [0.0; MOST], k: [[0.0; MOST]; MOST], any: [false; 2] }
     }
-    /// Puts it into the matrix as that of clique `clique` with `n` unknowns, and is empty again.
-    pub fn flush(&mut self, clique: usize, n: usize, out: &mut Assembly<'_>) {
-        if self.any {
+    /// Puts it into the equations as that of clique `clique` with these unknowns, and is empty again.
+    pub fn flush(&mut self, clique: usize, dofs: impl Iterator<Item = usize>, out: &mut Assembly<'_>) {
+        let [force, tangent] = self.any;
+        let mut n = 0;
+        if force {
+            for (dof, r) in dofs.zip(&self.r) {
+                out.add(dof, *r);
+                n += 1;
+            }
+            self.r = [0.0; MOST];
+        }
+        if tangent {
             out.add_square(clique, &self.k);
             self.k[..n].iter_mut().for_each(|row| row[..n].fill(0.0));
-            self.any = false;
         }
+        self.any = [false; 2];
+    }
+    /// Adds to the residual of one of its unknowns.
+    pub fn add(&mut self, i: usize, r: f64) {
+        self.any[0] = true;
+        self.r[i] += r;
     }
     /// Adds the derivative of the force on a ball on the ground, in space.
     pub fn add_point(&mut self, held: &Held, d: &M3) {
-        self.any = true;
+        self.any[1] = true;
         let weights = weights(held);
         for (a, wa) in weights.iter().enumerate().filter(|w| *w.1 != 0.0) {
             for (b, wb) in weights.iter().enumerate().filter(|w| *w.1 != 0.0) {
@@ -44,7 +60,7 @@ impl Block {
     }
     /// Adds the derivative of a force that acts on the unknowns like `force` and changes with them as `by` says.
     pub fn add_outer(&mut self, force: &[f64; MOST], by: &[f64; MOST]) {
-        self.any = true;
+        self.any[1] = true;
         for (row, f) in self.k.iter_mut().zip(force).filter(|(_, f)| **f != 0.0) {
             for (k, by) in row.iter_mut().zip(by) {
                 *k -= f * by;
@@ -53,7 +69,7 @@ impl Block {
     }
     /// Adds the derivative of the forces of a pair, of whose unknowns the last six are left out on the ground.
     pub fn add_pair(&mut self, held: &Held, d: &[[f64; PAIR]; PAIR]) {
-        self.any = true;
+        self.any[1] = true;
         let n = held.size();
         if let Held::Beside { .. } = held {
             for i in 0..PAIR {

@@ -112,6 +112,7 @@ impl Contact {
         out: &mut Assembly<'_>,
         block: &mut Block,
     ) {
+        let tangent = out.wants_tangent().then(|| out.weights());
         for (cell, pressed) in cells.iter_mut().enumerate() {
             if !pressed.settle() {
                 continue;
@@ -143,7 +144,7 @@ impl Contact {
                 }
             }
             let touch = Touch::at_point(pressed.n, hold.f);
-            self.add_force(&held, &pair, &touch, || hold.slopes(), out, block);
+            self.add_force(&held, &pair, &touch, || hold.slopes(), tangent, block);
             if out.wants_tangent() && hold.by_normal != [0.0; 3] {
                 block.add_outer(&self.spread(&held, &pair, &pressed.n, &hold.by_normal), &pressed.by);
             }

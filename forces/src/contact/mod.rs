@@ -9,6 +9,7 @@ mod ahead;
 mod block;
 mod bristles;
 mod file;
+mod flowing;
 mod friction;
 mod group;
 mod law;

@@ -287,6 +287,15 @@ impl ContactSpec {
             let mass = carrier.map_or(0.0, |(_, part)| part.mass());
             all.weights.push(Weight { mass, length: 0.0, ea: 0.0, whole: 0.0 });
         }
+        all.part_flowing();
+        if let Some((name, _)) = all.spans.iter().find(|(_, s)| s.flow.is_some())
+            && self.law().friction.is_some()
+        {
+            return Err(BuildError::new(format!(
+                "`{name}` feeds, and friction on material that runs through isn't known here: leave the cable out by `on`, or \
+                 `friction`"
+            )));
+        }
         if all.len() == 0 {
             return Err(BuildError::new("there is nothing in the scene that could touch this shape"));
         }
@@ -394,6 +403,12 @@ const RATIO: f64 = 0.5;
 const G: f64 = 9.81;
 
 impl Touching {
+    /// Puts what material flows through behind the rest, as the term keeps it.
+    fn part_flowing(&mut self) {
+        let spans = std::mem::take(&mut self.spans).into_iter().zip(std::mem::take(&mut self.span_weights));
+        let (flowing, fixed): (Vec<_>, Vec<_>) = spans.partition(|((_, s), _)| s.flow.is_some());
+        (self.spans, self.span_weights) = fixed.into_iter().chain(flowing).unzip();
+    }
     fn len(&self) -> usize {
         self.points.len() + self.spans.len()
     }

@@ -1,6 +1,7 @@
 //! The contact of many points with one shape.
 
 use super::block::{Block, MOST, weights};
+use super::flowing::Flowing;
 use super::friction::{CELLS, Pressed};
 use super::group::{Ball, Group, Scratch, Span, What};
 use super::law::ContactLaw;
@@ -13,8 +14,9 @@ use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{times, transposed_times};
 use ropewalk_core::{
     Assembly, At, Column, ContactPoint, ContactSpan, Energy, Marker, Node, NodeKind, Pattern, Power, Relaxed,
-    SpanLine, Term, V3, dot,
+    SpanLine, Term, V3, Weights, dot,
 };
+use std::ops::Range;
 
 /// Cables, links, hulls and points that touch a shape, which is fixed in space or on a rigid body and feels the opposite
 /// force.
@@ -35,6 +37,8 @@ pub struct Contact {
     /// Stiffness of all that is slender together, per depth.
     per_length: f64,
     pub(super) groups: Vec<Group>,
+    /// Pieces of cables that feed.
+    flowing: Vec<Flowing>,
 }
 
 /// How stiff a contact is, with an exponent `p` other than 1 at a depth of 1 m.
@@ -81,6 +85,7 @@ impl Contact {
             format!("{label}: there is nothing that could touch the shape")
         })?;
         let mut groups = Vec::with_capacity(points.len() + spans.len());
+        let mut flowing = Vec::new();
         for p in points {
             let (radius, k) = (positive("radius", p.radius)?, positive("stiffness", stiffness.point)?);
             groups.push(What::Ball(Ball { held: p.held, radius, k, cell: 0 }));
@@ -96,14 +101,18 @@ impl Contact {
                 let held = s.line.beyond(end_of, radius);
                 (s.tips[end_of] && end > 0.0).then_some(Ball { held, radius: 0.0, k: end, cell: end_of })
             };
-            groups.push(What::Span(Box::new(Span {
+            let span = Span {
                 line: s.line,
                 radius,
                 length: s.length,
                 k: per_length * s.length,
                 tips: [tip(0), tip(1)],
                 points: shape.points(s.length, law.exponent == 1.0),
-            })));
+            };
+            match s.flow {
+                None => groups.push(What::Span(Box::new(span))),
+                Some(flow) => flowing.extend(Flowing::new(flow, span)),
+            }
         }
         let groups: Vec<Group> = groups.into_iter().map(|what| Group { what, bristles: None }).collect();
         for group in &groups {
@@ -112,14 +121,18 @@ impl Contact {
         }
         let fixed = Fixed { shape, seat, origin, axes };
         let per_length = stiffness.per_length * spans.iter().map(|s| s.length).sum::<f64>();
-        Ok(Contact { label, law, fixed, per_length, groups })
+        Ok(Contact { label, law, fixed, per_length, groups, flowing })
     }
 
     /// How deep each point and then each slender piece is at a state [m]; `None` where it doesn't touch.
     pub fn depths<'a>(&'a self, at: &'a At<'_>) -> impl Iterator<Item = Option<f64>> + 'a {
         let frame = self.fixed.frame(at);
         let mut scratch = Scratch::default();
-        self.groups.iter().map(move |group| self.depth(group, &frame, at, &mut scratch))
+        let fixed = self.groups.iter().map(move |group| self.depth(group, &frame, at, &mut scratch));
+        fixed.chain(self.flowing.iter().map(move |f| {
+            let (now, mut scratch) = (f.now(at), Scratch::default());
+            self.depth(&now.group, &self.fixed.frame(at), &now.at(at), &mut scratch)
+        }))
     }
 
     fn depth(&self, group: &Group, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) -> Option<f64> {
@@ -222,6 +235,14 @@ impl Contact {
         })
     }
 
+    /// Unknowns of the body that carries the shape.
+    pub(super) fn body(&self) -> Range<usize> {
+        match self.fixed.seat {
+            Seat::Ground => 0..0,
+            Seat::Body { v, .. } => v..v + 6,
+        }
+    }
+
     fn each(&self, at: &At<'_>, mut see: impl FnMut(&Ball, &Touch, &Frame)) {
         let frame = self.fixed.frame(at);
         let mut scratch = Scratch::default();
@@ -233,24 +254,32 @@ impl Contact {
                 }
             }
         }
+        for flowing in &self.flowing {
+            let now = flowing.now(at);
+            now.group.gather(&self.fixed, &frame, &now.at(at), &mut scratch);
+            for ball in &scratch.balls {
+                if let Some((touch, _)) = self.touch(ball, &frame, &now.at(at)) {
+                    see(ball, &touch, &frame);
+                }
+            }
+        }
     }
 
     /// Adds the force on one ball, and its derivative to the block of its group; notes how it presses its cell.
-    fn add_ball(
+    pub(super) fn add_ball(
         &self,
         ball: &Ball,
         frame: &Frame,
         at: &At<'_>,
-        out: &mut Assembly<'_>,
+        tangent: Option<Weights>,
         block: &mut Block,
         cells: &mut [Pressed],
     ) {
         let Some((touch, pair)) = self.touch(ball, frame, at) else { return };
-        self.add_force(&ball.held, &pair, &touch, || touch.slopes(), out, block);
+        self.add_force(&ball.held, &pair, &touch, || touch.slopes(), tangent, block);
         let Some(cell) = cells.get_mut(ball.cell) else { return };
         cell.add(touch.normal, &touch.gap.normal);
-        if out.wants_tangent() {
-            let w = out.weights();
+        if let Some(w) = tangent {
             let by = -(w.q * touch.by_depth + w.v * touch.by_rate);
             let n = &touch.gap.normal;
             if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
@@ -271,15 +300,14 @@ impl Contact {
         pair: &Pair,
         touch: &Touch,
         slopes: impl FnOnce() -> Slopes,
-        out: &mut Assembly<'_>,
+        tangent: Option<Weights>,
         block: &mut Block,
     ) {
-        let w = out.weights();
         if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
             for (a, w) in weights(held).iter().enumerate().filter(|w| *w.1 != 0.0) {
-                (0..3).for_each(|i| out.add(held.dof(3 * a + i), -w * touch.f[i]));
+                (0..3).for_each(|i| block.add(3 * a + i, -w * touch.f[i]));
             }
-            if out.wants_tangent() {
+            if let Some(w) = tangent {
                 let Slopes { by_s, by_x, by_u } = slopes();
                 let entry = |i: usize, j: usize| w.q * (by_s[i][j] + by_x[i][j]) + w.v * by_u[i][j];
                 let d = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
@@ -287,13 +315,10 @@ impl Contact {
             }
             return;
         }
-        let n = held.size();
         let force = self.spread(held, pair, &touch.gap.normal, &touch.f);
-        (0..n).for_each(|i| out.add(held.dof(i), -force[i]));
-        if let Seat::Body { v, .. } = self.fixed.seat {
-            (0..6).for_each(|i| out.add(v + i, -force[n + i]));
-        }
-        if out.wants_tangent() {
+        let body = if self.fixed.seat == Seat::Ground { 0 } else { 6 };
+        (0..held.size() + body).for_each(|i| block.add(i, -force[i]));
+        if let Some(w) = tangent {
             block.add_pair(held, &pair.derivative(touch, &slopes(), w));
         }
     }
@@ -321,12 +346,12 @@ impl Term for Contact {
         self.label.clone()
     }
     fn pattern(&self, p: &mut Pattern) {
-        let body = match self.fixed.seat {
-            Seat::Ground => 0..0,
-            Seat::Body { v, .. } => v..v + 6,
-        };
+        let body = self.body();
         for g in &self.groups {
             p.clique(g.held().dofs().chain(body.clone()));
+        }
+        for f in &self.flowing {
+            p.clique(f.dofs().chain(body.clone()));
         }
     }
     fn symmetric(&self) -> bool {
@@ -334,23 +359,30 @@ impl Term for Contact {
             What::Ball(b) => matches!(b.held, Held::Beside { .. }),
             What::Span(s) => matches!(s.line, SpanLine::Straight { .. }),
         };
-        self.law.conservative() && self.fixed.seat == Seat::Ground && !self.groups.iter().any(turns)
+        self.law.conservative()
+            && self.fixed.seat == Seat::Ground
+            && self.flowing.is_empty()
+            && !self.groups.iter().any(turns)
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let frame = self.fixed.frame(at);
         let mut block = Block::new();
         let mut scratch = Scratch::default();
         let mut cells = [Pressed::NONE; CELLS];
-        let body = if self.fixed.seat == Seat::Ground { 0 } else { 6 };
+        let tangent = out.wants_tangent().then(|| out.weights());
+        let body = self.body();
         for (clique, group) in self.groups.iter().enumerate() {
             group.gather(&self.fixed, &frame, at, &mut scratch);
             let cells = &mut cells[..group.bristles.map_or(0, |b| b.cells)];
             cells.fill(Pressed::NONE);
             for ball in &scratch.balls {
-                self.add_ball(ball, &frame, at, out, &mut block, cells);
+                self.add_ball(ball, &frame, at, tangent, &mut block, cells);
             }
             self.add_friction(group, &frame, at, cells, out, &mut block);
-            block.flush(clique, group.held().size() + body, out);
+            block.flush(clique, group.held().dofs().chain(body.clone()), out);
+        }
+        for (k, flowing) in self.flowing.iter().enumerate() {
+            flowing.add(self, self.groups.len() + k, &frame, at, out, &mut scratch);
         }
     }
     fn energy(&self, at: &At<'_>) -> Energy {
@@ -381,7 +413,12 @@ impl Term for Contact {
     }
     fn horizon(&self, at: &At<'_>) -> f64 {
         let frame = self.fixed.frame(at);
-        self.groups.iter().map(|g| self.free(g, &frame, at)).fold(f64::INFINITY, f64::min)
+        let fixed = self.groups.iter().map(|g| self.free(g, &frame, at));
+        let flowing = self.flowing.iter().map(|f| {
+            let now = f.now(at);
+            self.free(&now.group, &frame, &now.at(at))
+        });
+        fixed.chain(flowing).fold(f64::INFINITY, f64::min)
     }
     fn remark(&self, at: &At<'_>) -> Option<String> {
         self.coarse(at)
@@ -411,6 +448,12 @@ impl Term for Contact {
                 What::Ball(_) => points += 1.0,
                 What::Span(s) => length += scratch.found.iter().map(|[a, b]| s.length * (b - a)).sum::<f64>(),
             }
+        }
+        for flowing in &self.flowing {
+            let now = flowing.now(at);
+            let Some(depth) = self.depth(&now.group, &frame, &now.at(at), &mut scratch) else { continue };
+            deepest = deepest.max(depth);
+            length += scratch.found.iter().map(|[a, b]| now.l * (b - a)).sum::<f64>();
         }
         let (mut slipping, mut all) = (0.0, 0.0);
         self.each_bristle(at, |hold, pressed| {

@@ -1,7 +1,7 @@
 //! A cable whose ends feed, as a whole: its fronts, and how its nodes follow them.
 
 use super::embedding::Embedding;
-use ropewalk_core::Front;
+use ropewalk_core::{Front, SpanFlow};
 
 /// How one node follows the fronts of its line: `p = fixed + Σ by_k π_k`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,6 +96,20 @@ impl Line {
     pub fn embedding<const F: usize>(&self, k: usize) -> Embedding<F> {
         let (a, b) = (&self.nodes[k], &self.nodes[k + 1]);
         Embedding { fixed: [a.fixed, b.fixed], by: std::array::from_fn(|f| [a.by[f], b.by[f]]) }
+    }
+    /// How the element behind node `k` stands on the material, for what touches it.
+    pub fn span(&self, k: usize) -> SpanFlow {
+        let (a, b) = (&self.nodes[k], &self.nodes[k + 1]);
+        let mut flow = SpanFlow {
+            fronts: [(0, 0); 2],
+            count: self.fronts.len(),
+            fixed: [a.fixed, b.fixed],
+            by: std::array::from_fn(|f| [a.by[f], b.by[f]]),
+        };
+        for (place, (_, front)) in flow.fronts.iter_mut().zip(&self.fronts) {
+            *place = (front.q, front.v);
+        }
+        flow
     }
     /// By how much the feeding of each front makes material run along the element behind node `k`.
     pub fn slip<const F: usize>(&self, k: usize) -> [f64; F] {
