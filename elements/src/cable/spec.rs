@@ -30,7 +30,8 @@ pub struct Section {
     /// Axial stiffness EA [N].
     #[serde(deserialize_with = "quantity::axial_stiffness")]
     pub ea: f64,
-    /// Bending stiffness EI [N m²].
+    /// Bending stiffness EI [N m²]. Of a limp cable (0) the first and last element have a little, a hundredth of their weight
+    /// times the square of their length, so that free ends have a direction.
     #[serde(default, deserialize_with = "quantity::bending_stiffness")]
     pub ei: f64,
     /// Torsional stiffness GJ [N m²] of a cable that is bent when free of stress; left out, EI. Others don't know twist.
@@ -58,7 +59,7 @@ pub struct Section {
 }
 
 /// Bending stiffness of the end elements of a cable that has none, in parts of their weight times the square of their length.
-const TIP: f64 = 0.03;
+const TIP: f64 = 0.01;
 
 impl Section {
     /// A section with mass and stiffness only.
