@@ -13,7 +13,7 @@ use super::{CableParams, CableStations};
 use crate::path::{Corner, Path};
 use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
 use ropewalk_core::{
-    Element, ElementSpec, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, quantity,
+    Element, ElementSpec, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, dot, quantity,
     register_spec,
 };
 use schemars::JsonSchema;
@@ -30,7 +30,8 @@ pub struct Section {
     /// Axial stiffness EA [N].
     #[serde(deserialize_with = "quantity::axial_stiffness")]
     pub ea: f64,
-    /// Bending stiffness EI [N m²].
+    /// Bending stiffness EI [N m²]. Of a limp cable (0) the first and last element have a little, a hundredth of their weight
+    /// times the square of their length, so that free ends have a direction.
     #[serde(default, deserialize_with = "quantity::bending_stiffness")]
     pub ei: f64,
     /// Torsional stiffness GJ [N m²] of a cable that is bent when free of stress; left out, EI. Others don't know twist.
@@ -56,6 +57,9 @@ pub struct Section {
     #[serde(default, deserialize_with = "quantity::time")]
     pub bending_damping: f64,
 }
+
+/// Bending stiffness of the end elements of a cable that has none, in parts of their weight times the square of their length.
+const TIP: f64 = 0.01;
 
 impl Section {
     /// A section with mass and stiffness only.
@@ -579,11 +583,14 @@ impl ElementSpec for CableSpec {
             std::array::from_fn(|i| if i < 6 { all[a + i] } else { all[c + i - 6] })
         };
         let shapes: Vec<[f64; 12]> = (0..mesh.len() - 1).map(dofs).collect();
-        let params = |k: usize| CableParams {
-            l: mesh[k + 1] - mesh[k],
-            ea: s.ea,
-            ei: s.ei,
-            rho_a: s.mass + s.flooded,
+        let weight = s.mass * dot(&b.gravity(), &b.gravity()).sqrt();
+        let last = mesh.len() - 2;
+        let params = |k: usize| {
+            let l = mesh[k + 1] - mesh[k];
+            // without tension a limp tip points anywhere: a little of the weight that hangs there straightens it
+            let tip = s.ei == 0.0 && (k == 0 || k == last);
+            let ei = if tip { TIP * weight * l.powi(3) } else { s.ei };
+            CableParams { l, ea: s.ea, ei, rho_a: s.mass + s.flooded }
         };
         for k in 0..mesh.len() - 1 {
             let Some(line) = flows(k) else { continue };
