@@ -119,7 +119,7 @@ pub(crate) fn atlas(
     let state = Mutex::new((vec![None; plan.cases.len()], 0));
     runner.for_each(plan.cases.len(), options.jobs, |k| {
         let case = &plan.cases[k];
-        let ran = runner.run(Ok(&case.file), &case.name, &RunFolder::earlier(folder.run(&case.name)));
+        let ran = runner.run(Ok(&case.file), &case.title, &RunFolder::earlier(folder.run(&case.name)));
         let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
         state.0[k] = Some(ran.summary.status.clone());
         state.1 += usize::from(ran.earlier);
@@ -241,5 +241,45 @@ fn overlays(file: &AtlasFile, chosen: &[usize], laid: &[Laid]) -> Result<Vec<Vec
         None => Ok(all),
         Some(l) => Err(Fault::new(format!("--overlay: there is no figure {} to lay over", l.figure))
             .with_help(format!("`ropewalk atlas {} --list` shows all figures", file.name))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ropewalk_models::{atlases, bundled};
+
+    /// Every record, parameter, window and part that the bundled atlases name is there, for the runs of `--quick` as well.
+    #[test]
+    fn bundled_atlases_go_with_their_scenes() {
+        for b in atlases() {
+            let file = AtlasFile::open(b.name, atlases()).unwrap_or_else(|fault| panic!("{fault}"));
+            let all = file.chosen(&[]).unwrap();
+            let plan = Plan::new(&file, &all, false, bundled()).unwrap_or_else(|fault| panic!("{fault}"));
+            all.iter().try_for_each(|k| file.check(*k, &plan)).unwrap_or_else(|fault| panic!("{fault}"));
+            let quick = Plan::new(&file, &all, true, bundled()).unwrap_or_else(|fault| panic!("{fault}"));
+            all.iter().try_for_each(|k| file.check(*k, &quick)).unwrap_or_else(|fault| panic!("{fault}"));
+            // figures share most of their runs
+            let uses: usize = plan.uses.iter().map(Vec::len).sum();
+            assert!(2 * plan.cases.len() < uses, "{} runs for {uses} uses", plan.cases.len());
+            let chapters: std::collections::HashSet<_> =
+                all.iter().map(|k| file.atlas.entries[*k].head().chapter.to_string()).collect();
+            assert_eq!(chapters.len(), file.atlas.chapters.len());
+        }
+    }
+
+    #[test]
+    fn the_thesis_has_every_number_of_its_lists() {
+        let file = AtlasFile::open("thesis", atlases()).unwrap();
+        let names: Vec<String> = file.atlas.entries.iter().map(Entry::name).collect();
+        let lists = [("1", 4), ("2", 39), ("3", 26), ("4", 61), ("D", 1), ("G", 2), ("L", 12)];
+        let tables = [("2", 2), ("3", 2), ("4", 11), ("E", 1), ("K", 2), ("L", 6)];
+        let figures = lists.iter().flat_map(|(c, n)| (1..=*n).map(move |k| format!("{c}.{k}")));
+        let tables = tables.iter().flat_map(|(c, n)| (1..=*n).map(move |k| format!("table-{c}.{k}")));
+        let all: Vec<String> = figures.chain(tables).collect();
+        assert_eq!(all.len(), names.len());
+        for name in all {
+            assert!(names.contains(&name), "{name}");
+        }
     }
 }

@@ -83,6 +83,7 @@ fn histories(panel: &Panel, runs: &[Run<'_>]) -> Vec<LinePlot> {
     let plot = LinePlot {
         x_label: panel.x.as_deref().map_or(time, heading),
         y_label: panel.y.first().map_or_else(String::new, |y| heading(y)),
+        together: if runs.len() > 1 { panel.y.len() } else { 0 },
         ..LinePlot::default()
     };
     // runs stay together, and so do those that differ only in what varies fastest
@@ -267,9 +268,11 @@ fn functions_of(panel: &Panel) -> LinePlot {
     LinePlot { series: panel.functions.iter().map(curve).collect(), ..LinePlot::default() }
 }
 
-/// The vertical axis of what comes after a start-up, if the start-up goes beyond it.
+/// The vertical axis of what comes after a start-up, if the start-up would hide it.
 fn settled(panel: &Panel, plot: &LinePlot, notes: &mut Vec<String>) -> Option<(f64, f64)> {
     const MARGIN: f64 = 0.06;
+    // what leaves half of the axis to the rest hides nothing
+    const HIDES: f64 = 2.0;
     let after = panel.after?;
     let all = || plot.series.iter().flat_map(|s| &s.points).filter(|p| p.1.is_finite());
     let within = all().filter(|p| p.0 >= after).map(|p| p.1);
@@ -278,16 +281,22 @@ fn settled(panel: &Panel, plot: &LinePlot, notes: &mut Vec<String>) -> Option<(f
         let excess = |p: &(f64, f64)| (p.1 - high).max(low - p.1);
         excess(a).total_cmp(&excess(b))
     })?;
-    if low > high || (low..=high).contains(&beyond.1) {
+    let whole = high.max(beyond.1) - low.min(beyond.1);
+    if low > high || (low..=high).contains(&beyond.1) || whole <= HIDES * (high - low) {
         return None;
     }
     let margin = if high > low { MARGIN * (high - low) } else { 0.1 * high.abs().max(1.0) };
-    let (x, y) = (crate::output::rough(beyond.0), crate::output::rough(beyond.1));
-    let unit = |label: &str| label.rsplit_once('[').map_or("", |(_, u)| u.trim_end_matches(']')).to_string();
-    let (x_unit, y_unit) = (unit(&plot.x_label), unit(&plot.y_label));
+    let value = |x: f64, label: &str| {
+        let unit = label.rsplit_once(" [").map_or("", |(_, unit)| unit.trim_end_matches(']'));
+        let number = crate::output::rough(x).replace('-', "−");
+        format!("{number} {unit}").trim_end().to_string()
+    };
     let name = plot.y_label.split(" [").next().unwrap_or_default();
-    notes
-        .push(format!("The axis of {name} leaves out a start-up that reaches {y} {y_unit} at {x} {x_unit}."));
+    notes.push(format!(
+        "The axis of the {name} leaves out a start-up that reaches {} at {}.",
+        value(beyond.1, &plot.y_label),
+        value(beyond.0, &plot.x_label)
+    ));
     Some((low - margin, high + margin))
 }
 

@@ -64,7 +64,7 @@ fn errors(c: &Coefficients) -> (f64, f64) {
     let a = amplification(c, SMALL);
     let (half, det) = (0.5 * (a[0][0] + a[1][1]), a[0][0] * a[1][1] - a[0][1] * a[1][0]);
     let angle = (det - half * half).sqrt().atan2(half);
-    let shown = |x: f64| (1e4 * x / (SMALL * SMALL)).round() / 1e4;
+    let shown = |x: f64| (1e4 * x / (SMALL * SMALL)).round() / 1e4 + 0.0;
     (shown(SMALL / angle - 1.0), shown(det.sqrt() - 1.0))
 }
 

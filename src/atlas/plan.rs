@@ -20,12 +20,14 @@ const LONGEST_NAME: usize = 60;
 
 /// A run.
 pub(super) struct Case {
-    /// Name of its folder: what it is, and the fingerprint of its scene.
+    /// What it is, for people.
+    pub title: String,
+    /// Name of its folder: the same and the fingerprint of its scene.
     pub name: String,
     pub file: SceneFile,
     /// Columns of its history, without values.
     pub columns: Vec<Column>,
-    /// Number of elements, parts and such are those of this model's first cable: its bending time [s], if it has any.
+    /// Length of an element of its first cable [m], and its bending time [s].
     pub bending: Option<(f64, f64)>,
 }
 
@@ -193,13 +195,13 @@ impl Planner<'_> {
         let bending = slender.map(|s| (s.element, s.bending_time()));
         let values: Vec<String> =
             runs.set.iter().map(|(n, v)| format!("{n}={}", text_of(v))).chain(of_varied(varied)).collect();
-        let name: String = plain(&[vec![runs.scene.clone()], values].concat().join(","))
+        let title: String = plain(&[vec![runs.scene.clone()], values].concat().join(","))
             .chars()
             .filter(|c| !c.is_whitespace())
             .take(LONGEST_NAME)
             .collect();
-        let name = format!("{name}-{:016x}", fingerprint(&text));
-        self.plan.cases.push(Case { name, file, columns, bending });
+        let name = format!("{title}-{:016x}", fingerprint(&text));
+        self.plan.cases.push(Case { title, name, file, columns, bending });
         self.known.insert(text, self.plan.cases.len() - 1);
         Ok(self.plan.cases.len() - 1)
     }
@@ -290,7 +292,7 @@ impl Plan {
         let mut values: Vec<String> = Vec::new();
         let mut of = Vec::new();
         for u in uses {
-            let value = u.value(name)?;
+            let value = unquoted(u.value(name)?);
             let at = values.iter().position(|v| v == value).unwrap_or_else(|| {
                 values.push(value.to_string());
                 values.len() - 1

@@ -50,7 +50,7 @@ fn parameters(sheet: &Sheet, plan: &Plan, runs: &[Run<'_>]) -> Printed {
     let row = |name: &String| {
         let about =
             runs.first().and_then(|run| of(run, name)).and_then(|p| p.description).unwrap_or_default();
-        let about = [Item::Text(name.clone()), Item::Text(about)];
+        let about = [Item::Text(name.clone()), Item::Text(printed(&about))];
         let value = |run: &Run<'_>| {
             let text = of(run, name).map_or_else(String::new, |p| value_text(&p.value));
             Item::Text(printed(&printed_value(&text)))
@@ -95,7 +95,9 @@ fn over_time(sheet: &Sheet, every: f64, runs: &[Run<'_>]) -> Printed {
     }
     let end = columns.iter().filter_map(|(t, _)| t.last()).fold(0.0_f64, |a, b| a.max(*b));
     let row = |k: usize| {
+        // 0.6000000000000001 is 0.6
         let at = every * k as f64;
+        let at = format!("{at:.12e}").parse().unwrap_or(at);
         let value = |(t, y): &(&[f64], &[f64])| {
             // the row of that time, or none after the end of the run
             let i = t.partition_point(|x| *x < at - 1e-9 * end);

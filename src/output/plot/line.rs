@@ -100,6 +100,8 @@ pub struct LinePlot {
     pub ordered: bool,
     /// Whether curves differ by dashes as well as by colour, for print in grey.
     pub dashed: bool,
+    /// How many curves that follow each other share a colour, and then differ by their dashes; 0 for none.
+    pub together: usize,
     /// Directions of x, y and z in the plane, drawn as a small cross of axes if there are any.
     pub directions: Vec<(f64, f64)>,
 }
@@ -192,7 +194,11 @@ impl LinePlot {
         match self.series[index].mark {
             Mark::Guide => (colour::AXIS, 0),
             _ if self.ordered => (colour::ramp(place as f64 / (count.max(2) - 1) as f64), 0),
-            _ => (colour::of_series(place, count), if self.dashed { place } else { 0 }),
+            _ => {
+                let each = self.together.max(1);
+                let colour = colour::of_series(place / each, count.div_ceil(each));
+                (colour, if self.dashed { place } else { 0 })
+            }
         }
     }
 
