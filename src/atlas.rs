@@ -115,9 +115,11 @@ pub(crate) fn atlas(
     };
     let folder = StudyFolder::open(options.out.clone(), options.fresh, &manifest)?;
 
-    let runner = Runner::new(plan.cases.len(), options.progress);
+    let needed = plan.needed(file);
+    let runner = Runner::new(needed.len(), options.progress);
     let state = Mutex::new((vec![None; plan.cases.len()], 0));
-    runner.for_each(plan.cases.len(), options.jobs, |k| {
+    runner.for_each(needed.len(), options.jobs, |i| {
+        let k = needed[i];
         let case = &plan.cases[k];
         let ran = runner.run(Ok(&case.file), &case.title, &RunFolder::earlier(folder.run(&case.name)));
         let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
@@ -127,12 +129,15 @@ pub(crate) fn atlas(
     })?;
     let (status, earlier) = state.into_inner().unwrap_or_else(PoisonError::into_inner);
     let complete = |case: usize| matches!(status[case].as_deref(), Some("finished" | "stopped"));
+    let waits = |k: usize| {
+        let all = plan.uses[k].iter().filter(|u| !complete(u.case)).count();
+        if file.atlas.entries[k].needs_results() { all } else { 0 }
+    };
 
     let maker = Maker { file, plan: &plan, folder: &folder };
     let mut outcomes = vec![Outcome::NotAsked; file.atlas.entries.len()];
     for &k in &chosen {
-        let missing = plan.uses[k].iter().filter(|u| !complete(u.case)).count();
-        outcomes[k] = match missing {
+        outcomes[k] = match waits(k) {
             0 => maker.make(k, &overlays[k]).unwrap_or_else(|e| Outcome::Missing(e.to_string())),
             n => Outcome::Missing(format!("{n} of {} runs have no result", plan.uses[k].len())),
         };
@@ -146,7 +151,7 @@ pub(crate) fn atlas(
     }
     runner.progress.finish();
 
-    let runs = (plan.cases.len(), (0..plan.cases.len()).filter(|k| complete(*k)).count());
+    let runs = (needed.len(), needed.iter().filter(|k| complete(**k)).count());
     let failed = status.iter().flatten().filter(|s| matches!(s.as_str(), "failed" | "refused")).count();
     let interrupted = runs.1 + failed < runs.0;
     let count = |of: fn(&Outcome) -> bool| outcomes.iter().filter(|o| of(o)).count();
@@ -154,8 +159,7 @@ pub(crate) fn atlas(
     let tables = count(|o| matches!(o, Outcome::Table(_)));
     let others = count(|o| matches!(o, Outcome::NotComputed));
     let missing = count(|o| matches!(o, Outcome::Missing(_)));
-    let waiting = |k: &usize| plan.uses[*k].iter().any(|u| !complete(u.case));
-    let broken = missing - chosen.iter().filter(|k| waiting(k)).count();
+    let broken = missing - chosen.iter().filter(|k| waits(**k) > 0).count();
     let report = format!(
         "{}\n  figures     {figures}\n  tables      {tables}\n  others      {others}, not computed\n  \
          missing     {missing}\n  runs        {} of {}, {earlier} of them from an earlier call\n  \
@@ -194,8 +198,11 @@ impl Maker<'_> {
                 Ok(Outcome::Figure(drawn.notes))
             }
             Entry::Table(sheet) => {
-                let runs = data::read(self.plan, entry, self.folder, false)?;
-                let printed = table::table(sheet, self.plan, &runs);
+                let runs = match e.needs_results() {
+                    true => data::read(self.plan, entry, self.folder, false)?,
+                    false => Vec::new(),
+                };
+                let printed = table::table(sheet, self.plan, entry, &runs);
                 write_atomic(&self.path("tables", &e.name(), "csv")?, &printed.csv())?;
                 let html = printed.html();
                 write_atomic(&self.path("tables", &e.name(), "html")?, &html)?;

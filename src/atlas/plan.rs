@@ -9,7 +9,7 @@ use crate::scene::{Fault, Varied, quoted};
 use crate::sweep::Axis;
 use ropewalk_models::Bundled;
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// More runs than this are surely a mistake.
 const MOST_RUNS: usize = 10_000;
@@ -286,6 +286,13 @@ impl Use {
 }
 
 impl Plan {
+    /// The numbers of the cases that have to be computed.
+    pub(super) fn needed(&self, file: &AtlasFile) -> Vec<usize> {
+        let entries = self.uses.iter().zip(&file.atlas.entries).filter(|(_, e)| e.needs_results());
+        let used: HashSet<usize> = entries.flat_map(|(uses, _)| uses).map(|u| u.case).collect();
+        (0..self.cases.len()).filter(|k| used.contains(k)).collect()
+    }
+
     /// The values of a parameter in an entry's runs as numbers along an axis, in the unit in which they are written.
     pub(super) fn axis(&self, entry: usize, name: &str) -> Option<(Axis, Vec<usize>)> {
         let uses = &self.uses[entry];
@@ -325,10 +332,10 @@ fn unquoted(text: &str) -> &str {
 
 /// A value as a legend shows it, with a true minus sign.
 pub(super) fn printed(value: &str) -> String {
-    let text = unquoted(value);
+    let text = unquoted(value).replace('"', "");
     match text.strip_prefix('-').filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
         Some(rest) => format!("−{rest}"),
-        None => text.to_string(),
+        None => text,
     }
 }
 

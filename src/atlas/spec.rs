@@ -107,6 +107,11 @@ impl Entry {
         format!("{} {}", if table { "Table" } else { "Figure" }, self.head().number)
     }
 
+    /// Whether its runs have to be computed: of a table of parameters they needn't.
+    pub(super) fn needs_results(&self) -> bool {
+        !matches!(self, Entry::Table(sheet) if !sheet.parameters.is_empty())
+    }
+
     /// The runs that it is made of.
     pub(super) fn runs(&self) -> &[Runs] {
         match self {

@@ -4,7 +4,7 @@ use super::curves::reported;
 use super::data::Run;
 use super::known;
 use super::number::printed;
-use super::plan::{CASE, Plan, inline, printed as printed_value};
+use super::plan::{CASE, Plan, Use, inline, printed as printed_value};
 use super::spec::{Cell, Sheet};
 use crate::output::{number, push_cell, push_number};
 use crate::scene::Value;
@@ -25,11 +25,11 @@ pub(super) struct Printed {
 }
 
 /// Makes the table of these runs.
-pub(super) fn table(sheet: &Sheet, plan: &Plan, runs: &[Run<'_>]) -> Printed {
+pub(super) fn table(sheet: &Sheet, plan: &Plan, entry: usize, runs: &[Run<'_>]) -> Printed {
     if let Some(known) = sheet.computed {
         known::table(known)
     } else if !sheet.parameters.is_empty() {
-        parameters(sheet, plan, runs)
+        parameters(sheet, plan, &plan.uses[entry])
     } else if let Some(every) = sheet.every {
         over_time(sheet, every, runs)
     } else {
@@ -37,25 +37,24 @@ pub(super) fn table(sheet: &Sheet, plan: &Plan, runs: &[Run<'_>]) -> Printed {
     }
 }
 
-/// A row for each parameter, a column for each run.
-fn parameters(sheet: &Sheet, plan: &Plan, runs: &[Run<'_>]) -> Printed {
-    let of = |run: &Run<'_>, name: &str| {
-        let all = plan.cases[run.used.case].file.document().parameters();
+/// A row for each parameter, a column for each run; nothing has to be computed for it.
+fn parameters(sheet: &Sheet, plan: &Plan, uses: &[Use]) -> Printed {
+    let of = |used: &Use, name: &str| {
+        let all = plan.cases[used.case].file.document().parameters();
         all.iter().find(|p| p.name == name).cloned()
     };
-    let column =
-        |run: &Run<'_>| if run.used.label.is_empty() { "value".into() } else { run.used.label.clone() };
+    let column = |used: &Use| if used.label.is_empty() { "value".into() } else { used.label.clone() };
     let fixed = ["parameter".to_string(), "what it is".to_string()];
-    let headings = fixed.into_iter().chain(runs.iter().map(column)).collect();
+    let headings = fixed.into_iter().chain(uses.iter().map(column)).collect();
     let row = |name: &String| {
         let about =
-            runs.first().and_then(|run| of(run, name)).and_then(|p| p.description).unwrap_or_default();
+            uses.first().and_then(|used| of(used, name)).and_then(|p| p.description).unwrap_or_default();
         let about = [Item::Text(name.clone()), Item::Text(printed(&about))];
-        let value = |run: &Run<'_>| {
-            let text = of(run, name).map_or_else(String::new, |p| value_text(&p.value));
+        let value = |used: &Use| {
+            let text = of(used, name).map_or_else(String::new, |p| value_text(&p.value));
             Item::Text(printed(&printed_value(&text)))
         };
-        about.into_iter().chain(runs.iter().map(value)).collect()
+        about.into_iter().chain(uses.iter().map(value)).collect()
     };
     Printed { headings, rows: sheet.parameters.iter().map(row).collect() }
 }
