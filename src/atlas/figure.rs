@@ -59,25 +59,32 @@ pub(super) fn draw(
     Drawn { picture: Panels { title, columns, panels }, notes }
 }
 
+/// Curves over the same values.
+struct Block {
+    x_label: String,
+    x: Vec<f64>,
+    /// Heading and values of each.
+    curves: Vec<(String, Vec<f64>)>,
+}
+
 /// All curves as CSV: those over the same values share their first column.
 pub(super) fn csv(picture: &Panels) -> String {
-    let mut blocks: Vec<(String, Vec<f64>, Vec<(String, Vec<f64>)>)> = Vec::new();
+    let mut blocks: Vec<Block> = Vec::new();
     for plot in &picture.panels {
         for curve in plot.series.iter().filter(|s| s.mark != Mark::Guide) {
             let (x, y): (Vec<f64>, Vec<f64>) = curve.points.iter().copied().unzip();
-            let heading = heading(plot, curve);
-            let same = |b: &&mut (String, Vec<f64>, Vec<(String, Vec<f64>)>)| b.0 == plot.x_label && b.1 == x;
-            match blocks.iter_mut().find(same) {
-                Some(block) => block.2.push((heading, y)),
-                None => blocks.push((plot.x_label.clone(), x, vec![(heading, y)])),
+            let named = (heading(plot, curve), y);
+            match blocks.iter_mut().find(|b| b.x_label == plot.x_label && b.x == x) {
+                Some(block) => block.curves.push(named),
+                None => blocks.push(Block { x_label: plot.x_label.clone(), x, curves: vec![named] }),
             }
         }
     }
     let columns: Vec<(&str, &[f64])> = blocks
         .iter()
-        .flat_map(|(x_label, x, curves)| {
-            let curves = curves.iter().map(|(name, y)| (name.as_str(), y.as_slice()));
-            std::iter::once((x_label.as_str(), x.as_slice())).chain(curves)
+        .flat_map(|b| {
+            let curves = b.curves.iter().map(|(name, y)| (name.as_str(), y.as_slice()));
+            std::iter::once((b.x_label.as_str(), b.x.as_slice())).chain(curves)
         })
         .collect();
     let mut text = String::new();
