@@ -3,6 +3,7 @@
 use super::read::AtlasFile;
 use super::spec::{Entry, Runs};
 use super::table::{escaped, pairs};
+use std::path::Path;
 
 /// What became of an entry.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,7 +110,10 @@ fn entry(file: &AtlasFile, k: usize, outcome: &Outcome) -> String {
 /// The scene of a run and what is set in it.
 fn behind(file: &AtlasFile, runs: &Runs) -> String {
     let shared = file.atlas.scenes.get(&runs.scene);
-    let of = shared.and_then(|s| s.scene.as_deref().or(s.file.as_deref())).unwrap_or(&runs.scene);
+    // where a scene's file lies is nobody's business
+    let file_name = |path: &str| Path::new(path).file_name().map(|n| n.to_string_lossy().into_owned());
+    let named = shared.and_then(|s| s.scene.clone().or_else(|| file_name(s.file.as_deref()?)));
+    let of = named.unwrap_or_else(|| runs.scene.clone());
     let mut parts: Vec<String> = Vec::new();
     for values in shared.iter().map(|s| &s.set).chain([&runs.set]).filter(|v| !v.is_empty()) {
         parts.push(pairs(values));
@@ -120,6 +124,6 @@ fn behind(file: &AtlasFile, runs: &Runs) -> String {
     if !runs.vary.is_empty() {
         parts.push(format!("varied: {}", pairs(&runs.vary)));
     }
-    let scene = format!("scene <b>{}</b>", escaped(of));
+    let scene = format!("scene <b>{}</b>", escaped(&of));
     if parts.is_empty() { scene } else { format!("{scene}: {}", escaped(&parts.join("; "))) }
 }

@@ -221,9 +221,9 @@ impl Planner<'_> {
                 }),
                 Some(used) => {
                     let at = format!("scenes.{name}");
-                    let wanted = match (&used.scene, &used.file) {
-                        (Some(scene), None) => scene.as_str(),
-                        (None, Some(file)) => file.as_str(),
+                    let (wanted, key) = match (&used.scene, &used.file) {
+                        (Some(scene), None) => (scene.as_str(), "scene"),
+                        (None, Some(file)) => (file.as_str(), "file"),
                         _ => {
                             let message = format!("{} needs either `scene` or `file`", quoted(name));
                             return Err(self.file.fault(&at, message).with_help(
@@ -234,7 +234,7 @@ impl Planner<'_> {
                     SceneText::open(wanted, self.bundled).map_err(|fault| match fault.place {
                         Some(_) => fault,
                         None => {
-                            let here = self.file.fault(&at, fault.message);
+                            let here = self.file.fault(&format!("{at}.{key}"), fault.message);
                             Fault { notes: fault.notes, help: fault.help, ..here }
                         }
                     })
