@@ -234,7 +234,7 @@ fn a_measured_curve_is_laid_over() {
     atlas(folder.path(), "--only 1.1 --out out").refused(&[
         "`height`",
         "weight.x, weight.z",
-        "swings.toml:32:",
+        "swings.toml:26:",
         "entries[0].overlay[0]",
     ]);
 }

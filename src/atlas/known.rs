@@ -37,7 +37,7 @@ fn newmark() -> Printed {
     let row = |(name, scheme): &(&str, Scheme)| {
         let c = scheme.coefficients().ok()?;
         let limit = match stability(&c) {
-            Some(limit) if limit == 0.0 => text("unstable"),
+            Some(0.0) => text("unstable"),
             Some(limit) => Item::Number(limit, false),
             None => text("none"),
         };

@@ -90,7 +90,8 @@ impl AtlasFile {
                 let fault = self.fault(&format!("entries[{k}].number"), message);
                 return Err(fault.with_help("write it without commas and blanks, as in `4.12`"));
             }
-            if !chapters.contains(&head.chapter) && !(chapters.is_empty() && head.chapter.is_empty()) {
+            let without = chapters.is_empty() && head.chapter.is_empty();
+            if !without && !chapters.contains(&head.chapter) {
                 let message = format!("there is no chapter {}", quoted(head.chapter));
                 let fault = self.fault(&format!("entries[{k}].chapter"), message);
                 return Err(match chapters.as_slice() {
