@@ -85,6 +85,16 @@ enum Command {
         Last values that aren't steady are named: `--report mean` takes the mean over the last tenth of each run instead.\n\
         The same command again computes only what is missing, failed or was interrupted.")]
     Sweep(SweepArgs),
+    /// Make the figures and tables of a paper, a report or a thesis, each by its number
+    #[command(after_help = "Examples:\n  \
+        ropewalk atlas thesis --list            what there is\n  \
+        ropewalk atlas thesis --only 4.43,table-4.11\n  \
+        ropewalk atlas thesis --only 3.10 --overlay 3.10=measured.csv\n  \
+        ropewalk atlas my-paper.toml --out atlas\n\n\
+        The folder holds index.html with all entries by chapter, figures/*.svg and *.csv, tables/*.csv and *.html, and in\n\
+        runs/ what `ropewalk run` leaves behind. Runs that entries share are computed once, on all cores; the same command\n\
+        again, or after Ctrl-C, computes only what is missing. `examples/atlas` shows how an atlas is written.")]
+    Atlas(commands::atlas::AtlasArgs),
     /// Vibration modes about the equilibrium of a scene: frequencies, damping, and a picture of each shape
     #[command(after_help = "Examples:\n  \
         ropewalk modes scene.toml               the 20 lowest\n  \
@@ -199,7 +209,7 @@ pub(crate) struct SweepArgs {
     pub(crate) quiet: bool,
 }
 
-fn at_least_one(text: &str) -> Result<usize, String> {
+pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(0) | Err(_) => Err("expected a whole number, at least 1".into()),
         Ok(n) => Ok(n),
@@ -232,6 +242,7 @@ pub fn main_from(
         Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
+        Command::Atlas(args) => commands::atlas::atlas(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
         Command::Cost(args) => commands::cost::cost(args, bundled),
         Command::Effects(args) => commands::effects::effects(&args, bundled),

@@ -1,5 +1,6 @@
 //! What the command line can do, one file for each verb.
 
+pub(crate) mod atlas;
 pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod cost;

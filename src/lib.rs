@@ -16,6 +16,7 @@
 //! [`core`] (model, solvers, integrators), [`elements`], [`constraints`], [`forces`], [`models`] (bundled scenes). A
 //! crate that adds types of its own offers them with [`cli::main_with`] in the same command line.
 
+mod atlas;
 pub mod bench;
 mod certificate;
 pub mod cli;

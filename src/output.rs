@@ -2,7 +2,7 @@
 //!
 //! - [`RunFolder`]: the folder of a run; nothing in it is ever overwritten by a later run.
 //! - [`Table`], [`TableWriter`]: time histories, as CSV.
-//! - [`LinePlot`], [`BarPlot`], [`ShapePlot`]: SVG pictures that need no fonts and no display.
+//! - [`LinePlot`], [`Panels`], [`BarPlot`], [`ShapePlot`]: SVG pictures that need no fonts and no display.
 //! - [`Summary`]: the few numbers that say how a run ended, as JSON.
 //! - [`Progress`], [`SweepProgress`], [`Interrupt`], [`Stopwatch`]: the progress bars, Ctrl-C, and CPU time.
 
@@ -24,7 +24,7 @@ pub(crate) use folder::{RUNS, cannot_create, plain, write_json};
 pub use folder::{RunFolder, write_atomic};
 pub use interrupt::Interrupt;
 pub(crate) use number::{number, rough};
-pub use plot::{Bar, BarPlot, LinePlot, Mark, Plane, Series, ShapePlot, Snapshot};
+pub use plot::{Bar, BarPlot, LinePlot, Mark, Panels, Plane, Series, ShapePlot, Snapshot};
 pub(crate) use progress::new_bar;
 pub use progress::{Progress, ProgressMode, SweepProgress};
 pub use stopwatch::{Elapsed, Stopwatch};

@@ -15,7 +15,7 @@ pub use manifest::Manifest;
 pub(crate) use pictures::{PLANES, planes, view};
 use recorder::Warnings;
 pub(crate) use recorder::{Recorder, records};
-pub(crate) use shapes::last as last_shape;
+pub(crate) use shapes::{Shape, last as last_shape, read as read_shapes};
 pub(crate) use start::{Ending, Started};
 
 use crate::error::Error;

@@ -4,9 +4,11 @@
 mod axes;
 mod folder;
 mod measure;
+mod runner;
 mod target;
 
 pub(crate) use axes::{Axes, Settings, words};
 pub(crate) use folder::{Study, StudyFolder, shortened};
 pub(crate) use measure::{Measured, Watch, measure, on_all_cores};
+pub(crate) use runner::Runner;
 pub(crate) use target::{Target, difference};

@@ -173,13 +173,7 @@ fn a_pin_breaks_at_its_strength_at_a_time_that_is_located() {
 
 #[test]
 fn every_picture_of_the_model_shows_what_it_names() {
-    let figures = [
-        ("25 kn", [Some("3.10"), Some("3.11"), Some("3.12"), Some("3.13"), Some("3.14"), Some("3.15")]),
-        ("15 kn", [Some("3.16"), Some("3.17"), Some("3.18"), Some("3.19"), Some("3.20"), Some("3.21")]),
-        ("5 kn", [Some("3.22"), None, Some("3.23"), Some("3.24"), Some("3.25"), Some("3.26")]),
-        ("10 kn", [None; 6]),
-    ];
-    for (speed, numbers) in figures {
+    for speed in ["25 kn", "15 kn", "5 kn", "10 kn"] {
         // the slower ones needn't go all the way
         let more: &[&str] =
             if speed == "25 kn" { &[] } else { &["length=2 m", "links=20", "centre=hose.link10"] };
@@ -197,24 +191,18 @@ fn every_picture_of_the_model_shows_what_it_names() {
                 .unwrap_or_else(|e| panic!("{name}: {e}; there are {:?}", outcome.pictures))
         };
         let pictures = [
-            ("pin", "magnitude [N]", 0),
-            ("drive.check.imposed_x-actual_x-difference", "[m]", 1),
-            ("pin.reaction", "fx, fy, fz [N]", 2),
-            ("pin.turning", "wy [rad/s]", 3),
-            ("hinge.turning", "wz [rad/s]", 3),
-            ("hose.centre", "x, y, z [m]", 4),
-            ("shape_side", "z [m]", 5),
+            ("pin", "magnitude [N]", "Tensile force on the shear pin"),
+            ("drive.check.imposed_x-actual_x-difference", "[m]", "Driving constraint and imposed motion"),
+            ("pin.reaction", "fx, fy, fz [N]", "Reaction force on the shear pin"),
+            ("pin.turning", "wy [rad/s]", "Angular velocity at the shear pin"),
+            ("hinge.turning", "wz [rad/s]", "Angular velocity at the hinge"),
+            ("hose.centre", "x, y, z [m]", "Position of the centre of the hose"),
+            ("shape_side", "z [m]", "Motion of the hose, x-z"),
         ];
-        for (name, axis, figure) in pictures {
+        for (name, axis, title) in pictures {
             let svg = plot(name);
             assert!(svg.contains(axis), "{name}: no {axis}");
-            match numbers[figure] {
-                Some(number) => {
-                    assert!(svg.contains(&format!("Figure {number}: ")), "{name}");
-                    assert!(svg.contains(&format!("at {speed}")), "{name}");
-                }
-                None => assert!(!svg.contains("Figure"), "{name}"),
-            }
+            assert!(svg.contains(&format!(">\n{title}\n<")), "{name}: no {title}");
         }
         // what the pictures are made of varies and is finite
         let history = &outcome.history;

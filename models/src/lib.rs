@@ -37,6 +37,12 @@ pub fn bundled() -> &'static [Bundled] {
     ALL
 }
 
+/// All bundled atlases, by name: figures and tables of a document, computed from scenes.
+pub fn atlases() -> &'static [Bundled] {
+    const ALL: &[Bundled] = &[Bundled { name: "thesis", text: include_str!("../atlases/thesis.toml") }];
+    ALL
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

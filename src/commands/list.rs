@@ -4,7 +4,7 @@ use super::{Exit, first_line, say, schema};
 use crate::error::Error;
 use crate::scene::{Document, Format};
 use ropewalk_core::{SpecKind, registered};
-use ropewalk_models::Bundled;
+use ropewalk_models::{Bundled, atlases};
 
 /// The kinds of types, in the order of a scene file.
 const KINDS: [SpecKind; 6] = [
@@ -20,6 +20,8 @@ pub(crate) fn list(bundled: &[Bundled]) -> Result<Exit, Error> {
     let mut out = String::new();
     let scenes: Vec<(&str, String)> = bundled.iter().map(|b| (b.name, title(b))).collect();
     section(&mut out, "scenes", &scenes);
+    let atlases: Vec<(&str, String)> = atlases().iter().map(|b| (b.name, title(b))).collect();
+    section(&mut out, "atlases", &atlases);
     for kind in KINDS {
         let types = registered().into_iter().filter(|s| s.kind == kind);
         let types: Vec<(&str, String)> = types

@@ -2,18 +2,22 @@
 //! display, colours that colour-blind readers can tell apart.
 //!
 //! - [`LinePlot`]: quantities over time, or one over another.
+//! - [`Panels`]: several of these as one picture.
 //! - [`BarPlot`]: quantities side by side.
 //! - [`ShapePlot`]: a cable in a plane at several times.
 
 mod axis;
 mod bars;
 mod canvas;
+mod clip;
 mod colour;
 mod frame;
 mod line;
+mod panels;
 mod shape;
 mod thin;
 
 pub use bars::{Bar, BarPlot};
 pub use line::{LinePlot, Mark, Series};
+pub use panels::Panels;
 pub use shape::{Plane, ShapePlot, Snapshot};

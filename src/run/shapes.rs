@@ -86,11 +86,11 @@ pub(crate) fn write(folder: &RunFolder, first: &Column, shapes: &[Shape]) -> Res
     write_atomic(&folder.shapes_file(), &text)
 }
 
-/// The last of them.
-pub(crate) fn last(folder: &RunFolder) -> Result<Shape, OutputError> {
+/// Reads them back.
+pub(crate) fn read(folder: &RunFolder) -> Result<Vec<Shape>, OutputError> {
     let path = folder.shapes_file();
     let text = std::fs::read_to_string(&path).map_err(OutputError::io("read", &path))?;
-    let mut shape = Shape { t: f64::NAN, lines: Vec::new() };
+    let mut shapes: Vec<Shape> = Vec::new();
     for (row, line) in text.lines().enumerate().skip(1) {
         let fail =
             |message: &str| OutputError::Csv { path: path.clone(), line: row + 1, message: message.into() };
@@ -101,18 +101,25 @@ pub(crate) fn last(folder: &RunFolder) -> Result<Shape, OutputError> {
         let t = number(t)?;
         let numbers = numbers.iter().map(number).collect::<Result<Vec<_>, _>>()?;
         let [s, x, y, z] = numbers[..] else { return Err(fail("not a row of shapes")) };
-        if t != shape.t {
-            shape = Shape { t, lines: Vec::new() };
+        if shapes.last().is_none_or(|shape| shape.t != t) {
+            shapes.push(Shape { t, lines: Vec::new() });
         }
-        match shape.lines.last_mut().filter(|line| line.part == *part) {
+        let lines = &mut shapes.last_mut().ok_or_else(|| fail("no shape"))?.lines;
+        match lines.last_mut().filter(|line| line.part == *part) {
             Some(line) => {
                 line.s.push(s);
                 line.x.push([x, y, z]);
             }
-            None => shape.lines.push(Line { part: part.clone(), s: vec![s], x: vec![[x, y, z]] }),
+            None => lines.push(Line { part: part.clone(), s: vec![s], x: vec![[x, y, z]] }),
         }
     }
-    Ok(shape)
+    Ok(shapes)
+}
+
+/// The last of them; empty if there is none.
+pub(crate) fn last(folder: &RunFolder) -> Result<Shape, OutputError> {
+    let nothing = Shape { t: f64::NAN, lines: Vec::new() };
+    Ok(read(folder)?.pop().unwrap_or(nothing))
 }
 
 #[cfg(test)]
@@ -120,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_shape_is_read_back_part_by_part() {
+    fn shapes_are_read_back_part_by_part() {
         let folder = tempfile::tempdir().unwrap();
         let folder = RunFolder::at(folder.path().join("out")).unwrap();
         let line = |part: &str, z: f64| Line {
@@ -137,6 +144,7 @@ mod tests {
             )
         );
         assert_eq!(last(&folder).unwrap(), shape(0.7));
+        assert_eq!(read(&folder).unwrap(), [shape(0.0), shape(0.7)]);
         let points = shape(0.7).points();
         assert_eq!((points.len(), points[2][0].is_nan(), points[3]), (5, true, [1.0, 2.0, 5.0]));
     }

@@ -139,11 +139,12 @@ impl StudyFolder {
             Err(e) if e.kind() != ErrorKind::NotFound => Err(OutputError::io("delete", &path)(e)),
             _ => Ok(()),
         };
-        for folder in ["runs", "plots", "tables", "advice"] {
+        for folder in ["runs", "plots", "tables", "advice", "figures"] {
             let path = self.path.join(folder);
             gone(path.clone(), fs::remove_dir_all(&path))?;
         }
-        for path in [self.table_file(), self.path.join("advice.json"), self.manifest_file()] {
+        let files = ["table.csv", "advice.json", "index.html"].map(|name| self.path.join(name));
+        for path in files.into_iter().chain([self.manifest_file()]) {
             gone(path.clone(), fs::remove_file(&path))?;
         }
         Ok(())

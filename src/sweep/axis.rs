@@ -5,7 +5,7 @@ use ropewalk_core::quantity::Written;
 
 /// A varied parameter: its values as they are shown, and as numbers.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Axis {
+pub(crate) struct Axis {
     /// Name and, if it is known, unit: `speed [kn]`.
     pub heading: String,
     /// The values as text, without unit.
@@ -19,7 +19,7 @@ pub(super) struct Axis {
 impl Axis {
     /// The values in the unit that they are written in, or in SI if they are written in several. A bare number is in
     /// SI too, and which unit that is can be told from the default value of the parameter.
-    pub(super) fn new(varied: &Varied, default: Option<&Value>) -> Self {
+    pub(crate) fn new(varied: &Varied, default: Option<&Value>) -> Self {
         let all: Option<Vec<Written<'_>>> = varied.values.iter().map(|v| Written::parse(v)).collect();
         let (numbers, unit) = match all.as_deref().map(|all| (all, in_one_unit(all, default))) {
             Some((_, Some(found))) => found,
@@ -38,14 +38,14 @@ impl Axis {
     }
 
     /// Values such as the names of models, and lists.
-    pub(super) fn of_words(varied: &Varied) -> Self {
+    pub(crate) fn of_words(varied: &Varied) -> Self {
         let cells = varied.values.iter().map(|v| unquoted(v).to_string()).collect();
         let numbers = (1..=varied.values.len()).map(|k| k as f64).collect();
         Self { heading: varied.name.clone(), cells, numbers, words: true }
     }
 
     /// What stands under the axis of a plot.
-    pub(super) fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         if !self.words {
             return self.heading.clone();
         }

@@ -146,13 +146,12 @@ impl Titles {
         self.runs.iter().any(|titles| titles.contains_key(picture))
     }
 
-    /// The title of a picture over some of the runs: what it shows, with the title that all of them have, or the numbers
-    /// of the figures that all their titles name.
+    /// The title of a picture over some of the runs: what it shows, or the title that all of them have.
     fn of(&self, picture: &str, what: &str, shown: usize, all: usize) -> String {
         let own: Vec<&str> =
             self.runs.iter().filter_map(|titles| titles.get(picture).map(String::as_str)).collect();
-        let what = match (own.as_slice(), shared(&own)) {
-            ([first, rest @ ..], _) if rest.iter().all(|title| title == first) => {
+        let what = match own.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|title| title == first) => {
                 // what is shown at the end only says so
                 let end = match what.strip_suffix(" at the end") {
                     Some(what) => format!(",{} at the end", what.strip_prefix(picture).unwrap_or_default()),
@@ -160,27 +159,11 @@ impl Titles {
                 };
                 format!("{first}{end}")
             }
-            (_, figures) if figures.is_empty() => what.to_string(),
-            (_, figures) => {
-                let word = if figures.len() == 1 { "Figure" } else { "Figures" };
-                format!("{word} {}: {what}", figures.join(" and "))
-            }
+            _ => what.to_string(),
         };
         let scenes = &self.scenes;
         if shown < all { format!("{what}, {scenes}: {shown} of {all}") } else { format!("{what}, {scenes}") }
     }
-}
-
-/// Numbers of figures that all titles begin with, as in `Figures 4.37 and 4.40: end of the hose`.
-fn shared<'a>(titles: &[&'a str]) -> Vec<&'a str> {
-    let numbers = |title: &'a str| -> Vec<&'a str> {
-        let head = title.split_once(':').map_or("", |(head, _)| head);
-        let list = head.strip_prefix("Figures ").or_else(|| head.strip_prefix("Figure ")).unwrap_or("");
-        list.split([' ', ',']).filter(|w| w.starts_with(|c: char| c.is_ascii_digit())).collect()
-    };
-    let mut each = titles.iter().map(|title| numbers(title));
-    let first = each.next().unwrap_or_default();
-    each.fold(first, |kept, other| kept.into_iter().filter(|n| other.contains(n)).collect())
 }
 
 /// Reported values over the first parameter; runs that differ in nothing else are a line.
@@ -230,17 +213,11 @@ mod tests {
     }
 
     #[test]
-    fn figures_of_a_sweep_are_those_that_all_its_runs_share() {
-        let turn = ["Figures 4.37 and 4.40: end, from 40 s", "Figures 4.37 and 4.41: end, from 80 s"];
-        assert_eq!(shared(&turn), ["4.37"]);
-        assert_eq!(shared(&["Figure 2.13: tension", "Figure 2.13: tension"]), ["2.13"]);
-        assert!(shared(&["Figure 2.14: a", "Figure 2.18: b"]).is_empty());
-        assert!(shared(&["Figure 2.14: a", "the end"]).is_empty() && shared(&[]).is_empty());
+    fn a_title_that_all_runs_have_is_that_of_their_sweep() {
         let titles = |all: &[&str]| Titles {
             scenes: "hose".into(),
             runs: all.iter().map(|t| HashMap::from([("z".to_string(), t.to_string())])).collect(),
         };
-        assert_eq!(titles(&turn).of("z", "z at the end", 2, 2), "Figure 4.37: z at the end, hose");
         assert_eq!(titles(&["End", "End"]).of("z", "z at the end", 2, 3), "End, at the end, hose: 2 of 3");
         assert_eq!(titles(&["End", "Start"]).of("z", "z", 2, 2), "z, hose");
         assert_eq!(titles(&[]).of("z", "z", 0, 0), "z, hose");

@@ -52,12 +52,7 @@ pub(super) struct Values {
 impl Values {
     /// The one that stands for the run.
     pub(super) fn reported(&self, what: Report) -> f64 {
-        match what {
-            Report::Last => self.last,
-            Report::Mean => self.tail.mean,
-            Report::Least => self.tail.least,
-            Report::Largest => self.tail.largest,
-        }
+        what.of(self.last, &self.tail)
     }
 }
 
@@ -94,21 +89,9 @@ impl Row {
         }
     }
 
-    /// A run that could not begin.
-    pub(super) fn refused(message: String) -> Self {
-        let summary = Summary { status: "refused".into(), message: Some(message), ..Summary::default() };
-        Self::new(&summary, &Table::default(), Over::default(), false)
-    }
-
     /// Whether the run came to its end.
     pub(super) fn is_complete(&self) -> bool {
         matches!(self.status.as_str(), "finished" | "stopped")
-    }
-
-    /// What is to be said about a run that has no result.
-    pub(super) fn complaint(&self) -> Option<&str> {
-        let failed = matches!(self.status.as_str(), "failed" | "refused");
-        failed.then(|| self.message.as_deref().unwrap_or("failed"))
     }
 }
 

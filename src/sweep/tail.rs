@@ -13,7 +13,8 @@ const NOISE: f64 = 1e-9;
 const MOST_NAMED: usize = 6;
 
 /// Which value of a column stands for a run in tables of results and in pictures over a parameter.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum Report {
     /// The last one
     #[default]
@@ -34,6 +35,15 @@ impl Report {
             Report::Mean => "mean",
             Report::Least => "least",
             Report::Largest => "largest",
+        }
+    }
+    /// The value that it takes of a column's last one and its last part.
+    pub(crate) fn of(self, last: f64, tail: &Tail) -> f64 {
+        match self {
+            Report::Last => last,
+            Report::Mean => tail.mean,
+            Report::Least => tail.least,
+            Report::Largest => tail.largest,
         }
     }
     /// What it is called in titles and in the report: `at the end`.
@@ -57,13 +67,18 @@ impl Default for Over {
     }
 }
 
+impl Over {
+    /// The last part with this share of the run, above 0 and at most 1.
+    pub(crate) fn share(share: f64) -> Option<Self> {
+        (share > 0.0 && share <= 1.0).then_some(Over(share))
+    }
+}
+
 impl std::str::FromStr for Over {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        match kind::NUMBER.parse(text) {
-            Ok(share) if share > 0.0 && share <= 1.0 => Ok(Over(share)),
-            _ => Err("expected a share of the run, like `10 %`, or `1` for the whole run".into()),
-        }
+        let share = kind::NUMBER.parse(text).ok().and_then(Over::share);
+        share.ok_or_else(|| "expected a share of the run, like `10 %`, or `1` for the whole run".into())
     }
 }
 
@@ -78,7 +93,7 @@ impl std::fmt::Display for Over {
 
 /// What the last part of a run holds of a column; NaN where there is no value, or a NaN is among them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Tail {
+pub(crate) struct Tail {
     pub mean: f64,
     pub least: f64,
     pub largest: f64,
@@ -86,9 +101,16 @@ pub(super) struct Tail {
     pub unsteady: f64,
 }
 
+impl Tail {
+    /// Whether the last value is one of many.
+    pub(crate) fn is_unsteady(&self) -> bool {
+        self.unsteady > STEADY
+    }
+}
+
 impl Over {
     /// The last part of every column of a history. Equilibria have no time, and their last value is what counts.
-    pub(super) fn tails(self, history: &Table) -> Vec<Tail> {
+    pub(crate) fn tails(self, history: &Table) -> Vec<Tail> {
         let Some(time) = history.columns.first() else { return Vec::new() };
         let size = |c: &Column| c.values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let of_unit =

@@ -28,6 +28,8 @@ pub(super) enum Align {
 
 pub(super) struct Canvas<'a> {
     backend: SVGBackend<'a>,
+    /// Where the upper left corner of what is drawn comes to lie.
+    pub(super) origin: (f64, f64),
 }
 
 /// Draws on a white sheet of `width` by `height` pixels and returns the SVG text.
@@ -39,7 +41,7 @@ pub(super) fn draw(
     let (width, height) = (width.ceil(), height.ceil());
     let mut text = String::new();
     let size = ((width * FINE) as u32, (height * FINE) as u32);
-    let mut canvas = Canvas { backend: SVGBackend::with_string(&mut text, size) };
+    let mut canvas = Canvas { backend: SVGBackend::with_string(&mut text, size), origin: (0.0, 0.0) };
     canvas.rectangle((0.0, 0.0), (width, height), colour::PAPER)?;
     paint(&mut canvas)?;
     canvas.backend.present().map_err(failed)?;
@@ -53,6 +55,10 @@ pub(super) fn draw(
 }
 
 impl Canvas<'_> {
+    fn moved(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (x + self.origin.0, y + self.origin.1)
+    }
+
     pub(super) fn line(
         &mut self,
         points: impl IntoIterator<Item = (f64, f64)>,
@@ -64,12 +70,14 @@ impl Canvas<'_> {
             filled: false,
             stroke_width: (width * FINE).round() as u32,
         };
-        let path = points.into_iter().map(fine);
+        let (x, y) = self.origin;
+        let path = points.into_iter().map(|p| fine((p.0 + x, p.1 + y)));
         self.backend.draw_path(path, &style).map_err(failed)
     }
 
     pub(super) fn dot(&mut self, at: (f64, f64), radius: f64, colour: RGBColor) -> Result<(), OutputError> {
         let radius = (radius * FINE).round() as u32;
+        let at = self.moved(at);
         self.backend.draw_circle(fine(at), radius, &colour.filled(), true).map_err(failed)
     }
 
@@ -79,6 +87,7 @@ impl Canvas<'_> {
         bottom_right: (f64, f64),
         colour: RGBColor,
     ) -> Result<(), OutputError> {
+        let (top_left, bottom_right) = (self.moved(top_left), self.moved(bottom_right));
         self.backend.draw_rect(fine(top_left), fine(bottom_right), &colour.filled(), true).map_err(failed)
     }
 
@@ -102,6 +111,7 @@ impl Canvas<'_> {
             .color(&colour::TEXT)
             .pos(Pos::new(h_pos, VPos::Center));
         let text: String = text.chars().filter(|c| !c.is_control()).collect();
+        let at = self.moved(at);
         self.backend.draw_text(&text, &style, fine(at)).map_err(failed)
     }
 }

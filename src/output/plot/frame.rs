@@ -4,32 +4,38 @@ use plotters::style::RGBColor;
 
 use super::axis::{Axis, Ticks};
 use super::canvas::{Align, Canvas, draw, fitted, text_width, wrapped};
+use super::clip;
 use super::colour;
 use super::line::Mark;
 use super::thin::Pixel;
 use crate::output::OutputError;
 
-const TITLE_SIZE: f64 = 15.0;
+pub(super) const TITLE_SIZE: f64 = 15.0;
+/// Titles of panels, below that of the picture.
+const PANEL_SIZE: f64 = 13.0;
 const LABEL_SIZE: f64 = 13.0;
 const TICK_SIZE: f64 = 12.0;
 /// Bold letters are this much wider.
-const BOLD: f64 = 1.08;
+pub(super) const BOLD: f64 = 1.08;
 /// The plotting area: its size, and its limits where both axes have one scale.
-const AREA: (f64, f64) = (600.0, 330.0);
+pub(super) const AREA: (f64, f64) = (600.0, 330.0);
 const LEAST_AREA: (f64, f64) = (220.0, 110.0);
 const MOST_AREA: (f64, f64) = (600.0, 520.0);
-const MARGIN: f64 = 12.0;
-const ROW: f64 = 19.0;
+pub(super) const MARGIN: f64 = 12.0;
+pub(super) const ROW: f64 = 19.0;
 const TICK_LENGTH: f64 = 4.0;
-const SWATCH: f64 = 22.0;
+const SWATCH: f64 = 26.0;
 const BAR_WIDTH: f64 = 12.0;
 const BAR_GAP: f64 = 18.0;
 
 /// An entry of the legend.
+#[derive(PartialEq)]
 pub(super) struct Entry {
     pub(super) label: String,
     pub(super) colour: RGBColor,
     pub(super) mark: Mark,
+    /// Number of the pattern of dashes, 0 for a solid line.
+    pub(super) dashes: usize,
 }
 
 /// A scale of colours at the right-hand side.
@@ -49,6 +55,10 @@ pub(super) struct Frame<'p> {
     pub(super) equal: bool,
     pub(super) legend: Vec<Entry>,
     pub(super) bar: Option<Bar>,
+    /// Size of the plotting area; where both axes have one scale, the most it may have across.
+    pub(super) area: (f64, f64),
+    /// Whether its title is that of the picture.
+    pub(super) heads_page: bool,
 }
 
 /// The rectangle in which data are drawn.
@@ -71,6 +81,11 @@ impl Area {
     /// A point in pixels at this distance from the left and from below.
     pub(super) fn corner(&self, distance: f64) -> Pixel {
         (self.left + distance, self.bottom() - distance)
+    }
+
+    /// Left, top, right, bottom.
+    pub(super) fn edges(&self) -> [f64; 4] {
+        [self.left, self.top, self.right(), self.bottom()]
     }
 
     fn across(&self, place: f64) -> f64 {
@@ -102,28 +117,62 @@ struct Layout {
     bar_ticks: Ticks,
 }
 
+/// A frame laid out.
+pub(super) struct Sheet<'p> {
+    frame: Frame<'p>,
+    layout: Layout,
+}
+
+impl<'p> Sheet<'p> {
+    pub(super) fn new(frame: Frame<'p>) -> Self {
+        Self { layout: frame.layout(), frame }
+    }
+
+    /// Width and height.
+    pub(super) fn size(&self) -> (f64, f64) {
+        self.layout.size
+    }
+
+    /// Where the plotting area begins.
+    pub(super) fn left(&self) -> f64 {
+        self.layout.area.left
+    }
+
+    /// Draws the frame, and the data by `paint`.
+    pub(super) fn put(
+        &self,
+        canvas: &mut Canvas<'_>,
+        paint: impl FnOnce(&mut Canvas<'_>, &Area) -> Result<(), OutputError>,
+    ) -> Result<(), OutputError> {
+        let Self { frame, layout } = self;
+        layout.draw_grid(canvas)?;
+        paint(canvas, &layout.area)?;
+        layout.draw_axes(canvas)?;
+        frame.draw_labels(canvas, layout)?;
+        frame.draw_legend(canvas, layout)?;
+        frame.draw_bar(canvas, layout)
+    }
+}
+
 impl Frame<'_> {
     /// Draws the frame, and the data by `paint`, and returns the SVG text.
     pub(super) fn draw(
         self,
         paint: impl FnOnce(&mut Canvas<'_>, &Area) -> Result<(), OutputError>,
     ) -> Result<String, OutputError> {
-        let layout = self.layout();
-        draw(layout.size.0, layout.size.1, |canvas| {
-            layout.draw_grid(canvas)?;
-            paint(canvas, &layout.area)?;
-            layout.draw_axes(canvas)?;
-            self.draw_labels(canvas, &layout)?;
-            self.draw_legend(canvas, &layout)?;
-            self.draw_bar(canvas, &layout)
-        })
+        let sheet = Sheet::new(self);
+        draw(sheet.size().0, sheet.size().1, |canvas| sheet.put(canvas, paint))
+    }
+
+    fn title_size(&self) -> f64 {
+        if self.heads_page { TITLE_SIZE } else { PANEL_SIZE }
     }
 
     fn layout(&self) -> Layout {
         let (mut x, mut y) = (self.x, self.y);
-        let (mut width, mut height) = AREA;
+        let (mut width, mut height) = self.area;
         if self.equal {
-            let scale = (MOST_AREA.0 / x.span()).min(MOST_AREA.1 / y.span());
+            let scale = (self.area.0 / x.span()).min(MOST_AREA.1 * self.area.0 / MOST_AREA.0 / y.span());
             width = (x.span() * scale).max(LEAST_AREA.0);
             height = (y.span() * scale).max(LEAST_AREA.1);
             x.widen_to(width / scale);
@@ -143,7 +192,7 @@ impl Frame<'_> {
         let total_width = left + width + right;
 
         let room = total_width - left - MARGIN;
-        let title = wrapped(self.title, TITLE_SIZE * BOLD, room);
+        let title = wrapped(self.title, self.title_size() * BOLD, room);
         let mut top = MARGIN + title.len() as f64 * (ROW + 1.0);
         let mut legend = Vec::new();
         let mut pen = left;
@@ -177,7 +226,7 @@ impl Frame<'_> {
         let area = &layout.area;
         for (i, line) in layout.title.iter().enumerate() {
             let at = (area.left, MARGIN + 8.0 + i as f64 * (ROW + 1.0));
-            canvas.text(line, at, TITLE_SIZE, Align::Left, true)?;
+            canvas.text(line, at, self.title_size(), Align::Left, true)?;
         }
         let below = area.bottom() + TICK_LENGTH + ROW + 0.6 * ROW;
         let mut room = layout.size.0 - 2.0 * MARGIN;
@@ -205,10 +254,13 @@ impl Frame<'_> {
 
     fn draw_legend(&self, canvas: &mut Canvas<'_>, layout: &Layout) -> Result<(), OutputError> {
         for (entry, (x, y)) in self.legend.iter().zip(&layout.legend) {
+            let width = if entry.mark == Mark::Guide { 1.0 } else { 2.0 };
             if entry.mark != Mark::Dots {
-                canvas.line([(*x, *y), (x + SWATCH, *y)], 2.0, entry.colour)?;
+                for dash in clip::dashes(&[(*x, *y), (x + SWATCH, *y)], entry.dashes) {
+                    canvas.line(dash, width, entry.colour)?;
+                }
             }
-            if entry.mark != Mark::Line {
+            if matches!(entry.mark, Mark::Dots | Mark::LineAndDots) {
                 canvas.dot((x + 0.5 * SWATCH, *y), 3.0, entry.colour)?;
             }
             let room = layout.size.0 - x - SWATCH - 6.0 - MARGIN;

@@ -2,10 +2,14 @@
 
 use std::path::Path;
 
+use plotters::style::RGBColor;
+
 use super::axis::Axis;
 use super::canvas::Canvas;
+use super::clip;
 use super::colour;
-use super::frame::{Area, Entry, Frame};
+use super::frame::{AREA, Area, Entry, Frame};
+use super::shape::draw_directions;
 use super::thin;
 use crate::output::{OutputError, write_atomic};
 
@@ -14,6 +18,7 @@ const BUDGET: usize = 18_000;
 /// Dots of all series together; they are more text each.
 const DOT_BUDGET: usize = 1_500;
 const LINE_WIDTH: f64 = 1.6;
+const GUIDE_WIDTH: f64 = 1.0;
 const DOT_RADIUS: f64 = 3.0;
 
 /// How the points of a series are drawn.
@@ -26,6 +31,8 @@ pub enum Mark {
     Dots,
     /// Both: for few points, such as those of a convergence study.
     LineAndDots,
+    /// A thin grey line: for what stands around, such as a drum or a limit.
+    Guide,
 }
 
 /// One curve of a [`LinePlot`].
@@ -87,6 +94,16 @@ pub struct LinePlot {
     pub log_x: bool,
     /// Whether the vertical axis is logarithmic; points at y ≤ 0 are then left out.
     pub log_y: bool,
+    /// Least and largest value of the vertical axis; without it all points are shown. What lies beyond is cut off.
+    pub y_range: Option<(f64, f64)>,
+    /// Whether the curves are ordered, as shapes at one time after the other: coloured from dark to light.
+    pub ordered: bool,
+    /// Whether curves differ by dashes as well as by colour, for print in grey.
+    pub dashed: bool,
+    /// How many curves that follow each other share a colour, and then differ by their dashes; 0 for none.
+    pub together: usize,
+    /// Directions of x, y and z in the plane, drawn as a small cross of axes if there are any.
+    pub directions: Vec<(f64, f64)>,
 }
 
 impl LinePlot {
@@ -104,8 +121,13 @@ impl LinePlot {
     /// [`OutputError::EmptyPlot`] without a finite point; [`OutputError::LogAxis`] without a
     /// positive value on a logarithmic axis.
     pub fn svg(&self) -> Result<String, OutputError> {
+        self.frame()?.draw(|canvas, area| self.paint(canvas, area))
+    }
+
+    /// All but the data.
+    pub(super) fn frame(&self) -> Result<Frame<'_>, OutputError> {
         let (x, y) = self.axes()?;
-        let frame = Frame {
+        Ok(Frame {
             title: &self.title,
             x_label: &self.x_label,
             y_label: &self.y_label,
@@ -114,13 +136,17 @@ impl LinePlot {
             equal: self.equal_axes && self.log_x == self.log_y,
             legend: self.legend(),
             bar: None,
-        };
-        frame.draw(|canvas, area| {
-            for (index, series) in self.series.iter().enumerate() {
-                self.draw_series(canvas, area, index, series)?;
-            }
-            Ok(())
+            area: AREA,
+            heads_page: true,
         })
+    }
+
+    /// The data.
+    pub(super) fn paint(&self, canvas: &mut Canvas<'_>, area: &Area) -> Result<(), OutputError> {
+        for (index, series) in self.series.iter().enumerate() {
+            self.draw_series(canvas, area, index, series)?;
+        }
+        draw_directions(canvas, area, &self.directions)
     }
 
     fn axes(&self) -> Result<(Axis, Axis), OutputError> {
@@ -131,7 +157,10 @@ impl LinePlot {
         let shown = || finite().filter(|(x, y)| (!self.log_x || *x > 0.0) && (!self.log_y || *y > 0.0));
         let (x_margin, y_margin) = self.margins();
         let x = Axis::covering(shown().map(|p| p.0), self.log_x, x_margin);
-        let y = Axis::covering(shown().map(|p| p.1), self.log_y, y_margin);
+        let y = match self.y_range {
+            Some((low, high)) => Axis::covering([low, high].into_iter(), self.log_y, 0.0),
+            None => Axis::covering(shown().map(|p| p.1), self.log_y, y_margin),
+        };
         let title = || self.title.clone();
         match (x, y) {
             (Some(x), Some(y)) => Ok((x, y)),
@@ -151,22 +180,38 @@ impl LinePlot {
 
     /// A history fills its time axis; what runs in any direction, or has dots, keeps off the edge.
     fn margins(&self) -> (f64, f64) {
-        let is_history = |s: &Series| s.mark == Mark::Line && !s.points.windows(2).any(|w| w[1].0 < w[0].0);
+        let is_history = |s: &Series| {
+            matches!(s.mark, Mark::Line | Mark::Guide) && !s.points.windows(2).any(|w| w[1].0 < w[0].0)
+        };
         let fills = !self.equal_axes && !self.log_x && self.series.iter().all(is_history);
         (if fills { 0.0 } else { 0.04 }, 0.06)
     }
 
+    /// Colour and dashes of a curve. Guides have neither, and don't count.
+    fn look(&self, index: usize) -> (RGBColor, usize) {
+        let curves = |series: &[Series]| series.iter().filter(|s| s.mark != Mark::Guide).count();
+        let (place, count) = (curves(&self.series[..index]), curves(&self.series));
+        match self.series[index].mark {
+            Mark::Guide => (colour::AXIS, 0),
+            _ if self.ordered => (colour::ramp(place as f64 / (count.max(2) - 1) as f64), 0),
+            _ => {
+                let each = self.together.max(1);
+                let colour = colour::of_series(place / each, count.div_ceil(each));
+                (colour, if self.dashed { place } else { 0 })
+            }
+        }
+    }
+
     fn legend(&self) -> Vec<Entry> {
-        let count = self.series.len();
-        if count < 2 {
+        if self.series.len() < 2 {
             return Vec::new();
         }
-        let entry = |(index, series): (usize, &Series)| Entry {
-            label: series.label.clone(),
-            colour: colour::of_series(index, count),
-            mark: series.mark,
+        let entry = |(index, series): (usize, &Series)| {
+            let (colour, dashes) = self.look(index);
+            Entry { label: series.label.clone(), colour, mark: series.mark, dashes }
         };
-        self.series.iter().enumerate().map(entry).collect()
+        // what is drawn in several pieces is named once
+        self.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty()).map(entry).collect()
     }
 
     fn draw_series(
@@ -177,22 +222,36 @@ impl LinePlot {
         series: &Series,
     ) -> Result<(), OutputError> {
         let count = self.series.len();
-        let colour = colour::of_series(index, count);
+        let (colour, dashes) = self.look(index);
+        let width = if series.mark == Mark::Guide { GUIDE_WIDTH } else { LINE_WIDTH };
         let pixels: Vec<_> = series.points.iter().map(|p| area.pixel(*p)).collect();
         if series.mark != Mark::Dots {
             let mut lonely = Vec::new();
             for run in thin::runs(&pixels, BUDGET / count) {
-                match run[..] {
-                    [only] => lonely.push(Some(only)),
-                    _ => canvas.line(run, LINE_WIDTH, colour)?,
+                let parts = match self.y_range {
+                    Some(_) => clip::within(&run, area.edges()),
+                    None => vec![run],
+                };
+                for part in parts {
+                    match part[..] {
+                        [only] => lonely.push(Some(only)),
+                        _ => {
+                            for dash in clip::dashes(&part, dashes) {
+                                canvas.line(dash, width, colour)?;
+                            }
+                        }
+                    }
                 }
             }
             for dot in thin::dots(&lonely, DOT_BUDGET / count) {
                 canvas.dot(dot, 0.8 * DOT_RADIUS, colour)?;
             }
         }
-        if series.mark != Mark::Line {
-            for dot in thin::dots(&pixels, DOT_BUDGET / count) {
+        if matches!(series.mark, Mark::Dots | Mark::LineAndDots) {
+            let [_, top, _, bottom] = area.edges();
+            let inside = |p: &Option<thin::Pixel>| p.is_some_and(|p| (top..=bottom).contains(&p.1));
+            let shown: Vec<_> = pixels.into_iter().filter(inside).collect();
+            for dot in thin::dots(&shown, DOT_BUDGET / count) {
                 canvas.dot(dot, DOT_RADIUS, colour)?;
             }
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::axis::Axis;
 use super::canvas::{Align, Canvas};
 use super::colour;
-use super::frame::{Area, Bar, Entry, Frame};
+use super::frame::{AREA, Area, Bar, Entry, Frame};
 use super::line::Mark;
 use super::thin;
 use crate::output::{OutputError, write_atomic};
@@ -164,6 +164,8 @@ impl ShapePlot {
             equal: true,
             legend: legend(&shown, &self.names, &self.t_label),
             bar: bar(&shown, &self.t_label),
+            area: AREA,
+            heads_page: true,
         };
         frame.draw(|canvas, area| {
             for snapshot in &shown {
@@ -202,7 +204,7 @@ fn draw_snapshot(
 }
 
 /// A cross of axes in the lower left corner.
-fn draw_directions(
+pub(super) fn draw_directions(
     canvas: &mut Canvas<'_>,
     area: &Area,
     directions: &[(f64, f64)],
@@ -238,6 +240,7 @@ fn legend(shown: &[&Snapshot], names: &[String], t_label: &str) -> Vec<Entry> {
             label: name.clone(),
             colour: colour::ramp(age(snapshot, shown)),
             mark: Mark::Line,
+            dashes: 0,
         };
         return shown.iter().zip(names).map(entry).collect();
     }
@@ -258,6 +261,7 @@ fn legend(shown: &[&Snapshot], names: &[String], t_label: &str) -> Vec<Entry> {
             },
             colour: colour::ramp(age(snapshot, shown)),
             mark: Mark::Line,
+            dashes: 0,
         }
     };
     shown.iter().map(entry).collect()
