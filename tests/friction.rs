@@ -88,6 +88,25 @@ fn a_weight_on_a_slope_stays_for_ever() {
 }
 
 #[test]
+fn elastic_slip_goes_by_the_gravity_of_the_scene() {
+    // a bristle that gives way by `slip` under μ m g has μ m g/slip: m g sin φ moves it by slip sin φ/μ
+    let (angle, mu, slip, k) = (25_f64.to_radians(), 0.6, 1e-4, 1e5);
+    let normal = [-angle.sin(), 0.0, angle.cos()];
+    for g in [1.62, G] {
+        let height = R - g * angle.cos() / k;
+        let mut scene = Scene::new();
+        let friction = Friction { elastic_slip: Some(slip), ..Friction::new(mu) };
+        scene
+            .set_gravity([0.0, 0.0, -g])
+            .element(PointMassSpec::new("weight", normal.map(|n| height * n), 1.0))
+            .force(GravitySpec::default())
+            .force(ContactSpec { shape: ShapeSpec::Plane { normal }, ..floor(k, friction) });
+        let s = run(&scene, &schemes()[2], 2.0);
+        near(-s.state.q[0] * angle.cos() - s.state.q[2] * angle.sin(), slip * angle.sin() / mu, 1e-6);
+    }
+}
+
+#[test]
 fn a_block_moved_to_and_fro_loses_what_its_bristle_does_not_give_back() {
     // 4 μ N (A - μ N/k) per cycle after the first: reference data
     let (mass, mu, amplitude, period) = (10.0 / G, 0.3, 0.01, 4000.0);

@@ -1,9 +1,22 @@
 //! The share of what the same unknowns move in the tangent.
 
-use super::touch::PAIR;
 use ropewalk_core::Assembly;
 use ropewalk_core::held::Held;
 use ropewalk_core::rotation::M3;
+
+/// Unknowns of a pair: translation and rotation of what carries the point, then of what carries the shape. Rotations
+/// are in the bodies' own axes.
+pub(crate) const PAIR: usize = 12;
+
+/// The derivatives of a force in the axes of the shape's body.
+pub(crate) struct Slopes {
+    /// By the place of the centre of the ball.
+    pub by_s: M3,
+    /// By how far the ball has moved where it touches.
+    pub by_x: M3,
+    /// By its velocity there.
+    pub by_u: M3,
+}
 
 /// Unknowns of a group: of a cable element and a body.
 pub(crate) const MOST: usize = 18;

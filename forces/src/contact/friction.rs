@@ -5,8 +5,7 @@
 //! stays where it is for ever, and returns when it is let go. The stiffness doesn't depend on the normal force, so that
 //! no cycle wins energy (see the return mapping of plasticity; Simo & Hughes 1998, Computational Inelasticity).
 
-use super::block::MOST;
-use super::touch::Slopes;
+use super::block::{MOST, Slopes};
 use ropewalk_core::build::{BuildError, not_negative, positive};
 use ropewalk_core::held::delta;
 use ropewalk_core::rotation::M3;
@@ -25,7 +24,7 @@ pub struct Friction {
     #[serde(default, deserialize_with = "quantity::optional::number")]
     pub across: Option<f64>,
     /// How far it gives way before it slips, about, under what touches by its weight [m]; left out, a hundredth of its
-    /// thickness and no more than a millimetre, and less where that would smear out slip along a cable.
+    /// thickness, and less where that would smear out slip along a cable.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub elastic_slip: Option<f64>,
 }

@@ -313,12 +313,12 @@ impl ContactSpec {
 
     /// How stiff the friction of each point and slender piece is: so that it gives way by the elastic slip under its
     /// weight, no softer than the contact itself, and so stiff that slip along a cable begins where it should.
-    fn grips(&self, friction: &Friction, all: &Touching) -> Vec<Grip> {
+    fn grips(&self, friction: &Friction, all: &Touching, gravity: f64) -> Vec<Grip> {
         let points = all.points.iter().map(|p| (p.1.radius, self.stiffness)).zip(&all.weights);
         let spans = all.spans.iter().map(|(_, s)| (s.radius, self.stiffness_per_length * s.length));
         let grip = |((radius, k), w): ((f64, f64), &Weight)| {
-            let slip = friction.elastic_slip.unwrap_or((SLIP * 2.0 * radius).min(MOST_SLIP));
-            let held = friction.mu * w.mass * G / slip;
+            let slip = friction.elastic_slip.unwrap_or(SLIP * 2.0 * radius);
+            let held = friction.mu * w.mass * gravity / slip;
             let stiffness = match friction.elastic_slip {
                 Some(_) if held > 0.0 => held,
                 _ => {
@@ -394,13 +394,10 @@ struct Weight {
 
 /// Slip along a cable is smeared out over no more than this part of its length.
 const SMEARED: f64 = 0.05;
-/// Elastic slip, in parts of the thickness, and the most of it [m].
+/// Elastic slip, in parts of the thickness.
 const SLIP: f64 = 0.01;
-const MOST_SLIP: f64 = 1e-3;
 /// Damping ratio of bristles that hold.
 const RATIO: f64 = 0.5;
-/// What makes weight of mass [m/s²].
-const G: f64 = 9.81;
 
 impl Touching {
     /// Puts what material flows through behind the rest, as the term keeps it.
@@ -522,7 +519,8 @@ impl ForceSpec for ContactSpec {
             Some(friction) => {
                 let size = Contact::memory(points.len(), spans.len());
                 let memory = b.memory(&format!("{}: friction", self.name), size);
-                contact.with_grips(&self.grips(&friction, &touching), memory)
+                let gravity = dot(&b.gravity(), &b.gravity()).sqrt();
+                contact.with_grips(&self.grips(&friction, &touching, gravity), memory)
             }
             None => contact,
         };

@@ -1,6 +1,6 @@
 //! The contact of many points with one shape.
 
-use super::block::{Block, MOST, weights};
+use super::block::{Block, MOST, Slopes, weights};
 use super::flowing::Flowing;
 use super::friction::{CELLS, Pressed};
 use super::group::{Ball, Group, Scratch, Span, What};
@@ -8,7 +8,7 @@ use super::law::ContactLaw;
 use super::search::Search;
 use super::seat::{Fixed, Frame, Seat, minus, rotation};
 use super::shape::Shape;
-use super::touch::{Pair, Slopes, Touch};
+use super::touch::{Pair, Touch};
 use ropewalk_core::build::{BuildError, need, positive};
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{times, transposed_times};

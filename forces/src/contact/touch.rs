@@ -1,5 +1,6 @@
 //! One point and one shape: the force between them, and its derivative by all that moves either.
 
+use super::block::{PAIR, Slopes};
 use super::law::{ContactLaw, Normal};
 use super::shape::Gap;
 use ropewalk_core::rotation::{M3, cross, product, times, transposed_times};
@@ -33,16 +34,6 @@ fn minus(a: &V3<f64>, b: &V3<f64>) -> V3<f64> {
 
 fn scaled(k: f64, a: &V3<f64>) -> V3<f64> {
     a.map(|a| k * a)
-}
-
-/// The derivatives of a force in the axes of the shape's body.
-pub(crate) struct Slopes {
-    /// By the place of the centre of the ball.
-    pub by_s: M3,
-    /// By how far the ball has moved where it touches.
-    pub by_x: M3,
-    /// By its velocity there.
-    pub by_u: M3,
 }
 
 impl Touch {
@@ -122,10 +113,6 @@ pub(crate) struct Carrier {
     pub omega: V3<f64>,
     pub radius: f64,
 }
-
-/// Unknowns of a pair: translation and rotation of what carries the point, then of what carries the shape. Rotations
-/// are in the bodies' own axes.
-pub(crate) const PAIR: usize = 12;
 
 impl Pair {
     /// Velocity of the ball relative to the shape's body where they touch.
