@@ -19,7 +19,7 @@ use crate::study::Target;
 use books::Books;
 use catalogue::{Candidate, absent, edited, present};
 use ropewalk_core::integrator::Stepping;
-use ropewalk_core::{Analysis, Scene};
+use ropewalk_scene::{Analysis, Scene};
 use std::path::PathBuf;
 use trial::{Failure, How, Trial, Watch};
 use watched::Watched;

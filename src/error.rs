@@ -2,10 +2,10 @@
 
 use crate::output::{Interrupt, OutputError};
 use crate::scene::Fault;
-use ropewalk_core::SceneError;
 use ropewalk_core::integrator::StepError;
 use ropewalk_core::modes::ModesError;
 use ropewalk_core::statics::StaticsError;
+use ropewalk_scene::SceneError;
 use std::fmt;
 
 /// Why there are no results.

@@ -50,10 +50,9 @@ pub use error::Error;
 pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use read::{SceneFile, read};
 pub use ropewalk_core::integrator::Options;
-pub use ropewalk_core::{
-    Air, BuildError, Builder, MarkerRef, Model, Run, Scene, SceneError, Simulation, State, Water,
-};
+pub use ropewalk_core::{BuildError, Model, Simulation, State};
 pub use ropewalk_models::{Bundled, bundled};
+pub use ropewalk_scene::{Air, Builder, MarkerRef, Run, Scene, SceneError, Water};
 pub use run::{Every, Manifest, Outcome, RunOptions, resume, run};
 pub use simulate::{History, simulate};
 

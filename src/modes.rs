@@ -10,7 +10,8 @@ use crate::run::Manifest;
 use crate::scene::Fault;
 use ropewalk_core::modes::{self as core, Critical, Mode, ModesError, OnLook};
 use ropewalk_core::statics::{Found, Statics, StaticsError};
-use ropewalk_core::{Analysis, Model, Scene, SolveError, State};
+use ropewalk_core::{Model, SolveError, State};
+use ropewalk_scene::{Analysis, Scene};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 

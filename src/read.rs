@@ -2,8 +2,9 @@
 
 use crate::error::Error;
 use crate::scene::{Document, Fault, Format, did_you_mean, quoted, read_text};
-use ropewalk_core::{GRAVITY, Model, Record, Scene, SceneError, SpecKind, V3, quantity};
+use ropewalk_core::{Model, Record, V3};
 use ropewalk_models::{Bundled, bundled};
+use ropewalk_scene::{GRAVITY, Scene, SceneError, SpecKind, quantity};
 use serde::Deserialize;
 use std::path::{Path, PathBuf, is_separator};
 use std::sync::Arc;

@@ -3,7 +3,8 @@
 use crate::error::Error;
 use crate::output::{Counts, CriticalLoad, Interrupt, Progress, Table};
 use crate::run::{Ending, Recorder, Started, records};
-use ropewalk_core::{Audit, Model, Scene, State};
+use ropewalk_core::{Audit, Model, State};
+use ropewalk_scene::Scene;
 use std::sync::Arc;
 
 /// What a run computed: the records over time, and where it ended.

@@ -5,11 +5,11 @@ use ropewalk::{SceneFile, simulate};
 use ropewalk_constraints::CoordinateSpec;
 use ropewalk_core::integrator::{Options, Scheme, StepReport, Stepping};
 use ropewalk_core::{
-    Assembly, At, BuildError, Builder, End, ForceSpec, MarkerRef, Model, Motion, MotionSpec, Moving,
-    Observer, Pattern, Power, Scene, Simulation, State, Term,
+    Assembly, At, BuildError, End, Model, Motion, Moving, Observer, Pattern, Power, Simulation, State, Term,
 };
 use ropewalk_elements::PointMassSpec;
 use ropewalk_forces::{PointForceSpec, TimeFunction};
+use ropewalk_scene::{Builder, ForceSpec, MarkerRef, MotionSpec, Scene};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::sync::Arc;

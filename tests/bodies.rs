@@ -10,8 +10,9 @@ use mechanisms::{
 };
 use ropewalk_core::integrator::Options;
 use ropewalk_core::rotation::{matrix, times};
-use ropewalk_core::{Action, End, Event, Model, Scene, Simulation, State, V3};
+use ropewalk_core::{Action, End, Event, Model, Simulation, State, V3};
 use ropewalk_forces::GravitySpec;
+use ropewalk_scene::Scene;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, Mutex};
 

@@ -7,11 +7,12 @@ use ropewalk::simulate;
 use ropewalk_constraints::motion::{CircleSpec, Towards};
 use ropewalk_constraints::{DrivingSpec, RevoluteSpec};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
-use ropewalk_core::records::{PositionSpec, ReactionPart, ReactionSpec};
-use ropewalk_core::{BuildError, Motion, MotionSpec, Moving, Scene, Water};
+use ropewalk_core::{BuildError, Motion, Moving};
 use ropewalk_elements::RigidChainSpec;
 use ropewalk_elements::rigid_chain::LinkSection;
 use ropewalk_forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec, Theory};
+use ropewalk_scene::records::{PositionSpec, ReactionPart, ReactionSpec};
+use ropewalk_scene::{MotionSpec, Scene, Water};
 use serde_json::Value;
 use std::sync::Arc;
 

@@ -4,7 +4,8 @@ mod program;
 
 use program::{program, run};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
-use ropewalk_core::{Checkpoint, End, Model, Observer, Sample, Scene, Simulation, State, Unfit};
+use ropewalk_core::{Checkpoint, End, Model, Observer, Sample, Simulation, State, Unfit};
+use ropewalk_scene::Scene;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;

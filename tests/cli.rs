@@ -282,7 +282,7 @@ fn list_shows_scenes_and_types() {
             bundled.name
         );
     }
-    for t in ropewalk::core::registered() {
+    for t in ropewalk::scene::registered() {
         let line = list.lines().find(|l| l.trim_start().split(' ').next() == Some(t.name));
         let line = line.unwrap_or_else(|| panic!("no {} in\n{list}", t.name));
         assert!(line.trim().len() > t.name.len() + 5, "{line}");
@@ -315,7 +315,7 @@ fn describe_explains_scenes_types_and_sections() {
     assert!(water.contains("z: number in m") && water.contains("velocity: list of 3"), "{water}");
     let along = describe("along");
     assert!(along.contains("one of \"start\", \"end\" or number in m"), "{along}");
-    for t in ropewalk::core::registered() {
+    for t in ropewalk::scene::registered() {
         let text = describe(t.name);
         assert!(text.contains(&format!("[[{}]]", t.kind.list())), "{text}");
         assert!(!text.contains("[`") && !text.contains("::"), "{text}");

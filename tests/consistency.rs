@@ -10,19 +10,17 @@ use mechanisms::{
 };
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec, UniversalSpec};
 use ropewalk_core::integrator::{ConstraintForm, Options, Scheme, StepReport};
-use ropewalk_core::records::MomentumSpec;
 use ropewalk_core::rotation::cross;
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::testing::difference;
-use ropewalk_core::{
-    At, Audit, Model, Observer, RecordSpec, Sample, Scene, Simulation, State, System, V3, Water, Weights,
-    retract,
-};
+use ropewalk_core::{At, Audit, Model, Observer, Sample, Simulation, State, System, V3, Weights, retract};
 use ropewalk_elements::rigid_body::{HullSpec, Shape};
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
 use ropewalk_forces::{
     AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec, PointForceSpec, SpringSpec, TimeFunction,
 };
+use ropewalk_scene::records::MomentumSpec;
+use ropewalk_scene::{RecordSpec, Scene, Water};
 use std::ops::ControlFlow;
 
 /// Equations of the constraints, `G v + ∂g/∂t` and `G a + bias`, the largest of each.

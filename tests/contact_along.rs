@@ -5,11 +5,12 @@ mod common;
 use ropewalk_constraints::{ClampSpec, CoordinateSpec, SphericalSpec};
 use ropewalk_core::integrator::{Options, Scheme, StepReport, Stepping};
 use ropewalk_core::statics::{Statics, StaticsOptions};
-use ropewalk_core::{End, Model, Observer, Quantity, Scene, Simulation, State};
+use ropewalk_core::{End, Model, Observer, Quantity, Simulation, State};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::contact::{ContactSpec, Overlap, ShapeSpec};
 use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
+use ropewalk_scene::Scene;
 use std::ops::ControlFlow;
 
 const G: f64 = 9.81;

@@ -3,10 +3,11 @@
 use ropewalk::{ModesOptions, modes, simulate};
 use ropewalk_constraints::{ClampSpec, SphericalSpec};
 use ropewalk_core::statics::{Statics, StaticsOptions};
-use ropewalk_core::{Quantity, Scene, V3};
+use ropewalk_core::{Quantity, V3};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, StressFree, TransverseModel};
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{PointForceSpec, TimeFunction};
+use ropewalk_scene::Scene;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// From the origin along x up to (1, 0, 1), built in at its foot, of bending stiffness 1 N m².

@@ -5,9 +5,10 @@ mod common;
 use common::{data, models, number, pendulum, place, size};
 use ropewalk_constraints::DistanceSpec;
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
-use ropewalk_core::{End, Scene, Simulation};
+use ropewalk_core::{End, Simulation};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
+use ropewalk_scene::Scene;
 
 fn fixed(h: f64) -> Options {
     Options { stepping: Stepping::Fixed { h }, ..Options::default() }

@@ -7,11 +7,12 @@ use ropewalk::{History, SceneFile, simulate};
 use ropewalk_constraints::CoordinateSpec;
 use ropewalk_constraints::motion::HarmonicSpec;
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
-use ropewalk_core::{End, Quantity, Scene, Simulation};
+use ropewalk_core::{End, Quantity, Simulation};
 use ropewalk_elements::rigid_body::HullSpec;
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
 use ropewalk_forces::contact::{ContactSpec, Damping, Friction, Leaving, ShapeSpec};
 use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
+use ropewalk_scene::Scene;
 use std::f64::consts::{PI, TAU};
 
 const G: f64 = 9.81;

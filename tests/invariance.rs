@@ -10,11 +10,12 @@ use mechanisms::{
     start, tight, whereabouts,
 };
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};
+use ropewalk_core::V3;
 use ropewalk_core::rotation::{bryant, exp, then};
 use ropewalk_core::statics::{Statics, StaticsOptions};
-use ropewalk_core::{Scene, V3};
 use ropewalk_elements::{CableSpec, RigidBodySpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, PointMomentSpec, TimeFunction};
+use ropewalk_scene::Scene;
 use std::f64::consts::PI;
 
 const FAR: V3<f64> = [1e3, -2e3, 5e2];

@@ -12,9 +12,10 @@ use mechanisms::{
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};
 use ropewalk_core::integrator::{ConstraintForm, Options};
 use ropewalk_core::rotation::matrix;
-use ropewalk_core::{Observer, Sample, Scene, Simulation, State, V3, dot};
+use ropewalk_core::{Observer, Sample, Simulation, State, V3, dot};
 use ropewalk_elements::{CableSpec, RigidBodySpec, Section};
 use ropewalk_forces::GravitySpec;
+use ropewalk_scene::Scene;
 use std::ops::ControlFlow;
 
 #[test]

@@ -7,10 +7,11 @@ use ropewalk_constraints::motion::{SpeedTableSpec, SpinSpec};
 use ropewalk_constraints::{
     ClampSpec, DistanceSpec, PointOnLineSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec, WinchSpec,
 };
+use ropewalk_core::SteadyFrame;
 use ropewalk_core::modes::Mode;
-use ropewalk_core::{Analysis, Scene, SteadyFrame};
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, SpringSpec, TimeFunction};
+use ropewalk_scene::{Analysis, Scene};
 use std::f64::consts::PI;
 
 #[track_caller]

@@ -6,9 +6,10 @@ use common::{everything, models, pendulum, place, size, tow_start};
 use ropewalk_constraints::{DistanceSpec, SphericalSpec};
 use ropewalk_core::integrator::{Counts, Options, Scheme, StepError, StepReport, Stepping, consistent};
 use ropewalk_core::statics::{Statics, StaticsOptions};
-use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Sample, Scene, Simulation, State, Water};
+use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Sample, Simulation, State};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{DragSpec, GravitySpec, PointForceSpec, TimeFunction};
+use ropewalk_scene::{Scene, Water};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 

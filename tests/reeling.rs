@@ -7,11 +7,12 @@ use common::{data, hose, number, place, tow_start, towed};
 use ropewalk::{History, SceneFile, bundled, simulate};
 use ropewalk_constraints::{SphericalSpec, WinchSpec};
 use ropewalk_core::integrator::{Options, Stepping};
-use ropewalk_core::records::{LengthSpec, PositionSpec};
 use ropewalk_core::statics::{Statics, StaticsOptions};
-use ropewalk_core::{ConstraintSpec, End, Scene, Simulation};
+use ropewalk_core::{End, Simulation};
 use ropewalk_elements::Section;
 use ropewalk_forces::DragLaw;
+use ropewalk_scene::records::{LengthSpec, PositionSpec};
+use ropewalk_scene::{ConstraintSpec, Scene};
 
 fn winch(speed: f64) -> WinchSpec {
     WinchSpec::speed("winch", "hose.start", speed)

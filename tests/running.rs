@@ -5,9 +5,10 @@ mod common;
 use common::{everything, models, pendulum, place, size};
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::integrator::{Options, Scheme, StepError, StepReport, Stepping};
-use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Scene, Simulation, State, Water};
+use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Simulation, State};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{DragSpec, GravitySpec, SpringSpec};
+use ropewalk_scene::{Scene, Water};
 use std::ops::ControlFlow;
 
 fn fixed(h: f64) -> Options {

@@ -7,9 +7,10 @@ use common::{data, everything, models};
 use ropewalk::variants::{Form, Problem, condition, scaling, stiffness};
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::integrator::{NewtonPolicy, Options, Scales, Scheme, Stepping, Stopping};
-use ropewalk_core::{End, Scene, Simulation};
+use ropewalk_core::{End, Simulation};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::GravitySpec;
+use ropewalk_scene::Scene;
 
 /// A steel rod, hinged at one end and released from the horizontal: the section of Escalona, Hussien & Shabana (1998).
 fn steel(elements: usize) -> Scene {

@@ -8,11 +8,11 @@ use ropewalk::{History, RunOptions, SceneFile, bundled, simulate};
 use ropewalk_constraints::motion::{SpeedTableSpec, StraightSpec};
 use ropewalk_constraints::{BreakSpec, DrivingSpec, SphericalSpec};
 use ropewalk_core::integrator::{Options, Stepping};
-use ropewalk_core::records::{DrivingCheckSpec, EnergySpec, ReactionPart, ReactionSpec, ReleasedSpec};
-use ropewalk_core::{Scene, Water};
 use ropewalk_elements::rigid_chain::LinkSection;
 use ropewalk_elements::{PointMassSpec, RigidChainSpec};
 use ropewalk_forces::{DragSpec, GravitySpec, LatchSpec};
+use ropewalk_scene::records::{DrivingCheckSpec, EnergySpec, ReactionPart, ReactionSpec, ReleasedSpec};
+use ropewalk_scene::{Scene, Water};
 use std::fs;
 
 /// A short hose of few links, otherwise the bundled model.

@@ -10,10 +10,11 @@ use ropewalk_constraints::motion::HarmonicSpec;
 use ropewalk_constraints::{ClampSpec, DrivingSpec, SphericalSpec};
 use ropewalk_core::integrator::{NewtonPolicy, Options, Scheme};
 use ropewalk_core::statics::{Statics, StaticsOptions};
-use ropewalk_core::{Scene, Simulation, State, V3, Width};
+use ropewalk_core::{Simulation, State, V3, Width};
 use ropewalk_elements::cable::StressFree;
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, PointMomentSpec, SpringSpec};
+use ropewalk_scene::Scene;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A free cable of 1 m, 1 kg/m and EI = 1 whose state is set to a smooth bend of this amplitude, at rest.
@@ -399,7 +400,7 @@ fn a_motion_run_backwards_comes_home() {
 fn a_spring_of_any_stiffness_leaves_the_slow_motion_alone() {
     // two masses in a row: 1 N/m to the ground, and the stiff spring between them; the second starts off its place
     let slow = |k: f64| {
-        let spring = |name: &str, marker: &str, to: ropewalk_core::MarkerRef, stiffness| SpringSpec {
+        let spring = |name: &str, marker: &str, to: ropewalk_scene::MarkerRef, stiffness| SpringSpec {
             name: name.into(),
             marker: marker.into(),
             to,

@@ -5,9 +5,10 @@ mod common;
 use common::{cantilever, data, hose, law, models, number, place, reaction, size, towed};
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::statics::{Found, Statics, StaticsOptions};
-use ropewalk_core::{Model, Scene, State, SteadyFrame, Water};
+use ropewalk_core::{Model, State, SteadyFrame};
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{DragLaw, DragSpec, GravitySpec};
+use ropewalk_scene::{Scene, Water};
 
 /// Follows the load factor from 0 to 1 in equal steps.
 fn follow(model: &Model, steps: usize) -> (State, Vec<Found>) {

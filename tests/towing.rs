@@ -5,10 +5,11 @@ mod common;
 use common::{data, hose, law, number, place, size, tow_start, towed};
 use ropewalk_constraints::DrivingSpec;
 use ropewalk_constraints::motion::{CircleSpec, StraightSpec, Towards};
+use ropewalk_core::Simulation;
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::statics::{Statics, StaticsOptions};
-use ropewalk_core::{Scene, Simulation};
 use ropewalk_elements::Section;
+use ropewalk_scene::Scene;
 
 /// Nearly inextensible and limp, with a little damping against axial ringing.
 fn limp(ea: f64, ei: f64) -> Section {

@@ -6,13 +6,14 @@ use common::data;
 use ropewalk::{SceneFile, bundled, simulate};
 use ropewalk_constraints::motion::SpeedTableSpec;
 use ropewalk_constraints::{LiftOffSpec, PackageSpec, SphericalSpec, WinchSpec};
-use ropewalk_core::build::{BuildError, Builder};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::statics::{Statics, StaticsOptions};
-use ropewalk_core::{ConstraintSpec, Jet, Joint, MarkerRef, Place, Relation, RowKind};
-use ropewalk_core::{End, Model, Scene, Simulation, State, SteadyFrame, V3, Water};
+use ropewalk_core::{
+    BuildError, End, Jet, Joint, Model, Place, Relation, RowKind, Simulation, State, SteadyFrame, V3,
+};
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{DragLaw, DragSpec};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, Scene, Water};
 use serde_json::Value;
 use std::f64::consts::TAU;
 

@@ -7,9 +7,10 @@ use ropewalk_constraints::motion::{HarmonicSpec, StraightSpec};
 use ropewalk_constraints::winch::Feeding;
 use ropewalk_constraints::{DrivingSpec, EyeletSpec, SphericalSpec, WinchSpec};
 use ropewalk_core::integrator::{Options, Stepping};
-use ropewalk_core::{End, Scene, Simulation, State};
+use ropewalk_core::{End, Simulation, State};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::GravitySpec;
+use ropewalk_scene::Scene;
 
 fn fixed(h: f64) -> Options {
     Options { stepping: Stepping::Fixed { h }, ..Options::default() }
@@ -350,7 +351,7 @@ fn hauled(way: f64, element: Option<f64>, eta: f64, divided: Divided, water: boo
     let mut w = m * 9.81;
     let (rho, ct) = (1025.0, 0.01);
     if water {
-        scene.water = Some(ropewalk_core::Water { density: rho, ..Default::default() });
+        scene.water = Some(ropewalk_scene::Water { density: rho, ..Default::default() });
         scene
             .force(ropewalk_forces::BuoyancySpec::default())
             .force(ropewalk_forces::DragSpec { cn: 1.2, ct, ..Default::default() })

@@ -5,11 +5,10 @@ use ropewalk_constraints::{
     Connection, clamp, coordinate, cylindrical, distance, driving, perpendicular, point_on_line,
     point_on_plane, prismatic, revolute, rotation, slide, spherical, universal, weld,
 };
-use ropewalk_core::build::BuildError;
 use ropewalk_core::rotation::around;
 use ropewalk_core::testing::check_constraint;
 use ropewalk_core::{
-    At, Constraint, Jet, Joint, Marker, Motion, Node, NodeId, NodeKind, Place, Relation, RowKind,
+    At, BuildError, Constraint, Jet, Joint, Marker, Motion, Node, NodeId, NodeKind, Place, Relation, RowKind,
 };
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! The point mass: tangent, balance of energy, weight, limits.
 
-use ropewalk_core::retract;
 use ropewalk_core::testing::{check_tangent, dense, difference};
-use ropewalk_core::{At, Current, Marker, Node, NodeId, NodeKind, Term, Weights, Width};
+use ropewalk_core::{At, Marker, Node, NodeId, NodeKind, Term, Weights, Width, retract};
 use ropewalk_elements::{Across, PointMass};
+use ropewalk_scene::Current;
 
 const CABLE: NodeId = NodeId(1);
 

@@ -2,9 +2,10 @@
 
 use ropewalk_core::rotation::{exp, then};
 use ropewalk_core::testing::{check_tangent, dense, difference};
-use ropewalk_core::{At, MarkerRef, Node, NodeKind, Per, Scene, Term, Weights, Width, retract};
+use ropewalk_core::{At, Node, NodeKind, Per, Term, Weights, Width, retract};
 use ropewalk_elements::rigid_chain::{Bend, Bends, LinkSection, SpoolSpec};
 use ropewalk_elements::{PointMassSpec, RigidChainSpec};
+use ropewalk_scene::{MarkerRef, Scene};
 
 const NODES: [Node; 2] = [
     Node { kind: NodeKind::Frame, q: 0, v: 0, shared: false },

@@ -6,9 +6,9 @@ mod spec;
 pub use spec::{BushingSpec, RotationalSpringSpec};
 
 use frames::{Frames, Pose, Wrench, between};
-use ropewalk_core::build::{BuildError, finite, not_negative};
+use ropewalk_core::error::{finite, not_negative};
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
-use ropewalk_core::{Assembly, At, Energy, Jet, Marker, Node, Pattern, Power, Term, V3};
+use ropewalk_core::{Assembly, At, BuildError, Energy, Jet, Marker, Node, Pattern, Power, Term, V3};
 use std::f64::consts::{PI, TAU};
 
 /// A spring and damper in all directions: of the second marker's place `d` and rotation vector `φ` as seen from the first

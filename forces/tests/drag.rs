@@ -5,13 +5,12 @@ mod random;
 use random::{Random, rotate};
 use ropewalk_core::held::Held;
 use ropewalk_core::testing::{check_law, check_tangent, dense};
-use ropewalk_core::{
-    At, Current, Law, Load, Marker, Node, NodeId, NodeKind, Station, Tip, Weights, Width, dot,
-};
+use ropewalk_core::{At, Law, Load, Marker, Node, NodeId, NodeKind, Station, Tip, Weights, Width, dot};
 use ropewalk_forces::{
     AddedMass, BluntEnd, Drag, EndDrag, LineLoad, NormalLaw, PerLength, Surface, TangentialLaw, Theory,
     TimeFunction, at_tip, choo_casarella_cn, choo_casarella_ct_over_mu,
 };
+use ropewalk_scene::Current;
 
 const NORMAL: [NormalLaw; 2] = [NormalLaw::Constant(1.2), NormalLaw::ChooCasarella];
 const TANGENTIAL: [TangentialLaw; 2] = [TangentialLaw::Quadratic(0.01), TangentialLaw::ChooCasarella];

@@ -4,8 +4,9 @@ mod random;
 
 use random::Random;
 use ropewalk_core::testing::check_law;
-use ropewalk_core::{Current, Law, Load, Station, V3, dot};
+use ropewalk_core::{Law, Load, Station, V3, dot};
 use ropewalk_forces::{AddedMass, Buoyancy, Drag, NormalLaw, Surface, TangentialLaw, Theory, Wetted};
+use ropewalk_scene::Current;
 use std::f64::consts::PI;
 
 const SURFACE: Surface = Surface { level: 0.3 };

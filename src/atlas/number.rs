@@ -3,8 +3,8 @@
 use super::data::Run;
 use super::plan::Use;
 use super::spec::{Function, Quantity};
-use ropewalk_core::quantity::kind;
 use ropewalk_forces::{choo_casarella_cn, choo_casarella_ct_over_mu};
+use ropewalk_scene::quantity::kind;
 
 impl Quantity {
     /// Name and unit.

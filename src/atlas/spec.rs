@@ -1,7 +1,7 @@
 //! What an atlas file says.
 
 use crate::sweep::Report;
-use ropewalk_core::quantity;
+use ropewalk_scene::quantity;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;

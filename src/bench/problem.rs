@@ -3,10 +3,11 @@
 use crate::error::Error;
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::integrator::{Alpha, Integrator, Options, StepError, Stepping, Workspace, prepare};
-use ropewalk_core::{Model, Scene, SolveError, State, V3, Water, Weights, Width};
+use ropewalk_core::{Model, SolveError, State, V3, Weights, Width};
 use ropewalk_elements::cable::{CableModel, Integration, LongitudinalModel, TransverseModel, legal};
 use ropewalk_elements::{CableSpec, LinkSection, RigidChainSpec, Section};
 use ropewalk_forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec};
+use ropewalk_scene::{Scene, Water};
 
 /// Step of the fixed-step measurements [s].
 const STEP: f64 = 1e-3;

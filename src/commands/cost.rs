@@ -5,8 +5,8 @@ use crate::cli::SceneArgs;
 use crate::cost::{CostOptions, cost as find};
 use crate::error::Error;
 use crate::output::{Interrupt, ProgressMode};
-use ropewalk_core::quantity;
 use ropewalk_models::Bundled;
+use ropewalk_scene::quantity;
 use std::path::PathBuf;
 use std::time::Duration;
 

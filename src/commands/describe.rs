@@ -6,8 +6,8 @@ use crate::read::SceneFile;
 use crate::scene::{Document, Fault, Format, Kind, Parameter, Value, did_you_mean, quoted};
 use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::StaticsOptions;
-use ropewalk_core::{Air, Run, SpecInfo, Water, registered, schemars};
 use ropewalk_models::Bundled;
+use ropewalk_scene::{Air, Run, SpecInfo, Water, registered, schemars};
 use std::path::{Path, is_separator};
 
 pub(super) type MakeSchema = fn() -> schemars::Schema;

@@ -7,8 +7,8 @@ use crate::modes::{ModesOptions, write_modes};
 use crate::output::ProgressMode;
 use crate::read::SceneFile;
 use ropewalk_core::modes::ModesError;
-use ropewalk_core::quantity;
 use ropewalk_models::Bundled;
+use ropewalk_scene::quantity;
 use std::path::PathBuf;
 
 /// Which modes, of what, and where they go.

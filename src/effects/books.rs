@@ -2,9 +2,8 @@
 
 use crate::output::Interrupt;
 use ropewalk_core::integrator::StepReport;
-use ropewalk_core::{
-    Analysis, At, Energy, Model, NodeId, NodeKind, Observer, Power, Sample, State, Term, difference,
-};
+use ropewalk_core::{At, Energy, Model, NodeId, NodeKind, Observer, Power, Sample, State, Term, difference};
+use ropewalk_scene::Analysis;
 use std::ops::ControlFlow;
 
 /// What an effect has done in a run.

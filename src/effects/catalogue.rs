@@ -1,6 +1,6 @@
 //! The effects of a scene: those that it has, and those that it could have.
 
-use ropewalk_core::{Analysis, ConstraintSpec, ElementSpec, ForceSpec, Scene, registered};
+use ropewalk_scene::{Analysis, ConstraintSpec, ElementSpec, ForceSpec, Scene, registered};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -4,7 +4,8 @@ use crate::error::Error;
 use crate::output::{Counts, Interrupt, ProfileEntry, Stopwatch, SweepProgress, Table};
 use crate::run::{Ending, Recorder, Started, records};
 use ropewalk_core::integrator::StepReport;
-use ropewalk_core::{Model, Observer, Remeshed, Sample, Scene, SpecKind, State};
+use ropewalk_core::{Model, Observer, Remeshed, Sample, State};
+use ropewalk_scene::{Scene, SpecKind};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 

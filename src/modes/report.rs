@@ -4,7 +4,8 @@ use super::Modal;
 use crate::output::{Column, Elapsed, RunFolder, Table, number};
 use crate::read::SceneFile;
 use ropewalk_core::modes::{Critical, Mode};
-use ropewalk_core::{Analysis, Model, NodeId};
+use ropewalk_core::{Model, NodeId};
+use ropewalk_scene::Analysis;
 use std::fmt::Write as _;
 
 const DIRECTIONS: [&str; 4] = ["x", "y", "z", "turning"];

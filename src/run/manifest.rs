@@ -3,7 +3,8 @@
 use super::pictures::shape_titles;
 use crate::read::SceneFile;
 use crate::scene::Fault;
-use ropewalk_core::{Analysis, Guard, Model, Scene, Width};
+use ropewalk_core::{Guard, Model, Width};
+use ropewalk_scene::{Analysis, Scene};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;

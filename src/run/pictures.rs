@@ -3,7 +3,8 @@
 use super::Recorder;
 use super::recorder::Figure;
 use crate::output::{CriticalLoad, LinePlot, Mark, OutputError, Plane, RunFolder, Series, ShapePlot};
-use ropewalk_core::{ShapeTitles, V3};
+use ropewalk_core::V3;
+use ropewalk_scene::ShapeTitles;
 
 /// All ways to look at shapes.
 pub(crate) const PLANES: [Plane; 5] = [Plane::SideX, Plane::Top, Plane::SideY, Plane::Oblique, Plane::Radial];

@@ -8,9 +8,9 @@ use crate::error::Error;
 use crate::output::{self, Happened, Interrupt, Progress, Summary, Table, TableWriter};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{
-    Analysis, At, BuildError, Channel, Checkpoint, Layers, Model, NodeKind, Observer, Process, Record,
-    Remeshed, Sample, Scene, SceneError, SpecKind, State, V3,
+    At, BuildError, Checkpoint, Layers, Model, NodeKind, Observer, Record, Remeshed, Sample, State, V3,
 };
+use ropewalk_scene::{Analysis, Channel, Process, Scene, SceneError, SpecKind};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::time::Instant;

@@ -3,7 +3,7 @@
 use super::Recorder;
 use crate::output::{Column, Happened, RunFolder, Summary, number, rough};
 use crate::read::SceneFile;
-use ropewalk_core::Analysis;
+use ropewalk_scene::Analysis;
 use std::fmt::Write;
 
 /// The whole report: status, work, energy, records, files.

@@ -1,7 +1,8 @@
 //! The lines of all parts at the times of the snapshots: what pictures are drawn of, and `shapes.csv`.
 
 use crate::output::{Column, OutputError, RunFolder, cells, push_cell, push_number, write_atomic};
-use ropewalk_core::{At, Model, Process, V3};
+use ropewalk_core::{At, Model, V3};
+use ropewalk_scene::Process;
 use serde::{Deserialize, Serialize};
 
 /// All parts at one time.

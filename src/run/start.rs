@@ -8,9 +8,8 @@ use crate::read::SceneFile;
 use crate::scene::Fault;
 use ropewalk_core::integrator::{StepError, StepReport, Stepping};
 use ropewalk_core::statics::{Critical, Statics};
-use ropewalk_core::{
-    Analysis, Audit, End, Model, Observer, Process, Sample, Scene, Simulation, SolveError, State, Unfit,
-};
+use ropewalk_core::{Audit, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit};
+use ropewalk_scene::{Analysis, Process, Scene};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;

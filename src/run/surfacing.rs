@@ -1,6 +1,7 @@
 //! What rises out of water that has no surface.
 
-use ropewalk_core::{At, Model, Part, Scene};
+use ropewalk_core::{At, Model, Part};
+use ropewalk_scene::Scene;
 
 /// Watches for parts that begin below z = 0 and rise above it, in a scene whose water is everywhere.
 pub(crate) struct Surfacing {

@@ -2,7 +2,8 @@
 
 use super::Recorder;
 use crate::output::{Column, RunFolder, Table};
-use ropewalk_core::{Remeshed, Scene, TableSpec};
+use ropewalk_core::Remeshed;
+use ropewalk_scene::{Scene, TableSpec};
 
 /// What is wrong with the tables that the scene asks for, if anything.
 pub(crate) fn check(scene: &Scene, history: &Table) -> Result<(), String> {

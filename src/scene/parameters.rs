@@ -23,7 +23,7 @@ use super::fault::{Fault, did_you_mean, expected, quoted};
 use super::source::{Sources, Span};
 use super::toml;
 use super::value::{DEEPEST, Key, Kind, Table, Value};
-use ropewalk_core::quantity::Written;
+use ropewalk_scene::quantity::Written;
 use std::collections::HashMap;
 use std::fmt::Write;
 

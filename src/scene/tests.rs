@@ -6,7 +6,7 @@ mod messages;
 mod parameters;
 
 use super::{Document, Fault, Format, Span};
-use ropewalk_core::quantity;
+use ropewalk_scene::quantity;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 

@@ -2,7 +2,7 @@
 
 use super::fault::{Fault, quoted};
 use super::source::{Sources, Span};
-use ropewalk_core::quantity::Written;
+use ropewalk_scene::quantity::Written;
 use std::collections::HashSet;
 use std::ops::Range;
 

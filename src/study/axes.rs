@@ -7,8 +7,8 @@
 use crate::read::{SceneFile, SceneText};
 use crate::scene::{Fault, Kind, Value};
 use ropewalk_core::integrator::{Scheme, Stepping};
-use ropewalk_core::{Analysis, quantity};
 use ropewalk_elements::cable::{CableModel, Integration, LongitudinalModel, TransverseModel, legal};
+use ropewalk_scene::{Analysis, quantity};
 use serde::{Deserialize, Serialize};
 
 /// One choice of everything that can be varied; what the scene doesn't have is none.

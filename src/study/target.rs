@@ -4,7 +4,7 @@ use crate::output::Table;
 use crate::read::SceneFile;
 use crate::run::Recorder;
 use crate::scene::{Fault, did_you_mean, quoted};
-use ropewalk_core::{Analysis, Run, quantity};
+use ropewalk_scene::{Analysis, Run, quantity};
 use std::ops::Range;
 
 /// What is smaller than others of its unit by this is rounding.

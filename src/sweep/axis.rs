@@ -1,7 +1,7 @@
 //! A varied parameter in the table and along the axis of a plot.
 
 use crate::scene::{Value, Varied};
-use ropewalk_core::quantity::Written;
+use ropewalk_scene::quantity::Written;
 
 /// A varied parameter: its values as they are shown, and as numbers.
 #[derive(Clone, Debug, PartialEq)]

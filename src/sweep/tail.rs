@@ -2,7 +2,7 @@
 
 use super::results::Results;
 use crate::output::{Column, Table};
-use ropewalk_core::quantity::kind;
+use ropewalk_scene::quantity::kind;
 use std::fmt::Write;
 
 /// A last value is steady where its column ranges by no more than this share of its largest value over the last part.

@@ -4,12 +4,13 @@ use crate::error::Error;
 use crate::read::SceneFile;
 use crate::scene::{Fault, Format};
 use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};
+use ropewalk_core::V3;
 use ropewalk_core::integrator::{NewtonPolicy, Options, Scheme, Stepping};
-use ropewalk_core::records::{AccelerationSpec, PositionSpec, ReactionSpec};
-use ropewalk_core::{Scene, V3};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
 use ropewalk_elements::{CableSpec, RigidBodySpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
+use ropewalk_scene::Scene;
+use ropewalk_scene::records::{AccelerationSpec, PositionSpec, ReactionSpec};
 use serde::Serialize;
 
 const G: V3<f64> = [0.0, 0.0, -9.81];

@@ -5,10 +5,11 @@ use crate::error::Error;
 use ropewalk_constraints::{ClampSpec, SphericalSpec};
 use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::{Statics, StaticsOptions};
-use ropewalk_core::{Model, Quantity, Scene, Simulation, State, V3, Width};
+use ropewalk_core::{Model, Quantity, Simulation, State, V3, Width};
 use ropewalk_elements::cable::{CableModel, LongitudinalModel, TransverseModel, legal};
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, PointMomentSpec, TimeFunction};
+use ropewalk_scene::Scene;
 use serde::Serialize;
 use std::time::Duration;
 

@@ -1,7 +1,7 @@
 //! What scene files of the suite don't say: parts by the dozen, and a motion by a formula.
 
-use ropewalk_core::build::BuildError;
-use ropewalk_core::{Motion, MotionSpec, Moving};
+use ropewalk_core::{BuildError, Motion, Moving};
+use ropewalk_scene::MotionSpec;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use std::sync::Arc;

@@ -3,13 +3,14 @@
 
 use ropewalk_constraints::motion::StraightSpec;
 use ropewalk_constraints::{ClampSpec, DrivingSpec, SphericalSpec};
-use ropewalk_core::{Model, Scene, State, Water};
+use ropewalk_core::{Model, State};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{
     AddedMassSpec, BuoyancySpec, DragLaw, DragSpec, GravitySpec, PointForceSpec, SpringSpec, Theory,
     TimeFunction,
 };
+use ropewalk_scene::{Scene, Water};
 use serde_json::Value;
 
 /// A file of `tests/data`.

@@ -5,14 +5,12 @@ use ropewalk_constraints::{
     PerpendicularSpec, PointOnLineSpec, PrismaticSpec, RevoluteSpec, RotationSpec, SphericalSpec,
     UniversalSpec,
 };
-use ropewalk_core::build::BuildError;
 use ropewalk_core::integrator::{NewtonPolicy, Options, Scheme, Stepping, consistent};
 use ropewalk_core::rotation::{around, bryant, cross, from_matrix, matrix, then, times, transposed_times};
-use ropewalk_core::{
-    End, MarkerRef, Model, Motion, MotionSpec, Moving, Scene, Simulation, State, V3, split_marker,
-};
+use ropewalk_core::{BuildError, End, Model, Motion, Moving, Simulation, State, V3};
 use ropewalk_elements::RigidBodySpec;
 use ropewalk_forces::{GravitySpec, PointMomentSpec, SpringSpec, TimeFunction};
+use ropewalk_scene::{MarkerRef, MotionSpec, Scene, split_marker};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;

@@ -4,10 +4,9 @@ use plotters::style::RGBColor;
 
 use super::axis::{Axis, Ticks};
 use super::canvas::{Align, Canvas, draw, fitted, text_width, wrapped};
-use super::clip;
-use super::colour;
 use super::line::Mark;
 use super::thin::Pixel;
+use super::{clip, colour};
 use crate::output::OutputError;
 
 pub(super) const TITLE_SIZE: f64 = 15.0;

@@ -6,11 +6,9 @@ use plotters::style::RGBColor;
 
 use super::axis::Axis;
 use super::canvas::Canvas;
-use super::clip;
-use super::colour;
 use super::frame::{AREA, Area, Entry, Frame};
 use super::shape::draw_directions;
-use super::thin;
+use super::{clip, colour, thin};
 use crate::output::{OutputError, write_atomic};
 
 /// Points of all series together; at some ten bytes each a file stays below 300 kB.

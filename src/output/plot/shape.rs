@@ -4,10 +4,9 @@ use std::path::Path;
 
 use super::axis::Axis;
 use super::canvas::{Align, Canvas};
-use super::colour;
 use super::frame::{AREA, Area, Bar, Entry, Frame};
 use super::line::Mark;
-use super::thin;
+use super::{colour, thin};
 use crate::output::{OutputError, write_atomic};
 
 /// Points of all snapshots together, as in a line plot.
