@@ -7,9 +7,9 @@ use ropewalk::constraints::motion::HarmonicSpec;
 use ropewalk::constraints::{DrivingSpec, SphericalSpec};
 use ropewalk::core::Quantity;
 use ropewalk::core::integrator::Stepping;
-use ropewalk::core::records::{AlongSpec, EnergySpec, PositionSpec, RecordPlace};
 use ropewalk::elements::{CableSpec, PointMassSpec, Section};
 use ropewalk::forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec};
+use ropewalk::scene::records::{AlongSpec, EnergySpec, PositionSpec, RecordPlace};
 use ropewalk::{Error, Scene, Water, simulate};
 
 pub(crate) fn main() -> Result<(), Error> {

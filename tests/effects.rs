@@ -7,13 +7,13 @@ mod program;
 use common::{everything, size};
 use program::run;
 use ropewalk::core::integrator::{Options, Stepping};
-use ropewalk::core::records::PositionSpec;
 use ropewalk::core::{
     Assembly, At, BuildError, Builder, Energy, ForceSpec, Gives, Law, Load, Pattern, Power, Real, Station,
     Term, register_spec,
 };
 use ropewalk::forces::{AddedMass, DragSpec, Spring};
 use ropewalk::scene::Format;
+use ropewalk::scene::records::PositionSpec;
 use ropewalk::{
     Deed, EffectsOptions, Ledger, Manifest, Scene, SceneFile, Simulation, Verdict, Water, bundled, effects,
     simulate,

@@ -4,8 +4,8 @@
 mod common;
 
 use common::{data, number};
-use ropewalk::output::CriticalLoad;
 use ropewalk::scene::Format;
+use ropewalk::studies::run::CriticalLoad;
 use ropewalk::{Error, History, SceneFile, simulate};
 use ropewalk_core::statics::CriticalKind;
 

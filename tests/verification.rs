@@ -4,7 +4,7 @@
 mod program;
 
 use program::run;
-use ropewalk::output::ProgressMode;
+use ropewalk::report::ProgressMode;
 use ropewalk::verify::{Followed, case, cases, heading, lines};
 use std::fs;
 

@@ -361,7 +361,7 @@ fn hauled(way: f64, element: Option<f64>, eta: f64, divided: Divided, water: boo
     let scheme = ropewalk_core::integrator::Scheme::GeneralizedAlpha { rho_inf: 0.5 };
     let options = Options { scheme, ..fixed(0.01) };
     let mut s = hang(&scene, &options, ea, w, l0);
-    let motion = ropewalk_core::MotionSpec::build(&haul(way), &[]).expect("motion");
+    let motion = ropewalk_scene::MotionSpec::build(&haul(way), &[]).expect("motion");
     let mut seen = Meshes::default();
     let mut out =
         Hauled { tension: 0.0, tip: 0.0, jump: 0.0, impulse: 0.0, changes: 0, steps: 0, imbalance: 0.0 };
@@ -607,7 +607,7 @@ fn wet() -> Scene {
     let section =
         Section { diameter: 0.02, axial_damping: 0.01, bending_damping: 0.01, ..Section::new(0.8, 1e4, 2.0) };
     let mut scene = Scene::new();
-    scene.water = Some(ropewalk_core::Water::default());
+    scene.water = Some(ropewalk_scene::Water::default());
     scene
         .element(CableSpec::straight("rope", [0.0; 3], [0.0, 0.0, -6.0], 8, section))
         .element(PointMassSpec::new("bob", "rope.end", 3.0))

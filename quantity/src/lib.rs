@@ -4,7 +4,7 @@
 //! quantity stands there, and the file may then give a bare number in SI or a string with any fitting unit:
 //!
 //! ```
-//! # use ropewalk_core::quantity;
+//! # use ropewalk_quantity as quantity;
 //! #[derive(serde::Deserialize)]
 //! struct Tow {
 //!     #[serde(deserialize_with = "quantity::speed")]
@@ -50,7 +50,7 @@ impl Kind {
     /// Reads `"<number> <unit>"` into SI; the error is one sentence for the user.
     ///
     /// ```
-    /// use ropewalk_core::quantity::kind;
+    /// use ropewalk_quantity::kind;
     /// assert_eq!(kind::SPEED.parse("36 km/h"), Ok(10.0));
     /// let error = kind::SPEED.parse("25 kg").unwrap_err();
     /// assert_eq!(error, r#""25 kg" is a mass, expected a speed like "25 kn" or a number in m/s"#);

@@ -8,7 +8,7 @@ use super::{ALL, Dimension, number_end, unit};
 /// they have to be is up to whoever reads them at last.
 ///
 /// ```
-/// use ropewalk_core::quantity::Written;
+/// use ropewalk_quantity::Written;
 /// let speed = Written::parse("36 km/h").unwrap();
 /// assert_eq!((speed.number, speed.unit, speed.si), (36.0, "km/h", 10.0));
 /// assert_eq!(speed.si_unit(), Some("m/s"));

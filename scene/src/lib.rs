@@ -6,21 +6,28 @@
 
 mod builder;
 mod current;
+pub mod document;
 pub mod file;
 mod marker;
 mod motions;
 mod process;
 pub mod records;
 mod scene;
+mod scene_file;
 pub mod spec;
 mod water;
 
 pub use builder::{Builder, Numbered};
 pub use current::Current;
+pub use document::{
+    Document, Fault, Format, Key, Kind, Parameter, Place, Span, Table, Value, Varied, did_you_mean, quoted,
+    read_text,
+};
 pub use marker::{MarkerRef, split_marker};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};
 pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};
+pub use scene_file::{Bundled, SceneFile, SceneText};
 pub use spec::{
     ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
 };

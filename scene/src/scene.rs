@@ -9,6 +9,7 @@ use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::StaticsOptions;
 use ropewalk_core::{BuildError, Model, Plan, Recipe, Record, Start, SteadyFrame, V3};
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// What is computed.
@@ -378,12 +379,28 @@ impl Scene {
         Ok(model)
     }
 
-    /// The records of the scene for its model.
+    /// The records of the scene for its model, each with a name of its own.
     ///
     /// # Errors
-    /// The first record that can't be made.
+    /// The first record that can't be made; two records or columns of one name.
     pub fn records(&self, model: &Model) -> Result<Vec<Box<dyn Record>>, SceneError> {
         let of = |k| move |error| SceneError { spec: Some((SpecKind::Record, k)), error };
-        self.records.iter().enumerate().map(|(k, r)| r.build(model).map_err(of(k))).collect()
+        let twice = |what: &str, name: &str| {
+            let message = format!("there are two {what} named `{name}`: give one of them a `name`");
+            BuildError::at("name", message)
+        };
+        let (mut names, mut columns) = (HashSet::new(), HashSet::new());
+        let mut all = Vec::with_capacity(self.records.len());
+        for (k, spec) in self.records.iter().enumerate() {
+            let record = spec.build(model).map_err(of(k))?;
+            if !names.insert(record.name()) {
+                return Err(of(k)(twice("records", &record.name())));
+            }
+            if let Some(column) = record.columns().into_iter().find(|c| !columns.insert(c.name.clone())) {
+                return Err(of(k)(twice("columns", &column.name)));
+            }
+            all.push(record);
+        }
+        Ok(all)
     }
 }

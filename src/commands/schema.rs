@@ -269,8 +269,8 @@ mod tests {
 
     #[test]
     fn every_quantity_may_be_a_text_with_its_unit() {
-        use crate::read::SceneFile;
-        use crate::scene::Format;
+        use ropewalk_scene::Format;
+        use ropewalk_scene::SceneFile;
         let types = ropewalk_scene::registered().into_iter().map(|s| (Some(s), s.name, (s.schema)()));
         let sections = super::super::describe::SECTIONS.iter().map(|(name, schema)| (None, *name, schema()));
         let (mut count, mut wrong) = (0, Vec::new());

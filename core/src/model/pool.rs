@@ -17,7 +17,7 @@ pub struct Local<R, const Q: usize, const N: usize> {
     pub a: [R; N],
     /// The last increment of a search for equilibrium; zero in dynamics.
     pub last: [R; N],
-    /// How a search for equilibrium wants stiffness to be relaxed; see [`Relaxed`](crate::Relaxed).
+    /// How a search for equilibrium wants stiffness to be relaxed; see [`Relaxed`].
     pub relaxed: Option<Relaxation>,
 }
 

@@ -31,7 +31,7 @@ pub struct Audit {
     pub unsure: f64,
     /// Rate at which the power of all loads together changed in the last step [W/s].
     #[cfg_attr(feature = "serde", serde(default))]
-    pub(crate) slope: f64,
+    pub slope: f64,
 }
 
 /// Share of the second difference of power that the trapezoidal rule may miss: a twelfth where power is smooth, more where

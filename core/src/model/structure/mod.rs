@@ -1,7 +1,7 @@
 //! The sparse structure of the iteration matrix, by blocks, and the way of every clique into it.
 //!
 //! A block is a node with the rows of the constraints behind it. All rows of a block share one list of columns, so
-//! that what an element adds goes in rectangles ([`Tile`]) instead of entry by entry, and along a chain every row is
+//! that what an element adds goes in rectangles (tiles) instead of entry by entry, and along a chain every row is
 //! one run of neighbours.
 
 use crate::algebra::scalar::Scalar;

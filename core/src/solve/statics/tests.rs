@@ -1,12 +1,11 @@
 use super::*;
-use crate::model::state::State;
-use crate::model::{Model, Start};
 use crate::model::constraint::{Constraint, Joint, Relation, RowKind};
 use crate::model::marker::{Jet, Marker, Place};
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::pattern::Pattern;
-use crate::model::state::At;
+use crate::model::state::{At, State};
 use crate::model::term::{Assembly, Term};
+use crate::model::{Model, Start};
 
 /// A column of rigid links, joined by springs that bend, clamped at its foot: `EI = L = 1`, mass 1. Loads grow with time.
 #[derive(Clone, Copy)]
