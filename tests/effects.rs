@@ -8,12 +8,11 @@ use common::{everything, size};
 use program::run;
 use ropewalk::core::integrator::{Options, Stepping};
 use ropewalk::core::{
-    Assembly, At, BuildError, Builder, Energy, ForceSpec, Gives, Law, Load, Pattern, Power, Real, Station,
-    Term, register_spec,
+    Assembly, At, BuildError, Energy, Gives, Law, Load, Pattern, Power, Real, Station, Term,
 };
 use ropewalk::forces::{AddedMass, DragSpec, Spring};
-use ropewalk::scene::Format;
 use ropewalk::scene::records::PositionSpec;
+use ropewalk::scene::{Builder, ForceSpec, Format, register_spec};
 use ropewalk::{
     Deed, EffectsOptions, Ledger, Manifest, Scene, SceneFile, Simulation, Verdict, Water, bundled, effects,
     simulate,
