@@ -4,8 +4,9 @@
 mod free_fall;
 
 use free_fall::{ELEMENTS, G, count_steps};
-use ropewalk_core::{Builder, ElementSpec, Per};
+use ropewalk_core::Per;
 use ropewalk_elements::{CableSpec, Section};
+use ropewalk_scene::{Builder, ElementSpec};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -5,10 +5,11 @@
 
 use ropewalk::constraints::motion::HarmonicSpec;
 use ropewalk::constraints::{DrivingSpec, SphericalSpec};
-use ropewalk::core::records::{AlongSpec, EnergySpec, PositionSpec, RecordPlace};
-use ropewalk::core::{Quantity, integrator::Stepping};
+use ropewalk::core::Quantity;
+use ropewalk::core::integrator::Stepping;
 use ropewalk::elements::{CableSpec, PointMassSpec, Section};
 use ropewalk::forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec};
+use ropewalk::scene::records::{AlongSpec, EnergySpec, PositionSpec, RecordPlace};
 use ropewalk::{Error, Scene, Water, simulate};
 
 pub(crate) fn main() -> Result<(), Error> {

@@ -16,11 +16,12 @@
 //! ```
 
 use crate::commands::{self, Exit};
-use crate::error::Error;
-use crate::run::Every;
-use crate::sweep::{Over, Report};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use ropewalk_models::Bundled;
+pub use ropewalk_studies::Error;
+use ropewalk_studies::run::Every;
+use ropewalk_studies::sweep::{Over, Report};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -199,7 +200,7 @@ pub(crate) struct SweepArgs {
     #[arg(long, short, value_name = "N", value_parser = at_least_one)]
     pub(crate) jobs: Option<usize>,
     /// Value that stands for a run in the report, in tables/ and in pictures over a parameter
-    #[arg(long, value_enum, default_value = "last")]
+    #[arg(long, default_value = "last", value_parser = tail_value())]
     pub(crate) report: Report,
     /// Last part of a run that mean, least and largest are taken over, and that tells whether last values are steady
     #[arg(long, value_name = "SHARE", default_value = "10 %")]
@@ -207,6 +208,12 @@ pub(crate) struct SweepArgs {
     /// Say nothing but errors and warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+/// Last, mean, least or largest, by name.
+fn tail_value() -> impl TypedValueParser<Value = Report> {
+    let names = PossibleValuesParser::new(Report::ALL.map(|r| PossibleValue::new(r.name()).help(r.about())));
+    names.map(|name| Report::ALL.into_iter().find(|r| r.name() == name).unwrap_or_default())
 }
 
 pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {

@@ -12,52 +12,42 @@
 //!
 //! The same with more control: [`Scene::build`] makes a [`Model`], and a [`Simulation`] moves it.
 //!
-//! The parts are crates of their own, and naming them here is what makes their types known to scene files:
-//! [`core`] (model, solvers, integrators), [`elements`], [`constraints`], [`forces`], [`models`] (bundled scenes). A
-//! crate that adds types of its own offers them with [`cli::main_with`] in the same command line.
+//! The parts are crates of their own, and naming them here is what makes their types known to scene files: [`core`]
+//! (model, solvers, integrators), [`scene`] (the language of scenes), [`elements`], [`constraints`], [`forces`],
+//! [`models`] (bundled scenes), [`studies`] (runs and what is asked of many of them), [`report`] (folders, tables,
+//! pictures). A crate that adds types of its own offers them with [`cli::main_with`] in the same command line.
 
-mod atlas;
-pub mod bench;
-mod certificate;
 pub mod cli;
 mod commands;
-mod cost;
-mod effects;
-mod error;
-mod modes;
-pub mod output;
-mod read;
-mod run;
-pub mod scene;
-mod simulate;
-mod study;
-mod sweep;
-pub mod variants;
-pub mod verify;
 
 pub use ropewalk_constraints as constraints;
 pub use ropewalk_core as core;
 pub use ropewalk_elements as elements;
 pub use ropewalk_forces as forces;
 pub use ropewalk_models as models;
+pub use ropewalk_report as report;
+pub use ropewalk_scene as scene;
+pub use ropewalk_studies as studies;
 
-pub use certificate::{Cause, Certificate, Change};
-pub use cost::{CostAdvice, CostOptions, CostOutcome, cost};
-pub use effects::{
+pub use ropewalk_core::integrator::Options;
+pub use ropewalk_core::{BuildError, Model, Simulation, State};
+pub use ropewalk_models::bundled;
+pub use ropewalk_scene::{Air, Builder, Bundled, MarkerRef, Run, Scene, SceneError, SceneFile, Water};
+pub use ropewalk_studies::certificate::{Cause, Certificate, Change};
+pub use ropewalk_studies::cost::{CostAdvice, CostOptions, CostOutcome, cost};
+pub use ropewalk_studies::effects::{
     Advice, Deed, EffectsOptions, EffectsOutcome, Ledger, Tried, Verdict, effects, write_effects,
 };
-pub use error::Error;
-pub use modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
-pub use read::{SceneFile, read};
-pub use ropewalk_core::integrator::Options;
-pub use ropewalk_core::{
-    Air, BuildError, Builder, MarkerRef, Model, Run, Scene, SceneError, Simulation, State, Water,
-};
-pub use ropewalk_models::{Bundled, bundled};
-pub use run::{Every, Manifest, Outcome, RunOptions, resume, run};
-pub use simulate::{History, simulate};
+pub use ropewalk_studies::modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
+pub use ropewalk_studies::run::{Every, Manifest, Outcome, RunOptions, resume, run};
+pub use ropewalk_studies::simulate::{History, read, simulate};
+pub use ropewalk_studies::{Error, bench, variants, verify};
 
-/// The program of the README must compile and run.
+/// The programs of the README and of CONTRIBUTING must compile and run.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
+mod documents {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../CONTRIBUTING.md")]
+    struct Contributing;
+}

@@ -3,7 +3,8 @@
 use cpu_time::ThreadTime;
 use ropewalk::core::integrator::Options;
 use ropewalk::core::statics::Statics;
-use ropewalk::core::{Observer, Scene, Simulation};
+use ropewalk::core::{Observer, Simulation};
+use ropewalk::scene::Scene;
 
 /// A run that came to its end.
 pub struct Run {

@@ -1,6 +1,6 @@
 //! What is found: rows for machines, a page with pictures for people.
 
-use ropewalk::output::LinePlot;
+use ropewalk::report::LinePlot;
 use serde::Serialize;
 use std::fmt::Display;
 use std::path::Path;

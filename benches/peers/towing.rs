@@ -6,7 +6,7 @@ use crate::problem::{self, Converged, Start, Steady, Tow};
 use crate::report::{Report, Row, ratio, shown};
 use crate::tow::Case;
 use ropewalk::core::integrator::{Options, Scheme, Stepping};
-use ropewalk::output::{LinePlot, Mark, Series};
+use ropewalk::report::{LinePlot, Mark, Series};
 use serde_json::{Map, Value};
 
 const PEERS: [&str; 2] = ["moordyn", "cabledyn"];

@@ -6,7 +6,7 @@ use crate::pendulum::{distance, exudyn, own, scene};
 use crate::problem::{self, Pendulum, WorkPrecision};
 use crate::report::{Report, Row, cost_at, ratio, shown};
 use ropewalk::core::integrator::Stepping;
-use ropewalk::output::{LinePlot, Mark, Series};
+use ropewalk::report::{LinePlot, Mark, Series};
 use serde_json::json;
 
 /// All curves; without Exudyn's longest runs if it has to be quick.

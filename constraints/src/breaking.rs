@@ -1,9 +1,8 @@
 //! Connections that break.
 
-use ropewalk_core::build::{BuildError, Builder, positive};
-use ropewalk_core::{
-    Action, ConstraintSpec, Event, Marker, MarkerRef, Model, State, quantity, register_spec,
-};
+use ropewalk_core::error::positive;
+use ropewalk_core::{Action, BuildError, Event, Marker, Model, State};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! Checks of what constraints and motions are made of.
 
-use ropewalk_core::V3;
-use ropewalk_core::build::{BuildError, finite};
+use ropewalk_core::error::finite;
+use ropewalk_core::{BuildError, V3};
 
 /// A direction of length 1.
 pub(crate) fn unit(name: &str, d: V3<f64>) -> Result<V3<f64>, BuildError> {

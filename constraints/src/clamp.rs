@@ -2,9 +2,10 @@
 
 use crate::check::unit;
 use crate::connection::{Connection, Equation};
-use ropewalk_core::build::{BuildError, Builder, finite, need};
+use ropewalk_core::error::{finite, need};
 use ropewalk_core::rotation::{around, cross};
-use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, NodeId, NodeKind, V3, register_spec};
+use ropewalk_core::{BuildError, Marker, Node, NodeId, NodeKind, V3};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -6,9 +6,9 @@
 //! turns with it: `δ(R u) = R (θ × u)`; the "axis" of a cable is its slope `r'`, that of a director the vector itself,
 //! whose length doesn't matter to a right angle. Haug, *Computer-Aided Kinematics and Dynamics* (1989), chapter 9, has them all.
 
-use ropewalk_core::build::{BuildError, finite, need};
+use ropewalk_core::error::{finite, need};
 use ropewalk_core::rotation::{M3, cross, matrix, product, skew, times, transposed_times};
-use ropewalk_core::{At, Constraint, Marker, Motion, Node, NodeId, NodeKind, RowKind, V3, dot};
+use ropewalk_core::{At, BuildError, Constraint, Marker, Motion, Node, NodeId, NodeKind, RowKind, V3, dot};
 use std::sync::Arc;
 
 /// A vector that an equation is made of.

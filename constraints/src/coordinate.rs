@@ -3,8 +3,8 @@
 use crate::check::unit;
 use crate::connection::{Connection, Equation};
 use crate::pair::pair;
-use ropewalk_core::build::{BuildError, Builder};
-use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Motion, Node, V3, register_spec};
+use ropewalk_core::{BuildError, Marker, Motion, Node, V3};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -1,8 +1,9 @@
 //! Two points at a fixed distance.
 
 use crate::connection::{Connection, Equation};
-use ropewalk_core::build::{BuildError, Builder, positive};
-use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, quantity, register_spec};
+use ropewalk_core::error::positive;
+use ropewalk_core::{BuildError, Marker, Node};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

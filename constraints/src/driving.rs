@@ -2,9 +2,9 @@
 
 use crate::connection::{Arrow, Connection, Equation};
 use crate::pair::{aligned, along, pair};
-use ropewalk_core::build::{BuildError, Builder};
 use ropewalk_core::rotation::IDENTITY;
-use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Motion, Node, V3, register_spec};
+use ropewalk_core::{BuildError, Marker, Motion, Node, V3};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -1,9 +1,9 @@
 //! What the specs of joints have in common: two markers, and the axes that a joint gives them.
 
 use crate::check::unit;
-use ropewalk_core::build::{BuildError, Builder};
 use ropewalk_core::rotation::{M3, around};
-use ropewalk_core::{Marker, MarkerRef, NodeKind, V3};
+use ropewalk_core::{BuildError, Marker, NodeKind, V3};
+use ropewalk_scene::{Builder, MarkerRef};
 
 /// The markers that a joint holds: first what holds, then what is held. Without the first, it is the point in space
 /// where the second starts.

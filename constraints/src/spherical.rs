@@ -2,8 +2,8 @@
 
 use crate::connection::{Connection, Equation};
 use crate::pair::pair;
-use ropewalk_core::build::{BuildError, Builder};
-use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, register_spec};
+use ropewalk_core::{BuildError, Marker, Node};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -2,9 +2,9 @@
 
 use crate::connection::{Connection, Equation};
 use crate::pair::{direction, pair};
-use ropewalk_core::build::{BuildError, Builder};
 use ropewalk_core::rotation::around;
-use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, V3, register_spec};
+use ropewalk_core::{BuildError, Marker, Node, V3};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

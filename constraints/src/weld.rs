@@ -2,9 +2,9 @@
 
 use crate::connection::{Connection, Equation};
 use crate::pair::{aligned, on_cable, pair};
-use ropewalk_core::build::{BuildError, Builder};
 use ropewalk_core::rotation::{IDENTITY, around};
-use ropewalk_core::{ConstraintSpec, Marker, MarkerRef, Node, NodeKind, register_spec};
+use ropewalk_core::{BuildError, Marker, Node, NodeKind};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

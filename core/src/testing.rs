@@ -4,14 +4,14 @@
 //! The checks return the worst error relative to the largest number in the same column, so a test reads
 //! `assert!(check_tangent(&term, &nodes, &at, Width::One) < 1e-8)`.
 
-use crate::constraint::Constraint;
-use crate::lane::{LaneTask, Pack, Real, V3, Width, run};
-use crate::node::{Node, retract};
-use crate::pattern::Pattern;
-use crate::state::At;
-use crate::station::{Law, Load, Station};
-use crate::structure::Structure;
-use crate::term::{Assembly, Term, Weights};
+use crate::algebra::lane::{LaneTask, Pack, Real, V3, Width, run};
+use crate::model::constraint::Constraint;
+use crate::model::node::{Node, retract};
+use crate::model::pattern::Pattern;
+use crate::model::state::At;
+use crate::model::station::{Law, Load, Station};
+use crate::model::structure::Structure;
+use crate::model::term::{Assembly, Term, Weights};
 
 /// Residual and weighted tangent of one term as plain vectors over all unknowns of `nodes`, rows first.
 /// The whole tangent is formed, also where the term says that it is symmetric.
@@ -277,10 +277,10 @@ impl<L: Law> LaneTask for OneLaw<'_, L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constraint::{Joint, Relation, RowKind};
-    use crate::marker::{Jet, Marker, Place};
-    use crate::node::{NodeId, NodeKind};
-    use crate::station::Gives;
+    use crate::model::constraint::{Joint, Relation, RowKind};
+    use crate::model::marker::{Jet, Marker, Place};
+    use crate::model::node::{NodeId, NodeKind};
+    use crate::model::station::Gives;
 
     /// A spring `r = (1 + v² + a) q³` on one number, with a stiffness that is off by a factor.
     struct Cubic(f64);
@@ -370,7 +370,7 @@ mod tests {
             modes: &[],
             relaxed: None,
         };
-        let axes = crate::rotation::around([1.0, 0.5, 0.0]);
+        let axes = crate::algebra::rotation::around([1.0, 0.5, 0.0]);
         let marker = Marker::Node { node: NodeId(0), point: [0.1, 0.5, 0.2], axes };
         assert!(check_constraint(&Joint::new("curve", Curve(false), vec![marker]), &nodes, &at) < 1e-7);
         assert!(check_constraint(&Joint::new("curve", Curve(true), vec![marker]), &nodes, &at) > 1e-2);

@@ -1,12 +1,12 @@
 //! A compact body at the end of a line.
 
-use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
+use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::held::{Held, MOST};
 use ropewalk_core::{
-    Assembly, At, ContactPoint, Current, DeadEntry, DeadLoad, DeadPull, ElementSpec, Energy, Marker,
-    MarkerRef, Node, NodeId, NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, ball_below, dot, quantity,
-    register_spec,
+    Assembly, At, BuildError, ContactPoint, DeadEntry, DeadLoad, DeadPull, Energy, Marker, Node, NodeId,
+    NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, dot,
 };
+use ropewalk_scene::{Builder, Current, ElementSpec, MarkerRef, ball_below, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -101,7 +101,7 @@ impl PointMass {
     /// A negative or infinite volume, a gravity that isn't finite.
     pub fn weight(&self, volume: f64, gravity: V3<f64>) -> Result<DeadPull, BuildError> {
         not_negative(&format!("{}: volume", self.label), volume)?;
-        ropewalk_core::build::finite("gravity", &gravity)?;
+        ropewalk_core::error::finite("gravity", &gravity)?;
         let heavy = self.mass - self.density * volume;
         Ok(DeadPull {
             label: format!("{}: weight", self.label),

@@ -1,7 +1,8 @@
 //! Added mass: the water that a slender body pushes aside.
 
-use ropewalk_core::build::{BuildError, not_negative};
-use ropewalk_core::{Current, Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
+use ropewalk_core::error::not_negative;
+use ropewalk_core::{BuildError, Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
+use ropewalk_scene::Current;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

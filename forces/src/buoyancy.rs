@@ -1,9 +1,11 @@
 //! Buoyancy at the surface of water at rest: a potential, so that energy is kept.
 
 use crate::Surface;
-use ropewalk_core::build::{BuildError, not_negative, positive};
+use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::held::{Held, Pull, pull};
-use ropewalk_core::{Assembly, At, Energy, Gives, Law, Load, Pattern, Power, Real, Station, Term};
+use ropewalk_core::{
+    Assembly, At, BuildError, Energy, Gives, Law, Load, Pattern, Power, Real, Station, Term,
+};
 use std::f64::consts::PI;
 
 /// Buoyancy of a slender body that may lie across the surface, `ρ g A φ` per length upwards.

@@ -4,9 +4,9 @@
 //! the cross-flow principle gives the normal force from `v_n` alone. Reynolds numbers are those of the normal flow,
 //! `Re = ρ d |v_n| / μ`.
 
-use ropewalk_core::Current;
-use ropewalk_core::build::{BuildError, need, not_negative};
-use ropewalk_core::{Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
+use ropewalk_core::error::{need, not_negative};
+use ropewalk_core::{BuildError, Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
+use ropewalk_scene::Current;
 use std::f64::consts::PI;
 
 /// Law of the normal force `f_n = -½ ρ d Cn |v_n| v_n` per length.

@@ -2,8 +2,8 @@
 
 use crate::drag::PerLength;
 use crate::time::TimeFunction;
-use ropewalk_core::build::{BuildError, finite};
-use ropewalk_core::{Gives, Law, Load, Real, Station, V3, dot, scaled};
+use ropewalk_core::error::finite;
+use ropewalk_core::{BuildError, Gives, Law, Load, Real, Station, V3, dot, scaled};
 
 /// A force per length that keeps its direction in space, times a function of time.
 ///

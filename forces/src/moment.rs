@@ -2,10 +2,12 @@
 
 use crate::point::{body, orientation, slope_node};
 use crate::time::TimeFunction;
-use ropewalk_core::build::{BuildError, finite};
+use ropewalk_core::error::finite;
 use ropewalk_core::held::{cross, three};
 use ropewalk_core::rotation::{matrix, skew, transposed_times};
-use ropewalk_core::{Assembly, At, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot};
+use ropewalk_core::{
+    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot,
+};
 
 /// What a moment acts on.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,12 @@
 //! Forces at a point.
 
 use crate::time::TimeFunction;
-use ropewalk_core::build::{BuildError, finite, need};
+use ropewalk_core::error::{finite, need};
 use ropewalk_core::held::{Held, Pull, cross, delta, dofs, find, pull, three};
 use ropewalk_core::rotation::{matrix, product, skew, times};
-use ropewalk_core::{Assembly, At, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot};
+use ropewalk_core::{
+    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot,
+};
 
 /// How a point force is directed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,9 @@ use crate::{
     AddedMass, BluntEnd, Buoyancy, Drag, EndDrag, FeedingEnd, Float, LineLoad, NormalLaw, PerLength,
     PointForce, PointMoment, Spring, Surface, TangentialLaw, Theory, TimeFunction, Wetted, at_tip,
 };
-use ropewalk_core::build::{BuildError, Builder, finite, not_negative};
-use ropewalk_core::{Current, ForceSpec, MarkerRef, Part, Per, Tip, V3, Water, quantity, register_spec};
+use ropewalk_core::error::{finite, not_negative};
+use ropewalk_core::{BuildError, Part, Per, Tip, V3};
+use ropewalk_scene::{Builder, Current, ForceSpec, MarkerRef, Water, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,8 @@
 //! A spring and damper between two points.
 
-use ropewalk_core::build::{BuildError, need, not_negative};
+use ropewalk_core::error::{need, not_negative};
 use ropewalk_core::held::{Held, Pull as Pair, delta, dofs, pull};
-use ropewalk_core::{Assembly, At, Column, Energy, Marker, Node, Pattern, Power, Term, V3, dot};
+use ropewalk_core::{Assembly, At, BuildError, Column, Energy, Marker, Node, Pattern, Power, Term, V3, dot};
 
 /// A spring with a damper along the line between two markers: `F = k (l - l0) + c dl/dt`, a pull if positive.
 ///

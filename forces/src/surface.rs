@@ -6,7 +6,8 @@
 //! the potential of buoyancy per length: its share `∂W/∂s` lifts, and what `W` changes by with the slope is the couple
 //! of a tilted waterplane.
 
-use ropewalk_core::{Real, Station, V3, ball_below, dot};
+use ropewalk_core::{Real, Station, V3, dot};
+use ropewalk_scene::ball_below;
 use std::f64::consts::PI;
 
 /// The surface of water at rest.

@@ -1,8 +1,9 @@
 //! Factors that change with time.
 
-use ropewalk_core::build::{BuildError, finite, need};
+use ropewalk_core::error::{finite, need};
 use ropewalk_core::reach::Knots;
-use ropewalk_core::{EndSlope, Interpolation, Join, quantity, reach};
+use ropewalk_core::{BuildError, EndSlope, Interpolation, Join, reach};
+use ropewalk_scene::quantity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

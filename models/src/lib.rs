@@ -3,17 +3,7 @@
 
 pub mod unwinding;
 
-/// A scene that is known by its name.
-///
-/// A crate with scenes of its own makes more of these and hands them to the command line together with
-/// [`bundled`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Bundled {
-    /// Name, as in `ropewalk run NAME`.
-    pub name: &'static str,
-    /// The scene file, as TOML.
-    pub text: &'static str,
-}
+pub use ropewalk_scene::Bundled;
 
 /// `scenes/NAME.toml` under its name.
 macro_rules! scenes {

@@ -1,10 +1,10 @@
 //! `ropewalk atlas ATLAS`
 
 use super::{Exit, complain, say};
-use crate::atlas::{AtlasFile, AtlasOptions, Laid, atlas as make};
-use crate::error::Error;
-use crate::output::{Interrupt, ProgressMode};
 use ropewalk_models::{Bundled, atlases};
+use ropewalk_report::{Interrupt, ProgressMode};
+pub use ropewalk_studies::Error;
+pub use ropewalk_studies::atlas::{AtlasFile, AtlasOptions, Laid, atlas as make};
 use std::path::PathBuf;
 
 /// An atlas, what of it, and where it goes.

@@ -1,12 +1,12 @@
 //! `ropewalk bench`
 
 use super::{Exit, say};
-use crate::bench::measure::{Meter, VariantMeter, memory};
-use crate::bench::{Cost, Links, Pendulum, Report, models, report};
-use crate::error::Error;
-use crate::output::{OutputError, RunFolder, new_bar, write_atomic};
-use crate::scene::Fault;
 use ropewalk_core::Width;
+use ropewalk_report::{OutputError, RunFolder, new_bar, write_atomic};
+use ropewalk_scene::Fault;
+pub use ropewalk_studies::Error;
+use ropewalk_studies::bench::measure::{Meter, VariantMeter, memory};
+pub use ropewalk_studies::bench::{Cost, Links, Pendulum, Report, models, report};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

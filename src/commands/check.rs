@@ -2,10 +2,10 @@
 
 use super::{Exit, complain, say};
 use crate::cli::SceneArgs;
-use crate::error::Error;
-use crate::read::SceneFile;
-use crate::run::Manifest;
 use ropewalk_models::Bundled;
+use ropewalk_scene::SceneFile;
+pub use ropewalk_studies::Error;
+use ropewalk_studies::run::Manifest;
 
 pub(crate) fn check(args: &SceneArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     let file = SceneFile::open(&args.scene, &args.overrides, bundled)?;

@@ -2,11 +2,11 @@
 
 use super::{Exit, complain, say};
 use crate::cli::SceneArgs;
-use crate::cost::{CostOptions, cost as find};
-use crate::error::Error;
-use crate::output::{Interrupt, ProgressMode};
-use ropewalk_core::quantity;
 use ropewalk_models::Bundled;
+use ropewalk_report::{Interrupt, ProgressMode};
+use ropewalk_scene::quantity;
+pub use ropewalk_studies::Error;
+use ropewalk_studies::cost::{CostOptions, cost as find};
 use std::path::PathBuf;
 use std::time::Duration;
 

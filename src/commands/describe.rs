@@ -1,13 +1,14 @@
 //! `ropewalk describe SCENE|TYPE`
 
 use super::{Exit, first_line, say, schema, wrapped};
-use crate::error::Error;
-use crate::read::SceneFile;
-use crate::scene::{Document, Fault, Format, Kind, Parameter, Value, did_you_mean, quoted};
 use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::StaticsOptions;
-use ropewalk_core::{Air, Run, SpecInfo, Water, registered, schemars};
 use ropewalk_models::Bundled;
+use ropewalk_scene::{
+    Air, Document, Fault, Format, Kind, Parameter, Run, SceneFile, SpecInfo, Value, Water, did_you_mean,
+    quoted, registered, schemars,
+};
+pub use ropewalk_studies::Error;
 use std::path::{Path, is_separator};
 
 pub(super) type MakeSchema = fn() -> schemars::Schema;

@@ -2,11 +2,11 @@
 
 use super::{Exit, complain, say};
 use crate::cli::SceneArgs;
-use crate::effects::{EffectsOptions, write_effects};
-use crate::error::Error;
-use crate::output::ProgressMode;
-use crate::read::SceneFile;
 use ropewalk_models::Bundled;
+use ropewalk_report::ProgressMode;
+use ropewalk_scene::SceneFile;
+pub use ropewalk_studies::Error;
+use ropewalk_studies::effects::{EffectsOptions, write_effects};
 use std::path::PathBuf;
 
 /// Effects of what, judged by what, and where the results go.

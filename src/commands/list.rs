@@ -1,10 +1,9 @@
 //! `ropewalk list`
 
 use super::{Exit, first_line, say, schema};
-use crate::error::Error;
-use crate::scene::{Document, Format};
-use ropewalk_core::{SpecKind, registered};
 use ropewalk_models::{Bundled, atlases};
+use ropewalk_scene::{Document, Format, SpecKind, registered};
+pub use ropewalk_studies::Error;
 
 /// The kinds of types, in the order of a scene file.
 const KINDS: [SpecKind; 6] = [

@@ -2,13 +2,12 @@
 
 use super::{Exit, complain, say};
 use crate::cli::SceneArgs;
-use crate::error::Error;
-use crate::modes::{ModesOptions, write_modes};
-use crate::output::ProgressMode;
-use crate::read::SceneFile;
 use ropewalk_core::modes::ModesError;
-use ropewalk_core::quantity;
 use ropewalk_models::Bundled;
+use ropewalk_report::ProgressMode;
+use ropewalk_scene::{SceneFile, quantity};
+pub use ropewalk_studies::Error;
+use ropewalk_studies::modes::{ModesOptions, write_modes};
 use std::path::PathBuf;
 
 /// Which modes, of what, and where they go.

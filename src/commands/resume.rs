@@ -2,9 +2,9 @@
 
 use super::run::tell;
 use super::{Exit, complain};
-use crate::error::Error;
-use crate::output::ProgressMode;
-use crate::run::{Every, RunOptions, resume as resume_run};
+use ropewalk_report::ProgressMode;
+pub use ropewalk_studies::Error;
+use ropewalk_studies::run::{Every, RunOptions, resume as resume_run};
 use std::path::PathBuf;
 
 pub(crate) fn resume(folder: PathBuf, checkpoint: Option<Every>, quiet: bool) -> Result<Exit, Error> {

@@ -1,15 +1,14 @@
 //! `ropewalk run SCENE`
 
 use super::{Exit, complain, say};
-use crate::certificate::{Certificate, Trials, certify, choose};
 use crate::cli::SceneArgs;
-use crate::error::Error;
-use crate::output::{Interrupt, ProgressMode, SweepProgress, rough};
-use crate::read::{SceneFile, SceneText};
-use crate::run::{Every, Outcome, RunOptions, run as run_scene};
-use crate::scene::Fault;
-use crate::study::{Axes, Target, Watch};
 use ropewalk_models::Bundled;
+use ropewalk_report::{Interrupt, ProgressMode, SweepProgress, rough};
+use ropewalk_scene::{Fault, SceneFile, SceneText};
+pub use ropewalk_studies::Error;
+pub use ropewalk_studies::certificate::{Certificate, Trials, certify, choose};
+use ropewalk_studies::run::{Every, Outcome, RunOptions, run as run_scene};
+use ropewalk_studies::study::{Axes, Target, Watch};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -100,7 +99,7 @@ impl RunArgs {
             complain("error: no settings were found in the time given\n  = help: raise --budget");
             return Ok(Exit::Solver);
         };
-        let spent = format!("{} runs and {} s of CPU", trials.len(), rough(trials.spent()));
+        let spent = format!("{} runs and {} s of CPU", trials.runs(), rough(trials.spent()));
         trials.progress.finish();
         if !self.quiet {
             let word = if chosen.reached { "chosen" } else { "nearest" };

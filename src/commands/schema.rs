@@ -1,7 +1,7 @@
 //! A JSON schema in words: what can be written, with units, defaults and the doc comments of the source.
 
 use super::wrapped;
-use ropewalk_core::schemars::Schema;
+use ropewalk_scene::schemars::Schema;
 use serde_json::Value;
 
 /// Description and fields of a type.
@@ -269,9 +269,9 @@ mod tests {
 
     #[test]
     fn every_quantity_may_be_a_text_with_its_unit() {
-        use crate::read::SceneFile;
-        use crate::scene::Format;
-        let types = ropewalk_core::registered().into_iter().map(|s| (Some(s), s.name, (s.schema)()));
+        use ropewalk_scene::Format;
+        use ropewalk_scene::SceneFile;
+        let types = ropewalk_scene::registered().into_iter().map(|s| (Some(s), s.name, (s.schema)()));
         let sections = super::super::describe::SECTIONS.iter().map(|(name, schema)| (None, *name, schema()));
         let (mut count, mut wrong) = (0, Vec::new());
         for (spec, name, schema) in types.chain(sections) {

@@ -2,10 +2,10 @@
 
 use super::{Exit, complain, say};
 use crate::cli::SweepArgs;
-use crate::error::Error;
-use crate::output::{Interrupt, ProgressMode};
-use crate::sweep::{Grid, SweepOptions, sweep as sweep_grid};
 use ropewalk_models::Bundled;
+use ropewalk_report::{Interrupt, ProgressMode};
+pub use ropewalk_studies::Error;
+pub use ropewalk_studies::sweep::{Grid, SweepOptions, sweep as sweep_grid};
 
 pub(crate) fn sweep(args: SweepArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     let grid = Grid::new(&args.scenes, &args.overrides, &args.vary, bundled)?;

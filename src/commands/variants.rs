@@ -1,14 +1,14 @@
 //! `ropewalk variants`
 
 use super::{Exit, say};
-use crate::bench::models;
-use crate::error::Error;
-use crate::output::{Interrupt, LinePlot, OutputError, RunFolder, new_bar, write_atomic};
-use crate::scene::Fault;
-use crate::variants::scaling::{self, DRAWN, MESHES};
-use crate::variants::{Form, Problem, Variants, pictures, stiffness};
 use indicatif::ProgressBar;
 use ropewalk_elements::cable::CableModel;
+use ropewalk_report::{Interrupt, LinePlot, OutputError, RunFolder, new_bar, write_atomic};
+use ropewalk_scene::Fault;
+pub use ropewalk_studies::Error;
+use ropewalk_studies::bench::models;
+use ropewalk_studies::variants::scaling::{self, DRAWN, MESHES};
+pub use ropewalk_studies::variants::{Form, Problem, Variants, pictures, stiffness};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

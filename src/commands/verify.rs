@@ -1,10 +1,10 @@
 //! `ropewalk verify [NAME...]`
 
 use super::{Exit, complain, say};
-use crate::error::Error;
-use crate::output::{Interrupt, OutputError, ProgressMode, write_atomic};
-use crate::scene::{Fault, did_you_mean, quoted};
-use crate::verify::{Case, Followed, Outcome, cases, heading, lines, page, picture};
+use ropewalk_report::{Interrupt, OutputError, ProgressMode, write_atomic};
+use ropewalk_scene::{Fault, did_you_mean, quoted};
+pub use ropewalk_studies::Error;
+use ropewalk_studies::verify::{Case, Followed, Outcome, cases, heading, lines, page, picture};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -115,7 +115,9 @@ fn check_page(out: &Path) -> Result<(), Error> {
         return refuse("doesn't end in .md");
     }
     match fs::read_to_string(out) {
-        Ok(text) if !text.starts_with(crate::verify::TITLE) => refuse("is no page of results: it stays"),
+        Ok(text) if !text.starts_with(ropewalk_studies::verify::TITLE) => {
+            refuse("is no page of results: it stays")
+        }
         _ => Ok(()),
     }
 }

@@ -2,8 +2,8 @@
 
 use super::plane::{Course, Side};
 use super::smooth::Rise;
-use ropewalk_core::build::{BuildError, positive};
-use ropewalk_core::{Motion, Moving, SteadyFrame, V3, reach};
+use ropewalk_core::error::positive;
+use ropewalk_core::{BuildError, Motion, Moving, SteadyFrame, V3, reach};
 use std::f64::consts::TAU;
 
 /// From rest to a steady speed on a circle: `R sin φ` ahead and `R (1 - cos φ)` to the side, with `dφ/dt = U(t)/R` and

@@ -1,6 +1,6 @@
 //! Columns of CSV files.
 
-use ropewalk_core::{file, quantity};
+use ropewalk_scene::{file, quantity};
 use std::path::Path;
 
 /// A table longer than this [bytes] is surely none that drives a motion.

@@ -1,8 +1,8 @@
 //! To and fro.
 
 use super::smooth::{step, step_second};
-use ropewalk_core::build::{BuildError, finite, positive};
-use ropewalk_core::{Motion, Moving, V3, reach};
+use ropewalk_core::error::{finite, positive};
+use ropewalk_core::{BuildError, Motion, Moving, V3, reach};
 use std::f64::consts::TAU;
 
 /// `X = S(u) A sin(2π f (t - start) + phase)`, faded in by the quintic smooth step `S` of `u = (t - start) / ramp`.

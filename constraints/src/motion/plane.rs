@@ -1,8 +1,7 @@
 //! Courses in the horizontal plane.
 
 use crate::check::unit;
-use ropewalk_core::V3;
-use ropewalk_core::build::BuildError;
+use ropewalk_core::{BuildError, V3};
 
 /// To which side a vehicle turns, as seen from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

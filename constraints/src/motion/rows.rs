@@ -1,6 +1,7 @@
 //! Rows of tables of motions.
 
-use ropewalk_core::build::{BuildError, finite};
+use ropewalk_core::BuildError;
+use ropewalk_core::error::finite;
 
 /// What is wrong with a table, and in which of its rows, counted from 0.
 #[derive(Debug)]

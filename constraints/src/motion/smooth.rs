@@ -1,7 +1,7 @@
 //! Speeds that rise smoothly.
 
-use ropewalk_core::build::{BuildError, finite, positive};
-use ropewalk_core::reach;
+use ropewalk_core::error::{finite, positive};
+use ropewalk_core::{BuildError, reach};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

@@ -1,8 +1,8 @@
 //! What a scene says about motions.
 
 use super::{Circle, Harmonic, Manoeuvre, Rest, Side, Straight, Turn};
-use ropewalk_core::build::BuildError;
-use ropewalk_core::{Motion, MotionSpec, V3, quantity, register_spec};
+use ropewalk_core::{BuildError, Motion, V3};
+use ropewalk_scene::{MotionSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

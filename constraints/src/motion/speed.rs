@@ -3,10 +3,10 @@
 use super::csv::{self, Wanted};
 use super::rows::{Wrong, check};
 use crate::check::unit;
-use ropewalk_core::build::BuildError;
-use ropewalk_core::quantity::kind;
 use ropewalk_core::reach::Knots;
-use ropewalk_core::{EndSlope, Interpolation, Join, Motion, MotionSpec, Moving, V3, quantity, register_spec};
+use ropewalk_core::{BuildError, EndSlope, Interpolation, Join, Motion, Moving, V3};
+use ropewalk_scene::quantity::kind;
+use ropewalk_scene::{MotionSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

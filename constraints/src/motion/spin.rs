@@ -1,8 +1,9 @@
 //! An angle that grows steadily.
 
 use super::smooth::{Rise, Shape};
-use ropewalk_core::build::{BuildError, finite};
-use ropewalk_core::{Motion, MotionSpec, Moving, quantity, reach, register_spec};
+use ropewalk_core::error::finite;
+use ropewalk_core::{BuildError, Motion, Moving, reach};
+use ropewalk_scene::{MotionSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

@@ -2,8 +2,7 @@
 
 use super::smooth::Rise;
 use crate::check::unit;
-use ropewalk_core::build::BuildError;
-use ropewalk_core::{Motion, Moving, SteadyFrame, V3};
+use ropewalk_core::{BuildError, Motion, Moving, SteadyFrame, V3};
 
 /// From rest to a steady speed on a straight line.
 ///

@@ -1,7 +1,7 @@
 //! Several motions at once.
 
-use ropewalk_core::build::BuildError;
-use ropewalk_core::{Motion, MotionSpec, Moving, SteadyFrame, register_spec};
+use ropewalk_core::{BuildError, Motion, Moving, SteadyFrame};
+use ropewalk_scene::{MotionSpec, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

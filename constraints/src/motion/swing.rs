@@ -1,8 +1,8 @@
 //! An angle that goes to and fro.
 
 use super::Harmonic;
-use ropewalk_core::build::BuildError;
-use ropewalk_core::{Motion, MotionSpec, quantity, register_spec};
+use ropewalk_core::{BuildError, Motion};
+use ropewalk_scene::{MotionSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

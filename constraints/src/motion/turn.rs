@@ -2,8 +2,8 @@
 
 use super::plane::{Course, Side};
 use super::smooth::Rise;
-use ropewalk_core::build::{BuildError, positive};
-use ropewalk_core::{Motion, Moving, SteadyFrame, V3, reach};
+use ropewalk_core::error::positive;
+use ropewalk_core::{BuildError, Motion, Moving, SteadyFrame, V3, reach};
 use std::f64::consts::TAU;
 
 /// The numbers of a [`Turn`].

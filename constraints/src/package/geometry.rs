@@ -3,8 +3,7 @@
 use super::{Hand, PackageSpec, Side, Traverse};
 use crate::check::unit;
 use crate::motion::smooth::{step, step_second};
-use ropewalk_core::build::BuildError;
-use ropewalk_core::{V3, dot};
+use ropewalk_core::{BuildError, V3, dot};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A point of the wound cable, with derivatives by the arc length that has been peeled.

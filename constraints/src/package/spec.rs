@@ -2,8 +2,9 @@
 
 use super::Package;
 use crate::check::unit;
-use ropewalk_core::build::{BuildError, finite, not_negative, positive};
-use ropewalk_core::{V3, dot, quantity};
+use ropewalk_core::error::{finite, not_negative, positive};
+use ropewalk_core::{BuildError, V3, dot};
+use ropewalk_scene::quantity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

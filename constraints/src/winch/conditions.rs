@@ -1,8 +1,8 @@
 //! What is worth a word while a cable unwinds; the run goes on.
 
 use crate::package::Package;
-use ropewalk_core::build::Builder;
 use ropewalk_core::{Action, Event, Front, Model, Part, Quantity, State};
+use ropewalk_scene::Builder;
 use std::sync::Arc;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

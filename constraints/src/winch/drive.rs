@@ -2,8 +2,9 @@
 
 use super::WinchSpec;
 use crate::motion::Straight;
-use ropewalk_core::build::{BuildError, Builder, positive};
-use ropewalk_core::{Motion, Moving};
+use ropewalk_core::error::positive;
+use ropewalk_core::{BuildError, Motion, Moving};
+use ropewalk_scene::Builder;
 use std::sync::Arc;
 
 /// What moves cable through an end.

@@ -4,8 +4,8 @@ use super::WinchSpec;
 use crate::driving::driving;
 use crate::pair::pair;
 use crate::spherical::spherical;
-use ropewalk_core::build::{BuildError, Builder};
-use ropewalk_core::{ConstraintSpec, Feed, MarkerRef, Model, quantity, register_spec};
+use ropewalk_core::{BuildError, Feed, Model};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

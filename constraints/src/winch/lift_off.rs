@@ -2,12 +2,10 @@
 
 use super::{Limit, Peel, Side};
 use crate::package::{Lay, Package, PackageSpec};
-use ropewalk_core::build::{BuildError, Builder, not_negative, positive};
+use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::rotation::cross;
-use ropewalk_core::{
-    At, Constraint, ConstraintSpec, Feed, Front, Marker, MarkerRef, Node, NodeId, RowKind, V3, dot, quantity,
-    register_spec,
-};
+use ropewalk_core::{At, BuildError, Constraint, Feed, Front, Marker, Node, NodeId, RowKind, V3, dot};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

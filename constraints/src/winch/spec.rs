@@ -2,8 +2,9 @@
 
 use super::drive::Drive;
 use super::{Feeding, Limit, Pull, Side, Zone};
-use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
-use ropewalk_core::{ConstraintSpec, Feed, MarkerRef, Model, Motion, quantity, register_spec, split_marker};
+use ropewalk_core::error::{finite, not_negative, positive};
+use ropewalk_core::{BuildError, Feed, Model, Motion};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec, split_marker};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -1,12 +1,12 @@
 //! What steps must not leap over: what terms see ahead in the state, and what changes with time of its own accord.
 
 use super::Simulation;
-use crate::constraint::Constraint;
-use crate::integrator::{StepError, restart};
 use crate::model::Model;
-use crate::reach::{SAME, shown};
-use crate::state::At;
-use crate::term::Term;
+use crate::model::constraint::Constraint;
+use crate::model::reach::{SAME, shown};
+use crate::model::state::At;
+use crate::model::term::Term;
+use crate::solve::integrator::{StepError, restart};
 
 /// What would be left of the way to a kink after a whole step, in parts of the step, that is shared out between the two.
 const SLIVER: f64 = 0.2;

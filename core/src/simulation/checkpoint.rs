@@ -2,13 +2,12 @@
 
 use super::Simulation;
 use super::memory::Memory;
-use crate::integrator::{Correction, Counts, Options, StepError, Workspace};
 use crate::model::Model;
-use crate::record::Audit;
-use crate::remesh::Plan;
-use crate::solver::SolveError;
-use crate::state::State;
-use serde::{Deserialize, Serialize};
+use crate::model::remesh::Plan;
+use crate::model::state::State;
+use crate::simulation::audit::Audit;
+use crate::solve::integrator::{Correction, Counts, Options, StepError, Workspace};
+use crate::solve::linear::SolveError;
 use std::sync::Arc;
 
 /// A simulation between two steps, as plain data.
@@ -16,7 +15,8 @@ use std::sync::Arc;
 /// What can be computed again from it isn't in it: factors, scratch, powers. A simulation that a checkpoint was taken of
 /// has dropped the same, so both go on to the last bit alike, with the same program on the same machine. To be read
 /// back exactly it has to be written in a format that keeps every bit of a number.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Checkpoint {
     /// Time, configuration, velocities, multipliers, modes and the memory of the integrator.
     pub state: State,

@@ -5,10 +5,10 @@
 //! done aside has a workspace of its own: looking at a run doesn't change it.
 
 use super::Simulation;
-use crate::integrator::{Workspace, assemble_mass_at, consistent_by_iteration, consistent_by_mass};
-use crate::node::retract;
-use crate::solver::SolveError;
-use crate::term::Weights;
+use crate::model::node::retract;
+use crate::model::term::Weights;
+use crate::solve::integrator::{Workspace, assemble_mass_at, consistent_by_iteration, consistent_by_mass};
+use crate::solve::linear::SolveError;
 
 /// What an interpolated state may leave of the equations of motion, in parts of the tolerance of forces.
 const BALANCED: f64 = 0.1;

@@ -5,8 +5,7 @@
 //! tolerance for these ten seconds.
 
 use super::Simulation;
-use crate::integrator::{StepReport, Stepping};
-use serde::{Deserialize, Serialize};
+use crate::solve::integrator::{StepReport, Stepping};
 
 /// A step whose error is less than this part of what it may be errs by next to nothing.
 const NOTHING: f64 = 1e-2;
@@ -14,7 +13,8 @@ const NOTHING: f64 = 1e-2;
 const LEAST: f64 = 1e-3;
 
 /// The time over which errors add up.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Memory {
     /// How long the run is to be [s].
     whole: f64,

@@ -1,8 +1,8 @@
 //! What is watched while a run goes on: constraints that contradict each other, energy from nowhere, steps that are cut.
 
 use super::{Observer, Simulation};
-use crate::integrator::{StepError, Stepping};
-use crate::record::Created;
+use crate::simulation::audit::Created;
+use crate::solve::integrator::{StepError, Stepping};
 
 /// What may be left of constraints after a step, in parts of the model's length: ten times what Newton's method leaves.
 const LEFT: f64 = 1e-9;

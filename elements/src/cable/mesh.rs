@@ -1,7 +1,8 @@
 //! How a cable is divided into elements: evenly, graded towards its ends, or as a list of lengths.
 
-use ropewalk_core::build::{BuildError, positive};
-use ropewalk_core::quantity;
+use ropewalk_core::BuildError;
+use ropewalk_core::error::positive;
+use ropewalk_scene::quantity;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};

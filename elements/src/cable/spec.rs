@@ -11,11 +11,11 @@ use super::quadrature::{Gauss2, Gauss5};
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
 use crate::path::{Corner, Path};
-use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
+use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::{
-    Element, ElementSpec, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, dot, quantity,
-    register_spec,
+    BuildError, Element, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, dot,
 };
+use ropewalk_scene::{Builder, ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -1,8 +1,9 @@
 //! Mass and moments of inertia: given, or of a simple shape.
 
-use ropewalk_core::build::{BuildError, finite, positive};
+use ropewalk_core::error::{finite, positive};
 use ropewalk_core::rotation::M3;
-use ropewalk_core::{V3, quantity};
+use ropewalk_core::{BuildError, V3};
+use ropewalk_scene::quantity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

@@ -2,9 +2,10 @@
 
 use super::part::BodyPart;
 use super::{Hull, Inertia, Shape, inertia};
-use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
+use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::rotation::{cross, from_bryant, matrix, times, transposed_times};
-use ropewalk_core::{ElementSpec, NodeKind, StationPool, V3, quantity, register_spec};
+use ropewalk_core::{BuildError, NodeKind, StationPool, V3};
+use ropewalk_scene::{Builder, ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

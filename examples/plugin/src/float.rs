@@ -1,10 +1,13 @@
 //! A body that makes waves: an element of one coordinate triple, with its part.
 
-use ropewalk::core::build::{BuildError, Builder, not_negative, positive};
+use ropewalk::core::BuildError;
+use ropewalk::core::error::{not_negative, positive};
 use ropewalk::core::{
-    At, Batch, DeadEntry, DeadLoad, Element, ElementSpec, Energy, Local, Marker, Node, NodeId, NodeKind,
-    Part, Per, Power, Real, Share, Spot, Term, V3, Weights, dot, quantity, register_spec,
+    At, Batch, DeadEntry, DeadLoad, Element, Energy, Local, Marker, Node, NodeId, NodeKind, Part, Per, Power,
+    Real, Share, Spot, Term, V3, Weights, dot,
 };
+use ropewalk::scene::Builder;
+use ropewalk::scene::{ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -1,8 +1,11 @@
 //! The lift of what floats: a force at a marker, as a term.
 
-use ropewalk::core::build::{BuildError, Builder, positive};
+use ropewalk::core::BuildError;
+use ropewalk::core::error::positive;
 use ropewalk::core::held::Held;
-use ropewalk::core::{Assembly, At, Energy, ForceSpec, MarkerRef, Pattern, Term, quantity, register_spec};
+use ropewalk::core::{Assembly, At, Energy, Pattern, Term};
+use ropewalk::scene::Builder;
+use ropewalk::scene::{ForceSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

@@ -1,10 +1,10 @@
 //! A wrench between two frames on rigid bodies, with its exact tangent by forward differentiation.
 
 use num_dual::Dual64;
-use ropewalk_core::build::{BuildError, need};
+use ropewalk_core::error::need;
 use ropewalk_core::held::find;
 use ropewalk_core::rotation::{cross, from_matrix, matrix, times, transposed_times};
-use ropewalk_core::{Assembly, At, Jet, Marker, Node, NodeKind, V3};
+use ropewalk_core::{Assembly, At, BuildError, Jet, Marker, Node, NodeKind, V3};
 
 /// A frame fixed in space or on a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]

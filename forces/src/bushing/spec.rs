@@ -1,9 +1,10 @@
 //! What a scene says about bushings and torsion springs.
 
 use super::{Bushing, RotationalSpring};
-use ropewalk_core::build::{BuildError, Builder, finite, not_negative};
+use ropewalk_core::error::{finite, not_negative};
 use ropewalk_core::rotation::{IDENTITY, M3, around, cross};
-use ropewalk_core::{ForceSpec, Marker, MarkerRef, V3, dot, quantity, register_spec};
+use ropewalk_core::{BuildError, Marker, V3, dot};
+use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

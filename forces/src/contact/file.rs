@@ -1,7 +1,8 @@
 //! Triangles from STL and OBJ files.
 
 use super::mesh::{MOST_TRIANGLES, Soup};
-use ropewalk_core::{V3, file};
+use ropewalk_core::V3;
+use ropewalk_scene::file;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};

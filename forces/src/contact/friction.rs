@@ -6,10 +6,11 @@
 //! no cycle wins energy (see the return mapping of plasticity; Simo & Hughes 1998, Computational Inelasticity).
 
 use super::block::{MOST, Slopes};
-use ropewalk_core::build::{BuildError, not_negative, positive};
+use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::held::delta;
 use ropewalk_core::rotation::M3;
-use ropewalk_core::{V3, Weights, dot, quantity};
+use ropewalk_core::{BuildError, V3, Weights, dot};
+use ropewalk_scene::quantity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

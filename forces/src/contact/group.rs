@@ -3,9 +3,8 @@
 use super::friction::Grip;
 use super::search::{Cubic, Look, Search, gauss};
 use super::seat::{Fixed, Frame};
-use ropewalk_core::At;
-use ropewalk_core::SpanLine;
 use ropewalk_core::held::Held;
+use ropewalk_core::{At, SpanLine};
 
 /// A ball that can touch.
 #[derive(Clone, Copy, Debug)]

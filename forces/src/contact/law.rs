@@ -1,8 +1,9 @@
 //! How hard a shape pushes back, and how it brakes what slides on it.
 
 use super::friction::Friction;
-use ropewalk_core::build::{BuildError, not_negative};
-use ropewalk_core::quantity;
+use ropewalk_core::BuildError;
+use ropewalk_core::error::not_negative;
+use ropewalk_scene::quantity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

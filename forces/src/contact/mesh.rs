@@ -6,9 +6,8 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags, TrianglePointLocation};
 use parry3d_f64::transformation::try_convex_hull;
-use ropewalk_core::build::BuildError;
 use ropewalk_core::rotation::{cross, times};
-use ropewalk_core::{V3, dot};
+use ropewalk_core::{BuildError, V3, dot};
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 

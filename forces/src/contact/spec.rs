@@ -6,13 +6,11 @@ use super::law::{ContactLaw, Damping};
 use super::mesh::Mesh;
 use super::shape::Shape;
 use super::term::{Contact, Stiffness};
-use ropewalk_core::build::{BuildError, Builder, finite, not_negative, positive};
+use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::held::Held;
 use ropewalk_core::rotation::{IDENTITY, M3, around, from_bryant, matrix};
-use ropewalk_core::{
-    At, ContactPoint, ContactSpan, ForceSpec, Marker, MarkerRef, NodeKind, SpanLine, V3, dot, quantity,
-    register_spec,
-};
+use ropewalk_core::{At, BuildError, ContactPoint, ContactSpan, Marker, NodeKind, SpanLine, V3, dot};
+use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;

@@ -9,12 +9,12 @@ use super::search::Search;
 use super::seat::{Fixed, Frame, Seat, minus, rotation};
 use super::shape::Shape;
 use super::touch::{Pair, Touch};
-use ropewalk_core::build::{BuildError, need, positive};
+use ropewalk_core::error::{need, positive};
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Column, ContactPoint, ContactSpan, Energy, Marker, Node, NodeKind, Pattern, Power, Relaxed,
-    SpanLine, Term, V3, Weights, dot,
+    Assembly, At, BuildError, Column, ContactPoint, ContactSpan, Energy, Marker, Node, NodeKind, Pattern,
+    Power, Relaxed, SpanLine, Term, V3, Weights, dot,
 };
 use std::ops::Range;
 

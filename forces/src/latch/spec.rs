@@ -1,10 +1,11 @@
 //! `type = "latch"`: what a scene says about points held at their seats.
 
 use super::{Floor, Latch, Release, Seat};
-use ropewalk_core::build::{BuildError, Builder, finite, need, not_negative, positive};
+use ropewalk_core::error::{finite, need, not_negative, positive};
 use ropewalk_core::held::Held;
 use ropewalk_core::rotation::transposed_times;
-use ropewalk_core::{ForceSpec, Marker, MarkerRef, NodeKind, V3, dot, quantity, register_spec, rotation};
+use ropewalk_core::{BuildError, Marker, NodeKind, V3, dot, rotation};
+use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

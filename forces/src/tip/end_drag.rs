@@ -2,7 +2,8 @@
 
 use super::TipLaw;
 use crate::Surface;
-use ropewalk_core::{Current, Real, V3, dot, scaled};
+use ropewalk_core::{Real, V3, dot, scaled};
+use ropewalk_scene::Current;
 use std::f64::consts::PI;
 
 /// Form drag of an end that is cut off, in flow along the axis: `F = -½ ρ C π d²/4 |w_t| w_t t`, with the axial part

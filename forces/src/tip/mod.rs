@@ -10,7 +10,8 @@ pub use wake::BluntEnd;
 
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{cross, matrix, times};
-use ropewalk_core::{Assembly, At, Current, Dual, Node, NodeKind, Pattern, Power, Real, Term, Tip, V3, dot};
+use ropewalk_core::{Assembly, At, Dual, Node, NodeKind, Pattern, Power, Real, Term, Tip, V3, dot};
+use ropewalk_scene::Current;
 
 /// A force of a fluid on an end of a slender body, by how the end moves; it takes energy from the motion relative to the fluid.
 pub trait TipLaw: Send + Sync + 'static {

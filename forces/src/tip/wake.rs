@@ -2,7 +2,8 @@
 
 use super::TipLaw;
 use crate::{AddedMass, Surface};
-use ropewalk_core::{Current, Real, V3, dot, scaled};
+use ropewalk_core::{Real, V3, dot, scaled};
+use ropewalk_scene::Current;
 
 /// Water that leaves a blunt end takes momentum along (Lighthill 1971).
 ///

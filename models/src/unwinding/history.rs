@@ -4,8 +4,8 @@ use super::conditions::{Condition, Watch};
 use super::newmark::{Newmark, Stepping, Stopped};
 use super::problem::Unwinding;
 use super::state::{Now, State, length, minus, plus};
-use ropewalk_core::build::{BuildError, positive};
-use ropewalk_core::{V3, dot};
+use ropewalk_core::error::positive;
+use ropewalk_core::{BuildError, V3, dot};
 use ropewalk_forces::{NormalLaw, choo_casarella_cn};
 
 /// What is known of one instant.

@@ -3,7 +3,8 @@
 use super::bordered::{Bordered, Singular};
 use super::problem::{Rule, Unwinding};
 use super::state::{Column, Now, Rates, State, identity, plus};
-use ropewalk_core::build::{BuildError, not_negative, positive};
+use ropewalk_core::BuildError;
+use ropewalk_core::error::{not_negative, positive};
 
 /// How time is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! What is unwound, through what and how: the data of the problem.
 
 use super::path::Path;
-use ropewalk_core::build::{BuildError, finite, not_negative, positive};
-use ropewalk_core::{Law, Load, Motion, Station, V3, dot};
+use ropewalk_core::error::{finite, not_negative, positive};
+use ropewalk_core::{BuildError, Law, Load, Motion, Station, V3, dot};
 use ropewalk_forces::{AddedMass, Drag, TimeFunction};
 use std::f64::consts::PI;
 use std::sync::Arc;

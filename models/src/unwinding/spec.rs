@@ -5,12 +5,11 @@ use super::newmark::{Stepping, Stopped};
 use super::problem::{Cable, Eyelet, LiftOff, Pull, Rule, Unwinding};
 use super::steady::SteadyError;
 use ropewalk_constraints::package::{Package, PackageSpec};
-use ropewalk_core::build::{BuildError, positive};
+use ropewalk_core::error::positive;
 use ropewalk_core::integrator::Counts;
-use ropewalk_core::{
-    Channel, Column, Process, ProcessSpec, Surroundings, V3, Water, dot, quantity, register_spec,
-};
+use ropewalk_core::{BuildError, Column, V3, dot};
 use ropewalk_forces::{AddedMass, DragSpec, TimeFunction};
+use ropewalk_scene::{Channel, Process, ProcessSpec, Surroundings, Water, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize};

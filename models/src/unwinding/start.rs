@@ -2,8 +2,8 @@
 
 use super::problem::{Rule, Unwinding};
 use super::state::{Now, State, length, minus, plus};
-use ropewalk_core::build::{BuildError, finite};
-use ropewalk_core::{V3, dot};
+use ropewalk_core::error::finite;
+use ropewalk_core::{BuildError, V3, dot};
 
 impl Unwinding {
     /// The state in which the free cable begins: along the given points, from the eyelet to the lift-off point, which

@@ -5,12 +5,13 @@
 //! high tension: over the length, the tension at the eyelet has one value only, but it may have a least one (a fold),
 //! below which there is no steady balloon.
 
+use super::Rule;
+use super::history::Shape;
 use super::problem::{LiftOff, Unwinding};
 use super::start::cross;
 use super::state::{Column, M3, Now, Rates, State, identity, length, minus, plus, product};
-use super::{Rule, history::Shape};
-use ropewalk_core::build::BuildError;
-use ropewalk_core::{Current, V3, dot};
+use ropewalk_core::{BuildError, V3, dot};
+use ropewalk_scene::Current;
 
 /// A steady balloon.
 #[derive(Clone, Debug)]
@@ -91,8 +92,8 @@ impl Unwinding {
     /// See [`SteadyError`].
     pub fn steady(&self, speed: f64, tension: f64, peeled: f64) -> Result<Balloon, SteadyError> {
         self.check()?;
-        ropewalk_core::build::positive("tension", tension)?;
-        ropewalk_core::build::not_negative("speed", speed)?;
+        ropewalk_core::error::positive("tension", tension)?;
+        ropewalk_core::error::not_negative("speed", speed)?;
         let mut hinged = self.clone();
         hinged.lift_off = LiftOff::Free;
         let Some(now) = self.now(0.0, peeled) else {

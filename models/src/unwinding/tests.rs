@@ -5,8 +5,9 @@ use super::path::Ring;
 use super::problem::{Cable, Eyelet, LiftOff, Pull, Rule, Unwinding};
 use super::state::{Column, M3, Now, Rates, State, plus, times};
 use ropewalk_constraints::motion::Rest;
-use ropewalk_core::{Current, V3};
+use ropewalk_core::V3;
 use ropewalk_forces::{AddedMass, Drag, NormalLaw, TangentialLaw};
+use ropewalk_scene::Current;
 use std::sync::Arc;
 
 /// Numbers without pattern in (-1, 1).

@@ -10,11 +10,11 @@ use crate::cable::quadrature::Rule;
 use crate::cable::spec::Section;
 use crate::cable::transverse::Transverse;
 use crate::cable::{AxialDamping, BendingDamping, CableParams};
-use ropewalk_core::build::{BuildError, Builder};
 use ropewalk_core::{
-    Assembly, At, DeadLoad, Energy, Node, NodeId, Pattern, Pool, Power, Prestrain, StationPool, Stations,
-    Term, V3,
+    Assembly, At, BuildError, DeadLoad, Energy, Node, NodeId, Pattern, Pool, Power, Prestrain, StationPool,
+    Stations, Term, V3,
 };
+use ropewalk_scene::Builder;
 use std::sync::Arc;
 
 /// Refuses what material can't flow through.

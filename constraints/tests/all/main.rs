@@ -1,0 +1,4 @@
+//! Joints and motions against closed forms and differences.
+
+mod joints;
+mod motions;

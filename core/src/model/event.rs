@@ -1,0 +1,41 @@
+//! Events: what happens at an instant that the state decides.
+
+use crate::model::Model;
+use crate::model::state::State;
+
+/// What an event does once its time is located.
+pub enum Action {
+    /// Nothing that forces feel at once. If it changed a mode, what it started sets in smoothly: the step ends there, and
+    /// the integrator goes on with its memory. If it changed none, it was only of interest, and the step stays as it is.
+    Continue,
+    /// The state (a mode, a velocity) was changed: the integrator starts anew from it.
+    Restart,
+    /// The mesh changes: the simulation goes on with another model.
+    Remesh(Box<Model>),
+    /// The run is over.
+    Stop,
+    /// What should have happened can't, for this reason: the run ends with an error.
+    Fail(String),
+}
+
+/// A scalar function of the state whose change of sign is located in time, and what happens there.
+pub trait Event: Send + Sync {
+    /// Its name in reports.
+    fn name(&self) -> String;
+    /// The function.
+    fn value(&self, model: &Model, state: &State) -> f64;
+    /// Which way the sign has to change: +1 upwards, -1 downwards, 0 either.
+    fn direction(&self) -> i8 {
+        0
+    }
+    /// What happens there.
+    fn act(&self, model: &Model, state: &mut State) -> Action;
+    /// What is reported once it is located: its name, and what of the state belongs to it.
+    fn report(&self, _model: &Model, _state: &State) -> String {
+        self.name()
+    }
+    /// The part whose mesh it changes, and at which end, for the report.
+    fn remeshes(&self) -> Option<(&str, usize)> {
+        None
+    }
+}

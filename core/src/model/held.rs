@@ -1,0 +1,292 @@
+//! The points that terms act on: how they move with their nodes, and how forces on them come back.
+
+use crate::algebra::lane::V3;
+use crate::algebra::rotation::{M3, product, skew, times, transposed_times};
+use crate::error::{BuildError, need};
+use crate::model::marker::{Marker, frame};
+use crate::model::node::{Node, NodeId, NodeKind};
+use crate::model::state::At;
+use crate::model::term::Assembly;
+
+pub use crate::algebra::rotation::cross;
+
+/// A point that forces can act on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Held {
+    /// Fixed in space at this point.
+    Ground(V3<f64>),
+    /// Position at coordinate `q` and following, velocity at `v` and following.
+    Moves {
+        /// Index of its first coordinate.
+        q: usize,
+        /// Index of its first velocity.
+        v: usize,
+    },
+    /// On a rigid body, beside its node's own point.
+    Beside {
+        /// Index of the body's first coordinate.
+        q: usize,
+        /// Index of its first velocity.
+        v: usize,
+        /// Where it is, in the body's axes [m].
+        arm: V3<f64>,
+    },
+    /// Between two nodes of a cable: a sum of the vectors `r`, `r'` of both, each with its weight.
+    Between {
+        /// Index of the first coordinate of each vector.
+        q: [usize; 4],
+        /// Index of the first velocity of each vector.
+        v: [usize; 4],
+        /// Values of the shape functions.
+        weight: [f64; 4],
+    },
+}
+
+/// More unknowns than move one point.
+pub const MOST: usize = 12;
+
+/// The motion of a [`Held`] point, and what it depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// Position [m].
+    pub x: V3<f64>,
+    /// Velocity [m/s].
+    pub v: V3<f64>,
+    /// How many unknowns move it.
+    pub n: usize,
+    /// Index of each unknown.
+    pub dof: [usize; MOST],
+    /// `∂x/∂q` (and `∂v/∂v`), by unknown.
+    pub by_q: [V3<f64>; MOST],
+    /// `∂v/∂q`, by unknown: of a turning body.
+    pub v_by_q: [V3<f64>; MOST],
+    /// Rotation matrix and arm, on a body.
+    body: Option<(M3, V3<f64>)>,
+}
+
+impl Held {
+    /// The point of a marker; `what` names the force in messages.
+    ///
+    /// # Errors
+    /// A node that isn't there or has no position.
+    pub fn new(nodes: &[Node], marker: &Marker, what: &str) -> Result<Self, BuildError> {
+        match *marker {
+            Marker::Ground { point, .. } => Ok(Held::Ground(point)),
+            Marker::Node { node, point, .. } => {
+                let n = find(nodes, node, what)?;
+                need(!matches!(n.kind, NodeKind::Scalars(_)), || {
+                    format!("{what}: node {} has no position", node.0)
+                })?;
+                Ok(if n.kind == NodeKind::Frame && point != [0.0; 3] {
+                    Held::Beside { q: n.q, v: n.v, arm: point }
+                } else {
+                    Held::Moves { q: n.q, v: n.v }
+                })
+            }
+        }
+    }
+    /// Its position [m].
+    #[inline]
+    pub fn x(&self, at: &At<'_>) -> V3<f64> {
+        match *self {
+            Held::Ground(x) => x,
+            Held::Moves { q, .. } => three(at.q, q),
+            Held::Beside { q, arm, .. } => sum(three(at.q, q), times(&frame(&at.q[q..]), &arm)),
+            Held::Between { q, weight, .. } => blend(at.q, &q, &weight),
+        }
+    }
+    /// Its velocity [m/s].
+    #[inline]
+    pub fn velocity(&self, at: &At<'_>) -> V3<f64> {
+        match *self {
+            Held::Ground(_) => [0.0; 3],
+            Held::Moves { v, .. } => three(at.v, v),
+            Held::Beside { q, v, arm } => {
+                let turning = cross(&three(at.v, v + 3), &arm);
+                sum(three(at.v, v), times(&frame(&at.q[q..]), &turning))
+            }
+            Held::Between { v, weight, .. } => blend(at.v, &v, &weight),
+        }
+    }
+    /// Its acceleration, with all that a tangent needs.
+    pub fn acceleration(&self, at: &At<'_>) -> Acceleration {
+        let none = [[0.0; 3]; MOST];
+        let a = match *self {
+            Held::Ground(_) => [0.0; 3],
+            Held::Moves { v, .. } | Held::Beside { v, .. } => three(at.a, v),
+            Held::Between { v, weight, .. } => blend(at.a, &v, &weight),
+        };
+        let Held::Beside { q, v, arm } = *self else { return Acceleration { a, by_v: none, by_q: none } };
+        let (r, omega) = (frame(&at.q[q..]), three(at.v, v + 3));
+        let turning = cross(&omega, &arm);
+        let swing = sum(cross(&three(at.a, v + 3), &arm), cross(&omega, &turning));
+        let (mut by_v, mut by_q) = (none, none);
+        for k in 0..3 {
+            let e: V3<f64> = std::array::from_fn(|i| delta(i, k));
+            by_v[3 + k] = times(&r, &sum(cross(&e, &turning), cross(&omega, &cross(&e, &arm))));
+            by_q[3 + k] = times(&r, &cross(&e, &swing));
+        }
+        Acceleration { a: sum(a, times(&r, &swing)), by_v, by_q }
+    }
+    /// Number of unknowns that move it.
+    #[inline]
+    pub fn size(&self) -> usize {
+        match self {
+            Held::Ground(_) => 0,
+            Held::Moves { .. } => 3,
+            Held::Beside { .. } => 6,
+            Held::Between { .. } => 12,
+        }
+    }
+    /// Index of the unknown number `k` that moves it.
+    #[inline]
+    pub fn dof(&self, k: usize) -> usize {
+        match *self {
+            Held::Ground(_) => usize::MAX,
+            Held::Moves { v, .. } | Held::Beside { v, .. } => v + k,
+            Held::Between { v, .. } => v[k / 3] + k % 3,
+        }
+    }
+    /// The unknowns that move it.
+    pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.size()).map(|k| self.dof(k))
+    }
+    /// Its motion, with all that a tangent needs.
+    pub fn motion(&self, at: &At<'_>) -> Motion {
+        let none = [[0.0; 3]; MOST];
+        let mut m = Motion {
+            x: self.x(at),
+            v: self.velocity(at),
+            n: self.size(),
+            dof: [0; MOST],
+            by_q: none,
+            v_by_q: none,
+            body: None,
+        };
+        for k in 0..m.n {
+            m.dof[k] = self.dof(k);
+            m.by_q[k][k % 3] = match self {
+                Held::Between { weight, .. } => weight[k / 3],
+                _ => 1.0,
+            };
+        }
+        if let Held::Beside { q, v, arm } = *self {
+            let r = frame(&at.q[q..]);
+            let (turn, swing) =
+                (product(&r, &skew(&arm)), product(&r, &skew(&cross(&three(at.v, v + 3), &arm))));
+            for k in 0..3 {
+                for i in 0..3 {
+                    m.by_q[3 + k][i] = -turn[i][k];
+                    m.v_by_q[3 + k][i] = -swing[i][k];
+                }
+            }
+            m.body = Some((r, arm));
+        }
+        m
+    }
+}
+
+/// The acceleration of a [`Held`] point [m/s²]; by accelerations it changes as its velocity does by velocities.
+#[derive(Clone, Copy, Debug)]
+pub struct Acceleration {
+    /// The acceleration.
+    pub a: V3<f64>,
+    /// `∂a/∂v`, by unknown: of a turning body.
+    pub by_v: [V3<f64>; MOST],
+    /// `∂a/∂q`, by unknown.
+    pub by_q: [V3<f64>; MOST],
+}
+
+impl Motion {
+    /// The generalised force of a force in space at the point, for its unknown number `k`.
+    pub fn carry(&self, k: usize, f: &V3<f64>) -> f64 {
+        let j = &self.by_q[k];
+        j[0] * f[0] + j[1] * f[1] + j[2] * f[2]
+    }
+    /// How [`Motion::carry`] of a constant force changes with the orientation of the body: row and column count from
+    /// the first of the three rotations. `None` where the way back is constant.
+    pub fn turning(&self, f: &V3<f64>) -> Option<M3> {
+        self.body.map(|(r, arm)| product(&skew(&arm), &skew(&transposed_times(&r, f))))
+    }
+}
+
+/// A force at a point, or between two, with its derivatives: by the position of the second relative to the first, and
+/// by its velocity.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pull {
+    /// Force on the second point; the first gets the opposite [N].
+    pub f: V3<f64>,
+    /// `∂f/∂(x_1 - x_0)`
+    pub by_x: M3,
+    /// `∂f/∂(v_1 - v_0)`
+    pub by_v: M3,
+}
+
+/// The unknowns of two points in the order in which [`pull`] takes them.
+pub fn dofs(ends: &[Held; 2]) -> impl Iterator<Item = usize> + '_ {
+    ends[0].dofs().chain(ends[1].dofs())
+}
+
+/// Adds a force between two points to the residual, and its whole derivative to the block of clique `clique`, which
+/// was declared with [`dofs`].
+pub fn pull(ends: &[Held; 2], at: &At<'_>, pull: &Pull, clique: usize, out: &mut Assembly<'_>) {
+    let m = [ends[0].motion(at), ends[1].motion(at)];
+    let signs = [1.0, -1.0];
+    for (m, sign) in m.iter().zip(signs) {
+        for k in 0..m.n {
+            out.add(m.dof[k], sign * m.carry(k, &pull.f));
+        }
+    }
+    if !out.wants_tangent() {
+        return;
+    }
+    let w = out.weights();
+    let first = m[0].n;
+    // what each unknown changes the force by
+    let mut by = [[0.0; 3]; 2 * MOST];
+    for (e, (m, sign)) in m.iter().zip(signs).enumerate() {
+        for k in 0..m.n {
+            let by_x = times(&pull.by_x, &m.by_q[k]);
+            let (rate, turn) = (times(&pull.by_v, &m.by_q[k]), times(&pull.by_v, &m.v_by_q[k]));
+            by[e * first + k] = std::array::from_fn(|i| -sign * (w.q * (by_x[i] + turn[i]) + w.v * rate[i]));
+        }
+    }
+    let turning = [m[0].turning(&pull.f), m[1].turning(&pull.f)];
+    out.add_block(clique, first + m[1].n, |i, j| {
+        let (ei, ki) = if i < first { (0, i) } else { (1, i - first) };
+        let mut k = signs[ei] * m[ei].carry(ki, &by[j]);
+        if let Some(t) = &turning[ei]
+            && ki >= 3
+        {
+            let kj = if ei == 0 { j } else { j.wrapping_sub(first) };
+            if (3..6).contains(&kj) && (ei == 1 || j < first) {
+                k += w.q * signs[ei] * t[ki - 3][kj - 3];
+            }
+        }
+        k
+    });
+}
+
+/// The node of that index.
+pub fn find<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Node, BuildError> {
+    nodes.get(node.0 as usize).ok_or_else(|| BuildError::new(format!("{what}: there is no node {}", node.0)))
+}
+
+/// Three numbers from an index on.
+#[inline(always)]
+pub fn three(x: &[f64], from: usize) -> V3<f64> {
+    [x[from], x[from + 1], x[from + 2]]
+}
+
+fn sum(a: V3<f64>, b: V3<f64>) -> V3<f64> {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+fn blend(x: &[f64], at: &[usize; 4], weight: &[f64; 4]) -> V3<f64> {
+    std::array::from_fn(|i| (0..4).map(|n| weight[n] * x[at[n] + i]).sum())
+}
+
+/// 1 on the diagonal, else 0.
+pub fn delta(i: usize, j: usize) -> f64 {
+    if i == j { 1.0 } else { 0.0 }
+}

@@ -1,0 +1,293 @@
+//! Stations: the points of a body where distributed loads act.
+//!
+//! Elements offer stations, laws load them, and neither knows the other: N elements and M laws are N + M pieces of
+//! code. A law never sees an unknown; an element never sees what kind of load it carries.
+
+mod exchange;
+mod pool;
+
+pub use pool::StationPool;
+
+use crate::algebra::lane::{Real, V3, dot};
+use crate::model::pattern::Pattern;
+use crate::model::pool::{Batch, Local, Share};
+use crate::model::state::At;
+use crate::model::term::{Assembly, Energy, Power, Term, Weights};
+use exchange::ErasedLaw;
+use std::sync::Arc;
+
+/// A point of a body and its motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Station<R> {
+    /// Position [m].
+    pub x: V3<R>,
+    /// Velocity of the material [m/s].
+    pub v: V3<R>,
+    /// Acceleration of the material [m/s²].
+    pub a: V3<R>,
+    /// Slope r' = dr/ds along the body, `|r'|` being the stretch.
+    pub slope: V3<R>,
+    /// Its rate `dv/ds` [1/s].
+    pub slope_rate: V3<R>,
+    /// Arc length from the body's start, unstretched [m].
+    pub s: R,
+    /// Unstretched length that the station stands for: its cell [m].
+    pub weight: R,
+    /// How much of its cell lies before it, towards the body's start [m].
+    pub before: R,
+    /// Hydrodynamic diameter [m].
+    pub diameter: R,
+    /// Area of the displaced volume per length [m²].
+    pub area: R,
+}
+
+/// Force per unstretched length on a station [N/m] and what is conjugate to its slope [N], with their derivatives;
+/// `d_x[i][j] = ∂f_i/∂x_j`. Their work is `∫ (f·δr + g·δr') ds`.
+#[derive(Clone, Copy, Debug)]
+pub struct Load<R> {
+    /// Force per unstretched length [N/m].
+    pub f: V3<R>,
+    /// Force conjugate to the slope [N]: across the axis it is a moment per length.
+    pub g: V3<R>,
+    /// By position.
+    pub d_x: [V3<R>; 3],
+    /// By slope.
+    pub d_slope: [V3<R>; 3],
+    /// By velocity.
+    pub d_v: [V3<R>; 3],
+    /// By acceleration: minus the added mass.
+    pub d_a: [V3<R>; 3],
+    /// By the rate of the slope.
+    pub d_rate: [V3<R>; 3],
+    /// Derivatives of `g` by position.
+    pub g_x: [V3<R>; 3],
+    /// By slope.
+    pub g_slope: [V3<R>; 3],
+    /// By velocity.
+    pub g_v: [V3<R>; 3],
+}
+
+impl<R: Real> Load<R> {
+    /// Nothing.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        let m = [[R::zero(); 3]; 3];
+        Load { f: m[0], g: m[0], d_x: m, d_slope: m, d_v: m, d_a: m, d_rate: m, g_x: m, g_slope: m, g_v: m }
+    }
+}
+
+/// Which derivatives of a [`Load`] are there; the others are zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Gives {
+    /// By position.
+    pub x: bool,
+    /// By slope.
+    pub slope: bool,
+    /// By velocity.
+    pub v: bool,
+    /// By acceleration.
+    pub a: bool,
+    /// By the rate of the slope; and `g` with all of its derivatives.
+    pub couple: bool,
+}
+
+impl Gives {
+    /// None of them.
+    pub const NOTHING: Gives = Gives { x: false, slope: false, v: false, a: false, couple: false };
+    /// All of them.
+    pub const ALL: Gives = Gives { x: true, slope: true, v: true, a: true, couple: true };
+
+    #[inline(always)]
+    fn and(self, other: Gives) -> Gives {
+        Gives {
+            x: self.x || other.x,
+            slope: self.slope || other.slope,
+            v: self.v || other.v,
+            a: self.a || other.a,
+            couple: self.couple || other.couple,
+        }
+    }
+}
+
+/// A law of distributed load, such as drag. Write it once over the carrier; add to `out`, don't set it.
+pub trait Law: Send + Sync + 'static {
+    /// Whether it means nothing for a part without a diameter.
+    const NEEDS_DIAMETER: bool = false;
+    /// What it is called in manifests and profiles.
+    fn label(&self) -> String;
+    /// Whether it depends on time otherwise than through the state: only then [`Law::reach`] is asked.
+    fn timed(&self) -> bool {
+        false
+    }
+    /// How much of a step `h` from `t` may be taken that leaps over nothing, as [`Term::reach`].
+    fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
+        None
+    }
+    /// Whether it asks for the acceleration of the material where that runs along the curve, as on a cable that feeds; else it
+    /// is that of the curve, at a fixed distance from the end that feeds.
+    fn follows_material(&self) -> bool {
+        false
+    }
+    /// Which derivatives it has; what is left out here is never read. [`check_law`](crate::testing::check_law) tells
+    /// if one is missing.
+    fn gives(&self) -> Gives {
+        Gives::ALL
+    }
+    /// Adds the force per unstretched length at a station, and its derivatives if `TANGENT`.
+    fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>);
+    /// The power of a load per unstretched length [W/m]. By default all of it is supplied from outside.
+    #[inline(always)]
+    fn power<R: Real>(&self, _t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
+        Power { supplied: dot(&load.f, &at.v), ..Power::zero() }
+    }
+    /// The kinetic energy of what it moves besides the body, per unstretched length [J/m]; asked of laws with a couple.
+    #[inline(always)]
+    fn kinetic<R: Real>(&self, _t: f64, _at: &Station<R>) -> R {
+        R::zero()
+    }
+    /// Its potential energy per unstretched length [J/m], whose forces are then none of its power; asked of laws with a
+    /// couple.
+    #[inline(always)]
+    fn potential<R: Real>(&self, _t: f64, _at: &Station<R>) -> R {
+        R::zero()
+    }
+    /// The drag coefficient of the flow across the body there, if this is a law of drag; NaN in flow so slow that it is
+    /// of no use.
+    fn coefficient(&self, _at: &Station<f64>) -> Option<f64> {
+        None
+    }
+}
+
+/// An element that distributed loads can act on: it offers `S` stations and carries their loads back to its nodes.
+pub trait StationElement<const Q: usize, const N: usize, const S: usize>:
+    Clone + Send + Sync + 'static
+{
+    /// Whether loads go back to the nodes in the same way whatever the shape: then a load without derivatives has no
+    /// tangent.
+    const FIXED: bool = false;
+    /// Whether it carries what is conjugate to the slope, [`Load::g`].
+    const COUPLES: bool = false;
+    /// The element's numbers over lanes.
+    type Lanes<R: Real>;
+    /// Brings the numbers of a batch of elements side by side.
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R>;
+    /// Station `k` of an element, `k < S`.
+    fn station<R: Real>(p: &Self::Lanes<R>, x: &Local<R, Q, N>, k: usize) -> Station<R>;
+    /// Sets the residual to minus the loads and, with `TANGENT`, the whole of the tangent to minus their derivatives,
+    /// each multiplied by its station's weight; with the geometric part where the way back depends on the
+    /// coordinates. Derivatives that aren't given are zero and best passed over.
+    fn spread<R: Real, const TANGENT: bool>(
+        p: &Self::Lanes<R>,
+        x: &Local<R, Q, N>,
+        loads: &[Load<R>; S],
+        gives: Gives,
+        w: &Weights,
+        out: &mut Share<R, N>,
+    );
+}
+
+/// The stations of one part of a model, ready to be loaded.
+pub trait Stations: Send + Sync {
+    /// One clique for each element.
+    fn pattern(&self, p: &mut Pattern);
+    /// Whether there is anything to load.
+    fn is_empty(&self) -> bool;
+    /// Whether loads go back to the nodes in the same way whatever the shape, see [`StationElement::FIXED`].
+    fn fixed(&self) -> bool {
+        false
+    }
+    /// Whether it carries what is conjugate to the slope, see [`StationElement::COUPLES`].
+    fn couples(&self) -> bool {
+        false
+    }
+    /// Calls `f` with every station.
+    fn each(&self, at: &At<'_>, f: &mut dyn FnMut(&Station<f64>));
+    /// The power of all laws.
+    fn power(&self, laws: &Laws, at: &At<'_>) -> Power;
+    /// The energy of all laws.
+    fn energy(&self, laws: &Laws, at: &At<'_>) -> Energy;
+    /// Applies all laws and adds what comes of it.
+    fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>);
+}
+
+/// The laws that act together on the same stations.
+#[derive(Clone, Default)]
+pub struct Laws(Vec<Arc<dyn ErasedLaw>>);
+
+impl Laws {
+    /// Adds a law.
+    pub fn push(&mut self, law: impl Law) {
+        self.0.push(Arc::new(law));
+    }
+    /// Adds the laws of another list.
+    pub fn append(&mut self, other: &Laws) {
+        self.0.extend(other.0.iter().cloned());
+    }
+}
+
+/// The term that applies laws to the stations of a part.
+pub struct FieldTerm {
+    /// Name of the part.
+    pub part: String,
+    /// Where the laws act.
+    pub stations: Arc<dyn Stations>,
+    /// What acts.
+    pub laws: Laws,
+}
+
+impl Term for FieldTerm {
+    fn label(&self) -> String {
+        let laws: Vec<String> = self.laws.0.iter().map(|l| l.label()).collect();
+        format!("{}: {}", self.part, laws.join(", "))
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        self.stations.pattern(p);
+    }
+    fn symmetric(&self) -> bool {
+        // a dead load has no derivatives at all
+        self.stations.fixed() && self.laws.0.iter().all(|l| l.gives() == Gives::NOTHING)
+    }
+    fn is_load(&self) -> bool {
+        true
+    }
+    fn timed(&self) -> bool {
+        self.laws.0.iter().any(|l| l.timed())
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.laws.0.iter().filter(|l| l.timed()).try_fold(h, |h, l| l.reach(t, h))
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        self.stations.add(&self.laws, at, out);
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        self.stations.power(&self.laws, at)
+    }
+    fn energy(&self, at: &At<'_>) -> Energy {
+        self.stations.energy(&self.laws, at)
+    }
+    fn coefficient(&self, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
+        if part != self.part {
+            return None;
+        }
+        // the stations on either side of the place
+        let mut beside: [Option<(f64, f64)>; 2] = [None; 2];
+        self.stations.each(at, &mut |station| {
+            let side = usize::from(station.s > s);
+            let nearer = beside[side].is_none_or(|(there, _)| (station.s - s).abs() < (there - s).abs());
+            if let Some(c) = self.laws.0.iter().find_map(|l| l.coefficient(station)).filter(|_| nearer) {
+                beside[side] = Some((station.s, c));
+            }
+        });
+        match beside {
+            [Some((a, low)), Some((b, high))] => Some(low + (high - low) * (s - a) / (b - a)),
+            [one, other] => one.or(other).map(|(_, c)| c),
+        }
+    }
+    fn effects(&self) -> Vec<Box<dyn Term>> {
+        let one = |law: &Arc<dyn ErasedLaw>| -> Box<dyn Term> {
+            let (part, stations) = (self.part.clone(), self.stations.clone());
+            Box::new(FieldTerm { part, stations, laws: Laws(vec![law.clone()]) })
+        };
+        if self.laws.0.len() > 1 { self.laws.0.iter().map(one).collect() } else { Vec::new() }
+    }
+}

@@ -1,0 +1,178 @@
+//! All stations of one part: evaluated over lanes, loaded by every law, and carried back to the nodes.
+
+use super::exchange::{EXCHANGE, Exchange, LOAD, STATION};
+use super::{Gives, Laws, Load, Station, StationElement, Stations};
+use crate::algebra::lane::{LaneTask, Real, Width, run};
+use crate::model::node::{Node, NodeId};
+use crate::model::pattern::Pattern;
+use crate::model::pool::{Batch, Blocks, Local, Seat, Share};
+use crate::model::state::At;
+use crate::model::term::{Assembly, Energy, Power};
+
+/// All stations of one part, element by element.
+pub struct StationPool<E, const Q: usize, const N: usize, const S: usize> {
+    elements: Vec<E>,
+    seats: Vec<Seat<Q, N>>,
+}
+
+impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize> StationPool<E, Q, N, S> {
+    /// An empty pool.
+    pub fn new() -> Self {
+        StationPool { elements: Vec::new(), seats: Vec::new() }
+    }
+    /// Adds an element on these nodes. `false` if their coordinates don't add up to `Q` and `N`.
+    #[must_use]
+    pub fn push(&mut self, nodes: &[Node], element: E, on: &[NodeId]) -> bool {
+        let Some(seat) = Seat::new(nodes, on) else { return false };
+        self.elements.push(element);
+        self.seats.push(seat);
+        true
+    }
+}
+
+impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize> Default
+    for StationPool<E, Q, N, S>
+{
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[inline(always)]
+fn write_stations<E: StationElement<Q, N, S>, R: Real, const Q: usize, const N: usize, const S: usize>(
+    p: &E::Lanes<R>,
+    x: &Local<R, Q, N>,
+    exchange: &mut Exchange,
+) {
+    for (k, row) in exchange.stations.chunks_exact_mut(STATION * R::LANES).enumerate() {
+        E::station(p, x, k).write(row);
+    }
+}
+
+struct SpreadAll<'a, 'b, 'c, E, const Q: usize, const N: usize, const S: usize> {
+    pool: &'a StationPool<E, Q, N, S>,
+    laws: &'a Laws,
+    at: &'a At<'a>,
+    out: &'b mut Assembly<'c>,
+    exchange: &'b mut Exchange,
+}
+
+impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize> LaneTask
+    for SpreadAll<'_, '_, '_, E, Q, N, S>
+{
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        let w = self.out.weights();
+        let (tangent, width) = (self.out.wants_tangent(), self.out.width());
+        let mut blocks = Blocks::take(self.out);
+        self.exchange.resize::<R>(S);
+        // derivatives that no law gives stay zero throughout
+        let (mut loads, mut share) = ([Load::<R>::zero(); S], Share::zero());
+        let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
+        for (b, (elements, seats)) in batches.enumerate() {
+            let p = E::lanes::<R>(&Batch(elements));
+            let x = Seat::gather::<R>(seats, self.at);
+            write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
+            (self.exchange.loaded, self.exchange.given) = (false, Gives::NOTHING);
+            for law in &self.laws.0 {
+                law.load(width, self.at.t, tangent, self.exchange);
+            }
+            let gives = self.exchange.given;
+            for (load, row) in loads.iter_mut().zip(self.exchange.loads.chunks_exact(LOAD * R::LANES)) {
+                load.read(row, gives);
+            }
+            if tangent {
+                E::spread::<R, true>(&p, &x, &loads, gives, &w, &mut share);
+            } else {
+                E::spread::<R, false>(&p, &x, &loads, gives, &w, &mut share);
+            }
+            Seat::scatter(seats, b * R::LANES, &share, &mut blocks, self.out);
+        }
+        blocks.give_back(self.out);
+    }
+}
+
+/// Power and energy of all laws.
+struct WorkAll<'a, E, const Q: usize, const N: usize, const S: usize> {
+    pool: &'a StationPool<E, Q, N, S>,
+    laws: &'a Laws,
+    at: &'a At<'a>,
+    power: Option<&'a mut Power>,
+    energy: Option<&'a mut Energy>,
+    exchange: &'a mut Exchange,
+}
+
+impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize> LaneTask
+    for WorkAll<'_, E, Q, N, S>
+{
+    #[inline(always)]
+    fn go<R: Real>(mut self) {
+        self.exchange.resize::<R>(S);
+        for (elements, seats) in self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES)) {
+            let (p, x) = (E::lanes::<R>(&Batch(elements)), Seat::gather::<R>(seats, self.at));
+            write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
+            for law in &self.laws.0 {
+                if let Some(total) = &mut self.power {
+                    **total += law.power(Width::best(), self.at.t, self.exchange, seats.len());
+                }
+                if let Some(total) = &mut self.energy {
+                    **total += law.energy(Width::best(), self.at.t, self.exchange, seats.len());
+                }
+            }
+        }
+    }
+}
+
+impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize> Stations
+    for StationPool<E, Q, N, S>
+{
+    fn pattern(&self, p: &mut Pattern) {
+        for seat in &self.seats {
+            p.clique(seat.v.iter());
+        }
+    }
+    fn is_empty(&self) -> bool {
+        self.elements.is_empty()
+    }
+    fn fixed(&self) -> bool {
+        E::FIXED
+    }
+    fn couples(&self) -> bool {
+        E::COUPLES
+    }
+    fn each(&self, at: &At<'_>, f: &mut dyn FnMut(&Station<f64>)) {
+        for (e, seat) in self.elements.iter().zip(&self.seats) {
+            let p = E::lanes::<f64>(&Batch(std::slice::from_ref(e)));
+            let x = Seat::gather::<f64>(std::slice::from_ref(seat), at);
+            for k in 0..S {
+                f(&E::station(&p, &x, k));
+            }
+        }
+    }
+    fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>) {
+        if !laws.0.is_empty() {
+            EXCHANGE.with_borrow_mut(|exchange| {
+                run(out.width(), SpreadAll { pool: self, laws, at, out, exchange });
+            });
+        }
+    }
+    fn power(&self, laws: &Laws, at: &At<'_>) -> Power {
+        let mut total = Power::default();
+        EXCHANGE.with_borrow_mut(|exchange| {
+            let power = Some(&mut total);
+            run(Width::best(), WorkAll { pool: self, laws, at, power, energy: None, exchange });
+        });
+        total
+    }
+    fn energy(&self, laws: &Laws, at: &At<'_>) -> Energy {
+        let mut total = Energy::default();
+        // most laws store nothing
+        if laws.0.iter().any(|law| law.gives().couple) {
+            EXCHANGE.with_borrow_mut(|exchange| {
+                let energy = Some(&mut total);
+                run(Width::best(), WorkAll { pool: self, laws, at, power: None, energy, exchange });
+            });
+        }
+        total
+    }
+}

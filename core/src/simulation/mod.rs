@@ -1,0 +1,523 @@
+//! A run in time: steps, outputs, events, the audit of energy.
+
+mod ahead;
+pub mod audit;
+mod checkpoint;
+mod dense;
+mod forces;
+pub mod layers;
+mod memory;
+pub mod record;
+mod watch;
+
+pub use checkpoint::{Checkpoint, Unfit};
+
+use crate::model::Model;
+use crate::model::event::{Action, Event};
+use crate::model::part::Quantity;
+use crate::model::remesh::Remeshed;
+use crate::model::state::State;
+use crate::model::term::{Energy, Power};
+use crate::simulation::audit::Audit;
+use crate::simulation::dense::Dense;
+use crate::simulation::record::Sample;
+use crate::solve::integrator::{
+    Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, prepare, restart,
+};
+use crate::solve::times::Phase;
+use memory::Memory;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Sees every accepted step and every sample, read-only: recorders, progress bars.
+pub trait Observer {
+    /// A step was accepted. To break ends the advance behind it, with its samples, its events and, if one is wanted, a
+    /// checkpoint.
+    fn step(&mut self, _model: &Model, _state: &State, _report: &StepReport) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// Whether samples need consistent accelerations and multipliers, at the price of a factorisation each.
+    fn needs_forces(&self) -> bool {
+        false
+    }
+    /// A sample at an instant of the output interval.
+    fn sample(&mut self, _sample: &Sample<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// Something that the user should know at once although the run goes on.
+    fn warn(&mut self, _text: &str) {}
+    /// An event was located.
+    fn event(&mut self, _name: &str, _t: f64) {}
+    /// The mesh has changed.
+    fn remeshed(&mut self, _report: &Remeshed) {}
+    /// Whether a checkpoint is wanted after this step. Taking one drops kept factors, as going on from it does.
+    fn wants_checkpoint(&mut self) -> bool {
+        false
+    }
+    /// A checkpoint that was wanted.
+    fn checkpoint(&mut self, _checkpoint: Checkpoint) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// An observer that looks away.
+impl Observer for () {}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// It reached its end.
+    Done,
+    /// An observer or an event stopped it.
+    Stopped {
+        /// Who stopped it.
+        by: String,
+    },
+}
+
+/// More samples than these are surely a mistake.
+const MOST_SAMPLES: f64 = 1e10;
+
+/// An event that has changed something.
+struct Fired {
+    event: usize,
+    action: Action,
+    /// The state as it left it.
+    after: State,
+    /// Whether it changed a mode.
+    changed: bool,
+}
+
+/// The value of an event at the start. What has come to pass already happens at once.
+fn at_start(event: &dyn Event, model: &Model, state: &State) -> f64 {
+    let value = event.value(model, state);
+    match event.direction() {
+        1 if value >= 0.0 => -f64::MIN_POSITIVE,
+        -1 if value <= 0.0 => f64::MIN_POSITIVE,
+        _ => value,
+    }
+}
+
+/// A model in motion.
+///
+/// Holds the model, its state, the integrator and its scratch. `advance` takes it to a time.
+pub struct Simulation {
+    /// The model.
+    pub model: Arc<Model>,
+    /// The state.
+    pub state: State,
+    /// Scratch and counters.
+    pub work: Workspace,
+    /// The integrator.
+    pub integrator: Box<dyn Integrator>,
+    /// What the start had to be corrected by.
+    pub correction: Correction,
+    /// The balance of energy.
+    pub audit: Audit,
+    /// How far the multipliers swung to and fro from step to step, in parts of their size: the largest so far. Only
+    /// measured with a scheme that had to be allowed.
+    pub ringing: f64,
+    change: Vec<f64>,
+    /// When energy was first seen to have appeared from nowhere [s].
+    created: Option<f64>,
+    keep_audit: bool,
+    power: Power,
+    events: Vec<(Arc<dyn Event>, f64)>,
+    previous: State,
+    scratch: State,
+    /// Scratch of samples that take more than a look; made when first needed.
+    aside: Option<Box<Workspace>>,
+    /// Time at which the present advance began, and the number of its next sample.
+    sampled: (f64, u64),
+    /// Over which time errors add up.
+    memory: Memory,
+}
+
+impl Simulation {
+    /// Starts a model from where its scene puts it. `duration` is the length of the run [s].
+    ///
+    /// # Errors
+    /// As [`Simulation::from`].
+    pub fn new(model: Model, options: &Options, duration: f64) -> Result<Self, StepError> {
+        let state = model.state();
+        Self::from(model, state, options, duration)
+    }
+
+    /// Starts a model from a state, which is made consistent.
+    ///
+    /// # Errors
+    /// The state is that of another model, the scheme is refused, the start is too far from the constraints, or a linear
+    /// system can't be solved.
+    pub fn from(model: Model, mut state: State, options: &Options, duration: f64) -> Result<Self, StepError> {
+        model.check(&state).map_err(StepError::Foreign)?;
+        let integrator = options.integrator(&model, duration)?;
+        let mut work = Workspace::new(&model).map_err(|source| StepError::Linear {
+            t: state.t,
+            source,
+            unknown: "the structure of the equations".into(),
+        })?;
+        let correction = prepare(&model, &mut state, &mut work, integrator.as_ref())?;
+        let audit = Audit::start(model.energy(&state.at()));
+        let power = model.power(&state.at(), &state.lambda);
+        let (previous, scratch) = (state.clone(), state.clone());
+        let memory = Memory::new(integrator.horizon());
+        let events =
+            model.events().iter().map(|e| (e.clone(), at_start(e.as_ref(), &model, &state))).collect();
+        Ok(Simulation {
+            model: Arc::new(model),
+            state,
+            work,
+            integrator,
+            correction,
+            audit,
+            ringing: 0.0,
+            change: Vec::new(),
+            created: None,
+            keep_audit: true,
+            power,
+            events,
+            previous,
+            scratch,
+            aside: None,
+            sampled: (0.0, 0),
+            memory,
+        })
+    }
+
+    /// Switches the audit of energy, which costs an evaluation of all energies and powers per step.
+    pub fn keep_audit(&mut self, on: bool) {
+        self.keep_audit = on;
+    }
+
+    /// Adds an event.
+    pub fn add_event(&mut self, event: impl Event + 'static) {
+        let value = at_start(&event, &self.model, &self.state);
+        self.events.push((Arc::new(event), value));
+    }
+
+    /// Goes on to time `end`, with a sample now and every `interval` seconds.
+    ///
+    /// # Errors
+    /// A step that couldn't be taken; everything up to there has been sampled, and the state is the last good one. A state
+    /// of another model, since anybody may set it. An interval that isn't above zero, or so short that the samples would
+    /// never end.
+    pub fn advance(
+        &mut self,
+        end: f64,
+        interval: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<End, StepError> {
+        self.model.check(&self.state).map_err(StepError::Foreign)?;
+        self.sampled = (self.state.t, 0);
+        if self.sample(observer, None)?.is_break() {
+            return Ok(End::Stopped { by: "observer".into() });
+        }
+        self.sampled.1 = 1;
+        self.go_on(end, interval, observer)
+    }
+
+    /// As [`Simulation::advance`], but goes on with an advance that a checkpoint was taken of: with the same `end` and
+    /// `interval`.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn go_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
+        self.model.check(&self.state).map_err(StepError::Foreign)?;
+        let (start, mut next) = self.sampled;
+        let samples = (end - start) / interval;
+        if !(interval > 0.0 && samples <= MOST_SAMPLES) {
+            let message = format!(
+                "samples every {interval:e} s of {:e} s never end: take a longer interval",
+                end - start
+            );
+            return Err(StepError::Scheme(message));
+        }
+        let sample_time = |k: u64| start + interval * k as f64;
+        // times that differ by less than this are the same: no step of the size of rounding. To call them so mustn't move
+        // what is driven
+        let short = match self.integrator.options().stepping {
+            Stepping::Fixed { h } => interval.min(end - start).min(1e5 * h),
+            Stepping::Controlled { .. } => interval.min(end - start),
+        };
+        let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * short + 4.0 * f64::EPSILON * b.abs();
+        while self.state.t < end && !same(self.state.t, end) {
+            let mut left = end - self.state.t;
+            if let Stepping::Controlled { .. } = self.integrator.options().stepping {
+                self.leap()?;
+                left = self.limit(end - self.state.t);
+            }
+            self.previous.clone_from(&self.state);
+            let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left);
+            let report = report.map_err(|e| self.suspect(e))?;
+            self.check_constraints()?;
+            if let Some(why) = self.model.passes(&self.previous.at(), &self.state.at()) {
+                self.turn_back(report.h, why)?;
+                continue;
+            }
+            self.count_cut(report.h, left);
+            if same(self.state.t, end) {
+                self.state.t = end;
+            }
+            let fired = self.locate(observer);
+            self.account();
+            let energy = self.watch_energy(end, observer);
+            self.watch_steps(end, observer);
+            self.measure_ringing();
+            self.remember(&report);
+            // whoever wants to stop gets what this step has brought first
+            let stop = observer.step(&self.model, &self.state, &report).is_break();
+            while next as f64 * interval <= (end - start) * (1.0 + 1e-12) {
+                let t = sample_time(next);
+                if t > self.state.t && !same(t, self.state.t) {
+                    break;
+                }
+                if self.sample(observer, Some(t))?.is_break() {
+                    return Ok(End::Stopped { by: "observer".into() });
+                }
+                next += 1;
+            }
+            energy?;
+            if let Some(fired) = fired
+                && let Some(end) = self.fire(fired, observer)?
+            {
+                return Ok(end);
+            }
+            self.sampled.1 = next;
+            if observer.wants_checkpoint() {
+                let checkpoint = self.checkpoint()?;
+                if observer.checkpoint(checkpoint).is_break() {
+                    return Ok(End::Stopped { by: "observer".into() });
+                }
+            }
+            if stop {
+                return Ok(End::Stopped { by: "interrupt".into() });
+            }
+        }
+        if !same(sample_time(next - 1), end) && self.sample(observer, None)?.is_break() {
+            return Ok(End::Stopped { by: "observer".into() });
+        }
+        Ok(End::Done)
+    }
+
+    fn account(&mut self) {
+        if self.keep_audit {
+            let begin = self.work.clocks.start();
+            let power = self.model.power(&self.state.at(), &self.state.lambda);
+            let h = self.state.t - self.previous.t;
+            self.audit.add(h, self.model.energy(&self.state.at()), self.power, power);
+            self.power = power;
+            self.work.clocks.stop(Phase::Audit, begin);
+        }
+    }
+
+    /// Measures by how much the last two changes of the multipliers undid each other.
+    fn measure_ringing(&mut self) {
+        if self.integrator.warning().is_none() {
+            return;
+        }
+        self.change.resize(self.state.lambda.len(), 0.0);
+        let (mut undone, mut size) = (0.0f64, 0.0f64);
+        for ((c, new), old) in self.change.iter_mut().zip(&self.state.lambda).zip(&self.previous.lambda) {
+            let change = new - old;
+            if change * *c < 0.0 {
+                undone = undone.max(change.abs().min(c.abs()));
+            }
+            size = size.max(new.abs());
+            *c = change;
+        }
+        if size > 0.0 {
+            self.ringing = self.ringing.max(0.5 * undone / size);
+        }
+    }
+
+    /// Samples at time `t` inside the last step, or at the present state.
+    fn sample(&mut self, observer: &mut dyn Observer, t: Option<f64>) -> Result<ControlFlow<()>, StepError> {
+        match t {
+            Some(t) if t < self.state.t => {
+                Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+            }
+            _ => {
+                self.scratch.clone_from(&self.state);
+                self.scratch.t = t.unwrap_or(self.state.t);
+            }
+        }
+        if observer.needs_forces() {
+            let t = self.scratch.t;
+            self.find_forces().map_err(|source| StepError::Linear {
+                t,
+                source,
+                unknown: "the accelerations for output".into(),
+            })?;
+        }
+        let sample = Sample {
+            model: &self.model,
+            at: self.scratch.at(),
+            lambda: &self.scratch.lambda,
+            audit: &self.audit,
+        };
+        Ok(observer.sample(&sample))
+    }
+
+    /// The first event inside the last step after a time, and when it comes.
+    fn next_event(&mut self, from: f64) -> Option<(usize, f64)> {
+        let mut first: Option<(usize, f64)> = None;
+        for (k, (event, before)) in self.events.iter().enumerate() {
+            let (before, after) = (*before, event.value(&self.model, &self.state));
+            let crossed = match event.direction() {
+                1 => before < 0.0 && after >= 0.0,
+                -1 => before > 0.0 && after <= 0.0,
+                _ => before * after < 0.0 || (after == 0.0 && before != 0.0),
+            };
+            if !crossed {
+                continue;
+            }
+            let dense = Dense::new(&self.model, &self.previous, &self.state);
+            let (mut low, mut high) = (from, self.state.t);
+            let tolerance = 4.0 * f64::EPSILON * high.abs() + 1e-12 * (high - low);
+            while high - low > tolerance {
+                let mid = 0.5 * (low + high);
+                if mid <= low || mid >= high {
+                    break;
+                }
+                dense.at(mid, &mut self.scratch);
+                let value = event.value(&self.model, &self.scratch);
+                if (value > 0.0) == (before > 0.0) && value != 0.0 { low = mid } else { high = mid }
+            }
+            if first.is_none_or(|(_, t)| high < t) {
+                first = Some((k, high));
+            }
+        }
+        first
+    }
+
+    /// Lets the events inside the last step act, one after the other, up to the first that changes something: the state
+    /// moves to just before it.
+    fn locate(&mut self, observer: &mut dyn Observer) -> Option<Fired> {
+        let mut from = self.previous.t;
+        while let Some((event, t)) = self.next_event(from) {
+            Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+            self.scratch.control.clone_from(&self.state.control);
+            self.model.remember(&mut self.scratch);
+            for (k, (other, value)) in self.events.iter_mut().enumerate() {
+                let (before, now) = (*value, other.value(&self.model, &self.scratch));
+                // what came at the same instant is still due
+                let due = k != event && now * before < 0.0;
+                *value = if due { before.signum() * f64::MIN_POSITIVE } else { now };
+            }
+            let mut after = self.scratch.clone();
+            let action = self.events[event].0.act(&self.model, &mut after);
+            let changed = after.modes != self.scratch.modes;
+            if !changed && matches!(action, Action::Continue) {
+                let report = self.events[event].0.report(&self.model, &self.scratch);
+                observer.event(&report, t);
+                from = t;
+                continue;
+            }
+            std::mem::swap(&mut self.state, &mut self.scratch);
+            return Some(Fired { event, action, after, changed });
+        }
+        self.model.remember(&mut self.state);
+        for (event, value) in &mut self.events {
+            *value = event.value(&self.model, &self.state);
+        }
+        None
+    }
+
+    fn fire(&mut self, fired: Fired, observer: &mut dyn Observer) -> Result<Option<End>, StepError> {
+        let Fired { event: k, action, after, changed } = fired;
+        observer.event(&self.events[k].0.name(), self.state.t);
+        let h = self.state.control.h_last;
+        self.state = after;
+        match action {
+            Action::Continue => {
+                // the step has become shorter, and what was predicted from it doesn't fit any more
+                let control = &mut self.state.control;
+                control.h_last = self.state.t - self.previous.t;
+                (control.backs, control.order) = (0, 0);
+                control.stages[0].clear();
+                let short = if h > 0.0 { control.h_last / h } else { 1.0 };
+                for (aux, a) in self.state.aux.iter_mut().zip(&self.state.a) {
+                    *aux = a + short * (*aux - a);
+                }
+                self.resume(k, changed);
+                return Ok(None);
+            }
+            Action::Stop => {
+                // the moment that ends the run is worth a sample
+                let _ = self.sample(observer, None)?;
+                return Ok(Some(End::Stopped { by: self.events[k].0.name() }));
+            }
+            Action::Fail(why) => {
+                return Err(StepError::Event { t: self.state.t, event: self.events[k].0.name(), why });
+            }
+            Action::Restart => {}
+            Action::Remesh(model) => {
+                let event = self.events[k].0.clone();
+                let before = self.measure(event.as_ref());
+                self.state = model.carry(&self.model, &self.state);
+                self.aside = None;
+                self.work.change_mesh(&self.model, &model).map_err(|source| StepError::Linear {
+                    t: self.state.t,
+                    source,
+                    unknown: "the structure of the new mesh".into(),
+                })?;
+                // events of the scene belong to its model; those that were added stay
+                let own = self.model.events().len();
+                let new = model.events().iter().map(|e| (e.clone(), 0.0)).collect::<Vec<_>>();
+                self.events.splice(..own, new);
+                self.model = Arc::from(model);
+                self.report(event.as_ref(), before, observer);
+            }
+        }
+        // history doesn't reach across an event
+        let now = self.state.modes.clone();
+        restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
+        self.state.modes = now;
+        self.state.control.h_next = 0.1 * h;
+        self.resume(k, changed);
+        Ok(None)
+    }
+
+    /// Energy, momentum, and the tension where an event changes the mesh.
+    fn measure(&mut self, event: &dyn Event) -> (Energy, [f64; 3], f64) {
+        let (model, at) = (&self.model, self.state.at());
+        let tension = event.remeshes().and_then(|(name, end)| {
+            let part = model.part(name)?;
+            part.observe(Quantity::Tension, if end == 0 { 0.0 } else { part.length_now(&at) }, &at)
+        });
+        (model.energy(&at), self.work.momentum(model, &self.state), tension.unwrap_or(f64::NAN))
+    }
+
+    fn report(&mut self, event: &dyn Event, before: (Energy, [f64; 3], f64), observer: &mut dyn Observer) {
+        let after = self.measure(event);
+        let report = Remeshed {
+            name: event.name(),
+            t: self.state.t,
+            kinetic: after.0.kinetic - before.0.kinetic,
+            potential: after.0.potential - before.0.potential,
+            momentum: std::array::from_fn(|i| after.1[i] - before.1[i]),
+            tension: [before.2, after.2],
+        };
+        self.audit.remeshed += report.kinetic + report.potential;
+        observer.remeshed(&report);
+    }
+
+    /// Goes on from a state that event `k` has seen; `changed` says that it has changed a mode.
+    fn resume(&mut self, k: usize, changed: bool) {
+        self.previous.clone_from(&self.state);
+        self.scratch.clone_from(&self.state);
+        self.power = self.model.power(&self.state.at(), &self.state.lambda);
+        for (j, (event, value)) in self.events.iter_mut().enumerate() {
+            let (before, now) = (*value, event.value(&self.model, &self.state));
+            *value = match (j == k, changed) {
+                // the next of many that one event stands for may be due at once
+                (true, true) => at_start(event.as_ref(), &self.model, &self.state),
+                // meeting the constraints again may have moved the state back by a hair: it mustn't pass twice
+                (true, false) if now * before < 0.0 => before,
+                // what this has set off happens in the next step
+                (false, _) if now * before < 0.0 => before.signum() * f64::MIN_POSITIVE,
+                _ => now,
+            };
+        }
+    }
+}

@@ -1,0 +1,524 @@
+//! The generalized-α family with fixed or error-controlled steps.
+
+use super::forces::larger;
+use super::newton::{Newton, Outcome, Rate};
+use super::options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping, fixed_step};
+use super::scales::{Scaled, Units};
+use super::scheme::Coefficients;
+use super::start::{anew, settle};
+use super::step::{Integrator, StepError, StepReport, linear};
+use super::workspace::{Which, Workspace};
+use crate::model::Model;
+use crate::model::node::NodeKind;
+use crate::model::state::State;
+use crate::solve::linear::SolveError;
+
+/// Integrator of the Newmark, HHT-α and generalized-α family on index-3 equations.
+pub struct Alpha {
+    options: Options,
+    limits: Limits,
+    scheme: Coefficients,
+    /// Time over which errors may add up [s].
+    horizon: f64,
+    units: Units,
+    warning: Option<String>,
+}
+
+/// Convergence rate of Newton's method from which on the next step gets a new matrix.
+const REFRESH: f64 = 0.1;
+/// Elements along a cable up to which Newton's tolerance doesn't depend on their number.
+const COARSE: f64 = 64.0;
+/// What the error of a body counts for, and how much more for every radian that it turns within the horizon.
+const BODY: f64 = 2.0;
+const TURNING: f64 = 0.1;
+/// A body that turns for ever is no reason for steps without end.
+const MOST_TURNING: f64 = 100.0;
+/// Largest rotation of a body in a fixed step [rad]: from a quarter turn on a driven joint may end on another branch.
+const MOST_TURN: f64 = 1.5;
+/// Safety factor of the step-size controller.
+const SAFETY: f64 = 0.85;
+
+impl Alpha {
+    /// Checks the options against the model. `duration` is the length of the run, over which errors add up unless
+    /// the options say otherwise.
+    pub fn new(options: &Options, model: &Model, duration: f64) -> Result<Self, StepError> {
+        options.check().map_err(StepError::Scheme)?;
+        let scheme = options.scheme.coefficients().map_err(StepError::Scheme)?;
+        let mut warning = None;
+        if model.multipliers() > 0
+            && let Some(why) = options.scheme.unstable_with_constraints().map_err(StepError::Scheme)?
+        {
+            if !options.allow_unstable || scheme.beta == 0.0 {
+                return Err(StepError::Scheme(format!(
+                    "this scheme is unstable with constraints: {why}. Take generalized-alpha with rho_inf below 1, \
+                     HHT with a negative alpha{}",
+                    if scheme.beta == 0.0 { "" } else { ", or set `allow_unstable = true`" }
+                )));
+            }
+            warning = Some(format!("unstable scheme allowed: {why}"));
+        }
+        let units = options.scales.map_or(Ok(Units::SI), |scales| Units::of(scales, model));
+        let units = units.map_err(StepError::Scheme)?;
+        let horizon = options.horizon_in(duration);
+        let limits = options.limits(duration);
+        Ok(Alpha { options: options.clone(), limits, scheme, horizon, units, warning })
+    }
+
+    /// Its numbers.
+    pub fn scheme(&self) -> &Coefficients {
+        &self.scheme
+    }
+
+    /// Tolerance of what Newton's method leaves of positions, relative to the length of each part.
+    fn newton_tolerance(&self, model: &Model, h: f64) -> f64 {
+        // on short elements, what is left of an iteration strains more, and would spoil the next prediction
+        let fine = (COARSE / model.finest().max(1) as f64).min(1.0).powi(2);
+        self.options.newton_tolerance
+            * fine
+            * match self.options.stepping {
+                Stepping::Fixed { .. } => 1e-7,
+                // what is left in velocities adds up in a mechanism, which has nothing that takes it away
+                Stepping::Controlled { tolerance } => {
+                    let steps = if model.is_mechanism() { (10.0 * h / self.horizon).min(1.0) } else { 1.0 };
+                    1e-4 * steps * tolerance.min(1e-3)
+                }
+            }
+    }
+
+    /// Rescales the auxiliary acceleration to a new step size: it stands `Δ h` away from the true one.
+    fn rescale(&self, state: &State, h: f64, aux: &mut Vec<f64>) {
+        let ratio = if state.control.h_last > 0.0 { h / state.control.h_last } else { 1.0 };
+        aux.clear();
+        aux.extend(state.aux.iter().zip(&state.a).map(|(aux, a)| a + ratio * (aux - a)));
+    }
+
+    /// Predicts the auxiliary acceleration: the true one is continued by the polynomial that was best last time.
+    fn predict(&self, state: &State, h: f64, work: &mut Workspace) {
+        let c = &self.scheme;
+        let n = state.a.len();
+        let (a, t) = (&state.a[..n], &mut work.trial);
+        let (new, old) = (&mut t.aux[..n], &t.aux_old[..n]);
+        let scale = 1.0 / (1.0 - c.alpha_m);
+        let (f_new, f_old, m_old) = ((1.0 - c.alpha_f) * scale, c.alpha_f * scale, c.alpha_m * scale);
+        let order = state.control.order.min(state.control.backs);
+        match Past::new(state, h).continued(order) {
+            [_, 0.0, 0.0] => {
+                for i in 0..n {
+                    new[i] = (f_new + f_old) * a[i] - m_old * old[i];
+                }
+            }
+            [x, y, z] => {
+                let [one, two] = &state.control.a_back;
+                let (one, two) = (&one[..n], if z == 0.0 { &one[..n] } else { &two[..n] });
+                for i in 0..n {
+                    let ahead = x * a[i] + y * one[i] + z * two[i];
+                    new[i] = f_new * ahead + f_old * a[i] - m_old * old[i];
+                }
+            }
+        }
+        t.lambda.copy_from_slice(&state.lambda);
+        t.shift.fill(0.0);
+    }
+
+    fn stabilised(&self, model: &Model) -> bool {
+        self.options.constraints == ConstraintForm::Ggl && model.multipliers() > 0
+    }
+
+    /// The order of the polynomial that would have predicted the accelerations of the trial best.
+    fn best_order(&self, state: &State, h: f64, work: &Workspace) -> usize {
+        let n = state.a.len();
+        let past = Past::new(state, h);
+        let [one, two] = &state.control.a_back;
+        let a = &state.a[..n];
+        // where there is no past yet, its weight is zero
+        let one = if state.control.backs > 0 { &one[..n] } else { a };
+        let two = if state.control.backs > 1 { &two[..n] } else { a };
+        let (new, mass) = (&work.trial.a[..n], &work.norms.weights()[..n]);
+        let ([x1, y1, _], [x2, y2, z2]) = (past.continued(1), past.continued(2));
+        let mut miss = [0.0; 3];
+        for i in 0..n {
+            let constant = new[i] - a[i];
+            let linear = new[i] - (x1 * a[i] + y1 * one[i]);
+            let quadratic = new[i] - (x2 * a[i] + y2 * one[i] + z2 * two[i]);
+            miss[0] += mass[i] * constant * constant;
+            miss[1] += mass[i] * linear * linear;
+            miss[2] += mass[i] * quadratic * quadratic;
+        }
+        let backs = (state.control.backs + 1).min(2);
+        (1..=backs).fold(0, |best, k| if miss[k] < miss[best] { k } else { best })
+    }
+
+    /// Estimated error of the trial, relative to the part where it is largest: `|Cq h² (a₊ - a)|`, without what the
+    /// constraints and the numerical damping take away. With it by what tensions are off for it, over their tolerance.
+    fn error(
+        &self,
+        model: &Model,
+        state: &State,
+        work: &mut Workspace,
+        h: f64,
+    ) -> Result<[f64; 2], SolveError> {
+        let factor = self.scheme.error_constant() * h * h;
+        let (nv, mut e, mut rhs) =
+            (model.velocities(), std::mem::take(&mut work.trial.d), std::mem::take(&mut work.trial.rhs));
+        let t = &work.trial;
+        for (e, (new, old)) in e.iter_mut().zip(t.aux.iter().zip(&t.aux_old)) {
+            *e = factor * self.scheme.mass() * (new - old);
+        }
+        // what is prescribed has no error
+        model.without_driven(&state.modes, &mut e);
+        rhs.clear();
+        rhs.resize(model.structure().n, 0.0);
+        work.times_mass(model, &e, &mut rhs[..nv]);
+        let solved = work.solve(model, Which::Iteration, &mut rhs);
+        // once constraints have taken out what rounding and iterations leave across them
+        self.weigh_turning(model, work, &mut rhs);
+        let size = work.norms.relative(&rhs[..nv]);
+        let strained = work.forces.strained(&work.trial.q, &rhs[..nv], self.options.force_tolerance);
+        (work.trial.d, work.trial.rhs) = (e, rhs);
+        solved?;
+        Ok([size, strained])
+    }
+
+    /// Counts the error of a body by how far it turns in the run: what is wrong in its own axes turns with it, and adds up
+    /// to a rate of turning that nothing brings back. Waves along a cable come and go.
+    fn weigh_turning(&self, model: &Model, work: &Workspace, e: &mut [f64]) {
+        let (v, weights) = (&work.trial.v, work.norms.weights());
+        for node in model.nodes().iter().filter(|n| n.kind.has_position()) {
+            let (turns, single) =
+                (node.kind == NodeKind::Frame, work.norms.groups[work.norms.of(node.v)].single);
+            if !turns && !single {
+                continue;
+            }
+            let (mut square, mut sum) = (0.0, 0.0);
+            // the links of a chain are held by their neighbours; and what has no inertia doesn't count
+            for i in node.dofs().skip(3).filter(|_| turns && single) {
+                square += weights[i] * v[i] * v[i];
+                sum += weights[i];
+            }
+            let rate = if sum > 0.0 { (square / sum).sqrt() } else { 0.0 };
+            let factor = BODY + (TURNING * self.horizon * rate).min(MOST_TURNING);
+            node.dofs().for_each(|i| e[i] *= factor);
+        }
+    }
+
+    /// Whether a trial that converged is to be accepted.
+    fn judge(
+        &self,
+        model: &Model,
+        state: &State,
+        work: &mut Workspace,
+        h: f64,
+        linear_constraints: bool,
+    ) -> Result<Verdict, StepError> {
+        let bad = |why: &str| Ok(Verdict::Bad { why: why.into() });
+        match self.options.stepping {
+            Stepping::Fixed { .. } if linear_constraints => Ok(Verdict::Good { error: 0.0 }),
+            Stepping::Fixed { .. } if model.turn(&work.trial.d) > MOST_TURN => {
+                bad("a body turns too far in one step: it may end on another branch of its joint")
+            }
+            Stepping::Fixed { .. } if jumps(state, work) => {
+                bad("velocities jump: a mechanism leaves its branch, or an impact is shorter than `h`")
+            }
+            Stepping::Fixed { .. } => Ok(Verdict::Good { error: 0.0 }),
+            Stepping::Controlled { tolerance } => {
+                let turn = model.turn(&work.trial.d);
+                let [local, force] =
+                    self.error(model, state, work, h).map_err(|source| linear(model, state.t, source))?;
+                // errors of positions add up, per unit step; stiff directions follow what moves them, and forget
+                let position = local * (self.horizon / h) / tolerance.min(1e-3);
+                let error = larger(position, force);
+                // a body that is driven has no error, but a larger turn may end on another branch of its joint
+                let error = if turn > 1.0 { error + turn * turn } else { error };
+                match error {
+                    e if e <= 1.0 => Ok(Verdict::Good { error }),
+                    e if e.is_nan() => bad("the error estimate is not a number"),
+                    _ => Ok(Verdict::TooLarge { error }),
+                }
+            }
+        }
+    }
+
+    fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, rate: &Rate) {
+        let order = self.best_order(state, h, work);
+        let c = &mut state.control;
+        c.order = order;
+        c.h_before = c.h_last;
+        let [one, two] = &mut c.a_back;
+        std::mem::swap(one, two);
+        one.clear();
+        one.extend_from_slice(&state.a);
+        c.backs = (c.backs + 1).min(2);
+        work.forces.keep(&mut c.forces);
+        c.h_last = h;
+        c.eta = rate.eta;
+        c.theta = rate.theta.unwrap_or(c.theta);
+        if rate.kept_failed {
+            // the next steps don't try to keep factors; each failure makes it twice as many
+            c.renew_next = (2 * c.renew_next).clamp(4, 64);
+            c.renew = c.renew_next;
+        } else {
+            c.renew_next = if c.renew == 0 { 0 } else { c.renew_next };
+            c.renew = c.renew.saturating_sub(1);
+        }
+        c.h_cap = if c.h_cap > 0.0 { c.h_cap * 1.1 } else { 0.0 };
+        let t = &mut work.trial;
+        std::mem::swap(&mut state.q, &mut t.q);
+        std::mem::swap(&mut state.v, &mut t.v);
+        std::mem::swap(&mut state.a, &mut t.a);
+        std::mem::swap(&mut state.aux, &mut t.aux);
+        std::mem::swap(&mut state.lambda, &mut t.lambda);
+        state.t += h;
+        work.counts.steps += 1;
+        work.counts.unmet += u64::from(rate.unmet);
+    }
+}
+
+/// What a trial step that converged is worth.
+enum Verdict {
+    /// To be accepted, with this estimated error over the tolerance.
+    Good { error: f64 },
+    /// To be repeated with a smaller step.
+    TooLarge { error: f64 },
+    /// To be repeated like one that didn't converge.
+    Bad { why: String },
+}
+
+/// By how much the step may grow after one with this error over the tolerance.
+fn growth(error: f64) -> f64 {
+    (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5)
+}
+
+/// The times of the accelerations that are kept, before the present one.
+struct Past {
+    h: f64,
+    one: f64,
+    two: f64,
+}
+
+impl Past {
+    fn new(state: &State, h: f64) -> Self {
+        let c = &state.control;
+        // without a past any time will do: its weight isn't used
+        let one = if c.h_last > 0.0 { c.h_last } else { h };
+        Past { h, one, two: one + if c.h_before > 0.0 { c.h_before } else { h } }
+    }
+    /// Weights of the present acceleration and of those one and two steps back, to continue the polynomial of this
+    /// order by a step `h`.
+    fn continued(&self, order: usize) -> [f64; 3] {
+        let Past { h, one, two } = *self;
+        match order {
+            0 => [1.0, 0.0, 0.0],
+            1 => [1.0 + h / one, -h / one, 0.0],
+            _ => [
+                (h + one) * (h + two) / (one * two),
+                -h * (h + two) / (one * (two - one)),
+                h * (h + one) / (two * (two - one)),
+            ],
+        }
+    }
+}
+
+/// Whether velocities change within the step by half of what they are, although they hardly did in the step before: no
+/// smooth motion does that. Steps with error control see it by themselves.
+fn jumps(state: &State, work: &Workspace) -> bool {
+    let norms = &work.norms;
+    let change = norms.relative_of(|i| work.trial.v[i] - state.v[i]);
+    let (before, after) = (norms.relative(&state.v), norms.relative(&work.trial.v));
+    let last = state.control.h_last;
+    last > 0.0 && last * norms.relative(&state.a) < 0.05 * before && change > 0.5 * before.max(after)
+}
+
+impl Integrator for Alpha {
+    fn options(&self) -> &Options {
+        &self.options
+    }
+
+    fn limits(&self) -> Limits {
+        self.limits
+    }
+
+    fn horizon(&self) -> f64 {
+        self.horizon
+    }
+
+    fn set_horizon(&mut self, horizon: f64) {
+        self.horizon = horizon;
+    }
+
+    fn warning(&self) -> Option<&str> {
+        self.warning.as_deref()
+    }
+
+    fn filter(&self, h: f64) -> f64 {
+        self.scheme.beta * h * h
+    }
+
+    fn settle(
+        &self,
+        model: &Model,
+        state: &mut State,
+        work: &mut Workspace,
+        h: f64,
+        stiff: f64,
+    ) -> Result<(), SolveError> {
+        if !self.options.filter_start {
+            state.aux.copy_from_slice(&state.a);
+            return Ok(());
+        }
+        settle(model, state, work, &self.scheme, h, stiff, !self.stabilised(model))
+    }
+
+    fn step(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        work: &mut Workspace,
+        h_max: f64,
+    ) -> Result<StepReport, StepError> {
+        work.ensure_mass(model, &state.at(), &state.lambda)
+            .map_err(|source| linear(model, state.t, source))?;
+        if self.options.scales.is_some() && work.scaled.is_none() {
+            work.scaled = Some(Scaled::new(model, self.units));
+            work.factored = None;
+        }
+        let linear_constraints = !model.is_mechanism();
+        let controlled = matches!(self.options.stepping, Stepping::Controlled { .. });
+        let limit = h_max.min(self.limits.most);
+        let mut h = match self.options.stepping {
+            Stepping::Fixed { h } => {
+                let cap = if state.control.h_cap > 0.0 { state.control.h_cap } else { f64::INFINITY };
+                fixed_step(h, h_max).min(cap)
+            }
+            Stepping::Controlled { .. } => {
+                let wish =
+                    if state.control.h_next > 0.0 { state.control.h_next } else { state.control.h_start };
+                let cap = if state.control.h_cap > 0.0 { state.control.h_cap } else { f64::INFINITY };
+                wish.min(cap).min(limit)
+            }
+        };
+        // a step that only fills the rest of an interval says nothing about the next
+        let cut = h >= limit && state.control.h_next > limit;
+        let mut report = StepReport::default();
+        let (mut failures, mut stale, mut careful, mut gripping) = (0, false, false, false);
+        loop {
+            let mut aux = std::mem::take(&mut work.trial.aux_old);
+            self.rescale(state, h, &mut aux);
+            work.trial.aux_old = aux;
+            self.predict(state, h, work);
+            // where kept factors failed, the matrix changes too much even within a step
+            let full = stale || state.control.renew > 0 || self.options.newton == NewtonPolicy::Full;
+            let newton = Newton {
+                model,
+                state,
+                scheme: self.scheme,
+                h,
+                policy: if full { NewtonPolicy::Full } else { NewtonPolicy::Modified },
+                max_iterations: self.options.max_iterations,
+                tolerance: self.newton_tolerance(model, h),
+                force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
+                stopping: self.options.stopping,
+                units: self.units,
+                linear_constraints,
+                stabilised: self.stabilised(model),
+                // a step that leaps over the instant at which something sticks ends so stiff that the estimate of its error
+                // is blind: error control has to find that instant
+                leaps: !controlled,
+                gripping,
+                careful,
+            };
+            // factors that served badly last time are not tried again
+            if state.control.theta > REFRESH {
+                work.factored = None;
+            }
+            let why = match newton.solve(work, state.control.eta.max(0.05)) {
+                Outcome::Converged(mut rate) => {
+                    rate.kept_failed |= stale;
+                    let iterations = rate.iterations;
+                    report.h = h;
+                    report.iterations = iterations;
+                    match self.judge(model, state, work, h, linear_constraints)? {
+                        Verdict::Good { error } => {
+                            report.error = error;
+                            self.accept(state, work, h, &rate);
+                            if controlled {
+                                // small changes aren't worth a new factorisation
+                                let grow = growth(error);
+                                let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
+                                let said_nothing = cut && report.rejected == 0;
+                                state.control.h_next =
+                                    if said_nothing { next.max(state.control.h_next) } else { next };
+                            }
+                            return Ok(report);
+                        }
+                        Verdict::TooLarge { error } => {
+                            report.rejected += 1;
+                            work.counts.rejected += 1;
+                            h *= growth(error).min(0.9);
+                            if h < self.limits.least {
+                                return Err(StepError::NoConvergence {
+                                    t: state.t,
+                                    h,
+                                    why: "the tolerance asks for a smaller step than `h_min`".into(),
+                                    equation: work.worst_equation(model),
+                                });
+                            }
+                            continue;
+                        }
+                        Verdict::Bad { why } => why,
+                    }
+                }
+                Outcome::Stale => {
+                    stale = true;
+                    work.factored = None;
+                    continue;
+                }
+                // where the constraints are dependent for a moment, they are solved like redundant ones from here on
+                Outcome::Linear(_) if work.softening.is_none() && model.multipliers() > 0 => {
+                    work.soften(model);
+                    continue;
+                }
+                // kept factors may be what fails, where forces turn much within a step
+                Outcome::Failed { .. } if !full => {
+                    stale = true;
+                    work.factored = None;
+                    continue;
+                }
+                // the prediction may go on slipping where something is about to stop
+                Outcome::Failed { .. } if model.kinked() && !controlled && !gripping => {
+                    gripping = true;
+                    work.factored = None;
+                    continue;
+                }
+                // a mechanism may be about to end next to a singular position, which a smaller step needn't avoid
+                Outcome::Failed { .. } if failures == 0 && !careful && !linear_constraints => {
+                    careful = true;
+                    work.factored = None;
+                    continue;
+                }
+                Outcome::Linear(source) if h <= self.limits.least => {
+                    return Err(linear(model, state.t, source));
+                }
+                Outcome::Linear(source) => source.to_string(),
+                Outcome::Failed { why } => why,
+            };
+            let equation = work.worst_equation(model);
+            report.rejected += 1;
+            work.counts.rejected += 1;
+            work.factored = None;
+            failures += 1;
+            (careful, gripping) = (false, false);
+            let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
+            if smaller < self.limits.least {
+                return Err(StepError::NoConvergence { t: state.t, h, why, equation });
+            }
+            state.control.h_cap = 0.7 * h;
+            h = smaller;
+            if failures == 2 && !linear_constraints && !controlled {
+                // velocities that meet the constraints only to the order of the old step would swing ever wilder
+                let cap = state.control.h_cap;
+                anew(model, state, work, self, h, true)?;
+                state.control.h_cap = cap;
+            }
+        }
+    }
+}

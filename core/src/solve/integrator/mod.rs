@@ -1,0 +1,41 @@
+//! Time integration: schemes, Newton's method, step-size control, consistent starts.
+
+mod alpha;
+mod forces;
+mod newton;
+mod norm;
+mod options;
+mod radau;
+mod scales;
+mod scheme;
+mod start;
+mod step;
+mod workspace;
+
+pub use alpha::Alpha;
+pub use options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
+pub use radau::Radau;
+pub use scales::{Scales, Stopping, Units};
+pub use scheme::{Coefficients, Scheme};
+pub(crate) use start::restart;
+pub use start::{Correction, consistent, prepare};
+pub(crate) use start::{assemble_mass_at, consistent_by_iteration, consistent_by_mass};
+pub use step::{Integrator, StepError, StepReport};
+pub use workspace::{Counts, Workspace};
+
+use crate::model::Model;
+
+impl Options {
+    /// The integrator that they describe. `duration` is the length of the run [s], over which errors add up unless
+    /// [`Options::horizon`] says otherwise.
+    ///
+    /// # Errors
+    /// The options are wrong, or the scheme doesn't suit the model.
+    pub fn integrator(&self, model: &Model, duration: f64) -> Result<Box<dyn Integrator>, StepError> {
+        self.check().and_then(|()| self.check_work(model, duration)).map_err(StepError::Scheme)?;
+        Ok(match self.scheme {
+            Scheme::RadauIia5 => Box::new(Radau::new(self, duration)?),
+            _ => Box::new(Alpha::new(self, model, duration)?),
+        })
+    }
+}

@@ -1,0 +1,254 @@
+//! What a user may choose about time integration.
+
+use super::scales::{Scales, Stopping};
+use super::scheme::Scheme;
+use crate::model::Model;
+
+/// How the step size is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
+pub enum Stepping {
+    /// Always the same step.
+    Fixed {
+        /// Step size [s].
+        #[cfg_attr(feature = "serde", serde(deserialize_with = "ropewalk_quantity::time"))]
+        h: f64,
+    },
+    /// As large as the tolerance allows.
+    Controlled {
+        /// Error of positions at the end of the horizon, relative to the reference length (the longest cable).
+        tolerance: f64,
+    },
+}
+
+/// What fixed steps leave of the equations of motion, relative to the forces at work: no error of time hides it.
+const FIXED_FORCE: f64 = 1e-5;
+/// A year [s].
+const YEAR: f64 = 3.2e7;
+/// What a step takes at the very least for each unknown, on any machine [s].
+const LEAST_WORK: f64 = 1e-7;
+
+/// Bounds of the step size [s].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Smallest step before the run gives up.
+    pub least: f64,
+    /// Largest step.
+    pub most: f64,
+    /// First step, if it was asked for.
+    pub start: Option<f64>,
+    /// First step where the motion doesn't ask for a smaller one.
+    pub guess: f64,
+}
+
+/// By how much of itself a fixed step grows to end where it has to, rather than leave a rest behind.
+const STRETCH: f64 = 1e-3;
+
+/// The fixed step `h` where at most `h_max` is left.
+pub(super) fn fixed_step(h: f64, h_max: f64) -> f64 {
+    if h_max <= (1.0 + STRETCH) * h { h_max } else { h }
+}
+
+/// When the iteration matrix is computed anew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum NewtonPolicy {
+    /// Kept as long as the iteration converges quickly.
+    #[default]
+    Modified,
+    /// At every iteration.
+    Full,
+}
+
+/// In which form constraints are met.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum ConstraintForm {
+    /// Positions meet them exactly, velocities to the order of the scheme ("index 3").
+    #[default]
+    Positions,
+    /// Positions and velocities both meet them exactly: the stabilised form of Gear, Gupta & Leimkuhler (1985). For long
+    /// runs; it costs a second solution per iteration.
+    Ggl,
+}
+
+/// Options of time integration. The defaults suit cables from 8 to 8192 elements.
+///
+/// ```
+/// use ropewalk_core::integrator::{Options, Stepping};
+/// let fixed = Options { stepping: Stepping::Fixed { h: 1e-3 }, ..Options::default() };
+/// assert!(fixed.check().is_ok());
+/// assert!(Options { h_max: Some(-1.0), ..fixed }.check().is_err());
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct Options {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// How the step size is chosen.
+    pub stepping: Stepping,
+    /// When the iteration matrix is computed anew.
+    pub newton: NewtonPolicy,
+    /// In which form constraints are met; Radau IIA meets both positions and velocities in any case.
+    pub constraints: ConstraintForm,
+    /// Error of tensions and reactions, relative to the largest in their part.
+    pub force_tolerance: f64,
+    /// Accept a scheme that is unstable on constrained systems, with a warning.
+    pub allow_unstable: bool,
+    /// Largest step [s]; if not given, a twentieth of the run.
+    #[cfg_attr(
+        feature = "serde",
+        serde(
+            deserialize_with = "ropewalk_quantity::optional::time",
+            skip_serializing_if = "Option::is_none"
+        )
+    )]
+    pub h_max: Option<f64>,
+    /// Smallest step before the run gives up [s]; if not given, 1e-12 of the run.
+    #[cfg_attr(
+        feature = "serde",
+        serde(
+            deserialize_with = "ropewalk_quantity::optional::time",
+            skip_serializing_if = "Option::is_none"
+        )
+    )]
+    pub h_min: Option<f64>,
+    /// First step of error control [s]; if not given, it follows from the motion at the start.
+    #[cfg_attr(
+        feature = "serde",
+        serde(
+            deserialize_with = "ropewalk_quantity::optional::time",
+            skip_serializing_if = "Option::is_none"
+        )
+    )]
+    pub h_start: Option<f64>,
+    /// Time over which errors add up [s]; 0 takes the length of the run, but for time in which steps err by next to nothing.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "ropewalk_quantity::time"))]
+    pub horizon: f64,
+    /// Move an inconsistent start onto the constraints however far away it is.
+    pub project: bool,
+    /// Filter the accelerations of the start by the stiffness, as fine meshes need, and let the scheme's own begin ahead
+    /// of them, as its order needs; only a textbook comparison of the bare scheme wants them raw.
+    pub filter_start: bool,
+    /// Most Newton iterations of a step before it is repeated smaller; Radau IIA takes at most 10.
+    pub max_iterations: u32,
+    /// Newton tolerance as a fraction of the default; smaller is tighter.
+    pub newton_tolerance: f64,
+    /// When Newton's method stops.
+    pub stopping: Stopping,
+    /// Makes the equations dimensionless before they are solved. With the `relative` stopping test that changes nothing
+    /// but rounding.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub scales: Option<Scales>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            scheme: Scheme::default(),
+            stepping: Stepping::Controlled { tolerance: 1e-4 },
+            newton: NewtonPolicy::default(),
+            constraints: ConstraintForm::default(),
+            force_tolerance: 1e-2,
+            allow_unstable: false,
+            h_max: None,
+            h_min: None,
+            h_start: None,
+            horizon: 0.0,
+            project: false,
+            filter_start: true,
+            max_iterations: 20,
+            newton_tolerance: 1.0,
+            stopping: Stopping::default(),
+            scales: None,
+        }
+    }
+}
+
+impl Options {
+    /// What Newton's method may leave of the equations of motion, relative to the forces at work in each part.
+    pub(crate) fn newton_force_tolerance(&self) -> f64 {
+        match self.stepping {
+            Stepping::Fixed { .. } => FIXED_FORCE,
+            Stepping::Controlled { .. } => 0.1 * self.force_tolerance,
+        }
+    }
+
+    /// Refuses steps so short that the run would surely take longer than a year.
+    pub(super) fn check_work(&self, model: &Model, duration: f64) -> Result<(), String> {
+        let (name, h) = match self.stepping {
+            Stepping::Fixed { h } => ("h", h),
+            Stepping::Controlled { .. } => ("h_max", self.limits(duration).most),
+        };
+        let (steps, least) = (duration / h, YEAR / (LEAST_WORK * model.velocities().max(1) as f64));
+        if steps > least {
+            return Err(format!(
+                "`{name}` = {h:e} s makes {steps:.0e} steps of a run of {duration} s: more than a year of computing. \
+                 Take a larger one"
+            ));
+        }
+        Ok(())
+    }
+
+    /// Bounds of the step in a run of this length [s].
+    pub(crate) fn limits(&self, duration: f64) -> Limits {
+        // a run of no length says nothing of its steps
+        let duration = if duration > 0.0 { duration } else { 1.0 };
+        let least = self.h_min.unwrap_or(1e-12 * duration);
+        let most = self.h_max.unwrap_or(duration / 20.0);
+        Limits { least, most, start: self.h_start, guess: (1e-3 * duration).min(most) }
+    }
+
+    /// The time over which errors add up [s].
+    pub(crate) fn horizon_in(&self, duration: f64) -> f64 {
+        if self.horizon > 0.0 { self.horizon } else { duration.max(f64::MIN_POSITIVE) }
+    }
+
+    /// What is wrong with the numbers, if anything.
+    pub fn check(&self) -> Result<(), String> {
+        let estimate = match self.scheme {
+            Scheme::RadauIia5 => true,
+            _ => self.scheme.coefficients()?.error_constant().abs() >= 1e-6,
+        };
+        let positive = |name: &str, x: f64| {
+            if x > 0.0 && x.is_finite() { Ok(()) } else { Err(format!("`{name}` must be positive, not {x}")) }
+        };
+        for (name, h) in [("h_max", self.h_max), ("h_min", self.h_min), ("h_start", self.h_start)] {
+            h.map_or(Ok(()), |h| positive(name, h))?;
+        }
+        positive("newton_tolerance", self.newton_tolerance)?;
+        if let (Some(least), Some(most)) = (self.h_min, self.h_max)
+            && least > most
+        {
+            return Err(format!("`h_min` = {least} s must not be above `h_max` = {most} s"));
+        }
+        positive("force_tolerance", self.force_tolerance)?;
+        if !(self.horizon >= 0.0 && self.horizon.is_finite()) {
+            return Err(format!("`horizon` must not be negative, but is {}", self.horizon));
+        }
+        if self.max_iterations < 2 {
+            return Err("`max_iterations` must be at least 2".into());
+        }
+        self.stopping.check()?;
+        if self.scheme == Scheme::RadauIia5 && (self.stopping != Stopping::Relative || self.scales.is_some())
+        {
+            return Err(
+                "Radau IIA has neither `scales` nor an `absolute` stopping test: take another scheme".into(),
+            );
+        }
+        match self.stepping {
+            Stepping::Fixed { h } => positive("h", h),
+            Stepping::Controlled { tolerance } => {
+                positive("tolerance", tolerance)?;
+                if !estimate {
+                    return Err("this scheme has no error estimate: choose a fixed step".into());
+                }
+                Ok(())
+            }
+        }
+    }
+}

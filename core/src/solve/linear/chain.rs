@@ -1,0 +1,366 @@
+//! Block elimination along a chain, without pivoting between blocks or inside of them.
+//!
+//! Each block is eliminated in a small dense front: its own rows `[D E]` and those of the next block that it is coupled
+//! with, `[F 0]`. What is left in the corner is carried on to the next block. Shared unknowns go along as a border of
+//! every front, and come last. The usual front, two nodes of a cable
+//! with six unknowns each, is unrolled and runs in vector registers; a symmetric matrix needs half of it. The order of
+//! [`Structure`] keeps this stable (multipliers follow their nodes); the [`Guard`](super::Guard) checks.
+
+use super::growth::{Growth, Share};
+use super::solver::{LinearSolver, SolveError};
+use crate::algebra::lane::{LaneTask, Real, Width, run};
+use crate::algebra::scalar::Scalar;
+use crate::model::structure::{Block, LARGEST, Structure};
+
+/// `L U` of a chain, symmetric or not.
+#[derive(Default)]
+pub struct Chain<T = f64> {
+    steps: Vec<Step>,
+    symmetric: bool,
+    /// Rows of `U`, each as long as its front is wide.
+    upper: Vec<T>,
+    /// Columns of `L`, stored like the rows of `U`; empty for symmetric matrices, where they are those rows times the
+    /// reciprocal pivot.
+    lower: Vec<T>,
+    /// Reciprocal pivots.
+    inverse: Vec<T>,
+    negative: usize,
+    growth: Growth,
+    /// Position of the first shared unknown, and storage of the entries between shared unknowns.
+    first_shared: usize,
+    corner: Vec<u32>,
+}
+
+/// The elimination of one block.
+#[derive(Clone, Copy, Debug, Default)]
+struct Step {
+    /// Position of its first row.
+    first: usize,
+    /// Its rows, those of the next block, and those of shared unknowns.
+    size: usize,
+    next: usize,
+    border: usize,
+    /// Storage of its diagonal block and of its coupling with shared unknowns, and the length of its rows.
+    at: usize,
+    at_border: usize,
+    stride: usize,
+    /// The same for what the next block and the shared unknowns have in its columns, where that isn't symmetric.
+    at_next: usize,
+    stride_next: usize,
+    at_shared: usize,
+    stride_shared: usize,
+    /// Width of its front, and where its factors are stored.
+    width: Front,
+    factors: usize,
+}
+
+/// Width of a front: two nodes of a cable, two rigid bodies with a spherical joint each, and the largest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Front {
+    #[default]
+    Cable = 12,
+    Middle = 20,
+    Large = 32,
+}
+
+/// What the elimination of a block leaves for the next.
+type Carried<T> = [[T; LARGEST]; LARGEST];
+
+impl Front {
+    fn of(columns: usize) -> Self {
+        match columns {
+            ..=12 => Front::Cable,
+            13..=20 => Front::Middle,
+            _ => Front::Large,
+        }
+    }
+}
+
+impl<T: Scalar> LinearSolver<T> for Chain<T> {
+    fn name(&self) -> &'static str {
+        "block elimination along the chain"
+    }
+
+    fn analyse(&mut self, s: &Structure) -> Result<(), SolveError> {
+        if !s.chain {
+            return Err(SolveError::NotAChain);
+        }
+        self.symmetric = s.symmetric;
+        self.steps.clear();
+        self.first_shared = s.n - s.border;
+        let own: Vec<&Block> = s.blocks.iter().filter(|b| b.first < self.first_shared).collect();
+        let behind = s.blocks.get(own.len());
+        let mut factors = 0;
+        for (k, b) in own.iter().enumerate() {
+            let next = own.get(k + 1);
+            let following = next.map_or(0, |n| n.size);
+            // of unsymmetric matrices, the block before stands in front
+            let before = b.width() - b.size - following - s.border;
+            let all = b.size + following + s.border;
+            let width = Front::of(all);
+            self.steps.push(Step {
+                first: b.first,
+                size: b.size,
+                next: following,
+                border: s.border,
+                at: b.base + before,
+                at_border: b.base + b.width() - s.border,
+                stride: b.width(),
+                at_next: next.map_or(0, |n| n.base),
+                stride_next: next.map_or(0, |n| n.width()),
+                at_shared: behind.map_or(0, |n| n.base + b.first),
+                stride_shared: s.n,
+                width,
+                factors,
+            });
+            factors += b.size * width as usize;
+        }
+        let shared: Vec<usize> = (self.first_shared..s.n).collect();
+        self.corner = shared.iter().flat_map(|&r| shared.iter().map(move |&c| s.slot(r, c) as u32)).collect();
+        if s.border > 0 {
+            let width = Front::of(s.border);
+            let last = Step { first: self.first_shared, size: s.border, width, factors, ..Step::default() };
+            self.steps.push(last);
+            factors += s.border * width as usize;
+        }
+        self.upper = vec![T::default(); factors];
+        self.lower = vec![T::default(); if s.symmetric { 0 } else { factors }];
+        self.inverse = vec![T::default(); s.n];
+        self.growth = Growth::new(s);
+        Ok(())
+    }
+
+    fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
+        let mut result = Ok(());
+        run(Width::best(), Factor { chain: self, values, result: &mut result });
+        self.growth.finish(s, values);
+        result
+    }
+
+    fn solve(&mut self, x: &mut [T]) {
+        run(Width::best(), Solve { chain: self, x });
+    }
+
+    fn negative_pivots(&self) -> Option<usize> {
+        Some(self.negative)
+    }
+
+    fn growth(&self) -> f64 {
+        self.growth.largest
+    }
+}
+
+struct Factor<'a, T> {
+    chain: &'a mut Chain<T>,
+    values: &'a [T],
+    result: &'a mut Result<(), SolveError>,
+}
+
+impl<T: Scalar> LaneTask for Factor<'_, T> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        *self.result = if R::LANES > 1 {
+            self.chain.eliminate::<true>(self.values)
+        } else {
+            self.chain.eliminate::<false>(self.values)
+        };
+    }
+}
+
+struct Solve<'a, T> {
+    chain: &'a Chain<T>,
+    x: &'a mut [T],
+}
+
+impl<T: Scalar> LaneTask for Solve<'_, T> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        if R::LANES > 1 {
+            self.chain.substitute::<true>(self.x)
+        } else {
+            self.chain.substitute::<false>(self.x)
+        }
+    }
+}
+
+impl<T: Scalar> Chain<T> {
+    #[inline(always)]
+    fn eliminate<const FUSED: bool>(&mut self, values: &[T]) -> Result<(), SolveError> {
+        let mut carried: Carried<T> = [[T::default(); LARGEST]; LARGEST];
+        self.negative = 0;
+        self.growth.start();
+        for k in 0..self.steps.len() {
+            let s = self.steps[k];
+            match (s.width, s.size, s.next, s.border) {
+                // the sizes as constants, for the compiler to unroll
+                (Front::Cable, 6, 6, 0) => {
+                    self.front::<12, FUSED>(
+                        &Step { size: 6, next: 6, border: 0, ..s },
+                        values,
+                        &mut carried,
+                    )?;
+                }
+                (Front::Cable, ..) => self.front::<12, FUSED>(&s, values, &mut carried)?,
+                (Front::Middle, ..) => self.front::<20, FUSED>(&s, values, &mut carried)?,
+                (Front::Large, ..) => self.front::<32, FUSED>(&s, values, &mut carried)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Eliminates one block.
+    #[inline(always)]
+    fn front<const W: usize, const FUSED: bool>(
+        &mut self,
+        s: &Step,
+        values: &[T],
+        carried: &mut Carried<T>,
+    ) -> Result<(), SolveError> {
+        let (size, ahead) = (s.size, s.size + s.next);
+        let all = ahead + s.border;
+        let mut front = [[T::default(); W]; W];
+        if s.first < self.first_shared {
+            for i in 0..size {
+                let row = &values[s.at + i * s.stride..][..ahead];
+                front[i][..ahead].copy_from_slice(row);
+                let row = &values[s.at_border + i * s.stride..][..s.border];
+                front[i][ahead..all].copy_from_slice(row);
+            }
+        } else {
+            for i in 0..size {
+                for j in 0..size {
+                    front[i][j] = values[self.corner[i * size + j] as usize];
+                }
+            }
+        }
+        if !self.symmetric {
+            for i in 0..s.next {
+                let row = &values[s.at_next + i * s.stride_next..][..size];
+                front[size + i][..size].copy_from_slice(row);
+            }
+            for i in 0..s.border {
+                let row = &values[s.at_shared + i * s.stride_shared..][..size];
+                front[ahead + i][..size].copy_from_slice(row);
+            }
+        }
+        // shared unknowns are carried on behind those of this block
+        let place = |i: usize| if i < size { i } else { i + s.next };
+        for i in 0..size + s.border {
+            for j in 0..size + s.border {
+                front[place(i)][place(j)] += carried[i][j];
+            }
+        }
+        let mut grown = [0.0; W];
+        for p in 0..size {
+            let pivot = front[p][p];
+            if pivot.size() == 0.0 || !pivot.is_finite() {
+                return Err(SolveError::Singular(s.first + p));
+            }
+            self.negative += usize::from(pivot.real() < 0.0);
+            let inverse = pivot.inverse();
+            self.inverse[s.first + p] = inverse;
+            let row = front[p];
+            if self.symmetric {
+                for r in p + 1..all {
+                    let l = row[r] * inverse;
+                    for j in 0..W {
+                        front[r][j] = front[r][j].minus::<FUSED>(l, row[j]);
+                    }
+                }
+            } else {
+                let lower = &mut self.lower[s.factors + p * W..][..W];
+                for r in p + 1..all {
+                    let l = front[r][p] * inverse;
+                    lower[r] = l;
+                    for j in 0..W {
+                        front[r][j] = front[r][j].minus::<FUSED>(l, row[j]);
+                    }
+                }
+            }
+            let upper = &mut self.upper[s.factors + p * W..][..W];
+            upper[p + 1..].copy_from_slice(&row[p + 1..]);
+            // both are zero up to the diagonal
+            let share = Share::of(pivot, inverse);
+            grown[p] += share.pivot;
+            if self.symmetric {
+                (0..W).for_each(|j| grown[j] += share.of_one(upper[j]));
+            } else {
+                let lower = &self.lower[s.factors + p * W..][..W];
+                (0..W).for_each(|j| grown[j] += share.of_pair(lower[j], upper[j]));
+            }
+        }
+        let (own, shared) = grown[..all].split_at(ahead);
+        self.growth.add_run(s.first, own);
+        self.growth.add_run(self.first_shared, shared);
+        for i in 0..s.next + s.border {
+            for j in 0..s.next + s.border {
+                carried[i][j] = front[size + i][size + j];
+            }
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn substitute<const FUSED: bool>(&self, x: &mut [T]) {
+        for s in &self.steps {
+            match (s.width, s.size, s.next, s.border) {
+                (Front::Cable, 6, 6, 0) => {
+                    self.forward::<12, FUSED>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
+                }
+                (Front::Cable, ..) => self.forward::<12, FUSED>(s, x),
+                (Front::Middle, ..) => self.forward::<20, FUSED>(s, x),
+                (Front::Large, ..) => self.forward::<32, FUSED>(s, x),
+            }
+        }
+        for s in self.steps.iter().rev() {
+            match (s.width, s.size, s.next, s.border) {
+                (Front::Cable, 6, 6, 0) => {
+                    self.backward::<12>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
+                }
+                (Front::Cable, ..) => self.backward::<12>(s, x),
+                (Front::Middle, ..) => self.backward::<20>(s, x),
+                (Front::Large, ..) => self.backward::<32>(s, x),
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn forward<const W: usize, const FUSED: bool>(&self, s: &Step, x: &mut [T]) {
+        let ahead = s.size + s.next;
+        let all = ahead + s.border;
+        let mut y = [T::default(); W];
+        y[..ahead].copy_from_slice(&x[s.first..s.first + ahead]);
+        y[ahead..all].copy_from_slice(&x[self.first_shared..self.first_shared + s.border]);
+        for p in 0..s.size {
+            let (row, scale) = if self.symmetric {
+                (&self.upper[s.factors + p * W..][..W], self.inverse[s.first + p])
+            } else {
+                (&self.lower[s.factors + p * W..][..W], T::from(1.0))
+            };
+            // zero up to the diagonal, so that whole rows may be subtracted
+            let c = y[p] * scale;
+            for j in 0..W {
+                y[j] = y[j].minus::<FUSED>(c, row[j]);
+            }
+        }
+        x[s.first..s.first + ahead].copy_from_slice(&y[..ahead]);
+        x[self.first_shared..self.first_shared + s.border].copy_from_slice(&y[ahead..all]);
+    }
+
+    #[inline(always)]
+    fn backward<const W: usize>(&self, s: &Step, x: &mut [T]) {
+        let ahead = s.size + s.next;
+        let (before, shared) = x.split_at_mut(self.first_shared.max(s.first + ahead));
+        let x = &mut before[s.first..s.first + ahead];
+        for p in (0..s.size).rev() {
+            let row = &self.upper[s.factors + p * W..][..W];
+            // the shares of others first: they don't wait for this block's solution
+            let mut others: T = row[s.size..ahead].iter().zip(&x[s.size..]).map(|(u, x)| *u * *x).sum();
+            if s.border > 0 {
+                others += row[ahead..ahead + s.border].iter().zip(&*shared).map(|(u, x)| *u * *x).sum::<T>();
+            }
+            let own: T = row[p + 1..s.size].iter().zip(&x[p + 1..s.size]).map(|(u, x)| *u * *x).sum();
+            x[p] = (x[p] - others - own) * self.inverse[s.first + p];
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! Linear buckling: the factor by which all loads may grow until the equilibrium tips over.
+//!
+//! With the loads at `p` times what they are, `p` near 1, the equilibrium moves by `(p - 1) x'` and its stiffness is
+//! `K + (p - 1) K'`; the critical factor makes that singular. Both derivatives are taken at the equilibrium itself: `x'`
+//! by one solution, `K'` along it by central differences. For a straight column that is Euler's problem; where shape
+//! or forces don't change in proportion to the loads it is an estimate, the better the closer the factor is to 1.
+
+use super::krylov::{Arnoldi, Operator, Ritz};
+use super::outcome::{Critical, Mode, ModesError, Raw, finish};
+use super::pencil::Pencil;
+use crate::model::Model;
+use crate::model::state::State;
+use crate::solve::linear::SolveError;
+use crate::solve::statics::Statics;
+
+/// Size of the differences by which `K'` is found, in lengths of the model and radians.
+const DIFFERENCE: f64 = 1e-3;
+/// Inverse of the largest factor, less 1, that is looked for.
+const LEAST: f64 = 1e-4;
+/// Start vectors, as round columns tip over in two ways at once.
+const STARTS: usize = 4;
+const MOST_TURNS: usize = 200;
+
+/// `-K⁻¹ K'`, whose eigenvalues are `1/(p - 1)`.
+struct Growth<'a> {
+    p: &'a mut Pencil,
+    by_load: Vec<f64>,
+    shift: f64,
+}
+
+impl Operator for Growth<'_> {
+    fn len(&self) -> usize {
+        self.p.len()
+    }
+    fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<(), SolveError> {
+        self.p.structure().multiply(&self.by_load, x, y);
+        self.p.load(y);
+        y.iter_mut().for_each(|y| *y = -*y);
+        self.p.solve(y)
+    }
+    fn weigh(&mut self, x: &[f64], y: &mut [f64]) {
+        self.p.mass(x, y);
+    }
+    fn restrict(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
+        self.p.factor(0.0, self.p.fastest)?;
+        self.p.restrict(x)?;
+        self.p.factor(0.0, self.shift)
+    }
+}
+
+/// The critical factor of the loads about the equilibrium in `state`, of which these modes are known; `None` without
+/// loads, and where nothing resists them.
+pub(super) fn critical(
+    statics: &mut Statics<'_>,
+    model: &Model,
+    state: &State,
+    pencil: &mut Pencil,
+    modes: &[Mode],
+) -> Result<Option<Critical>, ModesError> {
+    let (force, stiffness) = statics.loads(state);
+    let loads: Vec<String> = {
+        let all = model.terms().iter().filter(|t| t.is_load());
+        all.filter(|t| model.share_of(t.as_ref(), &state.at()).iter().any(|r| *r != 0.0))
+            .map(|t| t.label())
+            .collect()
+    };
+    let square = |m: &Mode| m.growth * m.growth + m.omega * m.omega;
+    let softest = modes.iter().filter(|m| !m.rigid).map(square).fold(f64::INFINITY, f64::min);
+    if loads.is_empty() || softest.is_infinite() || force.iter().any(|r| !r.is_finite()) {
+        return Ok(None);
+    }
+    // what moves freely is held by hardly anything, so that the matrix isn't singular for its sake
+    let free = modes.iter().any(|m| m.rigid);
+    let shift = if free { 1e-9 * softest } else { 0.0 };
+    pencil.factor(0.0, shift).map_err(ModesError::Solver)?;
+    let d = pencil.answer(&force).map_err(ModesError::Solver)?;
+    let by_load = stiffness_by_load(statics, model, state, &d, stiffness);
+    if by_load.iter().any(|x| !x.is_finite()) {
+        return Ok(None);
+    }
+    let stable = !modes.iter().any(Mode::is_unstable);
+    let mut growth = Growth { p: pencil, by_load, shift };
+    let found = search(&mut growth, stable)?;
+    let (factor, shape) = match found {
+        None => (None, None),
+        Some((factor, x)) => {
+            let raw = Raw { rate: [0.0; 2], rigid: false, shape: [x, Vec::new()], residual: 0.0 };
+            (Some(factor), Some(finish(model, growth.p, raw)))
+        }
+    };
+    Ok(Some(Critical { loads, factor, shape }))
+}
+
+/// `K'`: its change along the path of equilibria, whose direction is `d`, and the loads' own part.
+fn stiffness_by_load(
+    statics: &mut Statics<'_>,
+    model: &Model,
+    state: &State,
+    d: &[f64],
+    own: Vec<f64>,
+) -> Vec<f64> {
+    let (moves, multipliers) = d.split_at(model.velocities());
+    let mut size = 0.0_f64;
+    for n in model.nodes() {
+        for (k, x) in moves[n.dofs()].iter().enumerate() {
+            let length = k < 3 && n.kind.has_position();
+            size = size.max(if length { x.abs() / model.length() } else { x.abs() });
+        }
+    }
+    let step = if size > DIFFERENCE { DIFFERENCE / size } else { 1.0 };
+    let mut at = |step: f64| {
+        let mut there = state.clone();
+        let d: Vec<f64> = moves.iter().map(|x| step * x).collect();
+        model.retract(&state.q, &d, &mut there.q);
+        there.lambda.iter_mut().zip(multipliers).for_each(|(l, m)| *l += step * m);
+        statics.linearise(&there).stiffness
+    };
+    let (ahead, behind) = (at(step), at(-step));
+    let mut sum = own;
+    for ((sum, a), b) in sum.iter_mut().zip(&ahead).zip(&behind) {
+        *sum += (a - b) / (2.0 * step);
+    }
+    sum
+}
+
+/// The factor and the shape that goes with it.
+fn search(growth: &mut Growth<'_>, stable: bool) -> Result<Option<(f64, Vec<f64>)>, ModesError> {
+    let mut space = Arnoldi::default();
+    let mut closed = false;
+    for _ in 0..STARTS {
+        closed |= !space.start(growth).map_err(ModesError::Solver)?;
+    }
+    let (mut next_look, mut before) = (6 * STARTS, None);
+    loop {
+        while space.turns() < next_look && !space.is_closed() {
+            space.step(growth).map_err(ModesError::Solver)?;
+        }
+        if space.is_closed() && !closed {
+            closed = !space.start(growth).map_err(ModesError::Solver)?;
+            continue;
+        }
+        closed &= space.is_closed();
+        let all = space.ritz(false).ok_or(ModesError::Eigen)?;
+        let factor = |r: &Ritz| 1.0 + 1.0 / r.value[0];
+        let real = |r: &&Ritz| r.value[1].abs() <= 1e-6 * r.size();
+        let counts = |r: &&Ritz| match stable {
+            true => r.value[0] > LEAST,
+            false => r.value[0] > LEAST || r.value[0] < -1.0 - LEAST,
+        };
+        let first = all.iter().filter(real).filter(counts).min_by(|a, b| factor(a).total_cmp(&factor(b)));
+        let fine = |r: &Ritz| r.residual <= 1e-8 * r.size();
+        // all that may come before the first are known as well
+        let known = first.is_none_or(|first| {
+            all.iter().filter(counts).all(|r| fine(r) || factor(r) > factor(first)) && fine(first)
+        });
+        let now = first.map(factor);
+        let same = before.is_some_and(|old: Option<f64>| match (old, now) {
+            (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),
+            (a, b) => a == b,
+        });
+        if closed || (known && same) {
+            return Ok(first.map(|r| (factor(r), space.vector(&r.vector)[0].clone())));
+        }
+        if space.turns() >= MOST_TURNS {
+            return Ok(None);
+        }
+        before = known.then_some(now);
+        next_look = space.turns() + 3 * STARTS;
+    }
+}

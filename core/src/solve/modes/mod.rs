@@ -1,0 +1,161 @@
+//! Vibration modes: small free motions `x e^{λt}` about an equilibrium, at rest or in a frame that moves steadily.
+//!
+//! The equations are those of the model, linearised where the equilibrium is: with the stiffness that comes of tension
+//! and of the forces of constraints, in a turning frame with Coriolis and centrifugal forces. Multipliers stay in the
+//! equations, so motions meet the constraints and no spurious modes come of them.
+
+mod buckling;
+mod krylov;
+mod outcome;
+mod pencil;
+mod quadratic;
+mod undamped;
+
+use crate::model::motion::SteadyFrame;
+use crate::model::state::{At, State};
+use crate::model::{Model, System};
+use crate::solve::statics::{Linear, Statics, StaticsOptions};
+pub use outcome::{Critical, Mode, Modes, ModesError, OnLook};
+use outcome::{Found, Watch, direction, finish};
+use pencil::Pencil;
+use std::ops::ControlFlow;
+
+/// A stiffness of less than so many times its own rounding is none.
+const ZERO: f64 = 64.0;
+
+/// Whether a state is in balance as it is, up to the tolerance of positions; if so, its multipliers are set. What no
+/// search for equilibrium can find, since nothing tells one place from another, may be in balance all the same.
+///
+/// # Errors
+/// The equations can't be solved, or something has no mass.
+pub fn in_balance(
+    model: &Model,
+    state: &mut State,
+    options: &StaticsOptions,
+    frame: Option<SteadyFrame>,
+) -> Result<bool, ModesError> {
+    let mut statics = Statics::relative(model, options, frame).map_err(ModesError::Solver)?;
+    statics.run_material(state)?;
+    let mut trial = state.clone();
+    // the first correction finds the multipliers, the second is taken with the stiffness that comes of them
+    for round in 0..2 {
+        let mut pencil = Pencil::new(model, &state.modes, statics.linearise(&trial))?;
+        pencil.factor(0.0, 1e-9 * pencil.fastest).map_err(ModesError::Solver)?;
+        let d = pencil.correction().map_err(ModesError::Solver)?;
+        let (moves, multipliers) = d.split_at(model.velocities());
+        let mut worst = 0.0_f64;
+        for n in model.nodes() {
+            for (k, x) in moves[n.dofs()].iter().enumerate() {
+                let x = if k < 3 && n.kind.has_position() { x.abs() / model.length() } else { x.abs() };
+                // max() would swallow a NaN
+                worst = if x.is_nan() { f64::INFINITY } else { worst.max(x) };
+            }
+        }
+        if !(worst <= options.tolerance) {
+            return Ok(false);
+        }
+        trial.lambda.iter_mut().zip(multipliers).for_each(|(l, d)| *l += d);
+        // a tiny strain of what is stiff is not a tiny force
+        let before = trial.q.clone();
+        model.retract(&before, moves, &mut trial.q);
+        if round == 1 {
+            statics.ride(&mut trial);
+            *state = trial;
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// The `count` lowest modes about the equilibrium in `state`, which [`Statics`] or [`in_balance`] has found; in the
+/// order of `|λ|`. All there are if they are fewer. Sparse: the matrix `K + s C + s² M` is factored with the
+/// constraints, and its inverse builds a Krylov space (Lanczos's and Arnoldi's methods).
+///
+/// # Errors
+/// Something moves without mass, a constraint moves otherwise than the frame, or the iteration fails.
+pub fn modes(
+    model: &Model,
+    state: &State,
+    options: &StaticsOptions,
+    frame: Option<SteadyFrame>,
+    count: usize,
+    look: &mut OnLook<'_>,
+) -> Result<Modes, ModesError> {
+    if count == 0 {
+        return Err(ModesError::None);
+    }
+    let mut statics = Statics::relative(model, options, frame).map_err(ModesError::Solver)?;
+    statics.run_material(state)?;
+    let mut rest = state.clone();
+    rest.v.fill(0.0);
+    rest.a.fill(0.0);
+    statics.ride(&mut rest);
+    refuse_moving(model, &rest, frame)?;
+    let mut pencil = Pencil::new(model, &state.modes, statics.linearise(&rest))?;
+    let mut watch = Watch(look);
+    let found = if pencil.damped || !pencil.symmetric {
+        quadratic::find(&mut pencil, count, &mut watch)?
+    } else {
+        let mut kinds = vec![0; pencil.len()];
+        for node in model.nodes() {
+            for (i, dof) in node.dofs().enumerate() {
+                kinds[pencil.structure().position[dof]] = direction(node, i).unwrap_or(0);
+            }
+        }
+        undamped::find(&mut pencil, count, &kinds, &mut watch)?
+    };
+    if found.modes.is_empty() {
+        return Err(ModesError::Held);
+    }
+    let mut found = found;
+    let all = std::mem::take(&mut found.modes);
+    let mut modes: Vec<Mode> = all.into_iter().map(|raw| finish(model, &pencil, raw)).collect();
+    // in the order found, but rigid ones first
+    modes.sort_by_key(|m| !m.rigid);
+    // no law of inertia counts what is damped or gyroscopic, but a disturbance finds what grows
+    let hidden = match pencil.damped || !pencil.symmetric {
+        true if !modes.iter().any(Mode::is_unstable) => {
+            let after = statics.disturb(&rest).map_err(ModesError::Solver)?;
+            after.unstable.then_some(after.rate)
+        }
+        _ => None,
+    };
+    // the modes are right though a matrix of the buckling problem be singular
+    let critical = match buckling::critical(&mut statics, model, &rest, &mut pencil, &modes) {
+        Err(ModesError::Solver(_) | ModesError::Eigen) => None,
+        found => found?,
+    };
+    let Found { missing, of, .. } = found;
+    Ok(Modes { modes, damped: pencil.damped, of, missing, critical, hidden })
+}
+
+/// The `count` modes of smallest `|λ|` of equations that are linearised already, whether a state may vibrate or not.
+pub(crate) fn slowest(
+    model: &Model,
+    modes: &[f64],
+    linear: Linear,
+    count: usize,
+) -> Result<Vec<Mode>, ModesError> {
+    let mut pencil = Pencil::new(model, modes, linear)?;
+    let found = quadratic::find(&mut pencil, count, &mut Watch(&mut |_, _, _| ControlFlow::Continue(())))?;
+    Ok(found.modes.into_iter().map(|raw| finish(model, &pencil, raw)).collect())
+}
+
+/// What is held still moves with the frame; what is driven must move like it, or not at all.
+fn refuse_moving(model: &Model, state: &State, frame: Option<SteadyFrame>) -> Result<(), ModesError> {
+    let m = model.multipliers();
+    let (mut rate, mut bias, mut sum) = (vec![0.0; m], vec![0.0; m], vec![0.0; m]);
+    let at: At<'_> = state.at();
+    model.rates(&at, &mut rate, &mut bias);
+    model.constraint_rates(&at, &mut System::default(), &mut sum);
+    for (c, constraint) in model.constraints().iter().enumerate() {
+        let rows = model.rows_of(c);
+        let driven = rate[rows.clone()].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let off = sum[rows.clone()].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let pushed = bias[rows].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        if (driven > 0.0 && off > 1e-9 * driven) || (frame.is_none() && pushed > 0.0) {
+            return Err(ModesError::Moving { constraint: constraint.name().into(), t: state.t });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,170 @@
+//! Loads at which a path of equilibria loses its stability: they are located, and left for the stable path behind them.
+
+use super::naming::describe;
+use super::outcome::{Critical, CriticalKind, Found, StaticsError};
+use super::path::{Point, Way};
+use super::problem::Statics;
+use crate::model::node::retract;
+use crate::model::state::State;
+
+/// How often an interval of the load is halved to locate where eigenvalues cross.
+const HALVINGS: u32 = 20;
+/// How far behind a critical load the stable path is taken up, in parts of what is left of the way.
+const BEHIND: f64 = 0.02;
+
+impl Statics<'_> {
+    /// Locates the critical point between `here` and the point a step further; `here` becomes the last one before it.
+    /// `None` if there is none: these are points of different paths.
+    pub(super) fn locate(
+        &mut self,
+        here: &mut Point,
+        beyond: &Point,
+        ds: f64,
+        way: Way,
+        found: &mut Found,
+    ) -> Option<Critical> {
+        let (mut low, mut high, mut after) = (0.0, ds, beyond.clone());
+        let start = here.clone();
+        for _ in 0..40 {
+            if (after.state.t - here.state.t).abs() <= 1e-10 * way.span && high - low <= 1e-6 * ds.max(1e-3) {
+                break;
+            }
+            let middle = 0.5 * (low + high);
+            let (next, iterations) = self.step(&start, middle, way)?;
+            found.iterations += iterations;
+            if next.unstable > 0 || next.rate * way.sign <= 0.0 {
+                (high, after) = (middle, next);
+            } else {
+                low = middle;
+                *here = next;
+            }
+        }
+        if self.distance(&here.state.q, &after.state.q) > 1e-2 * ds {
+            return None;
+        }
+        let limit = after.rate * way.sign <= 0.0;
+        let directions = if limit { 1 } else { after.unstable.max(1) };
+        let shapes = self.soft(&here.state, directions).unwrap_or_default();
+        let shape = match (limit, shapes.is_empty()) {
+            (true, _) | (_, true) => self.small(here.slope[..self.model.velocities()].to_vec()),
+            (false, false) => self.choose(&shapes),
+        };
+        Some(Critical {
+            t: 0.5 * (here.state.t + after.state.t),
+            kind: if limit { CriticalKind::Limit } else { CriticalKind::Bifurcation },
+            directions,
+            what: describe(self.model, &here.state.q, &shape),
+            shape,
+            state: self.riding(&here.state),
+        })
+    }
+
+    /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.
+    pub(super) fn locate_by_load(&mut self, from: &State, to: &State, found: &mut Found) {
+        let kept = (self.unstable, self.neutral.clone(), self.doubt.clone(), self.judged.clone());
+        let (mut low, mut high, mut judged) = (from.clone(), to.t, self.judged.clone());
+        for _ in 0..HALVINGS {
+            let mut middle = low.clone();
+            middle.t = 0.5 * (low.t + high);
+            let t = middle.t;
+            let Ok(more) = self.search(&mut middle, false, false, false) else { break };
+            found.add(&more);
+            if self.unstable > 0 || self.judged.flutter > 0.0 {
+                (high, judged) = (t, self.judged.clone());
+            } else {
+                low = middle;
+            }
+        }
+        let (kind, shape) = match judged.way_out {
+            Some(shape) => (CriticalKind::Bifurcation, shape),
+            None => (CriticalKind::Flutter, judged.swing),
+        };
+        let shape = self.small(shape);
+        let state = self.riding(&low);
+        self.critical.push(Critical {
+            t: 0.5 * (low.t + high),
+            kind,
+            directions: judged.unstable.max(1),
+            what: describe(self.model, &low.q, &shape),
+            shape,
+            state,
+        });
+        (self.unstable, self.neutral, self.doubt, self.judged) = kept;
+    }
+
+    /// Leaves a critical point for the stable path behind it.
+    pub(super) fn leave(
+        &mut self,
+        state: &mut State,
+        slope: &[f64],
+        critical: &Critical,
+        way: Way,
+        found: &mut Found,
+    ) -> Result<(), StaticsError> {
+        let nv = self.model.velocities();
+        let forward = (0..nv).map(|i| slope[i] * critical.shape[i]).sum::<f64>();
+        let sign = if critical.kind == CriticalKind::Limit && forward < 0.0 { -1.0 } else { 1.0 };
+        let left = way.end - state.t;
+        let mut error = None;
+        for (part, sign) in [(BEHIND, sign), (1.0, sign), (BEHIND, -sign), (1.0, -sign)] {
+            let mut there = state.clone();
+            there.t = if part == 1.0 { way.end } else { state.t + part * left };
+            let push: Vec<f64> = critical.shape.iter().map(|x| sign * x).collect();
+            let before = there.q.clone();
+            retract(self.model.nodes(), &before, &push, &mut there.q);
+            self.free.clear();
+            match self.creep(&mut there, found, false) {
+                Ok(()) => {
+                    *state = there;
+                    return Ok(());
+                }
+                Err(e) => error = error.or(Some(e)),
+            }
+        }
+        let t = critical.t;
+        let e = error.unwrap_or_else(|| self.fail(state, "", found.iterations));
+        Err(StaticsError { why: format!("behind {} at load factor {t}, {}", critical.kind, e.why), ..e })
+    }
+
+    /// Leaves the last critical point for the stable path behind it.
+    pub(super) fn leave_last(
+        &mut self,
+        state: &mut State,
+        end: f64,
+        found: &mut Found,
+    ) -> Result<(), StaticsError> {
+        let Some(critical) = self.critical.last().cloned() else { return Ok(()) };
+        *state = critical.state.clone();
+        let way = Way { end, span: self.span, sign: (end - state.t).signum() };
+        let nowhere = vec![0.0; self.model.velocities()];
+        self.leave(state, &nowhere, &critical, way, found)
+    }
+
+    /// The softest directions of an equilibrium, as increments of the size of a push.
+    pub(super) fn soft(&mut self, state: &State, count: usize) -> Option<Vec<Vec<f64>>> {
+        let load = self.load(state);
+        self.count(state, None, load)?;
+        let w = self.weights();
+        let lowest = self.lowest(&w, count).ok()?;
+        Some(lowest.iter().map(|x| self.increment(x)).collect())
+    }
+
+    /// Of several directions that all go, one along an axis of space, the first that shows.
+    pub(super) fn choose(&self, shapes: &[Vec<f64>]) -> Vec<f64> {
+        if shapes.len() == 1 {
+            return shapes[0].clone();
+        }
+        let parts = |axis: usize| -> Vec<f64> {
+            shapes.iter().map(|s| self.places().map(|n| s[n.v + axis]).sum()).collect()
+        };
+        let size = |p: &Vec<f64>| p.iter().map(|x| x * x).sum::<f64>();
+        let all = [parts(0), parts(1), parts(2)];
+        let largest = all.iter().map(size).fold(0.0, f64::max);
+        let along = all.iter().find(|p| size(p) >= 0.5 * largest).unwrap_or(&all[0]);
+        if !(largest > 0.0) {
+            return shapes[0].clone();
+        }
+        let sum = |i: usize| shapes.iter().zip(along).map(|(s, p)| s[i] * p).sum::<f64>();
+        self.small((0..self.model.velocities()).map(sum).collect())
+    }
+}

@@ -1,0 +1,181 @@
+//! What becomes of a small disturbance where loads have no potential: the linearised equations of motion are integrated
+//! from it, in the frame of the equilibrium. It sees fast growth at any frequency; slow growth at low frequencies is left
+//! to [`super::stability`].
+
+use super::problem::Statics;
+use crate::model::state::State;
+use crate::solve::integrator::Scheme;
+use crate::solve::linear::{Guard, SolveError};
+use crate::solve::times::Phase;
+
+/// What becomes of a small disturbance of an equilibrium.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Disturbance {
+    /// Rate at which it grows in the end [1/s]; negative if it dies out.
+    pub rate: f64,
+    /// Whether it goes one way only (divergence), instead of to and fro (flutter).
+    pub one_way: bool,
+    /// Its shape in the end, as an increment.
+    pub shape: Vec<f64>,
+    /// Whether it grew enough to call the equilibrium unstable.
+    pub unstable: bool,
+}
+
+/// Steps of the integration, and their number per characteristic time.
+const STEPS: usize = 800;
+const PER_TIME: f64 = 20.0;
+/// Growth over the second half of the steps from which on the equilibrium is unstable.
+const GROWTH: f64 = 3.0;
+/// How often the steps are made smaller to resolve a fast growth.
+const REFINEMENTS: u32 = 12;
+
+impl Statics<'_> {
+    /// Follows a small disturbance of the equilibrium in `state` for a few tens of its characteristic time
+    /// `√(m L / F)`, with `M ẍ + (C + 2 M W) ẋ + (K + C W + M W²) x + Gᵀλ = 0`, `G x = 0` in the frame of the
+    /// search. An unstable equilibrium isn't wrong, but it will not be seen: a limp hose whose tension is below
+    /// `m U²` flutters behind its ship.
+    ///
+    /// # Errors
+    /// The matrices can't be factored.
+    pub fn disturb(&mut self, state: &State) -> Result<Disturbance, SolveError> {
+        let model = self.model;
+        let load = self.load(state);
+        if load <= f64::MIN_POSITIVE {
+            // nothing pulls, so nothing can tip over; there is no characteristic time either
+            let shape = vec![0.0; model.velocities()];
+            return Ok(Disturbance { rate: 0.0, one_way: false, shape, unstable: false });
+        }
+        self.assemble(state, &state.q, &state.lambda, None, true);
+        let n = self.structure.n;
+        let order = |d: &[f64], x: &mut Vec<f64>, s: &crate::model::structure::Structure| {
+            x.clear();
+            x.resize(s.n, 0.0);
+            for (i, d) in d.iter().enumerate() {
+                x[s.position[i]] = *d;
+            }
+        };
+        let mass: f64 = {
+            let (mut x, mut y) = (Vec::new(), vec![0.0; n]);
+            let mut unit = vec![0.0; model.velocities()];
+            for node in model.nodes().iter().filter(|n| n.kind.has_position()) {
+                unit[node.v] = 1.0;
+            }
+            order(&unit, &mut x, &self.structure);
+            self.structure.multiply(&self.mass.values, &x, &mut y);
+            x.iter().zip(&y).map(|(x, y)| x * y).sum()
+        };
+        let time = (mass * model.length() / load).sqrt();
+        let mut h = time / PER_TIME;
+        let begin = self.clocks.start();
+        let mut found = self.integrate(h, time)?;
+        for _ in 0..REFINEMENTS {
+            // a growth that the steps don't resolve changes sign at each of them
+            if !found.unstable || found.one_way || found.rate * h < 0.3 {
+                break;
+            }
+            h *= 0.25;
+            found = self.integrate(h, time)?;
+        }
+        self.clocks.stop(Phase::Stability, begin);
+        Ok(found)
+    }
+
+    /// Integrates with `STEPS` steps of `h`; `time` weighs velocities against positions.
+    fn integrate(&self, h: f64, time: f64) -> Result<Disturbance, SolveError> {
+        let (n, nv) = (self.structure.n, self.model.velocities());
+        let c = Scheme::GeneralizedAlpha { rho_inf: 0.9 }.coefficients().unwrap_or_else(|_| unreachable!());
+
+        let mut values = vec![0.0; self.structure.entries()];
+        for (r, columns, at) in self.structure.rows() {
+            for (i, p) in at.enumerate() {
+                let (k, d, m) = (self.system.values[p], self.damping.values[p], self.mass.values[p]);
+                let constrains =
+                    self.structure.is_multiplier[r] || self.structure.is_multiplier[columns.get(i)];
+                values[p] = if constrains { k } else { c.beta * h * h * k + c.gamma * h * d + c.mass() * m };
+            }
+        }
+        if let Some(softening) = &self.softening {
+            softening.apply(&mut values);
+        }
+        let mut solver = Guard::new(&self.structure)?;
+        solver.factor(&self.structure, &values)?;
+
+        // a disturbance that holds everything, and respects the constraints
+        let mut v: Vec<f64> =
+            (0..n).map(|p| if self.structure.is_multiplier[p] { 0.0 } else { noise(p) }).collect();
+        let mut y = vec![0.0; n];
+        self.structure.multiply(&self.mass.values, &v, &mut y);
+        zero_rows(&self.structure, &mut y);
+        solver.solve(&self.structure, &values, &mut y)?;
+        zero_rows(&self.structure, &mut y);
+        v.copy_from_slice(&y);
+
+        let (mut x, mut a, mut vd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let (mut p, mut pv, mut pa, mut r) = (vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let size = |x: &[f64], v: &[f64]| {
+            x.iter().zip(v).map(|(x, v)| x * x + time * time * v * v).sum::<f64>().sqrt()
+        };
+        let (mut middle, mut turns, mut scaled) = (0.0, 0, 0.0);
+        let mut before = x.clone();
+        for step in 0..STEPS {
+            for i in 0..n {
+                p[i] = x[i] + h * v[i] + h * h * (0.5 - c.beta) * a[i];
+                pv[i] = v[i] + h * (1.0 - c.gamma) * a[i];
+                pa[i] = (c.alpha_m * a[i] - c.alpha_f * vd[i]) / (1.0 - c.alpha_f);
+            }
+            r.fill(0.0);
+            for (matrix, x) in [(&self.system, &p), (&self.damping, &pv), (&self.mass, &pa)] {
+                self.structure.multiply(&matrix.values, x, &mut y);
+                for i in 0..n {
+                    // the rows of constraints stand in every matrix; they hold for positions
+                    if !self.structure.is_multiplier[i] {
+                        r[i] -= y[i];
+                    } else if std::ptr::eq(matrix, &self.system) {
+                        r[i] = -y[i] / (c.beta * h * h);
+                    }
+                }
+            }
+            solver.solve(&self.structure, &values, &mut r)?;
+            zero_rows(&self.structure, &mut r);
+            for i in 0..n {
+                x[i] = p[i] + h * h * c.beta * r[i];
+                v[i] = pv[i] + h * c.gamma * r[i];
+                vd[i] = pa[i] + c.mass() * r[i];
+            }
+            std::mem::swap(&mut a, &mut r);
+            let now = size(&x, &v);
+            if now > 1e6 {
+                // linear: only the shape and the logarithm of the size matter
+                for y in [&mut x, &mut v, &mut a, &mut vd, &mut before] {
+                    y.iter_mut().for_each(|y| *y /= now);
+                }
+                scaled += now.ln();
+            }
+            if step + 1 == STEPS / 2 {
+                middle = size(&x, &v).ln() + scaled;
+                before.copy_from_slice(&x);
+            } else if step > STEPS / 2 && x.iter().zip(&before).map(|(x, b)| x * b).sum::<f64>() < 0.0 {
+                turns += 1;
+                before.copy_from_slice(&x);
+            }
+        }
+        let growth = size(&x, &v).ln() + scaled - middle;
+        let shape = (0..nv).map(|i| x[self.structure.position[i]]).collect();
+        let rate = growth / (h * (STEPS / 2) as f64);
+        Ok(Disturbance { rate, one_way: turns == 0, shape, unstable: growth > GROWTH.ln() })
+    }
+}
+
+fn zero_rows(s: &crate::model::structure::Structure, x: &mut [f64]) {
+    for (x, &multiplier) in x.iter_mut().zip(&s.is_multiplier) {
+        if multiplier {
+            *x = 0.0;
+        }
+    }
+}
+
+/// Numbers between -1 and 1 without a pattern.
+fn noise(k: usize) -> f64 {
+    let x = (k as f64 * 12.9898).sin() * 43_758.545;
+    2.0 * (x - x.floor()) - 1.0
+}

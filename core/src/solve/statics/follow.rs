@@ -1,0 +1,184 @@
+//! One equilibrium from a guess, and the path of equilibria along the load.
+
+use super::outcome::{Found, StaticsError};
+use super::problem::Statics;
+use super::search::FOLD;
+use crate::model::state::State;
+
+/// How often the arc of a path is tried before shorter steps are.
+const ARCS: u32 = 3;
+
+impl Statics<'_> {
+    /// Moves `state` to the equilibrium at its time. `cold` says that no equilibrium nearby is known: the first of a
+    /// path, or a guess.
+    ///
+    /// # Errors
+    /// None was found, or there is none since the length of a cable changes; the state is as it was.
+    pub fn find(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
+        self.run_material(state)?;
+        let before = state.clone();
+        let found = self.seek(state, cold)?;
+        self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
+        Ok(found)
+    }
+
+    fn seek(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
+        let before = state.clone();
+        self.free.clear();
+        let mut first = self.search(state, cold, cold, true);
+        if first.is_err() && !cold {
+            // from a neighbouring equilibrium the bare iteration nearly always gets there, and faster
+            state.clone_from(&before);
+            first = self.search(state, false, true, true);
+        }
+        let suspicious = match &first {
+            Ok(_) => cold && self.options.stable && self.folded(state) < FOLD,
+            Err(_) => cold,
+        };
+        if suspicious {
+            first = self.find_straight(state, &before, first);
+        }
+        first.or_else(|e| self.find_otherwise(state, before, cold, e))
+    }
+
+    /// A guess can lead into a fold or nowhere; straight cables between their ends rarely do.
+    fn find_straight(
+        &mut self,
+        state: &mut State,
+        before: &State,
+        first: Result<Found, StaticsError>,
+    ) -> Result<Found, StaticsError> {
+        let (neutral, doubt) = (self.neutral.clone(), self.doubt.clone());
+        let mut other = before.clone();
+        other.lambda.fill(0.0);
+        for part in self.model.parts() {
+            part.straighten(&mut other.q);
+        }
+        let second = self.search(&mut other, true, true, true);
+        match (first, second) {
+            (Ok(found), Ok(again)) if self.folded(&other) <= self.folded(state) => {
+                _ = again;
+                (self.neutral, self.doubt) = (neutral, doubt);
+                Ok(found)
+            }
+            (_, Ok(again)) => {
+                *state = other;
+                Ok(Found { straightened: true, ..again })
+            }
+            (Ok(found), Err(_)) => {
+                (self.neutral, self.doubt) = (neutral, doubt);
+                Ok(found)
+            }
+            (Err(e), Err(_)) => Err(e),
+        }
+    }
+
+    /// Where Newton's method finds nothing from a guess: something may be free to move, or the guess is far away.
+    fn find_otherwise(
+        &mut self,
+        state: &mut State,
+        before: State,
+        cold: bool,
+        first: StaticsError,
+    ) -> Result<Found, StaticsError> {
+        let mut found = Found { iterations: first.iterations, ..Found::default() };
+        state.clone_from(&before);
+        if self.set_free(state)
+            && let Ok(more) = self.search(state, cold, cold, true)
+        {
+            found.add(&more);
+            return Ok(found);
+        }
+        self.free.clear();
+        if cold && self.options.stable {
+            state.clone_from(&before);
+            if self.creep(state, &mut found, true).is_ok() {
+                return Ok(found);
+            }
+        }
+        *state = before;
+        Err(self.explain(state, first))
+    }
+
+    /// Moves the state from one equilibrium to that at time `t`: in one step if that converges, else in as many smaller
+    /// ones as it needs, along the arc of the path where the load can't be raised. Critical loads are passed to where the
+    /// path is stable again, and kept in [`Statics::critical`]. Returns the work of all of them.
+    ///
+    /// # Errors
+    /// The path could not be followed; the state is the last equilibrium that was found.
+    pub fn follow(&mut self, state: &mut State, t: f64) -> Result<Found, StaticsError> {
+        let (mut h, mut sum) = (t - state.t, Found::default());
+        self.span = self.span.max(h.abs());
+        let least = h.abs() / 256.0;
+        // shorter steps of the load come before the arc, which costs more
+        let short = h.abs() / 4.5;
+        let mut arcs = 0;
+        while state.t != t {
+            let before = state.clone();
+            let swings = self.judged.flutter > 0.0;
+            state.t = if (t - before.t).abs() <= 1.001 * h.abs() { t } else { before.t + h };
+            let to = state.t;
+            self.run_on(state, to - before.t);
+            let e = match self.step_on(state) {
+                Ok(found) => {
+                    sum.add(&found);
+                    if self.judged.flutter > 0.0 && !swings {
+                        self.locate_by_load(&before, state, &mut sum);
+                    } else if self.leapt(&before, state) {
+                        self.go_round(&before, state, &mut sum)?;
+                    }
+                    h *= 2.0;
+                    continue;
+                }
+                // what was refused isn't found by smaller steps either
+                Err(e) if e.iterations == 0 => {
+                    *state = before;
+                    return Err(StaticsError { on_path: true, ..e });
+                }
+                Err(e) => e,
+            };
+            let unstable = self.unstable > 0;
+            let beyond = state.clone();
+            state.clone_from(&before);
+            if self.options.stable && unstable && !self.judged.potential {
+                self.locate_by_load(&before, &beyond, &mut sum);
+                self.leave_last(state, to, &mut sum)?;
+                continue;
+            }
+            if self.options.stable && (h.abs() <= short || unstable) && arcs < ARCS {
+                arcs += 1;
+                let known = self.critical.len();
+                match self.trace(state, to, &mut sum) {
+                    Ok(()) => {
+                        arcs = 0;
+                        continue;
+                    }
+                    // a critical load is an answer, if not the one that was hoped for
+                    Err(e) if self.critical.len() > known => return Err(e),
+                    Err(_) => state.clone_from(&before),
+                }
+            }
+            h *= 0.5;
+            if h.abs() < least {
+                return Err(e);
+            }
+        }
+        Ok(sum)
+    }
+
+    /// One step of [`Statics::follow`]: a stable equilibrium at the time of the state.
+    fn step_on(&mut self, state: &mut State) -> Result<Found, StaticsError> {
+        let before = state.clone();
+        let mut first = self.search(state, false, false, false);
+        if first.is_err() {
+            state.clone_from(&before);
+            first = self.search(state, false, true, false);
+        }
+        let found = first?;
+        if self.unstable > 0 {
+            let why = format!("it is unstable in {} directions", self.unstable);
+            return Err(StaticsError { why, ..self.fail(state, "", found.iterations) });
+        }
+        Ok(found)
+    }
+}

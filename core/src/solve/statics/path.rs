@@ -1,0 +1,346 @@
+//! Paths of equilibria by their arc length: round bends that no step of the load gets round, up to limit points and
+//! bifurcations, where the path is left for a stable one.
+//!
+//! Positions, multipliers and time are unknown together; the step along the path is prescribed. Tangents of neighbouring
+//! points may differ by [`BEND`] at most, else a limit point would be jumped over. Where the count of unstable directions
+//! changes or the load turns round, the critical load is located by bisection; the model is then pushed along the
+//! direction that has become free and creeps on to where it is stable ([`super::creep`]).
+//!
+//! Riks (1979), Int. J. Solids Struct. 15, 529; Crisfield (1981), Comput. Struct. 13, 55.
+
+use super::outcome::{Found, StaticsError};
+use super::problem::Statics;
+use super::stability::MARGIN;
+use crate::model::node::{Node, NodeKind, difference, retract};
+use crate::model::state::{At, Relaxation, Relaxed, State};
+use crate::solve::linear::SolveError;
+
+/// First step, in parts of the reference length and of the whole load.
+const FIRST: f64 = 0.01;
+/// Longest step, and shortest.
+const LONGEST: f64 = 0.1;
+const SHORTEST: f64 = 1e-8;
+/// Least cosine between neighbouring tangents.
+const BEND: f64 = 0.98;
+/// Most iterations of a step.
+const ITERATIONS: u32 = 10;
+/// Most steps of a path.
+const STEPS: u32 = 5000;
+/// Mean move of a step of the load from which on its tangents are compared, relative to the reference length; and the part
+/// of it that they may leave unexplained.
+const FAR: f64 = 0.05;
+const UNEXPLAINED: f64 = 0.5;
+
+/// A point of the path.
+#[derive(Clone)]
+pub(super) struct Point {
+    pub state: State,
+    /// Change of positions and multipliers, and of time, along the path.
+    pub slope: Vec<f64>,
+    pub rate: f64,
+    /// Directions that it is unstable in.
+    pub unstable: usize,
+}
+
+/// The way that is to be gone.
+#[derive(Clone, Copy)]
+pub(super) struct Way {
+    pub end: f64,
+    /// Scale of time, and its sign on the way.
+    pub span: f64,
+    pub sign: f64,
+}
+
+impl Statics<'_> {
+    /// Follows the path from the stable equilibrium in `state` to time `end`, or to the stable path behind the first
+    /// critical load.
+    ///
+    /// # Errors
+    /// The path ends where Newton's method does; the state is the last point that was found.
+    pub(super) fn trace(
+        &mut self,
+        state: &mut State,
+        end: f64,
+        found: &mut Found,
+    ) -> Result<(), StaticsError> {
+        let way = Way {
+            end,
+            span: self.span.max((end - state.t).abs()).max(f64::MIN_POSITIVE),
+            sign: (end - state.t).signum(),
+        };
+        let lost = |s: &mut Self, state: &State, why: &str| s.fail(state, why, found.iterations);
+        let mut here = match self.point(state.clone(), None, way) {
+            Ok(p) => p,
+            Err(e) => return Err(lost(self, state, &e.to_string())),
+        };
+        let mut ds = FIRST.min((end - state.t).abs() / way.span);
+        for _ in 0..STEPS {
+            // beyond the end loads may be others
+            let reach = (end - here.state.t) / here.rate;
+            if reach > 0.0 && ds >= reach {
+                if let Some(at_end) = self.arrive(&here, reach, end, found) {
+                    *state = at_end;
+                    return Ok(());
+                }
+                ds = 0.5 * reach;
+            }
+            let Some((next, iterations)) = self.step(&here, ds, way) else {
+                ds *= 0.5;
+                if ds < SHORTEST {
+                    *state = here.state;
+                    let why = "the path of equilibria can't be followed any further";
+                    return Err(self.fail(state, why, found.iterations));
+                }
+                continue;
+            };
+            found.iterations += iterations;
+            if next.unstable > 0 || next.rate * way.sign <= 0.0 {
+                let Some(critical) = self.locate(&mut here, &next, ds, way, found) else {
+                    // the step had leapt from one path to another
+                    ds *= 0.25;
+                    if ds < SHORTEST {
+                        *state = here.state;
+                        return Err(self.fail(state, "paths of equilibria come too close", found.iterations));
+                    }
+                    continue;
+                };
+                *state = here.state;
+                self.critical.push(critical.clone());
+                return self.leave(state, &here.slope, &critical, way, found);
+            }
+            if (next.state.t - end) * way.sign >= 0.0 {
+                // the end lies between: half a step that Newton's method is sure to close
+                let part = (end - here.state.t) / (next.state.t - here.state.t);
+                let mut at_end = self.between(&here.state, &next.state, part);
+                let guess = at_end.clone();
+                at_end.t = end;
+                let reached = self.search(&mut at_end, false, false, false);
+                let apart = self.distance(&guess.q, &at_end.q);
+                if let Ok(more) = reached
+                    && self.unstable == 0
+                    && apart <= 0.5 * self.distance(&here.state.q, &next.state.q) + 1e-6
+                {
+                    found.add(&more);
+                    *state = at_end;
+                    return Ok(());
+                }
+                ds *= 0.25;
+                if ds < SHORTEST {
+                    *state = here.state;
+                    return Err(self.fail(state, "the path of equilibria ends here", found.iterations));
+                }
+                continue;
+            }
+            here = next;
+            ds = match iterations {
+                0..=3 => (1.5 * ds).min(LONGEST),
+                4..=5 => ds,
+                _ => 0.6 * ds,
+            };
+        }
+        *state = here.state;
+        Err(self.fail(state, "the path of equilibria goes on for ever", found.iterations))
+    }
+
+    /// The stable equilibrium at the end of the load, a step `ds` ahead, if it is where the tangent leads.
+    fn arrive(&mut self, here: &Point, ds: f64, end: f64, found: &mut Found) -> Option<State> {
+        let nv = self.model.velocities();
+        let mut there = here.state.clone();
+        let move_on: Vec<f64> = here.slope[..nv].iter().map(|x| ds * x).collect();
+        retract(self.model.nodes(), &here.state.q, &move_on, &mut there.q);
+        there.lambda.iter_mut().zip(&here.slope[nv..]).for_each(|(l, s)| *l += ds * s);
+        there.t = end;
+        let guess = there.q.clone();
+        let more = self.search(&mut there, false, false, false).ok()?;
+        found.add(&more);
+        let near = self.distance(&guess, &there.q) <= 0.1 * self.inner(&move_on, &move_on).sqrt() + 1e-6;
+        (self.unstable == 0 && near).then_some(there)
+    }
+
+    /// Whether a step of the load may have leapt from one path to another: the tangents at both ends don't explain it.
+    pub(super) fn leapt(&mut self, from: &State, to: &State) -> bool {
+        let nv = self.model.velocities();
+        let mut moved = vec![0.0; nv];
+        difference(self.model.nodes(), &from.q, &to.q, &mut moved);
+        let size = self.inner(&moved, &moved).sqrt();
+        if !(self.options.stable && self.judged.potential && size > FAR) {
+            return false;
+        }
+        let dt = to.t - from.t;
+        let way = Way { end: to.t, span: self.span.max(dt.abs()), sign: dt.signum() };
+        for state in [from, to] {
+            let Ok(p) = self.point(state.clone(), None, way) else { return true };
+            // half of the trapezoidal rule
+            moved.iter_mut().zip(&p.slope).for_each(|(m, s)| *m -= 0.5 * dt * s / p.rate);
+        }
+        let left = self.inner(&moved, &moved).sqrt();
+        !(left <= UNEXPLAINED * size)
+    }
+
+    /// Goes the way that a step of the load may have leapt over; where the arc can't be followed the step stands.
+    pub(super) fn go_round(
+        &mut self,
+        from: &State,
+        state: &mut State,
+        found: &mut Found,
+    ) -> Result<(), StaticsError> {
+        let (known, mut there) = (self.critical.len(), from.clone());
+        let (unstable, neutral, doubt) = (self.unstable, self.neutral.clone(), self.doubt.clone());
+        let (judged, free) = (self.judged.clone(), self.free.clone());
+        match self.trace(&mut there, state.t, found) {
+            Ok(()) => *state = there,
+            Err(e) if self.critical.len() > known => return Err(e),
+            Err(_) => {
+                (self.unstable, self.neutral, self.doubt) = (unstable, neutral, doubt);
+                (self.judged, self.free) = (judged, free);
+            }
+        }
+        Ok(())
+    }
+
+    /// The tangent of the path at an equilibrium, in the direction of `before`, or else of the way.
+    fn point(&mut self, state: State, before: Option<&Point>, way: Way) -> Result<Point, SolveError> {
+        let rate = self.assemble_with_rate(&state, None, way);
+        let symmetric = self.structure.symmetric || self.is_mirrored();
+        let w = self.weights();
+        self.shift(&w, MARGIN);
+        self.factor()?;
+        let held = self.held(&state);
+        let negative = self.solver.negative_pivots().map_or(0, |n| n.saturating_sub(held));
+        // without a potential pivots tell of an odd number of real eigenvalues at most
+        let unstable = if symmetric { negative } else { negative % 2 };
+        let rhs: Vec<f64> = rate.iter().map(|r| -r).collect();
+        let mut slope = self.solve(&rhs)?;
+        let mut rate = 1.0;
+        let size = (self.inner(&slope, &slope) + (rate / way.span).powi(2)).sqrt();
+        let forward = match before {
+            Some(p) => self.inner(&slope, &p.slope) + rate * p.rate / way.span.powi(2),
+            None => way.sign,
+        };
+        let scale = forward.signum() / size;
+        slope.iter_mut().for_each(|x| *x *= scale);
+        rate *= scale;
+        if !(rate.is_finite() && size.is_finite()) {
+            return Err(SolveError::NotFinite);
+        }
+        Ok(Point { state, slope, rate, unstable })
+    }
+
+    /// One step along the path: the next point and the iterations that it took; `None` if there is none within reach.
+    pub(super) fn step(&mut self, here: &Point, ds: f64, way: Way) -> Option<(Point, u32)> {
+        let (model, nv) = (self.model, self.model.velocities());
+        let mut there = here.state.clone();
+        let mut last: Vec<f64> = here.slope[..nv].iter().map(|x| ds * x).collect();
+        retract(model.nodes(), &here.state.q, &last, &mut there.q);
+        there.lambda.iter_mut().zip(&here.slope[nv..]).for_each(|(l, s)| *l += ds * s);
+        there.t += ds * here.rate;
+        let (mut moved, mut q) = (vec![0.0; nv], there.q.clone());
+        let mut before = f64::INFINITY;
+        for k in 1..=ITERATIONS {
+            let rate = self.assemble_with_rate(&there, Some(&last), way);
+            let w = self.weights();
+            self.shift(&w, MARGIN);
+            self.factor().ok()?;
+            let u = self.correction().ok()?;
+            let rhs: Vec<f64> = rate.iter().map(|r| -r).collect();
+            let b = self.solve(&rhs).ok()?;
+            difference(model.nodes(), &here.state.q, &there.q, &mut moved);
+            let square = way.span.powi(2);
+            let off = self.inner(&here.slope, &moved) + here.rate * (there.t - here.state.t) / square - ds;
+            let dt =
+                -(off + self.inner(&here.slope, &u)) / (self.inner(&here.slope, &b) + here.rate / square);
+            let d: Vec<f64> = u.iter().zip(&b).map(|(u, b)| u + dt * b).collect();
+            retract(model.nodes(), &there.q, &d[..nv], &mut q);
+            std::mem::swap(&mut there.q, &mut q);
+            there.lambda.iter_mut().zip(&d[nv..]).for_each(|(l, d)| *l += d);
+            there.t += dt;
+            let size = self.size(&d[..nv]).max((dt / way.span).abs());
+            if !size.is_finite() || size > 1.0 || (k > 3 && size > 2.0 * before && size > 1e-6) {
+                return None;
+            }
+            let theta = size / before;
+            last = d[..nv].to_vec();
+            let tolerance = self.options.tolerance;
+            if size <= tolerance
+                || k > 1 && size * theta.min(1.0) <= tolerance
+                || self.wanders(k, size, theta)
+            {
+                difference(model.nodes(), &here.state.q, &there.q, &mut moved);
+                let went =
+                    (self.inner(&moved, &moved) + ((there.t - here.state.t) / way.span).powi(2)).sqrt();
+                let next = self.point(there, Some(here), way).ok()?;
+                let cosine = self.inner(&here.slope, &next.slope) + here.rate * next.rate / way.span.powi(2);
+                // what is shorter than this is straight to rounding
+                return (went <= 2.5 * ds && (cosine >= BEND || ds < 1e-6)).then_some((next, k));
+            }
+            before = size;
+        }
+        None
+    }
+
+    /// Residual and tangent at an equilibrium or on the way to one, ready for factorisation; returns how the residual
+    /// changes with time.
+    fn assemble_with_rate(&mut self, state: &State, last: Option<&[f64]>, way: Way) -> Vec<f64> {
+        let how = Relaxation::check(last.is_some(), 0.0);
+        let relaxed = last.map(|_| Relaxed { last, how });
+        self.assemble(state, &state.q, &state.lambda, relaxed, false);
+        let dt = 1e-5 * way.span * way.sign;
+        let at = At {
+            t: state.t + dt,
+            q: &state.q,
+            v: &self.v,
+            a: &self.a,
+            modes: &state.modes,
+            relaxed: relaxed.map(|r| Relaxed { last: r.last, how: r.how }),
+        };
+        let mut ahead = std::mem::take(&mut self.ahead);
+        self.model.assemble_in(&self.structure, &at, &state.lambda, None, &mut ahead);
+        // braced alike: the same Jacobian with the same weight
+        ahead.values.clone_from(&self.system.values);
+        let scale = self.brace_scale();
+        self.model.add_brace(&self.structure, scale, &mut ahead);
+        self.prepare();
+        let rate = ahead.residual.iter().zip(&self.system.residual).map(|(b, a)| (b - a) / dt).collect();
+        self.ahead = ahead;
+        rate
+    }
+
+    /// Nodes that have a place.
+    pub(super) fn places(&self) -> impl Iterator<Item = &Node> {
+        self.model.nodes().iter().filter(|n| !matches!(n.kind, NodeKind::Scalars(_)))
+    }
+
+    /// Inner product of increments: mean over the nodes, in parts of the reference length; multipliers don't count.
+    fn inner(&self, a: &[f64], b: &[f64]) -> f64 {
+        let (mut sum, mut count) = (0.0, 0);
+        let square = self.model.length().powi(2);
+        for n in self.places() {
+            count += 1;
+            for i in n.v..n.v + 3 {
+                sum += a[i] * b[i] / square;
+            }
+            if n.kind == NodeKind::Frame {
+                sum += (n.v + 3..n.v + 6).map(|i| a[i] * b[i]).sum::<f64>();
+            }
+        }
+        sum / f64::from(count.max(1))
+    }
+
+    pub(super) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+        let mut d = vec![0.0; self.model.velocities()];
+        difference(self.model.nodes(), a, b, &mut d);
+        self.inner(&d, &d).sqrt()
+    }
+
+    /// A state between two.
+    fn between(&self, a: &State, b: &State, part: f64) -> State {
+        let mut d = vec![0.0; self.model.velocities()];
+        difference(self.model.nodes(), &a.q, &b.q, &mut d);
+        d.iter_mut().for_each(|d| *d *= part);
+        let mut out = a.clone();
+        retract(self.model.nodes(), &a.q, &d, &mut out.q);
+        out.lambda.iter_mut().zip(&b.lambda).for_each(|(l, b)| *l += part * (b - *l));
+        out.t = a.t + part * (b.t - a.t);
+        out
+    }
+}

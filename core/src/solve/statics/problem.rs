@@ -1,0 +1,128 @@
+//! The search for equilibria of one model: what it works on, and what it has found so far.
+
+use super::options::StaticsOptions;
+use super::outcome::{Critical, Judgement, Neutral};
+use crate::model::motion::SteadyFrame;
+use crate::model::structure::Structure;
+use crate::model::{Model, System};
+use crate::solve::linear::{Guard, SolveError};
+use crate::solve::redundancy::Softening;
+use crate::solve::times::{Clocks, Times};
+use std::time::Duration;
+
+/// Searches equilibria of one model. Keeps its scratch between searches.
+pub struct Statics<'a> {
+    pub(super) model: &'a Model,
+    pub(super) options: StaticsOptions,
+    pub(super) frame: Option<SteadyFrame>,
+    pub(super) structure: Structure,
+    pub(super) solver: Guard,
+    /// Where constraints are redundant.
+    pub(super) softening: Option<Softening>,
+    pub(super) system: System,
+    pub(super) damping: System,
+    pub(super) mass: System,
+    /// The residual a little later, for its rate.
+    pub(super) ahead: System,
+    pub(super) clocks: Clocks,
+    pub(super) v: Vec<f64>,
+    pub(super) a: Vec<f64>,
+    /// Whether material may run through cables, and at which rate it does so at the time of the search: place of each
+    /// front's velocity and coordinate, and its rate.
+    pub(super) flows: bool,
+    pub(super) flow: Vec<(usize, usize, f64)>,
+    /// Directions that nothing holds, as forces that would, in elimination order: no correction moves along them.
+    pub(super) free: Vec<Vec<f64>>,
+    /// What the last equilibrium that was found is like.
+    pub(super) unstable: usize,
+    pub(super) neutral: Vec<Neutral>,
+    pub(super) doubt: Option<String>,
+    pub(super) judged: Judgement,
+    /// Critical loads met so far.
+    pub(super) critical: Vec<Critical>,
+    /// Longest stretch of time that was to be followed.
+    pub(super) span: f64,
+}
+
+impl<'a> Statics<'a> {
+    /// Prepares the search for equilibria at rest: what feeds a cable stands still.
+    ///
+    /// # Errors
+    /// Not enough memory for the factors.
+    pub fn new(model: &'a Model, options: &StaticsOptions) -> Result<Self, SolveError> {
+        let at_rest = Self::relative(model, options, None)?;
+        Ok(Statics { flows: false, ..at_rest })
+    }
+
+    /// Prepares the search for equilibria relative to a frame that moves steadily, such as a tow at constant speed or
+    /// in a steady turn: one solution instead of a long run. The frame's centre is a point in space at the time of
+    /// the search. Material runs through cables whose ends feed: where it runs in as fast as out, their shape may be
+    /// steady, with the forces that this takes.
+    ///
+    /// # Errors
+    /// Not enough memory for the factors.
+    pub fn relative(
+        model: &'a Model,
+        options: &StaticsOptions,
+        frame: Option<SteadyFrame>,
+    ) -> Result<Self, SolveError> {
+        let turning = frame.is_some_and(|f| f.omega != [0.0; 3]);
+        let structure = if turning { model.unsymmetric_structure() } else { model.structure().clone() };
+        let solver = Guard::new(&structure)?;
+        let zero = vec![0.0; model.velocities()];
+        Ok(Statics {
+            model,
+            options: options.clone(),
+            frame,
+            softening: model.redundancy().map(|_| Softening::new(model, &structure)),
+            structure,
+            solver,
+            system: System::default(),
+            damping: System::default(),
+            mass: System::default(),
+            ahead: System::default(),
+            clocks: Clocks::default(),
+            v: zero.clone(),
+            a: zero,
+            flows: true,
+            flow: Vec::new(),
+            free: Vec::new(),
+            unstable: 0,
+            neutral: Vec::new(),
+            doubt: None,
+            judged: Judgement { potential: true, ..Judgement::default() },
+            critical: Vec::new(),
+            span: 0.0,
+        })
+    }
+
+    /// Records the time of each term from now on.
+    pub fn profile(&mut self) {
+        for system in [&mut self.system, &mut self.damping, &mut self.mass] {
+            system.profile = Some(Vec::new());
+        }
+        self.clocks = Clocks::running();
+    }
+
+    /// Calls and time of each term, of the constraints and of the solver, by label; nothing without
+    /// [`Statics::profile`].
+    pub fn times(&self) -> Vec<(String, u64, Duration)> {
+        let systems = [&self.system, &self.damping, &self.mass];
+        Times::default().adding(self.model, systems, &self.clocks).list()
+    }
+
+    /// Directions in which nothing holds the last equilibrium and nothing drives it.
+    pub fn neutral(&self) -> &[Neutral] {
+        &self.neutral
+    }
+
+    /// What can't be told about the stability of the last equilibrium.
+    pub fn doubt(&self) -> Option<&str> {
+        self.doubt.as_deref()
+    }
+
+    /// Critical loads that [`Statics::follow`] has met, in the order of the path.
+    pub fn critical(&self) -> &[Critical] {
+        &self.critical
+    }
+}

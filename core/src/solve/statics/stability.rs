@@ -1,0 +1,272 @@
+//! Whether an equilibrium is stable.
+//!
+//! Where loads have a potential the tangent is symmetric, and Sylvester's law of inertia tells: on the motions that the
+//! constraints leave, as many eigenvalues are negative as there are negative pivots beside those of the multipliers.
+//! That holds for pairs too, such as the two planes that a round cable buckles in, where the sign of a determinant says
+//! nothing. Counted are the pivots of `K - m W` and `K + m W`, with what rounding makes of `K` for `m W`: what lies
+//! between the two counts is neutral as far as the matrix can tell, and is pushed by a finite amount instead
+//! ([`super::neutral`]).
+//!
+//! Where loads have no potential (drag, forces that follow), eigenvalues of the linearised motion tell
+//! ([`crate::solve::modes`]), and a disturbance that is followed for a while ([`super::disturbance`]).
+
+use super::naming::describe;
+use super::neutral::Leaning;
+use super::outcome::{Judgement, Neutral};
+use super::problem::Statics;
+use crate::model::node::NodeKind;
+use crate::model::state::{Relaxation, Relaxed, State};
+use crate::solve::linear::SolveError;
+use crate::solve::modes::slowest;
+
+/// Part of the diagonal of the tangent that is taken for rounding of it, and stands in for stiffness that is missing.
+pub(super) const MARGIN: f64 = 1e-12;
+/// Difference of entries that mirror each other, as part of their diagonals, up to which a tangent is symmetric.
+const MIRRORED: f64 = 1e-11;
+/// How many eigenvalues are asked for where loads have no potential.
+const SLOWEST: usize = 8;
+
+impl Statics<'_> {
+    /// Judges the equilibrium in `there`, which Newton's method came to by the increment `last`; `seed` varies the way out.
+    pub(super) fn judge(
+        &mut self,
+        there: &State,
+        last: Option<&[f64]>,
+        load: f64,
+        seed: u32,
+    ) -> Result<Judgement, SolveError> {
+        self.assemble_check(there, last, load);
+        let symmetric = self.structure.symmetric || self.is_mirrored();
+        self.prepare();
+        let w = self.weights();
+        let mut out = Judgement { residual: self.worst().1, potential: symmetric, ..Judgement::default() };
+        if !symmetric {
+            self.free.clear();
+            self.factor()?;
+            out.correction = self.correction()?;
+            self.judge_motion(there, &mut out)?;
+            return Ok(out);
+        }
+        let held = self.held(there);
+        let count = |s: &Self| s.solver.negative_pivots().map(|n| n.saturating_sub(held));
+        self.shift(&w, -MARGIN);
+        self.factor()?;
+        let below = count(self);
+        if below == Some(0) {
+            self.free.clear();
+            out.correction = self.correction()?;
+            return Ok(out);
+        }
+        self.shift(&w, 2.0 * MARGIN);
+        self.factor()?;
+        let (Some(below), Some(unstable)) = (below, count(self)) else {
+            // pivoting hides the signs of the pivots
+            self.free.clear();
+            out.correction = self.correction()?;
+            self.judge_motion(there, &mut out)?;
+            return Ok(out);
+        };
+        let near = below.saturating_sub(unstable);
+        let lowest = self.lowest(&w, near.max(usize::from(unstable > 0)))?;
+        self.free = lowest.iter().take(near).map(|x| self.weighed(&w, x)).collect();
+        out.correction = self.correction()?;
+        out.unstable = unstable;
+        if unstable > 0 {
+            out.way_out = Some(self.softest(seed));
+            return Ok(out);
+        }
+        // what a load drives where nothing holds is no equilibrium
+        for x in lowest.iter().take(near) {
+            let shape = self.increment(x);
+            let work: f64 = shape.iter().zip(&self.system.residual).map(|(d, r)| d * r).sum();
+            let position = &self.structure.position;
+            let rounding: f64 = shape.iter().zip(position).map(|(d, &p)| MARGIN * w[p] * d * d).sum();
+            if work.abs() > (1e-6 * load * self.size(&shape) * self.model.length()).max(rounding) {
+                out.driven = Some(describe(self.model, &there.q, &shape));
+                return Ok(out);
+            }
+        }
+        // by the matrix alone these can't be told: rounding is as large as they are
+        for k in 0..near {
+            let shape = self.increment(&lowest[k]);
+            match self.lean(there, &shape, k, load) {
+                Leaning::Stays => {
+                    out.neutral.push(Neutral::new(self.model, there, shape));
+                }
+                Leaning::Returns => {}
+                Leaning::Leaves => {
+                    out.unstable += 1;
+                    out.way_out.get_or_insert(shape);
+                }
+                Leaning::Unknown => {
+                    let what = Neutral::new(self.model, there, shape).what;
+                    out.doubt =
+                        Some(format!("whether it is stable can't be told: {what}, as far as can be seen"));
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// Checks an equilibrium without asking for its stability.
+    pub(super) fn check(
+        &mut self,
+        there: &State,
+        last: Option<&[f64]>,
+        load: f64,
+    ) -> Result<Judgement, SolveError> {
+        let how = Relaxation::check(last.is_some(), load);
+        let correction = self.solve_at(there, &there.q, &there.lambda, Some(Relaxed { last, how }))?.d;
+        Ok(Judgement { correction, residual: self.worst().1, ..Judgement::default() })
+    }
+
+    /// How many directions the equilibrium in `there` can be left in, neutral ones not counted; leaves the factors of
+    /// its tangent. `None` where the pivots don't tell.
+    pub(super) fn count(&mut self, there: &State, last: Option<&[f64]>, load: f64) -> Option<usize> {
+        self.assemble_check(there, last, load);
+        if !self.structure.symmetric && !self.is_mirrored() {
+            return None;
+        }
+        self.prepare();
+        let w = self.weights();
+        self.shift(&w, MARGIN);
+        self.factor().ok()?;
+        self.solver.negative_pivots().map(|n| n.saturating_sub(self.held(there)))
+    }
+
+    /// Assembles residual and tangent at an equilibrium that is to be checked.
+    fn assemble_check(&mut self, there: &State, last: Option<&[f64]>, load: f64) {
+        let how = Relaxation::check(last.is_some(), load);
+        self.assemble(there, &there.q, &there.lambda, Some(Relaxed { last, how }), false);
+    }
+
+    /// Judges by the eigenvalues of the linearised motion.
+    fn judge_motion(&mut self, there: &State, out: &mut Judgement) -> Result<(), SolveError> {
+        let upright = self.is_upright(there);
+        let linear = self.linearise(there);
+        match slowest(self.model, &there.modes, linear, SLOWEST) {
+            Ok(mut rates) => {
+                // rounding leaves motions among them that the constraints forbid
+                rates.retain(|m| self.is_allowed(&m.shape) && self.is_allowed(&m.quadrature));
+                for mode in rates.iter().filter(|m| m.is_unstable()) {
+                    if mode.omega == 0.0 {
+                        out.unstable += 1;
+                        out.way_out.get_or_insert_with(|| mode.shape.clone());
+                    } else if mode.growth > out.flutter {
+                        out.flutter = mode.growth;
+                        out.swing.clone_from(&mode.shape);
+                    }
+                }
+                for mode in rates.iter().filter(|m| m.rigid) {
+                    out.neutral.push(Neutral::new(self.model, there, mode.shape.clone()));
+                }
+            }
+            // what has no mass can't swing
+            Err(_) if upright => {}
+            Err(e) => {
+                out.doubt = Some(format!("whether it is stable can't be told: {e}"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the symmetric part of the assembled tangent is positive where the constraints leave motions: then no real
+    /// eigenvalue is negative (Bendixson), and nothing goes one way only.
+    fn is_upright(&mut self, there: &State) -> bool {
+        let s = &self.structure;
+        let mut mean = self.system.values.clone();
+        if !s.symmetric {
+            for (r, columns, at) in s.rows() {
+                for (k, p) in at.enumerate() {
+                    mean[p] = 0.5 * (mean[p] + s.entry(&self.system.values, columns.get(k), r));
+                }
+            }
+        }
+        let factored = self.solver.factor(s, &mean).is_ok();
+        factored && self.solver.negative_pivots() == Some(self.held(there))
+    }
+
+    /// Whether the constraints allow an increment; their Jacobian stands in the assembled tangent.
+    fn is_allowed(&self, d: &[f64]) -> bool {
+        let s = &self.structure;
+        let mut x = vec![0.0; s.n];
+        s.order(d, &mut x);
+        let (mut against, mut size) = (vec![0.0; s.n], vec![0.0; s.n]);
+        for (r, columns, at) in s.rows().filter(|(r, ..)| s.is_multiplier[*r]) {
+            for (k, p) in at.enumerate() {
+                let c = columns.get(k);
+                against[r] += self.system.values[p] * x[c];
+                size[r] += (self.system.values[p] * x[c]).abs();
+            }
+        }
+        let largest = x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let multipliers = (0..s.n).filter(|&r| s.is_multiplier[r]);
+        multipliers.map(|r| (against[r], size[r])).all(|(g, size)| g.abs() <= 1e-6 * size.max(1e-6 * largest))
+    }
+
+    /// Whether the assembled tangent is its own mirror image, to rounding. The rotations of a body don't commute: what
+    /// is left of the moment on it stands in its tangent without a mirror image, and is no property of a load.
+    pub(super) fn is_mirrored(&self) -> bool {
+        let (s, values) = (&self.structure, &self.system.values);
+        let mut body = vec![u32::MAX; s.n];
+        for (k, n) in self.model.nodes().iter().enumerate().filter(|(_, n)| n.kind == NodeKind::Frame) {
+            for i in 3..6 {
+                body[s.position[n.v + i]] = k as u32;
+            }
+        }
+        let w = self.weights();
+        s.rows().filter(|(r, ..)| !s.is_multiplier[*r]).all(|(r, columns, at)| {
+            at.enumerate().all(|(k, p)| {
+                let c = columns.get(k);
+                if c <= r || s.is_multiplier[c] {
+                    return true;
+                }
+                let same = body[r] != u32::MAX && body[r] == body[c];
+                let allowed = if same { 1e-6 } else { MIRRORED };
+                let off = (values[p] - s.entry(values, c, r)).abs();
+                off <= allowed * (w[r] * w[c]).sqrt() || off <= f64::EPSILON * (w[r] + w[c])
+            })
+        })
+    }
+
+    /// What each unknown weighs where eigenvalues are compared with rounding: the size of its diagonal entry.
+    pub(super) fn weights(&self) -> Vec<f64> {
+        let s = &self.structure;
+        let diagonal = |i: usize| self.system.values[s.diagonal[i] as usize].abs();
+        // positions, and what else there is: slopes, rotations, coordinates
+        let kind =
+            |i: usize, n: &crate::model::node::Node| usize::from(i - n.v >= 3 || n.kind.velocities() < 3);
+        let mut largest = [0.0_f64; 2];
+        for n in self.model.nodes() {
+            for i in n.dofs() {
+                largest[kind(i, n)] = largest[kind(i, n)].max(diagonal(i));
+            }
+        }
+        if !(largest[0] > 0.0) {
+            largest[0] = 1.0;
+        }
+        if !(largest[1] > 0.0) {
+            largest[1] = largest[0] * (1e-3 * self.model.length()).powi(2);
+        }
+        let mut w = vec![0.0; s.n];
+        for n in self.model.nodes() {
+            for i in n.dofs() {
+                w[s.position[i]] = diagonal(i).max(1e-6 * largest[kind(i, n)]);
+            }
+        }
+        w
+    }
+
+    /// Adds `m W` to the tangent.
+    pub(super) fn shift(&mut self, w: &[f64], m: f64) {
+        for (p, w) in w.iter().enumerate() {
+            self.system.values[self.structure.diagonal_at[p] as usize] += m * w;
+        }
+    }
+
+    /// Equations of constraints that hold.
+    pub(super) fn held(&self, there: &State) -> usize {
+        let all = 0..self.model.constraints().len();
+        all.filter(|&c| self.model.holds(c, &there.modes)).map(|c| self.model.rows_of(c).len()).sum()
+    }
+}

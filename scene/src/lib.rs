@@ -1,0 +1,39 @@
+//! The language of Ropewalk's scenes: what a file can name, and how a model is built of it.
+//!
+//! A scene lists [specs](spec): plain data that serde reads, each registered under the name that `type = "…"` finds it by.
+//! The [`Builder`] makes a [`Model`](ropewalk_core::Model) of them; [`records`] are what a run writes down. Numbers may
+//! carry [units](quantity), places are [markers](MarkerRef), gravity, water and air belong to the scene as a whole.
+
+mod builder;
+mod current;
+pub mod document;
+pub mod file;
+mod marker;
+mod motions;
+mod process;
+pub mod records;
+mod scene;
+mod scene_file;
+pub mod spec;
+mod water;
+
+pub use builder::{Builder, Numbered};
+pub use current::Current;
+pub use document::{
+    Document, Fault, Format, Key, Kind, Parameter, Place, Span, Table, Value, Varied, did_you_mean, quoted,
+    read_text,
+};
+pub use marker::{MarkerRef, split_marker};
+pub use process::{Channel, Process, ProcessSpec, Surroundings};
+pub use ropewalk_quantity as quantity;
+pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};
+pub use scene_file::{Bundled, SceneFile, SceneText};
+pub use spec::{
+    ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
+};
+pub use water::{Air, Level, Water, ball_below};
+
+#[doc(hidden)]
+pub use inventory;
+#[doc(hidden)]
+pub use schemars;

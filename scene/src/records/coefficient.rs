@@ -1,0 +1,96 @@
+//! The drag coefficient along a cable.
+
+use super::named;
+use super::place::{Station, off, part};
+use crate::register_spec;
+use crate::spec::RecordSpec;
+use ropewalk_core::{BuildError, Column, Model, Part, Record, Sample};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+fn quarters() -> Vec<Station> {
+    [0.25, 0.5, 0.75].map(Station::Share).to_vec()
+}
+
+/// Drag coefficient `Cn` of the flow across a cable at some places: columns `hose.cn@25%`, `hose.cn@50%`, `hose.cn@75%`.
+///
+/// It is that of the `drag` which acts on the cable, taken between its stations on either side of the place; empty where
+/// hardly any water flows across, at Reynolds numbers below 1.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DragCoefficientSpec {
+    /// The cable.
+    pub of: String,
+    /// Where: as for `along`; left out, at a quarter, half and three quarters of the length.
+    #[serde(default = "quarters")]
+    pub at: Vec<Station>,
+    /// Name in results; left out, that of the cable and `.cn`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Title of its pictures; left out, what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
+}
+register_spec!(Record, "drag_coefficient", DragCoefficientSpec);
+
+impl DragCoefficientSpec {
+    /// The coefficient at the quarters of a cable, under its own name.
+    pub fn new(of: &str) -> Self {
+        DragCoefficientSpec { of: of.into(), at: quarters(), name: None, title: None }
+    }
+}
+
+struct DragCoefficient {
+    part: Arc<dyn Part>,
+    /// The term that knows it.
+    term: usize,
+    at: Vec<Station>,
+    name: String,
+    title: String,
+}
+
+impl Record for DragCoefficient {
+    fn title(&self) -> String {
+        self.title.clone()
+    }
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+    fn columns(&self) -> Vec<Column> {
+        self.at.iter().map(|at| Column::new(format!("{}{at}", self.name), "1")).collect()
+    }
+    fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
+        let term = &s.model.terms()[self.term];
+        out.extend(self.at.iter().map(|place| {
+            // stations count along the material, which runs through a start that feeds
+            let start = self.part.front(0).map_or(0.0, |front| s.at.q[front.q]);
+            let cn = term.coefficient(self.part.name(), start + place.now(self.part.as_ref(), &s.at), &s.at);
+            cn.filter(|cn| cn.is_finite()).unwrap_or(f64::NAN)
+        }));
+    }
+}
+
+#[typetag::serde(name = "drag_coefficient")]
+impl RecordSpec for DragCoefficientSpec {
+    fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
+        let part = part(model, self.of.trim())?;
+        let state = model.state();
+        let at = state.at();
+        let knows = |t: &&dyn ropewalk_core::Term| t.coefficient(part.name(), 0.0, &at).is_some();
+        let term = model.terms().iter().position(|t| knows(&t.as_ref())).ok_or_else(|| {
+            BuildError::at("of", format!("no drag acts on `{}`: add a force of type `drag`", part.name()))
+        })?;
+        if self.at.is_empty() {
+            return Err(BuildError::at("at", "`at` must name one place at least"));
+        }
+        if let Some(s) =
+            self.at.iter().map(|p| p.on(part.length())).find(|s| !(0.0..=part.length()).contains(s))
+        {
+            return Err(off(part.as_ref(), "at", s));
+        }
+        let name = named(&self.name, || format!("{}.cn", part.name()));
+        let title = named(&self.title, || format!("Drag coefficient across {}", part.name()));
+        Ok(Box::new(DragCoefficient { part, term, at: self.at.clone(), name, title }))
+    }
+}

@@ -1,0 +1,92 @@
+//! What a winch has fed out.
+
+use super::{listed, named};
+use crate::marker::split_marker;
+use crate::register_spec;
+use crate::spec::RecordSpec;
+use ropewalk_core::{BuildError, Column, Front, Model, Record, Sample, Spot};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Feeding at an end of a cable: columns `hose.start.fed`, the length fed out in m, `.speed` in m/s, and where the speed is
+/// prescribed `.pull`, what the winch pulls with in N.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FeedingSpec {
+    /// The end of the cable: `hose.start` or `hose.end`.
+    pub of: String,
+    /// Name in results; left out, that of the end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Title of its pictures; left out, what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
+}
+register_spec!(Record, "feeding", FeedingSpec);
+
+impl FeedingSpec {
+    /// Feeding at an end, under its own name.
+    pub fn new(of: &str) -> Self {
+        FeedingSpec { of: of.into(), name: None, title: None }
+    }
+}
+
+struct Feeding {
+    front: Front,
+    /// First multiplier of what prescribes the speed.
+    driven: Option<usize>,
+    name: String,
+    stem: String,
+    title: String,
+}
+
+impl Record for Feeding {
+    fn title(&self) -> String {
+        self.title.clone()
+    }
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+    fn columns(&self) -> Vec<Column> {
+        let column = |what: &str, unit| Column::new(format!("{}.{what}", self.stem), unit);
+        let mut columns = vec![column("fed", "m"), column("speed", "m/s")];
+        columns.extend(self.driven.map(|_| column("pull", "N")));
+        columns
+    }
+    fn needs_forces(&self) -> bool {
+        self.driven.is_some()
+    }
+    fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
+        out.extend([self.front.fed(&s.at), self.front.rate(&s.at)]);
+        out.extend(self.driven.map(|row| s.lambda[row]));
+    }
+}
+
+#[typetag::serde(name = "feeding")]
+impl RecordSpec for FeedingSpec {
+    fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
+        let (name, spot) = split_marker(&self.of).map_err(|e| BuildError::at("of", e))?;
+        let part = super::place::part(model, name)?;
+        let end = match &spot {
+            Spot::Named(end) => ["start", "end"].iter().position(|e| e == end),
+            _ => None,
+        };
+        let Some(front) = end.and_then(|end| part.front(end)) else {
+            let fed = model.parts().iter().flat_map(|p| {
+                let ends = [(0, "start"), (1, "end")].into_iter().filter(|&(k, _)| p.front(k).is_some());
+                ends.map(|(_, end)| format!("{}.{end}", p.name()))
+            });
+            let fed: Vec<String> = fed.collect();
+            let fed = listed(fed.iter().map(String::as_str), "none");
+            let message = format!("no winch feeds at `{}`; the ends that feed are {fed}", self.of.trim());
+            return Err(BuildError::at("of", message));
+        };
+        let all = model.constraints();
+        let driven = all.iter().position(|c| c.nodes() == [front.node]).map(|c| model.rows_of(c).start);
+        let of: String = self.of.chars().filter(|c| !c.is_whitespace()).collect();
+        let stem = named(&self.name, || of.clone());
+        let name = named(&self.name, || format!("{of}.feeding"));
+        let title = named(&self.title, || format!("Feeding at {of}"));
+        Ok(Box::new(Feeding { front, driven, name, stem, title }))
+    }
+}

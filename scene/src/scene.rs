@@ -1,0 +1,413 @@
+//! A scene: what the user wrote, as specs and options. Scene files and Rust code make the same thing.
+
+use crate::builder::Builder;
+use crate::motions::build_all;
+use crate::process::{Process, ProcessSpec, Surroundings};
+use crate::spec::{ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
+use crate::water::{Air, Water};
+use ropewalk_core::integrator::Options;
+use ropewalk_core::statics::StaticsOptions;
+use ropewalk_core::{BuildError, Model, Plan, Recipe, Record, Start, SteadyFrame, V3};
+use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// What is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Analysis {
+    /// Motion in time.
+    #[default]
+    Dynamics,
+    /// A sequence of equilibria while time runs as the load factor.
+    Statics,
+}
+
+/// What is run and how long.
+///
+/// ```
+/// use ropewalk_scene::Run;
+/// let run = Run { duration: 20.0, output: 0.1, ..Run::default() };
+/// assert!(run.check().is_ok());
+/// assert_eq!(run.interval(), 0.1);
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Run {
+    /// What is computed.
+    pub analysis: Analysis,
+    /// Length of the run [s]; in statics the end of the load factor.
+    #[serde(deserialize_with = "ropewalk_quantity::time")]
+    pub duration: f64,
+    /// Interval of the history [s]; 0 takes a thousandth of the duration.
+    #[serde(deserialize_with = "ropewalk_quantity::time")]
+    pub output: f64,
+    /// In statics: the frame that the equilibrium is relative to, such as that of a ship that tows steadily. What is
+    /// held fixed then moves with the frame.
+    pub frame: Option<SteadyFrame>,
+    /// Start a dynamic run from the equilibrium at t = 0 instead of the configuration as laid.
+    pub from_equilibrium: bool,
+    /// Keep account of energy and work at every step.
+    pub audit: bool,
+    /// Number of snapshots in the pictures of shapes.
+    pub snapshots: usize,
+    /// Titles of the pictures of shapes; left out, that of the scene.
+    pub shape_titles: ShapeTitles,
+    /// Tables of a few columns of the history, each a CSV file of its own.
+    pub tables: Vec<TableSpec>,
+}
+
+/// Titles of the pictures of shapes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ShapeTitles {
+    /// From the side: x and z.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side: Option<String>,
+    /// From above: x and y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub top: Option<String>,
+    /// From the end: y and z.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub end: Option<String>,
+    /// In space, seen obliquely from above; drawn only if it has a title.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub space: Option<String>,
+    /// z over the distance from the z axis; drawn only if it has a title.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radial: Option<String>,
+}
+
+/// Some columns of the history as a table of their own: `tables/NAME.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TableSpec {
+    /// Name of its file, without ending.
+    pub name: String,
+    /// Names of its columns in the history; time comes first of its own accord.
+    pub columns: Vec<String>,
+    /// Time from row to row, a multiple of `output` [s]; left out, every row of the history.
+    #[serde(default, deserialize_with = "ropewalk_quantity::time")]
+    pub every: f64,
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Run {
+            analysis: Analysis::Dynamics,
+            duration: 1.0,
+            output: 0.0,
+            frame: None,
+            from_equilibrium: false,
+            audit: true,
+            snapshots: 9,
+            shape_titles: ShapeTitles::default(),
+            tables: Vec::new(),
+        }
+    }
+}
+
+/// More rows of a history than this are surely a mistake, and fill disk and memory.
+const MOST_ROWS: f64 = 1e7;
+
+impl Run {
+    /// The interval of the history [s].
+    pub fn interval(&self) -> f64 {
+        if self.output > 0.0 { self.output } else { self.duration / 1000.0 }
+    }
+    /// What is wrong with the numbers, if anything.
+    pub fn check(&self) -> Result<(), BuildError> {
+        ropewalk_core::error::positive("duration", self.duration).map_err(|e| e.of("run.duration"))?;
+        ropewalk_core::error::not_negative("output", self.output).map_err(|e| e.of("run.output"))?;
+        let rows = self.duration / self.interval();
+        if self.analysis == Analysis::Dynamics && rows > MOST_ROWS {
+            let message = format!("a history of {rows:.0e} rows is too long: make `output` longer");
+            return Err(BuildError::at("run.output", message));
+        }
+        if let Some(f) = self.frame {
+            ropewalk_core::error::finite("frame", &[f.velocity, f.omega, f.centre].concat())
+                .map_err(|e| e.of("run.frame"))?;
+            if self.analysis != Analysis::Statics {
+                let message =
+                    "`frame` belongs to `analysis = \"statics\"`; a run in time has motions instead";
+                return Err(BuildError::at("run.frame", message));
+            }
+        }
+        if self.snapshots > 10_000 {
+            let message = format!("`snapshots` must be at most 10000, not {}", self.snapshots);
+            return Err(BuildError::at("run.snapshots", message));
+        }
+        for table in &self.tables {
+            ropewalk_core::error::not_negative("every", table.every).map_err(|e| e.of("run.tables"))?;
+            let named = !table.name.is_empty() && !table.name.contains(['/', '\\']);
+            if !named || self.tables.iter().filter(|t| t.name == table.name).count() > 1 {
+                let message = format!("`{}` can't be the name of a table, or two have it", table.name);
+                return Err(BuildError::at("run.tables", message));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Standard gravity, rounded as most of the field does [m/s²].
+pub const GRAVITY: V3<f64> = [0.0, 0.0, -9.81];
+
+/// A scene: lists of specs, and options. Build a [`Model`] of it, or run it with `ropewalk::simulate`. A clone shares the
+/// specs.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// One line that says what it shows.
+    pub title: String,
+    /// More about it.
+    pub description: String,
+    /// Acceleration of gravity [m/s²], for weight, buoyancy and all else that asks; by default [`GRAVITY`]. What feels it
+    /// is the choice of the scene's forces.
+    pub gravity: V3<f64>,
+    /// The water, if there is any.
+    pub water: Option<Water>,
+    /// The air above it, if it counts.
+    pub air: Option<Air>,
+    /// Cables, bodies, masses.
+    pub elements: Vec<Arc<dyn ElementSpec>>,
+    /// What holds them.
+    pub constraints: Vec<Arc<dyn ConstraintSpec>>,
+    /// What acts on them.
+    pub forces: Vec<Arc<dyn ForceSpec>>,
+    /// Prescribed motions, by name.
+    pub motions: Vec<Arc<dyn MotionSpec>>,
+    /// Outputs.
+    pub records: Vec<Arc<dyn RecordSpec>>,
+    /// A problem with equations of its own; then it is the only one, and there are no elements.
+    pub processes: Vec<Arc<dyn ProcessSpec>>,
+    /// What is run and how long.
+    pub run: Run,
+    /// How it is integrated.
+    pub solver: Options,
+    /// How equilibria are found.
+    pub statics: StaticsOptions,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Scene {
+            title: String::new(),
+            description: String::new(),
+            gravity: GRAVITY,
+            water: None,
+            air: None,
+            elements: Vec::new(),
+            constraints: Vec::new(),
+            forces: Vec::new(),
+            motions: Vec::new(),
+            records: Vec::new(),
+            processes: Vec::new(),
+            run: Run::default(),
+            solver: Options::default(),
+            statics: StaticsOptions::default(),
+        }
+    }
+}
+
+/// An error and the spec that it belongs to, as kind and index.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{error}")]
+pub struct SceneError {
+    /// The spec, if the error belongs to one.
+    pub spec: Option<(SpecKind, usize)>,
+    /// What is wrong.
+    pub error: BuildError,
+}
+
+impl Scene {
+    /// An empty scene.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Sets the acceleration of gravity [m/s²]; what feels it says a force, such as that of weight.
+    pub fn set_gravity(&mut self, gravity: V3<f64>) -> &mut Self {
+        self.gravity = gravity;
+        self
+    }
+
+    /// Adds an element.
+    pub fn element(&mut self, spec: impl ElementSpec + 'static) -> &mut Self {
+        self.elements.push(Arc::new(spec));
+        self
+    }
+    /// Adds a constraint.
+    pub fn constraint(&mut self, spec: impl ConstraintSpec + 'static) -> &mut Self {
+        self.constraints.push(Arc::new(spec));
+        self
+    }
+    /// Adds a force.
+    pub fn force(&mut self, spec: impl ForceSpec + 'static) -> &mut Self {
+        self.forces.push(Arc::new(spec));
+        self
+    }
+    /// Adds a motion.
+    pub fn motion(&mut self, spec: impl MotionSpec + 'static) -> &mut Self {
+        self.motions.push(Arc::new(spec));
+        self
+    }
+    /// Adds a record.
+    pub fn record(&mut self, spec: impl RecordSpec + 'static) -> &mut Self {
+        self.records.push(Arc::new(spec));
+        self
+    }
+
+    /// Sets a process up.
+    pub fn process(&mut self, spec: impl ProcessSpec + 'static) -> &mut Self {
+        self.processes.push(Arc::new(spec));
+        self
+    }
+
+    /// What is wrong with gravity, water and air, if anything.
+    fn check_world(&self) -> Result<(), BuildError> {
+        ropewalk_core::error::finite("gravity", &self.gravity)?;
+        self.water.as_ref().map_or(Ok(()), Water::check)?;
+        self.air.as_ref().map_or(Ok(()), |air| air.check(self.water.as_ref()))
+    }
+
+    /// The process of the scene at its start, if it is one of a process.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with the spec that it belongs to; a process beside elements or another one.
+    pub fn start_process(&self) -> Result<Option<Box<dyn Process>>, SceneError> {
+        let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
+        let whole = |error: BuildError| SceneError { spec: None, error };
+        let Some(spec) = self.processes.first() else { return Ok(None) };
+        let message = "a process is a problem of its own: a scene holds one, and no elements, constraints, forces or \
+                       records beside it";
+        let others = [
+            (SpecKind::Process, self.processes.len() - 1, 1),
+            (SpecKind::Element, self.elements.len(), 0),
+            (SpecKind::Constraint, self.constraints.len(), 0),
+            (SpecKind::Force, self.forces.len(), 0),
+            (SpecKind::Record, self.records.len(), 0),
+        ];
+        if let Some((kind, _, k)) = others.into_iter().find(|(_, count, _)| *count > 0) {
+            return Err(of(kind, k)(BuildError::new(message)));
+        }
+        if self.run.analysis != Analysis::Dynamics || self.run.from_equilibrium {
+            let message = "a process runs in time from the start that it is given itself";
+            return Err(whole(BuildError::at("run", message)));
+        }
+        self.check_world().map_err(whole)?;
+        self.run.check().map_err(whole)?;
+        let motions = build_all(&self.motions).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
+        let (gravity, water) = (self.gravity, self.water.clone());
+        let around = Surroundings { gravity, water, motions, duration: self.run.duration };
+        spec.build(&around).map(Some).map_err(of(SpecKind::Process, 0))
+    }
+
+    /// Builds the model.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with the spec that it belongs to.
+    pub fn build(&self) -> Result<Model, SceneError> {
+        self.build_on(&Plan::new())
+    }
+
+    /// Builds the model with other meshes for some parts: what remeshing while running does. Markers and records
+    /// bind by name, so they hold on to the same material. [`Model::carry`] brings the state over.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub fn build_on(&self, plan: &Plan) -> Result<Model, SceneError> {
+        if !self.processes.is_empty() {
+            // what there is to build is in the process
+            self.start_process()?;
+            return Ok(Model::new(Vec::new(), Vec::new(), Vec::new(), Vec::new(), Start::default(), 1.0));
+        }
+        let mut b = Builder::new();
+        let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
+        let whole = |error: BuildError| {
+            let named = self.constraints.iter().position(|c| Some(c.name()) == error.field.as_deref());
+            SceneError { spec: named.map(|k| (SpecKind::Constraint, k)), error }
+        };
+        self.check_world().map_err(whole)?;
+        b.set_world(self.gravity, self.water.clone(), self.air.clone());
+        for (part, mesh) in plan {
+            b.remesh(part, mesh.clone());
+        }
+        b.set_motions(build_all(&self.motions).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?);
+        for e in &self.elements {
+            b.pin(&e.markers());
+        }
+        for c in &self.constraints {
+            b.pin(&c.markers());
+        }
+        for f in &self.forces {
+            b.pin(&f.markers());
+        }
+        for (k, c) in self.constraints.iter().enumerate() {
+            if let Some((marker, feed)) = c.feeds() {
+                b.feed(marker, feed).map_err(of(SpecKind::Constraint, k))?;
+            }
+        }
+        for (k, e) in self.elements.iter().enumerate() {
+            e.build(&mut b).map_err(of(SpecKind::Element, k))?;
+        }
+        for (k, c) in self.constraints.iter().enumerate() {
+            c.build(&mut b).map_err(of(SpecKind::Constraint, k))?;
+        }
+        for (k, f) in self.forces.iter().enumerate() {
+            f.build(&mut b).map_err(of(SpecKind::Force, k))?;
+        }
+        self.run.check().map_err(whole)?;
+        self.statics.check().map_err(whole)?;
+        self.solver.check().map_err(|e| whole(BuildError::new(e)))?;
+        let changes = b.changes();
+        let model = b.finish().map_err(whole)?;
+        let recipe = changes.then(|| {
+            let scene = self.clone();
+            Arc::new(move |plan: &Plan| scene.build_on(plan).map_err(|e| e.error)) as Arc<Recipe>
+        });
+        let model = model.with_plan(plan.clone(), recipe);
+        for c in model.constraints() {
+            let ((first, last), name) = (c.range(), c.name());
+            if first > 0.0 {
+                let message = format!(
+                    "the motion of `{name}` is defined from t = {first} s on, but the run begins at 0 s: begin its \
+                     table there"
+                );
+                return Err(whole(BuildError::at(name, message)));
+            }
+            if last < self.run.duration {
+                let message = format!(
+                    "the motion of `{name}` is defined up to t = {last} s, but the run goes on to {} s: extend its \
+                     table or shorten `duration`",
+                    self.run.duration
+                );
+                return Err(whole(BuildError::at(name, message)));
+            }
+        }
+        Ok(model)
+    }
+
+    /// The records of the scene for its model, each with a name of its own.
+    ///
+    /// # Errors
+    /// The first record that can't be made; two records or columns of one name.
+    pub fn records(&self, model: &Model) -> Result<Vec<Box<dyn Record>>, SceneError> {
+        let of = |k| move |error| SceneError { spec: Some((SpecKind::Record, k)), error };
+        let twice = |what: &str, name: &str| {
+            let message = format!("there are two {what} named `{name}`: give one of them a `name`");
+            BuildError::at("name", message)
+        };
+        let (mut names, mut columns) = (HashSet::new(), HashSet::new());
+        let mut all = Vec::with_capacity(self.records.len());
+        for (k, spec) in self.records.iter().enumerate() {
+            let record = spec.build(model).map_err(of(k))?;
+            if !names.insert(record.name()) {
+                return Err(of(k)(twice("records", &record.name())));
+            }
+            if let Some(column) = record.columns().into_iter().find(|c| !columns.insert(c.name.clone())) {
+                return Err(of(k)(twice("columns", &column.name)));
+            }
+            all.push(record);
+        }
+        Ok(all)
+    }
+}

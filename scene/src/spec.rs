@@ -1,0 +1,138 @@
+//! What a scene file can name: specs of elements, constraints, forces, motions and records.
+//!
+//! A spec is plain data that serde reads, with a doc comment at each field; `build` turns it into parts of a model.
+//! Each type is registered twice: with typetag, so that `type = "…"` finds it in a file, and with
+//! [`register_spec!`](crate::register_spec), so that `list` and `describe` can show it.
+
+use crate::builder::Builder;
+use crate::marker::MarkerRef;
+use ropewalk_core::{BuildError, Feed, Motion, Record};
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// A part of a scene: a cable, a point mass.
+#[typetag::serde]
+pub trait ElementSpec: Debug + Send + Sync {
+    /// Name by which the rest of the scene refers to it.
+    fn name(&self) -> &str;
+    /// Markers of other elements that it holds on to; a cable puts a node where one is.
+    fn markers(&self) -> Vec<&MarkerRef> {
+        Vec::new()
+    }
+    /// Adds its nodes and terms.
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError>;
+}
+
+/// A constraint of a scene.
+#[typetag::serde]
+pub trait ConstraintSpec: Debug + Send + Sync {
+    /// Its name.
+    fn name(&self) -> &str;
+    /// The markers that it holds; a cable puts a node where one is.
+    fn markers(&self) -> Vec<&MarkerRef>;
+    /// The end of a cable that material flows through by it, and how.
+    fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
+        None
+    }
+    /// What one should know about it, one sentence each, in the model that was built.
+    fn notes(&self, _: &ropewalk_core::Model) -> Vec<String> {
+        Vec::new()
+    }
+    /// Adds its equations.
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError>;
+}
+
+/// A force of a scene.
+#[typetag::serde]
+pub trait ForceSpec: Debug + Send + Sync {
+    /// The markers that it acts on; a cable puts a node where one is.
+    fn markers(&self) -> Vec<&MarkerRef> {
+        Vec::new()
+    }
+    /// Adds its terms.
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError>;
+}
+
+/// A prescribed motion of a scene.
+#[typetag::serde]
+pub trait MotionSpec: Debug + Send + Sync {
+    /// Its name.
+    fn name(&self) -> &str;
+    /// Names of other motions that it is made of.
+    fn of(&self) -> &[String] {
+        &[]
+    }
+    /// Makes the motion; `of` are those that it is made of, in their order.
+    fn build(&self, of: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError>;
+}
+
+/// An output of a scene.
+#[typetag::serde]
+pub trait RecordSpec: Debug + Send + Sync {
+    /// Makes the record for a finished model.
+    fn build(&self, model: &ropewalk_core::Model) -> Result<Box<dyn Record>, BuildError>;
+}
+
+/// What kind of spec a type is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SpecKind {
+    /// [`ElementSpec`].
+    Element,
+    /// [`ConstraintSpec`].
+    Constraint,
+    /// [`ForceSpec`].
+    Force,
+    /// [`MotionSpec`].
+    Motion,
+    /// [`RecordSpec`].
+    Record,
+    /// [`ProcessSpec`](crate::process::ProcessSpec).
+    Process,
+}
+
+impl SpecKind {
+    /// The list in a scene file that holds it.
+    pub fn list(self) -> &'static str {
+        match self {
+            SpecKind::Element => "elements",
+            SpecKind::Constraint => "constraints",
+            SpecKind::Force => "forces",
+            SpecKind::Motion => "motions",
+            SpecKind::Record => "records",
+            SpecKind::Process => "processes",
+        }
+    }
+}
+
+/// A registered type and its documentation.
+pub struct SpecInfo {
+    /// What it is.
+    pub kind: SpecKind,
+    /// Its name in a scene file.
+    pub name: &'static str,
+    /// Its fields, types and doc comments.
+    pub schema: fn() -> schemars::Schema,
+}
+
+inventory::collect!(SpecInfo);
+
+/// All registered types, by kind and name.
+pub fn registered() -> Vec<&'static SpecInfo> {
+    let mut all: Vec<&SpecInfo> = inventory::iter::<SpecInfo>.into_iter().collect();
+    all.sort_by_key(|s| (s.kind, s.name));
+    all
+}
+
+/// Makes a spec known to `list` and `describe`: `register_spec!(Force, "gravity", Gravity)`.
+#[macro_export]
+macro_rules! register_spec {
+    ($kind:ident, $name:literal, $type:ty) => {
+        $crate::inventory::submit! {
+            $crate::SpecInfo {
+                kind: $crate::SpecKind::$kind,
+                name: $name,
+                schema: || $crate::schemars::schema_for!($type),
+            }
+        }
+    };
+}

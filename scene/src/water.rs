@@ -1,0 +1,143 @@
+//! What surrounds a scene: water, with a surface or without end, and the air above it.
+
+use crate::current::Current;
+use ropewalk_core::error::{finite, not_negative, positive};
+use ropewalk_core::{BuildError, Real};
+use serde::{Deserialize, Serialize};
+
+/// The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
+///
+/// ```
+/// use ropewalk_scene::Water;
+/// let fresh = Water { density: 1000.0, ..Water::default() };
+/// assert!(fresh.check().is_ok());
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Water {
+    /// Density [kg/m³].
+    #[serde(deserialize_with = "ropewalk_quantity::density")]
+    pub density: f64,
+    /// Dynamic viscosity [Pa s].
+    #[serde(deserialize_with = "ropewalk_quantity::viscosity")]
+    pub viscosity: f64,
+    /// Height of its surface, which is at rest [m]; left out, there is water everywhere.
+    #[serde(deserialize_with = "ropewalk_quantity::optional::length")]
+    pub level: Option<f64>,
+    /// Velocity of the water, the same everywhere [m/s].
+    #[serde(deserialize_with = "ropewalk_quantity::vec3::speed")]
+    pub current: [f64; 3],
+    /// Velocity of the water by height, instead of `current`: piecewise linear between the levels, constant beyond.
+    pub profile: Vec<Level>,
+}
+
+/// Velocity of the water, or the air, at one height.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Level {
+    /// Height [m].
+    #[serde(deserialize_with = "ropewalk_quantity::length")]
+    pub z: f64,
+    /// Velocity there [m/s].
+    #[serde(deserialize_with = "ropewalk_quantity::vec3::speed")]
+    pub velocity: [f64; 3],
+}
+
+impl Default for Water {
+    fn default() -> Self {
+        Water { density: 1025.0, viscosity: 1.08e-3, level: None, current: [0.0; 3], profile: Vec::new() }
+    }
+}
+
+impl Water {
+    /// Its velocity as a function of height.
+    ///
+    /// # Errors
+    /// Both `current` and `profile` are given, or the levels don't ascend.
+    pub fn current(&self) -> Result<Current, BuildError> {
+        velocity(&self.current, &self.profile, "[water] has both `current` and `profile`: give one of them")
+    }
+    /// What is wrong with the numbers, if anything.
+    pub fn check(&self) -> Result<(), BuildError> {
+        positive("density", self.density).map_err(|e| e.of("water.density"))?;
+        not_negative("viscosity", self.viscosity).map_err(|e| e.of("water.viscosity"))?;
+        finite("level", self.level.as_slice()).map_err(|e| e.of("water.level"))?;
+        finite("current", &self.current).map_err(|e| e.of("water.current"))?;
+        self.current().map(drop).map_err(|e| e.of("water.profile"))
+    }
+}
+
+/// The air above the water, or around a scene without water: only drag looks at it. Left out, there is nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Air {
+    /// Density [kg/m³].
+    #[serde(deserialize_with = "ropewalk_quantity::density")]
+    pub density: f64,
+    /// Dynamic viscosity [Pa s].
+    #[serde(deserialize_with = "ropewalk_quantity::viscosity")]
+    pub viscosity: f64,
+    /// Velocity of the air, the same everywhere [m/s].
+    #[serde(deserialize_with = "ropewalk_quantity::vec3::speed")]
+    pub wind: [f64; 3],
+    /// Velocity of the air by height, instead of `wind`: piecewise linear between the levels, constant beyond.
+    pub profile: Vec<Level>,
+}
+
+impl Default for Air {
+    /// At 15 °C and sea level, of the international standard atmosphere (ISO 2533).
+    fn default() -> Self {
+        Air { density: 1.225, viscosity: 1.79e-5, wind: [0.0; 3], profile: Vec::new() }
+    }
+}
+
+impl Air {
+    /// Its velocity as a function of height.
+    ///
+    /// # Errors
+    /// Both `wind` and `profile` are given, or the levels don't ascend.
+    pub fn wind(&self) -> Result<Current, BuildError> {
+        velocity(&self.wind, &self.profile, "[air] has both `wind` and `profile`: give one of them")
+    }
+    /// What is wrong with the numbers, if anything; or with air where there is water everywhere.
+    pub fn check(&self, water: Option<&Water>) -> Result<(), BuildError> {
+        positive("density", self.density).map_err(|e| e.of("air.density"))?;
+        not_negative("viscosity", self.viscosity).map_err(|e| e.of("air.viscosity"))?;
+        finite("wind", &self.wind).map_err(|e| e.of("air.wind"))?;
+        self.wind().map(drop).map_err(|e| e.of("air.profile"))?;
+        if water.is_some_and(|w| w.level.is_none()) {
+            let message =
+                "there is water everywhere, and so no air: give the surface of the water its `level`";
+            return Err(BuildError::at("water", message));
+        }
+        Ok(())
+    }
+}
+
+fn velocity(uniform: &[f64; 3], profile: &[Level], both: &str) -> Result<Current, BuildError> {
+    if profile.is_empty() {
+        let still = *uniform == [0.0; 3];
+        return Ok(if still { Current::Still } else { Current::Uniform(*uniform) });
+    }
+    if *uniform != [0.0; 3] {
+        return Err(BuildError::new(both));
+    }
+    let (z, velocity) = profile.iter().map(|l| (l.z, l.velocity)).unzip();
+    Current::profile(z, velocity)
+}
+
+/// Share of a ball's volume that lies below a level, `½ + ¾ u - ¼ u³` at the depth `u` radii of its middle, and what it changes
+/// by with the height `z` of that [1/m].
+///
+/// ```
+/// use ropewalk_scene::ball_below;
+/// // a ball whose middle is at the surface is half under water
+/// assert_eq!(ball_below(0.0, 0.0_f64, 1.0).0, 0.5);
+/// ```
+#[inline(always)]
+pub fn ball_below<R: Real>(level: f64, z: R, radius: f64) -> (R, R) {
+    let (one, u) = (R::of(1.0), (R::of(level) - z) * R::of(1.0 / radius));
+    let u = u.if_gt(one, one, u.if_gt(-one, u, -one));
+    let share = u.fma(u * u * R::of(-0.25), u.fma(R::of(0.75), R::of(0.5)));
+    (share, (u * u - one) * R::of(0.75 / radius))
+}

@@ -1,0 +1,107 @@
+//! What the command line can do, one file for each verb.
+
+pub(crate) mod atlas;
+pub(crate) mod bench;
+pub(crate) mod check;
+pub(crate) mod cost;
+pub(crate) mod describe;
+pub(crate) mod effects;
+pub(crate) mod list;
+pub(crate) mod modes;
+pub(crate) mod resume;
+pub(crate) mod run;
+mod schema;
+pub(crate) mod sweep;
+pub(crate) mod variants;
+pub(crate) mod verify;
+
+use ropewalk_report::Interrupt;
+use std::fmt::Display;
+use std::io::Write;
+
+/// How the program ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Exit {
+    /// All went well.
+    Done = 0,
+    /// A case of the verification suite is outside its tolerances.
+    Outside = 1,
+    /// The scene or the command is wrong.
+    Input = 2,
+    /// The solver gave up.
+    Solver = 3,
+    /// Ctrl-C or another signal.
+    Interrupted = 130,
+}
+
+impl Exit {
+    /// The exit code of the program.
+    pub(crate) fn code(self) -> u8 {
+        if self == Exit::Interrupted { Interrupt::exit_code() } else { self as u8 }
+    }
+}
+
+/// Writes results. Whoever closes the pipe early has seen enough.
+pub(crate) fn say(text: impl Display) {
+    let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// Writes an error or a warning.
+pub(crate) fn complain(text: impl Display) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Breaks a text into lines of at most 96 characters, each behind `indent`; paragraphs stay apart, and those set in by
+/// four spaces, such as examples, keep their lines.
+pub(crate) fn wrapped(text: &str, indent: usize) -> String {
+    const WIDTH: usize = 96;
+    let mut out = String::new();
+    let mut paragraphs = text.split("\n\n").peekable();
+    while let Some(paragraph) = paragraphs.next() {
+        let as_written = !paragraph.trim().is_empty()
+            && paragraph.lines().all(|line| line.trim().is_empty() || line.starts_with("    "));
+        let kept = paragraph.lines().filter(|_| as_written);
+        out.extend(kept.map(|line| format!("{:indent$}{line}\n", "")));
+        let mut line = String::new();
+        for word in paragraph.split_whitespace().filter(|_| !as_written) {
+            if !line.is_empty() && indent + line.chars().count() + 1 + word.chars().count() > WIDTH {
+                out += &format!("{:indent$}{line}\n", "");
+                line.clear();
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line += word;
+        }
+        if !line.is_empty() {
+            out += &format!("{:indent$}{line}\n", "");
+        }
+        if paragraphs.peek().is_some() {
+            out.push('\n');
+        }
+    }
+    out
+}
+
+/// The first sentence or line of a doc comment.
+pub(crate) fn first_line(text: &str) -> String {
+    let paragraph = text.split("\n\n").next().unwrap_or_default();
+    let line: String = paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
+    match line.find(". ") {
+        Some(end) => line[..=end].to_string(),
+        None => line,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn examples_keep_their_lines() {
+        let text = "Words that\nrun on.\n\n    one   --set a=1\n    two   --set b=2\n\nThe end.\n";
+        let shown = "  Words that run on.\n\n      one   --set a=1\n      two   --set b=2\n\n  The end.\n";
+        assert_eq!(wrapped(text, 2), shown);
+    }
+}

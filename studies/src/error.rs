@@ -1,0 +1,74 @@
+//! What can go wrong between a scene and its results.
+
+use ropewalk_core::integrator::StepError;
+use ropewalk_core::modes::ModesError;
+use ropewalk_core::statics::StaticsError;
+use ropewalk_report::{Interrupt, OutputError};
+use ropewalk_scene::{Fault, SceneError};
+use std::fmt;
+
+/// Why there are no results.
+///
+/// Its `Debug` is its message, which is what a `main` that returns it prints.
+#[derive(thiserror::Error)]
+pub enum Error {
+    /// The scene file is wrong; the message shows the place.
+    #[error("{0}")]
+    File(#[from] Fault),
+    /// The scene can't be built.
+    #[error("{0}")]
+    Scene(#[from] SceneError),
+    /// A step could not be taken.
+    #[error("{0}")]
+    Step(#[from] StepError),
+    /// A process could not go on.
+    #[error("{0}")]
+    Process(String),
+    /// An equilibrium was not found.
+    #[error("{0}")]
+    Statics(#[from] StaticsError),
+    /// The vibration modes could not be found.
+    #[error("{0}")]
+    Modes(#[from] ModesError),
+    /// Ctrl-C was pressed, or the system asked for the end, before there was anything to keep.
+    #[error("stopped by {}", Interrupt::cause())]
+    Interrupted,
+    /// Results could not be written.
+    #[error("{0}")]
+    Output(#[from] OutputError),
+}
+
+impl Error {
+    /// Whether the scene or the command is to blame, not the solver: something has to be changed before the run
+    /// can even begin.
+    pub fn is_input(&self) -> bool {
+        match self {
+            Error::File(_) | Error::Scene(_) | Error::Output(_) => true,
+            Error::Step(e) => matches!(e, StepError::Scheme(_) | StepError::Inconsistent(_)),
+            Error::Statics(_) | Error::Process(_) | Error::Interrupted => false,
+            Error::Modes(e) => matches!(
+                e,
+                ModesError::Massless { .. } | ModesError::Moving { .. } | ModesError::Held | ModesError::None
+            ),
+        }
+    }
+}
+
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_main_that_returns_an_error_prints_what_a_user_can_read() {
+        let e = crate::simulate::read("nowhere.toml").unwrap_err();
+        assert_eq!(format!("Error: {e:?}"), "Error: there is no file `nowhere.toml`");
+        let mut scene = ropewalk_scene::Scene::new();
+        scene.run.duration = -1.0;
+        let e = crate::simulate::simulate(&scene).err().unwrap();
+        assert_eq!(format!("Error: {e:?}"), "Error: `duration` must be positive, but is -1");
+    }
+}

@@ -1,0 +1,227 @@
+//! Vibration modes of a scene: its equilibrium, the modes about it, and a folder with tables and pictures of them.
+
+mod pictures;
+mod report;
+
+use crate::error::Error;
+use crate::run::Manifest;
+use ropewalk_core::modes::{self as core, Critical, Mode, ModesError, OnLook};
+use ropewalk_core::statics::{Found, Statics, StaticsError};
+use ropewalk_core::{Model, SolveError, State};
+use ropewalk_report::{Interrupt, ProgressMode, RunFolder, Stopwatch, Table, new_bar};
+use ropewalk_scene::{Analysis, Fault, Scene, SceneFile};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+/// The modes of a scene, and what they are about.
+pub struct Modal {
+    /// The model.
+    pub model: Model,
+    /// The equilibrium.
+    pub state: State,
+    /// How it was found; `None` if the scene was in balance as laid.
+    pub search: Option<Found>,
+    /// The modes, lowest first. Of an unstable equilibrium only those that grow: nothing vibrates about it.
+    pub modes: Vec<Mode>,
+    /// Whether the equilibrium is unstable.
+    pub unstable: bool,
+    /// How far the loads may grow until it tips over; `None` without loads.
+    pub critical: Option<Critical>,
+    /// What one should know about them.
+    pub warnings: Vec<String>,
+}
+
+/// What may be chosen about modes beside the scene.
+#[derive(Clone, Debug)]
+pub struct ModesOptions {
+    /// How many modes; those with the lowest frequencies.
+    pub count: usize,
+    /// The time at which loads and motions are taken [s]; left out, the start of a run in time and the end of a load
+    /// path.
+    pub time: Option<f64>,
+    /// The folder for the results, which must be new or empty; without it `runs/<scene>-modes`, numbered.
+    pub out: Option<PathBuf>,
+    /// How to show the progress.
+    pub progress: ProgressMode,
+}
+
+impl Default for ModesOptions {
+    fn default() -> Self {
+        ModesOptions { count: 20, time: None, out: None, progress: ProgressMode::Quiet }
+    }
+}
+
+/// The vibration modes about the equilibrium of a scene, in memory; nothing is written.
+///
+/// A scene that is in balance as it is laid vibrates about that. Else its equilibrium is searched: of a run in time the
+/// one at its start, of a statics scene the end of its load path, in the frame that it names.
+///
+/// # Errors
+/// The scene can't be built, has no equilibrium, moves, or has something without mass.
+pub fn modes(scene: &Scene, options: &ModesOptions) -> Result<Modal, Error> {
+    let model = scene.build()?;
+    find(scene, model, options, &mut |_, _, _| ControlFlow::Continue(()))
+}
+
+impl Modal {
+    /// The modes as a table: number, frequency, damping and shares of each.
+    pub fn table(&self) -> Table {
+        report::table(self)
+    }
+}
+
+/// Modes in a folder of their own.
+pub struct ModesOutcome {
+    /// The folder: `scene.toml`, `manifest.json`, `tables/modes.csv` and `plots/mode-N.svg`.
+    pub folder: RunFolder,
+    /// The modes.
+    pub modal: Modal,
+    /// A table for people.
+    pub report: String,
+}
+
+/// Computes the modes of a scene into a folder. What one should know is said by `warn`.
+///
+/// # Errors
+/// As [`modes`]; the folder can't be used.
+pub fn write_modes(
+    file: &SceneFile,
+    options: &ModesOptions,
+    warn: &mut dyn FnMut(&str),
+) -> Result<ModesOutcome, Error> {
+    let model = file.build()?;
+    let manifest = Manifest::new(file, &model)?;
+    for name in file.document().unused_parameters() {
+        warn(&format!("parameter `{name}` is not used by the scene"));
+    }
+    let is_new = options.out.as_ref().is_none_or(|out| !out.exists());
+    let folder = RunFolder::create(options.out.clone(), &format!("{}-modes", file.name()))?;
+    let stopwatch = Stopwatch::start();
+    let interrupt = Interrupt::install().ok();
+    let bar = match options.progress {
+        ProgressMode::Quiet => None,
+        _ => Some(new_bar(options.count as u64)),
+    };
+    let mut look = |good: usize, _: usize, vectors: usize| {
+        if let Some(bar) = &bar {
+            bar.set_position(good as u64);
+            bar.set_message(format!("modes, {vectors} vectors"));
+        }
+        match interrupt.is_some_and(|i| i.requested()) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    };
+    let found = find(file.scene(), model, options, &mut look);
+    if let Some(bar) = &bar {
+        bar.finish_and_clear();
+    }
+    let modal = found.inspect_err(|_| {
+        if is_new {
+            // best effort, and it only removes a folder that is empty
+            let _ = std::fs::remove_dir(folder.path());
+        }
+    })?;
+    modal.warnings.iter().for_each(|w| warn(w));
+    folder.write_scene(&file.document().to_toml())?;
+    folder.write_manifest(&manifest)?;
+    modal.table().write(&folder.table_file("modes")?)?;
+    let pictures = pictures::draw(&folder, &modal, warn);
+    let report = report::report(file, &modal, &folder, pictures, stopwatch.elapsed());
+    Ok(ModesOutcome { folder, modal, report })
+}
+
+/// As [`modes`], stopped by Ctrl-C.
+pub(crate) fn modes_showing(
+    scene: &Scene,
+    count: usize,
+    interrupt: Option<Interrupt>,
+) -> Result<Modal, Error> {
+    let options = ModesOptions { count, ..ModesOptions::default() };
+    let mut look = |_: usize, _: usize, _: usize| match interrupt.is_some_and(Interrupt::requested) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    find(scene, scene.build()?, &options, &mut look)
+}
+
+fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'_>) -> Result<Modal, Error> {
+    if model.velocities() == 0 {
+        return Err(ModesError::Held.into());
+    }
+    let run = &scene.run;
+    let end = if run.analysis == Analysis::Statics { run.duration } else { 0.0 };
+    let time = options.time.unwrap_or(end);
+    if !(0.0..=run.duration).contains(&time) {
+        let message = format!(
+            "`--at` must be between 0 and {} s, the `duration` of the scene, not {time}",
+            run.duration
+        );
+        return Err(Fault::new(message).into());
+    }
+    let mut state = model.state();
+    state.v.fill(0.0);
+    state.t = time;
+    let mut warnings = Vec::new();
+    let search = if core::in_balance(&model, &mut state, &scene.statics, run.frame)? {
+        None
+    } else {
+        Some(equilibrium(scene, &model, &mut state, time)?)
+    };
+    let found = core::modes(&model, &state, &scene.statics, run.frame, options.count, look)?;
+    if let Some(of) = found.of.filter(|of| *of < options.count) {
+        let plural = if of == 1 { "one mode" } else { &format!("{of} modes") };
+        warnings.push(format!("the scene has only {plural}, fewer than the {} asked for", options.count));
+    }
+    if let Some(n) = found.missing.filter(|n| *n > 0) {
+        warnings.push(format!(
+            "by Sylvester's law of inertia the number of modes below the last one is off by {n}: the stiffness is too \
+             close to rounding, or modes lie too close together"
+        ));
+    }
+    let (mut modes, critical) = (found.modes, found.critical);
+    let growing = modes.iter().filter(|m| m.is_unstable()).count();
+    let unstable = growing > 0 || found.hidden.is_some();
+    if unstable {
+        modes.retain(Mode::is_unstable);
+        let how = match (found.hidden, growing) {
+            (Some(rate), _) => format!(
+                "a small disturbance grows by {rate:.3e} per second, in none of the {count} lowest modes: ask for more \
+                 with `--count`",
+                count = options.count
+            ),
+            (None, 1) => "a small disturbance grows in one mode".into(),
+            (None, n) => format!("a small disturbance grows in {n} modes"),
+        };
+        warnings.push(format!(
+            "the equilibrium is unstable: {how}. Nothing vibrates about it, so no frequencies are given"
+        ));
+    }
+    if let Some(bad) = modes.iter().map(|m| m.residual).filter(|r| !(*r <= 1e-6)).reduce(f64::max) {
+        warnings.push(format!("the equations of a mode are met only to {bad:.0e} of its size"));
+    }
+    Ok(Modal { model, state, search, modes, unstable, critical, warnings })
+}
+
+/// The equilibrium at a time: of statics scenes along the load path.
+fn equilibrium(scene: &Scene, model: &Model, state: &mut State, time: f64) -> Result<Found, Error> {
+    let no_memory = |e: SolveError| Error::Modes(ModesError::Solver(e));
+    let mut search = Statics::relative(model, &scene.statics, scene.run.frame).map_err(no_memory)?;
+    if scene.run.analysis == Analysis::Dynamics || time == 0.0 {
+        return Ok(search.find(state, true)?);
+    }
+    let steps = scene.statics.steps.max(1);
+    state.t = 0.0;
+    let mut sum = Found::default();
+    let mut unloaded = state.clone();
+    if core::in_balance(model, &mut unloaded, &scene.statics, scene.run.frame)? {
+        *state = unloaded;
+    } else {
+        sum = search.find(state, true)?;
+    }
+    for k in 1..=steps {
+        let found: Result<Found, StaticsError> = search.follow(state, time * k as f64 / steps as f64);
+        sum.add(&found?);
+    }
+    Ok(sum)
+}

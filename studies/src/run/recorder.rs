@@ -1,0 +1,321 @@
+//! The observer of a run: it evaluates the records, writes the history, shows the progress and keeps shapes.
+
+use super::checkpoint::{Saved, Saver};
+use super::shapes::{Line, Shape};
+use super::start::Ending;
+use super::surfacing::Surfacing;
+use crate::error::Error;
+use crate::run::{Happened, Summary};
+use ropewalk_core::integrator::StepReport;
+use ropewalk_core::{At, Checkpoint, Layers, Model, NodeKind, Observer, Record, Remeshed, Sample, State, V3};
+use ropewalk_report as output;
+use ropewalk_report::{Interrupt, Progress, Table, TableWriter};
+use ropewalk_scene::{Analysis, Channel, Process, Scene};
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// About how many rows keep the positions of all nodes, where they are tracked.
+const TRACKED: f64 = 200.0;
+
+/// A record in the table: its name, its title, and its columns.
+pub(crate) struct Figure {
+    pub name: String,
+    pub title: String,
+    pub columns: std::ops::Range<usize>,
+}
+
+/// Sees every step and sample of a run.
+pub struct Recorder<'a> {
+    pub(super) scene: &'a Scene,
+    records: Vec<Box<dyn Record>>,
+    needs_forces: bool,
+    /// Address of the model that the records are bound to.
+    bound: Option<usize>,
+    row: Vec<f64>,
+    /// All samples so far.
+    pub table: Table,
+    /// Which columns belong to which record.
+    pub figures: Vec<Figure>,
+    /// Where the samples go at once.
+    pub writer: Option<TableWriter>,
+    /// Where the progress is shown.
+    pub progress: Option<Progress>,
+    /// Whether Ctrl-C was pressed.
+    pub interrupt: Option<Interrupt>,
+    /// Positions of all nodes at some hundred rows, if they are wanted.
+    pub track: Option<Vec<Vec<V3<f64>>>>,
+    /// When the run has taken too long and stops as by Ctrl-C.
+    pub deadline: Option<Instant>,
+    /// Lines of all parts at several times.
+    pub shapes: Vec<Shape>,
+    /// When shapes are still to be kept, last first.
+    pub(super) due: Vec<f64>,
+    /// Whether to look for what leaves water without a surface.
+    surfacing: Option<Surfacing>,
+    /// Why it stopped the run.
+    pub stop: Option<Ending>,
+    /// What happened and when.
+    pub events: Vec<Happened>,
+    /// How the mesh has changed.
+    pub remeshed: Vec<Remeshed>,
+    /// Where checkpoints go, if any are wanted.
+    pub saver: Option<Saver>,
+    /// Where warnings go while the run goes on.
+    pub warnings: Warnings<'a>,
+    /// Bending layers, looked at now and then.
+    layers: Option<Layers>,
+}
+
+/// Warnings are said at once and kept for the summary.
+#[derive(Default)]
+pub(crate) struct Warnings<'w> {
+    pub all: Vec<String>,
+    /// Who is told, if anybody is.
+    pub tell: Option<&'w mut dyn FnMut(&str)>,
+}
+
+impl Warnings<'_> {
+    pub(crate) fn say(&mut self, text: &str) {
+        self.all.push(text.to_string());
+        if let Some(tell) = &mut self.tell {
+            tell(text);
+        }
+    }
+}
+
+impl<'a> Recorder<'a> {
+    /// A recorder that keeps everything in memory.
+    pub(crate) fn new(scene: &'a Scene, records: Vec<Box<dyn Record>>) -> Self {
+        let mut table = Table::new([]);
+        if scene.run.analysis == Analysis::Statics {
+            table.columns = vec![output::Column::new("load factor", "")];
+        }
+        let of_records =
+            records.iter().map(|r| Channel { name: r.name(), title: r.title(), columns: r.columns() });
+        let channels = of_records.chain(scene.processes.iter().flat_map(|p| p.channels()));
+        let mut figures = Vec::new();
+        for Channel { name, title, columns } in channels {
+            let first = table.columns.len();
+            for c in columns {
+                let unit = if c.unit == "1" { String::new() } else { c.unit };
+                table.columns.push(output::Column::new(c.name, unit));
+            }
+            let columns = first..table.columns.len();
+            figures.push(Figure { name, title, columns });
+        }
+        let n = scene.run.snapshots;
+        let last = n.saturating_sub(1).max(1);
+        let due =
+            (0..n).rev().map(|k| scene.run.duration * if n == 1 { 1.0 } else { k as f64 / last as f64 });
+        Recorder {
+            scene,
+            needs_forces: records.iter().any(|r| r.needs_forces()),
+            records,
+            bound: None,
+            row: Vec::new(),
+            table,
+            figures,
+            writer: None,
+            progress: None,
+            interrupt: None,
+            track: None,
+            deadline: None,
+            shapes: Vec::new(),
+            due: due.collect(),
+            surfacing: Surfacing::of(scene),
+            stop: None,
+            events: Vec::new(),
+            remeshed: Vec::new(),
+            saver: None,
+            warnings: Warnings::default(),
+            layers: None,
+        }
+    }
+
+    /// Takes up what was recorded until a checkpoint; says which column differs if the records are others.
+    pub(super) fn take_up(&mut self, saved: &Saved<'_>) -> Result<(), String> {
+        let heads = |t: &Table| t.columns.iter().map(|c| c.heading()).collect::<Vec<_>>();
+        if heads(&self.table) != heads(&saved.table) {
+            return Err("the checkpoint belongs to other records".into());
+        }
+        self.table = saved.table.clone().into_owned();
+        self.shapes = saved.shapes.clone().into_owned();
+        self.due = saved.due.clone().into_owned();
+        self.events = saved.events.clone().into_owned();
+        self.remeshed = saved.remeshed.clone().into_owned();
+        Ok(())
+    }
+
+    /// Binds the records to the model if it is another one than before: node numbers change with the mesh.
+    fn bind(&mut self, model: &Model) -> Result<(), Error> {
+        let address = std::ptr::from_ref(model) as usize;
+        if self.bound.is_some_and(|bound| bound != address) {
+            self.records = self.scene.records(model)?;
+        }
+        if self.bound != Some(address) {
+            match &mut self.layers {
+                Some(layers) => layers.follow(model),
+                None => self.layers = Some(Layers::new(model)),
+            }
+        }
+        self.bound = Some(address);
+        Ok(())
+    }
+
+    fn record(&mut self, s: &Sample<'_>) -> Result<(), Error> {
+        self.bind(s.model)?;
+        self.row.clear();
+        self.row.push(s.at.t);
+        for record in &self.records {
+            record.sample(s, &mut self.row);
+        }
+        let rows = match self.scene.run.analysis {
+            Analysis::Statics => 0.0,
+            _ => self.scene.run.duration / self.scene.run.interval(),
+        };
+        if self.table.rows().is_multiple_of((rows / TRACKED).ceil().max(1.0) as usize) {
+            if let Some(track) = &mut self.track {
+                track.push(positions(s.model, &s.at));
+            }
+            if let Some(layers) = &mut self.layers {
+                layers.look(s.model, &s.at);
+            }
+        }
+        self.keep(s.at.t, || Shape::of(s.model, &s.at))
+    }
+
+    /// Takes a row of a process, which made a step of `h` since the last.
+    pub(crate) fn process(&mut self, process: &dyn Process, h: f64) -> ControlFlow<()> {
+        let t = process.t();
+        if let Some(progress) = &mut self.progress {
+            progress.step(t, h, 0);
+        }
+        self.row.clear();
+        self.row.push(t);
+        process.sample(&mut self.row);
+        let name = self.scene.processes.first().map_or("", |p| p.name());
+        let kept = self.keep(t, || Shape { t, lines: vec![Line::of_process(name, process)] });
+        self.go_on(kept)?;
+        self.look_for_end()
+    }
+
+    /// Keeps the row, and the shape if one is due.
+    fn keep(&mut self, t: f64, shape: impl FnOnce() -> Shape) -> Result<(), Error> {
+        self.table.push_row(&self.row)?;
+        if let Some(writer) = &mut self.writer {
+            writer.push(&self.row)?;
+        }
+        // an instant that is off by rounding is the right one
+        let now = t + 1e-9 * self.scene.run.duration;
+        if self.due.last().is_some_and(|due| *due <= now) {
+            while self.due.last().is_some_and(|due| *due <= now) {
+                self.due.pop();
+            }
+            self.shapes.push(shape());
+        }
+        Ok(())
+    }
+
+    /// Keeps the shape in which the run ended, unless it is there already.
+    pub(crate) fn last_shape(&mut self, model: &Model, state: &State) {
+        let missing = self.shapes.last().is_some_and(|last| last.t < state.t);
+        if missing && !self.due.is_empty() && self.scene.processes.is_empty() {
+            self.shapes.push(Shape::of(model, &state.at()));
+        }
+    }
+
+    /// The last value of every column, what happened, and the number of rows.
+    pub(crate) fn finals(&self, summary: &mut Summary) {
+        summary.events.clone_from(&self.events);
+        summary.rows = self.table.rows();
+        for column in &self.table.columns {
+            if let Some(last) = column.values.last() {
+                summary.set(&column.name, *last);
+            }
+        }
+    }
+
+    /// What one should know of the mesh, after all that was recorded.
+    pub(crate) fn afterthought(&self) -> Vec<String> {
+        self.layers.iter().flat_map(Layers::remarks).collect()
+    }
+
+    /// The last instant that was sampled [s].
+    pub(crate) fn t(&self) -> f64 {
+        self.table.columns.first().and_then(|c| c.values.last()).copied().unwrap_or(0.0)
+    }
+
+    fn is_to_stop(&self) -> bool {
+        self.interrupt.is_some_and(Interrupt::requested) || self.deadline.is_some_and(|d| Instant::now() >= d)
+    }
+
+    /// Ends the run if that is asked for.
+    fn look_for_end(&mut self) -> ControlFlow<()> {
+        if !self.is_to_stop() {
+            return ControlFlow::Continue(());
+        }
+        self.stop = Some(Ending::Interrupted);
+        ControlFlow::Break(())
+    }
+
+    fn go_on(&mut self, result: Result<(), Error>) -> ControlFlow<()> {
+        match result {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                self.stop = Some(Ending::Failed(error));
+                ControlFlow::Break(())
+            }
+        }
+    }
+}
+
+impl Observer for Recorder<'_> {
+    fn step(&mut self, model: &Model, state: &State, report: &StepReport) -> ControlFlow<()> {
+        if let Some(progress) = &mut self.progress {
+            progress.step(state.t, report.h, report.rejected);
+        }
+        if let Some(saver) = &mut self.saver {
+            saver.step();
+        }
+        let bound = self.bind(model);
+        self.go_on(bound)?;
+        self.look_for_end()
+    }
+    fn needs_forces(&self) -> bool {
+        self.needs_forces
+    }
+    fn wants_checkpoint(&mut self) -> bool {
+        let ending = matches!(self.stop, Some(Ending::Interrupted));
+        self.saver.as_ref().is_some_and(|saver| saver.is_due(ending))
+    }
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> ControlFlow<()> {
+        if let Some(mut saver) = self.saver.take() {
+            saver.write(checkpoint, self);
+            self.saver = Some(saver);
+        }
+        ControlFlow::Continue(())
+    }
+    fn warn(&mut self, text: &str) {
+        self.warnings.say(text);
+        if let Some(saver) = &mut self.saver {
+            saver.warnings.push(text.to_string());
+        }
+    }
+    fn event(&mut self, name: &str, t: f64) {
+        self.events.push(Happened { name: name.into(), t });
+    }
+    fn remeshed(&mut self, report: &Remeshed) {
+        self.remeshed.push(report.clone());
+    }
+    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
+        let risen = self.surfacing.as_mut().map(|s| s.look(sample.model, &sample.at));
+        risen.into_iter().flatten().for_each(|text| self.warn(&text));
+        let recorded = self.record(sample);
+        self.go_on(recorded)
+    }
+}
+
+fn positions(model: &Model, at: &At<'_>) -> Vec<V3<f64>> {
+    let nodes = model.nodes().iter().filter(|n| !matches!(n.kind, NodeKind::Scalars(_)));
+    nodes.map(|n| [at.q[n.q], at.q[n.q + 1], at.q[n.q + 2]]).collect()
+}

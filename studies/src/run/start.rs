@@ -1,0 +1,391 @@
+//! The analyses: motion in time, and a path of equilibria.
+
+use super::Recorder;
+use super::checkpoint::Saved;
+use crate::error::Error;
+use crate::run::{Counts, CriticalLoad, ProfileEntry};
+use ropewalk_core::integrator::{StepError, StepReport, Stepping};
+use ropewalk_core::statics::{Critical, Statics};
+use ropewalk_core::{Audit, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit};
+use ropewalk_scene::{Analysis, Fault, Process, Scene, SceneFile};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// How an analysis ended.
+pub enum Ending {
+    /// At its end.
+    Finished,
+    /// By an event.
+    Stopped(String),
+    /// By Ctrl-C.
+    Interrupted,
+    /// With an error.
+    Failed(Error),
+}
+
+/// Rate at which disturbances of an equilibrium grow [1/s]; 0 if they don't.
+type Flutter = f64;
+
+/// What an analysis leaves behind.
+pub(crate) struct Done {
+    pub model: Arc<Model>,
+    pub state: State,
+    pub audit: Audit,
+    pub counts: Counts,
+    pub flutter: Flutter,
+    /// Loads at which equilibria lost their stability.
+    critical: Vec<Critical>,
+    /// What else is to be said about the equilibria.
+    remarks: Vec<String>,
+    /// Where the time of statics went, if that was asked for.
+    times: Option<Vec<Spent>>,
+}
+
+/// A label with calls and time.
+type Spent = (String, u64, Duration);
+
+/// An analysis that is ready to go.
+pub enum Started {
+    /// Motion in time, and what is to be said about the equilibrium that it starts from.
+    Dynamics(Box<Simulation>, Flutter, Vec<String>),
+    /// Equilibria while time runs as the load factor.
+    Statics(Box<Done>),
+    /// A problem of its own, beside a model without anything in it.
+    Process(Box<dyn Process>, Box<Done>),
+}
+
+impl Started {
+    /// Brings the model to its start.
+    pub(crate) fn new(scene: &Scene, model: Model) -> Result<Self, Error> {
+        let run = &scene.run;
+        if let Some(process) = scene.start_process()? {
+            return Ok(Started::Process(process, Box::new(Done::at_rest(model))));
+        }
+        if run.analysis == Analysis::Statics {
+            return Ok(Started::Statics(Box::new(Done::at_rest(model))));
+        }
+        // an unsuitable scheme should not have to wait for the equilibrium
+        scene.solver.integrator(&model, run.duration)?;
+        let (mut state, mut flutter, mut remarks) = (model.state(), 0.0, Vec::new());
+        if run.from_equilibrium {
+            state.v.fill(0.0);
+            let mut search = Statics::new(&model, &scene.statics).map_err(no_memory)?;
+            flutter = search.find(&mut state, true)?.flutter;
+            remarks = remarks_on(&search);
+            remarks.extend(without_friction(&model));
+        }
+        let mut simulation = Simulation::from(model, state, &scene.solver, run.duration)?;
+        simulation.keep_audit(run.audit);
+        Ok(Started::Dynamics(Box::new(simulation), flutter, remarks))
+    }
+
+    /// What one should know although the run goes on.
+    pub(crate) fn warnings(&self, scene: &Scene) -> Vec<String> {
+        let mut all = Vec::new();
+        if let Started::Dynamics(s, _, remarks) = self {
+            all.extend(remarks.iter().cloned());
+            all.extend(s.integrator.warning().map(str::to_string));
+            if let Some(r) = s.model.redundancy() {
+                all.push(format!(
+                    "redundant constraints: {r}. The motion is that without them; forces that could be shared out in \
+                     many ways are given with the least norm"
+                ));
+            }
+            if let Stepping::Fixed { h } = scene.solver.stepping {
+                all.extend(s.faster_than(h, scene.run.duration).into_iter().map(|(name, t)| {
+                    format!(
+                        "`{name}` changes at t = {t:.6} s faster than steps of {h:e} s follow: what it does between two of \
+                         them isn't seen. Take a smaller `h`, or error control"
+                    )
+                }));
+            }
+            let c = s.correction;
+            if c.position > 1e-8 * s.model.length() || c.velocity > 1e-6 {
+                all.push(format!(
+                    "the start was moved onto the constraints: positions by {:.1e} m, velocities by {:.1e} m/s \
+                     (root mean square along the part that is moved most)",
+                    c.position, c.velocity
+                ));
+            }
+        }
+        if !scene.run.audit && scene.records.iter().any(|r| r.typetag_name() == "energy") {
+            all.push("energy is recorded but not followed: set `audit = true` in [run]".into());
+        }
+        all
+    }
+
+    /// What only the run could tell: equilibria that aren't stable, multipliers that ring.
+    pub(crate) fn afterthought(&self) -> Vec<String> {
+        let (flutter, counts, ringing) = match self {
+            Started::Process(process, _) => return process.warnings(),
+            Started::Dynamics(s, flutter, _) => (*flutter, s.work.counts, s.ringing),
+            Started::Statics(done) => (done.flutter, Default::default(), 0.0),
+        };
+        let rang = || {
+            format!("the multipliers rang: from step to step they swung by up to {ringing:.1e} of their size")
+        };
+        let unstable = || {
+            format!(
+                "the equilibrium is not stable: small disturbances swing ever wider, e-fold in {:.2} s. In motion it \
+                 will flutter",
+                1.0 / flutter
+            )
+        };
+        let (unmet, cut, steps) = (counts.unmet, counts.cut, counts.steps);
+        let stopped = || {
+            format!(
+                "{unmet} steps never met the stopping test of Newton's method: rounding leaves more than it allows. They \
+                 are as good as they get"
+            )
+        };
+        let shorter = || {
+            format!(
+                "{cut} of {steps} steps are shorter than `h`, since longer ones failed: they didn't converge, or the motion \
+                 jumped. Take a smaller `h`, or error control"
+            )
+        };
+        let mut remarks = match self {
+            Started::Statics(done) => done.remarks.clone(),
+            _ => Vec::new(),
+        };
+        if let Started::Statics(done) = self {
+            remarks.extend(without_friction(&done.model));
+        }
+        remarks.extend(match self {
+            Started::Process(..) => Vec::new(),
+            Started::Dynamics(s, ..) => s.model.remarks(&s.state.at()),
+            Started::Statics(done) => done.model.remarks(&done.state.at()),
+        });
+        let all = [
+            (ringing > 0.0).then(rang),
+            (flutter > 0.0 && ringing == 0.0).then(unstable),
+            (unmet > 0 && ringing == 0.0).then(stopped),
+            (cut > 0).then(shorter),
+        ];
+        all.into_iter().flatten().chain(remarks).collect()
+    }
+
+    /// Measures the time of every term from now on.
+    pub(crate) fn profile(&mut self) {
+        match self {
+            Started::Dynamics(s, ..) => s.work.profile(),
+            Started::Statics(done) => done.times = Some(Vec::new()),
+            Started::Process(..) => {}
+        }
+    }
+
+    /// The measured times.
+    pub(crate) fn times(&self) -> Vec<ProfileEntry> {
+        let times = match self {
+            Started::Dynamics(s, ..) => s.work.times(&s.model),
+            Started::Statics(done) => done.times.clone().unwrap_or_default(),
+            Started::Process(..) => Vec::new(),
+        };
+        let entry = |(label, calls, time): Spent| ProfileEntry {
+            label,
+            calls,
+            seconds: time.as_secs_f64(),
+            share: 0.0,
+        };
+        times.into_iter().map(entry).collect()
+    }
+
+    /// A run in time as it was at a checkpoint.
+    pub(crate) fn resumed(file: &SceneFile, saved: &Saved<'_>) -> Result<Self, Error> {
+        let (scene, checkpoint) = (file.scene(), saved.simulation.clone());
+        let mut model = file.build()?;
+        if !checkpoint.meshes.is_empty() {
+            model = scene.build_on(&checkpoint.meshes)?;
+        }
+        match Simulation::restore(model, &scene.solver, scene.run.duration, checkpoint) {
+            Ok(simulation) => Ok(Started::Dynamics(Box::new(simulation), saved.flutter, Vec::new())),
+            Err(Unfit::Step(e)) => Err(e.into()),
+            Err(e) => Err(Fault::new(e.to_string()).into()),
+        }
+    }
+
+    /// Computes until the end, or until something stops it; `resumed` says that a checkpoint was gone on from.
+    pub(crate) fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>, resumed: bool) -> Ending {
+        let (duration, interval) = (scene.run.duration, scene.run.interval());
+        let end = match self {
+            Started::Dynamics(s, ..) if resumed => s.go_on(duration, interval, recorder).map_err(Error::from),
+            Started::Process(process, _) => through(process.as_mut(), scene, recorder),
+            _ => self.drive(scene, recorder),
+        };
+        match (end, recorder.stop.take()) {
+            (_, Some(error)) => error,
+            (Ok(End::Done), None) => Ending::Finished,
+            (Ok(End::Stopped { by }), None) => Ending::Stopped(by),
+            (Err(error), None) => Ending::Failed(error),
+        }
+    }
+
+    /// Moves a model to its end under the eyes of an observer. A process has no model to look at: it stays as it is.
+    pub(crate) fn drive(&mut self, scene: &Scene, observer: &mut dyn Observer) -> Result<End, Error> {
+        match self {
+            Started::Dynamics(s, ..) => {
+                s.advance(scene.run.duration, scene.run.interval(), observer).map_err(Error::from)
+            }
+            Started::Statics(path) => path.go(scene, observer),
+            Started::Process(..) => Ok(End::Done),
+        }
+    }
+
+    /// What is left.
+    pub(crate) fn done(self) -> Done {
+        match self {
+            Started::Statics(done) => *done,
+            Started::Process(process, done) => Done { counts: counts(process.counts()), ..*done },
+            Started::Dynamics(s, ..) => {
+                let counts = counts(s.work.counts);
+                let (critical, remarks) = (Vec::new(), Vec::new());
+                let (model, state, audit) = (s.model, s.state, s.audit);
+                Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None }
+            }
+        }
+    }
+}
+
+/// Moves a process on from row to row of the history.
+fn through(process: &mut dyn Process, scene: &Scene, recorder: &mut Recorder<'_>) -> Result<End, Error> {
+    let rows = (scene.run.duration / scene.run.interval() * (1.0 - 1e-12)).ceil();
+    for k in 0..=rows as u64 {
+        let t = (k as f64 * scene.run.interval()).min(scene.run.duration);
+        let (before, done) = (process.t(), process.advance(t));
+        // what could be computed on the way is kept
+        if recorder.process(process, process.t() - before).is_break() {
+            return Ok(End::Stopped { by: "observer".into() });
+        }
+        if let Some(by) = done.map_err(Error::Process)? {
+            return Ok(End::Stopped { by });
+        }
+    }
+    Ok(End::Done)
+}
+
+fn counts(c: ropewalk_core::integrator::Counts) -> Counts {
+    Counts {
+        steps: c.steps,
+        rejected: c.rejected,
+        newton_iterations: c.newton_iterations,
+        factorizations: c.factorizations,
+    }
+}
+
+impl Done {
+    /// A model that doesn't move, as it was laid.
+    fn at_rest(model: Model) -> Self {
+        let mut state = model.state();
+        state.v.fill(0.0);
+        let audit = Audit::start(model.energy(&state.at()));
+        let (critical, remarks) = (Vec::new(), Vec::new());
+        let (model, counts) = (Arc::new(model), Counts::default());
+        Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None }
+    }
+
+    /// The critical loads for summaries.
+    pub(crate) fn critical_loads(&self) -> Vec<CriticalLoad> {
+        let load = |c: &Critical| CriticalLoad {
+            load_factor: c.t,
+            kind: c.kind,
+            directions: c.directions,
+            what: c.what.clone(),
+        };
+        self.critical.iter().map(load).collect()
+    }
+
+    /// One equilibrium after the other; each starts from the one before.
+    fn go(&mut self, scene: &Scene, observer: &mut dyn Observer) -> Result<End, Error> {
+        let model = self.model.clone();
+        let mut search = Statics::relative(&model, &scene.statics, scene.run.frame).map_err(no_memory)?;
+        if self.times.is_some() {
+            search.profile();
+        }
+        let end = self.follow(&mut search, scene, observer);
+        if let Some(times) = &mut self.times {
+            *times = search.times();
+        }
+        end
+    }
+
+    fn follow(
+        &mut self,
+        search: &mut Statics<'_>,
+        scene: &Scene,
+        observer: &mut dyn Observer,
+    ) -> Result<End, Error> {
+        let steps = scene.statics.steps.max(1);
+        for k in 0..=steps {
+            let before = self.state.t;
+            let found = match k {
+                0 => search.find(&mut self.state, true),
+                _ => search.follow(&mut self.state, scene.run.duration * k as f64 / steps as f64),
+            };
+            // what was met on the way is part of the path, also of one that ends there
+            for critical in search.critical().iter().skip(self.critical.len()) {
+                if self.show(&critical.state, observer).is_break() {
+                    return Ok(End::Stopped { by: "observer".into() });
+                }
+            }
+            self.critical = search.critical().to_vec();
+            let found = found?;
+            for remark in remarks_on(search) {
+                if !self.remarks.contains(&remark) {
+                    self.remarks.push(remark);
+                }
+            }
+            self.flutter = self.flutter.max(found.flutter);
+            self.counts.steps += 1;
+            self.counts.newton_iterations += u64::from(found.iterations);
+            self.counts.factorizations += u64::from(found.iterations);
+            // work isn't followed along the path: the balance begins anew at every equilibrium
+            self.audit = Audit::start(self.model.energy(&self.state.at()));
+            let report = StepReport {
+                h: self.state.t - before,
+                iterations: found.iterations,
+                ..StepReport::default()
+            };
+            let flow = [self.show(&self.state, observer), observer.step(&self.model, &self.state, &report)];
+            if flow.iter().any(ControlFlow::is_break) {
+                return Ok(End::Stopped { by: "observer".into() });
+            }
+        }
+        Ok(End::Done)
+    }
+
+    /// Shows an equilibrium to the observer.
+    fn show(&self, state: &State, observer: &mut dyn Observer) -> ControlFlow<()> {
+        let sample = Sample { model: &self.model, at: state.at(), lambda: &state.lambda, audit: &self.audit };
+        observer.sample(&sample)
+    }
+}
+
+/// What one should know about the last equilibrium of a search.
+fn remarks_on(search: &Statics<'_>) -> Vec<String> {
+    let free = search.neutral().iter().map(|n| {
+        format!(
+            "nothing holds the equilibrium in one direction, and nothing drives it there: {}. A constraint or a spring \
+             against this motion would hold it",
+            n.what
+        )
+    });
+    free.chain(search.doubt().map(String::from)).collect()
+}
+
+fn no_memory(source: SolveError) -> Error {
+    Error::Step(StepError::Linear { t: 0.0, source, unknown: "the structure of the equations".into() })
+}
+
+/// What to say of an equilibrium that dry friction takes no part in.
+fn without_friction(model: &Model) -> Option<String> {
+    let rough = model.terms().iter().filter(|t| t.remembers()).map(|t| format!("`{}`", t.label()));
+    let rough: Vec<String> = rough.collect();
+    (!rough.is_empty()).then(|| {
+        format!(
+            "the equilibrium is that without the friction of {}: with it there are many, and which one is reached depends on \
+             the way there. From here on in time friction holds what it can",
+            rough.join(", ")
+        )
+    })
+}

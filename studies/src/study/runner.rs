@@ -1,0 +1,152 @@
+//! The runs of a study, on all cores, each into a folder of its own: what an earlier call has computed is not computed
+//! again.
+
+use crate::error::Error;
+use crate::run::{RunOptions, Summary, run_showing};
+use rayon::iter::{ParallelBridge, ParallelIterator};
+use ropewalk_report::{Interrupt, ProgressMode, RunFolder, SweepProgress, Table};
+use ropewalk_scene::{Fault, SceneFile};
+use std::collections::HashSet;
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Mutex, PoisonError};
+
+/// Stack of a thread that runs scenes: as large as that of the main thread usually is.
+const STACK: usize = 8 << 20;
+
+/// What all threads of a study share.
+pub struct Runner {
+    /// Where the progress is shown and what goes wrong is said.
+    pub progress: SweepProgress,
+    interrupt: Option<Interrupt>,
+    /// Warnings that have been said: most of them hold for all runs.
+    said: Mutex<HashSet<String>>,
+}
+
+/// What a run came to, now or in an earlier call.
+pub(crate) struct Ran {
+    /// How it ended; `refused` if it could not begin.
+    pub summary: Summary,
+    /// Its records, as far as they were computed.
+    pub history: Table,
+    /// Whether an earlier call computed it.
+    pub earlier: bool,
+}
+
+impl Ran {
+    /// A run that could not begin.
+    pub(crate) fn refused(message: String) -> Self {
+        let summary = Summary { status: "refused".into(), message: Some(message), ..Summary::default() };
+        Ran { summary, history: Table::default(), earlier: false }
+    }
+}
+
+impl Runner {
+    /// Begins to show the progress of so many runs, and listens to Ctrl-C.
+    pub(crate) fn new(runs: usize, mode: ProgressMode) -> Self {
+        let progress = SweepProgress::new(runs, mode);
+        let interrupt = Interrupt::install();
+        if let Err(e) = &interrupt {
+            progress.say(&format!("warning: {e}"));
+        }
+        Runner { progress, interrupt: interrupt.ok(), said: Mutex::default() }
+    }
+
+    /// Whether Ctrl-C was pressed.
+    pub(crate) fn is_interrupted(&self) -> bool {
+        self.interrupt.is_some_and(Interrupt::requested)
+    }
+
+    /// Does this for every run, `jobs` at a time or as many as there are cores.
+    ///
+    /// # Errors
+    /// The first error of one of them, or no threads.
+    pub(crate) fn for_each(
+        &self,
+        runs: usize,
+        jobs: Option<usize>,
+        work: impl Fn(usize) -> Result<(), Error> + Sync,
+    ) -> Result<(), Error> {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(jobs.unwrap_or_else(cores).min(runs).max(1))
+            .stack_size(STACK)
+            .build()
+            .map_err(|e| {
+                Fault::new(format!("no threads to compute on: {e}")).with_help("try fewer `--jobs`")
+            })?;
+        let one = |k| if self.is_interrupted() { Ok(()) } else { work(k) };
+        pool.install(|| (0..runs).par_bridge().try_for_each(one))
+    }
+
+    /// What is in the folder, if it is a complete run of this very scene; else runs it. A run that fails is told.
+    pub(crate) fn run(&self, scene: Result<&SceneFile, &Fault>, name: &str, folder: &RunFolder) -> Ran {
+        let ran = match scene {
+            Err(fault) => Ran::refused(fault.message.clone()),
+            Ok(file) => complete(folder, file).unwrap_or_else(|| self.compute(file, name, folder)),
+        };
+        if matches!(ran.summary.status.as_str(), "failed" | "refused") {
+            let message = ran.summary.message.as_deref().unwrap_or("failed");
+            let place = match folder.history_file().exists() {
+                true => format!("\n  = note: the results until then are in {}", folder.path().display()),
+                false => String::new(),
+            };
+            self.progress.say(&format!("error: {name}: {message}{place}"));
+        }
+        self.progress.done(ran.earlier);
+        ran
+    }
+
+    /// Runs a scene into its folder; what a failed or interrupted run left there is deleted before.
+    fn compute(&self, file: &SceneFile, name: &str, folder: &RunFolder) -> Ran {
+        if let Err(e) = fs::remove_dir_all(folder.path())
+            && e.kind() != std::io::ErrorKind::NotFound
+        {
+            return Ran::refused(format!("can't delete {}: {e}", folder.path().display()));
+        }
+        let options = RunOptions {
+            out: Some(folder.path().to_path_buf()),
+            profile: false,
+            progress: ProgressMode::Quiet,
+            checkpoint: None,
+        };
+        let progress = |t_end: f64| self.progress.begin(name, t_end);
+        let mut warn = |text: &str| {
+            if self.said.lock().unwrap_or_else(PoisonError::into_inner).insert(text.to_string()) {
+                self.progress.say(&format!("warning: {name}: {text}"));
+            }
+        };
+        // a defect that shows in one run must not take the others with it
+        match catch_unwind(AssertUnwindSafe(|| run_showing(file, &options, &progress, &mut warn))) {
+            Ok(Ok(outcome)) => Ran { summary: outcome.summary, history: outcome.history, earlier: false },
+            Ok(Err(Error::File(fault))) => Ran::refused(fault.message),
+            Ok(Err(e)) => Ran::refused(e.to_string()),
+            Err(_) => Ran::refused("an internal error, see above: please report it".into()),
+        }
+    }
+}
+
+/// What is in the folder of a run that is complete, and that is of this very scene and version.
+fn complete(folder: &RunFolder, file: &SceneFile) -> Option<Ran> {
+    let manifest: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.manifest_file()).ok()?).ok()?;
+    let same = manifest["ropewalk"] == env!("CARGO_PKG_VERSION")
+        && fs::read_to_string(folder.scene_file()).ok()? == file.document().to_toml();
+    if !same {
+        return None;
+    }
+    let summary: Summary = folder.read_summary().ok()?;
+    let history = Table::read(&folder.history_file()).ok()?;
+    // a history that was cut off or touched doesn't end as the summary says
+    let ended = history.columns.iter().all(|c| {
+        match (c.values.last(), summary.final_values.get(&c.name).map(serde_json::Value::as_f64)) {
+            // the last digit may be lost in reading JSON
+            (Some(x), Some(Some(y))) => (x - y).abs() <= 1e-12 * x.abs(),
+            (Some(x), Some(None)) => !x.is_finite(),
+            _ => false,
+        }
+    });
+    let whole = history.rows() == summary.rows && ended;
+    let complete = matches!(summary.status.as_str(), "finished" | "stopped");
+    (complete && whole).then_some(Ran { summary, history, earlier: true })
+}

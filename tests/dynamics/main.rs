@@ -1,0 +1,25 @@
+//! Motion in time: bodies, joints, cables, steps and their accuracy.
+
+#[path = "../common/scenes.rs"]
+mod common;
+#[path = "../common/mechanisms.rs"]
+mod mechanisms;
+#[path = "../common/program.rs"]
+mod program;
+
+mod accuracy;
+mod ahead;
+mod bodies;
+mod chain;
+mod consistency;
+mod contradictions;
+mod corners;
+mod curved;
+mod energy;
+mod invariance;
+mod joints;
+mod motions;
+mod pendulums;
+mod radau;
+mod running;
+mod scales;

@@ -1,0 +1,13 @@
+//! Equilibria, their paths and stability, modes.
+
+#[path = "../common/scenes.rs"]
+mod common;
+#[path = "../common/mechanisms.rs"]
+mod mechanisms;
+#[path = "../common/program.rs"]
+mod program;
+
+mod modes;
+mod paths;
+mod stability;
+mod statics;

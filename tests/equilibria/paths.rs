@@ -1,0 +1,443 @@
+//! Which equilibrium a path of loads leads to: buckling, limit points, loads without potential, free directions, guesses
+//! that are far off.
+
+use crate::common::{data, number};
+use ropewalk::scene::Format;
+use ropewalk::studies::run::CriticalLoad;
+use ropewalk::{Error, History, SceneFile, simulate};
+use ropewalk_core::statics::CriticalKind;
+
+/// Runs a scene with other parameters.
+fn run(text: &str, set: &[String]) -> Result<History, Error> {
+    let file = SceneFile::parse(text, "test", Format::Toml, set).unwrap_or_else(|e| panic!("{e}"));
+    simulate(file.scene())
+}
+
+fn set(all: &[(&str, f64)]) -> Vec<String> {
+    all.iter().map(|(name, value)| format!("{name}={value:e}")).collect()
+}
+
+fn tip(h: &History, part: &str) -> [f64; 3] {
+    ["x", "y", "z"].map(|c| h.last(&format!("{part}.end.{c}")).expect("recorded"))
+}
+
+/// A round column of EI = 1 and length 1, clamped at its foot. `MORE` holds further loads.
+const COLUMN: &str = r#"
+[parameters]
+load = -2.4
+side = 0.0
+steps = 10
+[run]
+analysis = "statics"
+[statics]
+steps = "$steps"
+[water]
+[[elements]]
+type = "cable"
+name = "column"
+points = [[0, 0, 0], [0, 0, 1]]
+elements = 16
+section = { mass = 1, ea = 1e8, ei = 1, diameter = 0.01 }
+[[constraints]]
+type = "spherical"
+name = "root"
+marker = "column.start"
+[[constraints]]
+type = "clamp"
+name = "clamp"
+marker = "column.start"
+[[records]]
+type = "position"
+of = "column.end"
+"#;
+
+/// Both loads grow.
+const PRESSED: &str = r#"
+[[forces]]
+type = "point_force"
+marker = "column.end"
+force = ["$side", 0, "$load"]
+time = { table = { t = [0, 1], value = [0, 1] } }
+"#;
+
+/// Tip of a clamped, inextensible column of EI = L = 1 under `p` along it and `side` across: lateral and axial place.
+fn elastica(p: f64, side: f64) -> [f64; 2] {
+    let shoot = |alpha: f64| {
+        let n = 2000;
+        let (h, mut y) = (1.0 / f64::from(n), [alpha, 0.0, 0.0, 0.0]);
+        let f = |y: &[f64; 4]| [y[1], -p * y[0].sin() - side * y[0].cos(), y[0].sin(), y[0].cos()];
+        for _ in 0..n {
+            let ahead = |k: &[f64; 4], h: f64| std::array::from_fn(|i| y[i] + h * k[i]);
+            let a = f(&y);
+            let b = f(&ahead(&a, 0.5 * h));
+            let c = f(&ahead(&b, 0.5 * h));
+            let d = f(&ahead(&c, h));
+            y = std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+        }
+        y
+    };
+    // straight columns below the critical load have no other root
+    let (mut low, mut high) = (1e-12, std::f64::consts::PI);
+    if shoot(low)[0] >= 0.0 {
+        return [0.0, 1.0];
+    }
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if shoot(middle)[0] < 0.0 { low = middle } else { high = middle }
+    }
+    let [_, _, x, z] = shoot(low);
+    [x, z]
+}
+
+#[test]
+fn the_shooting_agrees_with_the_tabulated_elastica() {
+    for case in data("control.json").as_array().expect("cases") {
+        let get = |k: &str| number(&case[k]);
+        let (p, side) = match case["case"].as_str() {
+            Some("column_clamped_free_by_load") => (get("P_EI_L2"), 0.0),
+            Some("column_clamped_free_imperfect") => (get("P"), get("S")),
+            _ => continue,
+        };
+        let [x, z] = elastica(p, side);
+        assert!((x - get("tip_lateral")).abs() < 1e-6 && (z - get("tip_axial")).abs() < 1e-6, "{case}");
+    }
+}
+
+const CRITICAL: f64 = 2.467_401_100_272_339_5;
+
+/// Checks a column's tip, however it leans.
+fn check(h: &History, p: f64, side: f64, what: &str) {
+    let ([x, y, z], [lateral, axial]) = (tip(h, "column"), elastica(p, side));
+    let off = (x.hypot(y) - lateral).hypot(z - axial);
+    println!(
+        "{what}: lateral {:.5}, off by {off:.1e}, {} iterations",
+        x.hypot(y),
+        h.counts.newton_iterations
+    );
+    // next to the critical load the amplitude answers to the mesh's own critical load
+    let near = if (p / CRITICAL - 1.0).abs() < 0.01 { 2e-2 } else { 2e-3 };
+    assert!(off <= near, "{what}: {x} {y} {z}, not {lateral} {axial}");
+    if side != 0.0 && lateral > 1e-4 {
+        assert!(y.abs() <= 1e-3 * lateral && x * side > 0.0, "{what}: leans to {x} {y}");
+    }
+}
+
+#[test]
+fn columns_buckle_whatever_the_steps() {
+    let scene = format!("{COLUMN}{PRESSED}");
+    for (p, sides) in [
+        (1.0, [0.0, 1e-6]),
+        (2.4, [0.0, 1e-6]),
+        (2.5, [0.0, 1e-6]),
+        (2.6, [0.0, 1e-6]),
+        (3.0, [1e-6, 1e-2]),
+        (5.0, [0.0, 1e-6]),
+        (10.0, [1e-6, 1e-4]),
+    ] {
+        for side in sides.map(|s| s * p) {
+            for steps in [1, 5, 20, 100] {
+                let what = format!("load {p}, side {side:e}, {steps} steps");
+                let h = run(&scene, &set(&[("load", -p), ("side", side), ("steps", f64::from(steps))]));
+                let h = h.unwrap_or_else(|e| panic!("{what}: {e}"));
+                check(&h, p, side, &what);
+                let expected = usize::from(side == 0.0 && p > CRITICAL);
+                assert_eq!(h.critical.len(), expected, "{what}: {:?}", h.critical);
+                for c in &h.critical {
+                    let CriticalLoad { load_factor, kind, directions, .. } = c;
+                    assert!((load_factor * p / CRITICAL - 1.0).abs() < 1e-4, "{what}: {c:?}");
+                    assert_eq!((*kind, *directions), (CriticalKind::Bifurcation, 2), "{what}: {c:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn columns_buckle_among_loads_on_stations_too() {
+    let side = "[[forces]]\ntype = \"point_force\"\nmarker = \"column.end\"\nforce = [\"$side\", 0, 0]\n";
+    let load = PRESSED.replace("\"$side\"", "0");
+    for (more, what) in [
+        ("[[forces]]\ntype = \"drag\"\n", "drag"),
+        ("[[forces]]\ntype = \"line_load\"\nforce = [0, 0, 1e-9]\n", "line load"),
+    ] {
+        let scene = format!("{COLUMN}{load}{side}{more}");
+        for (p, side) in [(2.4, 2.4e-6), (2.6, 2.6e-6), (5.0, 5e-6), (8.0, 0.0)] {
+            let what = format!("{what}, load {p}");
+            let h = run(&scene, &set(&[("load", -p), ("side", side)]));
+            check(&h.unwrap_or_else(|e| panic!("{what}: {e}")), p, side, &what);
+        }
+    }
+}
+
+#[test]
+fn a_heavy_column_buckles_at_greenhills_load() {
+    let load = "[[forces]]\ntype = \"line_load\"\nforce = [0, 0, \"$load\"]\n\
+                time = { table = { t = [0, 1], value = [0, 1] } }\n";
+    let h = run(&format!("{COLUMN}{load}"), &set(&[("load", -10.0)])).unwrap_or_else(|e| panic!("{e}"));
+    println!("{:?}", h.critical);
+    assert_eq!(h.critical.len(), 1);
+    let c = &h.critical[0];
+    assert!((c.load_factor * 10.0 / 7.837_347_438_943_48 - 1.0).abs() < 1e-4);
+    assert_eq!((c.kind, c.directions), (CriticalKind::Bifurcation, 2));
+    assert!(tip(&h, "column")[2] < 0.9);
+}
+
+/// Two bars of EA = 1 that lean against each other, pressed down where they meet.
+const TRUSS: &str = r#"
+[parameters]
+load = -0.06
+steps = 10
+stiffness = 0.8944271909999159
+[run]
+analysis = "statics"
+[statics]
+steps = "$steps"
+[[elements]]
+type = "point_mass"
+name = "top"
+at = [0, 0, 0.5]
+mass = 1
+[[constraints]]
+type = "coordinate"
+name = "x"
+marker = "top"
+direction = [1, 0, 0]
+[[constraints]]
+type = "coordinate"
+name = "y"
+marker = "top"
+direction = [0, 1, 0]
+[[forces]]
+type = "spring"
+name = "left"
+marker = [-1, 0, 0]
+to = "top"
+stiffness = "$stiffness"
+[[forces]]
+type = "spring"
+name = "right"
+marker = [1, 0, 0]
+to = "top"
+stiffness = "$stiffness"
+[[forces]]
+type = "point_force"
+marker = "top"
+force = [0, 0, "$load"]
+time = { table = { t = [0, 1], value = [0, 1] } }
+[[records]]
+type = "position"
+of = "top"
+"#;
+
+#[test]
+fn the_truss_of_von_mises_snaps_through_at_its_limit_load() {
+    let all = data("control.json");
+    let reference = all.as_array().expect("cases").iter().find(|c| {
+        c["case"] == "von_mises_truss" && number(&c["height"]) == 0.5 && number(&c["half_span"]) == 1.0
+    });
+    let reference = reference.expect("truss");
+    let limit = number(&reference["limit_P_over_EA"]);
+    for steps in [1, 3, 10, 40, 200] {
+        let h = run(TRUSS, &set(&[("steps", f64::from(steps))])).unwrap_or_else(|e| panic!("{steps}: {e}"));
+        println!("{steps} steps: {:?}, {} iterations", h.critical, h.counts.newton_iterations);
+        assert_eq!(h.critical.len(), 1, "{steps} steps: {:?}", h.critical);
+        let c = &h.critical[0];
+        assert_eq!((c.kind, c.directions), (CriticalKind::Limit, 1));
+        assert!((c.load_factor * 0.06 / limit - 1.0).abs() < 1e-6, "{c:?}");
+        // hangs below its supports: 2 EA (l - l₀)/l₀ z/l = P
+        let z = -h.last("top.z").expect("recorded");
+        let (l, rest) = (z.hypot(1.0), 1.25f64.sqrt());
+        assert!(z > 0.5 && (2.0 * (l - rest) / rest * z / l - 0.06).abs() < 1e-9, "{z}");
+    }
+}
+
+#[test]
+fn becks_column_flutters_and_does_not_diverge() {
+    let load = "[[forces]]\ntype = \"point_force\"\nmarker = \"column.end\"\nfollower = \"$load\"\n\
+                time = { table = { t = [0, 1], value = [0, 1] } }\n";
+    for (p, flutters) in [(10.0, false), (19.9, false), (20.2, true)] {
+        let h = run(&format!("{COLUMN}{load}"), &set(&[("load", -p)])).unwrap_or_else(|e| panic!("{e}"));
+        println!("{p}: {:?} {:?}", h.warnings, h.critical);
+        assert_eq!(h.warnings.iter().any(|w| w.contains("flutter")), flutters, "{p}: {:?}", h.warnings);
+        let [x, y, z] = tip(&h, "column");
+        assert!(x.hypot(y) < 1e-6 && (z - 1.0).abs() < 1e-4, "{p}: {x} {y} {z}");
+        assert!(h.critical.is_empty() || flutters, "{p}: {:?}", h.critical);
+    }
+}
+
+/// A bar on a hinge in a turning frame: its azimuth is free.
+const HINGED: &str = r#"
+[run]
+analysis = "statics"
+frame = { omega = [0, 0, 6] }
+[[elements]]
+type = "cable"
+name = "bar"
+points = [[0, 0, 0], [10, 0, 0]]
+elements = 16
+section = { mass = 1.2, ea = 2.8e7, ei = 1.4e4 }
+[[constraints]]
+type = "spherical"
+name = "hinge"
+marker = "bar.start"
+[[records]]
+type = "position"
+of = "bar.end"
+"#;
+
+#[test]
+fn a_free_azimuth_is_named_and_no_obstacle() {
+    let h = run(HINGED, &[]).unwrap_or_else(|e| panic!("{e}"));
+    println!("{:?}", h.warnings);
+    // stretched by its own centrifugal force: ε(s) = m ω² (L² - s²)/2 EA, to first order
+    let [x, y, z] = tip(&h, "bar");
+    let stretch = 1.2 * 36.0 * 1e3 / 3.0 / 2.8e7;
+    assert!((x.hypot(y) - 10.0 - stretch).abs() < 1e-2 * stretch && z.abs() < 1e-9, "{x} {y} {z}");
+    assert_eq!(h.warnings.len(), 1, "{:?}", h.warnings);
+    assert!(
+        h.warnings[0].contains("`bar` turns about the axis (0, 0, 1) through (0, 0, 0) m"),
+        "{:?}",
+        h.warnings
+    );
+}
+
+/// Two cables joined by a small body that may spin about them.
+const SPINNING: &str = r#"
+[run]
+analysis = "statics"
+[[elements]]
+type = "cable"
+name = "a"
+points = [[0, 0, 0], [1, 0, 0]]
+elements = 8
+section = { mass = 1, ea = 1e5, ei = 10 }
+[[elements]]
+type = "cable"
+name = "b"
+points = [[1, 0, 0], [2, 0, 0]]
+elements = 8
+section = { mass = 1, ea = 1e5, ei = 10 }
+[[elements]]
+type = "rigid_body"
+name = "j"
+position = [1, 0, 0]
+mass = 1e-6
+inertia = [1e-9, 1e-9, 1e-9]
+[[constraints]]
+type = "spherical"
+name = "p"
+marker = "a.start"
+[[constraints]]
+type = "clamp"
+name = "c"
+marker = "a.start"
+[[constraints]]
+type = "weld"
+name = "k1"
+marker = "a.end"
+to = "j"
+[[constraints]]
+type = "weld"
+name = "k3"
+marker = "b.start"
+to = "j"
+[[forces]]
+type = "gravity"
+[[records]]
+type = "position"
+of = "b.end"
+"#;
+
+#[test]
+fn a_free_spin_is_named_and_no_obstacle() {
+    let h = run(SPINNING, &[]).unwrap_or_else(|e| panic!("{e}"));
+    println!("{:?} {:?}", tip(&h, "b"), h.warnings);
+    assert_eq!(h.warnings.len(), 1, "{:?}", h.warnings);
+    assert!(h.warnings[0].contains("`j` turns about the axis"), "{:?}", h.warnings);
+    // without the body between them: one cable of 2 m
+    let one = SPINNING.split("[[elements]]").collect::<Vec<_>>();
+    let constraints = one[3].split("[[constraints]]").collect::<Vec<_>>();
+    let whole = one[1].replace("[1, 0, 0]]", "[2, 0, 0]]").replace("elements = 8", "elements = 16");
+    let scene = format!(
+        "{}[[elements]]{whole}[[constraints]]{}[[constraints]]{}[[forces]]\ntype = \"gravity\"\n[[records]]\ntype = \"position\"\nof = \"a.end\"\n",
+        one[0], constraints[1], constraints[2]
+    );
+    let other = run(&scene, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let (joined, whole) = (tip(&h, "b"), tip(&other, "a"));
+    let off = (0..3).map(|i| (joined[i] - whole[i]).powi(2)).sum::<f64>().sqrt();
+    assert!(off < 1e-3, "{joined:?} {whole:?}");
+}
+
+/// A chain on a flat floor, laid straight from the anchor to the fairlead.
+const LAID: &str = r#"
+[parameters]
+x = 118
+elements = 200
+[run]
+analysis = "statics"
+[statics]
+steps = 1
+[[elements]]
+type = "cable"
+name = "chain"
+points = [[0, 0, 0], ["$x", 0, 40]]
+length = 130
+elements = "$elements"
+section = { mass = 30, ea = 2e8, diameter = 0.1 }
+[[constraints]]
+type = "spherical"
+name = "anchor"
+marker = "chain.start"
+[[constraints]]
+type = "spherical"
+name = "fairlead"
+marker = "chain.end"
+[[forces]]
+type = "gravity"
+[[forces]]
+type = "contact"
+name = "floor"
+shape = { plane = {} }
+marker = [0, 0, -0.05]
+stiffness_per_length = 1e7
+overlap = "allow"
+[[records]]
+type = "reaction"
+of = "fairlead"
+"#;
+
+/// Horizontal force and vertical force at the fairlead of an inextensible chain that lies on the floor and rises by `z`:
+/// `z = a (cosh u - 1)`, `l = a sinh u`, `x = length - l + a u`.
+fn laid(x: f64, z: f64, length: f64, weight: f64) -> [f64; 2] {
+    let shape = |u: f64| {
+        let a = z / (u.cosh() - 1.0);
+        (a, a * u.sinh(), length - a * u.sinh() + a * u)
+    };
+    let (mut low, mut high) = (1e-3, 20.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        // long arms reach farther
+        if shape(middle).2 > x { low = middle } else { high = middle }
+    }
+    let (a, hanging, _) = shape(low);
+    [weight * a, weight * hanging]
+}
+
+#[test]
+fn a_chain_on_the_floor_is_found_from_a_straight_line() {
+    for x in [100.0, 112.0, 118.0] {
+        for elements in [50, 100, 200, 400] {
+            let what = format!("x = {x}, {elements} elements");
+            let h = run(LAID, &set(&[("x", x), ("elements", f64::from(elements))]));
+            let h = h.unwrap_or_else(|e| panic!("{what}: {e}"));
+            let pull = ["fx", "fz"].map(|c| h.last(&format!("fairlead.{c}")).expect("recorded"));
+            let exact = laid(x, 40.0, 130.0, 30.0 * 9.81);
+            println!("{what}: {pull:?}, {exact:?}, {} iterations", h.counts.newton_iterations);
+            if exact[1] < 130.0 * 30.0 * 9.81 {
+                for (got, exact) in pull.iter().zip(exact) {
+                    assert!((got.abs() / exact - 1.0).abs() < 2e-2, "{what}: {pull:?}, not {exact:?}");
+                }
+            }
+        }
+    }
+}

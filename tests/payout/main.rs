@@ -1,0 +1,12 @@
+//! Cables whose length changes: winches, eyelets, spools.
+
+#[path = "../common/scenes.rs"]
+mod common;
+#[path = "../common/program.rs"]
+mod program;
+
+mod reeling;
+mod shear_pin;
+mod unwinding;
+mod unwinding_scene;
+mod winch;

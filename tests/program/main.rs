@@ -1,0 +1,11 @@
+//! The program as a user runs it, and what it says.
+
+#[path = "../common/program.rs"]
+mod program;
+
+mod bad_input;
+mod checkpoint;
+mod cli;
+mod examples;
+mod plugin;
+mod verification;

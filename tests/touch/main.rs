@@ -1,0 +1,9 @@
+//! Contact and friction.
+
+#[path = "../common/scenes.rs"]
+mod common;
+
+mod contact;
+mod contact_along;
+mod feeding_contact;
+mod friction;
