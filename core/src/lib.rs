@@ -18,6 +18,7 @@ pub use algebra::lane::{Dual, LaneTask, Pack, Real, V3, Width, dot, run, scaled}
 pub use algebra::rotation;
 pub use algebra::scalar::Scalar;
 pub use error::BuildError;
+pub use model::assembly::{Spent, System};
 pub use model::column::Column;
 pub use model::constraint::{Constraint, Joint, Relation, RowKind, lift};
 pub use model::dead::{DeadEntry, DeadLoad, DeadPull};
@@ -36,7 +37,7 @@ pub use model::state::{At, Control, Relaxation, Relaxed, State};
 pub use model::station::{FieldTerm, Gives, Law, Laws, Load, Station, StationElement, StationPool, Stations};
 pub use model::structure::{Block, Columns, Structure};
 pub use model::term::{Assembly, Energy, Leap, Power, Term, Weights};
-pub use model::{Model, Recipe, Spent, Start, Switches, System, held, reach};
+pub use model::{Model, Recipe, Start, Switches, held, reach};
 pub use simulation::audit::{Audit, Created};
 pub use simulation::layers::Layers;
 pub use simulation::record::{Record, Sample};

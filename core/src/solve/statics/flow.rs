@@ -4,7 +4,7 @@ use super::outcome::StaticsError;
 use super::problem::Statics;
 use crate::algebra::lane::V3;
 use crate::algebra::rotation::{cross, transposed_times};
-use crate::model::System;
+use crate::model::assembly::System;
 use crate::model::node::NodeKind;
 use crate::model::state::State;
 
