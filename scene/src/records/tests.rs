@@ -2,8 +2,8 @@ use super::*;
 use crate::builder::Builder;
 use crate::spec::RecordSpec;
 use ropewalk_core::{
-    Assembly, At, Audit, BuildError, Jet, Joint, Marker, Model, NodeId, NodeKind, Part, Per, Place, Quantity,
-    Relation, RowKind, Sample, Spot, Term, V3,
+    Assembly, At, Audit, BuildError, Jet, Marker, Model, NodeId, NodeKind, Part, Per, Place, Quantity,
+    Related, Relation, RowKind, Sample, Spot, Term, V3,
 };
 use std::sync::Arc;
 
@@ -72,7 +72,7 @@ fn model() -> Model {
     b.part(Arc::new(Line(ends))).unwrap();
     b.term(Box::new(Nothing));
     let held = vec![Marker::ground([2.0, 0.0, 0.0]), Marker::node(ends[1])];
-    b.constraint(Joint::new("rail", Rail, held)).unwrap();
+    b.constraint(Related::new("rail", Rail, held)).unwrap();
     b.finish().unwrap()
 }
 
