@@ -3,7 +3,7 @@
 use super::{listed, named};
 use crate::register_spec;
 use crate::spec::RecordSpec;
-use ropewalk_core::{BuildError, Column, Model, Record, Sample};
+use ropewalk_core::{BuildError, Column, Model, Record, Sample, Term};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

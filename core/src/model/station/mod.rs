@@ -9,6 +9,7 @@ mod pool;
 pub use pool::StationPool;
 
 use crate::algebra::lane::{Real, V3, dot};
+use crate::model::capability::{Shows, Timed};
 use crate::model::pattern::Pattern;
 use crate::model::pool::{Batch, Local, Share};
 use crate::model::state::At;
