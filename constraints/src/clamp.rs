@@ -1,10 +1,9 @@
 //! The direction of a cable held fast.
 
 use crate::check::unit;
-use crate::connection::{Connection, Equation};
 use ropewalk_core::error::{finite, need};
 use ropewalk_core::rotation::{around, cross};
-use ropewalk_core::{BuildError, Marker, Node, NodeId, NodeKind, V3};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, NodeId, NodeKind, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,19 +16,14 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Errors
 /// A node without slope; a marker without axes.
-pub fn clamp(
-    name: impl Into<String>,
-    nodes: &[Node],
-    node: NodeId,
-    to: Marker,
-) -> Result<Connection, BuildError> {
+pub fn clamp(name: impl Into<String>, nodes: &[Node], node: NodeId, to: Marker) -> Result<Joint, BuildError> {
     let name = name.into();
     let kind = nodes.get(node.0 as usize).map(|n| n.kind);
     need(kind == Some(NodeKind::Slope), || {
         format!("{name}: a clamp holds the slope of a cable node, which node {} doesn't have", node.0)
     })?;
     let equations = vec![Equation::normal(0, 0), Equation::normal(1, 0)];
-    Connection::new(name, nodes, [to, Marker::node(node)], equations)
+    Joint::new(name, nodes, [to, Marker::node(node)], equations)
 }
 
 /// Holds the direction of a cable at a marker, in space or on a rigid body; its stretch stays free. With `spherical` a
@@ -73,7 +67,7 @@ impl ConstraintSpec for ClampSpec {
         let direction = self.direction.unwrap_or(b.place(&marker).axes[0]);
         finite("direction", &direction)?;
         let direction = unit("direction", direction)?;
-        let director = b.parts(&[])?.iter().find_map(|(_, part)| part.director(node));
+        let director = b.parts(&[])?.iter().find_map(|(_, part)| part.line()?.director(node));
         let axes = match director.map(|d| b.place(&Marker::node(d)).x) {
             None => around(direction),
             Some(d) => {
@@ -89,7 +83,7 @@ impl ConstraintSpec for ClampSpec {
         if let Some(director) = director {
             let name = format!("{}.twist", self.name);
             let held =
-                Connection::new(name, b.nodes(), [to, Marker::node(director)], vec![Equation::normal(1, 0)])?;
+                Joint::new(name, b.nodes(), [to, Marker::node(director)], vec![Equation::normal(1, 0)])?;
             b.constraint(held)?;
         }
         b.constraint(clamp(&self.name, b.nodes(), node, to)?)

@@ -1,9 +1,8 @@
 //! One coordinate of a point, held or driven.
 
 use crate::check::unit;
-use crate::connection::{Connection, Equation};
 use crate::pair::pair;
-use ropewalk_core::{BuildError, Marker, Motion, Node, V3};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Motion, Node, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,9 +21,9 @@ pub fn coordinate(
     between: [Marker; 2],
     direction: V3<f64>,
     motion: Option<Arc<dyn Motion>>,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let direction = unit("direction", direction)?;
-    Connection::new(name, nodes, between, vec![Equation::coordinate(direction, motion)])
+    Joint::new(name, nodes, between, vec![Equation::coordinate(direction, motion)])
 }
 
 /// Holds or drives one coordinate of a marker, along a direction, and leaves the other two free.

@@ -1,8 +1,7 @@
 //! Two points at a fixed distance.
 
-use crate::connection::{Connection, Equation};
 use ropewalk_core::error::positive;
-use ropewalk_core::{BuildError, Marker, Node};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,9 +18,9 @@ pub fn distance(
     nodes: &[Node],
     between: [Marker; 2],
     length: f64,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     positive("length", length)?;
-    Connection::new(name, nodes, between, vec![Equation::Distance { length }])
+    Joint::new(name, nodes, between, vec![Equation::Distance { length }])
 }
 
 /// Keeps two points at a constant distance: a rod without mass.

@@ -1,9 +1,8 @@
 //! Points, lengths and angles that follow a prescribed motion.
 
-use crate::connection::{Arrow, Connection, Equation};
 use crate::pair::{aligned, along, pair};
 use ropewalk_core::rotation::IDENTITY;
-use ropewalk_core::{BuildError, Marker, Motion, Node, V3};
+use ropewalk_core::{Arrow, BuildError, Equation, Joint, Marker, Motion, Node, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,9 +20,9 @@ pub fn driving(
     nodes: &[Node],
     between: [Marker; 2],
     motion: Arc<dyn Motion>,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let equations = IDENTITY.map(|d| Equation::coordinate(d, Some(motion.clone()))).to_vec();
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
 /// The second marker lies ahead of the first, along the first one's third axis, by `c + X(t)`: one equation.
@@ -39,10 +38,10 @@ pub fn slide(
     between: [Marker; 2],
     start: f64,
     motion: Arc<dyn Motion>,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let a = Arrow::Axis { of: 0, axis: 2 };
     let equation = Equation::Dot { a, b: Arrow::Between, value: start, motion: Some(motion) };
-    Connection::new(name, nodes, between, vec![equation])
+    Joint::new(name, nodes, between, vec![equation])
 }
 
 /// The second marker is turned against the first, about their common third axis, by the angle `φ(t)`: one equation,
@@ -58,9 +57,9 @@ pub fn rotation(
     nodes: &[Node],
     between: [Marker; 2],
     angle: Arc<dyn Motion>,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let (a, b) = (Arrow::Turned { of: 0, angle }, Arrow::Axis { of: 1, axis: 0 });
-    Connection::new(name, nodes, between, vec![Equation::Dot { a, b, value: 0.0, motion: None }])
+    Joint::new(name, nodes, between, vec![Equation::Dot { a, b, value: 0.0, motion: None }])
 }
 
 /// Makes a marker follow a prescribed motion from where it starts.

@@ -14,13 +14,11 @@
 //! # Ok::<(), ropewalk_scene::SceneError>(())
 //! ```
 //!
-//! Joints between markers, and the motions that drive them. A joint is a list of [`Equation`]s between two markers, in
-//! closed form; a relation of another kind is written as a [`Relation`](ropewalk_core::Relation).
+//! Joints between markers, and the motions that drive them. Each kind of joint here makes a [`Joint`](ropewalk_core::Joint) of its equations.
 
 mod breaking;
 mod check;
 mod clamp;
-mod connection;
 mod coordinate;
 mod distance;
 mod driving;
@@ -36,7 +34,6 @@ pub mod winch;
 
 pub use breaking::BreakSpec;
 pub use clamp::{ClampSpec, clamp};
-pub use connection::{Arrow, Connection, Equation};
 pub use coordinate::{CoordinateSpec, coordinate};
 pub use distance::{DistanceSpec, distance};
 pub use driving::{DrivingSpec, RotationSpec, SlideSpec, driving, rotation, slide};

@@ -1,8 +1,7 @@
 //! Slides along an axis.
 
-use crate::connection::{Connection, Equation};
 use crate::pair::{aligned, along, pair};
-use ropewalk_core::{BuildError, Marker, Node, V3};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,14 +12,10 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Errors
 /// As for [`spherical`](crate::spherical); a marker that isn't on a rigid body or on the ground.
-pub fn prismatic(
-    name: impl Into<String>,
-    nodes: &[Node],
-    between: [Marker; 2],
-) -> Result<Connection, BuildError> {
+pub fn prismatic(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Joint, BuildError> {
     let mut equations = vec![Equation::in_plane(0), Equation::in_plane(1)];
     equations.extend([(0, 1), (1, 2), (2, 0)].map(|(a, b)| Equation::normal(a, b)));
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
 /// The second marker slides along the third axis of the first and turns about it: four equations.
@@ -33,10 +28,10 @@ pub fn cylindrical(
     name: impl Into<String>,
     nodes: &[Node],
     between: [Marker; 2],
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let equations =
         vec![Equation::in_plane(0), Equation::in_plane(1), Equation::normal(2, 0), Equation::normal(2, 1)];
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
 /// The second marker stays on the line through the first along its third axis: two equations. Every rotation is free.
@@ -49,8 +44,8 @@ pub fn point_on_line(
     name: impl Into<String>,
     nodes: &[Node],
     between: [Marker; 2],
-) -> Result<Connection, BuildError> {
-    Connection::new(name, nodes, between, vec![Equation::in_plane(0), Equation::in_plane(1)])
+) -> Result<Joint, BuildError> {
+    Joint::new(name, nodes, between, vec![Equation::in_plane(0), Equation::in_plane(1)])
 }
 
 /// The second marker stays in the plane through the first that is normal to its third axis: one equation.
@@ -61,8 +56,8 @@ pub fn point_on_plane(
     name: impl Into<String>,
     nodes: &[Node],
     between: [Marker; 2],
-) -> Result<Connection, BuildError> {
-    Connection::new(name, nodes, between, vec![Equation::in_plane(2)])
+) -> Result<Joint, BuildError> {
+    Joint::new(name, nodes, between, vec![Equation::in_plane(2)])
 }
 
 /// Lets a body slide along an axis of another part, or of space, without turning.

@@ -1,8 +1,7 @@
 //! Two points held together.
 
-use crate::connection::{Connection, Equation};
 use crate::pair::pair;
-use ropewalk_core::{BuildError, Marker, Node};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,12 +12,8 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Errors
 /// Both on the ground or on the same node; a node without position.
-pub fn spherical(
-    name: impl Into<String>,
-    nodes: &[Node],
-    between: [Marker; 2],
-) -> Result<Connection, BuildError> {
-    Connection::new(name, nodes, between, Equation::coincide())
+pub fn spherical(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Joint, BuildError> {
+    Joint::new(name, nodes, between, Equation::coincide())
 }
 
 /// Holds two points together: of two parts, or of a part and space. Leaves every rotation free.

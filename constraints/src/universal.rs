@@ -1,9 +1,8 @@
 //! Axes at right angles, and the universal joint that they make.
 
-use crate::connection::{Connection, Equation};
 use crate::pair::{direction, pair};
 use ropewalk_core::rotation::around;
-use ropewalk_core::{BuildError, Marker, Node, V3};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,8 +17,8 @@ pub fn perpendicular(
     name: impl Into<String>,
     nodes: &[Node],
     between: [Marker; 2],
-) -> Result<Connection, BuildError> {
-    Connection::new(name, nodes, between, vec![Equation::normal(2, 2)])
+) -> Result<Joint, BuildError> {
+    Joint::new(name, nodes, between, vec![Equation::normal(2, 2)])
 }
 
 /// Two markers are at the same point and their third axes, the arms of the cross, stay at right angles: a universal
@@ -29,14 +28,10 @@ pub fn perpendicular(
 ///
 /// # Errors
 /// As for [`perpendicular`].
-pub fn universal(
-    name: impl Into<String>,
-    nodes: &[Node],
-    between: [Marker; 2],
-) -> Result<Connection, BuildError> {
+pub fn universal(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Joint, BuildError> {
     let mut equations = Equation::coincide();
     equations.push(Equation::normal(2, 2));
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
 /// Refuses axes that are closer to parallel than to a right angle: where they are parallel the equation is singular.

@@ -277,9 +277,10 @@ impl<L: Law> LaneTask for OneLaw<'_, L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::constraint::{Joint, Relation, RowKind};
+    use crate::model::constraint::RowKind;
     use crate::model::marker::{Jet, Marker, Place};
     use crate::model::node::{NodeId, NodeKind};
+    use crate::model::relation::{Related, Relation};
     use crate::model::station::Gives;
 
     /// A spring `r = (1 + v² + a) q³` on one number, with a stiffness that is off by a factor.
@@ -372,7 +373,7 @@ mod tests {
         };
         let axes = crate::algebra::rotation::around([1.0, 0.5, 0.0]);
         let marker = Marker::Node { node: NodeId(0), point: [0.1, 0.5, 0.2], axes };
-        assert!(check_constraint(&Joint::new("curve", Curve(false), vec![marker]), &nodes, &at) < 1e-7);
-        assert!(check_constraint(&Joint::new("curve", Curve(true), vec![marker]), &nodes, &at) > 1e-2);
+        assert!(check_constraint(&Related::new("curve", Curve(false), vec![marker]), &nodes, &at) < 1e-7);
+        assert!(check_constraint(&Related::new("curve", Curve(true), vec![marker]), &nodes, &at) > 1e-2);
     }
 }

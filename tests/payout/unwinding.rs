@@ -7,7 +7,7 @@ use ropewalk_constraints::{LiftOffSpec, PackageSpec, SphericalSpec, WinchSpec};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{
-    BuildError, End, Jet, Joint, Model, Place, Relation, RowKind, Simulation, State, SteadyFrame, V3,
+    BuildError, End, Jet, Model, Place, Related, Relation, RowKind, Simulation, State, SteadyFrame, V3,
 };
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{DragLaw, DragSpec};
@@ -111,7 +111,7 @@ impl ConstraintSpec for RingSpec {
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let marker = b.marker("marker", &self.marker)?;
-        b.constraint(Joint::new("ring", Round(self.clone()), vec![marker]))
+        b.constraint(Related::new("ring", Round(self.clone()), vec![marker]))
     }
 }
 struct Round(RingSpec);
@@ -525,7 +525,7 @@ fn a_bond_that_makes_no_sense_is_refused() {
         (|off| off.slip = 0.0, false, "slip"),
         (|off| off.tangent = true, false, "nothing to peel it off"),
         (|_| (), true, "two constraints feed at"),
-        (|off| off.peel = None, false, "no `winch`"),
+        (|off| off.peel = None, false, "add a `winch`"),
     ] {
         let message = refused(change, winch);
         assert!(message.contains(says), "{message}");

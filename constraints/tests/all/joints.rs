@@ -2,13 +2,14 @@
 
 use ropewalk_constraints::motion::{Circle, Harmonic, Side, Table};
 use ropewalk_constraints::{
-    Connection, clamp, coordinate, cylindrical, distance, driving, perpendicular, point_on_line,
-    point_on_plane, prismatic, revolute, rotation, slide, spherical, universal, weld,
+    clamp, coordinate, cylindrical, distance, driving, perpendicular, point_on_line, point_on_plane,
+    prismatic, revolute, rotation, slide, spherical, universal, weld,
 };
 use ropewalk_core::rotation::around;
 use ropewalk_core::testing::check_constraint;
 use ropewalk_core::{
-    At, BuildError, Constraint, Jet, Joint, Marker, Motion, Node, NodeId, NodeKind, Place, Relation, RowKind,
+    At, BuildError, Constraint, Jet, Joint, Marker, Motion, Node, NodeId, NodeKind, Place, Related, Relation,
+    RowKind,
 };
 use std::sync::Arc;
 
@@ -66,10 +67,10 @@ fn heave() -> Arc<dyn Motion> {
     Arc::new(Harmonic::new([0.4, 0.1, 0.5], 0.2, 0.3, 0.0, 2.0).unwrap())
 }
 
-type Make = fn(&'static str, &[Node], [Marker; 2]) -> Result<Connection, BuildError>;
+type Make = fn(&'static str, &[Node], [Marker; 2]) -> Result<Joint, BuildError>;
 
 /// Every joint between every kind of marker that it can hold, and whether it is linear.
-fn joints() -> Vec<(Connection, bool)> {
+fn joints() -> Vec<(Joint, bool)> {
     let n = nodes();
     let node = Marker::node;
     let mut all = vec![
@@ -158,7 +159,7 @@ fn closed_forms_agree_with_forward_differentiation() {
     // the relation orders its nodes by number
     let markers = [on(BODY), on(OTHER)];
     let (closed, dual) =
-        (revolute("hinge", &n, markers).unwrap(), Joint::new("hinge", Hinge, markers.to_vec()));
+        (revolute("hinge", &n, markers).unwrap(), Related::new("hinge", Hinge, markers.to_vec()));
     for seed in 1..=6 {
         let s = numbers(seed);
         let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], modes: &[], relaxed: None };

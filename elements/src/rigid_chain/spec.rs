@@ -6,10 +6,9 @@ use super::part::ChainPart;
 use crate::cable::StressFree;
 use crate::path::Path;
 use crate::rigid_body::{Hull, Inertia};
-use ropewalk_constraints::spherical;
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::rotation::{around, exp, from_matrix, matrix, then, transposed_times};
-use ropewalk_core::{BuildError, Marker, NodeKind, StationPool, V3, dot};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, NodeKind, StationPool, V3, dot};
 use ropewalk_scene::{Builder, ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -291,7 +290,8 @@ impl ElementSpec for RigidChainSpec {
         let half = 0.5 * link;
         for (k, w) in nodes.windows(2).enumerate() {
             let between = [Marker::beside(w[0], [half, 0.0, 0.0]), Marker::beside(w[1], [-half, 0.0, 0.0])];
-            b.constraint(spherical(format!("{}/{}", self.name, k + 1), b.nodes(), between)?)?;
+            let name = format!("{}/{}", self.name, k + 1);
+            b.constraint(Joint::new(name, b.nodes(), between, Equation::coincide())?)?;
         }
         if s.ei > 0.0 || s.joint_damping > 0.0 {
             let all = b.coordinates();

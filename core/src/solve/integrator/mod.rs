@@ -1,6 +1,9 @@
 //! Time integration: schemes, Newton's method, step-size control, consistent starts.
 
 mod alpha;
+mod controller;
+mod convergence;
+mod factors;
 mod forces;
 mod newton;
 mod norm;

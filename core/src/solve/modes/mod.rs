@@ -11,9 +11,10 @@ mod pencil;
 mod quadratic;
 mod undamped;
 
+use crate::model::Model;
+use crate::model::assembly::System;
 use crate::model::motion::SteadyFrame;
 use crate::model::state::{At, State};
-use crate::model::{Model, System};
 use crate::solve::statics::{Linear, Statics, StaticsOptions};
 pub use outcome::{Critical, Mode, Modes, ModesError, OnLook};
 use outcome::{Found, Watch, direction, finish};

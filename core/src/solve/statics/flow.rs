@@ -4,7 +4,7 @@ use super::outcome::StaticsError;
 use super::problem::Statics;
 use crate::algebra::lane::V3;
 use crate::algebra::rotation::{cross, transposed_times};
-use crate::model::System;
+use crate::model::assembly::System;
 use crate::model::node::NodeKind;
 use crate::model::state::State;
 
@@ -43,10 +43,12 @@ impl Statics<'_> {
                          out of one end as into the other, or compute the motion in time"
                     ))
                 }
-                () if [0, 1].iter().any(|&end| part.makes_elements(end)) => Some(format!(
-                    "elements of `{name}` are born and swallowed, so no mesh stands still while material runs \
+                () if part.line().is_some_and(|line| [0, 1].iter().any(|&end| line.makes_elements(end))) => {
+                    Some(format!(
+                        "elements of `{name}` are born and swallowed, so no mesh stands still while material runs \
                      through: leave out `element` of what feeds it"
-                )),
+                    ))
+                }
                 () => None,
             };
             if let Some(why) = refused {

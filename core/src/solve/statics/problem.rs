@@ -2,9 +2,10 @@
 
 use super::options::StaticsOptions;
 use super::outcome::{Critical, Judgement, Neutral};
+use crate::model::Model;
+use crate::model::assembly::System;
 use crate::model::motion::SteadyFrame;
 use crate::model::structure::Structure;
-use crate::model::{Model, System};
 use crate::solve::linear::{Guard, SolveError};
 use crate::solve::redundancy::Softening;
 use crate::solve::times::{Clocks, Times};

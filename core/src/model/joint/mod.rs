@@ -1,4 +1,4 @@
-//! What all joints of this crate are made of: equations between the points and axes of two markers, with closed-form
+//! Joints: equations between the points and axes of two markers, with closed-form
 //! Jacobians, geometric stiffness and rates.
 //!
 //! With `D = x_1 - x_0` and axes `u`, `w` of the markers the equations are `d·D = …` (a coordinate in space),
@@ -6,115 +6,24 @@
 //! turns with it: `δ(R u) = R (θ × u)`; the "axis" of a cable is its slope `r'`, that of a director the vector itself,
 //! whose length doesn't matter to a right angle. Haug, *Computer-Aided Kinematics and Dynamics* (1989), chapter 9, has them all.
 
-use ropewalk_core::error::{finite, need};
-use ropewalk_core::rotation::{M3, cross, matrix, product, skew, times, transposed_times};
-use ropewalk_core::{At, BuildError, Constraint, Marker, Motion, Node, NodeId, NodeKind, RowKind, V3, dot};
+mod end;
+pub mod equation;
+
+use crate::algebra::lane::{V3, dot};
+use crate::algebra::rotation::{M3, cross, matrix, product, skew, times, transposed_times};
+use crate::error::{BuildError, finite, need};
+use crate::model::constraint::{Constraint, RowKind};
+use crate::model::joint::end::{End, MOST, add, add_twice, derivatives, flow, value};
+use crate::model::joint::equation::{Arrow, Equation};
+use crate::model::marker::Marker;
+use crate::model::motion::Motion;
+use crate::model::node::{Node, NodeId, NodeKind};
+use crate::model::state::At;
 use std::sync::Arc;
-
-/// A vector that an equation is made of.
-#[derive(Clone, Debug)]
-pub enum Arrow {
-    /// From the first marker's point to the second's [m].
-    Between,
-    /// An axis of one of the markers; of a cable's marker its slope, whichever axis is named.
-    Axis {
-        /// Which marker, 0 or 1.
-        of: usize,
-        /// Which of its axes.
-        axis: usize,
-    },
-    /// The second axis of a marker, turned about the third by the angle `φ(t)` that is the motion's first component.
-    Turned {
-        /// Which marker, 0 or 1.
-        of: usize,
-        /// The angle [rad].
-        angle: Arc<dyn Motion>,
-    },
-}
-
-/// One equation between two markers.
-#[derive(Clone, Debug)]
-pub enum Equation {
-    /// `d·(D - X(t)) = 0`: a coordinate in space.
-    Along {
-        /// Unit vector `d` in space.
-        direction: V3<f64>,
-        /// Displacement `X(t)`; `None` if there is none.
-        motion: Option<Arc<dyn Motion>>,
-    },
-    /// `a·b - c - X(t) = 0`
-    Dot {
-        /// One vector.
-        a: Arrow,
-        /// The other.
-        b: Arrow,
-        /// The number `c`.
-        value: f64,
-        /// Its change with time, the motion's first component; `None` if there is none.
-        motion: Option<Arc<dyn Motion>>,
-    },
-    /// `|D| - L = 0`
-    Distance {
-        /// The distance `L` [m].
-        length: f64,
-    },
-}
-
-impl Equation {
-    /// The three coordinates of the second marker are those of the first.
-    pub fn coincide() -> Vec<Equation> {
-        (0..3).map(|i| Equation::coordinate(unit_axis(i), None)).collect()
-    }
-    /// A coordinate in space.
-    pub fn coordinate(direction: V3<f64>, motion: Option<Arc<dyn Motion>>) -> Equation {
-        Equation::Along { direction, motion }
-    }
-    /// An axis of the first marker is normal to one of the second.
-    pub fn normal(axis: usize, other: usize) -> Equation {
-        let (a, b) = (Arrow::Axis { of: 0, axis }, Arrow::Axis { of: 1, axis: other });
-        Equation::Dot { a, b, value: 0.0, motion: None }
-    }
-    /// The second marker stays in the plane through the first that is normal to this axis of it.
-    pub fn in_plane(axis: usize) -> Equation {
-        Equation::Dot { a: Arrow::Axis { of: 0, axis }, b: Arrow::Between, value: 0.0, motion: None }
-    }
-
-    fn kind(&self) -> RowKind {
-        match self {
-            Equation::Dot { a, b, .. } if !matches!(a, Arrow::Between) && !matches!(b, Arrow::Between) => {
-                RowKind::Direction
-            }
-            _ => RowKind::Position,
-        }
-    }
-    fn motion(&self) -> Vec<&Arc<dyn Motion>> {
-        let angle = |arrow: &'_ Arrow| matches!(arrow, Arrow::Turned { .. });
-        match self {
-            Equation::Along { motion, .. } => motion.iter().collect(),
-            Equation::Dot { a, b, motion, .. } => {
-                let turned = [a, b].into_iter().filter(|x| angle(x)).filter_map(|x| match x {
-                    Arrow::Turned { angle, .. } => Some(angle),
-                    _ => None,
-                });
-                motion.iter().chain(turned).collect()
-            }
-            Equation::Distance { .. } => Vec::new(),
-        }
-    }
-}
-
-fn is_coincidence(equations: &[Equation]) -> bool {
-    let axis = |i: usize, e: &Equation| matches!(e, Equation::Along { direction, motion: None } if *direction == unit_axis(i));
-    equations.len() == 3 && equations.iter().enumerate().all(|(i, e)| axis(i, e))
-}
-
-fn unit_axis(i: usize) -> V3<f64> {
-    ropewalk_core::rotation::IDENTITY[i]
-}
 
 /// Equations between two markers, as a constraint.
 #[derive(Clone, Debug)]
-pub struct Connection {
+pub struct Joint {
     name: String,
     equations: Vec<Equation>,
     markers: [Marker; 2],
@@ -127,33 +36,7 @@ pub struct Connection {
     coincide: bool,
 }
 
-/// More unknowns than two nodes have.
-const MOST: usize = 12;
-
-/// Where one marker is.
-struct End {
-    kind: Option<NodeKind>,
-    /// Its node's first unknown among those of the connection.
-    start: usize,
-    /// First velocity of its node.
-    v: usize,
-    /// Position in space, and on the body.
-    x: V3<f64>,
-    point: V3<f64>,
-    /// Axes of the marker: on the body, or in space.
-    axes: M3,
-    r: M3,
-}
-
-/// A vector now: its value, its change with time at rest, its first and second change along the motion.
-struct Flow {
-    value: V3<f64>,
-    by_t: V3<f64>,
-    first: V3<f64>,
-    second: V3<f64>,
-}
-
-impl Connection {
+impl Joint {
     /// Equations between two markers, of which the first may be on the ground.
     ///
     /// # Errors
@@ -188,19 +71,10 @@ impl Connection {
             range = (range.0.max(a), range.1.min(b));
         }
         let rows = equations.iter().map(Equation::kind).collect();
-        let coincide = is_coincidence(&equations);
+        let coincide = Equation::coincide_only(&equations);
         let linear_rows = Vec::new();
-        let mut c = Connection {
-            name,
-            equations,
-            markers,
-            nodes: on,
-            rows,
-            range,
-            linear: false,
-            linear_rows,
-            coincide,
-        };
+        let mut c =
+            Joint { name, equations, markers, nodes: on, rows, range, linear: false, linear_rows, coincide };
         c.check_axes(nodes)?;
         c.linear_rows = c.equations.iter().map(|e| c.is_linear(nodes, e)).collect();
         c.linear = c.linear_rows.iter().all(|linear| *linear);
@@ -339,162 +213,7 @@ impl Connection {
     }
 }
 
-impl End {
-    fn is_body(&self) -> bool {
-        self.kind == Some(NodeKind::Frame)
-    }
-    /// An axis, on the body or in space, and its change with time.
-    fn axis(&self, arrow: &Arrow, t: f64) -> [V3<f64>; 3] {
-        match arrow {
-            Arrow::Turned { angle, .. } => {
-                let m = angle.at(t);
-                let ((sin, cos), [e, f, _]) = (m.x[0].sin_cos(), self.axes);
-                let (rate, change) = (m.v[0], m.a[0]);
-                let mix = |a: f64, b: f64| -> V3<f64> { std::array::from_fn(|i| a * e[i] + b * f[i]) };
-                [
-                    mix(-sin, cos),
-                    mix(-rate * cos, -rate * sin),
-                    mix(rate * rate * sin - change * cos, -rate * rate * cos - change * sin),
-                ]
-            }
-            Arrow::Axis { axis, .. } => [self.axes[*axis], [0.0; 3], [0.0; 3]],
-            Arrow::Between => [[0.0; 3]; 3],
-        }
-    }
-    fn in_space(&self, u: &V3<f64>) -> V3<f64> {
-        if self.is_body() { times(&self.r, u) } else { *u }
-    }
-    /// Adds the change of `p·x` by the unknowns.
-    fn add_point(&self, p: &V3<f64>, sign: f64, row: &mut [f64]) {
-        if self.kind.is_none() {
-            return;
-        }
-        (0..3).for_each(|i| row[self.start + i] += sign * p[i]);
-        if self.is_body() {
-            self.add_turn(&self.point, p, sign, row);
-        }
-    }
-    /// Adds the change of `p·R u` by the rotation.
-    fn add_turn(&self, u: &V3<f64>, p: &V3<f64>, sign: f64, row: &mut [f64]) {
-        let turn = cross(u, &transposed_times(&self.r, p));
-        (0..3).for_each(|i| row[self.start + 3 + i] += sign * turn[i]);
-    }
-    /// Adds the change of what [`End::add_turn`] adds, by the rotation.
-    fn add_turn_twice(&self, u: &V3<f64>, p: &V3<f64>, scale: f64, n: usize, h: &mut [f64]) {
-        let k = product(&skew(u), &skew(&transposed_times(&self.r, p)));
-        for i in 0..3 {
-            for j in 0..3 {
-                h[(self.start + 3 + i) * n + self.start + 3 + j] += scale * k[i][j];
-            }
-        }
-    }
-    /// Velocity, or second change along the motion, of a vector of the body that changes with time.
-    fn turning(&self, at: &At<'_>, [u, du, ddu]: &[V3<f64>; 3]) -> [V3<f64>; 2] {
-        let omega = [at.v[self.v + 3], at.v[self.v + 4], at.v[self.v + 5]];
-        let once = cross(&omega, u);
-        let (twice, with) = (cross(&omega, &once), cross(&omega, du));
-        [
-            times(&self.r, &std::array::from_fn(|i| once[i] + du[i])),
-            times(&self.r, &std::array::from_fn(|i| twice[i] + 2.0 * with[i] + ddu[i])),
-        ]
-    }
-}
-
-fn value(arrow: &Arrow, ends: &[End; 2], t: f64) -> V3<f64> {
-    match arrow {
-        Arrow::Between => std::array::from_fn(|i| ends[1].x[i] - ends[0].x[i]),
-        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => ends[*of].in_space(&ends[*of].axis(arrow, t)[0]),
-    }
-}
-
-/// Adds the change of `p·arrow` by the unknowns.
-fn add(arrow: &Arrow, ends: &[End; 2], t: f64, p: &V3<f64>, row: &mut [f64]) {
-    match arrow {
-        Arrow::Between => {
-            ends[0].add_point(p, -1.0, row);
-            ends[1].add_point(p, 1.0, row);
-        }
-        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => {
-            let end = &ends[*of];
-            match end.kind {
-                Some(NodeKind::Frame) => end.add_turn(&end.axis(arrow, t)[0], p, 1.0, row),
-                Some(NodeKind::Slope) => (0..3).for_each(|i| row[end.start + 3 + i] += p[i]),
-                Some(NodeKind::Scalars(_)) => (0..3).for_each(|i| row[end.start + i] += p[i]),
-                _ => {}
-            }
-        }
-    }
-}
-
-/// Adds the change of what [`add`] adds while `p` stays.
-fn add_twice(arrow: &Arrow, ends: &[End; 2], t: f64, p: &V3<f64>, scale: f64, n: usize, h: &mut [f64]) {
-    match arrow {
-        Arrow::Between => {
-            for (end, sign) in ends.iter().zip([-scale, scale]) {
-                if end.is_body() && end.point != [0.0; 3] {
-                    end.add_turn_twice(&end.point, p, sign, n, h);
-                }
-            }
-        }
-        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => {
-            let end = &ends[*of];
-            if end.is_body() {
-                end.add_turn_twice(&end.axis(arrow, t)[0], p, scale, n, h);
-            }
-        }
-    }
-}
-
-/// Derivatives of a vector by all unknowns: row by component.
-fn derivatives(arrow: &Arrow, ends: &[End; 2], t: f64) -> [[f64; MOST]; 3] {
-    let mut j = [[0.0; MOST]; 3];
-    for (i, row) in j.iter_mut().enumerate() {
-        add(arrow, ends, t, &unit_axis(i), row);
-    }
-    j
-}
-
-fn flow(arrow: &Arrow, ends: &[End; 2], at: &At<'_>) -> Flow {
-    let value = value(arrow, ends, at.t);
-    let none = [0.0; 3];
-    match arrow {
-        Arrow::Between => {
-            let mut f = Flow { value, by_t: none, first: none, second: none };
-            for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
-                if end.kind.is_none() {
-                    continue;
-                }
-                (0..3).for_each(|i| f.first[i] += sign * at.v[end.v + i]);
-                if end.is_body() {
-                    let [first, second] = end.turning(at, &[end.point, none, none]);
-                    for i in 0..3 {
-                        f.first[i] += sign * first[i];
-                        f.second[i] += sign * second[i];
-                    }
-                }
-            }
-            f
-        }
-        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => {
-            let end = &ends[*of];
-            let axis = end.axis(arrow, at.t);
-            match end.kind {
-                Some(NodeKind::Frame) => {
-                    let [first, second] = end.turning(at, &axis);
-                    Flow { value, by_t: times(&end.r, &axis[1]), first, second }
-                }
-                Some(kind) => {
-                    let v = end.v + if kind == NodeKind::Slope { 3 } else { 0 };
-                    let first = [at.v[v], at.v[v + 1], at.v[v + 2]];
-                    Flow { value, by_t: none, first, second: none }
-                }
-                None => Flow { value, by_t: axis[1], first: axis[1], second: axis[2] },
-            }
-        }
-    }
-}
-
-impl Constraint for Connection {
+impl Constraint for Joint {
     fn name(&self) -> &str {
         &self.name
     }
