@@ -14,7 +14,7 @@ pub struct BreakSpec {
     /// Name, by which the event is reported.
     pub name: String,
     /// Name of the constraint, which stands above.
-    pub of: String,
+    pub constraint: String,
     /// Magnitude of its force at which it breaks [N].
     #[serde(deserialize_with = "quantity::force")]
     pub force: f64,
@@ -32,7 +32,7 @@ impl ConstraintSpec for BreakSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         positive("force", self.force)?;
         let mode = b.mode(&self.name);
-        let constraint = b.release(&self.of, mode)?;
+        let constraint = b.release(&self.constraint, mode)?;
         b.event(Break { name: self.name.clone(), constraint, mode, force: self.force });
         Ok(())
     }

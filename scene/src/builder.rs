@@ -197,10 +197,10 @@ impl Builder {
             let names: Vec<String> = self.constraints.iter().map(|c| format!("`{}`", c.name())).collect();
             let names = if names.is_empty() { "none".into() } else { names.join(", ") };
             let message = format!("there is no constraint `{constraint}` above; those above are {names}");
-            return Err(BuildError::at("of", message));
+            return Err(BuildError::at("constraint", message));
         };
         if self.switches.released.insert(c, mode).is_some() {
-            return Err(BuildError::at("of", format!("constraint `{constraint}` is to break in two ways")));
+            return Err(BuildError::at("constraint", format!("constraint `{constraint}` is to break in two ways")));
         }
         Ok(c)
     }

@@ -95,7 +95,7 @@ pub struct PackageSpec {
     pub first: Option<f64>,
     /// Smallest radius to which the cable may be bent [m]; left out, any.
     #[serde(default, deserialize_with = "quantity::optional::length")]
-    pub bend_limit: Option<f64>,
+    pub min_bend_radius: Option<f64>,
 }
 
 impl PackageSpec {
@@ -114,7 +114,7 @@ impl PackageSpec {
             hand: Hand::Right,
             traverse: Traverse::Forward,
             first: None,
-            bend_limit: None,
+            min_bend_radius: None,
         }
     }
 
@@ -209,8 +209,8 @@ impl PackageSpec {
             let message = format!("{where_}, less than that of the cable: give fewer `layers`");
             return Err(BuildError::at(if self.layers > 1 { "layers" } else { "radius" }, message));
         }
-        match self.bend_limit {
-            Some(limit) if not_negative("bend_limit", limit)? > narrowest => {
+        match self.min_bend_radius {
+            Some(limit) if not_negative("min_bend_radius", limit)? > narrowest => {
                 let message = format!("{where_}, but the cable may not be bent below {limit} m");
                 Err(BuildError::at("radius", message))
             }

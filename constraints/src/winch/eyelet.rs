@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 fn ramp() -> f64 {
     1.0
 }
-fn release() -> f64 {
+fn fade() -> f64 {
     0.1
 }
 
@@ -66,7 +66,7 @@ pub struct EyeletSpec {
     /// Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs here, which
     /// then drives itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pace: Option<String>,
+    pub reference_speed: Option<String>,
     /// Resistance per speed, besides `tension` [N s/m].
     #[serde(default, deserialize_with = "quantity::damping")]
     pub damping: f64,
@@ -83,10 +83,10 @@ pub struct EyeletSpec {
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
-    pub element: Option<f64>,
+    pub element_length: Option<f64>,
     /// Time in which the strain fades that keeps the tension from jumping when an element is born or swallowed [s].
-    #[serde(default = "release", deserialize_with = "quantity::time")]
-    pub release: f64,
+    #[serde(default = "fade", deserialize_with = "quantity::time")]
+    pub fade: f64,
 }
 register_spec!(Constraint, "eyelet", EyeletSpec);
 
@@ -116,11 +116,11 @@ impl EyeletSpec {
             motion: None,
             tension: None,
             per_speed2: 0.0,
-            pace: None,
+            reference_speed: None,
             damping: 0.0,
             shortest: None,
-            element: None,
-            release: release(),
+            element_length: None,
+            fade: fade(),
         }
     }
 
@@ -134,11 +134,11 @@ impl EyeletSpec {
             motion: self.motion.clone(),
             tension: self.tension,
             per_speed2: self.per_speed2,
-            pace: self.pace.clone(),
+            reference_speed: self.reference_speed.clone(),
             damping: self.damping,
             shortest: self.shortest,
-            element: self.element,
-            release: self.release,
+            element_length: self.element_length,
+            fade: self.fade,
             ..WinchSpec::new(&format!("{}.feed", self.name), self.marker.clone())
         }
     }

@@ -181,14 +181,14 @@ pub struct LiftOffSpec {
         deserialize_with = "quantity::optional::force",
         skip_serializing_if = "Option::is_none"
     )]
-    pub peel: Option<f64>,
+    pub adhesion_energy: Option<f64>,
     /// Speed below which a cable that sticks creeps [m/s], with `peel`.
-    #[serde(default = "slip", deserialize_with = "quantity::speed")]
-    pub slip: f64,
+    #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
+    pub slip_speed: f64,
 }
 register_spec!(Constraint, "lift_off", LiftOffSpec);
 
-fn slip() -> f64 {
+fn slip_speed() -> f64 {
     1e-3
 }
 
@@ -196,7 +196,7 @@ impl LiftOffSpec {
     /// Lifts off from a package, peeled by a winch.
     pub fn new(name: &str, marker: impl Into<MarkerRef>, package: PackageSpec) -> Self {
         let (name, marker) = (name.into(), marker.into());
-        LiftOffSpec { name, marker, package, tangent: false, peel: None, slip: slip() }
+        LiftOffSpec { name, marker, package, tangent: false, adhesion_energy: None, slip_speed: slip_speed() }
     }
 }
 
@@ -209,23 +209,23 @@ impl ConstraintSpec for LiftOffSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        self.peel.map(|_| (&self.marker, Feed { element: None, unstrained: true }))
+        self.adhesion_energy.map(|_| (&self.marker, Feed { element: None, unstrained: true }))
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let package = Arc::new(self.package.build()?);
         let front = b.front(&self.marker)?;
         let part = b.feeding_part(&self.marker)?;
-        positive("slip", self.slip)?;
-        if let Some(energy) = self.peel {
+        positive("slip_speed", self.slip_speed)?;
+        if let Some(energy) = self.adhesion_energy {
             let ei = part.slender().map_or(0.0, |s| s.ei);
             if self.tangent && ei == 0.0 {
                 let message = "a cable without bending stiffness that goes on along the wound layer has nothing to peel it \
                                off: leave out `tangent`, or give the cable an `ei`";
                 return Err(BuildError::at("tangent", message));
             }
-            let (name, energy) = (self.name.clone(), not_negative("peel", energy)?);
+            let (name, energy) = (self.name.clone(), not_negative("adhesion_energy", energy)?);
             let package = package.clone();
-            b.term(Box::new(Peel { name, front, package, energy, slip: self.slip, ei }));
+            b.term(Box::new(Peel { name, front, package, energy, slip_speed: self.slip_speed, ei }));
         }
         b.event(Limit {
             name: self.name.clone(),

@@ -12,10 +12,10 @@ use std::sync::Arc;
 fn ramp() -> f64 {
     1.0
 }
-fn slip() -> f64 {
+fn slip_speed() -> f64 {
     1e-3
 }
-fn release() -> f64 {
+fn fade() -> f64 {
     0.1
 }
 fn rest() -> f64 {
@@ -57,8 +57,8 @@ pub struct WinchSpec {
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
-    pub total: Option<f64>,
-    /// Length of the cable at which it stops [m], instead of `stop` and `total`.
+    pub payout: Option<f64>,
+    /// Length of the cable at which it stops [m], instead of `stop` and `payout`.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",
@@ -79,8 +79,8 @@ pub struct WinchSpec {
     #[serde(default, deserialize_with = "quantity::force")]
     pub brake: f64,
     /// Speed below which the brake creeps instead of sticking [m/s].
-    #[serde(default = "slip", deserialize_with = "quantity::speed")]
-    pub slip: f64,
+    #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
+    pub slip_speed: f64,
     /// Resistance per speed [N s/m].
     #[serde(default, deserialize_with = "quantity::damping")]
     pub damping: f64,
@@ -90,7 +90,7 @@ pub struct WinchSpec {
     /// Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs here. A
     /// tension that draws, and grows with the speed to which it draws, drives itself: then name the motion that is meant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pace: Option<String>,
+    pub reference_speed: Option<String>,
     /// Inertia of the drum over the square of its radius [kg].
     #[serde(default, deserialize_with = "quantity::mass")]
     pub inertia: f64,
@@ -99,7 +99,7 @@ pub struct WinchSpec {
     pub pile: bool,
     /// Length on the spool at the start [m]: once it is fed out, the run ends. Left out, there is always more.
     #[serde(default = "rest", deserialize_with = "quantity::length", skip_serializing_if = "is_infinite")]
-    pub stock: f64,
+    pub stored_length: f64,
     /// Shortest length that the cable is reeled in to [m], where the run ends; left out, a twentieth of its length at
     /// the start, or two elements.
     #[serde(
@@ -115,10 +115,10 @@ pub struct WinchSpec {
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
-    pub element: Option<f64>,
+    pub element_length: Option<f64>,
     /// Time in which the strain fades that keeps the tension from jumping when an element is born or swallowed [s].
-    #[serde(default = "release", deserialize_with = "quantity::time")]
-    pub release: f64,
+    #[serde(default = "fade", deserialize_with = "quantity::time")]
+    pub fade: f64,
 }
 register_spec!(Constraint, "winch", WinchSpec);
 
@@ -147,32 +147,32 @@ impl WinchSpec {
             start: 0.0,
             ramp: ramp(),
             stop: None,
-            total: None,
+            payout: None,
             final_length: None,
             motion: None,
             tension: None,
             brake: 0.0,
-            slip: slip(),
+            slip_speed: slip_speed(),
             damping: 0.0,
             per_speed2: 0.0,
-            pace: None,
+            reference_speed: None,
             inertia: 0.0,
             pile: false,
-            stock: rest(),
+            stored_length: rest(),
             shortest: None,
-            element: None,
-            release: release(),
+            element_length: None,
+            fade: fade(),
         }
     }
 
     /// The motion whose speed the tension goes by.
-    fn pace(&self, b: &Builder) -> Result<Option<Arc<dyn Motion>>, BuildError> {
-        let Some(name) = &self.pace else { return Ok(None) };
-        let motion = b.motion(name).map_err(|e| e.of("pace"))?;
+    fn reference_speed(&self, b: &Builder) -> Result<Option<Arc<dyn Motion>>, BuildError> {
+        let Some(name) = &self.reference_speed else { return Ok(None) };
+        let motion = b.motion(name).map_err(|e| e.of("reference_speed"))?;
         if motion.range() != (f64::NEG_INFINITY, f64::INFINITY) {
             let message =
                 format!("the speed of `{name}` is not defined for ever: take another motion, or longer");
-            return Err(BuildError::at("pace", message));
+            return Err(BuildError::at("reference_speed", message));
         }
         Ok(Some(motion))
     }
@@ -192,7 +192,7 @@ impl ConstraintSpec for WinchSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        (!self.idle()).then_some((&self.marker, Feed { element: self.element, unstrained: false }))
+        (!self.idle()).then_some((&self.marker, Feed { element: self.element_length, unstrained: false }))
     }
     fn notes(&self, model: &Model) -> Vec<String> {
         let (Some(speed), MarkerRef::Name(marker)) = (self.speed.filter(|v| *v != 0.0), &self.marker) else {
@@ -220,7 +220,7 @@ impl ConstraintSpec for WinchSpec {
         for (name, x) in [("brake", self.brake), ("damping", self.damping), ("inertia", self.inertia)] {
             not_negative(name, x)?;
         }
-        positive("slip", self.slip)?;
+        positive("slip_speed", self.slip_speed)?;
         let part = b.feeding_part(&self.marker)?;
         let whole = part.length();
         if self.idle() {
@@ -241,16 +241,16 @@ impl ConstraintSpec for WinchSpec {
             Drive::Held => {
                 let tension = self.tension.unwrap_or(0.0);
                 finite("tension", &[tension])?;
-                let pace = self.pace(b)?;
+                let reference_speed = self.reference_speed(b)?;
                 b.term(Box::new(Pull {
                     name: self.name.clone(),
                     front,
                     tension,
                     brake: self.brake,
-                    slip: self.slip,
+                    slip_speed: self.slip_speed,
                     damping: self.damping,
                     per_speed2: self.per_speed2,
-                    pace,
+                    reference: reference_speed,
                     inertia: self.inertia,
                     pile: self.pile,
                 }));
@@ -263,17 +263,17 @@ impl ConstraintSpec for WinchSpec {
             side,
             length,
         };
-        if self.stock.is_finite() {
-            b.event(limit(Side::Empty, positive("stock", self.stock)?));
+        if self.stored_length.is_finite() {
+            b.event(limit(Side::Empty, positive("stored_length", self.stored_length)?));
         }
-        if self.element.is_some_and(|e| e >= 0.5 * whole) {
+        if self.element_length.is_some_and(|e| e >= 0.5 * whole) {
             let message =
                 format!("the cable is {whole} m long at the start: take elements of less than half of that");
-            return Err(BuildError::at("element", message));
+            return Err(BuildError::at("element_length", message));
         }
         // an element can't be swallowed by the last one
         let riding: f64 = [0, 1].map(|end| part.riding(end)).iter().sum();
-        let least = self.element.map_or(0.05 * whole, |e| (riding + 2.0 * e).max(0.05 * whole));
+        let least = self.element_length.map_or(0.05 * whole, |e| (riding + 2.0 * e).max(0.05 * whole));
         let shortest = positive("shortest", self.shortest.unwrap_or(least))?;
         if shortest >= whole {
             let message = format!("the cable is {whole} m long at the start, and `shortest` must be less");
@@ -286,8 +286,8 @@ impl ConstraintSpec for WinchSpec {
             return Err(BuildError::at("final_length", message));
         }
         b.event(limit(Side::Short, shortest));
-        if let Some(element) = self.element {
-            let (element, release) = (positive("element", element)?, positive("release", self.release)?);
+        if let Some(element) = self.element_length {
+            let (element, fade) = (positive("element_length", element)?, positive("fade", self.fade)?);
             if self.shortest.is_some_and(|s| s < riding + 2.0 * element) {
                 let besides =
                     if riding > 0.0 { format!(", and {riding} m of graded mesh,") } else { String::new() };
@@ -302,7 +302,7 @@ impl ConstraintSpec for WinchSpec {
                     part: part.name().to_string(),
                     end: usize::from(front.sign > 0.0),
                     element,
-                    release,
+                    fade,
                     grows,
                 });
             }

@@ -52,10 +52,10 @@ pub struct Section {
     pub displaced: Option<f64>,
     /// Kelvin–Voigt damping of stretching: stress grows by this time times the rate of strain [s].
     #[serde(default, deserialize_with = "quantity::time")]
-    pub axial_damping: f64,
+    pub axial_retardation_time: f64,
     /// Kelvin–Voigt damping of bending [s].
     #[serde(default, deserialize_with = "quantity::time")]
-    pub bending_damping: f64,
+    pub bending_retardation_time: f64,
 }
 
 /// Bending stiffness of the end elements of a cable that has none, in parts of their weight times the square of their length.
@@ -72,8 +72,8 @@ impl Section {
             flooded: 0.0,
             diameter: 0.0,
             displaced: None,
-            axial_damping: 0.0,
-            bending_damping: 0.0,
+            axial_retardation_time: 0.0,
+            bending_retardation_time: 0.0,
         }
     }
     /// Displaced volume per length [m²].
@@ -89,8 +89,8 @@ impl Section {
             ("flooded", self.flooded),
             ("diameter", self.diameter),
             ("displaced", self.displaced.unwrap_or(0.0)),
-            ("axial_damping", self.axial_damping),
-            ("bending_damping", self.bending_damping),
+            ("axial_retardation_time", self.axial_retardation_time),
+            ("bending_retardation_time", self.bending_retardation_time),
         ] {
             not_negative(name, x)?;
         }
@@ -394,12 +394,12 @@ impl CableSpec {
             let rest = Rest::Uniform { eps0: self.strain, kappa0: self.curvature };
             push_rest(pools, model, params, rest, on).map_err(BuildError::new)?;
         }
-        if s.axial_damping > 0.0 {
-            push_axial_damping(pools, model, params.l, s.axial_damping * s.ea, on)
+        if s.axial_retardation_time > 0.0 {
+            push_axial_damping(pools, model, params.l, s.axial_retardation_time * s.ea, on)
                 .map_err(BuildError::new)?;
         }
-        if s.bending_damping > 0.0 && s.ei > 0.0 {
-            push_bending_damping(pools, model, params.l, s.bending_damping * s.ei, on)
+        if s.bending_retardation_time > 0.0 && s.ei > 0.0 {
+            push_bending_damping(pools, model, params.l, s.bending_retardation_time * s.ei, on)
                 .map_err(BuildError::new)?;
         }
         Ok(())

@@ -36,7 +36,7 @@ pub enum Damping {
     KelvinVoigt {
         /// `τ`, the damping over the stiffness [s].
         #[serde(deserialize_with = "quantity::time")]
-        time: f64,
+        retardation_time: f64,
         /// Where the contact ends.
         #[serde(default)]
         until: Leaving,
@@ -85,7 +85,7 @@ impl ContactLaw {
         }
         match self.damping {
             Damping::None => {}
-            Damping::HuntCrossley(x) | Damping::KelvinVoigt { time: x, .. } => {
+            Damping::HuntCrossley(x) | Damping::KelvinVoigt { retardation_time: x, .. } => {
                 not_negative("damping", x)?;
             }
         }
@@ -125,7 +125,7 @@ impl ContactLaw {
                 let by_rate = 1.5 * alpha * elastic;
                 Normal { force: elastic * factor, by_depth: stiff * factor, by_rate, elastic }
             }
-            Damping::KelvinVoigt { time, until } => {
+            Damping::KelvinVoigt { retardation_time: time, until } => {
                 let force = elastic + k * time * rate;
                 if force <= 0.0 && until == Leaving::Force {
                     return released;

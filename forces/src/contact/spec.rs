@@ -113,13 +113,13 @@ pub enum Overlap {
 pub struct ContactSpec {
     /// Name.
     pub name: String,
-    /// What touches it: cables, bodies with a hull, point masses; left out and without `at`, all of them that are not
+    /// What touches it: cables, bodies with a hull, point masses; left out and without `points`, all of them that are not
     /// the shape's own body.
     #[serde(default)]
     pub on: Vec<String>,
     /// Single points that touch it, such as corners of bodies, as balls of the `radius`.
     #[serde(default)]
-    pub at: Vec<MarkerRef>,
+    pub points: Vec<MarkerRef>,
     /// The shape.
     pub shape: ShapeSpec,
     /// Where the shape is: a point in space, or a marker on a rigid body that it is part of; left out, the origin.
@@ -153,30 +153,8 @@ pub struct ContactSpec {
     /// What is done about points that start deep in the shape.
     #[serde(default)]
     pub overlap: Overlap,
-    /// Keys that are gone.
-    #[doc(hidden)]
-    #[serde(default, skip_serializing, rename = "per_element", deserialize_with = "per_element")]
-    #[schemars(skip)]
-    pub per_element: (),
-    #[doc(hidden)]
-    #[serde(default, skip_serializing, rename = "slip_speed", deserialize_with = "slip_speed")]
-    #[schemars(skip)]
-    pub slip_speed: (),
 }
 register_spec!(Force, "contact", ContactSpec);
-
-fn per_element<'de, D: serde::Deserializer<'de>>(_: D) -> Result<(), D::Error> {
-    Err(serde::de::Error::custom(
-        "`per_element` is gone: what touches is found wherever it is along an element. Leave it out",
-    ))
-}
-
-fn slip_speed<'de, D: serde::Deserializer<'de>>(_: D) -> Result<(), D::Error> {
-    Err(serde::de::Error::custom(
-        "`slip_speed` is gone: friction holds now, by bristles that give way by a length before they slip. Leave it out, \
-         or give that length: `friction = { mu = 0.3, elastic_slip = \"0.1 mm\" }`",
-    ))
-}
 
 /// How a scene may write friction.
 #[derive(Deserialize, JsonSchema)]
@@ -206,7 +184,7 @@ impl ContactSpec {
         ContactSpec {
             name: name.into(),
             on: Vec::new(),
-            at: Vec::new(),
+            points: Vec::new(),
             shape,
             marker: origin(),
             radius: None,
@@ -217,8 +195,6 @@ impl ContactSpec {
             damping: Damping::None,
             friction: None,
             overlap: Overlap::Refuse,
-            per_element: (),
-            slip_speed: (),
         }
     }
 
@@ -230,7 +206,7 @@ impl ContactSpec {
     /// What touches, each with what it is called in messages.
     fn touching(&self, b: &Builder, own_seat: Option<(usize, usize)>) -> Result<Touching, BuildError> {
         let mut all = Touching::default();
-        if !self.on.is_empty() || self.at.is_empty() {
+        if !self.on.is_empty() || self.points.is_empty() {
             for (_, part) in b.parts(&self.on)? {
                 let own = own_seat.is_some_and(|seat| part.seats() == [seat]);
                 let before = all.len();
@@ -262,7 +238,7 @@ impl ContactSpec {
                         format!("`{}` carries the shape itself: leave it out of `on`", part.name())
                     } else {
                         format!(
-                            "`{}` has nothing to touch with: give it a `hull`, or name points of it in `at`",
+                            "`{}` has nothing to touch with: give it a `hull`, or name points of it in `points`",
                             part.name()
                         )
                     };
@@ -270,10 +246,10 @@ impl ContactSpec {
                 }
             }
         }
-        for name in &self.at {
-            let marker = b.marker("at", name)?;
+        for name in &self.points {
+            let marker = b.marker("points", name)?;
             let Some(node) = marker.on() else {
-                return Err(BuildError::at("at", format!("{name} doesn't move: name a marker on a part")));
+                return Err(BuildError::at("points", format!("{name} doesn't move: name a marker on a part")));
             };
             let n = b.nodes()[node.0 as usize];
             let held = match (Held::new(b.nodes(), &marker, &self.name)?, n.kind) {
@@ -479,7 +455,7 @@ impl ShapeSpec {
 #[typetag::serde(name = "contact")]
 impl ForceSpec for ContactSpec {
     fn markers(&self) -> Vec<&MarkerRef> {
-        std::iter::once(&self.marker).chain(&self.at).collect()
+        std::iter::once(&self.marker).chain(&self.points).collect()
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         not_negative("stiffness", self.stiffness)?;

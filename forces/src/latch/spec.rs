@@ -23,7 +23,7 @@ pub struct LatchSpec {
     /// Name, by which releases are reported.
     pub name: String,
     /// What is held: parts, of which every node or link is held, and single markers.
-    pub of: Vec<String>,
+    pub on: Vec<String>,
     /// Where the seats are: on this rigid body, as it stands at the start; left out, fixed in space.
     #[serde(default)]
     pub to: Option<MarkerRef>,
@@ -35,7 +35,7 @@ pub struct LatchSpec {
     pub damping: f64,
     /// Force of a seat at which it lets go [N].
     #[serde(deserialize_with = "quantity::force")]
-    pub hold: f64,
+    pub force: f64,
     /// Direction in space: only the pull in it counts; left out, the magnitude of the force.
     #[serde(default)]
     pub direction: Option<V3<f64>>,
@@ -67,14 +67,14 @@ pub struct FloorSpec {
 
 impl LatchSpec {
     /// Holds all of these parts, in space, with a stiffness [N/m], a damping [N s/m] and a limit [N].
-    pub fn new(name: &str, of: &[&str], stiffness: f64, damping: f64, hold: f64) -> Self {
+    pub fn new(name: &str, on: &[&str], stiffness: f64, damping: f64, force: f64) -> Self {
         LatchSpec {
             name: name.into(),
-            of: of.iter().map(|s| s.to_string()).collect(),
+            on: on.iter().map(|s| s.to_string()).collect(),
             to: None,
             stiffness,
             damping,
-            hold,
+            force,
             direction: None,
             fade: fade(),
             floor: None,
@@ -85,7 +85,7 @@ impl LatchSpec {
     /// The points that are held.
     fn points(&self, b: &Builder) -> Result<Vec<Held>, BuildError> {
         let mut points = Vec::new();
-        for name in &self.of {
+        for name in &self.on {
             // a part as a whole, or else a marker
             if let Ok(found) = b.parts(std::slice::from_ref(name))
                 && let Some((_, part)) = found.first()
@@ -94,7 +94,7 @@ impl LatchSpec {
                 points.extend(part.seats().into_iter().map(|(q, v)| Held::Moves { q, v }));
                 continue;
             }
-            let marker = b.marker("of", &MarkerRef::Name(name.clone()))?;
+            let marker = b.marker("on", &MarkerRef::Name(name.clone()))?;
             points.push(Held::new(b.nodes(), &marker, &self.name)?);
         }
         Ok(points)
@@ -129,7 +129,7 @@ impl ForceSpec for LatchSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         positive("stiffness", self.stiffness)?;
         not_negative("damping", self.damping)?;
-        positive("hold", self.hold)?;
+        positive("force", self.force)?;
         positive("fade", self.fade)?;
         need(!self.name.contains('/'), || {
             format!("`{}` can't be the name of a latch: it holds `/`", self.name)
@@ -152,17 +152,17 @@ impl ForceSpec for LatchSpec {
         }
         let points = self.points(b)?;
         if points.is_empty() {
-            return Err(BuildError::at("of", "`of` names nothing to hold: give parts or markers"));
+            return Err(BuildError::at("on", "`on` names nothing to hold: give parts or markers"));
         }
         let mut seats: Vec<Seat> = Vec::with_capacity(points.len());
         let q = b.coordinates().to_vec();
         let at = ropewalk_core::At { t: 0.0, q: &q, v: &[], a: &[], modes: &[], relaxed: None };
         for (k, point) in points.into_iter().enumerate() {
             if seats.iter().any(|s| s.ends[1] == point) {
-                return Err(BuildError::at("of", "the same point is named twice"));
+                return Err(BuildError::at("on", "the same point is named twice"));
             }
             if point.size() == 0 {
-                return Err(BuildError::at("of", "a point that is fixed in space needs no latch"));
+                return Err(BuildError::at("on", "a point that is fixed in space needs no latch"));
             }
             let seat = self.seat(b, on, point.x(&at));
             if let (Held::Beside { v: body, .. }, Some(own)) = (seat, point.dofs().next())
@@ -177,7 +177,7 @@ impl ForceSpec for LatchSpec {
             label: self.name.clone(),
             stiffness: self.stiffness,
             damping: self.damping,
-            hold: self.hold,
+            hold: self.force,
             direction,
             fade: self.fade,
             floor,

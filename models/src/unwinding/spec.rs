@@ -26,11 +26,11 @@ pub enum RuleSpec {
     Tension {
         /// Tension without speed [N].
         #[serde(deserialize_with = "quantity::force")]
-        rest: f64,
+        tension: f64,
         /// Tension per square of the speed [kg/m].
         #[serde(default, deserialize_with = "quantity::mass_per_length")]
         per_speed2: f64,
-        /// Factor of `rest` that changes with time.
+        /// Factor of `tension` that changes with time.
         #[serde(default)]
         time: TimeFunction,
     },
@@ -38,17 +38,17 @@ pub enum RuleSpec {
     Length {
         /// Tension at the eyelet of the steady balloon to start from [N].
         #[serde(deserialize_with = "quantity::force")]
-        start: f64,
+        tension: f64,
     },
     /// The cable sticks to the package and peels at a given energy.
-    Peel {
+    Adhesion {
         /// Energy per length: `EI |κ - κ_w|²/2` at the lift-off point, with the curvatures of the free and of the wound
         /// cable [N].
         #[serde(deserialize_with = "quantity::force")]
-        energy: f64,
+        adhesion_energy: f64,
         /// Tension at the eyelet of the steady balloon to start from [N].
         #[serde(deserialize_with = "quantity::force")]
-        start: f64,
+        tension: f64,
     },
 }
 
@@ -56,7 +56,7 @@ pub enum RuleSpec {
 const CHANNELS: [&str; 9] =
     ["tension", "length", "speed", "lift", "radius", "centre", "acceleration", "drag", "curvature"];
 
-fn segments() -> usize {
+fn elements() -> usize {
     40
 }
 /// Reads a time step, or `auto`, which is none.
@@ -101,7 +101,7 @@ pub struct UnwindingSpec {
     pub mass: f64,
     /// Bending stiffness [N m^2]; left out, the cable is flexible.
     #[serde(default, deserialize_with = "quantity::bending_stiffness")]
-    pub bending: f64,
+    pub ei: f64,
     /// The package that it is wound on, with its diameter and the radius to which it may be bent.
     pub package: PackageSpec,
     /// Position of the eyelet [m].
@@ -131,15 +131,15 @@ pub struct UnwindingSpec {
     #[serde(default)]
     pub weight: bool,
     /// Into how many segments the free cable is divided.
-    #[serde(default = "segments")]
-    pub segments: usize,
+    #[serde(default = "elements")]
+    pub elements: usize,
     /// Time step [s]; `auto` or left out, 0.2 ms, or with bending stiffness and a given tension what the segments allow: two of them
     /// over the speed of waves. A longer one ends the run there with an error, since the lift-off point would tremble.
     #[serde(default, deserialize_with = "chosen", skip_serializing_if = "Option::is_none")]
-    pub step: Option<f64>,
+    pub h: Option<f64>,
     /// Numerical damping of Newmark's method; left out, 0.05 with bending stiffness and 0 without.
     #[serde(default, deserialize_with = "quantity::optional::number")]
-    pub damping: Option<f64>,
+    pub numerical_damping: Option<f64>,
     /// Titles of its pictures, by what they show: `tension`, `length`, `speed`, `lift`, `radius`, `centre`,
     /// `acceleration`, `drag`, `curvature`; left out, what it is.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -159,21 +159,21 @@ impl UnwindingSpec {
             _ => e,
         })?;
         let (axis, diameter) = (package.axis(), self.package.diameter);
-        let limit = self.package.bend_limit.filter(|r| *r > 0.0).map_or(f64::INFINITY, |r| 1.0 / r);
+        let limit = self.package.min_bend_radius.filter(|r| *r > 0.0).map_or(f64::INFINITY, |r| 1.0 / r);
         positive("mass", self.mass)?;
-        let cable = Cable { mass: self.mass, diameter, bending: self.bending, curvature_limit: limit };
+        let cable = Cable { mass: self.mass, diameter, ei: self.ei, curvature_limit: limit };
         let feed = around.motion("motion", &self.motion)?;
         let rule = match &self.rule {
-            RuleSpec::Tension { rest, per_speed2, time } => {
+            RuleSpec::Tension { tension, per_speed2, time } => {
                 time.check()?;
-                Rule::Tension(Pull { rest: *rest, time: time.clone(), per_speed2: *per_speed2 })
+                Rule::Tension(Pull { rest: *tension, time: time.clone(), per_speed2: *per_speed2 })
             }
             RuleSpec::Length { .. } => Rule::Length,
-            RuleSpec::Peel { energy, .. } => Rule::Peel(*energy),
+            RuleSpec::Adhesion { adhesion_energy, .. } => Rule::Peel(*adhesion_energy),
         };
         let towards =
             [0, 1, 2].map(|i| self.package.origin[i] + 0.5 * self.package.length * axis[i] - self.eyelet[i]);
-        let mut p = Unwinding::new(cable, Arc::new(package), feed, rule, self.segments);
+        let mut p = Unwinding::new(cable, Arc::new(package), feed, rule, self.elements);
         p.eyelet = self.eyelet;
         if self.guided {
             let sign = if dot(&towards, &axis) < 0.0 { -1.0 } else { 1.0 };
@@ -206,8 +206,8 @@ impl UnwindingSpec {
 
     /// The numbers of the time stepping.
     pub fn stepping(&self) -> Stepping {
-        let damping = self.damping.unwrap_or(if self.bending > 0.0 { 0.05 } else { 0.0 });
-        Stepping { damping, follows: self.step.is_none(), ..Stepping::new(self.step.unwrap_or(STEP)) }
+        let damping = self.numerical_damping.unwrap_or(if self.ei > 0.0 { 0.05 } else { 0.0 });
+        Stepping { numerical_damping: damping, follows: self.h.is_none(), ..Stepping::new(self.h.unwrap_or(STEP)) }
     }
 
     /// Names of the channels with title, labels of the columns and their unit.
@@ -229,7 +229,7 @@ impl UnwindingSpec {
                 "1",
             ));
         }
-        if self.bending > 0.0 {
+        if self.ei > 0.0 {
             all.push(("curvature", "Curvature at the lift-off point", &["lift"], "1/m"));
         }
         all
@@ -251,7 +251,7 @@ impl ProcessSpec for UnwindingSpec {
         self.outputs().into_iter().map(channel).collect()
     }
     fn unknowns(&self) -> usize {
-        4 * self.segments - 3 + usize::from(!matches!(self.rule, RuleSpec::Length { .. }))
+        4 * self.elements - 3 + usize::from(!matches!(self.rule, RuleSpec::Length { .. }))
     }
     fn build(&self, around: &Surroundings) -> Result<Box<dyn Process>, BuildError> {
         if let Some(what) = self.titles.keys().find(|what| !CHANNELS.contains(&what.as_str())) {
@@ -264,7 +264,7 @@ impl ProcessSpec for UnwindingSpec {
         let start = if self.points.is_empty() {
             let tension = match (&self.rule, &problem.rule) {
                 (_, Rule::Tension(pull)) => pull.at(0.0, speed),
-                (RuleSpec::Length { start } | RuleSpec::Peel { start, .. }, _) => *start,
+                (RuleSpec::Length { tension } | RuleSpec::Adhesion { tension, .. }, _) => *tension,
                 (RuleSpec::Tension { .. }, _) => 0.0,
             };
             let balloon = problem.steady(speed, tension, 0.0).map_err(|e| match e {
@@ -277,7 +277,7 @@ impl ProcessSpec for UnwindingSpec {
         };
         let running = Running::new(problem, start, self.stepping(), around.duration)
             .map_err(|e| if e.field.as_deref() == Some("feed") { e.of("motion") } else { e })?;
-        Ok(Box::new(Unwound { running, drag: self.drag.is_some(), bending: self.bending > 0.0 }))
+        Ok(Box::new(Unwound { running, drag: self.drag.is_some(), bending: self.ei > 0.0 }))
     }
 }
 

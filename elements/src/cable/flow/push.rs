@@ -59,8 +59,8 @@ macro_rules! push {
             let open = FlowEnd::<$L, $T, $Q, $fronts>::new($self.params, by, end, front);
             $self.b.element(open, &nodes)?;
         }
-        if s.axial_damping > 0.0 {
-            let eta_ea = s.axial_damping * s.ea;
+        if s.axial_retardation_time > 0.0 {
+            let eta_ea = s.axial_retardation_time * s.ea;
             // what bends in a layer that the element hardly resolves stretches between the points of its rule; elements that
             // are born and swallowed keep the other form, which is continuous over that
             let bends = s.ei > 0.0 && $L::points::<<$Q as Rule>::Axial>().len() > 1 && line.zone == [false; 2];
@@ -72,9 +72,9 @@ macro_rules! push {
                 $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
             }
         }
-        if s.bending_damping > 0.0 && s.ei > 0.0 {
+        if s.bending_retardation_time > 0.0 && s.ei > 0.0 {
             let damping =
-                BendingDamping::<<$Q as Rule>::Bending>::new($self.params.l, s.bending_damping * s.ei);
+                BendingDamping::<<$Q as Rule>::Bending>::new($self.params.l, s.bending_retardation_time * s.ei);
             $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
         }
         Ok(())
