@@ -6,16 +6,16 @@ use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Breaks a connection for good once its force reaches a limit: a shear pin, a weak link. The moment is located in
+/// Breaks a constraint permanently once its force reaches a limit: a shear pin, a weak link. The event is located in
 /// time and reported.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BreakSpec {
-    /// Name, by which the event is reported.
+    /// Name; the report of the event uses it.
     pub name: String,
-    /// Name of the constraint, which stands above.
+    /// Name of the constraint that breaks. It must come earlier in the scene.
     pub constraint: String,
-    /// Magnitude of its force at which it breaks [N].
+    /// Magnitude of the force at which the constraint breaks [N].
     #[serde(deserialize_with = "quantity::force")]
     pub force: f64,
 }

@@ -39,14 +39,14 @@ pub fn direction(
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DirectionSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker on the cable.
     pub marker: MarkerRef,
-    /// The rigid body that holds the direction; left out, it is held in space.
+    /// The rigid body that holds the direction. Default: space.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The direction in space at the start; left out, that which the cable has there.
+    /// The direction in space at the start. Default: the direction in which the cable is laid.
     #[serde(default)]
     pub direction: Option<V3<f64>>,
 }
@@ -87,7 +87,8 @@ impl Tangent {
     pub(crate) fn hold_twist(&self, b: &mut Builder, name: &str, to: Marker) -> Result<(), BuildError> {
         let Some(director) = self.director else { return Ok(()) };
         let equations = vec![Equation::normal(1, 0)];
-        let held = Connection::new(format!("{name}.twist"), b.nodes(), [to, Marker::node(director)], equations)?;
+        let held =
+            Connection::new(format!("{name}.twist"), b.nodes(), [to, Marker::node(director)], equations)?;
         b.constraint(held)
     }
 }

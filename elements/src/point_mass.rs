@@ -198,14 +198,14 @@ impl Term for PointMass {
 
 /// A compact body: a sinker, a buoy, the load at the end of a hose.
 ///
-/// On a marker of a cable it is part of that node; at a named point of a body or a link it moves and turns with it; with a
-/// position it is a point of its own. Marker: `name`.
+/// On a cable it belongs to the node; at a point of a body or link it moves and turns with the body; with a position
+/// it is a free point. Marker: `name`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMassSpec {
-    /// Name by which the rest of the scene refers to it.
+    /// Name; the rest of the scene refers to the part by it.
     pub name: String,
-    /// Marker of an earlier element that it sits on, such as `"hose.end"`, or the point where it starts [m].
+    /// Marker of an earlier element that carries it, such as `"hose.end"`, or its initial position [m].
     pub marker: MarkerRef,
     /// Mass [kg].
     #[serde(deserialize_with = "quantity::mass")]
@@ -219,7 +219,7 @@ pub struct PointMassSpec {
     /// Drag coefficient times area [m²].
     #[serde(default, deserialize_with = "quantity::area")]
     pub drag_area: f64,
-    /// Velocity at the start, of a point of its own [m/s].
+    /// Initial velocity, of a free point only [m/s].
     #[serde(default, deserialize_with = "quantity::vec3::speed")]
     pub velocity: V3<f64>,
 }

@@ -200,7 +200,10 @@ impl Builder {
             return Err(BuildError::at("constraint", message));
         };
         if self.switches.released.insert(c, mode).is_some() {
-            return Err(BuildError::at("constraint", format!("constraint `{constraint}` is to break in two ways")));
+            return Err(BuildError::at(
+                "constraint",
+                format!("constraint `{constraint}` is to break in two ways"),
+            ));
         }
         Ok(c)
     }
@@ -297,7 +300,7 @@ impl Builder {
             Some(_) => Err(BuildError::at(
                 "marker",
                 format!(
-                    "two constraints feed at {marker}, but one of `winch`, `eyelet` and `lift_off` with `peel` does"
+                    "two constraints pay out at {marker}: give one `winch`, `eyelet` or `lift_off` with `adhesion_energy`"
                 ),
             )),
         }

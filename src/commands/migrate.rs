@@ -1,8 +1,8 @@
 //! `ropewalk migrate SCENE`
 
 use super::{Exit, complain, say};
-pub use ropewalk_studies::Error;
 use ropewalk_scene::{Fault, migrate, read_text};
+pub use ropewalk_studies::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -55,7 +55,9 @@ pub(crate) fn run(args: &MigrateArgs) -> Result<Exit, Error> {
                 let backup = PathBuf::from(backup);
                 if backup.exists() {
                     let message = format!("there is `{}` already", backup.display());
-                    return Err(Fault::new(message).with_help("move it away, or leave `--backup` out").into());
+                    return Err(Fault::new(message)
+                        .with_help("move it away, or leave `--backup` out")
+                        .into());
                 }
                 write(&backup, &text)?;
             }
@@ -66,5 +68,6 @@ pub(crate) fn run(args: &MigrateArgs) -> Result<Exit, Error> {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Error> {
-    fs::write(path, text).map_err(|e| Fault::new(format!("`{}` can't be written: {e}", path.display())).into())
+    fs::write(path, text)
+        .map_err(|e| Fault::new(format!("`{}` can't be written: {e}", path.display())).into())
 }

@@ -164,8 +164,12 @@ pub fn case(name: &str) -> Vec<Reference> {
 
 /// A cable in water, sprung, with a mass: everything that takes or brings energy.
 pub fn everything() -> Scene {
-    let section =
-        Section { diameter: 0.03, axial_retardation_time: 1e-3, bending_retardation_time: 1e-2, ..Section::new(2.0, 1e5, 1.0) };
+    let section = Section {
+        diameter: 0.03,
+        axial_retardation_time: 1e-3,
+        bending_retardation_time: 1e-2,
+        ..Section::new(2.0, 1e5, 1.0)
+    };
     let mut scene = Scene::new();
     scene.water = Some(Water::default());
     scene

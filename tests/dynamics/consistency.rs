@@ -154,7 +154,10 @@ fn floating() -> Scene {
             axis: Some([0.0, 0.0, 1.0]),
         })
         .constraint(SphericalSpec::new("root", "cable.start", "second.flange"))
-        .constraint(DirectionSpec { to: Some("second".into()), ..DirectionSpec::new("clamp", "cable.start") });
+        .constraint(DirectionSpec {
+            to: Some("second".into()),
+            ..DirectionSpec::new("clamp", "cable.start")
+        });
     scene
 }
 
@@ -220,8 +223,12 @@ fn momentum_of_a_floating_system_stays() {
 
 /// Everything with a tangent of its own in one scene: bodies in water, joints, cables, springs, a mass, loads.
 fn everything() -> Scene {
-    let section =
-        Section { diameter: 0.03, axial_retardation_time: 1e-3, bending_retardation_time: 1e-2, ..Section::new(2.0, 1e3, 1.0) };
+    let section = Section {
+        diameter: 0.03,
+        axial_retardation_time: 1e-3,
+        bending_retardation_time: 1e-2,
+        ..Section::new(2.0, 1e3, 1.0)
+    };
     let hull = RigidBodySpec {
         mass: None,
         inertia: None,

@@ -3,7 +3,8 @@
 use ropewalk::{Modal, ModesOptions, modes};
 use ropewalk_constraints::motion::{SpeedTableSpec, SpinSpec};
 use ropewalk_constraints::{
-    DirectionSpec, DistanceSpec, PointOnLineSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec, WinchSpec,
+    DirectionSpec, DistanceSpec, PointOnLineSpec, RevoluteSpec, RotationSpec, SphericalSpec, WeldSpec,
+    WinchSpec,
 };
 use ropewalk_core::SteadyFrame;
 use ropewalk_core::modes::Mode;

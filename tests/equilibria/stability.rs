@@ -19,7 +19,11 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// A free cable of 1 m, 1 kg/m and EI = 1 whose state is set to a smooth bend of this amplitude, at rest.
 fn bent_rod(amplitude: f64, damping: f64, options: &Options, duration: f64) -> Simulation {
     let n = 8;
-    let section = Section { axial_retardation_time: damping, bending_retardation_time: damping, ..Section::new(1.0, 1e4, 1.0) };
+    let section = Section {
+        axial_retardation_time: damping,
+        bending_retardation_time: damping,
+        ..Section::new(1.0, 1e4, 1.0)
+    };
     let mut scene = Scene::new();
     scene.element(CableSpec::straight("rod", [0.0; 3], [1.0, 0.0, 0.0], n, section));
     let model = scene.build().expect("model");
@@ -247,7 +251,11 @@ fn a_column_buckles_at_eulers_load_into_the_elastica() {
 
     // beyond, it is pushed aside by a load that then goes, and comes to rest in the elastica
     let load = 1.2 * critical;
-    let section = Section { axial_retardation_time: 1e-3, bending_retardation_time: 0.05, ..Section::new(1.0, 1e6, 1.0) };
+    let section = Section {
+        axial_retardation_time: 1e-3,
+        bending_retardation_time: 0.05,
+        ..Section::new(1.0, 1e6, 1.0)
+    };
     let mut scene = Scene::new();
     scene
         .element(CableSpec::straight("beam", [0.0; 3], [1.0, 0.0, 0.0], 16, section))

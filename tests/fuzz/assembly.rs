@@ -101,7 +101,11 @@ fn part(rng: &mut Rng, text: &mut String, k: usize, water: bool, parts: &mut Vec
                 _ = write!(text, ", diameter = {:.4e}", rng.log(1e-3, 0.1));
             }
             if rng.chance(0.4) {
-                _ = write!(text, ", axial_retardation_time = {0:.2e}, bending_retardation_time = {0:.2e}", rng.log(1e-5, 0.1));
+                _ = write!(
+                    text,
+                    ", axial_retardation_time = {0:.2e}, bending_retardation_time = {0:.2e}",
+                    rng.log(1e-5, 0.1)
+                );
             }
             text.push_str(" }\n");
             if rng.chance(0.3) {

@@ -175,7 +175,8 @@ fn a_scene_winds_in_and_says_how_fast() {
 fn energy_of_reeling_in_closes_at_second_order() {
     let mut imbalance = Vec::new();
     for h in [4e-3, 2e-3, 1e-3] {
-        let section = Section { axial_retardation_time: 0.01, bending_retardation_time: 0.01, ..hose(1e5, 2.0) };
+        let section =
+            Section { axial_retardation_time: 0.01, bending_retardation_time: 0.01, ..hose(1e5, 2.0) };
         let mut scene = towed([0.0; 3], [0.0, 0.0, -30.0], 8, section, DragLaw::Constant);
         scene.motion(ropewalk_constraints::motion::StraightSpec {
             name: "course".into(),
@@ -223,7 +224,7 @@ fn a_run_ends_where_a_winch_is_at_its_limits() {
             "`winch` has reeled in `hose` to its shortest, 4 m",
             4.0,
         ),
-        (WinchSpec { stored_length: 6.0, ..winch(1.0) }, "`winch` has fed out all of its 6 m", 36.0),
+        (WinchSpec { stored_length: 6.0, ..winch(1.0) }, "`winch` has paid out all of its 6 m", 36.0),
     ] {
         let model = short(winch).build().unwrap_or_else(|e| panic!("{e}"));
         let options = Options { stepping: Stepping::Controlled { tolerance: 1e-4 }, ..Options::default() };

@@ -203,7 +203,11 @@ fn laid(c: &Case, off: Off, n: usize, eta: f64) -> (Model, State, Vec<V3<f64>>) 
     let marker: MarkerRef = "fibre.end".into();
     if off != Off::Ring {
         let peel = (off == Off::Peeled).then(|| c.bond());
-        scene.constraint(LiftOffSpec { tangent: bent, adhesion_energy: peel, ..LiftOffSpec::new("off", marker, package) });
+        scene.constraint(LiftOffSpec {
+            tangent: bent,
+            adhesion_energy: peel,
+            ..LiftOffSpec::new("off", marker, package)
+        });
     } else {
         let height = start(c.length())[2];
         scene.constraint(RingSpec { marker, radius, height, spin, climb });
@@ -407,8 +411,7 @@ fn a_cable_that_sticks_peels_at_its_energy() {
     let turn = TAU / c.get("Om");
     let climb = c.params["tL"][2].as_f64().unwrap_or(0.0).asin();
     let ring = fd::Ring { radius: c.get("R"), height: c.get("h"), climb, inner: true };
-    let cable =
-        fd::Cable { mass: c.get("m"), diameter: c.get("d"), ei: c.get("EI"), curvature_limit: 1e4 };
+    let cable = fd::Cable { mass: c.get("m"), diameter: c.get("d"), ei: c.get("EI"), curvature_limit: 1e4 };
     let draw = Arc::new(Straight::new([1.0, 0.0, 0.0], c.get("V"), -1.0, 0.1).expect("speed"));
     let mut problem = fd::Unwinding::new(cable, Arc::new(ring), draw, fd::Rule::Peel(c.bond()), 60);
     problem.lift_off = fd::LiftOff::Tangent;
@@ -520,11 +523,15 @@ fn a_bond_that_makes_no_sense_is_refused() {
         scene.build().err().expect("refused").to_string()
     };
     for (change, winch, says) in [
-        ((|off| off.adhesion_energy = Some(-0.3)) as fn(&mut LiftOffSpec), false, "`adhesion_energy` must not be negative"),
+        (
+            (|off| off.adhesion_energy = Some(-0.3)) as fn(&mut LiftOffSpec),
+            false,
+            "`adhesion_energy` must not be negative",
+        ),
         (|off| off.adhesion_energy = Some(f64::NAN), false, "`adhesion_energy` must not be negative"),
         (|off| off.slip_speed = 0.0, false, "slip_speed"),
         (|off| off.tangent = true, false, "nothing to peel it off"),
-        (|_| (), true, "two constraints feed at"),
+        (|_| (), true, "two constraints pay out at"),
         (|off| off.adhesion_energy = None, false, "no `winch`"),
     ] {
         let message = refused(change, winch);

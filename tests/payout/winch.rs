@@ -602,8 +602,12 @@ fn strings_that_run_along_themselves_have_the_right_modes() {
 
 /// A cable in water that hangs from a moving point, with bending stiffness, damping and drag.
 fn wet() -> Scene {
-    let section =
-        Section { diameter: 0.02, axial_retardation_time: 0.01, bending_retardation_time: 0.01, ..Section::new(0.8, 1e4, 2.0) };
+    let section = Section {
+        diameter: 0.02,
+        axial_retardation_time: 0.01,
+        bending_retardation_time: 0.01,
+        ..Section::new(0.8, 1e4, 2.0)
+    };
     let mut scene = Scene::new();
     scene.water = Some(ropewalk_scene::Water::default());
     scene
@@ -708,7 +712,7 @@ fn what_no_eyelet_can_do_is_refused() {
     let speed = || EyeletSpec::speed("eyelet", "rope.start", -0.8);
     let tension = || EyeletSpec::tension("eyelet", "rope.start", 5.0);
     let cases: [(EyeletSpec, &str, &str); 14] = [
-        (EyeletSpec { speed: None, ..speed() }, "name", "say what draws the cable"),
+        (EyeletSpec { speed: None, ..speed() }, "name", "needs one of"),
         (EyeletSpec { motion: Some("course".into()), ..speed() }, "motion", "not both"),
         (EyeletSpec { tension: Some(5.0), ..speed() }, "tension", "the tension at this eyelet is a result"),
         (EyeletSpec { damping: 5.0, ..speed() }, "damping", "goes with `tension`"),
@@ -724,8 +728,16 @@ fn what_no_eyelet_can_do_is_refused() {
         (EyeletSpec { element_length: Some(4.0), ..speed() }, "element_length", "less than half of that"),
         (EyeletSpec { shortest: Some(7.0), ..speed() }, "shortest", "must be less"),
         (EyeletSpec { marker: "rope@2m".into(), ..speed() }, "marker", "end of a cable"),
-        (EyeletSpec { reference_speed: Some("corse".into()), ..tension() }, "reference_speed", "there is no motion `corse`"),
-        (EyeletSpec { reference_speed: Some("in".into()), ..tension() }, "reference_speed", "not defined for ever"),
+        (
+            EyeletSpec { reference_speed: Some("corse".into()), ..tension() },
+            "reference_speed",
+            "there is no motion `corse`",
+        ),
+        (
+            EyeletSpec { reference_speed: Some("in".into()), ..tension() },
+            "reference_speed",
+            "not defined for ever",
+        ),
     ];
     for (spec, field, message) in cases {
         let mut scene = wet();

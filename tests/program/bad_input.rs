@@ -181,7 +181,12 @@ fn zero_and_negative_numbers_are_refused_where_they_make_no_sense() {
         ("diameter = 0.02 ", "diameter = -0.02 ", "-0.02", &["`diameter` must not be negative"]),
         ("diameter = 0.02 ", "diameter = 0 ", "[[forces]]", &["drag needs a diameter, and `line` has none"]),
         ("flooded = 0.1 ", "flooded = -0.1 ", "-0.1", &["`flooded` must not be negative"]),
-        ("axial_retardation_time = 0.001", "axial_retardation_time = -1", "-1", &["`axial_retardation_time` must not be negative"]),
+        (
+            "axial_retardation_time = 0.001",
+            "axial_retardation_time = -1",
+            "-1",
+            &["`axial_retardation_time` must not be negative"],
+        ),
         ("elements = 4 # line", "elements = 0", "0", &["`elements` must be between 1 and 1000000"]),
         ("elements = 4 # line", "elements = -4", "-4", &[]),
         ("elements = 4 # line", "elements = 2.5", "2.5", &[]),

@@ -68,7 +68,7 @@ const MANIFESTS: [(&str, &str, &str, &str, [usize; 3]); 8] = [
         "unwinding",
         "flowing cable L4+T3 locking-free; open end L4+T3; axial damping L4 lob3 of a flowing cable; eyelet.feed; cable: drag",
         "eyelet spool package",
-        "eyelet.tension lift_off.tension cable.length drawn.fed drawn.speed peeled.fed peeled.speed peeled.pull lift_off.x \
+        "eyelet.tension lift_off.tension cable.length drawn.payout drawn.payout_rate peeled.payout peeled.payout_rate peeled.pull lift_off.x \
          lift_off.y lift_off.z centre.x centre.y centre.z centre.acceleration.ax centre.acceleration.ay \
          centre.acceleration.az cable.cn@25% cable.cn@50% cable.cn@75% lift_off.curvature energy.kinetic energy.potential energy.supplied energy.dissipated \
          energy.imbalance",

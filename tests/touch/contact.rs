@@ -587,7 +587,7 @@ fn keys_that_are_gone_say_what_to_do() {
     "#;
     fs::write(&file, text).unwrap();
     let message = ropewalk::read(&file).expect_err("refused").to_string();
-    says(&message, &["`per_element` is gone", "Leave it out"]);
+    says(&message, &["`per_element` is gone", "leave `per_element` out"]);
     fs::write(&file, text.replace("per_element = 3", "slip_speed = 1e-3")).unwrap();
     let message = ropewalk::read(&file).expect_err("refused").to_string();
     says(&message, &["`slip_speed` is gone", "`friction = { mu = 0.3, elastic_slip"]);

@@ -1,6 +1,6 @@
 //! Contact along slender parts: what it does must not depend on where the nodes are.
 
-use ropewalk_constraints::{DirectionSpec, CoordinateSpec, SphericalSpec};
+use ropewalk_constraints::{CoordinateSpec, DirectionSpec, SphericalSpec};
 use ropewalk_core::integrator::{Options, Scheme, StepReport, Stepping};
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{End, Model, Observer, Quantity, Simulation, State};

@@ -114,7 +114,9 @@ fn tangents_of_what_runs_are_those_of_its_force() {
     let turning = "marker = \"wheel\"\nstiffness_per_length = 1e4\ndamping = { hunt_crossley = 2.0 }";
     let wheel = "[[elements]]\ntype = \"rigid_body\"\nname = \"wheel\"\nposition = [0, 0, 0]\nmass = 3\ninertia = [1, 1, 1]\n";
     let ground = turning.replace("marker = \"wheel\"", "");
-    for (more, contact) in [("", ground.as_str()), ("element_length = 0.05\n", ground.as_str()), (wheel, turning)] {
+    for (more, contact) in
+        [("", ground.as_str()), ("element_length = 0.05\n", ground.as_str()), (wheel, turning)]
+    {
         // 3 mm deep
         let text = scene(0.3, more, contact).replace("radius = 0.295", "radius = 0.298");
         let text = text.replace("name = \"drum\"", "name = \"drum\"\n        overlap = \"allow\"");

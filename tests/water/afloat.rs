@@ -324,7 +324,8 @@ fn a_hull_has_the_drag_of_its_faces_its_side_and_its_skin() {
 
 #[test]
 fn what_makes_no_sense_is_refused() {
-    let ball = "[[elements]]\ntype = \"point_mass\"\nname = \"b\"\nmarker = [0, 0, 0]\nmass = 1\nvolume = 1\n";
+    let ball =
+        "[[elements]]\ntype = \"point_mass\"\nname = \"b\"\nmarker = [0, 0, 0]\nmass = 1\nvolume = 1\n";
     let tilted = refused(&format!("gravity = [1, 0, -9]\n[water]\nlevel = 0\n{ball}{WEIGHT}"));
     assert!(tilted.contains("make it point down"), "{tilted}");
     let air = refused(&format!("[water]\n[air]\n{ball}{WEIGHT}"));

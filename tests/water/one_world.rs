@@ -114,8 +114,8 @@ fn gravity_counts_once_and_is_one() {
             "[[elements]]\ntype = \"point_mass\"\nname = \"b\"\nmarker = [0, 0, 0]\nmass = 1\n[[forces]]\ntype = \"{kind}\"\ng = [0, 0, -1.62]\n"
         );
         let moved = refused(&old);
-        assert!(moved.contains("unknown field `g`"), "{moved}");
         assert!(moved.contains("gravity belongs to the scene"), "{moved}");
+        assert!(moved.contains("`ropewalk migrate world` rewrites the scene"), "{moved}");
         assert!(moved.contains("world:8:1"), "{moved}");
     }
     // one for each part is fine

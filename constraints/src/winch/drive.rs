@@ -121,7 +121,7 @@ impl WinchSpec {
             (None, None) if free => Ok(Drive::Held),
             (None, None) => Err(BuildError::at(
                 "name",
-                "say what drives this winch: `speed` or `motion`, or what holds it back: `tension`, `brake`, `damping`",
+                "a winch needs `speed` or `motion`, or a resistance: `tension`, `brake`, `damping` or `inertia`",
             )),
         }
     }

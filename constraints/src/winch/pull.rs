@@ -21,13 +21,13 @@ pub struct Pull {
     pub brake: f64,
     /// Speed below which the brake creeps [m/s].
     pub slip_speed: f64,
-    /// Resistance per speed [N s/m].
+    /// Linear damping: tension per payout rate [N s/m].
     pub damping: f64,
     /// Tension by the square of the speed, whichever way it feeds [kg/m].
     pub per_speed2: f64,
     /// The motion along x whose speed that is, if it isn't the speed at which this end feeds.
     pub reference: Option<Arc<dyn Motion>>,
-    /// Inertia of the drum over the square of its radius [kg].
+    /// Moment of inertia of the drum over its radius squared [kg].
     pub inertia: f64,
     /// Whether the cable is picked up from rest.
     pub pile: bool,
@@ -46,7 +46,9 @@ impl Pull {
         let rho = pile + if self.reference.is_none() { self.per_speed2 } else { 0.0 };
         (
             self.given(t, u) + self.brake * u / root + self.damping * u + pile * u * u,
-            self.brake * self.slip_speed * self.slip_speed / (root * root * root) + self.damping + 2.0 * rho * u,
+            self.brake * self.slip_speed * self.slip_speed / (root * root * root)
+                + self.damping
+                + 2.0 * rho * u,
         )
     }
     fn slope(&self, at: &At<'_>) -> [f64; 3] {

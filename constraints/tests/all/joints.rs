@@ -2,7 +2,7 @@
 
 use ropewalk_constraints::motion::{Circle, Harmonic, Side, Table};
 use ropewalk_constraints::{
-    Connection, coordinate, direction, cylindrical, distance, driving, perpendicular, point_on_line,
+    Connection, coordinate, cylindrical, direction, distance, driving, perpendicular, point_on_line,
     point_on_plane, prismatic, revolute, rotation, slide, spherical, universal, weld,
 };
 use ropewalk_core::rotation::around;

@@ -33,7 +33,7 @@ const DOFS: usize = 18;
 /// elastic element, which bends with T3, what makes that of a straight one into the one above.
 #[derive(Clone, Copy, Debug)]
 pub struct Directed<Q> {
-    /// What it is made of.
+    /// Cross-section.
     pub params: DirectedParams,
     /// Stress-free curvature about both directors at the quadrature points [1/m].
     kappa0: [[f64; 2]; MOST],

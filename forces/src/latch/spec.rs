@@ -13,18 +13,19 @@ fn fade() -> f64 {
     1e-3
 }
 
-/// Holds points where they start by a spring and damper each, until the pull on one reaches a limit: then it lets go
-/// for good. Each release is located in time and reported.
+/// Holds points at their initial positions, each by a spring and damper, until the force on one reaches a limit: that
+/// point is then released permanently. Each release is located in time and reported.
 ///
-/// A hose on its spool, a cable tied up with tape, a load that is dropped. Records: `released` counts.
+/// Use it for a hose on its spool, a cable tied with tape, a load that is dropped. The record `released` counts the
+/// releases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatchSpec {
-    /// Name, by which releases are reported.
+    /// Name; the reports of releases use it.
     pub name: String,
-    /// What is held: parts, of which every node or link is held, and single markers.
+    /// What it holds: parts (every node or link of them) and single markers.
     pub on: Vec<String>,
-    /// Where the seats are: on this rigid body, as it stands at the start; left out, fixed in space.
+    /// Marker on the rigid body that carries the seats. Default: fixed in space.
     #[serde(default)]
     pub to: Option<MarkerRef>,
     /// Stiffness of a seat [N/m].
@@ -33,19 +34,19 @@ pub struct LatchSpec {
     /// Damping of a seat [N s/m].
     #[serde(default, deserialize_with = "quantity::damping")]
     pub damping: f64,
-    /// Force of a seat at which it lets go [N].
+    /// Force of a seat at which the point is released [N].
     #[serde(deserialize_with = "quantity::force")]
     pub force: f64,
-    /// Direction in space: only the pull in it counts; left out, the magnitude of the force.
+    /// Direction in space; only the component along it counts. Default: the magnitude of the force.
     #[serde(default)]
     pub direction: Option<V3<f64>>,
-    /// Time in which the force fades after the release [s].
+    /// Fade time of the force after a release [s].
     #[serde(default = "fade", deserialize_with = "quantity::time")]
     pub fade: f64,
-    /// A plane, fixed in space, behind which released points are pushed back.
+    /// A plane fixed in space that pushes released points back.
     #[serde(default)]
     pub floor: Option<FloorSpec>,
-    /// Whether the run ends once the last one has let go.
+    /// Whether the run ends when the last point is released.
     #[serde(default)]
     pub stop: bool,
 }
@@ -60,7 +61,7 @@ pub struct FloorSpec {
     pub point: V3<f64>,
     /// Its normal, on the side where points may be.
     pub normal: V3<f64>,
-    /// Force by depth [N/m].
+    /// Contact stiffness [N/m].
     #[serde(deserialize_with = "quantity::spring_stiffness")]
     pub stiffness: f64,
 }

@@ -57,7 +57,8 @@ pub fn migrate(text: &str, name: &str, format: Format) -> Result<Migrated, Fault
     let mut sources = Sources::default();
     let source = sources.add(name, &new);
     // a name that stands in several dotted keys is found at the first alone
-    let again = parse(&new, source, format, &sources).map(|tree| tree.as_table().map_or(0, |root| certain(root)));
+    let again =
+        parse(&new, source, format, &sources).map(|tree| tree.as_table().map_or(0, |root| certain(root)));
     match again {
         Ok(0) => Ok(Migrated { text: format!("{mark}{new}"), changes, left }),
         _ => Err(Fault::new(format!(
@@ -149,9 +150,10 @@ impl Migration<'_> {
     /// Names of columns in the tables of the run.
     fn columns(&mut self, root: &Table, reach: &Reach<'_>) {
         let records = root.get("records").map(|list| reach.parts(list)).unwrap_or_default();
-        let of_winches = records.into_iter().map(|(_, part)| part).filter(|part| {
-            reach.texts(part, "type").iter().any(|(kind, _)| *kind == "feeding")
-        });
+        let of_winches = records
+            .into_iter()
+            .map(|(_, part)| part)
+            .filter(|part| reach.texts(part, "type").iter().any(|(kind, _)| *kind == "feeding"));
         let stems: Vec<String> = of_winches
             .flat_map(|part| {
                 let names = reach.texts(part, "name");
@@ -167,7 +169,9 @@ impl Migration<'_> {
                 _ => None,
             });
             for column in lists.flatten().flat_map(|column| reach.of(column)) {
-                let Some((stem, last)) = column.as_str().and_then(|text| text.rsplit_once('.')) else { continue };
+                let Some((stem, last)) = column.as_str().and_then(|text| text.rsplit_once('.')) else {
+                    continue;
+                };
                 let new = COLUMNS.iter().find(|(old, _)| *old == last).map(|(_, new)| new);
                 let range = column.span.range();
                 // the quote behind it has one byte
@@ -220,7 +224,8 @@ impl Migration<'_> {
         let line = |at: usize| text[..at].rfind('\n').map_or(0, |i| i + 1);
         let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
         let own = |name: &str| matches!(name, "title" | "description" | "$schema");
-        let last = root.iter().filter(|(key, _)| own(&key.name)).max_by_key(|(key, _)| key.span.range().start);
+        let last =
+            root.iter().filter(|(key, _)| own(&key.name)).max_by_key(|(key, _)| key.span.range().start);
         let (at, new) = match (self.format, last) {
             (Format::Toml, Some((_, v))) => {
                 let from = v.span.range().end;

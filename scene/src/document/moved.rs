@@ -210,12 +210,22 @@ pub(super) fn found<'a>(section: &str, list: &'a Value, reach: &Reach<'a>) -> Ve
             if let Some((key, value)) = part.entry(name) {
                 let weight = kind == "unwound_cable";
                 let message = match weight {
-                    true => "gravity belongs to the scene: write `weight = true` here, and `gravity = [0, 0, -9.81]` \
-                             above its first section",
-                    false => "gravity belongs to the scene: write `gravity = [0, 0, -9.81]` above its first section",
+                    true => {
+                        "gravity belongs to the scene: write `weight = true` here, and `gravity = [0, 0, -9.81]` \
+                             above its first section"
+                    }
+                    false => {
+                        "gravity belongs to the scene: write `gravity = [0, 0, -9.81]` above its first section"
+                    }
                 };
                 let edit = Edit::Gravity { key, value, weight };
-                all.push(Found { span: key.span, path: path.clone(), message: message.into(), help: None, edit });
+                all.push(Found {
+                    span: key.span,
+                    path: path.clone(),
+                    message: message.into(),
+                    help: None,
+                    edit,
+                });
             }
         }
         if section == "constraints" && reach.is(part, "clamp") {

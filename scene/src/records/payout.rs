@@ -8,17 +8,17 @@ use ropewalk_core::{BuildError, Column, Front, Model, Record, Sample, Spot};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Payout at an end of a cable: columns `hose.start.payout`, the length paid out in m, `.payout_rate` in m/s, and where the speed is
-/// prescribed `.pull`, what the winch pulls with in N.
+/// Payout at an end of a cable: columns `hose.start.payout`, the length paid out in m, `.payout_rate` in m/s, and,
+/// where the speed is prescribed, `.pull`, the force of the winch in N.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PayoutSpec {
     /// The end of the cable: `hose.start` or `hose.end`.
     pub of: String,
-    /// Name in results; left out, that of the end.
+    /// Name in results. Default: that of the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }
@@ -72,13 +72,13 @@ impl RecordSpec for PayoutSpec {
             _ => None,
         };
         let Some(front) = end.and_then(|end| part.front(end)) else {
-            let fed = model.parts().iter().flat_map(|p| {
+            let ends = model.parts().iter().flat_map(|p| {
                 let ends = [(0, "start"), (1, "end")].into_iter().filter(|&(k, _)| p.front(k).is_some());
                 ends.map(|(_, end)| format!("{}.{end}", p.name()))
             });
-            let fed: Vec<String> = fed.collect();
-            let fed = listed(fed.iter().map(String::as_str), "none");
-            let message = format!("no winch feeds at `{}`; the ends that feed are {fed}", self.of.trim());
+            let ends: Vec<String> = ends.collect();
+            let ends = listed(ends.iter().map(String::as_str), "none");
+            let message = format!("no winch is at `{}`; the ends with a winch are {ends}", self.of.trim());
             return Err(BuildError::at("of", message));
         };
         let all = model.constraints();
