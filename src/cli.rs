@@ -165,6 +165,13 @@ enum Command {
         #[command(flatten)]
         scene: SceneArgs,
     },
+    /// Rewrite a scene of version 0.1 with the names of this version
+    #[command(after_help = "Examples:\n  \
+        ropewalk migrate scene.toml             in place; each change is printed\n  \
+        ropewalk migrate scene.toml --check     only prints; exit code 1 if something is to be rewritten\n  \
+        ropewalk migrate scene.toml --out new.toml\n\n\
+        Comments, order and layout stay as they are. A scene that uses the names of this version is not touched.")]
+    Migrate(commands::migrate::MigrateArgs),
 }
 
 /// A scene and its parameters.
@@ -259,6 +266,7 @@ pub fn main_from(
         Command::Bench(args) => commands::bench::bench(&args),
         Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
+        Command::Migrate(args) => commands::migrate::run(&args),
     };
     match done {
         Ok(exit) => ExitCode::from(exit.code()),

@@ -6,16 +6,16 @@ use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Breaks a connection for good once its force reaches a limit: a shear pin, a weak link. The moment is located in
+/// Breaks a constraint permanently once its force reaches a limit: a shear pin, a weak link. The event is located in
 /// time and reported.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BreakSpec {
-    /// Name, by which the event is reported.
+    /// Name; the report of the event uses it.
     pub name: String,
-    /// Name of the constraint, which stands above.
-    pub of: String,
-    /// Magnitude of its force at which it breaks [N].
+    /// Name of the constraint that breaks. It must come earlier in the scene.
+    pub constraint: String,
+    /// Magnitude of the force at which the constraint breaks [N].
     #[serde(deserialize_with = "quantity::force")]
     pub force: f64,
 }
@@ -32,7 +32,7 @@ impl ConstraintSpec for BreakSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         positive("force", self.force)?;
         let mode = b.mode(&self.name);
-        let constraint = b.release(&self.of, mode)?;
+        let constraint = b.release(&self.constraint, mode)?;
         b.event(Break { name: self.name.clone(), constraint, mode, force: self.force });
         Ok(())
     }

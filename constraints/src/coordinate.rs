@@ -26,17 +26,17 @@ pub fn coordinate(
     Joint::new(name, nodes, between, vec![Equation::coordinate(direction, motion)])
 }
 
-/// Holds or drives one coordinate of a marker, along a direction, and leaves the other two free.
+/// Holds or drives one coordinate of a marker along a direction. The other two are free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CoordinateSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker.
     pub marker: MarkerRef,
-    /// The direction of the coordinate.
+    /// Direction of the coordinate, in space.
     pub direction: V3<f64>,
-    /// Name of a motion, of which the part along the direction is followed; left out, the coordinate stays.
+    /// Name of a motion; its component along the direction drives the coordinate. Default: the coordinate is held.
     #[serde(default)]
     pub motion: Option<String>,
 }

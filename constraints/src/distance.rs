@@ -23,17 +23,17 @@ pub fn distance(
     Joint::new(name, nodes, between, vec![Equation::Distance { length }])
 }
 
-/// Keeps two points at a constant distance: a rod without mass.
+/// Keeps two points at a constant distance: a massless rod.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DistanceSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// One marker.
     pub marker: MarkerRef,
     /// The other marker, or a point in space.
     pub to: MarkerRef,
-    /// Distance [m]; left out, that at the start.
+    /// Distance [m]. Default: the initial distance.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub length: Option<f64>,
 }

@@ -62,11 +62,11 @@ pub fn rotation(
     Joint::new(name, nodes, between, vec![Equation::Dot { a, b, value: 0.0, motion: None }])
 }
 
-/// Makes a marker follow a prescribed motion from where it starts.
+/// Moves a marker along a prescribed motion, starting at its initial position.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrivingSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is driven.
     pub marker: MarkerRef,
@@ -96,18 +96,18 @@ impl ConstraintSpec for DrivingSpec {
     }
 }
 
-/// Drives a length: the place of a marker along an axis of another.
+/// Drives the displacement of a marker along an axis of another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SlideSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is driven.
     pub marker: MarkerRef,
-    /// The marker that it is driven against; left out, the point where it starts.
+    /// The other marker. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start; it turns with `to`.
+    /// Direction of the axis in space at the start. The axis turns with `to`.
     pub axis: V3<f64>,
     /// Name of the motion, whose x component is the displacement along the axis.
     pub motion: String,
@@ -132,18 +132,18 @@ impl ConstraintSpec for SlideSpec {
     }
 }
 
-/// Drives an angle: the rotation of a part against another, about a common axis. Put it beside a `revolute` joint.
+/// Drives the angle between two parts about a common axis. Use it together with a `revolute` joint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is driven, on a rigid body or a cable.
     pub marker: MarkerRef,
-    /// The marker that it is driven against, on a rigid body; left out, space.
+    /// The other marker, on a rigid body. Default: space.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start.
+    /// Direction of the axis in space at the start.
     pub axis: V3<f64>,
     /// Name of the motion, whose x component is the angle [rad].
     pub motion: String,

@@ -20,6 +20,7 @@ mod breaking;
 mod check;
 mod clamp;
 mod coordinate;
+mod direction;
 mod distance;
 mod driving;
 pub mod motion;
@@ -33,8 +34,9 @@ mod weld;
 pub mod winch;
 
 pub use breaking::BreakSpec;
-pub use clamp::{ClampSpec, clamp};
+pub use clamp::ClampSpec;
 pub use coordinate::{CoordinateSpec, coordinate};
+pub use direction::{DirectionSpec, direction};
 pub use distance::{DistanceSpec, distance};
 pub use driving::{DrivingSpec, RotationSpec, SlideSpec, driving, rotation, slide};
 pub use package::{Package, PackageSpec};

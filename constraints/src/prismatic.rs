@@ -60,18 +60,18 @@ pub fn point_on_plane(
     Joint::new(name, nodes, between, vec![Equation::in_plane(2)])
 }
 
-/// Lets a body slide along an axis of another part, or of space, without turning.
+/// Lets a body slide along an axis of another part or of space. It can't turn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PrismaticSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start; it turns with the parts.
+    /// Direction of the axis in space at the start. The axis turns with the parts.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "prismatic", PrismaticSpec);
@@ -91,18 +91,18 @@ impl ConstraintSpec for PrismaticSpec {
     }
 }
 
-/// Lets a body slide along an axis of another part, or of space, and turn about it.
+/// Lets a body slide along an axis of another part or of space, and turn about it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylindricalSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start; it turns with the parts.
+    /// Direction of the axis in space at the start. The axis turns with the parts.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "cylindrical", CylindricalSpec);
@@ -122,18 +122,18 @@ impl ConstraintSpec for CylindricalSpec {
     }
 }
 
-/// Keeps a point on a straight line through another part, or through space.
+/// Keeps a point on a straight line that is fixed to another part or in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointOnLineSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The direction of the line in space at the start; it turns with `to`.
+    /// Direction of the line in space at the start. The line turns with `to`.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "point_on_line", PointOnLineSpec);
@@ -153,18 +153,18 @@ impl ConstraintSpec for PointOnLineSpec {
     }
 }
 
-/// Keeps a point in a plane of another part, or of space.
+/// Keeps a point in a plane that is fixed to another part or in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointOnPlaneSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The normal of the plane in space at the start; it turns with `to`.
+    /// Normal of the plane in space at the start. The plane turns with `to`.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "point_on_plane", PointOnPlaneSpec);

@@ -25,19 +25,19 @@ pub fn revolute(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -
     Joint::new(name, nodes, between, equations)
 }
 
-/// A hinge: holds two points together and leaves only the rotation about an axis. The end of a cable swings in the plane
-/// normal to it.
+/// A hinge: holds two points together; only the rotation about an axis is free. The end of a cable swings in the
+/// plane normal to the axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RevoluteSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start; it turns with the parts.
+    /// Direction of the axis in space at the start. The axis turns with the parts.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "revolute", RevoluteSpec);

@@ -16,15 +16,15 @@ pub fn spherical(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) 
     Joint::new(name, nodes, between, Equation::coincide())
 }
 
-/// Holds two points together: of two parts, or of a part and space. Leaves every rotation free.
+/// Holds two points together, of two parts or of a part and space. All rotations are free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphericalSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
 }

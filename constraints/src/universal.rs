@@ -48,21 +48,22 @@ fn crossed(what: &str, a: V3<f64>, b: V3<f64>) -> Result<(), BuildError> {
     Err(BuildError::new(message))
 }
 
-/// Keeps an axis of one part at right angles to an axis of another, or of space.
+/// Keeps an axis of one part at right angles to an axis of another part or of space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PerpendicularSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis of `to` in space at the start; it turns with it. Left out on a cable, which has only its own direction.
+    /// Axis of `to` in space at the start; it turns with `to`. Leave it out on a cable: there the axis is the
+    /// tangent.
     #[serde(default)]
     pub axis_to: Option<V3<f64>>,
-    /// The axis of `marker` in space at the start; it turns with it. Left out on a cable.
+    /// Axis of `marker` in space at the start; it turns with `marker`. Leave it out on a cable.
     #[serde(default)]
     pub axis: Option<V3<f64>>,
 }
@@ -89,21 +90,23 @@ impl ConstraintSpec for PerpendicularSpec {
     }
 }
 
-/// A universal joint: holds two points together, and an axis of one part at right angles to an axis of the other.
+/// A universal joint: holds two points together, and keeps an axis of one part at right angles to an axis of the
+/// other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UniversalSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis of `to` in space at the start; it turns with it. Left out on a cable, which has only its own direction.
+    /// Axis of `to` in space at the start; it turns with `to`. Leave it out on a cable: there the axis is the
+    /// tangent.
     #[serde(default)]
     pub axis_to: Option<V3<f64>>,
-    /// The axis of `marker` in space at the start; it turns with it. Left out on a cable.
+    /// Axis of `marker` in space at the start; it turns with `marker`. Leave it out on a cable.
     #[serde(default)]
     pub axis: Option<V3<f64>>,
 }

@@ -33,15 +33,16 @@ pub fn weld(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Re
     Joint::new(name, nodes, between, equations)
 }
 
-/// Joins two parts rigidly, as they stand at the start. The direction of a cable's end is held; its stretch stays free.
+/// Joins two parts rigidly, as they stand at the start. Of a cable, point and tangent are held; the stretch stays
+/// free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WeldSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
 }

@@ -21,13 +21,13 @@ fn quarters() -> Vec<RecordPlace> {
 pub struct DragCoefficientSpec {
     /// The cable.
     pub of: String,
-    /// Where: as for `along`; left out, at a quarter, half and three quarters of the length.
+    /// Where: as for `along`. Default: at a quarter, half and three quarters of the length.
     #[serde(default = "quarters")]
     pub at: Vec<RecordPlace>,
-    /// Name in results; left out, that of the cable and `.cn`.
+    /// Name in results. Default: that of the cable and `.cn`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

@@ -14,7 +14,7 @@ pub struct LineLoad {
     pub force: V3<f64>,
     /// Which length it is per.
     pub per: PerLength,
-    /// Factor that changes with time.
+    /// Factor as a function of time.
     pub time: TimeFunction,
 }
 

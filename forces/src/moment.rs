@@ -29,7 +29,7 @@ pub struct PointMoment {
     pub label: String,
     /// Moment [N m].
     pub moment: V3<f64>,
-    /// Factor that changes with time.
+    /// Factor as a function of time.
     pub time: TimeFunction,
     on: On,
 }

@@ -26,7 +26,7 @@ enum Aim {
 pub struct PointForce {
     /// A name, such as `tip load`.
     pub label: String,
-    /// Factor that changes with time.
+    /// Factor as a function of time.
     pub time: TimeFunction,
     aim: Aim,
     ends: [Held; 2],

@@ -10,11 +10,11 @@ use ropewalk_scene::{Builder, Current, ForceSpec, MarkerRef, Water, quantity, re
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Weight: the scene's `gravity` pulls at the structural mass of every part.
+/// Weight: the scene's `gravity` acts on the structural mass of every part.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GravitySpec {
-    /// Parts that it pulls at; left out, all.
+    /// Parts it acts on. Default: all.
     #[serde(default)]
     pub on: Vec<String>,
 }
@@ -44,13 +44,13 @@ impl ForceSpec for GravitySpec {
     }
 }
 
-/// Buoyancy of the displaced volume: of all of it, or, where the water has a `level`, of what is under water.
+/// Buoyancy of the displaced volume; if the water has a `level`, of the volume under water.
 ///
-/// Cables, hulls and chains are cylinders there, other bodies and point masses balls.
+/// At the surface, cables, hulls and chains are cylinders; other bodies and point masses are spheres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BuoyancySpec {
-    /// Parts that it lifts; left out, all.
+    /// Parts it acts on. Default: all.
     #[serde(default)]
     pub on: Vec<String>,
 }
@@ -134,7 +134,7 @@ fn tangential_coefficient() -> f64 {
     0.01
 }
 
-/// Drag of the water, and of the air if the scene has some, on cables and hulls, across and along, each by its own law.
+/// Drag of water (and air, if the scene has it) on cables and hulls, with one law across and one along.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DragSpec {
@@ -150,18 +150,18 @@ pub struct DragSpec {
     /// Coefficient along, for the constant law, on the circumference.
     #[serde(default = "tangential_coefficient", deserialize_with = "quantity::number")]
     pub ct: f64,
-    /// Form drag of each free end of cables, hulls and chains in flow along it: coefficient on the area of its face. Left
-    /// out, none; both ends of a long blunt cylinder have about 0.8 together.
+    /// Form drag of each free end of cables, hulls and chains: coefficient on the area of the end face. Both ends of
+    /// a long blunt cylinder have about 0.8 together.
     #[serde(default, deserialize_with = "quantity::number")]
     pub end: f64,
-    /// Whether drag is per stretched length instead of unstretched.
+    /// Whether drag acts per stretched length instead of unstretched length.
     #[serde(default)]
     pub stretched: bool,
-    /// Relative width in Reynolds number over which the branches of Choo and Casarella are blended; left out, they
-    /// jump as published.
+    /// Relative width in Reynolds number over which the branches of Choo and Casarella are blended. Default: they
+    /// jump, as published.
     #[serde(default, deserialize_with = "quantity::optional::number")]
     pub blend: Option<f64>,
-    /// Cables that it acts on; left out, all.
+    /// Cables it acts on. Default: all.
     #[serde(default)]
     pub on: Vec<String>,
 }
@@ -267,25 +267,25 @@ fn one() -> f64 {
     1.0
 }
 
-/// Water that a cable or a hull pushes aside: its inertia, and what it does in flow along the body.
+/// Added mass of cables and hulls: inertia of the water, and its forces in flow along the body.
 ///
-/// It has the kinetic energy of the water, so a hull at an angle to the flow is turned (Munk's moment), and flow along a
-/// cable acts like compression and can make it flutter. `theory = "morison"` leaves inertia alone, for comparison with
-/// codes that have only that.
+/// It follows from the kinetic energy of the water: a hull at an angle to the flow has Munk's moment, and flow along
+/// a cable acts like compression and can cause flutter. `theory = "morison"` keeps the inertia only, for comparison
+/// with codes that have no more.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AddedMassSpec {
-    /// Coefficient: mass over that of the water in a circle of the hydrodynamic diameter.
+    /// Coefficient: added mass over the mass of water in a cylinder of the hydrodynamic diameter.
     #[serde(default = "one", deserialize_with = "quantity::number")]
     pub ca: f64,
-    /// `energy` or `morison`; left out, `energy`.
+    /// `energy` or `morison`. Default: `energy`.
     #[serde(default)]
     pub theory: Option<Theory>,
-    /// Share of its momentum that the water gives back at the free ends of cables: 0 for ends that are cut off, about 0.8
-    /// for ends that taper, 1 for a perfect tail.
+    /// Fraction of its momentum that the water returns at free ends of cables: 0 for cut ends, about 0.8 for tapered
+    /// ends, 1 for an ideal tail.
     #[serde(default, deserialize_with = "quantity::number")]
     pub tail: f64,
-    /// Parts that it acts on; left out, all.
+    /// Parts it acts on. Default: all.
     #[serde(default)]
     pub on: Vec<String>,
 }
@@ -344,20 +344,20 @@ impl AddedMassSpec {
     }
 }
 
-/// A force per length in a constant direction.
+/// A distributed force in a constant direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LineLoadSpec {
     /// Force per length [N/m].
     #[serde(deserialize_with = "quantity::vec3::force_per_length")]
     pub force: V3<f64>,
-    /// Whether it is per stretched length instead of unstretched.
+    /// Whether it acts per stretched length instead of unstretched length.
     #[serde(default)]
     pub stretched: bool,
-    /// Factor that changes with time.
+    /// Factor as a function of time.
     #[serde(default)]
     pub time: TimeFunction,
-    /// Cables that it acts on; left out, all.
+    /// Cables it acts on. Default: all.
     #[serde(default)]
     pub on: Vec<String>,
 }
@@ -376,18 +376,18 @@ impl ForceSpec for LineLoadSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointForceSpec {
-    /// Where it acts.
+    /// The marker on which it acts.
     pub marker: MarkerRef,
     /// Force in space [N].
     #[serde(default, deserialize_with = "quantity::vec3::force")]
     pub force: V3<f64>,
-    /// Whether `force` is in the axes of the rigid body that it acts on, and turns with it.
+    /// Whether `force` is given in the axes of the rigid body and turns with it.
     #[serde(default)]
     pub local: bool,
-    /// Instead: force along the cable at the marker, towards its end [N]. It turns with the cable.
+    /// Follower force along the cable, towards its end [N], instead of `force`. It turns with the cable.
     #[serde(default, deserialize_with = "quantity::optional::force")]
     pub follower: Option<f64>,
-    /// Factor that changes with time.
+    /// Factor as a function of time.
     #[serde(default)]
     pub time: TimeFunction,
 }
@@ -426,20 +426,20 @@ impl ForceSpec for PointForceSpec {
     }
 }
 
-/// A moment on a rigid body or at a marker on a cable, with an axis fixed in space or, on a body, in its axes. Its part
-/// along a cable is lost: a cable doesn't know twist.
+/// A moment on a rigid body or a cable, in space or in the axes of the body. A component along a cable has no effect:
+/// cables have no torsion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMomentSpec {
-    /// Where it acts.
+    /// The marker on which it acts.
     pub marker: MarkerRef,
     /// Moment [N m].
     #[serde(deserialize_with = "quantity::vec3::moment")]
     pub moment: V3<f64>,
-    /// Whether it is in the axes of the rigid body that it acts on, and turns with it.
+    /// Whether `moment` is given in the axes of the rigid body and turns with it.
     #[serde(default)]
     pub local: bool,
-    /// Factor that changes with time.
+    /// Factor as a function of time.
     #[serde(default)]
     pub time: TimeFunction,
 }
@@ -479,10 +479,10 @@ pub struct SpringSpec {
     /// Damping [N s/m].
     #[serde(default, deserialize_with = "quantity::damping")]
     pub damping: f64,
-    /// Length without force [m]; left out, that at the start.
+    /// Length without force [m]. Default: the initial length.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub length: Option<f64>,
-    /// Whether it pulls only.
+    /// Whether it can only pull.
     #[serde(default)]
     pub tension_only: bool,
 }

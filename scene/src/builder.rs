@@ -193,10 +193,13 @@ impl Builder {
             let names: Vec<String> = self.constraints.iter().map(|c| format!("`{}`", c.name())).collect();
             let names = if names.is_empty() { "none".into() } else { names.join(", ") };
             let message = format!("there is no constraint `{constraint}` above; those above are {names}");
-            return Err(BuildError::at("of", message));
+            return Err(BuildError::at("constraint", message));
         };
         if self.switches.released.insert(c, mode).is_some() {
-            return Err(BuildError::at("of", format!("constraint `{constraint}` is to break in two ways")));
+            return Err(BuildError::at(
+                "constraint",
+                format!("constraint `{constraint}` is to break in two ways"),
+            ));
         }
         Ok(c)
     }
@@ -292,7 +295,7 @@ impl Builder {
             None => Ok(()),
             Some((_, other)) => {
                 let message =
-                    format!("two constraints feed at {marker}, `{other}` and `{name}`: leave out one");
+                    format!("two constraints pay out at {marker}, `{other}` and `{name}`: leave out one");
                 Err(BuildError::at("marker", message))
             }
         }

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// A part of a scene: a cable, a point mass.
 #[typetag::serde]
 pub trait ElementSpec: Debug + Send + Sync {
-    /// Name by which the rest of the scene refers to it.
+    /// Name; the rest of the scene refers to the part by it.
     fn name(&self) -> &str;
     /// Markers of other elements that it holds on to; a cable puts a node where one is.
     fn markers(&self) -> Vec<&MarkerRef> {

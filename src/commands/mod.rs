@@ -7,6 +7,7 @@ pub(crate) mod cost;
 pub(crate) mod describe;
 pub(crate) mod effects;
 pub(crate) mod list;
+pub(crate) mod migrate;
 pub(crate) mod modes;
 pub(crate) mod resume;
 pub(crate) mod run;

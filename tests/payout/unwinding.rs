@@ -161,7 +161,7 @@ fn laid(c: &Case, off: Off, n: usize, eta: f64) -> (Model, State, Vec<V3<f64>>) 
     // stiff enough that the cable is as long as the inextensible one of the reference to 1e-4
     let ea = 1e4 * t0;
     let mut section = Section::new(m, ea, ei);
-    (section.diameter, section.axial_damping) = (d, eta);
+    (section.diameter, section.axial_retardation_time) = (d, eta);
     let bent = ei > 0.0;
     // material per arc length, so that the cable has the reference's tension where it starts
     let steps = 4000;
@@ -203,7 +203,11 @@ fn laid(c: &Case, off: Off, n: usize, eta: f64) -> (Model, State, Vec<V3<f64>>) 
     let marker: MarkerRef = "fibre.end".into();
     if off != Off::Ring {
         let peel = (off == Off::Peeled).then(|| c.bond());
-        scene.constraint(LiftOffSpec { tangent: bent, peel, ..LiftOffSpec::new("off", marker, package) });
+        scene.constraint(LiftOffSpec {
+            tangent: bent,
+            adhesion_energy: peel,
+            ..LiftOffSpec::new("off", marker, package)
+        });
     } else {
         let height = start(c.length())[2];
         scene.constraint(RingSpec { marker, radius, height, spin, climb });
@@ -407,8 +411,7 @@ fn a_cable_that_sticks_peels_at_its_energy() {
     let turn = TAU / c.get("Om");
     let climb = c.params["tL"][2].as_f64().unwrap_or(0.0).asin();
     let ring = fd::Ring { radius: c.get("R"), height: c.get("h"), climb, inner: true };
-    let cable =
-        fd::Cable { mass: c.get("m"), diameter: c.get("d"), bending: c.get("EI"), curvature_limit: 1e4 };
+    let cable = fd::Cable { mass: c.get("m"), diameter: c.get("d"), ei: c.get("EI"), curvature_limit: 1e4 };
     let draw = Arc::new(Straight::new([1.0, 0.0, 0.0], c.get("V"), -1.0, 0.1).expect("speed"));
     let mut problem = fd::Unwinding::new(cable, Arc::new(ring), draw, fd::Rule::Peel(c.bond()), 60);
     problem.lift_off = fd::LiftOff::Tangent;
@@ -418,7 +421,7 @@ fn a_cable_that_sticks_peels_at_its_energy() {
     let points: Vec<V3<f64>> = c.rows.iter().map(|r| [r[1], r[2], r[3]]).collect();
     let start = problem.start(&points, c.get("Om"), 0.0).expect("start");
     let plan = fd::Plan { t_end: 0.5 * turn, every: 0.025 * turn, shapes: vec![] };
-    let stepping = fd::Stepping { damping: 0.05, ..fd::Stepping::new(turn / 200.0) };
+    let stepping = fd::Stepping { numerical_damping: 0.05, ..fd::Stepping::new(turn / 200.0) };
     let history = problem.run(start, stepping, &plan).expect("run");
     assert!(history.stopped.is_none(), "{:?}", history.stopped);
     let rows = &history.rows[history.rows.len() / 2..];
@@ -443,7 +446,7 @@ fn a_flexible_cable_peels_at_its_angle_and_energy_closes() {
         let from = [0.06, 0.0, 0.1];
         let whole = (0.06_f64.powi(2) + 0.01).sqrt();
         let mut section = Section::new(mass, ea, 0.0);
-        (section.diameter, section.axial_damping, section.displaced) = (0.9e-3, 1e-5, Some(0.0));
+        (section.diameter, section.axial_retardation_time, section.displaced) = (0.9e-3, 1e-5, Some(0.0));
         let mut scene = Scene::new();
         scene.water = Some(Water::default());
         let package =
@@ -456,8 +459,8 @@ fn a_flexible_cable_peels_at_its_angle_and_energy_closes() {
             .constraint(SphericalSpec::new("eyelet", "fibre.start", [0.0; 3]))
             .constraint(WinchSpec::tension("pull", "fibre.start", tension))
             .constraint(LiftOffSpec {
-                peel: Some(bond),
-                slip: 1e-2,
+                adhesion_energy: Some(bond),
+                slip_speed: 1e-2,
                 ..LiftOffSpec::new("off", "fibre.end", package)
             })
             .force(DragSpec { cn: 1.2, ct: 0.01, ..DragSpec::default() });
@@ -505,7 +508,7 @@ fn a_flexible_cable_peels_at_its_angle_and_energy_closes() {
 fn a_bond_that_makes_no_sense_is_refused() {
     let refused = |change: fn(&mut LiftOffSpec), winch: bool| {
         let mut off = LiftOffSpec::new("off", "fibre.end", PackageSpec::new(0.06, 0.2, 0.9e-3));
-        off.peel = Some(0.3);
+        off.adhesion_energy = Some(0.3);
         change(&mut off);
         let mut scene = Scene::new();
         let section = Section::new(1e-3, 1e3, 0.0);
@@ -520,17 +523,21 @@ fn a_bond_that_makes_no_sense_is_refused() {
         scene.build().err().expect("refused").to_string()
     };
     for (change, winch, says) in [
-        ((|off| off.peel = Some(-0.3)) as fn(&mut LiftOffSpec), false, "`peel` must not be negative"),
-        (|off| off.peel = Some(f64::NAN), false, "`peel` must not be negative"),
-        (|off| off.slip = 0.0, false, "slip"),
+        (
+            (|off| off.adhesion_energy = Some(-0.3)) as fn(&mut LiftOffSpec),
+            false,
+            "`adhesion_energy` must not be negative",
+        ),
+        (|off| off.adhesion_energy = Some(f64::NAN), false, "`adhesion_energy` must not be negative"),
+        (|off| off.slip_speed = 0.0, false, "slip_speed"),
         (|off| off.tangent = true, false, "nothing to peel it off"),
-        (|_| (), true, "two constraints feed at"),
-        (|off| off.peel = None, false, "add a `winch`"),
+        (|_| (), true, "two constraints pay out at"),
+        (|off| off.adhesion_energy = None, false, "add a `winch`"),
     ] {
         let message = refused(change, winch);
         assert!(message.contains(says), "{message}");
     }
-    let without = r#"{"lift_off": {"name": "off", "marker": "fibre.end", "peel": 0.3}}"#;
+    let without = r#"{"lift_off": {"name": "off", "marker": "fibre.end", "adhesion_energy": 0.3}}"#;
     let message = serde_json::from_str::<Box<dyn ConstraintSpec>>(without).expect_err("refused").to_string();
     assert!(message.contains("package"), "{message}");
 }
@@ -561,7 +568,7 @@ fn finite_differences_and_finite_elements_agree_from_rest_to_15_knots() {
     let water = Water::default();
     let drag = DragSpec { cn: 1.2, ct: 0.01, ..DragSpec::default() };
 
-    let cable = fd::Cable { mass, diameter, bending: 0.0, curvature_limit: 1e4 };
+    let cable = fd::Cable { mass, diameter, ei: 0.0, curvature_limit: 1e4 };
     let draw = Arc::new(Straight::new([1.0, 0.0, 0.0], speed, 0.0, ramp).expect("ramp"));
     let rule = fd::Rule::Tension(fd::Pull { rest, time: Default::default(), per_speed2 });
     let package = Arc::new(spec.build().expect("package"));
@@ -576,7 +583,7 @@ fn finite_differences_and_finite_elements_agree_from_rest_to_15_knots() {
     let ea = 1840.0;
     let whole = (0.06_f64.powi(2) + 0.01).sqrt();
     let mut section = Section::new(mass, ea, 0.0);
-    (section.diameter, section.axial_damping, section.displaced) = (diameter, 1e-5, Some(0.0));
+    (section.diameter, section.axial_retardation_time, section.displaced) = (diameter, 1e-5, Some(0.0));
     let mut scene = Scene::new();
     scene.water = Some(water);
     scene.run.duration = time;

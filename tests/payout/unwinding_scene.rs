@@ -183,7 +183,7 @@ fn what_is_wrong_is_said_with_its_place() {
         (scene(package), ""),
         (scene(&package.replace("radius = 0.06", "radius = -1")), "`radius` must be positive"),
         (scene(&format!("{package}pitch = 1e-4\n")), "below the diameter"),
-        (scene(&format!("{package}bend_limit = 0.1\n")), "may not be bent"),
+        (scene(&format!("{package}min_bend_radius = 0.1\n")), "may not be bent"),
         (scene(package).replace("motion = \"draw\"", "motion = \"pull\""), "there is no motion `pull`"),
         (scene(&format!("tangent = true\n{package}")), "without bending stiffness"),
         (scene(&format!("segments = 2\n{package}")), "too few"),
@@ -191,7 +191,7 @@ fn what_is_wrong_is_said_with_its_place() {
         (scene(&format!("step = 0\n{package}")), "`h` must be positive"),
         (
             scene(&format!(
-                "{package}[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nmass = 1\nat = [0, 0, 0]\n"
+                "{package}[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nmass = 1\nmarker = [0, 0, 0]\n"
             )),
             "of its own",
         ),

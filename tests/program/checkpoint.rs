@@ -203,7 +203,7 @@ fn killed_run_is_resumed_and_leaves_the_results_of_one_that_was_not() {
 
 /// The same cable, drawn through a ring: elements are swallowed and born all the time.
 fn drawn() -> String {
-    let ring = "[[constraints]]\ntype = \"eyelet\"\nname = \"hook\"\nmarker = \"rope.start\"\nspeed = 1\nramp = 0.02\nelement = \"40 mm\"\n";
+    let ring = "[[constraints]]\ntype = \"eyelet\"\nname = \"hook\"\nmarker = \"rope.start\"\nspeed = 1\nramp = 0.02\nelement_length = \"40 mm\"\n";
     let hook = "[[constraints]]\ntype = \"spherical\"\nname = \"hook\"\nmarker = \"rope.start\"\n";
     assert!(SWING.contains(hook));
     SWING.replace(hook, ring)

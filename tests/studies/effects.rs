@@ -68,7 +68,7 @@ const MANIFESTS: [(&str, &str, &str, &str, [usize; 3]); 8] = [
         "unwinding",
         "flowing cable L4+T3 locking-free; open end L4+T3; axial damping L4 lob3 of a flowing cable; eyelet.feed; cable: drag",
         "eyelet spool package",
-        "eyelet.tension lift_off.tension cable.length drawn.fed drawn.speed peeled.fed peeled.speed peeled.pull lift_off.x \
+        "eyelet.tension lift_off.tension cable.length drawn.payout drawn.payout_rate peeled.payout peeled.payout_rate peeled.pull lift_off.x \
          lift_off.y lift_off.z centre.x centre.y centre.z centre.acceleration.ax centre.acceleration.ay \
          centre.acceleration.az cable.cn@25% cable.cn@50% cable.cn@75% lift_off.curvature energy.kinetic energy.potential energy.supplied energy.dissipated \
          energy.imbalance",
@@ -146,9 +146,9 @@ fn a_scene_without_an_effect_is_never_larger() {
     assert!(tried >= 30, "only {tried} scenes were built");
     for (name, with, without) in [
         ("hose-turn", "winding=0.5 m/s", "winding=0 m/s"),
-        ("hose-turn", "bending_damping=0.1 s", "bending_damping=0 s"),
+        ("hose-turn", "bending_retardation_time=0.1 s", "bending_retardation_time=0 s"),
         ("hose-turn", "body_drag_area=1 m^2", "body_drag_area=0 m^2"),
-        ("unwinding", "axial_damping=0.01 ms", "axial_damping=0 ms"),
+        ("unwinding", "axial_retardation_time=0.01 ms", "axial_retardation_time=0 ms"),
         ("shear-pin", "pin_strength=100 N", "pin_strength=1e9 N"),
         ("pendulum", "ei=1", "ei=0"),
     ] {
@@ -427,7 +427,7 @@ type = "cable"
 name = "rope"
 points = [[0, 0, 0], [0, 0, -4]]
 elements = 4
-section = { mass = "1 kg/m", ea = "1e5 N", ei = "0.1 N m^2", axial_damping = "0.01 s" }
+section = { mass = "1 kg/m", ea = "1e5 N", ei = "0.1 N m^2", axial_retardation_time = "0.01 s" }
 [[constraints]]
 type = "spherical"
 name = "eyelet"
@@ -437,7 +437,7 @@ type = "winch"
 name = "winch"
 marker = "rope.start"
 speed = "1 m/s"
-element = "1 m"
+element_length = "1 m"
 [[forces]]
 type = "gravity"
 [[records]]

@@ -41,7 +41,7 @@ type = "gravity"
 [[elements]]
 type = "point_mass"
 name = "weight"
-at = [0, 0, -1]
+marker = [0, 0, -1]
 mass = "1 kg"
 
 [[constraints]]
@@ -136,12 +136,12 @@ output = "0.05 s"
 [[elements]]
 type = "point_mass"
 name = "swinging"
-at = [1, 0, 0]
+marker = [1, 0, 0]
 mass = "$mass"
 [[elements]]
 type = "point_mass"
 name = "damped"
-at = [1, 0, 5]
+marker = [1, 0, 5]
 mass = "$mass"
 [[forces]]
 type = "spring"

@@ -193,9 +193,11 @@ fn a_free_cable_keeps_what_its_ends_do_not_shed() {
 /// A cable that is fed out or reeled in under water while its eyelet moves: the water beside it is closed, and keeps its balance.
 #[test]
 fn the_water_beside_a_cable_that_feeds_keeps_its_balance() {
-    for (speed, current, element) in
-        [(0.8, "[0, 0, 0]", ""), (-0.5, "[0.3, 0.2, 0]", ""), (0.8, "[0.3, 0.2, 0.1]", "element = 0.25")]
-    {
+    for (speed, current, element) in [
+        (0.8, "[0, 0, 0]", ""),
+        (-0.5, "[0.3, 0.2, 0]", ""),
+        (0.8, "[0.3, 0.2, 0.1]", "element_length = 0.25"),
+    ] {
         let left = |elements: usize| {
             let h = run(&format!(
                 r#"
@@ -258,7 +260,7 @@ fn growth(ends: &str, beta: f64, u: f64, tail: f64) -> f64 {
     let clamp = |end: &str| {
         format!(
             "[[constraints]]\ntype = \"spherical\"\nname = \"pin {end}\"\nmarker = \"cylinder.{end}\"\n\
-             [[constraints]]\ntype = \"clamp\"\nname = \"clamp {end}\"\nmarker = \"cylinder.{end}\"\n"
+             [[constraints]]\ntype = \"direction\"\nname = \"clamp {end}\"\nmarker = \"cylinder.{end}\"\n"
         )
     };
     let pin = |end: &str| {

@@ -29,7 +29,7 @@ struct Condition {
 /// Watches for all conditions of a cable that lifts off from a package at this front.
 pub(super) fn watch(b: &mut Builder, name: &str, part: &str, front: Front, package: &Arc<Package>) {
     for what in [What::Critical, What::Contact, What::Bending, What::Slack] {
-        if what == What::Bending && package.spec().bend_limit.is_none_or(|limit| limit <= 0.0) {
+        if what == What::Bending && package.spec().min_bend_radius.is_none_or(|limit| limit <= 0.0) {
             continue;
         }
         let (name, part, package) = (name.to_string(), part.to_string(), package.clone());
@@ -61,7 +61,7 @@ impl Condition {
                 if size == 0.0 { -1.0 } else { -here / size }
             }
             What::Bending => {
-                let limit = self.package.spec().bend_limit.unwrap_or(0.0);
+                let limit = self.package.spec().min_bend_radius.unwrap_or(0.0);
                 let points = (0..=32).map(|k| length * f64::from(k) / 32.0);
                 points.map(|s| observe(Quantity::Curvature, s)).fold(0.0, f64::max) * limit - 1.0
             }
@@ -94,7 +94,7 @@ impl Event for Condition {
                 format!("`{part}`: tension below rho A V^2 at the eyelet: no wave runs against the cable")
             }
             What::Contact => format!("`{part}` touches the package of `{name}`"),
-            What::Bending => format!("`{part}` is bent more than `bend_limit` allows"),
+            What::Bending => format!("`{part}` is bent more than `min_bend_radius` allows"),
             What::Slack => format!("`{part}`: negative tension where it lifts off from `{name}`"),
         }
     }

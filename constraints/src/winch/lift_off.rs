@@ -155,40 +155,39 @@ impl Constraint for LiftOff {
     }
 }
 
-/// Lets an end of a cable lift off from a package: the lift-off point runs round the package as cable is peeled.
+/// The lift-off point of a cable from a package. It runs round the package as the cable unwinds.
 ///
-/// A `winch` at the same end says what peels it: `speed` or `motion`, or `tension` for what the package holds it back with.
-/// Or `peel` says, without a winch, at which energy it comes off a package to which it sticks.
-/// Where the cable goes to is told by an eyelet at the other end: a `spherical` constraint and a winch of its own. Reports
-/// what happens on the way: a tension below what keeps the cable taut, contact with the package, too much bending.
+/// A `winch` at the same end drives the unwinding: by `speed` or `motion`, or by the `tension` at the package. Or,
+/// without a winch, the cable sticks to the package with `adhesion_energy`. The other end needs an `eyelet`. Events
+/// are reported on the way: a tension too low to keep the cable taut, contact with the package, too much bending.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LiftOffSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
-    /// The end of the cable that is wound: `fibre.end` or `fibre.start`.
+    /// The wound end of the cable: `fibre.end` or `fibre.start`.
     pub marker: MarkerRef,
     /// The package.
     pub package: PackageSpec,
-    /// Whether the cable is tangent to the wound layer where it lifts off; needs bending stiffness.
+    /// Whether the cable is tangent to the wound layer at the lift-off point. Needs bending stiffness.
     #[serde(default)]
     pub tangent: bool,
-    /// Energy per length that it takes to peel the cable off [J/m], instead of a winch at this end. The cable then lifts off
-    /// at a curvature with `EI (κ - κ_w)²/2 = peel`, `κ_w` being that of the wound cable, or if it isn't `tangent`, at an
-    /// angle `D` with `T (1 - cos D) = peel`.
+    /// Adhesion energy `Γ` per length [J/m], instead of a winch at this end. A `tangent` cable lifts off where `EI (κ
+    /// - κ_w)²/2 = Γ`, with the curvature `κ_w` of the wound cable; another one at the angle `D` with `T (1 - cos D)
+    /// = Γ`.
     #[serde(
         default,
         deserialize_with = "quantity::optional::force",
         skip_serializing_if = "Option::is_none"
     )]
-    pub peel: Option<f64>,
-    /// Speed below which a cable that sticks creeps [m/s], with `peel`.
-    #[serde(default = "slip", deserialize_with = "quantity::speed")]
-    pub slip: f64,
+    pub adhesion_energy: Option<f64>,
+    /// Slip speed [m/s]: below it the adhesion creeps instead of sticking. Goes with `adhesion_energy`.
+    #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
+    pub slip_speed: f64,
 }
 register_spec!(Constraint, "lift_off", LiftOffSpec);
 
-fn slip() -> f64 {
+fn slip_speed() -> f64 {
     1e-3
 }
 
@@ -196,7 +195,7 @@ impl LiftOffSpec {
     /// Lifts off from a package, peeled by a winch.
     pub fn new(name: &str, marker: impl Into<MarkerRef>, package: PackageSpec) -> Self {
         let (name, marker) = (name.into(), marker.into());
-        LiftOffSpec { name, marker, package, tangent: false, peel: None, slip: slip() }
+        LiftOffSpec { name, marker, package, tangent: false, adhesion_energy: None, slip_speed: slip_speed() }
     }
 }
 
@@ -209,23 +208,23 @@ impl ConstraintSpec for LiftOffSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        self.peel.map(|_| (&self.marker, Feed { element: None, unstrained: true }))
+        self.adhesion_energy.map(|_| (&self.marker, Feed { element: None, unstrained: true }))
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let package = Arc::new(self.package.build()?);
         let front = b.front(&self.marker, "add a `winch` or `eyelet` there, or give `peel`")?;
         let part = b.feeding_part(&self.marker)?;
-        positive("slip", self.slip)?;
-        if let Some(energy) = self.peel {
+        positive("slip_speed", self.slip_speed)?;
+        if let Some(energy) = self.adhesion_energy {
             let ei = part.slender().map_or(0.0, |s| s.ei);
             if self.tangent && ei == 0.0 {
                 let message = "a cable without bending stiffness that goes on along the wound layer has nothing to peel it \
                                off: leave out `tangent`, or give the cable an `ei`";
                 return Err(BuildError::at("tangent", message));
             }
-            let (name, energy) = (self.name.clone(), not_negative("peel", energy)?);
+            let (name, energy) = (self.name.clone(), not_negative("adhesion_energy", energy)?);
             let package = package.clone();
-            b.term(Box::new(Peel { name, front, package, energy, slip: self.slip, ei }));
+            b.term(Box::new(Peel { name, front, package, energy, slip_speed: self.slip_speed, ei }));
         }
         b.event(Limit {
             name: self.name.clone(),

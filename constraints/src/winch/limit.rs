@@ -11,7 +11,7 @@ pub enum Side {
     Short,
 }
 
-/// Ends the run where a winch has fed out all that it has, or reeled in all that may be.
+/// Ends the run where a winch has paid out all that it has, or reeled in all that may be.
 #[derive(Clone, Debug)]
 pub struct Limit {
     /// Name of the winch.
@@ -29,7 +29,7 @@ pub struct Limit {
 impl Event for Limit {
     fn name(&self) -> String {
         match self.side {
-            Side::Empty => format!("`{}` has fed out all of its {} m", self.name, self.length),
+            Side::Empty => format!("`{}` has paid out all of its {} m", self.name, self.length),
             Side::Short => {
                 format!("`{}` has reeled in `{}` to its shortest, {} m", self.name, self.part, self.length)
             }

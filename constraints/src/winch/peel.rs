@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// sets the cable moving that was at rest (Rivlin 1944; with inertia Burridge & Keller 1978).
 ///
 /// The bond resists peeling only: cable that is laid on again doesn't stick, and one that is pulled less than it takes
-/// creeps at a part of `slip`.
+/// creeps at a part of `slip_speed`.
 #[derive(Clone, Debug)]
 pub struct Peel {
     /// Name of the lift-off.
@@ -26,7 +26,7 @@ pub struct Peel {
     /// Energy of the bond per length `Γ` [J/m].
     pub energy: f64,
     /// Speed below which it creeps [m/s].
-    pub slip: f64,
+    pub slip_speed: f64,
     /// Bending stiffness [N m²].
     pub ei: f64,
 }
@@ -37,8 +37,8 @@ impl Peel {
         if u <= 0.0 {
             return (0.0, 0.0);
         }
-        let root = u.hypot(self.slip);
-        (self.energy * u / root, self.energy * self.slip * self.slip / (root * root * root))
+        let root = u.hypot(self.slip_speed);
+        (self.energy * u / root, self.energy * self.slip_speed * self.slip_speed / (root * root * root))
     }
     /// Bending energy per length of the wound cable where a length has been peeled.
     fn wound(&self, peeled: f64) -> f64 {
@@ -134,8 +134,8 @@ mod tests {
                 end_v: 0,
                 rho_a: 1.3,
             };
-            let (energy, slip, ei) = (0.3, 0.2, 0.002);
-            let peel = Peel { name: "off".into(), front, package: package.clone(), energy, slip, ei };
+            let (energy, slip_speed, ei) = (0.3, 0.2, 0.002);
+            let peel = Peel { name: "off".into(), front, package: package.clone(), energy, slip_speed, ei };
             let q = [0.1, 0.2, 0.3, 0.9, 0.5, -0.4, sign * peeled];
             let v = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, sign * u];
             let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], modes: &[], relaxed: None };

@@ -4,10 +4,10 @@ use ropewalk_core::{Assembly, At, Column, Energy, Front, Motion, Pattern, Power,
 use std::sync::Arc;
 
 /// What a winch that isn't driven pulls with, as force on the front: `P |r'|` with
-/// `P = tension + brake u/√(u² + slip²) + damping u + per_speed2 u² + pile`, and `inertia u̇` of its drum; `u` is the speed at which it
+/// `P = tension + brake u/√(u² + slip_speed²) + damping u + per_speed2 u² + pile`, and `inertia u̇` of its drum; `u` is the speed at which it
 /// feeds out.
 ///
-/// A brake is dry friction, so below its force the end creeps at a part of `slip`. Cable picked up from a pile at rest
+/// A brake is dry friction, so below its force the end creeps at a part of `slip_speed`. Cable picked up from a pile at rest
 /// has to be set moving, which takes `ρA u²` for `u > 0` (without rebound; a drum that turns with the cable takes none).
 #[derive(Clone)]
 pub struct Pull {
@@ -20,14 +20,14 @@ pub struct Pull {
     /// Friction of the brake [N].
     pub brake: f64,
     /// Speed below which the brake creeps [m/s].
-    pub slip: f64,
-    /// Resistance per speed [N s/m].
+    pub slip_speed: f64,
+    /// Linear damping: tension per payout rate [N s/m].
     pub damping: f64,
     /// Tension by the square of the speed, whichever way it feeds [kg/m].
     pub per_speed2: f64,
     /// The motion along x whose speed that is, if it isn't the speed at which this end feeds.
-    pub pace: Option<Arc<dyn Motion>>,
-    /// Inertia of the drum over the square of its radius [kg].
+    pub reference: Option<Arc<dyn Motion>>,
+    /// Moment of inertia of the drum over its radius squared [kg].
     pub inertia: f64,
     /// Whether the cable is picked up from rest.
     pub pile: bool,
@@ -36,17 +36,19 @@ pub struct Pull {
 impl Pull {
     /// The part of the tension that is given from outside.
     fn given(&self, t: f64, u: f64) -> f64 {
-        let pace = self.pace.as_ref().map_or(u, |motion| motion.at(t).v[0]);
-        self.tension + self.per_speed2 * pace * pace
+        let reference = self.reference.as_ref().map_or(u, |motion| motion.at(t).v[0]);
+        self.tension + self.per_speed2 * reference * reference
     }
     /// The pull, and its derivative by the speed of feeding.
     fn pull(&self, t: f64, u: f64) -> (f64, f64) {
-        let root = (u * u + self.slip * self.slip).sqrt();
+        let root = (u * u + self.slip_speed * self.slip_speed).sqrt();
         let pile = if self.pile && u > 0.0 { self.front.rho_a } else { 0.0 };
-        let rho = pile + if self.pace.is_none() { self.per_speed2 } else { 0.0 };
+        let rho = pile + if self.reference.is_none() { self.per_speed2 } else { 0.0 };
         (
             self.given(t, u) + self.brake * u / root + self.damping * u + pile * u * u,
-            self.brake * self.slip * self.slip / (root * root * root) + self.damping + 2.0 * rho * u,
+            self.brake * self.slip_speed * self.slip_speed / (root * root * root)
+                + self.damping
+                + 2.0 * rho * u,
         )
     }
     fn slope(&self, at: &At<'_>) -> [f64; 3] {
@@ -86,7 +88,7 @@ impl Term for Pull {
         Power { supplied: -given, dissipated: self.pull(at.t, u).0 * u * stretch - given, ..Power::default() }
     }
     fn timed(&self) -> Option<&dyn Timed> {
-        if self.pace.is_some() { Some(self) } else { None }
+        if self.reference.is_some() { Some(self) } else { None }
     }
     fn shows(&self) -> Option<&dyn Shows> {
         Some(self)
@@ -95,7 +97,7 @@ impl Term for Pull {
 
 impl Timed for Pull {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        self.pace.as_ref().map_or(Some(h), |motion| motion.reach(t, h))
+        self.reference.as_ref().map_or(Some(h), |motion| motion.reach(t, h))
     }
 }
 
@@ -122,7 +124,7 @@ mod tests {
             Node { kind: NodeKind::Scalars(1), q: 6, v: 6, shared: true },
         ];
         let steady = Straight::new([1.0, 0.0, 0.0], 3.0, -1.0, 0.1).expect("a speed");
-        for (sign, rate, pace) in
+        for (sign, rate, reference) in
             [(-1.0, 0.7, None), (-1.0, -0.4, Some(Arc::new(steady) as Arc<dyn Motion>)), (1.0, 0.3, None)]
         {
             let front = Front {
@@ -141,10 +143,10 @@ mod tests {
                 front,
                 tension: 4.0,
                 brake: 3.0,
-                slip: 0.5,
+                slip_speed: 0.5,
                 damping: 0.7,
                 per_speed2: 0.4,
-                pace,
+                reference,
                 inertia: 2.0,
                 pile: true,
             };

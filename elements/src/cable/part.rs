@@ -547,15 +547,15 @@ impl Line for CablePart {
         let mut time = 0.0;
         match what {
             Change::None => {}
-            Change::Split { end, keep, release } => {
+            Change::Split { end, keep, fade } => {
                 let k = line.grows(end);
                 let p = if end == 0 { new.p[k + 1] - keep } else { new.p[k] + keep };
                 fading.retain(|p| p.element != k);
                 fading.iter_mut().filter(|p| p.element > k).for_each(|p| p.element += 1);
                 let [a, b] = new.split(k, p, self.model)?;
-                (born, time) = (vec![(k, a), (k + 1, b)], release);
+                (born, time) = (vec![(k, a), (k + 1, b)], fade);
             }
-            Change::Merge { end, release } => {
+            Change::Merge { end, fade } => {
                 if last < 2 + line.rides[0] + line.rides[1] {
                     return Err("there is but one element left, which can't be merged".into());
                 }
@@ -567,7 +567,7 @@ impl Line for CablePart {
                 };
                 fading.retain(|p| p.element + 1 != k && p.element != k);
                 fading.iter_mut().filter(|p| p.element >= k).for_each(|p| p.element -= 1);
-                (born, time) = (vec![(k - 1, new.merge(k, end, self.model)?)], release);
+                (born, time) = (vec![(k - 1, new.merge(k, end, self.model)?)], fade);
                 if let Some(beside) = beside {
                     fading.retain(|p| p.element != beside);
                     born.push((beside, new.stress[beside].clone()));
@@ -576,7 +576,7 @@ impl Line for CablePart {
         }
         for (element, stress) in born {
             let strain = new.prestrain(element, &stress, self.model)?;
-            fading.push(Prestrain { element, strain, since: at.t, release: time });
+            fading.push(Prestrain { element, strain, since: at.t, fade: time });
         }
         let both = |a: &[V3<f64>], b: &[V3<f64>]| -> Vec<Vec<f64>> {
             a.iter().zip(b).map(|(a, b)| [*a, *b].concat()).collect()

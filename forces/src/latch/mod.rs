@@ -17,7 +17,7 @@ pub struct Floor {
     pub point: V3<f64>,
     /// Its normal, of length 1; what is behind the plane is pushed along it.
     pub normal: V3<f64>,
-    /// Force by depth [N/m].
+    /// Contact stiffness [N/m].
     pub stiffness: f64,
 }
 

@@ -146,7 +146,10 @@ fn laws() -> Vec<ContactLaw> {
         plain,
         ContactLaw { exponent: 1.5, ..plain },
         ContactLaw { damping: Damping::HuntCrossley(0.2), ..plain },
-        ContactLaw { damping: Damping::KelvinVoigt { time: 0.05, until: Leaving::Depth }, ..plain },
+        ContactLaw {
+            damping: Damping::KelvinVoigt { retardation_time: 0.05, until: Leaving::Depth },
+            ..plain
+        },
         ContactLaw { exponent: 1.5, damping: Damping::HuntCrossley(0.2), ..plain },
     ]
 }

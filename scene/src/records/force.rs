@@ -7,15 +7,15 @@ use ropewalk_core::{BuildError, Column, Model, Record, Sample, Term};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a force has to show. Of a contact: columns `drum.fx`, `.fy` and `.fz`, the force of the shape on all that touches
-/// it in N, `.normal`, the sum of what presses in N, `.depth`, the deepest point in m, and `.points`, how many touch. Of a
-/// spring: `mooring.tension` in N.
+/// Output of a force. Of a contact: columns `drum.fx`, `.fy` and `.fz`, the force of the shape on all that touches it
+/// in N, `.normal`, the sum of what presses in N, `.depth`, the deepest point in m, and `.points`, how many touch. Of
+/// a spring: `mooring.tension` in N.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForceRecordSpec {
     /// Name of the force.
     pub of: String,
-    /// Name in results; left out, that of the force.
+    /// Name in results. Default: that of the force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
 }

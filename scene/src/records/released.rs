@@ -7,16 +7,16 @@ use ropewalk_core::{BuildError, Column, Model, Record, Sample};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How many latches of a `latch`, or whether a connection that can `break`, have let go: column `reel.released`.
+/// Number of released points of a `latch`, or whether a constraint with a `break` is broken: column `reel.released`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReleasedSpec {
     /// Name of the latch or break.
     pub of: String,
-    /// Name in results; left out, that of the latch and `.released`.
+    /// Name in results. Default: that of the latch and `.released`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

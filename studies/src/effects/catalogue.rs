@@ -44,8 +44,8 @@ pub(super) type Hint = (String, String);
 /// Fields of elements, or of their sections, that are an effect each; 0 switches it off.
 const FIELDS: [(&str, &str); 8] = [
     ("ei", "bending"),
-    ("axial_damping", "damping of stretching"),
-    ("bending_damping", "damping of bending"),
+    ("axial_retardation_time", "damping of stretching"),
+    ("bending_retardation_time", "damping of bending"),
     ("joint_damping", "damping of joints"),
     ("flooded", "water inside"),
     ("added_mass", "added mass"),
@@ -284,9 +284,9 @@ fn absent_of_elements(scene: &Scene, all: &mut Vec<Candidate>, hints: &mut Vec<H
         // the same retardation time for stretching and bending, as in one material
         let length = length(&of);
         let time = 0.02 * 2.0 * length / PI * ((section("mass") + section("flooded")) / ea).sqrt();
-        let fresh = ["axial_damping", "bending_damping"]
+        let fresh = ["axial_retardation_time", "bending_retardation_time"]
             .into_iter()
-            .filter(|f| section(f) == 0.0 && (*f == "axial_damping" || ei > 0.0));
+            .filter(|f| section(f) == 0.0 && (*f == "axial_retardation_time" || ei > 0.0));
         let edits: Vec<Edit> =
             fresh.map(|f| Edit::Element(k, format!("/section/{f}"), json!(time))).collect();
         if !edits.is_empty() && time > 0.0 && time.is_finite() {

@@ -1,4 +1,4 @@
-//! What a winch has fed out.
+//! What a winch has paid out.
 
 use super::{listed, named};
 use crate::marker::split_marker;
@@ -8,30 +8,30 @@ use ropewalk_core::{BuildError, Column, Front, Model, Record, Sample, Spot};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Feeding at an end of a cable: columns `hose.start.fed`, the length fed out in m, `.speed` in m/s, and where the speed is
-/// prescribed `.pull`, what the winch pulls with in N.
+/// Payout at an end of a cable: columns `hose.start.payout`, the length paid out in m, `.payout_rate` in m/s, and,
+/// where the speed is prescribed, `.pull`, the force of the winch in N.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct FeedingSpec {
+pub struct PayoutSpec {
     /// The end of the cable: `hose.start` or `hose.end`.
     pub of: String,
-    /// Name in results; left out, that of the end.
+    /// Name in results. Default: that of the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }
-register_spec!(Record, "feeding", FeedingSpec);
+register_spec!(Record, "payout", PayoutSpec);
 
-impl FeedingSpec {
-    /// Feeding at an end, under its own name.
+impl PayoutSpec {
+    /// Payout at an end, under its own name.
     pub fn new(of: &str) -> Self {
-        FeedingSpec { of: of.into(), name: None, title: None }
+        PayoutSpec { of: of.into(), name: None, title: None }
     }
 }
 
-struct Feeding {
+struct Payout {
     front: Front,
     /// First multiplier of what prescribes the speed.
     driven: Option<usize>,
@@ -40,7 +40,7 @@ struct Feeding {
     title: String,
 }
 
-impl Record for Feeding {
+impl Record for Payout {
     fn title(&self) -> String {
         self.title.clone()
     }
@@ -49,7 +49,7 @@ impl Record for Feeding {
     }
     fn columns(&self) -> Vec<Column> {
         let column = |what: &str, unit| Column::new(format!("{}.{what}", self.stem), unit);
-        let mut columns = vec![column("fed", "m"), column("speed", "m/s")];
+        let mut columns = vec![column("payout", "m"), column("payout_rate", "m/s")];
         columns.extend(self.driven.map(|_| column("pull", "N")));
         columns
     }
@@ -62,8 +62,8 @@ impl Record for Feeding {
     }
 }
 
-#[typetag::serde(name = "feeding")]
-impl RecordSpec for FeedingSpec {
+#[typetag::serde(name = "payout")]
+impl RecordSpec for PayoutSpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
         let (name, spot) = split_marker(&self.of).map_err(|e| BuildError::at("of", e))?;
         let part = super::place::part(model, name)?;
@@ -72,21 +72,21 @@ impl RecordSpec for FeedingSpec {
             _ => None,
         };
         let Some(front) = end.and_then(|end| part.front(end)) else {
-            let fed = model.parts().iter().flat_map(|p| {
+            let ends = model.parts().iter().flat_map(|p| {
                 let ends = [(0, "start"), (1, "end")].into_iter().filter(|&(k, _)| p.front(k).is_some());
                 ends.map(|(_, end)| format!("{}.{end}", p.name()))
             });
-            let fed: Vec<String> = fed.collect();
-            let fed = listed(fed.iter().map(String::as_str), "none");
-            let message = format!("no winch feeds at `{}`; the ends that feed are {fed}", self.of.trim());
+            let ends: Vec<String> = ends.collect();
+            let ends = listed(ends.iter().map(String::as_str), "none");
+            let message = format!("no winch is at `{}`; the ends with a winch are {ends}", self.of.trim());
             return Err(BuildError::at("of", message));
         };
         let all = model.constraints();
         let driven = all.iter().position(|c| c.nodes() == [front.node]).map(|c| model.rows_of(c).start);
         let of: String = self.of.chars().filter(|c| !c.is_whitespace()).collect();
         let stem = named(&self.name, || of.clone());
-        let name = named(&self.name, || format!("{of}.feeding"));
-        let title = named(&self.title, || format!("Feeding at {of}"));
-        Ok(Box::new(Feeding { front, driven, name, stem, title }))
+        let name = named(&self.name, || format!("{of}.payout"));
+        let title = named(&self.title, || format!("Payout at {of}"));
+        Ok(Box::new(Payout { front, driven, name, stem, title }))
     }
 }
