@@ -19,6 +19,7 @@ pub use algebra::rotation;
 pub use algebra::scalar::Scalar;
 pub use error::BuildError;
 pub use model::assembly::{Spent, System};
+pub use model::capability::{Foresees, Remembers, Shows, Timed};
 pub use model::column::Column;
 pub use model::constraint::{Constraint, RowKind};
 pub use model::dead::{DeadEntry, DeadLoad, DeadPull};

@@ -9,6 +9,9 @@ use ropewalk_core::{BuildError, Gives, Law, Load, Power, Real, Station, V3, dot,
 use ropewalk_scene::Current;
 use std::f64::consts::PI;
 
+/// What [`Law::local`] calls the coefficient of the flow across; NaN in flow so slow that it is of no use.
+pub(crate) const COEFFICIENT: &str = "drag coefficient across";
+
 /// Law of the normal force `f_n = -½ ρ d Cn |v_n| v_n` per length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NormalLaw {
@@ -227,8 +230,8 @@ impl Law for Drag {
         }
     }
 
-    fn coefficient(&self, at: &Station<f64>) -> Option<f64> {
-        Some(match self.normal {
+    fn local(&self, quantity: &str, at: &Station<f64>) -> Option<f64> {
+        (quantity == COEFFICIENT).then(|| match self.normal {
             NormalLaw::Constant(cn) => cn,
             NormalLaw::ChooCasarella => {
                 let (u, _) = self.current.at(at.x[2]);

@@ -9,6 +9,7 @@ mod bushing;
 #[cfg(feature = "contact")]
 pub mod contact;
 mod drag;
+mod drag_coefficient;
 mod latch;
 mod line_load;
 mod moment;
@@ -24,6 +25,7 @@ pub use added_mass::{AddedMass, Theory};
 pub use buoyancy::{Buoyancy, Float};
 pub use bushing::{Bushing, BushingSpec, RotationalSpring, RotationalSpringSpec};
 pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
+pub use drag_coefficient::DragCoefficientSpec;
 pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
 pub use line_load::LineLoad;
 pub use moment::PointMoment;

@@ -6,7 +6,7 @@ use ropewalk_core::error::finite;
 use ropewalk_core::held::{cross, three};
 use ropewalk_core::rotation::{matrix, skew, transposed_times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot,
+    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, Timed, V3, dot,
 };
 
 /// What a moment acts on.
@@ -114,12 +114,6 @@ impl Term for PointMoment {
     fn is_load(&self) -> bool {
         true
     }
-    fn timed(&self) -> bool {
-        self.time.changes()
-    }
-    fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        Some(self.time.reach(t, h))
-    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let (m, force) = self.now(at);
         for i in 0..3 {
@@ -144,5 +138,14 @@ impl Term for PointMoment {
     fn power(&self, at: &At<'_>) -> Power {
         let (_, force) = self.now(at);
         Power { supplied: dot(&force, &three(at.v, self.first())), ..Power::default() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if self.time.changes() { Some(self) } else { None }
+    }
+}
+
+impl Timed for PointMoment {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(self.time.reach(t, h))
     }
 }

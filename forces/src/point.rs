@@ -5,7 +5,7 @@ use ropewalk_core::error::{finite, need};
 use ropewalk_core::held::{Held, Pull, cross, delta, dofs, find, pull, three};
 use ropewalk_core::rotation::{matrix, product, skew, times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot,
+    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, Timed, V3, dot,
 };
 
 /// How a point force is directed.
@@ -158,12 +158,6 @@ impl Term for PointForce {
     fn is_load(&self) -> bool {
         true
     }
-    fn timed(&self) -> bool {
-        self.time.changes()
-    }
-    fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        Some(self.time.reach(t, h))
-    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let f = self.force(at);
         let w = out.weights().q * self.time.at(at.t);
@@ -196,5 +190,14 @@ impl Term for PointForce {
     }
     fn power(&self, at: &At<'_>) -> Power {
         Power { supplied: dot(&self.force(at), &self.ends[1].velocity(at)), ..Power::default() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if self.time.changes() { Some(self) } else { None }
+    }
+}
+
+impl Timed for PointForce {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(self.time.reach(t, h))
     }
 }

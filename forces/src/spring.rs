@@ -2,7 +2,9 @@
 
 use ropewalk_core::error::{need, not_negative};
 use ropewalk_core::held::{Held, Pull as Pair, delta, dofs, pull};
-use ropewalk_core::{Assembly, At, BuildError, Column, Energy, Marker, Node, Pattern, Power, Term, V3, dot};
+use ropewalk_core::{
+    Assembly, At, BuildError, Column, Energy, Marker, Node, Pattern, Power, Shows, Term, V3, dot,
+};
 
 /// A spring with a damper along the line between two markers: `F = k (l - l0) + c dl/dt`, a pull if positive.
 ///
@@ -125,6 +127,12 @@ impl Term for Spring {
         let p = self.pull(at);
         Power { dissipated: (p.force - p.elastic) * p.rate, ..Power::default() }
     }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
+}
+
+impl Shows for Spring {
     fn columns(&self) -> Vec<Column> {
         vec![Column::new("tension", "N")]
     }

@@ -59,8 +59,8 @@ pub struct Builder {
     pins: HashMap<String, Vec<Spot>>,
     /// Meshes that replace those of the specs, by part.
     meshes: HashMap<String, Mesh>,
-    /// What flows through the ends of cables, by part: at its start, at its end.
-    feeds: HashMap<String, [Option<Feed>; 2]>,
+    /// What flows through the ends of parts, at the start and at the end, and the constraint that says so.
+    feeds: HashMap<String, [Option<(Feed, String)>; 2]>,
     water: Option<Water>,
     air: Option<Air>,
     /// What acts on which part already and may do so only once.
@@ -289,42 +289,45 @@ impl Builder {
         pins
     }
 
-    /// Notes that material flows through an end of a cable.
-    pub(crate) fn feed(&mut self, marker: &MarkerRef, feed: Feed) -> Result<(), BuildError> {
+    /// Notes that material flows through an end of a part, by a constraint of this name.
+    pub(crate) fn feed(&mut self, name: &str, marker: &MarkerRef, feed: Feed) -> Result<(), BuildError> {
         let (part, end) = end_of(marker)?;
-        match self.feeds.entry(part.to_string()).or_default()[end].replace(feed) {
+        match self.feeds.entry(part.to_string()).or_default()[end].replace((feed, name.to_string())) {
             None => Ok(()),
-            Some(_) => Err(BuildError::at(
-                "marker",
-                format!(
-                    "two constraints feed at {marker}, but one of `winch`, `eyelet` and `lift_off` with `peel` does"
-                ),
-            )),
+            Some((_, other)) => {
+                let message =
+                    format!("two constraints feed at {marker}, `{other}` and `{name}`: leave out one");
+                Err(BuildError::at("marker", message))
+            }
         }
     }
 
-    /// What flows through the start and the end of a cable.
+    /// What flows through the start and the end of a part.
     pub fn feeding(&self, part: &str) -> [Option<Feed>; 2] {
-        self.feeds.get(part).copied().unwrap_or_default()
+        let ends = self.feeds.get(part);
+        ends.map_or([None; 2], |ends| ends.each_ref().map(|end| end.as_ref().map(|(feed, _)| *feed)))
     }
 
-    /// The front at an end of a cable that feeds.
+    /// The front at an end of a part that feeds; `remedy` says what to add where nothing does.
     ///
     /// # Errors
-    /// The marker isn't an end of a cable.
-    pub fn front(&self, marker: &MarkerRef) -> Result<Front, BuildError> {
+    /// The marker isn't an end of a part that material flows through.
+    pub fn front(&self, marker: &MarkerRef, remedy: &str) -> Result<Front, BuildError> {
         let (name, end) = end_of(marker)?;
         let (_, part) = self.find(name, "marker")?;
         part.front(end).ok_or_else(|| {
-            let message = match part.kind() {
-                "cable" => format!("no `winch` or `eyelet` feeds at {marker}: add one"),
-                kind => format!("material can flow through the ends of a cable, but `{name}` is a {kind}"),
+            let message = match part.slender() {
+                Some(_) => format!("nothing feeds at {marker}: {remedy}"),
+                None => {
+                    let kind = part.kind();
+                    format!("material can flow through the ends of a cable, but `{name}` is a {kind}")
+                }
             };
             BuildError::at("marker", message)
         })
     }
 
-    /// The cable at an end of which material flows.
+    /// The part at an end of which material flows.
     ///
     /// # Errors
     /// As for [`Builder::front`].
@@ -352,7 +355,7 @@ impl Builder {
 
     /// Whether meshes change while the model runs.
     pub(crate) fn changes(&self) -> bool {
-        self.feeds.values().flatten().flatten().any(|f| f.element.is_some())
+        self.feeds.values().flatten().flatten().any(|(feed, _)| feed.element.is_some())
     }
 
     /// Makes a law act on the stations of parts; all parts that have stations if none is named.

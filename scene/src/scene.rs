@@ -336,7 +336,7 @@ impl Scene {
         }
         for (k, c) in self.constraints.iter().enumerate() {
             if let Some((marker, feed)) = c.feeds() {
-                b.feed(marker, feed).map_err(of(SpecKind::Constraint, k))?;
+                b.feed(c.name(), marker, feed).map_err(of(SpecKind::Constraint, k))?;
             }
         }
         for (k, e) in self.elements.iter().enumerate() {

@@ -525,7 +525,7 @@ fn a_bond_that_makes_no_sense_is_refused() {
         (|off| off.slip = 0.0, false, "slip"),
         (|off| off.tangent = true, false, "nothing to peel it off"),
         (|_| (), true, "two constraints feed at"),
-        (|off| off.peel = None, false, "no `winch`"),
+        (|off| off.peel = None, false, "add a `winch`"),
     ] {
         let message = refused(change, winch);
         assert!(message.contains(says), "{message}");

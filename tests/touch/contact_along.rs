@@ -41,7 +41,7 @@ fn near(got: f64, wanted: f64, relative: f64) {
 fn shown(model: &Model, state: &State, force: &str) -> Vec<f64> {
     let term = model.terms().iter().find(|t| t.label() == force).expect(force);
     let mut out = Vec::new();
-    term.observe(&state.at(), &mut out);
+    term.shows().unwrap().observe(&state.at(), &mut out);
     out
 }
 

@@ -213,7 +213,7 @@ impl ConstraintSpec for LiftOffSpec {
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let package = Arc::new(self.package.build()?);
-        let front = b.front(&self.marker)?;
+        let front = b.front(&self.marker, "add a `winch` or `eyelet` there, or give `peel`")?;
         let part = b.feeding_part(&self.marker)?;
         positive("slip", self.slip)?;
         if let Some(energy) = self.peel {

@@ -1,7 +1,7 @@
 //! Peeling at a given energy: cable that sticks to its package.
 
 use crate::package::Package;
-use ropewalk_core::{Assembly, At, Column, Front, Pattern, Power, Term, V3, dot};
+use ropewalk_core::{Assembly, At, Column, Front, Pattern, Power, Shows, Term, V3, dot};
 use std::sync::Arc;
 
 /// Holds back an end that lifts off by what peeling costs, as force on the front: `Γ - EI κ_w²/2 + ρA v²/2`.
@@ -93,6 +93,12 @@ impl Term for Peel {
         let carried = (self.wound(self.front.fed(at)) - 0.5 * self.front.rho_a * dot(&v, &v)) * u;
         Power { dissipated: self.bond(u).0 * u, carried, ..Power::default() }
     }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
+}
+
+impl Shows for Peel {
     fn columns(&self) -> Vec<Column> {
         vec![Column::new(format!("{}.bond", self.name), "J/m")]
     }

@@ -1,6 +1,6 @@
 //! Feeding under a force: tension, brake, the inertia of a drum.
 
-use ropewalk_core::{Assembly, At, Column, Energy, Front, Motion, Pattern, Power, Term};
+use ropewalk_core::{Assembly, At, Column, Energy, Front, Motion, Pattern, Power, Shows, Term, Timed};
 use std::sync::Arc;
 
 /// What a winch that isn't driven pulls with, as force on the front: `P |r'|` with
@@ -64,12 +64,6 @@ impl Term for Pull {
     fn symmetric(&self) -> bool {
         false
     }
-    fn timed(&self) -> bool {
-        self.pace.is_some()
-    }
-    fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        self.pace.as_ref().map_or(Some(h), |motion| motion.reach(t, h))
-    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let (front, slope) = (&self.front, self.slope(at));
         let (stretch, (pull, by_u)) = (front.stretch(at), self.pull(at.t, front.rate(at)));
@@ -91,6 +85,21 @@ impl Term for Pull {
         let given = self.given(at.t, u) * u * stretch;
         Power { supplied: -given, dissipated: self.pull(at.t, u).0 * u * stretch - given, ..Power::default() }
     }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if self.pace.is_some() { Some(self) } else { None }
+    }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
+}
+
+impl Timed for Pull {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.pace.as_ref().map_or(Some(h), |motion| motion.reach(t, h))
+    }
+}
+
+impl Shows for Pull {
     fn columns(&self) -> Vec<Column> {
         vec![Column::new(format!("{}.pull", self.name), "N")]
     }

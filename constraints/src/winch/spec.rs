@@ -227,7 +227,7 @@ impl ConstraintSpec for WinchSpec {
             // it adds nothing, but what is wrong with it is said all the same
             return self.drive(b, whole).map(drop);
         }
-        let front = b.front(&self.marker)?;
+        let front = b.front(&self.marker, "give this winch something to do")?;
         match self.drive(b, whole)? {
             Drive::Motion(motion) => {
                 let start = motion.at(0.0);

@@ -1,16 +1,16 @@
-//! Ends of cables that material flows through: what winches and eyelets hold on to.
+//! Ends of parts that material flows through.
 
 use crate::model::node::NodeId;
 use crate::model::state::At;
 
-/// What a winch asks of the cable on it, before the cable is built.
+/// What a constraint that feeds asks of a part, before that is built.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Feed {
-    /// Length of elements [m] that are born and swallowed at the end while the rest of the cable stays on its material.
-    /// Left out, all elements of the cable grow and shrink together.
+    /// Length of elements [m] that are born and swallowed at the end while the rest of the part stays on its material.
+    /// Left out, all elements of the part grow and shrink together.
     pub element: Option<f64>,
-    /// Whether what passes the end is free of strain energy outside, as cable that sticks to a package is up to what its
-    /// law of peeling counts. Else it is strained outside as it is inside.
+    /// Whether what passes the end is free of strain energy outside, or what it has there is counted by others. Else it is
+    /// strained outside as it is inside.
     pub unstrained: bool,
 }
 

@@ -2,6 +2,7 @@
 
 pub mod assembly;
 mod balance;
+pub mod capability;
 mod carry;
 pub mod column;
 pub mod constraint;
@@ -29,6 +30,7 @@ pub mod term;
 
 use crate::algebra::lane::Width;
 use crate::error::BuildError;
+use crate::model::capability::{Foresees, Timed};
 use crate::model::constraint::{Constraint, RowKind};
 use crate::model::event::Event;
 use crate::model::node::{Node, NodeId, NodeKind};
@@ -158,10 +160,10 @@ impl Model {
         let positions = nodes.iter().filter(|n| n.kind.has_position()).flat_map(|n| &start.q[n.q..n.q + 3]);
         let farthest = positions.fold(length, |m, x| m.max(x.abs()));
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
-        let watchful = (0..terms.len()).filter(|&k| terms[k].foresees()).collect();
-        let timed = (0..terms.len()).filter(|&k| terms[k].timed()).collect();
+        let watchful = (0..terms.len()).filter(|&k| terms[k].foresees().is_some()).collect();
+        let timed = (0..terms.len()).filter(|&k| terms[k].timed().is_some()).collect();
         let moving = (0..constraints.len()).filter(|&c| constraints[c].moves()).collect();
-        let remembering = (0..terms.len()).filter(|&k| terms[k].remembers()).collect();
+        let remembering = (0..terms.len()).filter(|&k| terms[k].remembers().is_some()).collect();
         let kinked = terms.iter().any(|t| t.kinked());
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
         let driven = constraints.iter().enumerate();
@@ -386,25 +388,25 @@ impl Model {
             return;
         }
         let mut memory = std::mem::take(&mut state.modes);
-        for &k in &self.remembering {
-            self.terms[k].remember(&state.at(), &mut memory);
+        for term in self.remembering.iter().filter_map(|&k| self.terms[k].remembers()) {
+            term.remember(&state.at(), &mut memory);
         }
         state.modes = memory;
     }
 
     /// What has gone where it can't have gone in a step.
     pub(crate) fn passes(&self, before: &At<'_>, after: &At<'_>) -> Option<String> {
-        self.watchful.iter().find_map(|&k| self.terms[k].passes(before, after))
+        self.watchful().find_map(|term| term.passes(before, after))
     }
 
     /// What one should know of its terms at the end of a run.
     pub fn remarks(&self, at: &At<'_>) -> Vec<String> {
-        self.terms.iter().filter_map(|t| t.remark(at)).collect()
+        self.terms.iter().filter_map(|t| t.shows()?.remark(at)).collect()
     }
 
     /// The longest step from here that leaps over nothing that a term has ahead [s].
     pub fn horizon(&self, at: &At<'_>) -> f64 {
-        self.watchful.iter().map(|&k| self.terms[k].horizon(at)).fold(f64::INFINITY, f64::min)
+        self.watchful().map(|term| term.horizon(at)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether something changes with time of its own accord.
@@ -412,9 +414,14 @@ impl Model {
         !(self.timed.is_empty() && self.moving.is_empty())
     }
 
-    /// The terms that depend on time otherwise than through the state.
-    pub(crate) fn timed_terms(&self) -> impl Iterator<Item = &dyn Term> {
-        self.timed.iter().map(|&k| self.terms[k].as_ref())
+    fn watchful(&self) -> impl Iterator<Item = &dyn Foresees> {
+        self.watchful.iter().filter_map(|&k| self.terms[k].foresees())
+    }
+
+    /// The terms that depend on time otherwise than through the state, with what time does to them.
+    pub(crate) fn timed_terms(&self) -> impl Iterator<Item = (&dyn Term, &dyn Timed)> {
+        let terms = self.timed.iter().map(|&k| self.terms[k].as_ref());
+        terms.filter_map(|term| term.timed().map(|timed| (term, timed)))
     }
 
     /// The constraints that change with time, with their numbers.

@@ -6,7 +6,9 @@ pub use spec::{FloorSpec, LatchSpec};
 
 use ropewalk_core::held::{Held, Pull, delta, dofs, pull};
 use ropewalk_core::rotation::M3;
-use ropewalk_core::{Action, Assembly, At, Energy, Event, Model, Pattern, Power, State, Term, V3, dot};
+use ropewalk_core::{
+    Action, Assembly, At, Energy, Event, Foresees, Model, Pattern, Power, State, Term, V3, dot,
+};
 
 /// A plane that pushes back what has left its seat, [`Latch::floor`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,14 +155,6 @@ impl Term for Latch {
             }
         }
     }
-    fn foresees(&self) -> bool {
-        true
-    }
-    fn horizon(&self, at: &At<'_>) -> f64 {
-        // what fades is not leapt over
-        let fades = |s: &Seat| at.modes[s.mode] != 0.0 && at.t < at.modes[s.mode] + self.fade;
-        if self.seats.iter().any(fades) { 0.25 * self.fade } else { f64::INFINITY }
-    }
     fn energy(&self, at: &At<'_>) -> Energy {
         let stored = |seat: &Seat| {
             let m = self.moment(seat, at);
@@ -177,6 +171,17 @@ impl Term for Latch {
                 + 0.5 * m.rate * (floor - self.stiffness * dot(&m.d, &m.d))
         };
         Power { dissipated: self.seats.iter().map(lost).sum(), ..Power::default() }
+    }
+    fn foresees(&self) -> Option<&dyn Foresees> {
+        Some(self)
+    }
+}
+
+impl Foresees for Latch {
+    fn horizon(&self, at: &At<'_>) -> f64 {
+        // what fades is not leapt over
+        let fades = |s: &Seat| at.modes[s.mode] != 0.0 && at.t < at.modes[s.mode] + self.fade;
+        if self.seats.iter().any(fades) { 0.25 * self.fade } else { f64::INFINITY }
     }
 }
 

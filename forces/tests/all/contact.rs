@@ -5,7 +5,8 @@ use ropewalk_core::held::Held;
 use ropewalk_core::rotation::{around, exp, from_bryant, matrix, times};
 use ropewalk_core::testing::{check_tangent, dense, difference};
 use ropewalk_core::{
-    At, ContactPoint, ContactSpan, Marker, Node, NodeId, NodeKind, SpanLine, Term, V3, Weights, Width,
+    At, ContactPoint, ContactSpan, Foresees, Marker, Node, NodeId, NodeKind, Remembers, Shows, SpanLine,
+    Term, V3, Weights, Width,
 };
 use ropewalk_forces::contact::{
     Contact, ContactLaw, Damping, Friction, Grip, Leaving, Mesh, Shape, Soup, Stiffness,

@@ -379,7 +379,7 @@ fn no_memory(source: SolveError) -> Error {
 
 /// What to say of an equilibrium that dry friction takes no part in.
 fn without_friction(model: &Model) -> Option<String> {
-    let rough = model.terms().iter().filter(|t| t.remembers()).map(|t| format!("`{}`", t.label()));
+    let rough = model.terms().iter().filter(|t| t.remembers().is_some()).map(|t| format!("`{}`", t.label()));
     let rough: Vec<String> = rough.collect();
     (!rough.is_empty()).then(|| {
         format!(

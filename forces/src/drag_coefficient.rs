@@ -1,16 +1,15 @@
 //! The drag coefficient along a cable.
 
-use super::named;
-use super::place::{Station, off, part};
-use crate::register_spec;
-use crate::spec::RecordSpec;
-use ropewalk_core::{BuildError, Column, Model, Part, Record, Sample};
+use crate::drag::COEFFICIENT;
+use ropewalk_core::{At, BuildError, Column, Model, Part, Record, Sample, Term};
+use ropewalk_scene::records::{RecordPlace, named, off, part};
+use ropewalk_scene::{RecordSpec, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-fn quarters() -> Vec<Station> {
-    [0.25, 0.5, 0.75].map(Station::Share).to_vec()
+fn quarters() -> Vec<RecordPlace> {
+    [0.25, 0.5, 0.75].map(RecordPlace::Share).to_vec()
 }
 
 /// Drag coefficient `Cn` of the flow across a cable at some places: columns `hose.cn@25%`, `hose.cn@50%`, `hose.cn@75%`.
@@ -24,7 +23,7 @@ pub struct DragCoefficientSpec {
     pub of: String,
     /// Where: as for `along`; left out, at a quarter, half and three quarters of the length.
     #[serde(default = "quarters")]
-    pub at: Vec<Station>,
+    pub at: Vec<RecordPlace>,
     /// Name in results; left out, that of the cable and `.cn`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
@@ -45,7 +44,7 @@ struct DragCoefficient {
     part: Arc<dyn Part>,
     /// The term that knows it.
     term: usize,
-    at: Vec<Station>,
+    at: Vec<RecordPlace>,
     name: String,
     title: String,
 }
@@ -65,10 +64,15 @@ impl Record for DragCoefficient {
         out.extend(self.at.iter().map(|place| {
             // stations count along the material, which runs through a start that feeds
             let start = self.part.front(0).map_or(0.0, |front| s.at.q[front.q]);
-            let cn = term.coefficient(self.part.name(), start + place.now(self.part.as_ref(), &s.at), &s.at);
+            let along = start + place.now(self.part.as_ref(), &s.at);
+            let cn = coefficient(term.as_ref(), self.part.name(), along, &s.at);
             cn.filter(|cn| cn.is_finite()).unwrap_or(f64::NAN)
         }));
     }
+}
+
+fn coefficient(term: &dyn Term, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
+    term.shows()?.local(COEFFICIENT, part, s, at)
 }
 
 #[typetag::serde(name = "drag_coefficient")]
@@ -77,8 +81,8 @@ impl RecordSpec for DragCoefficientSpec {
         let part = part(model, self.of.trim())?;
         let state = model.state();
         let at = state.at();
-        let knows = |t: &&dyn ropewalk_core::Term| t.coefficient(part.name(), 0.0, &at).is_some();
-        let term = model.terms().iter().position(|t| knows(&t.as_ref())).ok_or_else(|| {
+        let knows = |t: &Box<dyn Term>| coefficient(t.as_ref(), part.name(), 0.0, &at).is_some();
+        let term = model.terms().iter().position(knows).ok_or_else(|| {
             BuildError::at("of", format!("no drag acts on `{}`: add a force of type `drag`", part.name()))
         })?;
         if self.at.is_empty() {
