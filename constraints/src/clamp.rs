@@ -67,7 +67,7 @@ impl ConstraintSpec for ClampSpec {
         let direction = self.direction.unwrap_or(b.place(&marker).axes[0]);
         finite("direction", &direction)?;
         let direction = unit("direction", direction)?;
-        let director = b.parts(&[])?.iter().find_map(|(_, part)| part.director(node));
+        let director = b.parts(&[])?.iter().find_map(|(_, part)| part.line()?.director(node));
         let axes = match director.map(|d| b.place(&Marker::node(d)).x) {
             None => around(direction),
             Some(d) => {

@@ -339,7 +339,9 @@ impl Builder {
     pub fn start_feeding(&mut self, marker: &MarkerRef, rate: f64) -> Result<(), BuildError> {
         let (name, end) = end_of(marker)?;
         let (_, part) = self.find(name, "marker")?;
-        part.start_feeding(end, rate, &self.start.q, &mut self.start.v);
+        if let Some(line) = part.line() {
+            line.start_feeding(end, rate, &self.start.q, &mut self.start.v);
+        }
         Ok(())
     }
 

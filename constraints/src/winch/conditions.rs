@@ -77,7 +77,7 @@ impl Condition {
     /// The point of the free cable that is deepest in the package: where it is along the cable, and how deep [m].
     fn deepest(&self, part: &dyn Part, state: &State) -> (f64, f64) {
         let at = state.at();
-        let line = part.line(&at);
+        let line = part.centre_line(&at);
         let off = if self.front.sign > 0.0 { line.last() } else { line.first() };
         let Some(off) = off else { return (0.0, f64::NEG_INFINITY) };
         let depths = line.iter().map(|x| self.package.depth(x, off));

@@ -272,7 +272,7 @@ impl ConstraintSpec for WinchSpec {
             return Err(BuildError::at("element", message));
         }
         // an element can't be swallowed by the last one
-        let riding: f64 = [0, 1].map(|end| part.riding(end)).iter().sum();
+        let riding: f64 = [0, 1].map(|end| part.line().map_or(0.0, |line| line.riding(end))).iter().sum();
         let least = self.element.map_or(0.05 * whole, |e| (riding + 2.0 * e).max(0.05 * whole));
         let shortest = positive("shortest", self.shortest.unwrap_or(least))?;
         if shortest >= whole {

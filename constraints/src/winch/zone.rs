@@ -27,7 +27,10 @@ pub(super) const MERGE: f64 = 0.5;
 impl Zone {
     /// Length of the element at the end [m].
     fn length(&self, model: &Model, state: &State) -> f64 {
-        model.part(&self.part).and_then(|p| p.end_element(self.end, &state.at())).unwrap_or(self.element)
+        model
+            .part(&self.part)
+            .and_then(|p| p.line()?.end_element(self.end, &state.at()))
+            .unwrap_or(self.element)
     }
 }
 
@@ -51,7 +54,7 @@ impl Event for Zone {
         let mut plan = Plan::new();
         for part in model.parts() {
             let own = if part.name() == self.part { change } else { Change::None };
-            match part.remesh(own, &state.at()) {
+            match part.line().map_or(Ok(None), |line| line.remesh(own, &state.at())) {
                 Ok(Some(mesh)) => drop(plan.insert(part.name().to_string(), mesh)),
                 Ok(None) => {}
                 Err(message) => return Action::Fail(message),

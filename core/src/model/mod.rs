@@ -11,6 +11,7 @@ pub mod event;
 pub mod feed;
 pub mod held;
 pub mod joint;
+pub mod line;
 pub mod marker;
 pub mod motion;
 pub mod node;

@@ -14,7 +14,7 @@ pub use checkpoint::{Checkpoint, Unfit};
 
 use crate::model::Model;
 use crate::model::event::{Action, Event};
-use crate::model::part::Quantity;
+use crate::model::line::Quantity;
 use crate::model::remesh::Remeshed;
 use crate::model::state::State;
 use crate::model::term::{Energy, Power};

@@ -66,7 +66,7 @@ fn points(modal: &Modal, q: &[f64]) -> Vec<V3<f64>> {
     let at = At { q, ..modal.state.at() };
     let mut all = Vec::new();
     for part in modal.model.parts() {
-        all.extend(part.line(&at));
+        all.extend(part.centre_line(&at));
         all.push(BREAK);
         let mesh = part.mesh();
         let stride = mesh.len().div_ceil(MARKS).max(1);

@@ -41,7 +41,7 @@ impl Shape {
     /// All parts of a model that have a line.
     pub(super) fn of(model: &Model, at: &At<'_>) -> Self {
         let line = |part: &std::sync::Arc<dyn ropewalk_core::Part>| {
-            let (x, mut s) = (part.line(at), part.arc_lengths(at));
+            let (x, mut s) = (part.centre_line(at), part.arc_lengths(at));
             s.resize(x.len(), f64::NAN);
             Line { part: part.name().to_string(), s, x }
         };

@@ -43,10 +43,12 @@ impl Statics<'_> {
                          out of one end as into the other, or compute the motion in time"
                     ))
                 }
-                () if [0, 1].iter().any(|&end| part.makes_elements(end)) => Some(format!(
-                    "elements of `{name}` are born and swallowed, so no mesh stands still while material runs \
+                () if part.line().is_some_and(|line| [0, 1].iter().any(|&end| line.makes_elements(end))) => {
+                    Some(format!(
+                        "elements of `{name}` are born and swallowed, so no mesh stands still while material runs \
                      through: leave out `element` of what feeds it"
-                )),
+                    ))
+                }
                 () => None,
             };
             if let Some(why) = refused {

@@ -52,7 +52,9 @@ impl Statics<'_> {
         let mut other = before.clone();
         other.lambda.fill(0.0);
         for part in self.model.parts() {
-            part.straighten(&mut other.q);
+            if let Some(line) = part.line() {
+                line.straighten(&mut other.q);
+            }
         }
         let second = self.search(&mut other, true, true, true);
         match (first, second) {
