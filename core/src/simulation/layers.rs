@@ -5,8 +5,8 @@
 //! result tells. [`Layers`] looks at all such places now and then, and says afterwards what was missed.
 
 use crate::model::Model;
-use crate::model::node::NodeKind;
 use crate::model::line::Quantity;
+use crate::model::node::NodeKind;
 use crate::model::part::Part;
 use crate::model::state::At;
 
@@ -92,7 +92,7 @@ impl Layers {
     pub fn look(&mut self, model: &Model, at: &At<'_>) {
         for k in 0..self.held.len() {
             let Held { part, node, constraint } = self.held[k];
-            if model.holds(constraint, at.modes) {
+            if model.holds(constraint, at.internal) {
                 let (part, by) = (model.parts()[part].as_ref(), model.constraints()[constraint].name());
                 self.beside(part, node, by, true, at);
                 self.beside(part, node, by, false, at);

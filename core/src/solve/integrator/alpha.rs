@@ -165,7 +165,7 @@ impl Alpha {
             *e = factor * self.scheme.mass() * (new - old);
         }
         // what is prescribed has no error
-        model.without_driven(&state.modes, &mut e);
+        model.without_driven(&state.internal, &mut e);
         rhs.clear();
         rhs.resize(model.structure().n, 0.0);
         work.times_mass(model, &e, &mut rhs[..nv]);
