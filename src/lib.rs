@@ -43,7 +43,11 @@ pub use ropewalk_studies::run::{Every, Manifest, Outcome, RunOptions, resume, ru
 pub use ropewalk_studies::simulate::{History, read, simulate};
 pub use ropewalk_studies::{Error, bench, variants, verify};
 
-/// The program of the README must compile and run.
+/// The programs of the README and of CONTRIBUTING must compile and run.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
+mod documents {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../CONTRIBUTING.md")]
+    struct Contributing;
+}

@@ -1,4 +1,18 @@
-//! Ropewalk: constraints.
+//! Constraints: joints, prescribed motions, winches, eyelets and packages.
+//!
+//! ```
+//! use ropewalk_constraints::SphericalSpec;
+//! use ropewalk_elements::{CableSpec, Section};
+//! use ropewalk_scene::Scene;
+//!
+//! let mut scene = Scene::new();
+//! scene
+//!     .element(CableSpec::straight("line", [0.0; 3], [4.0, 0.0, 0.0], 8, Section::new(0.3, 1e5, 0.1)))
+//!     .constraint(SphericalSpec::pin("hook", "line.start"));
+//! // a pin holds three coordinates
+//! assert_eq!(scene.build()?.multipliers(), 3);
+//! # Ok::<(), ropewalk_scene::SceneError>(())
+//! ```
 //!
 //! Joints between markers, and the motions that drive them. Each kind of joint here makes a [`Joint`](ropewalk_core::Joint) of its equations.
 

@@ -1,6 +1,12 @@
 //! Why a model could not be built, and the checks of numbers that say so.
 
 /// Why a model could not be built, said so that the author of the scene knows what to change.
+///
+/// ```
+/// use ropewalk_core::BuildError;
+/// let e = BuildError::at("mass", "`mass` must be positive, but is -1");
+/// assert_eq!((e.field.as_deref(), e.to_string()), (Some("mass"), "`mass` must be positive, but is -1".to_string()));
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct BuildError {
@@ -29,6 +35,11 @@ impl BuildError {
 }
 
 /// Checks that a number is positive and finite.
+///
+/// ```
+/// use ropewalk_core::error::positive;
+/// assert!(positive("mass", 2.0).is_ok() && positive("mass", f64::NAN).is_err());
+/// ```
 pub fn positive(field: &str, x: f64) -> Result<f64, BuildError> {
     if x > 0.0 && x.is_finite() {
         Ok(x)
@@ -47,6 +58,11 @@ pub fn not_negative(field: &str, x: f64) -> Result<f64, BuildError> {
 }
 
 /// Checks that every number is finite.
+///
+/// ```
+/// use ropewalk_core::error::finite;
+/// assert!(finite("axis", &[1.0, 0.0]).is_ok() && finite("axis", &[f64::INFINITY]).is_err());
+/// ```
 pub fn finite(field: &str, x: &[f64]) -> Result<(), BuildError> {
     match x.iter().find(|x| !x.is_finite()) {
         None => Ok(()),

@@ -1,4 +1,25 @@
-//! Elements of Ropewalk.
+//! Elements: what has mass and stiffness.
+//!
+//! - [`cable`]: ANCF cables, 12 coordinates per element, whose longitudinal and transverse stiffness models are chosen by name;
+//! - [`rigid_body`] and [`rigid_chain`]: bodies with an orientation, and hoses of links;
+//! - [`PointMass`]: a mass at a marker of something else.
+//!
+//! Each has a spec, which a scene names and which builds it:
+//!
+//! ```
+//! use ropewalk_elements::{CableSpec, PointMassSpec, Section};
+//! use ropewalk_scene::Scene;
+//!
+//! let rope = Section::new(0.3, 1e5, 0.1); // mass per length [kg/m], EA [N], EI [N m²]
+//! let mut scene = Scene::new();
+//! scene
+//!     .element(CableSpec::straight("line", [0.0; 3], [4.0, 0.0, 0.0], 8, rope))
+//!     .element(PointMassSpec::new("bob", "line.end", 2.0));
+//! let model = scene.build()?;
+//! // nine nodes with position and slope
+//! assert_eq!(model.velocities(), 9 * 6);
+//! # Ok::<(), ropewalk_scene::SceneError>(())
+//! ```
 
 pub mod cable;
 mod path;

@@ -1,4 +1,21 @@
-//! Ropewalk: forces.
+//! Forces: weight, buoyancy, drag, added mass, loads, springs, latches, contact.
+//!
+//! ```
+//! use ropewalk_core::{Simulation, integrator::Options};
+//! use ropewalk_elements::{CableSpec, Section};
+//! use ropewalk_forces::GravitySpec;
+//! use ropewalk_scene::Scene;
+//!
+//! let mut scene = Scene::new();
+//! scene
+//!     .element(CableSpec::straight("line", [0.0; 3], [1.0, 0.0, 0.0], 2, Section::new(0.3, 1e5, 0.1)))
+//!     .force(GravitySpec::default());
+//! let mut falling = Simulation::new(scene.build()?, &Options::default(), 1.0)?;
+//! falling.advance(1.0, f64::INFINITY, &mut ())?;
+//! // it falls freely: g t² / 2
+//! assert!((falling.state.q[2] + 0.5 * 9.81).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! Distributed loads are laws on stations (drag, added mass, line loads); what acts at a point or between two points
 //! is a term (point forces and moments, springs, bushings, latches).

@@ -6,6 +6,13 @@ use ropewalk_core::{BuildError, Real, V3};
 /// Velocity of the water [m/s] at height `z` [m, up]; it does not change with time.
 ///
 /// Use it for: still water, a tow seen from the ship, a tidal or boundary-layer profile.
+///
+/// ```
+/// use ropewalk_scene::Current;
+/// let current = Current::profile(vec![-10.0, 0.0], vec![[0.0; 3], [2.0, 0.0, 0.0]])?;
+/// assert_eq!(current.at(-5.0_f64).0, [1.0, 0.0, 0.0]);
+/// # Ok::<(), ropewalk_core::BuildError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Current {
     /// Water at rest.

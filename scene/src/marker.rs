@@ -7,6 +7,12 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A marker in a scene: `"hose.end"`, `"hose@12.5m"`, or a point in space `[0, 0, 0]`.
+///
+/// ```
+/// use ropewalk_scene::MarkerRef;
+/// assert_eq!(MarkerRef::from("hose.end").to_string(), "`hose.end`");
+/// assert_eq!(MarkerRef::from([0.0, 1.0, 2.0]).to_string(), "[0, 1, 2]");
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum MarkerRef {
@@ -57,6 +63,13 @@ impl<'de> Deserialize<'de> for MarkerRef {
 }
 
 /// Splits `hose.end`, `hose@12.5 m` or `hose` into part and place.
+///
+/// ```
+/// use ropewalk_core::Spot;
+/// use ropewalk_scene::split_marker;
+/// assert_eq!(split_marker("hose@50%"), Ok(("hose", Spot::Share(0.5))));
+/// assert_eq!(split_marker("hose@2 km"), Ok(("hose", Spot::Along(2000.0))));
+/// ```
 pub fn split_marker(text: &str) -> Result<(&str, Spot), String> {
     if let Some((part, along)) = text.split_once('@') {
         let along = along.trim();

@@ -24,6 +24,13 @@ pub enum Analysis {
 }
 
 /// What is run and how long.
+///
+/// ```
+/// use ropewalk_scene::Run;
+/// let run = Run { duration: 20.0, output: 0.1, ..Run::default() };
+/// assert!(run.check().is_ok());
+/// assert_eq!(run.interval(), 0.1);
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Run {

@@ -99,6 +99,17 @@ impl SceneFile {
     ///
     /// # Errors
     /// If anything is wrong with the text or with the overrides.
+    ///
+    /// ```
+    /// use ropewalk_scene::{Format, SceneFile};
+    /// let text = "title = 'Nothing yet'\n[run]\nduration = '2 min'\n";
+    /// let file = SceneFile::parse(text, "scene.toml", Format::Toml, &[])?;
+    /// assert_eq!(file.scene().run.duration, 120.0);
+    /// // what is wrong is shown with its place
+    /// let fault = SceneFile::parse("[run]\nduratoin = 1\n", "scene.toml", Format::Toml, &[]).unwrap_err();
+    /// assert!(fault.to_string().contains("scene.toml:2"));
+    /// # Ok::<(), ropewalk_scene::Fault>(())
+    /// ```
     pub fn parse(text: &str, name: &str, format: Format, overrides: &[String]) -> Result<Self, Fault> {
         Self::of(Document::parse(text, name, format, overrides)?, name.to_string())
     }

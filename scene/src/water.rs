@@ -6,6 +6,12 @@ use ropewalk_core::{BuildError, Real};
 use serde::{Deserialize, Serialize};
 
 /// The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
+///
+/// ```
+/// use ropewalk_scene::Water;
+/// let fresh = Water { density: 1000.0, ..Water::default() };
+/// assert!(fresh.check().is_ok());
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Water {
@@ -122,6 +128,12 @@ fn velocity(uniform: &[f64; 3], profile: &[Level], both: &str) -> Result<Current
 
 /// Share of a ball's volume that lies below a level, `½ + ¾ u - ¼ u³` at the depth `u` radii of its middle, and what it changes
 /// by with the height `z` of that [1/m].
+///
+/// ```
+/// use ropewalk_scene::ball_below;
+/// // a ball whose middle is at the surface is half under water
+/// assert_eq!(ball_below(0.0, 0.0_f64, 1.0).0, 0.5);
+/// ```
 #[inline(always)]
 pub fn ball_below<R: Real>(level: f64, z: R, radius: f64) -> (R, R) {
     let (one, u) = (R::of(1.0), (R::of(level) - z) * R::of(1.0 / radius));

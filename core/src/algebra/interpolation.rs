@@ -29,6 +29,13 @@ pub enum EndSlope {
 }
 
 /// A function through values at ascending times: piece by piece a cubic, with its integral and derivatives.
+///
+/// ```
+/// use ropewalk_core::{EndSlope, Interpolation, Join};
+/// let speed = Interpolation::new(&[0.0, 1.0, 2.0], &[0.0, 2.0, 2.0], Join::Linear, [EndSlope::default(); 2]);
+/// let [_, value, slope, _] = speed.at(0.5);
+/// assert_eq!((value, slope), (1.0, 2.0));
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Interpolation {
     t: Vec<f64>,

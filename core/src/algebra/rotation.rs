@@ -13,12 +13,23 @@ pub type M3<R = f64> = [V3<R>; 3];
 pub const IDENTITY: M3 = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Vector product.
+///
+/// ```
+/// use ropewalk_core::rotation::cross;
+/// assert_eq!(cross(&[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0]), [0.0, 0.0, 1.0]);
+/// ```
 #[inline(always)]
 pub fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: &V3<T>, b: &V3<T>) -> V3<T> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// `ã`, the matrix with `ã b = a × b`.
+///
+/// ```
+/// use ropewalk_core::rotation::{cross, skew, times};
+/// let (a, b) = ([1.0, 2.0, 3.0], [-1.0, 0.5, 4.0]);
+/// assert_eq!(times(&skew(&a), &b), cross(&a, &b));
+/// ```
 pub fn skew(a: &V3<f64>) -> M3 {
     [[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]]
 }
@@ -59,6 +70,13 @@ where
 }
 
 /// The quaternion of the rotation by the vector `θ`.
+///
+/// ```
+/// use ropewalk_core::rotation::{exp, matrix, times};
+/// // a quarter turn about z takes x to y
+/// let turned = times(&matrix(&exp([0.0, 0.0, std::f64::consts::FRAC_PI_2])), &[1.0, 0.0, 0.0]);
+/// assert!((turned[1] - 1.0).abs() < 1e-15 && turned[0].abs() < 1e-15);
+/// ```
 pub fn exp(theta: V3<f64>) -> [f64; 4] {
     let angle = theta.iter().map(|x| x * x).sum::<f64>().sqrt();
     // sin(x/2)/x, by its series where the quotient would be 0/0
@@ -67,6 +85,12 @@ pub fn exp(theta: V3<f64>) -> [f64; 4] {
 }
 
 /// The vector of a unit quaternion's rotation, the shorter way round: undoes [`exp`].
+///
+/// ```
+/// use ropewalk_core::rotation::{exp, log};
+/// let theta = [0.3, -0.2, 1.1];
+/// assert!(log(exp(theta)).iter().zip(theta).all(|(a, b)| (a - b).abs() < 1e-15));
+/// ```
 pub fn log(p: [f64; 4]) -> V3<f64> {
     let sign = if p[0] < 0.0 { -1.0 } else { 1.0 };
     let sine = (p[1] * p[1] + p[2] * p[2] + p[3] * p[3]).sqrt();
@@ -75,6 +99,12 @@ pub fn log(p: [f64; 4]) -> V3<f64> {
 }
 
 /// The quaternion of two rotations, the second in the axes that the first has turned.
+///
+/// ```
+/// use ropewalk_core::rotation::{exp, log, then};
+/// let about_z = |angle: f64| exp([0.0, 0.0, angle]);
+/// assert!((log(then(about_z(0.5), about_z(0.25)))[2] - 0.75).abs() < 1e-15);
+/// ```
 pub fn then(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     [
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
@@ -85,6 +115,12 @@ pub fn then(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
 }
 
 /// The quaternion of a rotation matrix (Shepperd 1978: by its largest component, so never singular).
+///
+/// ```
+/// use ropewalk_core::rotation::{exp, from_matrix, matrix};
+/// let q = exp([0.4, 0.1, -0.7]);
+/// assert!(from_matrix(&matrix(&q)).iter().zip(q).all(|(a, b)| (a - b).abs() < 1e-15));
+/// ```
 pub fn from_matrix(r: &M3) -> [f64; 4] {
     let trace = r[0][0] + r[1][1] + r[2][2];
     let squares = [trace, r[0][0], r[1][1], r[2][2]];
@@ -111,6 +147,12 @@ pub fn from_bryant(angles: V3<f64>) -> [f64; 4] {
 
 /// Bryant angles 1-2-3 of a unit quaternion [rad]; the second is between -90° and 90°. Where it reaches them the first
 /// and the third can't be told apart, and the third is given as 0.
+///
+/// ```
+/// use ropewalk_core::rotation::{bryant, from_bryant};
+/// let angles = [0.1, -0.4, 2.0];
+/// assert!(bryant(&from_bryant(angles)).iter().zip(angles).all(|(a, b)| (a - b).abs() < 1e-14));
+/// ```
 pub fn bryant(q: &[f64; 4]) -> V3<f64> {
     let r = matrix(q);
     let sine = r[0][2].clamp(-1.0, 1.0);

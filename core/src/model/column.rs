@@ -1,6 +1,12 @@
 //! Columns of a history.
 
 /// A named column of the history.
+///
+/// ```
+/// use ropewalk_core::Column;
+/// let column = Column::new("hose.end.x", "m");
+/// assert_eq!((column.name.as_str(), column.unit.as_str()), ("hose.end.x", "m"));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Name, such as `hose.end.x`.

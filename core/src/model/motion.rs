@@ -4,6 +4,13 @@ use crate::algebra::lane::V3;
 use std::fmt::Debug;
 
 /// A displacement and its first two time derivatives.
+///
+/// ```
+/// use ropewalk_core::Moving;
+/// // at 3 m/s along x for two seconds
+/// let moving = Moving { x: [6.0, 0.0, 0.0], v: [3.0, 0.0, 0.0], ..Moving::default() };
+/// assert_eq!(moving.a, [0.0; 3]);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moving {
     /// Displacement from where the driven marker starts [m].

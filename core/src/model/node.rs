@@ -7,6 +7,12 @@ use crate::algebra::lane::V3;
 use crate::algebra::rotation::{cross, exp, log, then};
 
 /// What a node carries.
+///
+/// ```
+/// use ropewalk_core::NodeKind;
+/// // a rigid body: position and unit quaternion, velocity and angular velocity
+/// assert_eq!((NodeKind::Frame.coordinates(), NodeKind::Frame.velocities()), (7, 6));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum NodeKind {
@@ -172,6 +178,16 @@ impl Node {
 }
 
 /// Moves every node: `out = q ⊕ d`.
+///
+/// ```
+/// use ropewalk_core::{Node, NodeKind, difference, retract};
+/// let nodes = [Node { kind: NodeKind::Frame, q: 0, v: 0, shared: false }];
+/// let (q, d) = ([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], [1.0, 2.0, 3.0, 0.1, 0.2, 0.3]);
+/// let (mut moved, mut back) = ([0.0; 7], [0.0; 6]);
+/// retract(&nodes, &q, &d, &mut moved);
+/// difference(&nodes, &q, &moved, &mut back);
+/// assert!(back.iter().zip(d).all(|(a, b)| (a - b).abs() < 1e-15));
+/// ```
 pub fn retract(nodes: &[Node], q: &[f64], d: &[f64], out: &mut [f64]) {
     for n in nodes {
         n.kind.retract(&q[n.coords()], &d[n.dofs()], &mut out[n.coords()]);

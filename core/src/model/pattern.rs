@@ -1,6 +1,14 @@
 //! Which unknowns are coupled: what terms and constraints declare before the structure of the matrix is made.
 
 /// Collects the couplings of all terms, each as a clique of unknowns.
+///
+/// ```
+/// use ropewalk_core::Pattern;
+/// let mut pattern = Pattern::default();
+/// pattern.clique(0..6);
+/// pattern.clique([3, 4, 5, 9]);
+/// assert_eq!((pattern.len(), pattern.get(1)), (2, &[3, 4, 5, 9][..]));
+/// ```
 #[derive(Debug, Default)]
 pub struct Pattern {
     /// Unknowns of all cliques, one after the other.

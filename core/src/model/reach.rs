@@ -21,11 +21,24 @@ const HALVINGS: u32 = 6;
 pub(crate) const SAME: f64 = 16.0 * f64::EPSILON;
 
 /// The part of a step `h` from `t` that follows what goes to and fro in this period.
+///
+/// ```
+/// use ropewalk_core::reach;
+/// // twelve steps for each period, at least
+/// assert_eq!(reach::period(24.0, 60.0), 2.0);
+/// ```
 pub fn period(period: f64, h: f64) -> f64 {
     h.min(period.abs() / PER_PERIOD)
 }
 
 /// The part of a step `h` from `t` that doesn't leap over a smooth change between `start` and `end`.
+///
+/// ```
+/// use ropewalk_core::reach;
+/// // a ramp from 10 s to 14 s: a step from 9 s goes a quarter of it beyond its start, one from 14 s as far as it likes
+/// assert_eq!(reach::rise(10.0, 14.0, 9.0, 60.0), 2.0);
+/// assert_eq!(reach::rise(10.0, 14.0, 14.0, 60.0), 60.0);
+/// ```
 pub fn rise(start: f64, end: f64, t: f64, h: f64) -> f64 {
     if t >= end { h } else { after(start, t, h, (end - start) / PER_RISE) }
 }
@@ -40,6 +53,13 @@ pub fn after(start: f64, t: f64, h: f64, most: f64) -> f64 {
 ///
 /// A step ends at the next knot, or at the last one of many up to which the table hardly strays from a straight line: a
 /// table that is finer than the steps doesn't hold them up.
+///
+/// ```
+/// use ropewalk_core::reach;
+/// let (times, values) = ([0.0, 10.0, 10.5, 60.0], [0.0, 0.0, 1.0, 1.0]);
+/// // a step from rest ends where the values begin to rise
+/// assert_eq!(reach::knots(&times, |k| [values[k], 0.0, 0.0], 1.0, 0.0, 100.0), 10.0);
+/// ```
 pub fn knots(times: &[f64], value: impl Fn(usize) -> V3<f64>, size: f64, t: f64, h: f64) -> f64 {
     // a knot that the last step ended at, but for rounding, is passed
     let first = times.partition_point(|&x| x <= t + SAME * t.abs());
@@ -70,6 +90,13 @@ pub fn knots(times: &[f64], value: impl Fn(usize) -> V3<f64>, size: f64, t: f64,
 }
 
 /// What steps must not leap over in a table: values that straight lines between these times follow.
+///
+/// ```
+/// use ropewalk_core::reach::Knots;
+/// let ramp = |t: f64| [t.clamp(0.0, 1.0), 0.0, 0.0];
+/// let knots = Knots::at_rows(&[0.0, 1.0, 5.0], ramp);
+/// assert_eq!(knots.reach(0.0, 10.0), 1.0);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knots {
     times: Vec<f64>,

@@ -34,6 +34,12 @@ pub struct MeshState {
 
 /// A stress-free strain of one element that fades out smoothly: what keeps its tension from jumping when its neighbours
 /// are split or merged.
+///
+/// ```
+/// use ropewalk_core::Prestrain;
+/// let fading = Prestrain { element: 0, strain: vec![1e-3], since: 10.0, release: 2.0 };
+/// assert_eq!((fading.left(10.0).0, fading.left(11.0).0, fading.left(12.0).0), (1.0, 0.5, 0.0));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Prestrain {

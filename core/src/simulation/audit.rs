@@ -3,6 +3,15 @@
 use crate::model::term::{Energy, Power};
 
 /// The balance of energy since the start of a run.
+///
+/// ```
+/// use ropewalk_core::{Audit, Energy, Power};
+/// let mut audit = Audit::start(Energy { kinetic: 0.0, potential: 10.0 });
+/// // in two seconds a force brings in 3 W
+/// let power = Power { supplied: 3.0, ..Power::zero() };
+/// audit.add(2.0, Energy { kinetic: 6.0, potential: 10.0 }, power, power);
+/// assert!(audit.imbalance().abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Audit {

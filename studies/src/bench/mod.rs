@@ -5,14 +5,14 @@
 //! shortest of many short samples, which is what a busy machine disturbs least.
 //!
 //! ```
-//! use ropewalk::bench::{FullIteration, Pendulum, measure::shortest};
-//! use ropewalk::core::Width;
+//! use ropewalk_studies::bench::{FullIteration, Pendulum, measure::shortest};
+//! use ropewalk_core::Width;
 //! use std::time::Duration;
 //!
 //! let mut iteration = FullIteration::new(&Pendulum::new(8).in_water(), Width::best())?;
 //! let seconds = shortest(Duration::from_millis(10), || iteration.run())?;
 //! println!("{:.2} µs per element", 1e6 * seconds / 8.0);
-//! # Ok::<(), ropewalk::Error>(())
+//! # Ok::<(), ropewalk_studies::Error>(())
 //! ```
 
 pub mod measure;

@@ -58,7 +58,7 @@ impl Summary {
     /// Sets the final value of a column; columns keep the order in which they are set.
     ///
     /// ```
-    /// # let mut summary = ropewalk_report::Summary::default();
+    /// # let mut summary = ropewalk_studies::run::Summary::default();
     /// summary.set("t", 20.0);
     /// summary.set("hose.end.tension", 250.5);
     /// ```

@@ -7,6 +7,14 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 ///
 /// [`Real::map`] knows no derivative of the function that it is given and makes it NaN; a kernel that is
 /// differentiated does without.
+///
+/// ```
+/// use ropewalk_core::Dual;
+/// // x³ at 2, with its derivative
+/// let x = Dual::new(2.0, 1.0);
+/// let y = x * x * x;
+/// assert_eq!((y.re, y.eps), (8.0, 12.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<R> {
     /// The number.

@@ -197,18 +197,32 @@ impl<const N: usize> Real for Pack<N> {
 }
 
 /// Scalar product.
+///
+/// ```
+/// assert_eq!(ropewalk_core::dot(&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0]), 32.0);
+/// ```
 #[inline(always)]
 pub fn dot<R: Real>(a: &V3<R>, b: &V3<R>) -> R {
     a[0].fma(b[0], a[1].fma(b[1], a[2] * b[2]))
 }
 
 /// `s a`
+///
+/// ```
+/// assert_eq!(ropewalk_core::scaled(2.0, &[1.0, -1.0, 0.5]), [2.0, -2.0, 1.0]);
+/// ```
 #[inline(always)]
 pub fn scaled<R: Real>(s: R, a: &V3<R>) -> V3<R> {
     [s * a[0], s * a[1], s * a[2]]
 }
 
 /// How many lanes a kernel runs over.
+///
+/// ```
+/// use ropewalk_core::Width;
+/// assert_eq!(Width::Four.lanes(), 4);
+/// assert!(Width::best().lanes() >= 1);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Width {

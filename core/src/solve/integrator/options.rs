@@ -76,6 +76,13 @@ pub enum ConstraintForm {
 }
 
 /// Options of time integration. The defaults suit cables from 8 to 8192 elements.
+///
+/// ```
+/// use ropewalk_core::integrator::{Options, Stepping};
+/// let fixed = Options { stepping: Stepping::Fixed { h: 1e-3 }, ..Options::default() };
+/// assert!(fixed.check().is_ok());
+/// assert!(Options { h_max: Some(-1.0), ..fixed }.check().is_err());
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]

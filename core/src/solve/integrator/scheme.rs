@@ -56,6 +56,14 @@ impl Default for Scheme {
 }
 
 /// The numbers of a scheme.
+///
+/// ```
+/// use ropewalk_core::integrator::Scheme;
+/// let c = Scheme::default().coefficients()?;
+/// // generalized-alpha is of second order: its error grows with the third power of the step
+/// assert!(c.error_constant().abs() > 0.0);
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// αm, weight of the old auxiliary acceleration.
@@ -132,6 +140,13 @@ impl Scheme {
 
     /// Spectral radius at infinite frequency: how much of an unresolved oscillation is left after a step, or how
     /// fast a multiplier rings. Infinite for β = 0.
+    ///
+    /// ```
+    /// use ropewalk_core::integrator::Scheme;
+    /// // what is too fast to be followed dies out
+    /// assert!(Scheme::default().radius_at_infinity()? < 1.0);
+    /// # Ok::<(), String>(())
+    /// ```
     pub fn radius_at_infinity(&self) -> Result<f64, String> {
         if *self == Scheme::RadauIia5 {
             return Ok(0.0);
