@@ -31,9 +31,9 @@ impl ConstraintSpec for BreakSpec {
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         positive("force", self.force)?;
-        let mode = b.mode(&self.name);
-        let constraint = b.release(&self.constraint, mode)?;
-        b.event(Break { name: self.name.clone(), constraint, mode, force: self.force });
+        let variable = b.internal_variable(&self.name);
+        let constraint = b.release(&self.constraint, variable)?;
+        b.event(Break { name: self.name.clone(), constraint, variable, force: self.force });
         Ok(())
     }
 }
@@ -41,7 +41,7 @@ impl ConstraintSpec for BreakSpec {
 struct Break {
     name: String,
     constraint: usize,
-    mode: usize,
+    variable: usize,
     force: f64,
 }
 
@@ -50,7 +50,7 @@ impl Event for Break {
         self.name.clone()
     }
     fn value(&self, model: &Model, state: &State) -> f64 {
-        if state.modes[self.mode] != 0.0 {
+        if state.internal[self.variable] != 0.0 {
             return -1.0;
         }
         let Some(node) = model.constraints()[self.constraint].markers().iter().rev().find_map(Marker::on)
@@ -64,7 +64,7 @@ impl Event for Break {
         1
     }
     fn act(&self, _: &Model, state: &mut State) -> Action {
-        state.modes[self.mode] = 1.0;
+        state.internal[self.variable] = 1.0;
         Action::Restart
     }
 }

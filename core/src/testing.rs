@@ -303,7 +303,7 @@ mod tests {
     #[test]
     fn wrong_tangents_are_seen() {
         let nodes = [Node { kind: NodeKind::Scalars(1), q: 0, v: 0, shared: false }];
-        let at = At { t: 0.0, q: &[1.3], v: &[0.7], a: &[-0.2], modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &[1.3], v: &[0.7], a: &[-0.2], internal: &[], relaxed: None };
         assert!(check_tangent(&Cubic(1.0), &nodes, &at, Width::One) < 1e-9);
         let error = check_tangent(&Cubic(1.01), &nodes, &at, Width::One);
         assert!((error - 0.01).abs() < 1e-3, "{error}");
@@ -368,7 +368,7 @@ mod tests {
             q: &q,
             v: &[0.5, -1.0, 0.3, 1.0, 2.0, -1.0],
             a: &[0.0; 6],
-            modes: &[],
+            internal: &[],
             relaxed: None,
         };
         let axes = crate::algebra::rotation::around([1.0, 0.5, 0.0]);

@@ -81,8 +81,8 @@ impl RecordSpec for DragCoefficientSpec {
         let part = part(model, self.of.trim())?;
         let state = model.state();
         let at = state.at();
-        let knows = |t: &Box<dyn Term>| coefficient(t.as_ref(), part.name(), 0.0, &at).is_some();
-        let term = model.terms().iter().position(knows).ok_or_else(|| {
+        let knows = |t: &dyn Term| coefficient(t, part.name(), 0.0, &at).is_some();
+        let term = model.terms().iter().position(|t| knows(t.as_ref())).ok_or_else(|| {
             BuildError::at("of", format!("no drag acts on `{}`: add a force of type `drag`", part.name()))
         })?;
         if self.at.is_empty() {

@@ -162,20 +162,20 @@ impl Builder {
         Ok(())
     }
 
-    /// Adds a mode: a number of the state that events change, at first 0. Returns its place in
-    /// [`State::modes`](ropewalk_core::State::modes).
-    pub fn mode(&mut self, name: impl Into<String>) -> usize {
-        self.switches.modes.push(name.into());
-        self.start.modes.push(0.0);
-        self.start.modes.len() - 1
+    /// Adds an internal variable: a number of the state that events change, at first 0. Returns its place in
+    /// [`State::internal`](ropewalk_core::State::internal).
+    pub fn internal_variable(&mut self, name: impl Into<String>) -> usize {
+        self.switches.internal.push(name.into());
+        self.start.internal.push(0.0);
+        self.start.internal.len() - 1
     }
 
-    /// Adds modes for what a term remembers, at first all 0. Returns the place of the first in
-    /// [`State::modes`](ropewalk_core::State::modes).
+    /// Adds internal variables for what a term remembers, at first all 0. Returns the place of the first in
+    /// [`State::internal`](ropewalk_core::State::internal).
     pub fn memory(&mut self, name: &str, size: usize) -> usize {
-        let first = self.start.modes.len();
-        self.switches.modes.extend(std::iter::repeat_n(name.to_string(), size));
-        self.start.modes.resize(first + size, 0.0);
+        let first = self.start.internal.len();
+        self.switches.internal.extend(std::iter::repeat_n(name.to_string(), size));
+        self.start.internal.resize(first + size, 0.0);
         first
     }
 
@@ -184,18 +184,18 @@ impl Builder {
         self.switches.events.push(Arc::new(event));
     }
 
-    /// Makes a constraint let go once a mode isn't zero. Returns the number of the constraint.
+    /// Makes a constraint let go once an internal variable isn't zero. Returns the number of the constraint.
     ///
     /// # Errors
     /// There is no constraint of this name before, or it can let go already.
-    pub fn release(&mut self, constraint: &str, mode: usize) -> Result<usize, BuildError> {
+    pub fn release(&mut self, constraint: &str, variable: usize) -> Result<usize, BuildError> {
         let Some(c) = self.constraints.iter().position(|c| c.name() == constraint) else {
             let names: Vec<String> = self.constraints.iter().map(|c| format!("`{}`", c.name())).collect();
             let names = if names.is_empty() { "none".into() } else { names.join(", ") };
             let message = format!("there is no constraint `{constraint}` above; those above are {names}");
             return Err(BuildError::at("constraint", message));
         };
-        if self.switches.released.insert(c, mode).is_some() {
+        if self.switches.released.insert(c, variable).is_some() {
             return Err(BuildError::at(
                 "constraint",
                 format!("constraint `{constraint}` is to break in two ways"),
@@ -407,7 +407,7 @@ impl Builder {
 
     fn least_diameter(&self, stations: &dyn Stations) -> f64 {
         let (q, v) = (&self.start.q, &self.start.v);
-        let at = At { t: 0.0, q, v, a: v, modes: &[], relaxed: None };
+        let at = At { t: 0.0, q, v, a: v, internal: &[], relaxed: None };
         let mut least = f64::INFINITY;
         stations.each(&at, &mut |s| least = least.min(s.diameter));
         least

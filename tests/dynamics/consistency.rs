@@ -326,7 +326,7 @@ impl Stirred {
         Stirred { model, q, v, a, lambda }
     }
     fn at(&self) -> At<'_> {
-        At { t: 0.3, q: &self.q, v: &self.v, a: &self.a, modes: &[], relaxed: None }
+        At { t: 0.3, q: &self.q, v: &self.v, a: &self.a, internal: &[], relaxed: None }
     }
 }
 

@@ -29,7 +29,7 @@ impl Observer for Keeper {
         true
     }
     fn sample(&mut self, s: &Sample<'_>) -> ControlFlow<()> {
-        let all = [&[s.at.t, s.audit.dissipated][..], s.at.q, s.at.v, s.at.a, s.lambda, s.at.modes];
+        let all = [&[s.at.t, s.audit.dissipated][..], s.at.q, s.at.v, s.at.a, s.lambda, s.at.internal];
         self.samples.extend(all.iter().flat_map(|x| x.iter()).map(|x| x.to_bits()));
         ControlFlow::Continue(())
     }

@@ -184,7 +184,7 @@ fn a_checkpoint_keeps_what_friction_remembers() {
     let mut one = Simulation::new(slope().build().unwrap(), &options, 1.0).unwrap();
     one.advance(0.1, f64::INFINITY, &mut ()).unwrap();
     let kept = one.checkpoint().unwrap();
-    assert!(kept.state.modes.iter().any(|m| *m != 0.0));
+    assert!(kept.state.internal.iter().any(|m| *m != 0.0));
     let mut two = Simulation::restore(slope().build().unwrap(), &options, 1.0, kept).unwrap();
     for s in [&mut one, &mut two] {
         s.advance(1.0, f64::INFINITY, &mut ()).unwrap();

@@ -30,7 +30,7 @@ fn noise(n: usize, seed: u64, size: f64) -> Vec<f64> {
 
 fn kinetic(model: &Model, q: &[f64], v: &[f64]) -> f64 {
     let a = vec![0.0; v.len()];
-    model.energy(&At { t: 0.0, q, v, a: &a, modes: &[], relaxed: None }).kinetic
+    model.energy(&At { t: 0.0, q, v, a: &a, internal: &[], relaxed: None }).kinetic
 }
 
 /// Lagrange's equations of the kinetic energy, by differences, are what the forces are: for a cable that moves in any way in
@@ -77,7 +77,7 @@ fn forces_are_those_of_the_energy() {
         let mut sys = System::default();
         let rest = vec![0.0; n];
         let mut residual = |v: &[f64], a: &[f64]| {
-            let at = At { t: 0.0, q: &q, v, a, modes: &[], relaxed: None };
+            let at = At { t: 0.0, q: &q, v, a, internal: &[], relaxed: None };
             model.assemble(&at, &[], None, &mut sys);
             sys.residual.clone()
         };

@@ -265,7 +265,7 @@ mod tests {
             };
             let q = [0.1, 0.05, 0.3, 0.9, 0.5, -0.4, p];
             let v = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
-            let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], modes: &[], relaxed: None };
+            let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], internal: &[], relaxed: None };
             for tangent in [false, true] {
                 let off = LiftOff::new("off", front, package.clone(), tangent);
                 let error = check_constraint(&off, &nodes, &at);

@@ -138,7 +138,7 @@ mod tests {
             let peel = Peel { name: "off".into(), front, package: package.clone(), energy, slip_speed, ei };
             let q = [0.1, 0.2, 0.3, 0.9, 0.5, -0.4, sign * peeled];
             let v = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, sign * u];
-            let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], modes: &[], relaxed: None };
+            let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], internal: &[], relaxed: None };
             assert!(check_tangent(&peel, &nodes, &at, Width::One) < 1e-6, "{peeled}");
         }
     }

@@ -152,7 +152,7 @@ mod tests {
             };
             let q = [0.1, 0.2, 0.3, 0.9, 0.5, -0.4, 0.8];
             let (v, a) = ([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, rate], [0.3; 7]);
-            let at = At { t: 0.0, q: &q, v: &v, a: &a, modes: &[], relaxed: None };
+            let at = At { t: 0.0, q: &q, v: &v, a: &a, internal: &[], relaxed: None };
             assert!(check_tangent(&pull, &nodes, &at, Width::One) < 1e-8);
         }
     }

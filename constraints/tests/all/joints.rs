@@ -126,7 +126,7 @@ fn derivatives_are_exact() {
     let mut worst = 0.0_f64;
     for seed in 1..=6 {
         let s = numbers(seed);
-        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], modes: &[], relaxed: None };
+        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], internal: &[], relaxed: None };
         for (joint, linear) in joints() {
             assert_eq!(joint.linear(), linear, "{}", joint.name());
             let error = check_constraint(&joint, &nodes(), &at);
@@ -162,7 +162,7 @@ fn closed_forms_agree_with_forward_differentiation() {
         (revolute("hinge", &n, markers).unwrap(), Related::new("hinge", Hinge, markers.to_vec()));
     for seed in 1..=6 {
         let s = numbers(seed);
-        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], modes: &[], relaxed: None };
+        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], internal: &[], relaxed: None };
         let all = |c: &dyn Constraint| {
             let (mut g, mut jac, mut h) = ([0.0; 5], [0.0; 60], [0.0; 144]);
             let (mut rate, mut bias) = ([0.0; 5], [0.0; 5]);
@@ -184,7 +184,7 @@ fn the_direction_is_held_and_the_stretch_is_free() {
     let tangent = direction("direction", &nodes, CABLE, ground()).unwrap();
     for (slope, held) in [([1.0, 2.0, -3.0], true), ([0.1, 0.2, -0.3], true), ([1.0, 2.0, -2.9], false)] {
         s.q[6..9].copy_from_slice(&slope);
-        let at = At { t: 0.0, q: &s.q, v: &s.v, a: &s.v, modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &s.q, v: &s.v, a: &s.v, internal: &[], relaxed: None };
         let (mut g, mut jac) = ([0.0; 2], [0.0; 12]);
         tangent.jacobian(&nodes, &at, &mut g, &mut jac);
         assert_eq!(g.iter().all(|g| g.abs() < 1e-14), held);

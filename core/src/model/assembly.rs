@@ -41,24 +41,24 @@ impl Model {
     }
 
     /// Sets the coordinates that motions prescribe, with their velocities and accelerations at time `t`.
-    pub(crate) fn drive(&self, t: f64, modes: &[f64], q: &mut [f64], v: &mut [f64], a: &mut [f64]) {
+    pub(crate) fn drive(&self, t: f64, internal: &[f64], q: &mut [f64], v: &mut [f64], a: &mut [f64]) {
         for &(c, at_q, at_v) in &self.driven {
-            if self.holds(c, modes) {
+            if self.holds(c, internal) {
                 [q[at_q], v[at_v], a[at_v]] = self.constraints[c].prescribed(t);
             }
         }
     }
 
     /// Coordinate, velocity and acceleration that are prescribed at time `t` where the velocity has this place.
-    pub(crate) fn prescribed(&self, at: usize, t: f64, modes: &[f64]) -> Option<[f64; 3]> {
-        let own = self.driven.iter().find(|&&(c, _, v)| v == at && self.holds(c, modes));
+    pub(crate) fn prescribed(&self, at: usize, t: f64, internal: &[f64]) -> Option<[f64; 3]> {
+        let own = self.driven.iter().find(|&&(c, _, v)| v == at && self.holds(c, internal));
         own.map(|&(c, ..)| self.constraints[c].prescribed(t))
     }
 
     /// Leaves out what a vector of velocities has of prescribed coordinates.
-    pub(crate) fn without_driven(&self, modes: &[f64], x: &mut [f64]) {
+    pub(crate) fn without_driven(&self, internal: &[f64], x: &mut [f64]) {
         for &(c, _, at) in &self.driven {
-            if self.holds(c, modes) {
+            if self.holds(c, internal) {
                 x[at] = 0.0;
             }
         }
@@ -196,7 +196,7 @@ impl Model {
         let m = rows.len();
         let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
         let multipliers = &lambda[rows.clone()];
-        if !self.holds(c, at.modes) {
+        if !self.holds(c, at.internal) {
             // what is left are equations for its multipliers, which are zero since it let go
             for row in rows {
                 let p = structure.position[self.velocities + row];
@@ -263,7 +263,7 @@ impl Model {
     /// Values of the constraints alone.
     pub fn violations(&self, at: &At<'_>, sys: &mut System, g: &mut [f64]) {
         for (c, constraint) in self.constraints.iter().enumerate() {
-            if !self.holds(c, at.modes) {
+            if !self.holds(c, at.internal) {
                 g[self.rows_of(c)].fill(0.0);
                 continue;
             }
@@ -278,7 +278,7 @@ impl Model {
         let (mut g, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
         for (c, constraint) in self.constraints.iter().enumerate() {
             let rows = self.rows_of(c);
-            if !self.holds(c, at.modes) {
+            if !self.holds(c, at.internal) {
                 rate[rows].fill(0.0);
                 continue;
             }
@@ -299,7 +299,7 @@ impl Model {
     pub fn rates(&self, at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
         for (c, constraint) in self.constraints.iter().enumerate() {
             let rows = self.rows_of(c);
-            if self.holds(c, at.modes) {
+            if self.holds(c, at.internal) {
                 constraint.rates(&self.nodes, at, &mut rate[rows.clone()], &mut bias[rows]);
             } else {
                 rate[rows.clone()].fill(0.0);

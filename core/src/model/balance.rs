@@ -22,7 +22,7 @@ impl Model {
         for t in &self.terms {
             p += t.power(at);
         }
-        let holding = self.constraints.iter().enumerate().filter(|(c, _)| self.holds(*c, at.modes));
+        let holding = self.constraints.iter().enumerate().filter(|(c, _)| self.holds(*c, at.internal));
         for (c, constraint) in holding {
             let (mut rate, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
             constraint.rates(&self.nodes, at, &mut rate, &mut bias);

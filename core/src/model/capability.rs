@@ -31,10 +31,10 @@ pub trait Foresees {
     }
 }
 
-/// Remembers something in [`State::modes`](crate::State::modes), such as where dry friction took hold.
+/// Remembers something in [`State::internal`](crate::State::internal), such as where dry friction took hold.
 pub trait Remembers {
-    /// Brings what it remembers up to date at a state that was accepted: `memory` is all of the modes, as they were at the
-    /// start of the step, and `at` has none.
+    /// Brings what it remembers up to date at a state that was accepted: `memory` is all of the internal variables, as they
+    /// were at the start of the step, and `at` has none.
     fn remember(&self, at: &At<'_>, memory: &mut [f64]);
 }
 

@@ -22,7 +22,7 @@ impl Model {
     pub fn carry(&self, old: &Model, state: &State) -> State {
         let mut new = self.state();
         new.t = state.t;
-        new.modes.clone_from(&state.modes);
+        new.internal.clone_from(&state.internal);
         for part in &self.parts {
             if let Some(other) = old.part(part.name()) {
                 part.carry(&self.nodes, other.as_ref(), &state.at(), &mut new.q, &mut new.v);

@@ -7,6 +7,11 @@ use crate::model::remesh::{Change, Mesh};
 use crate::model::state::At;
 
 /// What can be observed along a part, besides the motion of its markers.
+///
+/// ```
+/// use ropewalk_core::Quantity;
+/// assert_eq!(Quantity::Moment.unit(), "N m");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -34,6 +39,13 @@ impl Quantity {
 }
 
 /// An element of a slender part and what it is made of.
+///
+/// ```
+/// use ropewalk_core::Slender;
+/// let rope = Slender { element: 0.5, mass: 0.4, ea: 1e5, ei: 0.1 };
+/// // sound passes an element in a millisecond, bending in a quarter of a second
+/// assert!((rope.axial_time() - 1e-3).abs() < 1e-9 && (rope.bending_time() - 0.5).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slender {
     /// Its length [m].

@@ -103,8 +103,8 @@ pub struct Start {
     pub q: Vec<f64>,
     /// Velocities.
     pub v: Vec<f64>,
-    /// Modes.
-    pub modes: Vec<f64>,
+    /// Internal variables.
+    pub internal: Vec<f64>,
 }
 
 /// What changes by events: things that happen, and constraints that let go.
@@ -112,9 +112,9 @@ pub struct Start {
 pub struct Switches {
     /// The events that the scene brings along.
     pub events: Vec<Arc<dyn Event>>,
-    /// Names of the modes, in the order of [`State::modes`].
-    pub modes: Vec<String>,
-    /// For some constraints, by number: the mode that isn't zero once the constraint has let go.
+    /// Names of the internal variables, in the order of [`State::internal`].
+    pub internal: Vec<String>,
+    /// For some constraints, by number: the internal variable that isn't zero once the constraint has let go.
     pub released: BTreeMap<usize, usize>,
 }
 
@@ -140,7 +140,7 @@ impl Model {
         let mut rows = vec![0];
         let mut touched = Vec::new();
         let zero = vec![0.0; velocities];
-        let begin = At { t: 0.0, q: &start.q, v: &zero, a: &zero, modes: &start.modes, relaxed: None };
+        let begin = At { t: 0.0, q: &start.q, v: &zero, a: &zero, internal: &start.internal, relaxed: None };
         for c in &constraints {
             let (first, count) = (rows[rows.len() - 1], c.rows().len());
             let dofs = c.nodes().iter().flat_map(|k| nodes[k.0 as usize].dofs());
@@ -237,18 +237,18 @@ impl Model {
     pub fn redundancy(&self) -> Option<&Redundancy> {
         self.redundancy.as_ref()
     }
-    /// Names of the modes, in the order of [`State::modes`].
-    pub fn modes(&self) -> &[String] {
-        &self.switches.modes
+    /// Names of the internal variables, in the order of [`State::internal`].
+    pub fn internal_variables(&self) -> &[String] {
+        &self.switches.internal
     }
-    /// The number of a mode in [`State::modes`].
-    pub fn mode(&self, name: &str) -> Option<usize> {
-        self.switches.modes.iter().position(|m| m == name)
+    /// The number of an internal variable in [`State::internal`].
+    pub fn internal_variable(&self, name: &str) -> Option<usize> {
+        self.switches.internal.iter().position(|m| m == name)
     }
     /// Whether a constraint still holds: it hasn't broken.
-    pub fn holds(&self, constraint: usize, modes: &[f64]) -> bool {
+    pub fn holds(&self, constraint: usize, internal: &[f64]) -> bool {
         self.switches.released.is_empty()
-            || self.switches.released.get(&constraint).is_none_or(|&m| modes[m] == 0.0)
+            || self.switches.released.get(&constraint).is_none_or(|&m| internal[m] == 0.0)
     }
 
     /// The state in which the scene starts: as given, not yet consistent.
@@ -260,7 +260,7 @@ impl Model {
             a: vec![0.0; self.velocities],
             aux: vec![0.0; self.velocities],
             lambda: vec![0.0; self.multipliers()],
-            modes: self.start.modes.clone(),
+            internal: self.start.internal.clone(),
             control: Control::default(),
         }
     }
@@ -276,7 +276,7 @@ impl Model {
             ("accelerations", state.a.len(), self.velocities),
             ("auxiliary accelerations", state.aux.len(), self.velocities),
             ("multipliers", state.lambda.len(), self.multipliers()),
-            ("modes", state.modes.len(), self.start.modes.len()),
+            ("internal variables", state.internal.len(), self.start.internal.len()),
         ];
         match own.into_iter().find(|(_, has, wants)| has != wants) {
             Some((what, has, wants)) => Err(format!("it has {has} {what}, the model {wants}")),
@@ -388,11 +388,11 @@ impl Model {
         if self.remembering.is_empty() {
             return;
         }
-        let mut memory = std::mem::take(&mut state.modes);
+        let mut memory = std::mem::take(&mut state.internal);
         for term in self.remembering.iter().filter_map(|&k| self.terms[k].remembers()) {
             term.remember(&state.at(), &mut memory);
         }
-        state.modes = memory;
+        state.internal = memory;
     }
 
     /// What has gone where it can't have gone in a step.

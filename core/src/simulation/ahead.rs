@@ -92,7 +92,7 @@ impl Model {
             Some(told) => part(told, h),
             None => self.shown_by(term, at, h),
         });
-        let holding = self.moving_constraints().filter(|(c, _)| self.holds(*c, at.modes));
+        let holding = self.moving_constraints().filter(|(c, _)| self.holds(*c, at.internal));
         holding.fold(h, |h, (_, constraint)| match constraint.reach(at.t, h) {
             Some(told) => part(told, h),
             None => self.shown_in(constraint, at, h),

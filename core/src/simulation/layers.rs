@@ -92,7 +92,7 @@ impl Layers {
     pub fn look(&mut self, model: &Model, at: &At<'_>) {
         for k in 0..self.held.len() {
             let Held { part, node, constraint } = self.held[k];
-            if model.holds(constraint, at.modes) {
+            if model.holds(constraint, at.internal) {
                 let (part, by) = (model.parts()[part].as_ref(), model.constraints()[constraint].name());
                 self.beside(part, node, by, true, at);
                 self.beside(part, node, by, false, at);

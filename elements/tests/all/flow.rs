@@ -48,7 +48,7 @@ fn motion() -> [Vec<f64>; 3] {
 }
 
 fn at<'a>(x: &'a [Vec<f64>; 3]) -> At<'a> {
-    At { t: 0.3, q: &x[0], v: &x[1], a: &x[2], modes: &[], relaxed: None }
+    At { t: 0.3, q: &x[0], v: &x[1], a: &x[2], internal: &[], relaxed: None }
 }
 
 fn pool<E: Element<N, N>, const N: usize>(element: E) -> Pool<E, N, N> {

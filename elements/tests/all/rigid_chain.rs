@@ -29,7 +29,7 @@ fn bends(rest: [f64; 3]) -> Bends {
 #[test]
 fn tangent_and_energy_of_bending_are_exact() {
     let (q, v) = state();
-    let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 12], modes: &[], relaxed: None };
+    let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 12], internal: &[], relaxed: None };
     for rest in [[1.0, 0.0, 0.0], [0.6, 0.0, 0.8]] {
         let bends = bends(rest);
         let error = check_tangent(&bends, &NODES, &at, Width::One);

@@ -43,7 +43,7 @@ pub(crate) struct Now {
 impl Now {
     /// Its own unknowns at the same time.
     pub fn at<'a>(&'a self, at: &At<'a>) -> At<'a> {
-        At { t: at.t, q: &self.q, v: &self.v, a: &self.a, modes: &[], relaxed: None }
+        At { t: at.t, q: &self.q, v: &self.v, a: &self.a, internal: &[], relaxed: None }
     }
 
     fn vectors(&self) -> [V3<f64>; 4] {

@@ -327,7 +327,7 @@ impl ContactSpec {
         let q = b.coordinates();
         // no velocity is needed to see how deep they are
         let still = vec![0.0; q.len()];
-        let at = At { t: 0.0, q, v: &still, a: &still, modes: &[], relaxed: None };
+        let at = At { t: 0.0, q, v: &still, a: &still, internal: &[], relaxed: None };
         let points = all.points.iter().map(|(name, p)| (name.clone(), p.radius));
         let spans = all.spans.iter().map(|(name, s)| {
             let place = format!("`{name}` between {:.4} m and {:.4} m", s.s, s.s + s.length);

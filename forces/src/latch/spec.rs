@@ -157,7 +157,7 @@ impl ForceSpec for LatchSpec {
         }
         let mut seats: Vec<Seat> = Vec::with_capacity(points.len());
         let q = b.coordinates().to_vec();
-        let at = ropewalk_core::At { t: 0.0, q: &q, v: &[], a: &[], modes: &[], relaxed: None };
+        let at = ropewalk_core::At { t: 0.0, q: &q, v: &[], a: &[], internal: &[], relaxed: None };
         for (k, point) in points.into_iter().enumerate() {
             if seats.iter().any(|s| s.ends[1] == point) {
                 return Err(BuildError::at("on", "the same point is named twice"));
@@ -171,8 +171,8 @@ impl ForceSpec for LatchSpec {
             {
                 return Err(BuildError::at("to", "a body can't be held at a seat on itself"));
             }
-            let mode = b.mode(format!("{}/{}", self.name, k + 1));
-            seats.push(Seat { ends: [seat, point], mode });
+            let variable = b.internal_variable(format!("{}/{}", self.name, k + 1));
+            seats.push(Seat { ends: [seat, point], variable });
         }
         let latch = Latch {
             label: self.name.clone(),

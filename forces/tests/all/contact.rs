@@ -45,7 +45,7 @@ impl Numbers {
         s
     }
     fn at(&self) -> At<'_> {
-        At { t: 0.0, q: &self.q, v: &self.v, a: &self.a, modes: &[], relaxed: None }
+        At { t: 0.0, q: &self.q, v: &self.v, a: &self.a, internal: &[], relaxed: None }
     }
     fn axes(&self) -> [V3<f64>; 3] {
         let q = nodes()[SEAT].q;
@@ -264,7 +264,7 @@ fn tangents_of_friction_are_exact_while_it_holds_and_while_it_slips() {
     for (way, bent) in [(1e-3, 0.05), (3e-2, 0.6)] {
         let (mut worst, mut slip, mut hold) = (0.0_f64, 0, 0);
         rough(way, |contact, s, memory, what| {
-            let at = At { modes: memory, ..s.at() };
+            let at = At { internal: memory, ..s.at() };
             let mut shown = Vec::new();
             contact.observe(&at, &mut shown);
             if shown[3] == 0.0 {
@@ -289,7 +289,7 @@ fn tangents_of_friction_are_exact_while_it_holds_and_while_it_slips() {
 fn what_friction_takes_up_is_told() {
     rough(0.02, |contact, s, memory, what| {
         let nodes = nodes();
-        let at = At { modes: memory, ..s.at() };
+        let at = At { internal: memory, ..s.at() };
         let mut shown = Vec::new();
         contact.observe(&at, &mut shown);
         if shown[3] == 0.0 {
@@ -313,7 +313,7 @@ fn what_friction_takes_up_is_told() {
 fn both_sides_get_opposite_forces_and_moments() {
     rough(0.05, |contact, s, memory, what| {
         let nodes = nodes();
-        let at = At { modes: memory, ..s.at() };
+        let at = At { internal: memory, ..s.at() };
         if contact.depths(&at).next().unwrap().is_none() {
             return;
         }

@@ -144,7 +144,7 @@ fn size(model: &Model, residual: &[f64]) -> f64 {
 
 /// The force of a constraint on the node that it presses hardest [N].
 fn reaction(model: &Model, c: usize, at: &At<'_>, lambda: &[f64]) -> f64 {
-    if !model.holds(c, at.modes) {
+    if !model.holds(c, at.internal) {
         return 0.0;
     }
     let on = |k: &NodeId| match model.node(*k).kind {

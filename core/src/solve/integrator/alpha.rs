@@ -5,6 +5,7 @@ use super::convergence::{Failure, Rate};
 use super::forces::larger;
 use super::newton::Newton;
 use super::options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
+use super::predictor::{Past, best_order};
 use super::scales::{Scaled, Units};
 use super::scheme::Coefficients;
 use super::start::{anew, settle};
@@ -124,30 +125,6 @@ impl Alpha {
         self.options.constraints == ConstraintForm::Ggl && model.multipliers() > 0
     }
 
-    /// The order of the polynomial that would have predicted the accelerations of the trial best.
-    fn best_order(&self, state: &State, h: f64, work: &Workspace) -> usize {
-        let n = state.a.len();
-        let past = Past::new(state, h);
-        let [one, two] = &state.control.a_back;
-        let a = &state.a[..n];
-        // where there is no past yet, its weight is zero
-        let one = if state.control.backs > 0 { &one[..n] } else { a };
-        let two = if state.control.backs > 1 { &two[..n] } else { a };
-        let (new, mass) = (&work.trial.a[..n], &work.norms.weights()[..n]);
-        let ([x1, y1, _], [x2, y2, z2]) = (past.continued(1), past.continued(2));
-        let mut miss = [0.0; 3];
-        for i in 0..n {
-            let constant = new[i] - a[i];
-            let linear = new[i] - (x1 * a[i] + y1 * one[i]);
-            let quadratic = new[i] - (x2 * a[i] + y2 * one[i] + z2 * two[i]);
-            miss[0] += mass[i] * constant * constant;
-            miss[1] += mass[i] * linear * linear;
-            miss[2] += mass[i] * quadratic * quadratic;
-        }
-        let backs = (state.control.backs + 1).min(2);
-        (1..=backs).fold(0, |best, k| if miss[k] < miss[best] { k } else { best })
-    }
-
     /// Estimated error of the trial, relative to the part where it is largest: `|Cq h² (a₊ - a)|`, without what the
     /// constraints and the numerical damping take away. With it by what tensions are off for it, over their tolerance.
     fn error(
@@ -165,7 +142,7 @@ impl Alpha {
             *e = factor * self.scheme.mass() * (new - old);
         }
         // what is prescribed has no error
-        model.without_driven(&state.modes, &mut e);
+        model.without_driven(&state.internal, &mut e);
         rhs.clear();
         rhs.resize(model.structure().n, 0.0);
         work.times_mass(model, &e, &mut rhs[..nv]);
@@ -330,7 +307,7 @@ impl Alpha {
 
     /// Moves the state to the end of a step `h`; what the controller remembers is still that of the step before.
     fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, rate: &Rate) {
-        let order = self.best_order(state, h, work);
+        let order = best_order(state, h, work);
         let c = &mut state.control;
         c.order = order;
         c.h_before = c.h_last;
@@ -387,36 +364,6 @@ const LAW: StepLaw = StepLaw {
     recovery: 1.1,
     shares_rest: false,
 };
-
-/// The times of the accelerations that are kept, before the present one.
-struct Past {
-    h: f64,
-    one: f64,
-    two: f64,
-}
-
-impl Past {
-    fn new(state: &State, h: f64) -> Self {
-        let c = &state.control;
-        // without a past any time will do: its weight isn't used
-        let one = if c.h_last > 0.0 { c.h_last } else { h };
-        Past { h, one, two: one + if c.h_before > 0.0 { c.h_before } else { h } }
-    }
-    /// Weights of the present acceleration and of those one and two steps back, to continue the polynomial of this
-    /// order by a step `h`.
-    fn continued(&self, order: usize) -> [f64; 3] {
-        let Past { h, one, two } = *self;
-        match order {
-            0 => [1.0, 0.0, 0.0],
-            1 => [1.0 + h / one, -h / one, 0.0],
-            _ => [
-                (h + one) * (h + two) / (one * two),
-                -h * (h + two) / (one * (two - one)),
-                h * (h + one) / (two * (two - one)),
-            ],
-        }
-    }
-}
 
 /// Whether velocities change within the step by half of what they are, although they hardly did in the step before: no
 /// smooth motion does that. Steps with error control see it by themselves.

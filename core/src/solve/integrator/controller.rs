@@ -3,12 +3,15 @@
 use super::options::{Limits, Stepping, fixed_step};
 use crate::model::state::Control;
 
+/// Factor by which a step may change, from its error, that of the step before, and the sizes of both.
+pub(super) type Trend = fn(f64, f64, [f64; 2]) -> f64;
+
 /// What a scheme's step sizes follow.
 pub(super) struct StepLaw {
     /// Factor by which a step may change after an error over its tolerance and so many iterations.
     pub growth: fn(f64, u32) -> f64,
-    /// The same if the error goes on growing as it did: from the error, the one before, and the ratio of both steps.
-    pub trend: Option<fn(f64, f64, [f64; 2]) -> f64>,
+    /// The same if the error goes on growing as it did.
+    pub trend: Option<Trend>,
     /// Largest factor after a step, and after one with rejected tries.
     pub most: [f64; 2],
     /// Factors from one up to this leave the step as it is: they aren't worth a new factorisation.

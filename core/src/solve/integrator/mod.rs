@@ -8,6 +8,7 @@ mod forces;
 mod newton;
 mod norm;
 mod options;
+mod predictor;
 mod radau;
 mod scales;
 mod scheme;

@@ -114,7 +114,7 @@ impl Newton<'_> {
             t.d.iter_mut().zip(&t.shift).for_each(|(d, shift)| *d += shift);
         }
         self.model.retract(&self.state.q, &t.d, &mut t.q);
-        self.model.drive(self.state.t + h, &self.state.modes, &mut t.q, &mut t.v, &mut t.a);
+        self.model.drive(self.state.t + h, &self.state.internal, &mut t.q, &mut t.v, &mut t.a);
     }
 
     /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.
@@ -323,7 +323,7 @@ impl Newton<'_> {
             q: &trial.q,
             v: &trial.v,
             a: &trial.a,
-            modes: &self.state.modes,
+            internal: &self.state.internal,
             relaxed: None,
         }
     }

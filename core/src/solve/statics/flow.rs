@@ -23,7 +23,7 @@ impl Statics<'_> {
         let model = self.model;
         for part in model.parts().iter().filter(|_| self.flows) {
             let fronts: Vec<_> = [0, 1].iter().filter_map(|&end| part.front(end)).collect();
-            let given = |v: usize| model.prescribed(v, state.t, &state.modes).map(|[_, rate, _]| rate);
+            let given = |v: usize| model.prescribed(v, state.t, &state.internal).map(|[_, rate, _]| rate);
             let rates: Vec<Option<f64>> = fronts.iter().map(|f| given(f.v)).collect();
             let known = || rates.iter().flatten().copied();
             let fastest = known().fold(0.0, |m: f64, r| if r.abs() > m.abs() { r } else { m });

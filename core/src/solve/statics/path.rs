@@ -296,7 +296,7 @@ impl Statics<'_> {
             q: &state.q,
             v: &self.v,
             a: &self.a,
-            modes: &state.modes,
+            internal: &state.internal,
             relaxed: relaxed.map(|r| Relaxed { last: r.last, how: r.how }),
         };
         let mut ahead = std::mem::take(&mut self.ahead);

@@ -55,7 +55,7 @@ impl Iterate {
 
 /// What is made of an iterate that may be the equilibrium.
 enum Verdict {
-    Found(State),
+    Found(Box<State>),
     /// It is unstable, and left in this direction.
     Leave(Vec<f64>),
     /// It isn't close enough yet.
@@ -87,7 +87,7 @@ impl Statics<'_> {
             };
             match verdict {
                 Ok(Verdict::Found(there)) => {
-                    *state = there;
+                    *state = *there;
                     return Ok(found);
                 }
                 Ok(Verdict::Leave(_)) if found.pushes >= 3 => {
@@ -191,7 +191,7 @@ impl Statics<'_> {
         self.neutral = std::mem::take(&mut judged.neutral);
         self.doubt = judged.doubt.take();
         self.judged = judged;
-        Ok(Verdict::Found(there))
+        Ok(Verdict::Found(Box::new(there)))
     }
 
     /// Whether corrections no longer fall, since rounding of stiff forces moves what is soft: next to a critical load.

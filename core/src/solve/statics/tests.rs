@@ -39,7 +39,7 @@ impl Column {
         let rod = |k: usize| -> Box<dyn Constraint> {
             Box::new(Related::new(format!("link {}", k + 1), Rod(l), vec![at(k), at(k + 1)]))
         };
-        let start = Start { q, v: vec![0.0; 3 * n], modes: vec![] };
+        let start = Start { q, v: vec![0.0; 3 * n], internal: vec![] };
         Model::new(nodes, vec![Box::new(self)], (0..n).map(rod).collect(), vec![], start, 1.0)
     }
 }
@@ -170,7 +170,7 @@ fn the_test_column_has_the_right_derivatives() {
     let mut q = model.state().q;
     q.iter_mut().enumerate().for_each(|(i, x)| *x += 0.03 * (i as f64).sin());
     let zero = vec![0.0; q.len()];
-    let at = At { t: 0.8, q: &q, v: &zero, a: &zero, modes: &[], relaxed: None };
+    let at = At { t: 0.8, q: &q, v: &zero, a: &zero, internal: &[], relaxed: None };
     let off = crate::testing::check_tangent(&column, model.nodes(), &at, crate::algebra::lane::Width::One);
     assert!(off < 1e-6, "{off:e}");
 }
@@ -248,7 +248,7 @@ impl Truss {
             let markers = vec![Marker::ground([0.0; 3]), Marker::node(NodeId(0))];
             Box::new(Related::new(format!("guide {i}"), Guide(i), markers))
         };
-        let start = Start { q: vec![0.0, 0.0, 0.5], v: vec![0.0; 3], modes: vec![] };
+        let start = Start { q: vec![0.0, 0.0, 0.5], v: vec![0.0; 3], internal: vec![] };
         Model::new(nodes, vec![Box::new(Truss(load))], vec![hold(0), hold(1)], vec![], start, 1.0)
     }
     fn pull(z: f64) -> f64 {

@@ -222,7 +222,7 @@ mod tests {
     fn tangent_agrees_with_differences() {
         let q = [0.0, 0.1, 0.0, 0.9, 0.3, 0.2, 0.8, 0.3, 0.2, 1.1, -0.2, 0.1, -0.1, 1.2];
         let v = [0.1, -0.2, 0.3, 0.2, 0.1, -0.3, 0.4, 0.1, 0.2, -0.1, 0.3, 0.2, 0.7, -0.4];
-        let at = At { t: 0.0, q: &q, v: &v, a: &[0.1; 14], modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.1; 14], internal: &[], relaxed: None };
         let by = Embedding { fixed: [0.05, -0.1], by: [[0.8, 0.3], [0.2, 0.7]] };
         assert!(check_tangent(&pool(by), &nodes(), &at, Width::One) < 1e-7);
     }
@@ -240,7 +240,7 @@ mod tests {
         let q = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, end[0], end[1], 0.0, cos, sin, 0.0, 0.0, l];
         let mut v = [0.0; 14];
         (v[12], v[13]) = (5.0, 5.0);
-        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 14], modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 14], internal: &[], relaxed: None };
         let by = Embedding { fixed: [0.0; 2], by: [[1.0, 0.0], [0.0, 1.0]] };
         let power = ropewalk_core::Term::power(&pool(by), &at).dissipated;
         assert!(power < 1e-24, "{power:e}");
