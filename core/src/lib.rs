@@ -24,7 +24,7 @@ pub use model::column::Column;
 pub use model::constraint::{Constraint, RowKind};
 pub use model::dead::{DeadEntry, DeadLoad, DeadPull};
 pub use model::event::{Action, Event};
-pub use model::feed::{Feed, Front};
+pub use model::feed::{Feed, MovingBoundary};
 pub use model::joint::Joint;
 pub use model::joint::equation::{Arrow, Equation};
 pub use model::line::{Line, Quantity, Slender};

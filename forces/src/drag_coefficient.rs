@@ -63,7 +63,7 @@ impl Record for DragCoefficient {
         let term = &s.model.terms()[self.term];
         out.extend(self.at.iter().map(|place| {
             // stations count along the material, which runs through a start that feeds
-            let start = self.part.front(0).map_or(0.0, |front| s.at.q[front.q]);
+            let start = self.part.boundary(0).map_or(0.0, |boundary| s.at.q[boundary.q]);
             let along = start + place.now(self.part.as_ref(), &s.at);
             let cn = coefficient(term.as_ref(), self.part.name(), along, &s.at);
             cn.filter(|cn| cn.is_finite()).unwrap_or(f64::NAN)

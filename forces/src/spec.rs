@@ -335,10 +335,10 @@ impl AddedMassSpec {
         }
         let diameter = part.tips().first().map_or(0.0, |tip| tip.diameter);
         for (end, name) in [(0, "start"), (1, "end")] {
-            if let Some(front) = part.front(end).filter(|_| diameter > 0.0) {
+            if let Some(boundary) = part.boundary(end).filter(|_| diameter > 0.0) {
                 let label = format!("{}: water at its {name}", part.name());
                 let added_mass = law.clone();
-                b.term(Box::new(FeedingEnd { label, added_mass, diameter, surface, front }));
+                b.term(Box::new(FeedingEnd { label, added_mass, diameter, surface, boundary }));
             }
         }
     }

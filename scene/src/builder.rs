@@ -6,8 +6,8 @@ use crate::scene::GRAVITY;
 use crate::water::{Air, Water};
 use ropewalk_core::error::finite;
 use ropewalk_core::{
-    At, BuildError, Constraint, Element, Event, Feed, FieldTerm, Front, Law, Laws, Marker, Mesh, Model,
-    Motion, Node, NodeId, NodeKind, Part, Place, Pool, Spot, Start, Stations, Switches, Term, V3,
+    At, BuildError, Constraint, Element, Event, Feed, FieldTerm, Law, Laws, Marker, Mesh, Model, Motion,
+    MovingBoundary, Node, NodeId, NodeKind, Part, Place, Pool, Spot, Start, Stations, Switches, Term, V3,
     find_redundancy,
 };
 use std::any::{Any, TypeId};
@@ -307,14 +307,14 @@ impl Builder {
         ends.map_or([None; 2], |ends| ends.each_ref().map(|end| end.as_ref().map(|(feed, _)| *feed)))
     }
 
-    /// The front at an end of a part that feeds; `remedy` says what to add where nothing does.
+    /// The boundary at an end of a part that feeds; `remedy` says what to add where nothing does.
     ///
     /// # Errors
     /// The marker isn't an end of a part that material flows through.
-    pub fn front(&self, marker: &MarkerRef, remedy: &str) -> Result<Front, BuildError> {
+    pub fn boundary(&self, marker: &MarkerRef, remedy: &str) -> Result<MovingBoundary, BuildError> {
         let (name, end) = end_of(marker)?;
         let (_, part) = self.find(name, "marker")?;
-        part.front(end).ok_or_else(|| {
+        part.boundary(end).ok_or_else(|| {
             let message = match part.slender() {
                 Some(_) => format!("nothing feeds at {marker}: {remedy}"),
                 None => {
@@ -329,7 +329,7 @@ impl Builder {
     /// The part at an end of which material flows.
     ///
     /// # Errors
-    /// As for [`Builder::front`].
+    /// As for [`Builder::boundary`].
     pub fn feeding_part(&self, marker: &MarkerRef) -> Result<Arc<dyn Part>, BuildError> {
         Ok(self.find(end_of(marker)?.0, "marker")?.1)
     }
@@ -391,7 +391,7 @@ impl Builder {
                     );
                     return Err(BuildError::at("on", message));
                 }
-                let material = law.follows_material() && (0..2).any(|end| part.front(end).is_some());
+                let material = law.follows_material() && (0..2).any(|end| part.boundary(end).is_some());
                 self.laws.entry((k, material)).or_default().push(law);
                 any = true;
             } else if !on.is_empty() {

@@ -479,23 +479,23 @@ fn a_flexible_cable_peels_at_its_angle_and_energy_closes() {
             let at = s.state.at();
             let part = s.model.part("fibre").expect("fibre");
             let length = part.length_now(&at);
-            let front = part.front(1).expect("front");
+            let boundary = part.boundary(1).expect("boundary");
             let pull = part.observe(ropewalk_core::Quantity::Tension, length, &at).expect("tension");
-            let x: V3<f64> = std::array::from_fn(|i| at.q[front.end_q + i]);
-            let slope: V3<f64> = std::array::from_fn(|i| at.q[front.end_q + 3 + i]);
+            let x: V3<f64> = std::array::from_fn(|i| at.q[boundary.end_q + i]);
+            let slope: V3<f64> = std::array::from_fn(|i| at.q[boundary.end_q + 3 + i]);
             let size = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
             // close-wound: a pitch of a diameter a turn
             let climb = (0.9e-3 / (TAU * 0.06)).atan();
             let round = (x[0] * slope[1] - x[1] * slope[0]) / (x[0].hypot(x[1]) * size);
-            let (cos, u) = (round * climb.cos() + slope[2] / size * climb.sin(), front.rate(&at));
+            let (cos, u) = (round * climb.cos() + slope[2] / size * climb.sin(), boundary.rate(&at));
             let found = (pull - mass * u * u) * (1.0 - cos) + 0.5 * pull * pull / ea;
             eprintln!("{k}: u {u:.3}, T {pull:.4}, cos D {cos:.4}, {:.2e}", found / bond - 1.0);
             assert!(u > 0.1);
             worst = worst.max((found / bond - 1.0).abs());
         }
         eprintln!("{:?}, {:e}", s.audit, s.audit.imbalance() / s.audit.scale);
-        let front = s.model.part("fibre").expect("fibre").front(1).expect("front");
-        let peeled = front.fed(&s.state.at());
+        let boundary = s.model.part("fibre").expect("fibre").boundary(1).expect("boundary");
+        let peeled = boundary.fed(&s.state.at());
         assert!(s.audit.dissipated > 0.99 * bond * peeled, "{peeled}");
         (worst, s.audit.imbalance() / s.audit.scale)
     };
@@ -624,8 +624,8 @@ fn finite_differences_and_finite_elements_agree_from_rest_to_15_knots() {
         let part = s.model.part("fibre").expect("fibre");
         let row =
             history.rows.iter().min_by(|a, b| (a.t - t).abs().total_cmp(&(b.t - t).abs())).expect("row");
-        let front = part.front(0).expect("front");
-        let (speed_error, length) = (-front.rate(&at) - row.speed, part.length_now(&at));
+        let boundary = part.boundary(0).expect("boundary");
+        let (speed_error, length) = (-boundary.rate(&at) - row.speed, part.length_now(&at));
         // the strain of an element is right as its mean, and ripples about that
         let mut tension = 0.0_f64;
         for e in 0..20 {

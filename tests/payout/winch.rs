@@ -108,7 +108,7 @@ fn steadily(name: &str, speed: f64) -> ropewalk_constraints::motion::SpeedTableS
 
 #[test]
 fn top_tension_of_a_ramp_holds_the_acceleration() {
-    // T_top = (w - m dV/dt) L up to terms of order 1/EA; without the acceleration of the front it is 15 % off
+    // T_top = (w - m dV/dt) L up to terms of order 1/EA; without the acceleration of the boundary it is 15 % off
     let (m, g, l0) = (1.0, 8.0, 5.0);
     let mut last = f64::INFINITY;
     for ea in [1e4, 1e5, 1e6] {
@@ -265,9 +265,9 @@ fn feeding_is_prescribed_by_a_constraint() {
         hanging(2.0, 3, Section::new(1.0, 1e5, 0.0), WinchSpec::speed("winch", "rope.start", 1.0), 9.81);
     let model = scene.build().expect("model");
     let part = model.part("rope").expect("rope");
-    let front = part.front(0).expect("a front");
+    let boundary = part.boundary(0).expect("a boundary");
     let motion = ropewalk_constraints::motion::Straight::new([1.0, 0.0, 0.0], 1.0, 0.0, 1.0).expect("ramp");
-    let feeding = Feeding::new("winch", front, std::sync::Arc::new(motion));
+    let feeding = Feeding::new("winch", boundary, std::sync::Arc::new(motion));
     let state = model.state();
     let at = ropewalk_core::At { t: 0.4, ..state.at() };
     assert!(ropewalk_core::testing::check_constraint(&feeding, model.nodes(), &at) < 1e-8);
@@ -500,9 +500,9 @@ mod running {
         let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
         let mut state = model.state();
         // fixed in space while the material runs through
-        let fronts = 6 * (n + 1);
+        let boundaries = 6 * (n + 1);
         state.v.fill(0.0);
-        (state.v[fronts], state.v[fronts + 1]) = (line.v / stretch, line.v / stretch);
+        (state.v[boundaries], state.v[boundaries + 1]) = (line.v / stretch, line.v / stretch);
         // unknowns: y and y' of every node, without y at both ends
         let dofs: Vec<usize> =
             (0..=n).flat_map(|k| [6 * k + 1, 6 * k + 4]).filter(|&d| d != 1 && d != 6 * n + 1).collect();

@@ -4,7 +4,9 @@ use super::{Limit, Peel, Side};
 use crate::package::{Lay, Package, PackageSpec};
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::rotation::cross;
-use ropewalk_core::{At, BuildError, Constraint, Feed, Front, Marker, Node, NodeId, RowKind, V3, dot};
+use ropewalk_core::{
+    At, BuildError, Constraint, Feed, Marker, MovingBoundary, Node, NodeId, RowKind, V3, dot,
+};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,7 +19,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct LiftOff {
     name: String,
-    front: Front,
+    boundary: MovingBoundary,
     marker: [Marker; 1],
     nodes: [NodeId; 2],
     package: Arc<Package>,
@@ -29,9 +31,14 @@ const ROWS: [RowKind; 5] =
 
 impl LiftOff {
     /// Lifts off at this end.
-    pub fn new(name: impl Into<String>, front: Front, package: Arc<Package>, tangent: bool) -> Self {
-        let (marker, nodes) = ([Marker::node(front.end)], [front.end, front.node]);
-        LiftOff { name: name.into(), front, marker, nodes, package, tangent }
+    pub fn new(
+        name: impl Into<String>,
+        boundary: MovingBoundary,
+        package: Arc<Package>,
+        tangent: bool,
+    ) -> Self {
+        let (marker, nodes) = ([Marker::node(boundary.end)], [boundary.end, boundary.node]);
+        LiftOff { name: name.into(), boundary, marker, nodes, package, tangent }
     }
 
     /// The lift-off point now; beyond the end of the cable it goes straight on, so that the run gets to see the end.
@@ -105,16 +112,16 @@ impl Constraint for LiftOff {
         false
     }
     fn jacobian(&self, _: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
-        let (sigma, sign) = (self.front.fed(at), self.front.sign);
+        let (sigma, sign) = (self.boundary.fed(at), self.boundary.sign);
         let lay = self.lay(sigma);
         jac.fill(0.0);
         for i in 0..3 {
-            g[i] = at.q[self.front.end_q + i] - lay.x[i];
+            g[i] = at.q[self.boundary.end_q + i] - lay.x[i];
             jac[7 * i + i] = 1.0;
             jac[7 * i + 6] = -sign * lay.tangent[i];
         }
         if self.tangent {
-            let slope = self.slope(at.q, self.front.end_q);
+            let slope = self.slope(at.q, self.boundary.end_q);
             let [d, by_sigma] = self.directions(&lay);
             for r in 0..2 {
                 g[3 + r] = dot(&d[r], &slope);
@@ -124,8 +131,8 @@ impl Constraint for LiftOff {
         }
     }
     fn geometric(&self, _: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
-        let (sigma, sign) = (self.front.fed(at), self.front.sign);
-        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.front.end_q));
+        let (sigma, sign) = (self.boundary.fed(at), self.boundary.sign);
+        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.boundary.end_q));
         h.fill(0.0);
         let seconds = self.seconds(sigma, &lay, &slope);
         h[7 * 6 + 6] = seconds.iter().zip(lambda).map(|(s, l)| s * l).sum();
@@ -139,15 +146,15 @@ impl Constraint for LiftOff {
         }
     }
     fn rates(&self, _: &[Node], at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
-        let (sigma, u) = (self.front.fed(at), self.front.rate(at));
-        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.front.end_q));
+        let (sigma, u) = (self.boundary.fed(at), self.boundary.rate(at));
+        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.boundary.end_q));
         rate.fill(0.0);
         let seconds = self.seconds(sigma, &lay, &slope);
         for (bias, second) in bias.iter_mut().zip(seconds) {
             *bias = second * u * u;
         }
         if self.tangent {
-            let (turning, [_, by_sigma]) = (self.slope(at.v, self.front.end_v), self.directions(&lay));
+            let (turning, [_, by_sigma]) = (self.slope(at.v, self.boundary.end_v), self.directions(&lay));
             for r in 0..2 {
                 bias[3 + r] += 2.0 * u * dot(&by_sigma[r], &turning);
             }
@@ -212,7 +219,7 @@ impl ConstraintSpec for LiftOffSpec {
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let package = Arc::new(self.package.build()?);
-        let front = b.front(&self.marker, "add a `winch` or `eyelet` there, or give `peel`")?;
+        let boundary = b.boundary(&self.marker, "add a `winch` or `eyelet` there, or give `peel`")?;
         let part = b.feeding_part(&self.marker)?;
         positive("slip_speed", self.slip_speed)?;
         if let Some(energy) = self.adhesion_energy {
@@ -224,17 +231,17 @@ impl ConstraintSpec for LiftOffSpec {
             }
             let (name, energy) = (self.name.clone(), not_negative("adhesion_energy", energy)?);
             let package = package.clone();
-            b.term(Box::new(Peel { name, front, package, energy, slip_speed: self.slip_speed, ei }));
+            b.term(Box::new(Peel { name, boundary, package, energy, slip_speed: self.slip_speed, ei }));
         }
         b.event(Limit {
             name: self.name.clone(),
-            front,
+            boundary,
             part: part.name().to_string(),
             side: Side::Empty,
             length: package.wound(),
         });
-        super::conditions::watch(b, &self.name, part.name(), front, &package);
-        b.constraint(LiftOff::new(&self.name, front, package, self.tangent))
+        super::conditions::watch(b, &self.name, part.name(), boundary, &package);
+        b.constraint(LiftOff::new(&self.name, boundary, package, self.tangent))
     }
 }
 
@@ -252,7 +259,7 @@ mod tests {
         ];
         let package = Arc::new(PackageSpec::new(0.06, 0.2, 0.009).build().unwrap());
         for (sign, p) in [(-1.0, -0.9), (1.0, 1.3), (1.0, 0.2)] {
-            let front = Front {
+            let boundary = MovingBoundary {
                 node: NodeId(1),
                 q: 6,
                 v: 6,
@@ -267,7 +274,7 @@ mod tests {
             let v = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
             let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], internal: &[], relaxed: None };
             for tangent in [false, true] {
-                let off = LiftOff::new("off", front, package.clone(), tangent);
+                let off = LiftOff::new("off", boundary, package.clone(), tangent);
                 let error = check_constraint(&off, &nodes, &at);
                 assert!(error < 1e-5, "{sign}, tangent {tangent}: {error:e}");
             }

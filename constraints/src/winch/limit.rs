@@ -1,6 +1,6 @@
 //! What ends a run of a winch.
 
-use ropewalk_core::{Action, Event, Front, Model, State};
+use ropewalk_core::{Action, Event, Model, MovingBoundary, State};
 
 /// Which limit it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub struct Limit {
     /// Name of the winch.
     pub name: String,
     /// The end that feeds.
-    pub front: Front,
+    pub boundary: MovingBoundary,
     /// The part that feeds, for its length.
     pub part: String,
     /// Which limit.
@@ -38,7 +38,7 @@ impl Event for Limit {
     fn value(&self, model: &Model, state: &State) -> f64 {
         let at = state.at();
         match self.side {
-            Side::Empty => self.length - self.front.fed(&at),
+            Side::Empty => self.length - self.boundary.fed(&at),
             Side::Short => model.part(&self.part).map_or(1.0, |p| p.length_now(&at) - self.length),
         }
     }

@@ -1,9 +1,11 @@
 //! Feeding under a force: tension, brake, the inertia of a drum.
 
-use ropewalk_core::{Assembly, At, Column, Energy, Front, Motion, Pattern, Power, Shows, Term, Timed};
+use ropewalk_core::{
+    Assembly, At, Column, Energy, Motion, MovingBoundary, Pattern, Power, Shows, Term, Timed,
+};
 use std::sync::Arc;
 
-/// What a winch that isn't driven pulls with, as force on the front: `P |r'|` with
+/// What a winch that isn't driven pulls with, as force on the boundary: `P |r'|` with
 /// `P = tension + brake u/√(u² + slip_speed²) + damping u + per_speed2 u² + pile`, and `inertia u̇` of its drum; `u` is the speed at which it
 /// feeds out.
 ///
@@ -14,7 +16,7 @@ pub struct Pull {
     /// Name of the winch.
     pub name: String,
     /// The end that feeds.
-    pub front: Front,
+    pub boundary: MovingBoundary,
     /// Constant part [N].
     pub tension: f64,
     /// Friction of the brake [N].
@@ -42,7 +44,7 @@ impl Pull {
     /// The pull, and its derivative by the speed of feeding.
     fn pull(&self, t: f64, u: f64) -> (f64, f64) {
         let root = (u * u + self.slip_speed * self.slip_speed).sqrt();
-        let pile = if self.pile && u > 0.0 { self.front.rho_a } else { 0.0 };
+        let pile = if self.pile && u > 0.0 { self.boundary.rho_a } else { 0.0 };
         let rho = pile + if self.reference.is_none() { self.per_speed2 } else { 0.0 };
         (
             self.given(t, u) + self.brake * u / root + self.damping * u + pile * u * u,
@@ -52,7 +54,7 @@ impl Pull {
         )
     }
     fn slope(&self, at: &At<'_>) -> [f64; 3] {
-        std::array::from_fn(|i| at.q[self.front.end_q + 3 + i])
+        std::array::from_fn(|i| at.q[self.boundary.end_q + 3 + i])
     }
 }
 
@@ -61,29 +63,29 @@ impl Term for Pull {
         self.name.clone()
     }
     fn pattern(&self, p: &mut Pattern) {
-        p.clique([self.front.v].into_iter().chain((3..6).map(|i| self.front.end_v + i)));
+        p.clique([self.boundary.v].into_iter().chain((3..6).map(|i| self.boundary.end_v + i)));
     }
     fn symmetric(&self) -> bool {
         false
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        let (front, slope) = (&self.front, self.slope(at));
-        let (stretch, (pull, by_u)) = (front.stretch(at), self.pull(at.t, front.rate(at)));
-        // feeding out moves the front by its sign, and the pull resists that
-        out.add(front.v, front.sign * pull * stretch + self.inertia * at.a[front.v]);
+        let (boundary, slope) = (&self.boundary, self.slope(at));
+        let (stretch, (pull, by_u)) = (boundary.stretch(at), self.pull(at.t, boundary.rate(at)));
+        // feeding out moves the boundary by its sign, and the pull resists that
+        out.add(boundary.v, boundary.sign * pull * stretch + self.inertia * at.a[boundary.v]);
         let w = out.weights();
         out.add_block(0, 4, |i, j| match (i, j) {
             (0, 0) => w.v * by_u * stretch + w.a * self.inertia,
-            (0, j) => w.q * front.sign * pull * slope[j - 1] / stretch,
+            (0, j) => w.q * boundary.sign * pull * slope[j - 1] / stretch,
             _ => 0.0,
         });
     }
     fn energy(&self, at: &At<'_>) -> Energy {
-        let u = self.front.rate(at);
+        let u = self.boundary.rate(at);
         Energy { kinetic: 0.5 * self.inertia * u * u, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let (u, stretch) = (self.front.rate(at), self.front.stretch(at));
+        let (u, stretch) = (self.boundary.rate(at), self.boundary.stretch(at));
         let given = self.given(at.t, u) * u * stretch;
         Power { supplied: -given, dissipated: self.pull(at.t, u).0 * u * stretch - given, ..Power::default() }
     }
@@ -106,7 +108,7 @@ impl Shows for Pull {
         vec![Column::new(format!("{}.pull", self.name), "N")]
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
-        out.push(self.pull(at.t, self.front.rate(at)).0);
+        out.push(self.pull(at.t, self.boundary.rate(at)).0);
     }
 }
 
@@ -127,7 +129,7 @@ mod tests {
         for (sign, rate, reference) in
             [(-1.0, 0.7, None), (-1.0, -0.4, Some(Arc::new(steady) as Arc<dyn Motion>)), (1.0, 0.3, None)]
         {
-            let front = Front {
+            let boundary = MovingBoundary {
                 node: NodeId(1),
                 q: 6,
                 v: 6,
@@ -140,7 +142,7 @@ mod tests {
             };
             let pull = Pull {
                 name: "drum".into(),
-                front,
+                boundary,
                 tension: 4.0,
                 brake: 3.0,
                 slip_speed: 0.5,

@@ -226,7 +226,7 @@ impl ConstraintSpec for WinchSpec {
             // it adds nothing, but what is wrong with it is said all the same
             return self.drive(b, whole).map(drop);
         }
-        let front = b.front(&self.marker, "give this winch something to do")?;
+        let boundary = b.boundary(&self.marker, "give this winch something to do")?;
         match self.drive(b, whole)? {
             Drive::Motion(motion) => {
                 let start = motion.at(0.0);
@@ -234,8 +234,8 @@ impl ConstraintSpec for WinchSpec {
                     let message = format!("the motion has paid out {} m before the run begins", start.x[0]);
                     return Err(BuildError::at("motion", message));
                 }
-                b.start_feeding(&self.marker, front.sign * start.v[0])?;
-                b.constraint(Feeding::new(&self.name, front, motion))?;
+                b.start_feeding(&self.marker, boundary.sign * start.v[0])?;
+                b.constraint(Feeding::new(&self.name, boundary, motion))?;
             }
             Drive::Held => {
                 let tension = self.tension.unwrap_or(0.0);
@@ -243,7 +243,7 @@ impl ConstraintSpec for WinchSpec {
                 let reference_speed = self.reference_speed(b)?;
                 b.term(Box::new(Pull {
                     name: self.name.clone(),
-                    front,
+                    boundary,
                     tension,
                     brake: self.brake,
                     slip_speed: self.slip_speed,
@@ -257,7 +257,7 @@ impl ConstraintSpec for WinchSpec {
         }
         let limit = |side, length| Limit {
             name: self.name.clone(),
-            front,
+            boundary,
             part: part.name().to_string(),
             side,
             length,
@@ -299,7 +299,7 @@ impl ConstraintSpec for WinchSpec {
                 b.event(Zone {
                     winch: self.name.clone(),
                     part: part.name().to_string(),
-                    end: usize::from(front.sign > 0.0),
+                    end: usize::from(boundary.sign > 0.0),
                     element,
                     fade,
                     grows,

@@ -1,4 +1,4 @@
-//! Ends of parts that material flows through.
+//! Moving boundaries: ends of parts that material flows through, at winches and eyelets.
 
 use crate::model::node::NodeId;
 use crate::model::state::At;
@@ -16,12 +16,12 @@ pub struct Feed {
 
 /// An end of a cable that feeds: the material coordinate there is an unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Front {
+pub struct MovingBoundary {
     /// The node that carries the material coordinate.
     pub node: NodeId,
     /// Place of the coordinate and of its rate.
     pub q: usize,
-    /// See [`Front::q`].
+    /// See [`MovingBoundary::q`].
     pub v: usize,
     /// -1 at the start of the cable, where feeding out moves the coordinate back, +1 at its end.
     pub sign: f64,
@@ -29,15 +29,15 @@ pub struct Front {
     pub home: f64,
     /// The node of the cable that stands there, and the place of its coordinates.
     pub end: NodeId,
-    /// See [`Front::end`].
+    /// See [`MovingBoundary::end`].
     pub end_q: usize,
-    /// See [`Front::end`].
+    /// See [`MovingBoundary::end`].
     pub end_v: usize,
     /// Mass per unstretched length of what is fed [kg/m].
     pub rho_a: f64,
 }
 
-impl Front {
+impl MovingBoundary {
     /// Length fed out since the start [m].
     pub fn fed(&self, at: &At<'_>) -> f64 {
         self.sign * (at.q[self.q] - self.home)

@@ -1,7 +1,7 @@
 //! Lines: parts that are made of elements along a curve, and what only those are asked.
 
 use crate::algebra::lane::V3;
-use crate::model::feed::Front;
+use crate::model::feed::MovingBoundary;
 use crate::model::node::NodeId;
 use crate::model::remesh::{Change, Mesh};
 use crate::model::state::At;
@@ -104,8 +104,8 @@ pub trait Line: Send + Sync {
     fn slope(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {
         None
     }
-    /// The front at an end that feeds.
-    fn front(&self, _end: usize) -> Option<Front> {
+    /// The boundary at an end that feeds.
+    fn boundary(&self, _end: usize) -> Option<MovingBoundary> {
         None
     }
     /// Whether elements are born and swallowed at an end, instead of growing and shrinking together.

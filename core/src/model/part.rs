@@ -1,7 +1,7 @@
 //! Parts: what a scene names, and what forces, constraints and records ask of it.
 
 use crate::algebra::lane::V3;
-use crate::model::feed::Front;
+use crate::model::feed::MovingBoundary;
 use crate::model::held::Held;
 use crate::model::line::{Line, Quantity, Slender};
 use crate::model::marker::Marker;
@@ -137,9 +137,9 @@ impl dyn Part + '_ {
     pub fn slender(&self) -> Option<Slender> {
         self.line().map(|line| line.slender())
     }
-    /// The front at an end that feeds: 0 the start, 1 the end.
-    pub fn front(&self, end: usize) -> Option<Front> {
-        self.line()?.front(end)
+    /// The boundary at an end that feeds: 0 the start, 1 the end.
+    pub fn boundary(&self, end: usize) -> Option<MovingBoundary> {
+        self.line()?.boundary(end)
     }
 }
 

@@ -29,7 +29,7 @@ pub struct MeshState {
     /// Velocities of each node.
     pub v: Vec<Vec<f64>>,
     /// For the start and the end, where they feed: rate of the material coordinate there [m/s].
-    pub fronts: [f64; 2],
+    pub boundaries: [f64; 2],
 }
 
 /// A stress-free strain of one element that fades out smoothly: what keeps its tension from jumping when its neighbours

@@ -9,8 +9,8 @@ use super::spec::Section;
 use super::transmitted::{self, Unstressed};
 use super::{CableModel, CableParams, DirectedParams};
 use ropewalk_core::{
-    At, Change, ContactSpan, DeadEntry, DeadLoad, Front, Line, Marker, Mesh, MeshState, Node, NodeId, Part,
-    Per, Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
+    At, Change, ContactSpan, DeadEntry, DeadLoad, Line, Marker, Mesh, MeshState, MovingBoundary, Node,
+    NodeId, Part, Per, Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -377,7 +377,7 @@ impl Part for CablePart {
 
     fn place_of(&self, node: NodeId) -> Option<String> {
         if let Some(line) = &self.line
-            && let Some((end, _)) = line.fronts.iter().find(|(_, f)| f.node == node)
+            && let Some((end, _)) = line.boundaries.iter().find(|(_, f)| f.node == node)
         {
             return Some(format!("what is fed at its {}", ["start", "end"][*end]));
         }
@@ -496,8 +496,8 @@ impl Line for CablePart {
         Some((interpolate(hermite::<f64>(xi, l), &e), interpolate(hermite_slope::<f64>(xi, 1.0 / l), &e)))
     }
 
-    fn front(&self, end: usize) -> Option<Front> {
-        self.line.as_ref()?.fronts.iter().find(|(at, _)| *at == end).map(|(_, front)| *front)
+    fn boundary(&self, end: usize) -> Option<MovingBoundary> {
+        self.line.as_ref()?.boundaries.iter().find(|(at, _)| *at == end).map(|(_, boundary)| *boundary)
     }
 
     fn makes_elements(&self, end: usize) -> bool {
@@ -505,12 +505,12 @@ impl Line for CablePart {
     }
 
     fn start_feeding(&self, end: usize, rate: f64, q: &[f64], v: &mut [f64]) {
-        let (Some(line), Some(front)) = (&self.line, self.front(end)) else { return };
+        let (Some(line), Some(boundary)) = (&self.line, self.boundary(end)) else { return };
         if self.carried {
             return;
         }
         let before: Vec<f64> = (0..self.mesh.len()).map(|k| line.rate(k, v)).collect();
-        v[front.v] = rate;
+        v[boundary.v] = rate;
         for (k, before) in before.into_iter().enumerate() {
             let change = line.rate(k, v) - before;
             let (q0, v0) = self.seats[k];
@@ -581,8 +581,8 @@ impl Line for CablePart {
         let both = |a: &[V3<f64>], b: &[V3<f64>]| -> Vec<Vec<f64>> {
             a.iter().zip(b).map(|(a, b)| [*a, *b].concat()).collect()
         };
-        let fronts = new.rates(line);
-        let state = MeshState { q: both(&new.r, &new.s), v: both(&new.rd, &new.sd), fronts };
+        let boundaries = new.rates(line);
+        let state = MeshState { q: both(&new.r, &new.s), v: both(&new.rd, &new.sd), boundaries };
         Ok(Some(Mesh { nodes: new.p, state: Some(state), prestrain: fading }))
     }
 }

@@ -13,7 +13,7 @@ use super::{CableParams, CableStations};
 use crate::path::{Corner, Path};
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::{
-    BuildError, Element, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, dot,
+    BuildError, Element, Feed, MovingBoundary, Node, NodeId, NodeKind, StationPool, Stations, V3, dot,
 };
 use ropewalk_scene::{Builder, ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
@@ -310,7 +310,7 @@ impl CableSpec {
 }
 
 impl CableSpec {
-    /// The fronts at the ends that feed, and how the mesh follows them.
+    /// The boundaries at the ends that feed, and how the mesh follows them.
     fn line(
         &self,
         b: &mut Builder,
@@ -327,15 +327,15 @@ impl CableSpec {
                            `stress_free`, `strain` and `curvature`";
             return Err(BuildError::at("stress_free", message));
         }
-        let mut fronts = Vec::new();
+        let mut boundaries = Vec::new();
         for (end, _) in feeding.iter().enumerate().filter(|(_, f)| f.is_some()) {
             let at = if end == 0 { 0 } else { mesh.len() - 1 };
             let node = b.node(NodeKind::Scalars(1), &[mesh[at]], &[rates[end]])?;
             b.share(node);
             let (own, there) = (b.nodes()[node.0 as usize], b.nodes()[nodes[at].0 as usize]);
-            fronts.push((
+            boundaries.push((
                 end,
-                Front {
+                MovingBoundary {
                     node,
                     q: own.q,
                     v: own.v,
@@ -349,7 +349,7 @@ impl CableSpec {
             ));
         }
         let ends = |is: fn(&Feed) -> bool| feeding.map(|f| f.as_ref().is_some_and(is));
-        let line = Line::new(mesh, fronts, ends(|f| f.element.is_some()), self.rides(mesh, feeding)?);
+        let line = Line::new(mesh, boundaries, ends(|f| f.element.is_some()), self.rides(mesh, feeding)?);
         Ok(Line { unstrained: ends(|f| f.unstrained), ..line })
     }
 
@@ -568,7 +568,7 @@ impl ElementSpec for CableSpec {
             transverse: self.transverse,
             integration: self.integration,
         };
-        let rates = state.map_or([0.0; 2], |s| s.fronts);
+        let rates = state.map_or([0.0; 2], |s| s.boundaries);
         let line =
             if feeds { Some(self.line(b, model, length, &mesh, &nodes, feeding, rates)?) } else { None };
         let flows = |k: usize| line.as_ref().filter(|line| line.flows(k));

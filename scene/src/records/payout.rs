@@ -4,7 +4,7 @@ use super::{listed, named};
 use crate::marker::split_marker;
 use crate::register_spec;
 use crate::spec::RecordSpec;
-use ropewalk_core::{BuildError, Column, Front, Model, Record, Sample, Spot};
+use ropewalk_core::{BuildError, Column, Model, MovingBoundary, Record, Sample, Spot};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +32,7 @@ impl PayoutSpec {
 }
 
 struct Payout {
-    front: Front,
+    boundary: MovingBoundary,
     /// First multiplier of what prescribes the speed.
     driven: Option<usize>,
     name: String,
@@ -57,7 +57,7 @@ impl Record for Payout {
         self.driven.is_some()
     }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
-        out.extend([self.front.fed(&s.at), self.front.rate(&s.at)]);
+        out.extend([self.boundary.fed(&s.at), self.boundary.rate(&s.at)]);
         out.extend(self.driven.map(|row| s.lambda[row]));
     }
 }
@@ -71,9 +71,9 @@ impl RecordSpec for PayoutSpec {
             Spot::Named(end) => ["start", "end"].iter().position(|e| e == end),
             _ => None,
         };
-        let Some(front) = end.and_then(|end| part.front(end)) else {
+        let Some(boundary) = end.and_then(|end| part.boundary(end)) else {
             let ends = model.parts().iter().flat_map(|p| {
-                let ends = [(0, "start"), (1, "end")].into_iter().filter(|&(k, _)| p.front(k).is_some());
+                let ends = [(0, "start"), (1, "end")].into_iter().filter(|&(k, _)| p.boundary(k).is_some());
                 ends.map(|(_, end)| format!("{}.{end}", p.name()))
             });
             let ends: Vec<String> = ends.collect();
@@ -82,11 +82,11 @@ impl RecordSpec for PayoutSpec {
             return Err(BuildError::at("of", message));
         };
         let all = model.constraints();
-        let driven = all.iter().position(|c| c.nodes() == [front.node]).map(|c| model.rows_of(c).start);
+        let driven = all.iter().position(|c| c.nodes() == [boundary.node]).map(|c| model.rows_of(c).start);
         let of: String = self.of.chars().filter(|c| !c.is_whitespace()).collect();
         let stem = named(&self.name, || of.clone());
         let name = named(&self.name, || format!("{of}.payout"));
         let title = named(&self.title, || format!("Payout at {of}"));
-        Ok(Box::new(Payout { front, driven, name, stem, title }))
+        Ok(Box::new(Payout { boundary, driven, name, stem, title }))
     }
 }

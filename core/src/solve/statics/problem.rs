@@ -29,7 +29,7 @@ pub struct Statics<'a> {
     pub(super) v: Vec<f64>,
     pub(super) a: Vec<f64>,
     /// Whether material may run through cables, and at which rate it does so at the time of the search: place of each
-    /// front's velocity and coordinate, and its rate.
+    /// boundary's velocity and coordinate, and its rate.
     pub(super) flows: bool,
     pub(super) flow: Vec<(usize, usize, f64)>,
     /// Directions that nothing holds, as forces that would, in elimination order: no correction moves along them.
