@@ -179,9 +179,9 @@ pub struct LiftOffSpec {
     /// Whether the cable is tangent to the wound layer at the lift-off point. Needs bending stiffness.
     #[serde(default)]
     pub tangent: bool,
-    /// Adhesion energy `Γ` per length [J/m], instead of a winch at this end. A `tangent` cable lifts off where `EI (κ
-    /// - κ_w)²/2 = Γ`, with the curvature `κ_w` of the wound cable; another one at the angle `D` with `T (1 - cos D)
-    /// = Γ`.
+    /// Adhesion energy `Γ` per length [J/m], instead of a winch at this end. A `tangent` cable lifts off where
+    /// `EI (κ - κ_w)²/2 = Γ`, with the curvature `κ_w` of the wound cable; another one at the angle `D` with
+    /// `T (1 - cos D) = Γ`.
     #[serde(
         default,
         deserialize_with = "quantity::optional::force",
