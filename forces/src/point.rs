@@ -7,6 +7,9 @@ use ropewalk_core::rotation::{matrix, product, skew, times};
 use ropewalk_core::{
     Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, Timed, V3, dot,
 };
+use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// How a point force is directed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,5 +202,59 @@ impl Term for PointForce {
 impl Timed for PointForce {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(self.time.reach(t, h))
+    }
+}
+
+/// A force at a marker: in a constant direction, in the axes of a rigid body, or along a cable.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointForceSpec {
+    /// The marker on which it acts.
+    pub marker: MarkerRef,
+    /// Force in space [N].
+    #[serde(default, deserialize_with = "quantity::vec3::force")]
+    pub force: V3<f64>,
+    /// Whether `force` is given in the axes of the rigid body and turns with it.
+    #[serde(default)]
+    pub local: bool,
+    /// Follower force along the cable, towards its end [N], instead of `force`. It turns with the cable.
+    #[serde(default, deserialize_with = "quantity::optional::force")]
+    pub follower: Option<f64>,
+    /// Factor as a function of time.
+    #[serde(default)]
+    pub time: TimeFunction,
+}
+register_spec!(Force, "point_force", PointForceSpec);
+
+impl PointForceSpec {
+    /// A force in space.
+    pub fn new(marker: impl Into<MarkerRef>, force: V3<f64>, time: TimeFunction) -> Self {
+        PointForceSpec { marker: marker.into(), force, local: false, follower: None, time }
+    }
+}
+
+#[typetag::serde(name = "point_force")]
+impl ForceSpec for PointForceSpec {
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let marker = b.marker("marker", &self.marker)?;
+        let label = format!("force at {}", self.marker);
+        let term = match (self.follower, marker.on()) {
+            (None, _) if self.local => {
+                PointForce::on_body(label, b.nodes(), &marker, self.force, self.time.clone())?
+            }
+            (None, _) => PointForce::dead(label, b.nodes(), &marker, self.force, self.time.clone())?,
+            (Some(_), _) if self.force != [0.0; 3] => {
+                return Err(BuildError::at("follower", "give `force` or `follower`, not both"));
+            }
+            (Some(f), Some(node)) => PointForce::follower(label, b.nodes(), node, f, self.time.clone())?,
+            (Some(_), None) => {
+                return Err(BuildError::at("marker", "a follower force needs a marker on a cable"));
+            }
+        };
+        b.term(Box::new(term));
+        Ok(())
     }
 }

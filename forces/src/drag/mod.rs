@@ -4,6 +4,11 @@
 //! the cross-flow principle gives the normal force from `v_n` alone. Reynolds numbers are those of the normal flow,
 //! `Re = ρ d |v_n| / μ`.
 
+mod spec;
+
+pub(crate) use spec::free_tips;
+pub use spec::{DragLaw, DragSpec};
+
 use ropewalk_core::error::{need, not_negative};
 use ropewalk_core::{BuildError, Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
 use ropewalk_scene::Current;
