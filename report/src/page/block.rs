@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Page, pack, panel};
-use crate::{BodyRecord, FieldRecord, LineRecord, Shape, Solid};
+use crate::{BodyRecord, FieldRecord, LineRecord, Pose, Shape, Solid};
 
 /// Version of the format, for a page that is older than its data.
 const VERSION: u32 = 1;
@@ -106,7 +106,7 @@ fn field(arrays: &mut Arrays, record: &FieldRecord) -> Value {
         "times": arrays.times(&record.times),
         "lines": record.lines.iter().map(|l| line(arrays, l, &origin)).collect::<Vec<_>>(),
         "bodies": record.bodies.iter().map(|b| body(arrays, b, &origin)).collect::<Vec<_>>(),
-        "shapes": record.shapes.iter().map(|s| shape(arrays, s)).collect::<Vec<_>>(),
+        "shapes": record.shapes.iter().map(|s| shape(arrays, s, &origin)).collect::<Vec<_>>(),
         "water": record.water,
         "bed": record.bed,
     })
@@ -156,14 +156,14 @@ fn body(arrays: &mut Arrays, body: &BodyRecord, origin: &[f64; 3]) -> Value {
         "name": body.name,
         "kind": body.kind,
         "place": body.place,
-        "shapes": body.shapes.iter().map(|s| shape(arrays, s)).collect::<Vec<_>>(),
+        "shapes": body.shapes.iter().map(|s| shape(arrays, s, &[0.0; 3])).collect::<Vec<_>>(),
         "position": position,
         "orientation": arrays.add(body.poses.iter().flat_map(|p| p.orientation), 4, 0.0),
     })
 }
 
 /// Infinite lengths become null.
-fn shape(arrays: &mut Arrays, shape: &Shape) -> Value {
+fn shape(arrays: &mut Arrays, shape: &Shape, origin: &[f64; 3]) -> Value {
     let solid = match &shape.solid {
         Solid::Mesh(mesh) => json!({
             "type": "mesh",
@@ -172,13 +172,14 @@ fn shape(arrays: &mut Arrays, shape: &Shape) -> Value {
         }),
         solid => json!(solid),
     };
-    json!({"name": shape.name, "solid": solid, "pose": shape.pose})
+    let position = [0, 1, 2].map(|i| shape.pose.position[i] - origin[i]);
+    json!({"name": shape.name, "solid": solid, "pose": Pose { position, ..shape.pose }})
 }
 
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::{Column, Event, LineSnapshot, Mesh, Pose, Quantity, Table};
+    use crate::{Column, Event, LineSnapshot, Mesh, Quantity, Table};
 
     /// The JSON text and the arrays of a page's data, as the page reads them.
     pub fn open(data: &str) -> (Value, Vec<u8>) {
@@ -267,6 +268,7 @@ pub(super) mod tests {
         assert_eq!(get(&ship["orientation"])[4..8], [0.0, 1.0, 0.0, 0.0]);
         assert_eq!(get(&ship["shapes"][0]["solid"]["triangles"]), [0.0, 1.0, 2.0]);
         assert_eq!(text["field"]["shapes"][0]["solid"], json!({"type": "tube", "radius": 0.5, "half": null}));
+        assert_eq!(text["field"]["shapes"][0]["pose"]["position"][0], -origin[0]);
     }
 
     #[test]

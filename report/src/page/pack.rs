@@ -95,7 +95,7 @@ pub(super) mod tests {
     #[test]
     fn smooth_rows_become_small() {
         let values: Vec<f32> = (0..300)
-            .flat_map(|k| (0..50).map(move |i| (0.01 * k as f32 + 0.1 * i as f32).sin() + 3.0))
+            .flat_map(|k| (0..50).map(move |i| (0.0137 * k as f32 + 0.1 * (i * i) as f32).sin() + 3.0))
             .collect();
         let mut packed = Vec::new();
         assert_eq!(rows(&values, 50, &mut packed), 2);

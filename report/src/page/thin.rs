@@ -256,7 +256,8 @@ mod tests {
             let data = within(&page, room);
             assert!(data.len() <= room && data.len() > room / 2, "{} for {room}", data.len());
             let (text, arrays) = block::tests::open(&super::super::pack::base64(&data));
-            assert_eq!(text["thinned"].as_array().unwrap().len(), 2, "{}", text["thinned"]);
+            let told = text["thinned"].to_string();
+            assert!(told.contains("of 400 snapshots") && told.contains("of 20000 rows"), "{told}");
             let t = block::tests::array(&arrays, &text["field"]["times"]);
             assert_eq!((t[0], t[t.len() - 1]), (0.0, 399.0));
         }
