@@ -33,9 +33,16 @@ pub(super) fn drawn(columns: &[Column], asked: &[Panel]) -> Vec<Drawn> {
         left.retain(|k| !members.contains(k));
         add(&panel.title, columns, &members);
     }
-    for k in left {
-        let name = &columns[k].name;
-        add(name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem), columns, &[k]);
+    let stem = |name: &'_ str| name.rsplit_once('.').map_or(name.len(), |(stem, _)| stem.len());
+    for &k in &left {
+        let name = columns[k].name.as_str();
+        let alike = |j: &&usize| {
+            let other = columns[**j].name.as_str();
+            other[..stem(other)] == name[..stem(name)] && columns[**j].unit == columns[k].unit
+        };
+        // what is by itself has its whole name
+        let alone = left.iter().filter(alike).count() == 1;
+        add(if alone { name } else { &name[..stem(name)] }, columns, &[k]);
     }
     panels
 }
@@ -46,8 +53,8 @@ mod tests {
 
     #[test]
     fn every_column_is_drawn_once_with_those_of_its_unit() {
-        let columns = ["t", "end.x", "end.y", "end.tension", "depth", "lost"];
-        let units = ["s", "m", "m", "N", "m", "m"];
+        let columns = ["t", "end.x", "end.y", "end.tension", "depth", "lost", "tip.x", "tip.y"];
+        let units = ["s", "m", "m", "N", "m", "m", "m", "m"];
         let columns: Vec<Column> = columns.iter().zip(units).map(|(c, u)| Column::new(*c, u)).collect();
         let asked = [Panel {
             title: "The end".into(),
@@ -61,9 +68,10 @@ mod tests {
             [
                 ("The end", "m", vec![1]),
                 ("The end", "N", vec![3]),
-                ("end", "m", vec![2]),
+                ("end.y", "m", vec![2]),
                 ("depth", "m", vec![4]),
-                ("lost", "m", vec![5])
+                ("lost", "m", vec![5]),
+                ("tip", "m", vec![6, 7])
             ]
         );
         assert!(drawn(&[], &[]).is_empty());

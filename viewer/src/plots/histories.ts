@@ -60,7 +60,7 @@ export class Histories {
     const columns = panel.columns.map((k) => this.run.history[k]!);
     const stem = columns.length > 1 ? common(columns.map((c) => c.name)) : 0;
     const readouts = columns.map(() => h("b"));
-    const keys = columns.map((c, i) => h("span", { class: "key", title: c.name, style: "" }, swatch(i), columns.length > 1 ? c.name.slice(stem) : "", " ", readouts[i]!));
+    const keys = columns.map((c, i) => h("span", { class: "key", title: c.name }, swatch(i), columns.length > 1 ? c.name.slice(stem) : "", " ", readouts[i]!));
     const caption = h("figcaption", {}, h("span", { class: "what" }, `${panel.title} [${panel.unit || "-"}]`), ...keys);
     const body = h("div", { class: "plot", role: "img", "aria-label": told(panel.title, columns) });
     const figure = h("figure", {}, caption, body);
