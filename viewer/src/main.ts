@@ -14,6 +14,8 @@ import { TimeWindow } from "./plots/window.ts";
 
 /** How often numbers change while the run plays [s]. */
 const READ = 0.12;
+/** How often cursors move on a machine that can't move them with every frame [s]. */
+const REST = 0.08;
 
 function start(run: Run): void {
   const { field, history } = run;
@@ -28,16 +30,22 @@ function start(run: Run): void {
   let histories: Histories | null = null;
   let envelopes: Envelopes | null = null;
   let sinceRead = 0;
+  let sinceRest = 0;
   const show = (t: number, seconds: number) => {
     sinceRead += seconds;
     const read = seconds === 0 || sinceRead > READ;
     if (read) sinceRead = 0;
     view?.to(t, seconds);
-    histories?.to(t, read);
-    envelopes?.to(t);
+    sinceRest += seconds;
+    if (seconds === 0 || !view?.quality.slow || sinceRest > REST) {
+      sinceRest = 0;
+      player?.paint();
+      histories?.to(t, read);
+      envelopes?.to(t);
+    }
     if (seconds === 0) say(t);
   };
-  const player = new Player(run, part, moves ? field.times : (history[0]?.values ?? []), show);
+  const player: Player = new Player(run, part, moves ? field.times : (history[0]?.values ?? []), show);
   const seek = (t: number) => player.seek(t);
   /** For those who don't see the picture. */
   const say = (t: number) => {

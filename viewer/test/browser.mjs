@@ -40,6 +40,8 @@ async function shot(page, name, whole = false) {
 /** Pixels of the picture that differ from its corner. */
 const ink = (page) => page.evaluate(() => {
   const canvas = document.querySelector("#space canvas");
+  // what was drawn is kept until this task ends
+  window.ropewalk.player.seek(window.ropewalk.player.clock.t);
   const copy = new OffscreenCanvas(canvas.width, canvas.height);
   const pen = copy.getContext("2d");
   pen.drawImage(canvas, 0, 0);

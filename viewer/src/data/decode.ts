@@ -77,7 +77,7 @@ function near(shape: Shape): Shape {
   const { position: p, orientation } = shape.pose;
   const n = turned(orientation, [0, 0, 1]);
   const height = p[0] * n[0] + p[1] * n[1] + p[2] * n[2];
-  return { ...shape, pose: { orientation, position: n.map((x) => height * x) as V3 } };
+  return { ...shape, pose: { orientation, position: n.map((x) => height * x + 0) as V3 } };
 }
 
 function shape(raw: any, get: (place: Place) => Float32Array): Shape {

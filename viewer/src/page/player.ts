@@ -65,7 +65,6 @@ export class Player {
       this.last = performance.now();
       requestAnimationFrame((now) => this.tick(now));
     }
-    this.paint();
     this.show(clock.t, 0);
   }
 
@@ -75,18 +74,17 @@ export class Player {
     const seconds = Math.min(0.25, Math.max(0, (now - this.last) / 1000));
     this.last = now;
     advance(this.clock, seconds);
-    this.paint();
     this.show(this.clock.t, this.clock.playing ? seconds : 0);
     requestAnimationFrame((next) => this.tick(next));
   }
 
   seek(t: number): void {
     this.clock.t = Math.min(this.part.last, Math.max(this.part.first, t));
-    this.paint();
     this.show(this.clock.t, 0);
   }
 
-  private paint(): void {
+  /** Shows the time. */
+  paint(): void {
     const { clock, part } = this;
     const span = part.last - part.first;
     const text = `${timeText(clock.t, span)} ${this.run.axis.unit}`.trim();

@@ -18,6 +18,11 @@ export class Quality {
     return true;
   }
 
+  /** Whether the machine has trouble to keep up: what isn't the picture is then drawn less often. */
+  get slow(): boolean {
+    return this.mean > 1 / 40 || this.share < 1;
+  }
+
   /** Pixels of the screen for each of the page. */
   ratio(moving: boolean): number {
     const full = Math.min(2, devicePixelRatio || 1);

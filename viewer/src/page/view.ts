@@ -17,7 +17,7 @@ import { dark } from "./theme.ts";
 export class View {
   readonly stage: Stage;
   readonly picture: Picture;
-  private quality = new Quality();
+  readonly quality = new Quality();
   private labels: Labels;
   private box = $("space");
   private size: [number, number] = [0, 0];

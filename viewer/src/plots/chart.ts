@@ -15,7 +15,7 @@ export function axisStyle(): Pick<uPlot.Axis, "stroke" | "grid" | "ticks" | "fon
   return {
     stroke: () => styled("--muted"),
     grid: { stroke: () => styled("--line"), width: 1 },
-    ticks: { stroke: () => styled("--line"), width: 1 },
+    ticks: { stroke: () => styled("--line"), width: 1, size: 4 },
     font: "11px system-ui, sans-serif",
   };
 }
@@ -24,7 +24,7 @@ export function axisStyle(): Pick<uPlot.Axis, "stroke" | "grid" | "ticks" | "fon
 export function axes(label: string): uPlot.Axis[] {
   const values = (_: uPlot, splits: number[]) => splits.map((x) => (x === null ? "" : short(x)));
   return [
-    { ...axisStyle(), values, size: 22, gap: 2, label, labelSize: 15, labelGap: -2, labelFont: "11px system-ui, sans-serif" },
+    { ...axisStyle(), values, size: 24, gap: 3, label, labelSize: 15, labelGap: 2, labelFont: "11px system-ui, sans-serif" },
     { ...axisStyle(), values, size: 58, gap: 3 },
   ];
 }

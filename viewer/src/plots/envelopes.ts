@@ -18,6 +18,7 @@ export class Envelopes {
   private t = 0;
   private values = new Float32Array();
   private found: Envelope | null = null;
+  private seen = true;
 
   constructor(
     private run: Run, private box: HTMLElement, private told: HTMLElement, private part: TimeWindow,
@@ -26,6 +27,11 @@ export class Envelopes {
     this.now.className = "overlay";
     this.now.setAttribute("aria-hidden", "true");
     part.changed(() => this.again());
+    // out of sight it needn't be drawn
+    new IntersectionObserver(([entry]) => {
+      this.seen = entry!.isIntersecting;
+      this.curve();
+    }).observe(box);
     this.again();
   }
 
@@ -99,8 +105,9 @@ export class Envelopes {
   /** The present curve, on a canvas of its own: the plot below stays as it is. */
   private curve(): void {
     const { plot, line } = this;
-    const pen = this.now.getContext("2d");
-    if (!plot || !pen || !plot.over.clientWidth) return;
+    // drawn by the processor: small, and often before a slow graphics card
+    const pen = this.now.getContext("2d", { willReadFrequently: true });
+    if (!plot || !pen || !this.seen || !plot.over.clientWidth) return;
     const ratio = devicePixelRatio || 1;
     const [width, height] = [plot.over.clientWidth, plot.over.clientHeight];
     if (this.now.width !== Math.round(width * ratio) || this.now.height !== Math.round(height * ratio)) {

@@ -47,8 +47,8 @@ export class Flat implements Picture {
       return [width * (0.5 + right), height * (0.5 - up), depth];
     };
     const ground: Put = (x) => shown(seen(stage.stand, x));
-    this.levels(stage, ground);
     pen.lineWidth = this.ratio;
+    this.levels(stage, ground);
     for (const shape of stage.field.shapes) this.solid(shape, stage.size, ground, this.colours.solid!);
     stage.field.bodies.forEach((body, i) => {
       const { x, q } = stage.poses[i]!;

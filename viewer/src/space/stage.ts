@@ -92,11 +92,15 @@ export class Stage {
       this.paint(actor);
     }
     this.reached = this.trailed ? at.k + 1 : 0;
-    const here = this.followed && seen(this.stand, this.followed.at(at));
-    if (here?.every(Number.isFinite)) {
-      if (this.last) for (let i = 0; i < 3; i++) this.orbit.target[i]! += here[i]! - this.last[i]!;
-      this.last = here;
-    }
+    const here = this.here();
+    if (here && this.last) for (let i = 0; i < 3; i++) this.orbit.target[i]! += here[i]! - this.last[i]!;
+    if (here) this.last = here;
+  }
+
+  /** The followed point in the frame, if it is there. */
+  private here(): V3 | null {
+    const here = this.followed && seen(this.stand, this.followed.at(this.at));
+    return here?.every(Number.isFinite) ? here : null;
   }
 
   private paint({ line, count, colour }: LineActor): void {
@@ -121,13 +125,13 @@ export class Stage {
   /** The camera goes with a point from now on. */
   follow(point: Point | null): void {
     this.followed = point;
-    this.last = null;
+    this.last = this.here();
   }
 
   view(frame: Frame): void {
     this.frame = frame;
-    this.last = null;
     this.stand = stand(frame, this.at);
+    this.last = this.here();
     this.retrail();
   }
 

@@ -22,6 +22,15 @@ interface TubeMesh {
 /** Three takes colours of corners as linear light. */
 const linear = Float32Array.from({ length: 256 }, (_, i) => (i / 255) ** 2.2);
 
+/** Whether the processor draws: smooth edges then cost half of the frames. */
+function bySoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl ? String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
 export class Webgl implements Picture {
   readonly kind = "webgl";
   readonly canvas: HTMLCanvasElement;
@@ -39,7 +48,7 @@ export class Webgl implements Picture {
   private light = new DirectionalLight(0xffffff, 1.6);
 
   constructor(stage: Stage) {
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({ antialias: !bySoftware(), powerPreference: "high-performance" });
     this.canvas = this.renderer.domElement;
     this.scene.add(this.ground, new AmbientLight(0xffffff, 2), this.light);
     this.tubes = stage.lines.map((actor) => this.tube(actor));
