@@ -197,7 +197,8 @@ mod tests {
     #[test]
     fn a_record_with_a_hole_is_refused_by_the_name_of_the_part() {
         record().check().unwrap();
-        let spoilt: [(fn(&mut FieldRecord), &str); 5] = [
+        type Spoil = fn(&mut FieldRecord);
+        let spoilt: [(Spoil, &str); 5] = [
             (|r| r.times[1] = 0.0, "times"),
             (|r| r.times[1] = f64::NAN, "times"),
             (|r| r.lines[0].snapshots.truncate(1), "1 snapshots for 2 times"),

@@ -143,7 +143,9 @@ export class Envelopes {
     if (this.plot && width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: HEIGHT });
   }
 
+  /** Also before the page is printed, when all of it is in sight. */
   recolour(): void {
+    this.seen = true;
     this.plot?.redraw(false, true);
   }
 }
