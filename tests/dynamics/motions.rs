@@ -190,12 +190,12 @@ fn motions_that_make_no_sense_are_refused_where_they_stand() {
             "ends",
             &["leave `ends` out"],
         ),
-        (sum("path", ""), "of", &["name the motions to add"]),
-        (sum("path", "\"heave\""), "of", &["there is no motion `heave`; the motions are `path`"]),
-        (sum("path", "\"path\""), "of", &["`path` of `path` are made of each other"]),
+        (sum("path", ""), "motions", &["name the motions to add"]),
+        (sum("path", "\"heave\""), "motions", &["there is no motion `heave`; the motions are `path`"]),
+        (sum("path", "\"path\""), "motions", &["`path` of `path` are made of each other"]),
         (
             sum("path", "\"a\"") + &sum("a", "\"b\"") + &sum("b", "\"path\""),
-            "of",
+            "motions",
             &["`path` of `a` of `b` of `path` are made of each other"],
         ),
     ] {
