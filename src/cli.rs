@@ -267,7 +267,7 @@ pub fn main_from(
             ExitCode::from(Exit::Interrupted.code())
         }
         Err(e) => {
-            commands::complain(format!("error: {e}"));
+            commands::error(&e);
             ExitCode::from(if e.is_input() { Exit::Input as u8 } else { Exit::Solver as u8 })
         }
     }

@@ -1,30 +1,29 @@
 //! What a run leaves behind, and what it shows while it computes.
 //!
 //! - [`RunFolder`]: the folder of a run; nothing in it is ever overwritten by a later run.
-//! - [`Table`], [`TableWriter`]: time histories, as CSV.
+//! - [`Table`], [`TableWriter`]: time histories, as CSV; [`Csv`]: other tables; [`Sheet`]: reports for the terminal.
 //! - [`LinePlot`], [`Panels`], [`BarPlot`], [`ShapePlot`]: SVG pictures that need no fonts and no display.
-//! - [`Progress`], [`SweepProgress`], [`Interrupt`], [`Stopwatch`]: the progress bars, Ctrl-C, and CPU time.
+//! - [`Progress`], [`SweepProgress`], [`Watch`], [`Interrupt`], [`Stopwatch`]: the progress bars, Ctrl-C and deadlines, CPU
+//!   time.
 
-mod columns;
 mod error;
 mod folder;
 mod interrupt;
 mod number;
 pub mod plot;
 mod progress;
+mod sheet;
 mod stopwatch;
 mod table;
+mod watch;
 
-pub use columns::in_columns;
 pub use error::OutputError;
-pub use folder::write_durable;
-pub use folder::{RUNS, cannot_create, plain, write_json};
-pub use folder::{RunFolder, write_atomic};
+pub use folder::{RUNS, RunFolder, cannot_create, plain, write_atomic, write_durable, write_json};
 pub use interrupt::Interrupt;
 pub use number::{number, rough};
 pub use plot::{Bar, BarPlot, LinePlot, Mark, Panels, Plane, Series, ShapePlot, Snapshot};
-pub use progress::new_bar;
-pub use progress::{Progress, ProgressMode, SweepProgress};
+pub use progress::{Progress, ProgressMode, SweepProgress, new_bar};
+pub use sheet::{Sheet, TERMINAL};
 pub use stopwatch::{Elapsed, Stopwatch};
-pub use table::{Column, Table, TableWriter};
-pub use table::{cells, push_cell, push_number};
+pub use table::{Column, Csv, Table, TableWriter, cells, push_number};
+pub use watch::Watch;

@@ -6,6 +6,7 @@ use ropewalk_core::statics::StaticsError;
 use ropewalk_report::{Interrupt, OutputError};
 use ropewalk_scene::{Fault, SceneError};
 use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Why there are no results.
 ///
@@ -52,6 +53,23 @@ impl Error {
             ),
         }
     }
+}
+
+impl Error {
+    /// The message without the place in a file, which means nothing where several scenes are run.
+    pub(crate) fn brief(&self) -> String {
+        match self {
+            Error::File(fault) => fault.message.clone(),
+            Error::Scene(e) => e.error.message.clone(),
+            other => other.to_string(),
+        }
+    }
+}
+
+/// Does this; a defect becomes an error, so that it takes nothing else with it.
+pub(crate) fn caught<T>(work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    let defect = || Err(Error::Process("an internal error, see above: please report it".into()));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| defect())
 }
 
 impl fmt::Debug for Error {

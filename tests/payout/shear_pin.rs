@@ -180,7 +180,12 @@ fn every_picture_of_the_model_shows_what_it_names() {
         let mut said = Vec::new();
         let outcome = ropewalk::run(&file, &options, &mut |w| said.push(w.to_string()))
             .unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(outcome.summary.status, "stopped", "{:?} {said:?}", outcome.summary.message);
+        assert_eq!(
+            outcome.summary.status,
+            ropewalk::Status::Stopped,
+            "{:?} {said:?}",
+            outcome.summary.message
+        );
         assert_eq!(outcome.summary.message.as_deref(), Some("stopped by spool"));
         let plot = |name: &str| {
             let path = folder.path().join(format!("run/plots/{name}.svg"));

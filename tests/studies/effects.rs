@@ -11,8 +11,8 @@ use ropewalk::forces::{AddedMass, DragSpec, Spring};
 use ropewalk::scene::records::PositionSpec;
 use ropewalk::scene::{Builder, ForceSpec, Format, register_spec};
 use ropewalk::{
-    Deed, EffectsOptions, Ledger, Manifest, Scene, SceneFile, Simulation, Verdict, Water, bundled, effects,
-    simulate,
+    EffectWork, EffectsOptions, Ledger, Manifest, Scene, SceneFile, Simulation, Verdict, Water, bundled,
+    effects, simulate,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -295,8 +295,8 @@ fn ledger(scene: &Scene, record: &str) -> Ledger {
     effects(scene, record, &EffectsOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn deed<'a>(ledger: &'a Ledger, effect: &str) -> &'a Deed {
-    ledger.deeds.iter().find(|d| d.effect == effect).unwrap_or_else(|| panic!("{effect}: {:?}", ledger.deeds))
+fn work<'a>(ledger: &'a Ledger, effect: &str) -> &'a EffectWork {
+    ledger.work.iter().find(|w| w.effect == effect).unwrap_or_else(|| panic!("{effect}: {:?}", ledger.work))
 }
 
 #[test]
@@ -326,14 +326,14 @@ fn the_ledger_adds_up_and_knows_what_effects_do() {
     assert_eq!(calls("cable: weight"), calls("constraints"));
 
     // the work of all effects is nothing but the error of the balance
-    let sum: f64 = found.deeds.iter().map(|d| d.work).sum();
+    let sum: f64 = found.work.iter().map(|w| w.work).sum();
     assert!((sum + audit.imbalance()).abs() < 1e-9 * audit.scale, "{sum} and {}", audit.imbalance());
     // and that of weight, height by mass
     let fallen = |name: &str| {
         let z = history.column("cable.end.z").expect("z");
         (z[0] - z[z.len() - 1]) * if name == "bob" { 9.81 } else { f64::NAN }
     };
-    let weight = deed(&found, "bob: weight");
+    let weight = work(&found, "bob: weight");
     assert!(
         (weight.work - fallen("bob")).abs() < 1e-9 * weight.work.abs(),
         "{} and {}",
@@ -341,8 +341,8 @@ fn the_ledger_adds_up_and_knows_what_effects_do() {
         fallen("bob")
     );
     assert!((weight.peak - 9.81).abs() < 1e-12, "{}", weight.peak);
-    assert!((deed(&found, "cable: weight").peak - 2.0 * 2.0 * 9.81).abs() < 1e-9);
-    assert!(deed(&found, "cable: drag").work < 0.0 && deed(&found, "cable: drag").peak > 0.0);
+    assert!((work(&found, "cable: weight").peak - 2.0 * 2.0 * 9.81).abs() < 1e-9);
+    assert!(work(&found, "cable: drag").work < 0.0 && work(&found, "cable: drag").peak > 0.0);
 }
 
 #[test]
@@ -395,11 +395,11 @@ fn removing_an_effect_saves_the_work_that_the_ledger_says() {
 fn equilibria_and_growing_meshes_have_a_ledger_too() {
     let scene = open("cantilever", &[]).into_scene();
     let found = ledger(&scene, "beam.end.z");
-    let work = |effect: &str| deed(&found, effect).work;
+    let done = |effect: &str| work(&found, effect).work;
     // what the force does, by the trapezoidal rule over ten steps, is stored
-    let (force, cable) = (work("force at `beam.end`"), work("cable L4+T3 locking-free"));
+    let (force, cable) = (done("force at `beam.end`"), done("cable L4+T3 locking-free"));
     assert!((force + cable).abs() < 0.01 * force && force > 0.5, "{force} and {cable}");
-    assert!((deed(&found, "force at `beam.end`").peak - 3.0).abs() < 1e-12);
+    assert!((work(&found, "force at `beam.end`").peak - 3.0).abs() < 1e-12);
     assert!(found.own_error.is_none());
 
     // elements are born while the clocks run

@@ -2,13 +2,13 @@
 
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{At, Energy, Model, NodeId, NodeKind, Observer, Power, Sample, State, Term, difference};
-use ropewalk_report::Interrupt;
+use ropewalk_report::Watch;
 use ropewalk_scene::Analysis;
 use std::ops::ControlFlow;
 
-/// What an effect has done in a run.
+/// The work and the forces of an effect in a run.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Deed {
+pub struct EffectWork {
     /// The term that it belongs to.
     pub term: String,
     /// The effect; of terms that are a single one, the same.
@@ -20,11 +20,11 @@ pub struct Deed {
     pub peak: f64,
 }
 
-/// Keeps the books over a run, step by step: energies exactly, powers by the trapezoidal rule.
-pub(super) struct Books {
-    pub deeds: Vec<Deed>,
+/// Adds up work over a run, step by step: energies exactly, powers by the trapezoidal rule.
+pub(super) struct WorkObserver {
+    pub all: Vec<EffectWork>,
     analysis: Analysis,
-    interrupt: Option<Interrupt>,
+    watch: Watch,
     /// Address of the model that `before` belongs to.
     bound: usize,
     before: Option<Before>,
@@ -49,25 +49,25 @@ struct Now {
 /// What constraints are called together.
 const CONSTRAINTS: &str = "constraints";
 
-impl Books {
-    pub fn new(analysis: Analysis, interrupt: Option<Interrupt>) -> Self {
-        Books { deeds: Vec::new(), analysis, interrupt, bound: 0, before: None }
+impl WorkObserver {
+    pub fn new(analysis: Analysis, watch: Watch) -> Self {
+        WorkObserver { all: Vec::new(), analysis, watch, bound: 0, before: None }
     }
 
-    fn deed(&mut self, term: &str, effect: &str) -> &mut Deed {
-        let found = self.deeds.iter().position(|d| d.term == term && d.effect == effect);
+    fn of(&mut self, term: &str, effect: &str) -> &mut EffectWork {
+        let found = self.all.iter().position(|d| d.term == term && d.effect == effect);
         let k = found.unwrap_or_else(|| {
             let (term, effect) = (term.to_string(), effect.to_string());
-            self.deeds.push(Deed { term, effect, ..Deed::default() });
-            self.deeds.len() - 1
+            self.all.push(EffectWork { term, effect, ..EffectWork::default() });
+            self.all.len() - 1
         });
-        &mut self.deeds[k]
+        &mut self.all[k]
     }
 
     fn look(&mut self, model: &Model, at: &At<'_>, lambda: &[f64]) {
         let address = std::ptr::from_ref(model) as usize;
         if self.bound != address {
-            // energies of different meshes can't be compared: the first step on a new one isn't booked
+            // energies of different meshes can't be compared: the first step on a new one isn't counted
             self.before = None;
             self.bound = address;
         }
@@ -90,9 +90,9 @@ impl Books {
                     .before
                     .as_ref()
                     .and_then(|b| Some(work(model, b, b.each.get(each.len())?, &now, at, statics)));
-                let deed = self.deed(&term.label(), &share.label());
-                deed.peak = larger(deed.peak, size(model, &now.residual));
-                deed.work += work.unwrap_or(0.0);
+                let sum = self.of(&term.label(), &share.label());
+                sum.peak = larger(sum.peak, size(model, &now.residual));
+                sum.work += work.unwrap_or(0.0);
                 each.push(now);
             }
         }
@@ -102,9 +102,9 @@ impl Books {
             let before = self.before.as_ref().map_or(driven, |b| b.driven);
             let most =
                 (0..model.constraints().len()).map(|c| reaction(model, c, at, lambda)).fold(0.0, larger);
-            let deed = self.deed(CONSTRAINTS, CONSTRAINTS);
-            deed.work += if statics { f64::NAN } else { 0.5 * h * (before + driven) };
-            deed.peak = larger(deed.peak, most);
+            let sum = self.of(CONSTRAINTS, CONSTRAINTS);
+            sum.work += if statics { f64::NAN } else { 0.5 * h * (before + driven) };
+            sum.peak = larger(sum.peak, most);
         }
         self.before = Some(Before { t: at.t, q: at.q.to_vec(), each, driven });
     }
@@ -154,13 +154,10 @@ fn reaction(model: &Model, c: usize, at: &At<'_>, lambda: &[f64]) -> f64 {
     model.constraints()[c].nodes().iter().map(on).fold(0.0, larger)
 }
 
-impl Observer for Books {
+impl Observer for WorkObserver {
     fn step(&mut self, model: &Model, state: &State, _: &StepReport) -> ControlFlow<()> {
         self.look(model, &state.at(), &state.lambda);
-        match self.interrupt.is_some_and(Interrupt::requested) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
+        self.watch.check()
     }
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         if self.before.is_none() {
