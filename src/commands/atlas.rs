@@ -1,6 +1,7 @@
 //! `ropewalk atlas ATLAS`
 
-use super::{Exit, error, interrupted, progress, say};
+use super::{Exit, error, interrupted, progress, say, warn};
+use ropewalk_report::Watch;
 use ropewalk_models::{Bundled, atlases};
 pub use ropewalk_studies::Error;
 pub use ropewalk_studies::atlas::{AtlasFile, AtlasOptions, Laid, atlas as make};
@@ -52,6 +53,7 @@ pub(crate) fn atlas(args: AtlasArgs, bundled: &[Bundled]) -> Result<Exit, Error>
         jobs: args.jobs,
         overlay: args.overlay,
         progress: progress(args.quiet),
+        watch: Watch::signals(warn),
     };
     let outcome = make(&file, &options, bundled)?;
     if !args.quiet {

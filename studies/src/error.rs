@@ -27,7 +27,7 @@ pub enum Error {
     Process(String),
     /// An equilibrium was not found.
     #[error("{0}")]
-    Statics(#[from] StaticsError),
+    Statics(StaticsError),
     /// The vibration modes could not be found.
     #[error("{0}")]
     Modes(#[from] ModesError),
@@ -37,6 +37,12 @@ pub enum Error {
     /// Results could not be written.
     #[error("{0}")]
     Output(#[from] OutputError),
+}
+
+impl From<StaticsError> for Error {
+    fn from(e: StaticsError) -> Self {
+        if e.interrupted { Error::Interrupted } else { Error::Statics(e) }
+    }
 }
 
 impl Error {

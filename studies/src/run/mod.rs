@@ -42,6 +42,8 @@ pub struct RunOptions {
     pub progress: ProgressMode,
     /// When to write checkpoints, from which [`resume`] goes on; without it, none.
     pub checkpoint: Option<Every>,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 /// How a run ended and where its results are.
@@ -86,7 +88,7 @@ pub(crate) fn run_showing(
     }
     let folder = NewFolder::create(options.out.clone(), file.name())?;
     let stopwatch = Stopwatch::start();
-    let started = match Started::new(scene, model) {
+    let started = match Started::new(scene, model, options.watch) {
         Err(e) if e.is_input() => return Err(at_section(file, e)),
         other => other,
     };
@@ -109,7 +111,7 @@ pub(crate) fn run_showing(
             (_, None) => {}
         }
     }
-    recorder.warnings = warnings;
+    (recorder.warnings, recorder.watch) = (warnings, options.watch);
     let job = Job { file, folder, recorder, stopwatch, before, is_resumed: false, notes: manifest.notes };
     Ok(job.complete(started, options.profile))
 }
@@ -140,6 +142,7 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
     recorder.progress = Some(Progress::new(t, end, options.progress));
     recorder.warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
+    recorder.watch = options.watch;
     let notes = manifest::notes(file.scene(), &simulation.model);
     let job = Job { file: &file, folder, recorder, stopwatch, before, is_resumed: true, notes };
     Ok(job.complete(Ok(started), options.profile))
@@ -160,13 +163,12 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn complete(mut self, started: Result<Started, Error>, profile: bool) -> Outcome {
-        self.recorder.watch = Watch::signals(|text| self.recorder.warnings.say(text));
         let mut summary = Summary { notes: std::mem::take(&mut self.notes), ..Summary::default() };
         let ending = match started {
             Ok(started) => self.compute(started, profile, &mut summary),
             Err(e) => {
                 self.recorder.progress = None;
-                Ending::Failed(e)
+                e.into()
             }
         };
         (summary.status, summary.message) = (ending.status(), ending.message());

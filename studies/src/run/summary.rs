@@ -124,6 +124,12 @@ pub(crate) enum Ending {
     Failed(Error),
 }
 
+impl From<Error> for Ending {
+    fn from(error: Error) -> Self {
+        if matches!(error, Error::Interrupted) { Ending::Interrupted } else { Ending::Failed(error) }
+    }
+}
+
 impl Ending {
     pub(crate) fn status(&self) -> Status {
         match self {

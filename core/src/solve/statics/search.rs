@@ -43,6 +43,9 @@ impl Statics<'_> {
         let mut lambda = state.lambda.clone();
         let mut next = q.clone();
         while found.iterations < self.options.max_iterations {
+            if self.is_over() {
+                return fail(self, "it was stopped", &found);
+            }
             found.iterations += 1;
             how.smooth = last.is_some();
             let mut trial = self.newton(state, &q, &lambda, last.as_deref(), how);
@@ -157,7 +160,8 @@ impl Statics<'_> {
         let (k, residual) = self.worst();
         let equation = self.model.unknown_name(k);
         let on_path = self.span > 0.0;
-        StaticsError { t: state.t, on_path, why: why.into(), iterations, residual, equation }
+        let interrupted = self.is_over();
+        StaticsError { t: state.t, on_path, why: why.into(), iterations, residual, equation, interrupted }
     }
 
     /// Largest position and slope of an increment, relative to the reference length.
