@@ -237,12 +237,20 @@ pub fn main_from(
     bundled: &[Bundled],
     arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>,
 ) -> ExitCode {
+    ExitCode::from(exit_from(bundled, arguments))
+}
+
+/// As [`main_from`], with the exit code as a number: for programs that do more than this, or that aren't Rust's `main`.
+pub fn exit_from(
+    bundled: &[Bundled],
+    arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+) -> u8 {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(e) => {
             // a closed pipe is nobody's business
             let _ = e.print();
-            return ExitCode::from(if e.use_stderr() { Exit::Input as u8 } else { 0 });
+            return if e.use_stderr() { Exit::Input as u8 } else { 0 };
         }
     };
     let done = match cli.command {
@@ -261,14 +269,14 @@ pub fn main_from(
         Command::Check { scene } => commands::check::check(&scene, bundled),
     };
     match done {
-        Ok(exit) => ExitCode::from(exit.code()),
+        Ok(exit) => exit.code(),
         Err(e @ Error::Interrupted) => {
             commands::complain(e);
-            ExitCode::from(Exit::Interrupted.code())
+            Exit::Interrupted.code()
         }
         Err(e) => {
             commands::error(&e);
-            ExitCode::from(if e.is_input() { Exit::Input as u8 } else { Exit::Solver as u8 })
+            if e.is_input() { Exit::Input as u8 } else { Exit::Solver as u8 }
         }
     }
 }
