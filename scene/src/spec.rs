@@ -131,7 +131,7 @@ macro_rules! register_spec {
             $crate::SpecInfo {
                 kind: $crate::SpecKind::$kind,
                 name: $name,
-                schema: || $crate::schemars::schema_for!($type),
+                schema: $crate::quantity::TextsWithUnits::schema_for::<$type>,
             }
         }
     };

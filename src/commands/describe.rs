@@ -8,6 +8,7 @@ use ropewalk_scene::{
     Air, Document, Fault, Format, Kind, Parameter, Run, SceneFile, SpecInfo, Value, Water, did_you_mean,
     quoted, registered, schemars,
 };
+use ropewalk_scene::quantity::TextsWithUnits;
 pub use ropewalk_studies::Error;
 use std::path::{Path, is_separator};
 
@@ -15,11 +16,11 @@ pub(super) type MakeSchema = fn() -> schemars::Schema;
 
 /// Sections of a scene file that are no lists of parts.
 pub(super) const SECTIONS: [(&str, MakeSchema); 5] = [
-    ("water", || schemars::schema_for!(Water)),
-    ("air", || schemars::schema_for!(Air)),
-    ("run", || schemars::schema_for!(Run)),
-    ("solver", || schemars::schema_for!(Options)),
-    ("statics", || schemars::schema_for!(StaticsOptions)),
+    ("water", TextsWithUnits::schema_for::<Water>),
+    ("air", TextsWithUnits::schema_for::<Air>),
+    ("run", TextsWithUnits::schema_for::<Run>),
+    ("solver", TextsWithUnits::schema_for::<Options>),
+    ("statics", TextsWithUnits::schema_for::<StaticsOptions>),
 ];
 
 pub(crate) fn describe(what: &str, bundled: &[Bundled]) -> Result<Exit, Error> {
