@@ -281,6 +281,17 @@ pub fn exit_from(
     }
 }
 
+/// What `ropewalk describe` says of a scene, a type, or a section of a scene file.
+///
+/// # Errors
+/// There is no such thing, or the scene is wrong.
+pub fn explain(what: &str, bundled: &[Bundled]) -> Result<String, Error> {
+    match commands::describe::explain(what, bundled)? {
+        (text, None) => Ok(text),
+        (_, Some(fault)) => Err(fault.into()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -41,7 +41,7 @@ pub use ropewalk_studies::effects::{
 };
 pub use ropewalk_studies::modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use ropewalk_studies::run::{Every, Manifest, Outcome, RunOptions, Status, Summary, resume, run};
-pub use ropewalk_studies::simulate::{History, read, simulate, simulate_with};
+pub use ropewalk_studies::simulate::{History, read, simulate, simulate_with, start};
 pub use ropewalk_studies::{Error, bench, variants, verify};
 
 /// The programs of the README and of CONTRIBUTING must compile and run.

@@ -27,9 +27,9 @@ mod schema;
 mod unit;
 mod written;
 
+pub use schema::{TextsWithUnits, unit_of};
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, SeqAccess, Visitor};
 use std::fmt;
-pub use schema::{TextsWithUnits, unit_of};
 pub use unit::Dimension;
 pub use written::Written;
 

@@ -50,7 +50,8 @@ impl Transform for TextsWithUnits {
 fn accept(schema: &mut Value, around: &str, definitions: &Value) {
     let Some(map) = schema.as_object_mut() else { return };
     let own = map.get("description").and_then(Value::as_str).map(str::to_string);
-    let doc = own.filter(|own| unit_of(own).is_some() || around.is_empty()).unwrap_or_else(|| around.to_string());
+    let doc =
+        own.filter(|own| unit_of(own).is_some() || around.is_empty()).unwrap_or_else(|| around.to_string());
     // what a field refers to has doc comments of its own, unless it is a bare number or list of numbers
     if let Some(name) = map.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/")) {
         let target = definitions.get(name).filter(|d| is_bare(d) && unit_of(&doc).is_some());
@@ -66,7 +67,9 @@ fn accept(schema: &mut Value, around: &str, definitions: &Value) {
         let kind = map.get_mut("type");
         match kind {
             Some(Value::String(one)) if one == "number" => map["type"] = json!(["number", "string"]),
-            Some(Value::Array(many)) if many.contains(&json!("number")) && !many.contains(&json!("string")) => {
+            Some(Value::Array(many))
+                if many.contains(&json!("number")) && !many.contains(&json!("string")) =>
+            {
                 many.insert(1, json!("string"));
             }
             _ => {}
@@ -79,7 +82,9 @@ fn accept(schema: &mut Value, around: &str, definitions: &Value) {
     for (key, value) in map.iter_mut() {
         match (key.as_str(), value) {
             ("properties", Value::Object(fields)) => {
-                fields.values_mut().for_each(|field| accept(field, &doc_of_variant(field, &doc), definitions));
+                fields
+                    .values_mut()
+                    .for_each(|field| accept(field, &doc_of_variant(field, &doc), definitions));
             }
             ("items" | "additionalProperties", inner) => accept(inner, &doc, definitions),
             ("prefixItems" | "anyOf" | "oneOf" | "allOf", Value::Array(list)) => {
@@ -97,5 +102,6 @@ fn doc_of_variant(field: &Value, around: &str) -> String {
 
 /// A number, or a list of numbers, without fields.
 fn is_bare(schema: &Value) -> bool {
-    matches!(schema.get("type").and_then(Value::as_str), Some("number" | "array")) && schema.get("properties").is_none()
+    matches!(schema.get("type").and_then(Value::as_str), Some("number" | "array"))
+        && schema.get("properties").is_none()
 }

@@ -37,7 +37,8 @@ impl Watch {
     }
     /// Whether a signal came or the flag is set.
     pub fn is_interrupted(self) -> bool {
-        self.interrupt.is_some_and(Interrupt::requested) || self.flag.is_some_and(|f| f.load(Ordering::Relaxed))
+        self.interrupt.is_some_and(Interrupt::requested)
+            || self.flag.is_some_and(|f| f.load(Ordering::Relaxed))
     }
     /// Whether a signal came, the flag is set, or the time is up.
     pub fn is_over(self) -> bool {

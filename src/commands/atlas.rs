@@ -1,8 +1,8 @@
 //! `ropewalk atlas ATLAS`
 
 use super::{Exit, error, interrupted, progress, say, warn};
-use ropewalk_report::Watch;
 use ropewalk_models::{Bundled, atlases};
+use ropewalk_report::Watch;
 pub use ropewalk_studies::Error;
 pub use ropewalk_studies::atlas::{AtlasFile, AtlasOptions, Laid, atlas as make};
 use std::path::PathBuf;

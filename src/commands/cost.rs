@@ -2,8 +2,8 @@
 
 use super::{Exit, error, interrupted, progress, say, warn};
 use crate::cli::SceneArgs;
-use ropewalk_report::Watch;
 use ropewalk_models::Bundled;
+use ropewalk_report::Watch;
 use ropewalk_scene::quantity;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::cost::{CostOptions, cost as find};

@@ -2,8 +2,8 @@
 
 use super::{Exit, progress, say, warn};
 use crate::cli::SceneArgs;
-use ropewalk_report::Watch;
 use ropewalk_models::Bundled;
+use ropewalk_report::Watch;
 use ropewalk_scene::SceneFile;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::effects::{EffectsOptions, write_effects};

@@ -3,8 +3,8 @@
 use super::{Exit, progress, say, warn};
 use crate::cli::SceneArgs;
 use ropewalk_core::modes::ModesError;
-use ropewalk_report::Watch;
 use ropewalk_models::Bundled;
+use ropewalk_report::Watch;
 use ropewalk_scene::{SceneFile, quantity};
 pub use ropewalk_studies::Error;
 use ropewalk_studies::modes::{ModesOptions, write_modes};

@@ -264,7 +264,7 @@ mod tests {
         use ropewalk_scene::Format;
         use ropewalk_scene::SceneFile;
         let types = ropewalk_scene::registered().into_iter().map(|s| (Some(s), s.name, (s.schema)()));
-        let sections = super::super::describe::SECTIONS.iter().map(|(name, schema)| (None, *name, schema()));
+        let sections = ropewalk_scene::SECTIONS.iter().map(|(name, schema)| (None, *name, schema()));
         let (mut count, mut wrong) = (0, Vec::new());
         for (spec, name, schema) in types.chain(sections) {
             let root = schema.as_value();

@@ -2,8 +2,8 @@
 
 use super::{Exit, error, interrupted, progress, say, warn};
 use crate::cli::SweepArgs;
-use ropewalk_report::Watch;
 use ropewalk_models::Bundled;
+use ropewalk_report::Watch;
 pub use ropewalk_studies::Error;
 pub use ropewalk_studies::sweep::{Grid, SweepOptions, sweep as sweep_grid};
 

@@ -1,11 +1,11 @@
 //! A scene run in memory: for use from Rust, and for all studies of many runs.
 
 use crate::error::Error;
-use crate::run::{Counts, CriticalLoad, Ending, ProfileEntry, Recorder, Started, Status};
-use ropewalk_core::{Audit, Model, State, V3};
+use crate::run::{Counts, CriticalLoad, Ending, ProfileEntry, Recorder, Started, Status, Summary};
+use ropewalk_core::{Audit, Model, Simulation, State, V3};
 use ropewalk_models::bundled;
 use ropewalk_report::{Elapsed, Progress, Stopwatch, Table, Watch};
-use ropewalk_scene::{Scene, SceneFile};
+use ropewalk_scene::{Fault, Scene, SceneFile};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -69,6 +69,23 @@ impl History {
             _ => None,
         }
     }
+    /// What `summary.json` would say of it.
+    pub fn summary(&self) -> Summary {
+        let mut summary = Summary {
+            status: self.status(),
+            message: self.ending.message(),
+            warnings: self.warnings.clone(),
+            critical: self.critical.clone(),
+            rows: self.table.rows(),
+            counts: self.counts,
+            energy: (&self.audit).into(),
+            cpu_s: self.elapsed.cpu_s,
+            wall_s: self.elapsed.wall_s,
+            ..Summary::default()
+        };
+        summary.set_finals(&self.table);
+        summary
+    }
     /// The last value of a column.
     pub fn last(&self, name: &str) -> Option<f64> {
         self.column(name)?.last().copied()
@@ -90,6 +107,23 @@ pub fn simulate(scene: &Scene) -> Result<History, Error> {
 /// The run could not begin: the scene is wrong, or there is no equilibrium for it to start from.
 pub fn simulate_with(scene: &Scene, watch: Watch) -> Result<History, Error> {
     compute(scene, How { watch, ..How::default() })
+}
+
+/// A scene at its start, to be moved step by step, and what one should know about it. Scenes whose analysis isn't a run in
+/// time have no steps.
+///
+/// # Errors
+/// The scene can't be built, is no run in time, or `watch` stopped the search for the equilibrium that it starts from.
+pub fn start(scene: &Scene, watch: Watch) -> Result<(Simulation, Vec<String>), Error> {
+    let started = Started::new(scene, scene.build()?, watch)?;
+    let warnings = started.warnings(scene);
+    match started {
+        Started::Dynamics(simulation, ..) => Ok((*simulation, warnings)),
+        Started::Statics(_) | Started::Process(..) => {
+            let fault = Fault::new("this scene is no run in time, so there are no steps to be taken");
+            Err(fault.with_help("run it as a whole").into())
+        }
+    }
 }
 
 /// How a scene is computed in memory.

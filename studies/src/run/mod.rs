@@ -25,7 +25,6 @@ pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, St
 
 use crate::error::Error;
 use checkpoint::Saver;
-use ropewalk_core::Audit;
 use ropewalk_report::{Elapsed, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch};
 use ropewalk_scene::{Fault, SceneFile};
 use std::path::PathBuf;
@@ -89,7 +88,7 @@ pub(crate) fn run_showing(
     let folder = NewFolder::create(options.out.clone(), file.name())?;
     let stopwatch = Stopwatch::start();
     let started = match Started::new(scene, model, options.watch) {
-        Err(e) if e.is_input() => return Err(at_section(file, e)),
+        Err(e) if e.is_input() => return Err(e.in_file(file)),
         other => other,
     };
     let folder = folder.keep(file, &manifest)?;
@@ -199,7 +198,7 @@ impl Job<'_> {
         let done = started.done();
         recorder.last_shape(&done.model, &done.state);
         summary.critical = done.critical_loads();
-        (summary.counts, summary.energy) = (done.counts, energy(&done.audit));
+        (summary.counts, summary.energy) = (done.counts, (&done.audit).into());
         ending
     }
 
@@ -227,26 +226,5 @@ impl Job<'_> {
         }
         let report = report::report(file, &summary, &recorder, &folder, &pictures, &tables);
         Outcome { folder, summary, history: recorder.table, pictures, report }
-    }
-}
-
-/// A start that is refused is the fault of a section of the scene: point there.
-fn at_section(file: &SceneFile, e: Error) -> Error {
-    match e {
-        Error::Step(e) => Error::File(file.at_solver(e.to_string())),
-        Error::Scene(e) => Error::File(file.fault(&e)),
-        e => e,
-    }
-}
-
-fn energy(a: &Audit) -> EnergyTotals {
-    EnergyTotals {
-        kinetic: a.kinetic,
-        potential: a.potential,
-        supplied: a.supplied,
-        carried: a.carried,
-        dissipated: a.dissipated,
-        initial: a.initial,
-        imbalance: a.imbalance(),
     }
 }
