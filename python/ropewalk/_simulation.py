@@ -114,6 +114,8 @@ class Simulation:
 
     def restore(self, state: State) -> Simulation:
         """Goes back, or on, to a state of this scene."""
+        if not isinstance(state, State):
+            raise TypeError(f"a state is what `state()` returned, not {type(state).__name__}")
         self._native.restore(state.data)
         return self
 

@@ -6,8 +6,10 @@ import hashlib
 import itertools
 import json
 import os
+import re
+import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,7 +42,8 @@ class Sweep(Sequence[Row]):
         if not isinstance(key, str):
             return self.rows[key]
         if not any(key in row for row in self.rows):
-            raise KeyError(f"there is no column {key!r}: there are {', '.join(dict.fromkeys(k for r in self.rows for k in r))}")
+            there = dict.fromkeys(k for row in self.rows for k in row)
+            raise KeyError(f"there is no column {key!r}: there are {', '.join(there)}")
         column = [row.get(key) for row in self.rows]
         if all(x is None or isinstance(x, (int, float)) for x in column):
             return np.array([np.nan if x is None else x for x in column], dtype=np.float64)
@@ -67,6 +70,18 @@ class Sweep(Sequence[Row]):
         return f"<Sweep: {len(self)} runs, {len(self.failed)} failed, in {self.folder}>"
 
 
+def _meaning(measure: Measure | None) -> list[str]:
+    """What tells one function from another. Where in doubt they differ, and runs are computed again."""
+    if measure is None:
+        return []
+    code = getattr(measure, "__code__", None)
+    if code is None:
+        return [repr(measure)]
+    inside = [cell.cell_contents for cell in getattr(measure, "__closure__", None) or ()]
+    what = (code.co_code, code.co_consts, code.co_names, getattr(measure, "__defaults__", None), inside)
+    return [repr(part) for part in what]
+
+
 class Job:
     """One scene for all workers: its text, so that it needs no file, and the folder of the rows."""
 
@@ -82,14 +97,28 @@ class Job:
             path = Path(scene)
             self.json = path.suffix.lower() == ".json"
             self.files = str(path.absolute().parent) if path.suffix else None
+        self.measured = [_meaning(measure), self.files_in(self.text)]
+
+    def files_in(self, text: str) -> dict[str, str]:
+        """Files that a text names, with what is in them: the scene is another one if they change."""
+        folder = Path(self.files or ".")
+        found = {}
+        for name in set(re.findall(r'"([^"\n]+)"|\'([^\'\n]+)\'', text)):
+            path = folder / (name[0] or name[1])
+            try:
+                if path.is_file():
+                    found[str(path)] = hashlib.sha256(path.read_bytes()).hexdigest()
+            except (OSError, ValueError):
+                pass  # no name of a file
+        return found
 
     def source(self) -> _native.Source:
         return _native.Source.parse(self.name, self.text, self.json, self.files)
 
     def path(self, parameters: Mapping[str, Any]) -> Path:
         """Where the row of a combination is: the same scene, version and parameters have the same."""
-        measured = getattr(self.measure, "__qualname__", None)
-        what = [_native.__version__, self.text, plain(self.fixed | dict(parameters)), measured]
+        given = plain(self.fixed | dict(parameters))
+        what = [_native.__version__, self.text, given, self.measured, self.files_in(json.dumps(given))]
         key = hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
         return self.folder / f"{key[:24]}.json"
 
@@ -159,9 +188,15 @@ def sweep(
     both = [name for name in names if name in fixed]
     if both:
         raise SceneError(f"`{both[0]}` is both varied and set\n  = help: leave away one of them")
+    for name, values in vary.items():
+        if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+            raise SceneError(f"the values of `{name}` are no list: {values!r}\n  = help: write `[{values!r}]`")
+    if jobs is not None and jobs < 1 or batch < 1:
+        raise SceneError("`jobs` and `batch` are at least 1")
     grid = [dict(zip(names, values)) for values in itertools.product(*vary.values())]
     if not grid:
-        raise SceneError(f"nothing is varied: {next((f'`{k}` has no values' for k, v in vary.items() if not v), '')}")
+        empty = [name for name, values in vary.items() if not list(values)]
+        raise SceneError(f"`{empty[0]}` has no values\n  = help: give those that it is to have")
     folder = Path(out).absolute()
     try:
         (folder / "rows").mkdir(parents=True, exist_ok=True)
@@ -173,19 +208,26 @@ def sweep(
         # what is wrong with the scene or a name is said once, before anything runs
         check(job.source(), **(fixed | left[0]))  # type: ignore[arg-type]
     if client is None:
-        _in_threads(job, left, jobs or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else jobs or os.cpu_count() or 1)
+        _in_threads(job, left, jobs or _cores())
     else:
         _on_cluster(job, left, client, batch, retries)
     rows = [json.loads(job.path(p).read_text(encoding="utf-8")) for p in grid]
     return Sweep(rows, folder)
 
 
+def _cores() -> int:
+    """Cores that this process may use."""
+    if sys.platform == "linux":
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 def _in_threads(job: Job, left: Sequence[Mapping[str, Any]], jobs: int) -> None:
     stop = _native.Stop()
     waiting = iter(left)
-    with ThreadPoolExecutor(max(1, jobs), "ropewalk") as pool:
+    with ThreadPoolExecutor(jobs, "ropewalk") as pool:
         try:
-            going = {pool.submit(job.run, p, stop) for p in itertools.islice(waiting, 2 * max(1, jobs))}
+            going = {pool.submit(job.run, p, stop) for p in itertools.islice(waiting, 2 * jobs)}
             while going:
                 # a wait without end would keep Ctrl-C waiting on some systems
                 done, going = wait(going, timeout=0.05, return_when=FIRST_COMPLETED)

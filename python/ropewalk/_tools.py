@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import _native
+from ._errors import SceneError
 from ._run import Array, Columns, unpack
 from ._scene import AnyScene, overrides, source
 
@@ -43,7 +44,7 @@ class Modes(Columns):
     """Whether the equilibrium is unstable: then these are the modes that grow."""
     critical: float | None
     """How far the loads may grow until it tips over."""
-    warnings: list[str]
+    warnings: Sequence[str]
 
     def __init__(self, data: Array, shapes: Array, about: Mapping[str, Any]) -> None:
         super().__init__(data, about["columns"])
@@ -62,6 +63,8 @@ class Modes(Columns):
 
 def modes(scene: AnyScene, count: int = 20, *, at: float | None = None, **parameters: Any) -> Modes:
     """The `count` lowest vibration modes about the equilibrium of a scene, with its loads and motions at the time `at`."""
+    if count < 1:
+        raise SceneError(f"the number of modes must be at least 1, not {count}")
     data, shapes, text = _native.modes(source(scene), overrides(parameters), count, at)
     about = json.loads(text)
     return Modes(unpack(data, len(about["columns"])), unpack(shapes, 1).reshape(-1, about["nodes"], 3), about)

@@ -127,3 +127,6 @@ def test_modes_of_a_string():
     expected = np.sqrt(100 / 0.1) / (2 * 2) * np.array([1, 1, 2, 2])
     assert modes.frequency == pytest.approx(expected, rel=1e-3)
     assert modes.shapes.shape == (4, 33, 3) and modes.rest.shape == (33, 3) and not modes.unstable
+    for wrong in (dict(count=0), dict(count=-1), dict(at=float("nan"))):
+        with pytest.raises(rw.SceneError):
+            rw.modes(scene, **wrong)

@@ -50,6 +50,16 @@ def test_measures_of_ones_own(tmp_path):
     assert rows[0]["deepest"] <= rows[0]["hose.end.z"]
 
 
+def test_another_measure_or_file_is_another_run(tmp_path):
+    vary = {"speed": ["5 kn"]}
+    for factor in (1, 2):
+        rows = rw.sweep("hose-turn", vary, out=tmp_path, measure=lambda run: {"x": factor * run["hose.end.x"][-1]}, **FIXED)
+        assert rows[0]["x"] == factor * rows[0]["hose.end.x"]
+    first = rw.sweep("hose-turn", vary, out=tmp_path, measure=lambda run: {"x": 1.0}, **FIXED)
+    other = rw.sweep("hose-turn", vary, out=tmp_path, measure=lambda run: {"x": 2.0}, **FIXED)
+    assert (first[0]["x"], other[0]["x"]) == (1, 2)
+
+
 def test_a_run_that_can_not_begin_is_a_row(tmp_path):
     rows = rw.sweep("hose-turn", {"elements": [4, -1]}, out=tmp_path, **FIXED)
     assert rows["status"].tolist() == ["finished", "refused"] and "elements" in rows[1]["message"]
@@ -62,6 +72,10 @@ def test_what_is_wrong_from_the_start_is_said_once(tmp_path):
             rw.sweep("hose-turn", wrong, out=tmp_path)
     with pytest.raises(rw.SceneError, match="both varied and set"):
         rw.sweep("hose-turn", {"speed": [1]}, out=tmp_path, speed=2)
+    with pytest.raises(rw.SceneError, match="no list"):
+        rw.sweep("hose-turn", {"speed": "12 kn"}, out=tmp_path)  # type: ignore[dict-item]
+    with pytest.raises(rw.SceneError, match="at least 1"):
+        rw.sweep("hose-turn", {"speed": [1]}, out=tmp_path, jobs=0)
     with pytest.raises(rw.OutputError):
         rw.sweep("hose-turn", {"speed": [1]}, out=__file__)
 
@@ -92,6 +106,9 @@ records = [{ type = "position", of = "a" }]
     )
     rows = rw.sweep(scene, {"mass": [1, 2]}, out=tmp_path / "sweep")
     assert rows["a.x"] == pytest.approx([0.5, 0.5], abs=1e-3)
+    (tmp_path / "speeds.csv").write_text("t [s],v [m/s]\n0,0\n1,2\n2,4\n")
+    rows = rw.sweep(scene, {"mass": [1, 2]}, out=tmp_path / "sweep")
+    assert rows["a.x"] == pytest.approx([1.0, 1.0], abs=1e-3)
 
 
 KILLED = """
