@@ -29,7 +29,7 @@ pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use scene_file::{Bundled, SceneFile, SceneText};
 pub use spec::{
-    ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
+    ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SECTIONS, SpecInfo, SpecKind, registered,
 };
 pub use water::{Air, Level, Water, ball_below};
 

@@ -1,7 +1,8 @@
 //! `ropewalk atlas ATLAS`
 
-use super::{Exit, error, interrupted, progress, say};
+use super::{Exit, error, interrupted, progress, say, warn};
 use ropewalk_models::{Bundled, atlases};
+use ropewalk_report::Watch;
 pub use ropewalk_studies::Error;
 pub use ropewalk_studies::atlas::{AtlasFile, AtlasOptions, Laid, atlas as make};
 use std::path::PathBuf;
@@ -52,6 +53,7 @@ pub(crate) fn atlas(args: AtlasArgs, bundled: &[Bundled]) -> Result<Exit, Error>
         jobs: args.jobs,
         overlay: args.overlay,
         progress: progress(args.quiet),
+        watch: Watch::signals(warn),
     };
     let outcome = make(&file, &options, bundled)?;
     if !args.quiet {

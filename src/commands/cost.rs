@@ -1,8 +1,9 @@
 //! `ropewalk cost SCENE --of RECORD`
 
-use super::{Exit, error, interrupted, progress, say};
+use super::{Exit, error, interrupted, progress, say, warn};
 use crate::cli::SceneArgs;
 use ropewalk_models::Bundled;
+use ropewalk_report::Watch;
 use ropewalk_scene::quantity;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::cost::{CostOptions, cost as find};
@@ -49,6 +50,7 @@ pub(crate) fn cost(args: CostArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
         fresh: args.fresh,
         budget: args.budget,
         progress: progress(args.quiet),
+        watch: Watch::signals(warn),
     };
     let outcome = find(&args.scene.scene, bundled, &options)?;
     if !args.quiet && !outcome.report.is_empty() {

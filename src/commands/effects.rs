@@ -3,6 +3,7 @@
 use super::{Exit, progress, say, warn};
 use crate::cli::SceneArgs;
 use ropewalk_models::Bundled;
+use ropewalk_report::Watch;
 use ropewalk_scene::SceneFile;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::effects::{EffectsOptions, write_effects};
@@ -30,7 +31,8 @@ pub(crate) struct EffectsArgs {
 pub(crate) fn effects(args: &EffectsArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     let file = SceneFile::open(&args.scene.scene, &args.scene.overrides, bundled)?;
     let progress = progress(args.quiet);
-    let options = EffectsOptions { accuracy: args.accuracy, out: args.out.clone(), progress };
+    let (accuracy, out, watch) = (args.accuracy, args.out.clone(), Watch::signals(warn));
+    let options = EffectsOptions { accuracy, out, progress, watch };
     let written = write_effects(&file, &args.of, &options, &mut warn);
     if let Err(Error::Interrupted) = written {
         return Ok(Exit::Interrupted);

@@ -4,6 +4,7 @@ use super::{Exit, progress, say, warn};
 use crate::cli::SceneArgs;
 use ropewalk_core::modes::ModesError;
 use ropewalk_models::Bundled;
+use ropewalk_report::Watch;
 use ropewalk_scene::{SceneFile, quantity};
 pub use ropewalk_studies::Error;
 use ropewalk_studies::modes::{ModesOptions, write_modes};
@@ -39,6 +40,7 @@ pub(crate) fn modes(args: &ModesArgs, bundled: &[Bundled]) -> Result<Exit, Error
         time: args.at,
         out: args.out.clone(),
         progress: progress(args.quiet),
+        watch: Watch::signals(warn),
     };
     let done = write_modes(&file, &options, &mut warn);
     if let Err(Error::Modes(ModesError::Interrupted)) = done {

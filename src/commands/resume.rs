@@ -2,11 +2,13 @@
 
 use super::run::tell;
 use super::{Exit, progress, warn};
+use ropewalk_report::Watch;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::run::{Every, RunOptions, resume as resume_run};
 use std::path::PathBuf;
 
 pub(crate) fn resume(folder: PathBuf, checkpoint: Option<Every>, quiet: bool) -> Result<Exit, Error> {
-    let options = RunOptions { out: Some(folder), profile: false, progress: progress(quiet), checkpoint };
+    let (progress, watch) = (progress(quiet), Watch::signals(warn));
+    let options = RunOptions { out: Some(folder), profile: false, progress, checkpoint, watch };
     Ok(tell(&resume_run(&options, &mut warn)?, quiet))
 }

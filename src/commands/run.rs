@@ -75,7 +75,8 @@ impl RunArgs {
     /// Runs a scene into its folder.
     fn go(&self, file: &SceneFile) -> Result<Outcome, Error> {
         let (out, checkpoint) = (self.out.clone(), self.checkpoint);
-        let options = RunOptions { out, profile: self.profile, progress: progress(self.quiet), checkpoint };
+        let (progress, watch) = (progress(self.quiet), Watch::signals(warn));
+        let options = RunOptions { out, profile: self.profile, progress, checkpoint, watch };
         run_scene(file, &options, &mut warn)
     }
 

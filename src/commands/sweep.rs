@@ -1,8 +1,9 @@
 //! `ropewalk sweep SCENE --vary NAME=VALUES`
 
-use super::{Exit, error, interrupted, progress, say};
+use super::{Exit, error, interrupted, progress, say, warn};
 use crate::cli::SweepArgs;
 use ropewalk_models::Bundled;
+use ropewalk_report::Watch;
 pub use ropewalk_studies::Error;
 pub use ropewalk_studies::sweep::{Grid, SweepOptions, sweep as sweep_grid};
 
@@ -13,6 +14,7 @@ pub(crate) fn sweep(args: SweepArgs, bundled: &[Bundled]) -> Result<Exit, Error>
         fresh: args.fresh,
         jobs: args.jobs,
         progress: progress(args.quiet),
+        watch: Watch::signals(warn),
         report: args.report,
         over: args.over,
     };

@@ -1,11 +1,11 @@
 //! A scene run in memory: for use from Rust, and for all studies of many runs.
 
 use crate::error::Error;
-use crate::run::{Counts, CriticalLoad, Ending, ProfileEntry, Recorder, Started};
-use ropewalk_core::{Audit, Model, State, V3};
+use crate::run::{Counts, CriticalLoad, Ending, ProfileEntry, Recorder, Started, Status, Summary};
+use ropewalk_core::{Audit, Model, Simulation, State, V3};
 use ropewalk_models::bundled;
 use ropewalk_report::{Elapsed, Progress, Stopwatch, Table, Watch};
-use ropewalk_scene::{Scene, SceneFile};
+use ropewalk_scene::{Fault, Scene, SceneFile};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -58,6 +58,34 @@ impl History {
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.table.column(name).map(|c| c.values.as_slice())
     }
+    /// How it ended.
+    pub fn status(&self) -> Status {
+        self.ending.status()
+    }
+    /// Why the solver gave up, if it did.
+    pub fn error(&self) -> Option<&Error> {
+        match &self.ending {
+            Ending::Failed(error) => Some(error),
+            _ => None,
+        }
+    }
+    /// What `summary.json` would say of it.
+    pub fn summary(&self) -> Summary {
+        let mut summary = Summary {
+            status: self.status(),
+            message: self.ending.message(),
+            warnings: self.warnings.clone(),
+            critical: self.critical.clone(),
+            rows: self.table.rows(),
+            counts: self.counts,
+            energy: (&self.audit).into(),
+            cpu_s: self.elapsed.cpu_s,
+            wall_s: self.elapsed.wall_s,
+            ..Summary::default()
+        };
+        summary.set_finals(&self.table);
+        summary
+    }
     /// The last value of a column.
     pub fn last(&self, name: &str) -> Option<f64> {
         self.column(name)?.last().copied()
@@ -67,10 +95,35 @@ impl History {
 /// Runs a scene and keeps its records in memory; nothing is written.
 ///
 /// # Errors
-/// The scene can't be built, or the solver gave up. To keep what was computed until then, drive a
-/// [`Simulation`](ropewalk_core::Simulation) with an observer, or [`run`](crate::run::run) the scene into a folder.
+/// The scene can't be built, or the solver gave up. [`simulate_with`] keeps what was computed until then.
 pub fn simulate(scene: &Scene) -> Result<History, Error> {
     compute(scene, How::default())?.complete()
+}
+
+/// As [`simulate`], until `watch` stops it. A run that was stopped or that the solver gave up is a history too, as far as
+/// it was computed: [`History::status`] tells.
+///
+/// # Errors
+/// The run could not begin: the scene is wrong, or there is no equilibrium for it to start from.
+pub fn simulate_with(scene: &Scene, watch: Watch) -> Result<History, Error> {
+    compute(scene, How { watch, ..How::default() })
+}
+
+/// A scene at its start, to be moved step by step, and what one should know about it. Scenes whose analysis isn't a run in
+/// time have no steps.
+///
+/// # Errors
+/// The scene can't be built, is no run in time, or `watch` stopped the search for the equilibrium that it starts from.
+pub fn start(scene: &Scene, watch: Watch) -> Result<(Simulation, Vec<String>), Error> {
+    let started = Started::new(scene, scene.build()?, watch)?;
+    let warnings = started.warnings(scene);
+    match started {
+        Started::Dynamics(simulation, ..) => Ok((*simulation, warnings)),
+        Started::Statics(_) | Started::Process(..) => {
+            let fault = Fault::new("this scene is no run in time, so there are no steps to be taken");
+            Err(fault.with_help("run it as a whole").into())
+        }
+    }
 }
 
 /// How a scene is computed in memory.
@@ -100,7 +153,7 @@ pub(crate) fn compute(scene: &Scene, how: How) -> Result<History, Error> {
     let mut recorder = Recorder::new(scene, records);
     (recorder.watch, recorder.progress) = (how.watch, how.progress);
     recorder.track = how.positions.then(Vec::new);
-    let mut started = Started::new(scene, model)?;
+    let mut started = Started::new(scene, model, how.watch)?;
     recorder.warnings.all = started.warnings(scene);
     let begun = stopwatch.elapsed().wall_s;
     if how.profile {

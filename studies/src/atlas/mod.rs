@@ -29,7 +29,7 @@ use overlay::Measured;
 use page::Outcome;
 use plan::Plan;
 use ropewalk_models::Bundled;
-use ropewalk_report::{OutputError, ProgressMode, RunFolder, Sheet, Stopwatch, write_atomic};
+use ropewalk_report::{OutputError, ProgressMode, RunFolder, Sheet, Stopwatch, Watch, write_atomic};
 use ropewalk_scene::Fault;
 use serde::{Deserialize, Serialize};
 use spec::{Entry, Overlay};
@@ -53,6 +53,8 @@ pub struct AtlasOptions {
     pub overlay: Vec<Laid>,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 /// How an atlas ended.
@@ -113,7 +115,7 @@ pub fn atlas(file: &AtlasFile, options: &AtlasOptions, scenes: &[Bundled]) -> Re
     let folder = StudyFolder::open(options.out.clone(), options.fresh, &manifest)?;
 
     let needed = plan.needed(file);
-    let runner = Runner::new(needed.len(), options.progress);
+    let runner = Runner::new(needed.len(), options.progress, options.watch);
     let state = Mutex::new((vec![None::<Status>; plan.cases.len()], 0));
     runner.for_each(needed.len(), options.jobs, |i| {
         let k = needed[i];

@@ -41,6 +41,8 @@ pub struct CostOptions {
     pub budget: Duration,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 /// What a study of cost found.
@@ -133,7 +135,7 @@ pub fn cost(scene: &str, bundled: &[Bundled], options: &CostOptions) -> Result<C
     };
     let folder = StudyFolder::open(options.out.clone(), options.fresh, &manifest)?;
     let progress = SweepProgress::new(0, options.progress);
-    let signals = Watch::signals(|e| progress.say(&format!("warning: {e}")));
+    let signals = options.watch;
     let stopwatch = Stopwatch::start();
     let start = Instant::now();
     let until = |share: f64| start.checked_add(options.budget.mul_f64(share));

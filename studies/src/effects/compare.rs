@@ -132,7 +132,7 @@ impl<'a> Comparison<'a> {
 
     /// The work of all effects.
     fn work(&self) -> Result<Vec<EffectWork>, Error> {
-        let mut started = Started::new(self.scene, self.scene.build()?)?;
+        let mut started = Started::new(self.scene, self.scene.build()?, self.watch)?;
         let mut observer = WorkObserver::new(self.scene.run.analysis, self.watch);
         started.drive(self.scene, &mut observer)?;
         // half of the work would look like the whole

@@ -28,11 +28,13 @@ pub struct EffectsOptions {
     pub out: Option<PathBuf>,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 impl Default for EffectsOptions {
     fn default() -> Self {
-        EffectsOptions { accuracy: 1e-2, out: None, progress: ProgressMode::Quiet }
+        EffectsOptions { accuracy: 1e-2, out: None, progress: ProgressMode::Quiet, watch: Watch::default() }
     }
 }
 
@@ -58,8 +60,7 @@ pub fn effects(scene: &Scene, record: &str, options: &EffectsOptions) -> Result<
     // with and without clocks, work, finer steps, the scene again
     let total = has.len() + lacks.len() + 5;
     let progress = SweepProgress::new(total, options.progress);
-    let watch = Watch::signals(|_| {});
-    let ledger = Comparison::new(scene, record, watch, &progress)
+    let ledger = Comparison::new(scene, record, options.watch, &progress)
         .and_then(|comparison| comparison.ledger(&has, &lacks, hints, accuracy));
     progress.finish();
     ledger

@@ -10,7 +10,6 @@ use ropewalk_core::statics::{Found, Statics, StaticsError};
 use ropewalk_core::{Model, SolveError, State};
 use ropewalk_report::{ProgressMode, RunFolder, Stopwatch, Table, Watch, new_bar};
 use ropewalk_scene::{Analysis, Fault, Scene, SceneFile};
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 /// The modes of a scene, and what they are about.
@@ -43,11 +42,14 @@ pub struct ModesOptions {
     pub out: Option<PathBuf>,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 impl Default for ModesOptions {
     fn default() -> Self {
-        ModesOptions { count: 20, time: None, out: None, progress: ProgressMode::Quiet }
+        let (progress, watch) = (ProgressMode::Quiet, Watch::default());
+        ModesOptions { count: 20, time: None, out: None, progress, watch }
     }
 }
 
@@ -60,7 +62,7 @@ impl Default for ModesOptions {
 /// The scene can't be built, has no equilibrium, moves, or has something without mass.
 pub fn modes(scene: &Scene, options: &ModesOptions) -> Result<Modal, Error> {
     let model = scene.build()?;
-    find(scene, model, options, &mut |_, _, _| ControlFlow::Continue(()))
+    find(scene, model, options, &mut |_, _, _| options.watch.check())
 }
 
 impl Modal {
@@ -96,7 +98,7 @@ pub fn write_modes(
         ProgressMode::Quiet => None,
         _ => Some(new_bar(options.count as u64)),
     };
-    let watch = Watch::signals(|_| {});
+    let watch = options.watch;
     let mut look = |good: usize, _: usize, vectors: usize| {
         if let Some(bar) = &bar {
             bar.set_position(good as u64);
@@ -119,7 +121,7 @@ pub fn write_modes(
 
 /// As [`modes`], until it is stopped.
 pub(crate) fn modes_watched(scene: &Scene, count: usize, watch: Watch) -> Result<Modal, Error> {
-    let options = ModesOptions { count, ..ModesOptions::default() };
+    let options = ModesOptions { count, watch, ..ModesOptions::default() };
     find(scene, scene.build()?, &options, &mut |_, _, _| watch.check())
 }
 
@@ -144,7 +146,7 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
     let search = if core::in_balance(&model, &mut state, &scene.statics, run.frame)? {
         None
     } else {
-        Some(equilibrium(scene, &model, &mut state, time)?)
+        Some(equilibrium(scene, &model, &mut state, time, options.watch)?)
     };
     let found = core::modes(&model, &state, &scene.statics, run.frame, options.count, look)?;
     if let Some(of) = found.of.filter(|of| *of < options.count) {
@@ -182,9 +184,16 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
 }
 
 /// The equilibrium at a time: of statics scenes along the load path.
-fn equilibrium(scene: &Scene, model: &Model, state: &mut State, time: f64) -> Result<Found, Error> {
+fn equilibrium(
+    scene: &Scene,
+    model: &Model,
+    state: &mut State,
+    time: f64,
+    watch: Watch,
+) -> Result<Found, Error> {
     let no_memory = |e: SolveError| Error::Modes(ModesError::Solver(e));
     let mut search = Statics::relative(model, &scene.statics, scene.run.frame).map_err(no_memory)?;
+    search.stop_if(move || watch.is_over());
     if scene.run.analysis == Analysis::Dynamics || time == 0.0 {
         return Ok(search.find(state, true)?);
     }

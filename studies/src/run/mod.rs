@@ -25,7 +25,6 @@ pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, St
 
 use crate::error::Error;
 use checkpoint::Saver;
-use ropewalk_core::Audit;
 use ropewalk_report::{Elapsed, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch};
 use ropewalk_scene::{Fault, SceneFile};
 use std::path::PathBuf;
@@ -42,6 +41,8 @@ pub struct RunOptions {
     pub progress: ProgressMode,
     /// When to write checkpoints, from which [`resume`] goes on; without it, none.
     pub checkpoint: Option<Every>,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 /// How a run ended and where its results are.
@@ -86,8 +87,8 @@ pub(crate) fn run_showing(
     }
     let folder = NewFolder::create(options.out.clone(), file.name())?;
     let stopwatch = Stopwatch::start();
-    let started = match Started::new(scene, model) {
-        Err(e) if e.is_input() => return Err(at_section(file, e)),
+    let started = match Started::new(scene, model, options.watch) {
+        Err(e) if e.is_input() => return Err(e.in_file(file)),
         other => other,
     };
     let folder = folder.keep(file, &manifest)?;
@@ -109,7 +110,7 @@ pub(crate) fn run_showing(
             (_, None) => {}
         }
     }
-    recorder.warnings = warnings;
+    (recorder.warnings, recorder.watch) = (warnings, options.watch);
     let job = Job { file, folder, recorder, stopwatch, before, is_resumed: false, notes: manifest.notes };
     Ok(job.complete(started, options.profile))
 }
@@ -140,6 +141,7 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
     recorder.progress = Some(Progress::new(t, end, options.progress));
     recorder.warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
+    recorder.watch = options.watch;
     let notes = manifest::notes(file.scene(), &simulation.model);
     let job = Job { file: &file, folder, recorder, stopwatch, before, is_resumed: true, notes };
     Ok(job.complete(Ok(started), options.profile))
@@ -160,13 +162,12 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn complete(mut self, started: Result<Started, Error>, profile: bool) -> Outcome {
-        self.recorder.watch = Watch::signals(|text| self.recorder.warnings.say(text));
         let mut summary = Summary { notes: std::mem::take(&mut self.notes), ..Summary::default() };
         let ending = match started {
             Ok(started) => self.compute(started, profile, &mut summary),
             Err(e) => {
                 self.recorder.progress = None;
-                Ending::Failed(e)
+                e.into()
             }
         };
         (summary.status, summary.message) = (ending.status(), ending.message());
@@ -197,7 +198,7 @@ impl Job<'_> {
         let done = started.done();
         recorder.last_shape(&done.model, &done.state);
         summary.critical = done.critical_loads();
-        (summary.counts, summary.energy) = (done.counts, energy(&done.audit));
+        (summary.counts, summary.energy) = (done.counts, (&done.audit).into());
         ending
     }
 
@@ -225,26 +226,5 @@ impl Job<'_> {
         }
         let report = report::report(file, &summary, &recorder, &folder, &pictures, &tables);
         Outcome { folder, summary, history: recorder.table, pictures, report }
-    }
-}
-
-/// A start that is refused is the fault of a section of the scene: point there.
-fn at_section(file: &SceneFile, e: Error) -> Error {
-    match e {
-        Error::Step(e) => Error::File(file.at_solver(e.to_string())),
-        Error::Scene(e) => Error::File(file.fault(&e)),
-        e => e,
-    }
-}
-
-fn energy(a: &Audit) -> EnergyTotals {
-    EnergyTotals {
-        kinetic: a.kinetic,
-        potential: a.potential,
-        supplied: a.supplied,
-        carried: a.carried,
-        dissipated: a.dissipated,
-        initial: a.initial,
-        imbalance: a.imbalance(),
     }
 }

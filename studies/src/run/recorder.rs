@@ -227,11 +227,7 @@ impl<'a> Recorder<'a> {
     pub(crate) fn finals(&self, summary: &mut Summary) {
         summary.events.clone_from(&self.events);
         summary.rows = self.table.rows();
-        for column in &self.table.columns {
-            if let Some(last) = column.values.last() {
-                summary.set(&column.name, *last);
-            }
-        }
+        summary.set_finals(&self.table);
     }
 
     /// What one should know of the mesh, after all that was recorded.

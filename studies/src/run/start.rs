@@ -6,6 +6,7 @@ use crate::error::{Error, caught};
 use ropewalk_core::integrator::{StepError, StepReport, Stepping};
 use ropewalk_core::statics::{Critical, Statics};
 use ropewalk_core::{Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit};
+use ropewalk_report::Watch;
 use ropewalk_scene::{Analysis, Fault, Process, Scene, SceneFile};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -27,6 +28,8 @@ pub(crate) struct Done {
     remarks: Vec<String>,
     /// Where the time of statics went, if that was asked for.
     times: Option<Vec<Spent>>,
+    /// What may stop a search.
+    watch: Watch,
 }
 
 /// A label with calls and time.
@@ -43,14 +46,14 @@ pub enum Started {
 }
 
 impl Started {
-    /// Brings the model to its start.
-    pub(crate) fn new(scene: &Scene, model: Model) -> Result<Self, Error> {
+    /// Brings the model to its start, unless that is stopped.
+    pub(crate) fn new(scene: &Scene, model: Model, watch: Watch) -> Result<Self, Error> {
         let run = &scene.run;
         if let Some(process) = scene.start_process()? {
-            return Ok(Started::Process(process, Box::new(Done::at_rest(model))));
+            return Ok(Started::Process(process, Box::new(Done::at_rest(model, watch))));
         }
         if run.analysis == Analysis::Statics {
-            return Ok(Started::Statics(Box::new(Done::at_rest(model))));
+            return Ok(Started::Statics(Box::new(Done::at_rest(model, watch))));
         }
         // an unsuitable scheme should not have to wait for the equilibrium
         scene.solver.integrator(&model, run.duration)?;
@@ -58,6 +61,7 @@ impl Started {
         if run.from_equilibrium {
             state.v.fill(0.0);
             let mut search = Statics::new(&model, &scene.statics).map_err(no_memory)?;
+            search.stop_if(move || watch.is_over());
             flutter = search.find(&mut state, true)?.flutter;
             remarks = remarks_on(&search);
             remarks.extend(without_friction(&model));
@@ -211,7 +215,7 @@ impl Started {
             (_, Some(ending)) => ending,
             (Ok(End::Done), None) => Ending::Finished,
             (Ok(End::Stopped { by }), None) => Ending::Stopped(by),
-            (Err(error), None) => Ending::Failed(error),
+            (Err(error), None) => error.into(),
         }
     }
 
@@ -235,7 +239,8 @@ impl Started {
                 let counts = counts(s.work.counts);
                 let (critical, remarks) = (Vec::new(), Vec::new());
                 let (model, state, audit) = (s.model, s.state, s.audit);
-                Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None }
+                let watch = Watch::default();
+                Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None, watch }
             }
         }
     }
@@ -269,13 +274,13 @@ fn counts(c: ropewalk_core::integrator::Counts) -> Counts {
 
 impl Done {
     /// A model that doesn't move, as it was laid.
-    fn at_rest(model: Model) -> Self {
+    fn at_rest(model: Model, watch: Watch) -> Self {
         let mut state = model.state();
         state.v.fill(0.0);
         let audit = Audit::start(model.energy(&state.at()));
         let (critical, remarks) = (Vec::new(), Vec::new());
         let (model, counts) = (Arc::new(model), Counts::default());
-        Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None }
+        Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None, watch }
     }
 
     /// The critical loads for summaries.
@@ -293,6 +298,8 @@ impl Done {
     fn go(&mut self, scene: &Scene, observer: &mut dyn Observer) -> Result<End, Error> {
         let model = self.model.clone();
         let mut search = Statics::relative(&model, &scene.statics, scene.run.frame).map_err(no_memory)?;
+        let watch = self.watch;
+        search.stop_if(move || watch.is_over());
         if self.times.is_some() {
             search.profile();
         }

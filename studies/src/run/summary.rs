@@ -2,8 +2,9 @@
 
 use crate::certificate::statement::Certificate;
 use crate::error::Error;
+use ropewalk_core::Audit;
 use ropewalk_core::statics::CriticalKind;
-use ropewalk_report::Interrupt;
+use ropewalk_report::{Interrupt, Table};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 use std::fmt;
@@ -58,6 +59,15 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Sets the final values of all columns of a history.
+    pub(crate) fn set_finals(&mut self, history: &Table) {
+        for column in &history.columns {
+            if let Some(last) = column.values.last() {
+                self.set(&column.name, *last);
+            }
+        }
+    }
+
     /// Sets the final value of a column; columns keep the order in which they are set.
     ///
     /// ```
@@ -122,6 +132,12 @@ pub(crate) enum Ending {
     /// By a signal or a deadline.
     Interrupted,
     Failed(Error),
+}
+
+impl From<Error> for Ending {
+    fn from(error: Error) -> Self {
+        if matches!(error, Error::Interrupted) { Ending::Interrupted } else { Ending::Failed(error) }
+    }
 }
 
 impl Ending {
@@ -211,6 +227,20 @@ pub struct EnergyTotals {
     /// What the balance doesn't account for: the error of the integration.
     #[serde(deserialize_with = "null_as_nan")]
     pub imbalance: f64,
+}
+
+impl From<&Audit> for EnergyTotals {
+    fn from(a: &Audit) -> Self {
+        EnergyTotals {
+            kinetic: a.kinetic,
+            potential: a.potential,
+            supplied: a.supplied,
+            carried: a.carried,
+            dissipated: a.dissipated,
+            initial: a.initial,
+            imbalance: a.imbalance(),
+        }
+    }
 }
 
 /// One line of a run's profile.

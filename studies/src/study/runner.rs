@@ -60,10 +60,9 @@ impl Ran {
 }
 
 impl Runner {
-    /// Begins to show the progress of so many runs, and listens to Ctrl-C.
-    pub(crate) fn new(runs: usize, mode: ProgressMode) -> Self {
+    /// Begins to show the progress of so many runs.
+    pub(crate) fn new(runs: usize, mode: ProgressMode, watch: Watch) -> Self {
         let progress = SweepProgress::new(runs, mode);
-        let watch = Watch::signals(|e| progress.say(&format!("warning: {e}")));
         Runner { progress, watch, said: Mutex::default() }
     }
 

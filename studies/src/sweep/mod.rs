@@ -20,7 +20,7 @@ use crate::error::Error;
 use crate::run::Status;
 use crate::study::{Runner, StudyFolder, lock};
 use results::{Results, Row};
-use ropewalk_report::{ProgressMode, RunFolder, Stopwatch};
+use ropewalk_report::{ProgressMode, RunFolder, Stopwatch, Watch};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -34,6 +34,8 @@ pub struct SweepOptions {
     pub jobs: Option<usize>,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
     /// Which value of a column stands for a run …
     pub report: Report,
     /// … and over which last part of it.
@@ -63,7 +65,7 @@ pub fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome, Error>
     let axes = grid.check()?;
     let folder = StudyFolder::open(options.out.clone(), options.fresh, &grid.manifest())?;
     let stopwatch = Stopwatch::start();
-    let runner = Runner::new(grid.len(), options.progress);
+    let runner = Runner::new(grid.len(), options.progress, options.watch);
     let results = Mutex::new(Results::new(&axes, grid, folder.table_file()));
     runner.for_each(grid.len(), options.jobs, |k| {
         let name = grid.name(k);

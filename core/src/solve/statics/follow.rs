@@ -83,6 +83,10 @@ impl Statics<'_> {
         cold: bool,
         first: StaticsError,
     ) -> Result<Found, StaticsError> {
+        if first.interrupted {
+            *state = before;
+            return Err(first);
+        }
         let mut found = Found { iterations: first.iterations, ..Found::default() };
         state.clone_from(&before);
         if self.set_free(state)
@@ -133,7 +137,7 @@ impl Statics<'_> {
                     continue;
                 }
                 // what was refused isn't found by smaller steps either
-                Err(e) if e.iterations == 0 => {
+                Err(e) if e.iterations == 0 || e.interrupted => {
                     *state = before;
                     return Err(StaticsError { on_path: true, ..e });
                 }

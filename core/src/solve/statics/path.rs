@@ -75,6 +75,9 @@ impl Statics<'_> {
         };
         let mut ds = FIRST.min((end - state.t).abs() / way.span);
         for _ in 0..STEPS {
+            if self.is_over() {
+                break;
+            }
             // beyond the end loads may be others
             let reach = (end - here.state.t) / here.rate;
             if reach > 0.0 && ds >= reach {

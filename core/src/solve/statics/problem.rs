@@ -43,6 +43,8 @@ pub struct Statics<'a> {
     pub(super) critical: Vec<Critical>,
     /// Longest stretch of time that was to be followed.
     pub(super) span: f64,
+    /// Whether to give up, asked at every iteration.
+    pub(super) is_over: Option<Box<dyn Fn() -> bool>>,
 }
 
 impl<'a> Statics<'a> {
@@ -94,7 +96,18 @@ impl<'a> Statics<'a> {
             judged: Judgement { potential: true, ..Judgement::default() },
             critical: Vec::new(),
             span: 0.0,
+            is_over: None,
         })
+    }
+
+    /// Gives up as soon as this says so; it is asked at every iteration. The error then
+    /// says so.
+    pub fn stop_if(&mut self, is_over: impl Fn() -> bool + 'static) {
+        self.is_over = Some(Box::new(is_over));
+    }
+
+    pub(super) fn is_over(&self) -> bool {
+        self.is_over.as_ref().is_some_and(|is_over| is_over())
     }
 
     /// Records the time of each term from now on.

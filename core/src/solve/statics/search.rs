@@ -79,6 +79,9 @@ impl Statics<'_> {
         self.neutral.clear();
         self.doubt = None;
         while found.iterations < self.options.max_iterations {
+            if self.is_over() {
+                return fail(self, "it was stopped", &found);
+            }
             found.iterations += 1;
             let verdict = match self.correct(state, &mut it, &mut found) {
                 Ok(true) => self.examine(state, &it, &mut found, load, [cold, leave]),
@@ -204,7 +207,8 @@ impl Statics<'_> {
         let (k, residual) = self.worst();
         let equation = self.model.unknown_name(k);
         let on_path = self.span > 0.0;
-        StaticsError { t: state.t, on_path, why: why.into(), iterations, residual, equation }
+        let interrupted = self.is_over();
+        StaticsError { t: state.t, on_path, why: why.into(), iterations, residual, equation, interrupted }
     }
 
     /// Largest position and slope of an increment, relative to the reference length.
