@@ -57,8 +57,7 @@ pub fn migrate(text: &str, name: &str, format: Format) -> Result<Migrated, Fault
     let mut sources = Sources::default();
     let source = sources.add(name, &new);
     // a name that stands in several dotted keys is found at the first alone
-    let again =
-        parse(&new, source, format, &sources).map(|tree| tree.as_table().map_or(0, certain));
+    let again = parse(&new, source, format, &sources).map(|tree| tree.as_table().map_or(0, certain));
     match again {
         Ok(0) => Ok(Migrated { text: format!("{mark}{new}"), changes, left }),
         _ => Err(Fault::new(format!(

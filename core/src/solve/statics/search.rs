@@ -80,7 +80,7 @@ impl Statics<'_> {
         self.doubt = None;
         while found.iterations < self.options.max_iterations {
             if self.is_over() {
-                return fail(self, "it was stopped", &found);
+                return Err(self.fail(state, "it was stopped", found.iterations));
             }
             found.iterations += 1;
             let verdict = match self.correct(state, &mut it, &mut found) {
