@@ -82,7 +82,7 @@ export interface Point {
   heading?(moment: Moment): number;
 }
 
-/** Bodies, then the ends of lines. */
+/** Bodies, then the ends and middles of lines. */
 export function points(field: Field): Point[] {
   const all: Point[] = field.bodies.map((body) => ({
     name: body.name,
@@ -91,12 +91,12 @@ export function points(field: Field): Point[] {
   }));
   for (const line of field.lines) {
     const buffer = new Float32Array(3 * Math.max(0, ...line.counts));
-    const end = (last: boolean) => (m: Moment): V3 => {
+    const at = (share: number) => (m: Moment): V3 => {
       const n = along(line, line.x, 3, m, buffer);
-      const i = last ? 3 * (n - 1) : 0;
+      const i = 3 * Math.round(share * (n - 1));
       return n > 0 ? [buffer[i]!, buffer[i + 1]!, buffer[i + 2]!] : [NaN, NaN, NaN];
     };
-    all.push({ name: `${line.name}, start`, at: end(false) }, { name: `${line.name}, end`, at: end(true) });
+    for (const [name, share] of [["start", 0], ["middle", 0.5], ["end", 1]] as const) all.push({ name: `${line.name}, ${name}`, at: at(share) });
   }
   return all;
 }

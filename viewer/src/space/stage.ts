@@ -5,7 +5,7 @@ import { along, moment, points, pose, type Moment, type Point, type Pose } from 
 import type { Field, Line, Quantity, V3 } from "../data/run.ts";
 import { DARK, LIGHT, viridis } from "./colour.ts";
 import { seen, stand, type Frame, type Stand } from "./frame.ts";
-import { fit, type Box, type Orbit, VIEWS } from "./orbit.ts";
+import { fit, fitBall, type Box, type Orbit, VIEWS } from "./orbit.ts";
 
 /** A quantity on all lines that have it. */
 export interface Scale {
@@ -69,7 +69,7 @@ export class Stage {
     this.thick();
     // a line that is small beside its path is lost in it: stay with it
     const here = this.box();
-    if (diagonal(here) < this.size / 2.5) this.follow(this.points.find((p) => p.name.endsWith(", start")) ?? this.points[0] ?? null);
+    if (diagonal(here) < this.size / 2.5) this.follow(this.points.find((p) => p.name.endsWith(", middle")) ?? this.points[0] ?? null);
     this.retrail();
   }
 
@@ -166,7 +166,13 @@ export class Stage {
   }
 
   fit(what: "now" | "all", aspect: number): void {
-    fit(this.orbit, what === "now" || this.frame.point ? this.box() : this.whole, aspect);
+    const here = this.here();
+    if (here && what === "now") {
+      const [low, high] = this.box();
+      // half of what is there, and what lies to one side of the point
+      const far = Math.hypot(...here.map((x, i) => Math.max(x - low[i]!, high[i]! - x)));
+      fitBall(this.orbit, here, Math.min(far, diagonal([low, high])), aspect);
+    } else fit(this.orbit, what === "now" || this.frame.point ? this.box() : this.whole, aspect);
   }
 
   turn(view: string): void {
