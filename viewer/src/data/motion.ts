@@ -40,6 +40,16 @@ export function along(line: Line, of: Float32Array, width: number, at: Moment, o
   return count;
 }
 
+/** Points without a place go to the one before them, or to the first that has one. Returns whether there is any. */
+export function settle(x: Float32Array, count: number): boolean {
+  const there = (i: number) => Number.isFinite(x[3 * i]! + x[3 * i + 1]! + x[3 * i + 2]!);
+  let first = 0;
+  while (first < count && !there(first)) first++;
+  for (let i = 0; i < first && first < count; i++) x.copyWithin(3 * i, 3 * first, 3 * first + 3);
+  for (let i = first + 1; i < count; i++) if (!there(i)) x.copyWithin(3 * i, 3 * i - 3, 3 * i);
+  return first < count;
+}
+
 export interface Pose {
   x: V3;
   q: [number, number, number, number];

@@ -1,7 +1,7 @@
 // What is on the stage at a time: both pictures, with and without WebGL, draw this.
 
 import { range } from "../data/envelope.ts";
-import { along, moment, points, pose, type Moment, type Point, type Pose } from "../data/motion.ts";
+import { along, moment, points, pose, settle, type Moment, type Point, type Pose } from "../data/motion.ts";
 import type { Field, Line, Quantity, V3 } from "../data/run.ts";
 import { DARK, LIGHT, viridis } from "./colour.ts";
 import { seen, stand, type Frame, type Stand } from "./frame.ts";
@@ -89,9 +89,10 @@ export class Stage {
     this.poses = this.field.bodies.map((body) => pose(body, at));
     for (const actor of this.lines) {
       actor.count = along(actor.line, actor.line.x, 3, at, actor.x);
+      if (!settle(actor.x, actor.count)) actor.count = 0;
       this.paint(actor);
     }
-    this.reached = this.trailed ? at.k + 1 : 0;
+    this.reached = this.trail.length > 0 ? at.k + 1 : 0;
     const here = this.here();
     if (here && this.last) for (let i = 0; i < 3; i++) this.orbit.target[i]! += here[i]! - this.last[i]!;
     if (here) this.last = here;
@@ -144,7 +145,8 @@ export class Stage {
       const m = { k, f: 0 };
       this.trail.set(seen(stand(this.frame, m), point!.at(m)), 3 * k);
     }
-    this.reached = count > 0 ? this.at.k + 1 : 0;
+    if (!settle(this.trail, count)) this.trail = new Float32Array();
+    this.reached = this.trail.length > 0 ? this.at.k + 1 : 0;
   }
 
   /** What moves, as it is now in the frame. */
