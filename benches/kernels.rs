@@ -36,10 +36,10 @@ const OTHERS: [Kernel; 5] = [
         field(m, |laws| laws.push(AddedMass::new(1025.0, 1.0).expect("positive")))
     }),
     Kernel::Other("axial damping", |m| {
-        pool(m, AxialDamping::<L4, <LockingFree as Rule>::Axial>::new(1.0 / ELEMENTS as f64, 5.0))
+        pool(m, AxialDamping::new(1.0 / ELEMENTS as f64, 5.0, L4, LockingFree.axial()))
     }),
     Kernel::Other("bending damping", |m| {
-        pool(m, BendingDamping::<<LockingFree as Rule>::Bending>::new(1.0 / ELEMENTS as f64, 1e-4))
+        pool(m, BendingDamping::new(1.0 / ELEMENTS as f64, 1e-4, LockingFree.bending()))
     }),
 ];
 

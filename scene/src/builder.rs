@@ -48,7 +48,7 @@ pub struct Builder {
     start: Start,
     /// The coordinates when the run began: others than at the start where a mesh has changed on the way.
     laid: Vec<f64>,
-    pools: Vec<(TypeId, Box<dyn AnyPool>)>,
+    pools: Vec<(TypeId, String, Box<dyn AnyPool>)>,
     terms: Vec<Box<dyn Term>>,
     constraints: Vec<Box<dyn Constraint>>,
     parts: Vec<Arc<dyn Part>>,
@@ -124,23 +124,19 @@ impl Builder {
         element: E,
         on: &[NodeId],
     ) -> Result<(), BuildError> {
-        let id = TypeId::of::<Pool<E, Q, N>>();
-        let at = match self.pools.iter().position(|(t, _)| *t == id) {
+        let (id, label) = (TypeId::of::<Pool<E, Q, N>>(), element.label());
+        let at = match self.pools.iter().position(|(t, l, _)| *t == id && *l == label) {
             Some(at) => at,
             None => {
-                self.pools.push((id, Box::new(Pool::<E, Q, N>::new())));
+                self.pools.push((id, label.clone(), Box::new(Pool::<E, Q, N>::new())));
                 self.pools.len() - 1
             }
         };
-        let fits = match self.pools[at].1.as_any().downcast_mut::<Pool<E, Q, N>>() {
+        let fits = match self.pools[at].2.as_any().downcast_mut::<Pool<E, Q, N>>() {
             Some(pool) => pool.push(&self.nodes, element, on),
             None => false,
         };
-        if fits {
-            Ok(())
-        } else {
-            Err(BuildError::new(format!("element `{}` doesn't fit its nodes", E::label())))
-        }
+        if fits { Ok(()) } else { Err(BuildError::new(format!("element `{label}` doesn't fit its nodes"))) }
     }
 
     /// Adds a term.
@@ -490,7 +486,7 @@ impl Builder {
             return Err(BuildError::new("the scene is empty: add at least one element"));
         }
         let length = self.size();
-        let mut terms: Vec<Box<dyn Term>> = self.pools.into_iter().map(|(_, p)| p.into_term()).collect();
+        let mut terms: Vec<Box<dyn Term>> = self.pools.into_iter().map(|(.., p)| p.into_term()).collect();
         terms.append(&mut self.terms);
         for ((k, material), laws) in self.laws {
             let part = &self.parts[k];

@@ -41,8 +41,12 @@ impl<R: Real, const N: usize> Share<R, N> {
 /// Up to one element per lane; a short last batch repeats its last element.
 pub struct Batch<'a, E>(pub(crate) &'a [E]);
 
-impl<E> Batch<'_, E> {
-    /// The element in the first lane, for types that have but one.
+impl<'a, E> Batch<'a, E> {
+    /// These elements, as many as there are lanes.
+    pub fn of(elements: &'a [E]) -> Self {
+        Batch(elements)
+    }
+    /// The element in the first lane, for what all elements of a pool have in common.
     #[inline(always)]
     pub fn first(&self) -> &E {
         &self.0[0]
@@ -69,7 +73,7 @@ impl<E> Batch<'_, E> {
 ///
 /// impl Element<6, 6> for Spring {
 ///     type Lanes<R: Real> = [R; 2];
-///     fn label() -> String { "spring".into() }
+///     fn label(&self) -> String { "spring".into() }
 ///     #[inline(always)]
 ///     fn lanes<R: Real>(b: &Batch<'_, Self>) -> [R; 2] { [b.get(|e| e.stiffness), b.get(|e| e.l0)] }
 ///     #[inline(always)]
@@ -99,14 +103,16 @@ impl<E> Batch<'_, E> {
 pub trait Element<const Q: usize, const N: usize>: Clone + Send + Sync + 'static {
     /// The element's numbers over lanes.
     type Lanes<R: Real>;
-    /// Whether the tangent is symmetric for every choice of weights.
-    const SYMMETRIC: bool = true;
     /// Whether it is worth compiling for several lanes; an element that is rare can do without.
     const WIDE: bool = true;
     /// Whether it sets every entry of its share, so that the pool needn't clear it for each batch.
     const SETS: bool = false;
-    /// What the pool is called in manifests and profiles.
-    fn label() -> String;
+    /// What its pool is called in manifests and profiles; elements with other names go into another pool.
+    fn label(&self) -> String;
+    /// Whether the tangent is symmetric for every choice of weights.
+    fn symmetric(&self) -> bool {
+        true
+    }
     /// Brings the numbers of a batch of elements side by side.
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R>;
     /// Adds residual and, with `TANGENT`, the tangent weighted by `w`.
@@ -377,7 +383,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for Sum<'_, E, Q
 
 impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
     fn label(&self) -> String {
-        E::label()
+        self.elements.first().map_or_else(String::new, E::label)
     }
     fn pattern(&self, p: &mut Pattern) {
         for seat in &self.seats {
@@ -385,7 +391,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
         }
     }
     fn symmetric(&self) -> bool {
-        E::SYMMETRIC
+        self.elements.iter().all(E::symmetric)
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         // the search for equilibrium isn't worth wide copies of what it relaxes

@@ -1,11 +1,10 @@
 //! Kelvin–Voigt damping of bending.
 
-use super::quadrature::{Point, Quadrature};
+use super::quadrature::{Point, Points, Quadrature};
 use super::reduced::{Reduced, add_product};
 use super::shape::{Natural, combine, natural, second};
 use super::transverse::lift;
 use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, V3, Weights, dot};
-use std::marker::PhantomData;
 
 /// Damping of bending: the moment `η EI` times the rate of the curvature vector, besides the elastic one.
 ///
@@ -19,18 +18,30 @@ use std::marker::PhantomData;
 /// whirls about the line between its ends is damped too, for its fibres are strained to and fro. A bent cable that turns as
 /// a rigid body loses nothing unless it turns about its own tangent, which its centre line can't tell from whirling.
 #[derive(Clone, Copy, Debug)]
-pub struct BendingDamping<Q> {
+pub struct BendingDamping {
     /// Unstretched length [m].
     pub l: f64,
     /// `η EI` [N m² s].
     pub eta_ei: f64,
-    quadrature: PhantomData<Q>,
+    /// Where the curvature is taken.
+    pub rule: Points,
 }
 
-impl<Q: Quadrature> BendingDamping<Q> {
+/// Properties over lanes, and the quadrature of all of them.
+#[derive(Clone, Copy, Debug)]
+pub struct BendingDampingLanes<R> {
+    /// Unstretched length.
+    pub l: R,
+    /// `η EI`.
+    pub eta_ei: R,
+    /// Where the curvature is taken.
+    pub rule: Points,
+}
+
+impl BendingDamping {
     /// For an element of length `l`.
-    pub fn new(l: f64, eta_ei: f64) -> Self {
-        BendingDamping { l, eta_ei, quadrature: PhantomData }
+    pub fn new(l: f64, eta_ei: f64, rule: impl Quadrature) -> Self {
+        BendingDamping { l, eta_ei, rule: Points::of(rule) }
     }
 }
 
@@ -101,21 +112,23 @@ impl<R: Real> Bend<R> {
     }
 }
 
-impl<Q: Quadrature> Element<12, 12> for BendingDamping<Q> {
-    /// `[L, η EI]`
-    type Lanes<R: Real> = [R; 2];
-    const SYMMETRIC: bool = false;
+impl Element<12, 12> for BendingDamping {
+    type Lanes<R: Real> = BendingDampingLanes<R>;
 
-    fn label() -> String {
-        format!("bending damping {}", Q::LABEL)
+    fn label(&self) -> String {
+        format!("bending damping {}", self.rule.label())
+    }
+    fn symmetric(&self) -> bool {
+        false
     }
     #[inline(always)]
-    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> [R; 2] {
-        [batch.get(|e| e.l), batch.get(|e| e.eta_ei)]
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R> {
+        let rule = batch.first().rule;
+        BendingDampingLanes { l: batch.get(|e| e.l), eta_ei: batch.get(|e| e.eta_ei), rule }
     }
     #[inline(always)]
     fn add<R: Real, const TANGENT: bool>(
-        &[l, eta_ei]: &[R; 2],
+        &BendingDampingLanes { l, eta_ei, rule }: &Self::Lanes<R>,
         x: &Local<R, 12, 12>,
         w: &Weights,
         out: &mut Share<R, 12>,
@@ -123,7 +136,7 @@ impl<Q: Quadrature> Element<12, 12> for BendingDamping<Q> {
         let il = R::of(1.0) / l;
         let (q, v) = (natural(&x.q, il), natural(&x.v, il));
         let mut local = Reduced::zero();
-        for at in Q::POINTS {
+        for at in rule.points() {
             let bend = Bend::new(at, il, &q, &v);
             let s = eta_ei * l * R::of(at.w);
             let [on_slope, on_second] = bend.forces();
@@ -143,11 +156,14 @@ impl<Q: Quadrature> Element<12, 12> for BendingDamping<Q> {
         local.spread_force::<false>(il, out);
     }
     #[inline(always)]
-    fn power<R: Real>(&[l, eta_ei]: &[R; 2], x: &Local<R, 12, 12>) -> Power<R> {
+    fn power<R: Real>(
+        &BendingDampingLanes { l, eta_ei, rule }: &Self::Lanes<R>,
+        x: &Local<R, 12, 12>,
+    ) -> Power<R> {
         let il = R::of(1.0) / l;
         let (q, v) = (natural(&x.q, il), natural(&x.v, il));
         let mut dissipated = R::zero();
-        for at in Q::POINTS {
+        for at in rule.points() {
             let (_, _, _, beta) = Bend::new(at, il, &q, &v).rate();
             dissipated += eta_ei * l * R::of(at.w) * dot(&beta, &beta);
         }

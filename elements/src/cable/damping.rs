@@ -5,13 +5,12 @@
 
 use super::bending_damping::BendingDamping;
 use super::longitudinal::{Longitudinal, Strain};
-use super::model::{CableModel, LongitudinalModel, Sink, WithModels, with_models};
+use super::model::{CableModel, LongitudinalModel, Models, Sink, WithModels, with_models};
 use super::quadrature::{Quadrature, Rule};
 use super::reduced::{Reduced, add_product};
 use super::shape::{Natural, natural};
 use super::transverse::Transverse;
 use ropewalk_core::{Batch, Element, Local, NodeId, Power, Real, Share, Weights};
-use std::marker::PhantomData;
 
 /// Damping of stretching: the axial force `η EA ε̇` besides the elastic one.
 ///
@@ -22,13 +21,29 @@ pub struct AxialDamping<L, Q> {
     pub l: f64,
     /// `η EA` [N s].
     pub eta_ea: f64,
-    models: PhantomData<(L, Q)>,
+    /// Axial strain.
+    pub model: L,
+    /// Where it is taken.
+    pub rule: Q,
+}
+
+/// Properties over lanes, and the model of all of them.
+#[derive(Clone, Copy, Debug)]
+pub struct AxialDampingLanes<L, Q, R> {
+    /// Unstretched length.
+    pub l: R,
+    /// `η EA`.
+    pub eta_ea: R,
+    /// Axial strain.
+    pub model: L,
+    /// Where it is taken.
+    pub rule: Q,
 }
 
 impl<L: Longitudinal, Q: Quadrature> AxialDamping<L, Q> {
     /// For an element of length `l`.
-    pub fn new(l: f64, eta_ea: f64) -> Self {
-        AxialDamping { l, eta_ea, models: PhantomData }
+    pub fn new(l: f64, eta_ea: f64, model: L, rule: Q) -> Self {
+        AxialDamping { l, eta_ea, model, rule }
     }
 }
 
@@ -45,20 +60,22 @@ fn blend<R: Real>(s: R, a: &Natural<R>, t: R, b: &Natural<R>) -> Natural<R> {
 }
 
 impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
-    /// `[L, η EA]`
-    type Lanes<R: Real> = [R; 2];
-    const SYMMETRIC: bool = false;
+    type Lanes<R: Real> = AxialDampingLanes<L, Q, R>;
 
-    fn label() -> String {
-        format!("axial damping {} {}", L::LABEL, Q::LABEL)
+    fn label(&self) -> String {
+        format!("axial damping {} {}", self.model.label(), self.rule.label())
+    }
+    fn symmetric(&self) -> bool {
+        false
     }
     #[inline(always)]
-    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> [R; 2] {
-        [batch.get(|e| e.l), batch.get(|e| e.eta_ea)]
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R> {
+        let &AxialDamping { model, rule, .. } = batch.first();
+        AxialDampingLanes { l: batch.get(|e| e.l), eta_ea: batch.get(|e| e.eta_ea), model, rule }
     }
     #[inline(always)]
     fn add<R: Real, const TANGENT: bool>(
-        &[l, eta_ea]: &[R; 2],
+        &AxialDampingLanes { l, eta_ea, model, rule }: &Self::Lanes<R>,
         x: &Local<R, 12, 12>,
         w: &Weights,
         out: &mut Share<R, 12>,
@@ -66,8 +83,8 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
         let il = R::of(1.0) / l;
         let (q, v) = (natural(&x.q, il), natural(&x.v, il));
         let mut local = Reduced::zero();
-        for at in L::points::<Q>() {
-            let strain = L::strain(&q, at);
+        for at in model.points(rule) {
+            let strain = model.strain(&q, at);
             let c = eta_ea * l * R::of(at.w);
             let force = c * strain.rate(&v);
             let gradient = strain.gradient();
@@ -84,12 +101,15 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
         }
     }
     #[inline(always)]
-    fn power<R: Real>(&[l, eta_ea]: &[R; 2], x: &Local<R, 12, 12>) -> Power<R> {
+    fn power<R: Real>(
+        &AxialDampingLanes { l, eta_ea, model, rule }: &Self::Lanes<R>,
+        x: &Local<R, 12, 12>,
+    ) -> Power<R> {
         let il = R::of(1.0) / l;
         let (q, v) = (natural(&x.q, il), natural(&x.v, il));
         let mut dissipated = R::zero();
-        for at in L::points::<Q>() {
-            let rate = L::strain(&q, at).rate(&v);
+        for at in model.points(rule) {
+            let rate = model.strain(&q, at).rate(&v);
             dissipated += eta_ea * l * R::of(at.w) * rate * rate;
         }
         Power { dissipated, ..Power::zero() }
@@ -106,11 +126,12 @@ struct Push<'a, S> {
 
 impl<S: Sink> WithModels for Push<'_, S> {
     type Output = ();
-    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) {
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self, models: Models<L, T, Q>) {
+        let Models { longitudinal, rule, .. } = models;
         if self.bending {
-            self.sink.push(BendingDamping::<Q::Bending>::new(self.l, self.eta), self.nodes);
+            self.sink.push(BendingDamping::new(self.l, self.eta, rule.bending()), self.nodes);
         } else {
-            self.sink.push(AxialDamping::<L, Q::Axial>::new(self.l, self.eta), self.nodes);
+            self.sink.push(AxialDamping::new(self.l, self.eta, longitudinal, rule.axial()), self.nodes);
         }
     }
 }

@@ -15,11 +15,10 @@
 //! has along the tangent, and its length, are held by springs that are free of force in equilibrium. Sections turn with
 //! the inertia `ρJ |Ḋ|²/2`.
 
-use super::quadrature::{MOST, Point, Quadrature};
+use super::quadrature::{MOST, Point, Points, Quadrature};
 use super::shape::{Natural, combine, second};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::{Batch, Dual, Element, Energy, Local, Real, Share, V3, Weights, dot};
-use std::marker::PhantomData;
 
 /// Chord, slopes and directors of an element: what its energy depends on.
 type Variables<R> = [R; VARIABLES];
@@ -32,14 +31,15 @@ const DOFS: usize = 18;
 /// Its unknowns are the twelve dofs of the element and then the directors of both nodes. It adds to the energy of the
 /// elastic element, which bends with T3, what makes that of a straight one into the one above.
 #[derive(Clone, Copy, Debug)]
-pub struct Directed<Q> {
+pub struct Directed {
     /// What it is made of.
     pub params: DirectedParams,
     /// Stress-free curvature about both directors at the quadrature points [1/m].
     kappa0: [[f64; 2]; MOST],
     /// Stress-free twist [rad].
     twist0: f64,
-    models: PhantomData<Q>,
+    /// Where the curvature is taken.
+    rule: Points,
 }
 
 /// What a directed element is made of; over lanes with `R` other than `f64`.
@@ -61,6 +61,7 @@ pub struct DirectedLanes<R> {
     params: DirectedParams<R>,
     kappa0: [[R; 2]; MOST],
     twist0: R,
+    rule: Points,
 }
 
 impl<R: Real> DirectedLanes<R> {
@@ -71,6 +72,7 @@ impl<R: Real> DirectedLanes<R> {
             params: DirectedParams { l: c(l), ei: c(ei), gj: c(gj), rho_j: c(rho_j) },
             kappa0: self.kappa0.map(|k| k.map(c)),
             twist0: c(self.twist0),
+            rule: self.rule,
         }
     }
 }
@@ -148,7 +150,7 @@ fn natural_of<R: Real>(x: &Variables<R>) -> Natural<R> {
 }
 
 /// What makes the energy of the elastic element that of this one.
-fn potential<Q: Quadrature, R: Real>(p: &DirectedLanes<R>, x: &Variables<R>) -> R {
+fn potential<R: Real>(p: &DirectedLanes<R>, x: &Variables<R>) -> R {
     let DirectedParams { l, ei, gj, .. } = p.params;
     let (half, il, frames, nat) = (R::of(0.5), R::of(1.0) / l, Frames::new(x), natural_of(x));
     let twist = frames.twist() - p.twist0;
@@ -159,7 +161,7 @@ fn potential<Q: Quadrature, R: Real>(p: &DirectedLanes<R>, x: &Variables<R>) -> 
         gauge += along * along + R::of(0.25) * long * long;
     }
     let mut sum = half * gj * il * (twist * twist + gauge);
-    for (at, k0) in Q::POINTS.iter().zip(&p.kappa0) {
+    for (at, k0) in p.rule.points().iter().zip(&p.kappa0) {
         let k = frames.curvature(&nat, at, il);
         let w = ei * l * R::of(at.w);
         for i in 0..2 {
@@ -192,21 +194,26 @@ fn dofs<R: Real>(variable: usize, il: R) -> [(usize, R); 2] {
     }
 }
 
-impl<Q: Quadrature> Directed<Q> {
+impl Directed {
     /// An element that is free of stress at this shape, its twelve dofs, with these directors of its nodes.
-    pub fn at_shape(params: DirectedParams, shape: &[f64; 12], directors: [V3<f64>; 2]) -> Self {
+    pub fn at_shape(
+        params: DirectedParams,
+        shape: &[f64; 12],
+        directors: [V3<f64>; 2],
+        rule: impl Quadrature,
+    ) -> Self {
         let mut kappa0 = [[0.0; 2]; MOST];
         let (x, il) = (laid(shape, directors, params.l), 1.0 / params.l);
         let (frames, nat) = (Frames::new(&x), natural_of(&x));
-        for (kappa0, at) in kappa0.iter_mut().zip(Q::POINTS) {
+        for (kappa0, at) in kappa0.iter_mut().zip(rule.points()) {
             *kappa0 = frames.curvature(&nat, at, il);
         }
-        Directed { params, kappa0, twist0: frames.twist(), models: PhantomData }
+        Directed { params, kappa0, twist0: frames.twist(), rule: Points::of(rule) }
     }
 
     /// Its numbers for one lane.
     pub fn to_lanes(&self) -> DirectedLanes<f64> {
-        DirectedLanes { params: self.params, kappa0: self.kappa0, twist0: self.twist0 }
+        DirectedLanes { params: self.params, kappa0: self.kappa0, twist0: self.twist0, rule: self.rule }
     }
 }
 
@@ -256,12 +263,12 @@ pub(crate) fn directors(shapes: &[[f64; 12]], mesh: &[f64]) -> Option<Vec<V3<f64
     Some(all)
 }
 
-impl<Q: Quadrature> Element<DOFS, DOFS> for Directed<Q> {
+impl Element<DOFS, DOFS> for Directed {
     type Lanes<R: Real> = DirectedLanes<R>;
     const WIDE: bool = false;
 
-    fn label() -> String {
-        format!("stress-free curvature with its direction {}", Q::LABEL)
+    fn label(&self) -> String {
+        format!("stress-free curvature with its direction {}", self.rule.label())
     }
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> DirectedLanes<R> {
         let mut kappa0 = [[R::zero(); 2]; MOST];
@@ -277,6 +284,7 @@ impl<Q: Quadrature> Element<DOFS, DOFS> for Directed<Q> {
             },
             kappa0,
             twist0: batch.get(|e| e.twist0),
+            rule: batch.first().rule,
         }
     }
     fn add<R: Real, const TANGENT: bool>(
@@ -291,7 +299,7 @@ impl<Q: Quadrature> Element<DOFS, DOFS> for Directed<Q> {
         for i in 0..VARIABLES {
             let mut at = Dual::constants(&x0);
             at[i].eps = R::of(1.0);
-            let slope = potential::<Q, Dual<R>>(&once, &at).eps;
+            let slope = potential::<Dual<R>>(&once, &at).eps;
             for (dof, share) in dofs(i, il) {
                 out.r[dof] += share * slope;
             }
@@ -301,7 +309,7 @@ impl<Q: Quadrature> Element<DOFS, DOFS> for Directed<Q> {
             for j in 0..=i {
                 let mut at = Dual::constants(&at);
                 at[j].eps = Dual::constant(R::of(1.0));
-                let second = R::of(w.q) * potential::<Q, Dual<Dual<R>>>(&twice, &at).eps.eps;
+                let second = R::of(w.q) * potential::<Dual<Dual<R>>>(&twice, &at).eps.eps;
                 for (row, by_row) in dofs(i, il) {
                     for (column, by_column) in dofs(j, il) {
                         let k = by_row * by_column * second;
@@ -327,6 +335,6 @@ impl<Q: Quadrature> Element<DOFS, DOFS> for Directed<Q> {
             square = x.v[i].fma(x.v[i], square);
         }
         let kinetic = R::of(0.25) * p.params.rho_j * p.params.l * square;
-        Energy { kinetic, potential: potential::<Q, R>(p, &variables(&x.q, R::of(1.0) / p.params.l)) }
+        Energy { kinetic, potential: potential::<R>(p, &variables(&x.q, R::of(1.0) / p.params.l)) }
     }
 }

@@ -1,6 +1,7 @@
 //! The cable element: elastic force of one longitudinal and one transverse model, and the consistent mass.
 
 use super::longitudinal::{Longitudinal, add_axial, axial_energy};
+use super::model::Models;
 use super::quadrature::Rule;
 use super::reduced::Reduced;
 use super::relaxed::{add_relaxed, capped};
@@ -9,7 +10,6 @@ use super::transverse::{Transverse, bending_energy};
 use ropewalk_core::{Batch, Element, Energy, Local, Real, Share, Weights};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::marker::PhantomData;
 
 /// What one cable element is made of; over lanes with `R` other than `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,10 +37,6 @@ impl CableParams {
         }
         Ok(())
     }
-    /// The same in every lane.
-    pub fn lanes<R: Real>(&self) -> CableParams<R> {
-        CableParams { l: R::of(self.l), ea: R::of(self.ea), ei: R::of(self.ei), rho_a: R::of(self.rho_a) }
-    }
 }
 
 /// A two-node cable element without torsion, in the absolute nodal coordinate formulation: the position of its curve
@@ -53,42 +49,55 @@ impl CableParams {
 pub struct Cable<L, T, Q> {
     /// What it is made of.
     pub params: CableParams,
-    models: PhantomData<(L, T, Q)>,
+    /// How it strains.
+    pub models: Models<L, T, Q>,
 }
 
 impl<L: Longitudinal, T: Transverse, Q: Rule> Cable<L, T, Q> {
     /// An element of these properties.
-    pub fn new(params: CableParams) -> Self {
-        Cable { params, models: PhantomData }
+    pub fn new(params: CableParams, models: Models<L, T, Q>) -> Self {
+        Cable { params, models }
     }
 }
 
+/// Properties over lanes, and the models of all of them.
+#[derive(Clone, Copy, Debug)]
+pub struct CableLanes<L, T, Q, R> {
+    params: CableParams<R>,
+    models: Models<L, T, Q>,
+}
+
 impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q> {
-    type Lanes<R: Real> = CableParams<R>;
-    const SYMMETRIC: bool = L::SYMMETRIC;
+    type Lanes<R: Real> = CableLanes<L, T, Q, R>;
     const SETS: bool = true;
 
-    fn label() -> String {
-        format!("cable {}+{} {}", L::LABEL, T::LABEL, Q::LABEL)
+    fn label(&self) -> String {
+        let Models { longitudinal, transverse, rule } = self.models;
+        format!("cable {}+{} {}", longitudinal.label(), transverse.label(), rule.label())
+    }
+    fn symmetric(&self) -> bool {
+        self.models.longitudinal.symmetric()
     }
 
     #[inline(always)]
-    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> CableParams<R> {
-        CableParams {
+    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R> {
+        let params = CableParams {
             l: batch.get(|e| e.params.l),
             ea: batch.get(|e| e.params.ea),
             ei: batch.get(|e| e.params.ei),
             rho_a: batch.get(|e| e.params.rho_a),
-        }
+        };
+        CableLanes { params, models: batch.first().models }
     }
 
     #[inline(always)]
     fn add<R: Real, const TANGENT: bool>(
-        p: &CableParams<R>,
+        &CableLanes { params: ref p, models }: &Self::Lanes<R>,
         x: &Local<R, 12, 12>,
         w: &Weights,
         out: &mut Share<R, 12>,
     ) {
+        let Models { longitudinal, transverse, rule } = models;
         let il = R::of(1.0) / p.l;
         let q = natural(&x.q, il);
         let mut local = Reduced::zero();
@@ -99,21 +108,21 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
         {
             let last = natural(&x.last, il);
             ea = capped(p, how.ramp, how.load);
-            add_relaxed::<L, T, Q, R, TANGENT>(p, how, il, &q, &last, &mut local);
+            add_relaxed::<L, T, Q, R, TANGENT>(models, p, how, il, &q, &last, &mut local);
         } else {
-            add_axial::<L, Q::Axial, R, TANGENT>(ea * p.l, &q, &mut local);
-            T::add::<Q::Bending, R, TANGENT>(p.ei, p.l, il, &q, &mut local);
+            add_axial::<L, Q::Axial, R, TANGENT>(longitudinal, rule.axial(), ea * p.l, &q, &mut local);
+            transverse.add::<Q::Bending, R, TANGENT>(rule.bending(), p.ei, p.l, il, &q, &mut local);
         }
         local.spread_force::<true>(il, out);
         if TANGENT {
             local.spread_tangent::<true>(il, R::of(w.q), out);
-            L::add_unsymmetric(R::of(w.q) * ea * p.l, &q, il, out);
+            longitudinal.add_unsymmetric(R::of(w.q) * ea * p.l, &q, il, out);
         }
         add_mass::<R, TANGENT>(p, &x.a, w.a, out);
     }
 
     #[inline(always)]
-    fn energy<R: Real>(p: &CableParams<R>, x: &Local<R, 12, 12>) -> Energy<R> {
+    fn energy<R: Real>(CableLanes { params: p, models }: &Self::Lanes<R>, x: &Local<R, 12, 12>) -> Energy<R> {
         let il = R::of(1.0) / p.l;
         let q = natural(&x.q, il);
         let (m, mut twice) = (mass(p), R::zero());
@@ -125,8 +134,8 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
             }
         }
         let (axial, bending) = (
-            axial_energy::<L, Q::Axial, R>(p.ea * p.l, &q),
-            bending_energy::<T, Q::Bending, R>(p.ei, p.l, il, &q),
+            axial_energy(models.longitudinal, models.rule.axial(), p.ea * p.l, &q),
+            bending_energy(models.transverse, models.rule.bending(), p.ei, p.l, il, &q),
         );
         Energy { kinetic: R::of(0.5) * twice, potential: axial + bending }
     }

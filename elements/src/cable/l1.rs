@@ -13,14 +13,16 @@ use ropewalk_core::Real;
 pub struct L1;
 
 impl Longitudinal for L1 {
-    const LABEL: &'static str = "L1";
     type Strain<R: Real> = Stretch<R>;
+    fn label(self) -> &'static str {
+        "L1"
+    }
     #[inline(always)]
-    fn points<Q: Quadrature>() -> &'static [Point] {
+    fn points<Q: Quadrature>(self, _: Q) -> &'static [Point] {
         &WHOLE
     }
     #[inline(always)]
-    fn strain<R: Real>(q: &Natural<R>, _: &Point) -> Stretch<R> {
+    fn strain<R: Real>(self, q: &Natural<R>, _: &Point) -> Stretch<R> {
         Stretch::engineering(q, WHOLE[0].phi)
     }
 }

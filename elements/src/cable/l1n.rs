@@ -17,23 +17,27 @@ use ropewalk_core::{Real, Share};
 pub struct L1n;
 
 impl Longitudinal for L1n {
-    const LABEL: &'static str = "L1n";
-    const SYMMETRIC: bool = false;
     type Strain<R: Real> = Frozen<R>;
-    fn lever(eps: f64) -> f64 {
+    fn label(self) -> &'static str {
+        "L1n"
+    }
+    fn symmetric(self) -> bool {
+        false
+    }
+    fn lever(self, eps: f64) -> f64 {
         1.0 + eps
     }
     #[inline(always)]
-    fn points<Q: Quadrature>() -> &'static [Point] {
+    fn points<Q: Quadrature>(self, _: Q) -> &'static [Point] {
         &WHOLE
     }
     #[inline(always)]
-    fn strain<R: Real>(q: &Natural<R>, _: &Point) -> Frozen<R> {
+    fn strain<R: Real>(self, q: &Natural<R>, _: &Point) -> Frozen<R> {
         Frozen { chord: Stretch::engineering(q, WHOLE[0].phi), mean: MeanGreen::new(q) }
     }
     #[inline(always)]
-    fn add_unsymmetric<R: Real>(material: R, q: &Natural<R>, il: R, out: &mut Share<R, 12>) {
-        let Frozen { chord, mean } = Self::strain(q, &WHOLE[0]);
+    fn add_unsymmetric<R: Real>(self, material: R, q: &Natural<R>, il: R, out: &mut Share<R, 12>) {
+        let Frozen { chord, mean } = self.strain(q, &WHOLE[0]);
         add_product(material, &mean.gradient(), &chord.gradient(), il, out);
     }
 }

@@ -13,17 +13,19 @@ use ropewalk_core::Real;
 pub struct L2;
 
 impl Longitudinal for L2 {
-    const LABEL: &'static str = "L2";
     type Strain<R: Real> = MeanGreen<R>;
-    fn lever(eps: f64) -> f64 {
+    fn label(self) -> &'static str {
+        "L2"
+    }
+    fn lever(self, eps: f64) -> f64 {
         (1.0 + 2.0 * eps).max(0.0).sqrt()
     }
     #[inline(always)]
-    fn points<Q: Quadrature>() -> &'static [Point] {
+    fn points<Q: Quadrature>(self, _: Q) -> &'static [Point] {
         &WHOLE
     }
     #[inline(always)]
-    fn strain<R: Real>(q: &Natural<R>, _: &Point) -> MeanGreen<R> {
+    fn strain<R: Real>(self, q: &Natural<R>, _: &Point) -> MeanGreen<R> {
         MeanGreen::new(q)
     }
 }

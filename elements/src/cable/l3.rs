@@ -13,13 +13,15 @@ use ropewalk_core::Real;
 pub struct L3;
 
 impl Longitudinal for L3 {
-    const LABEL: &'static str = "L3";
     type Strain<R: Real> = Stretch<R>;
-    fn lever(eps: f64) -> f64 {
+    fn label(self) -> &'static str {
+        "L3"
+    }
+    fn lever(self, eps: f64) -> f64 {
         (1.0 + 2.0 * eps).max(0.0).sqrt()
     }
     #[inline(always)]
-    fn strain<R: Real>(q: &Natural<R>, at: &Point) -> Stretch<R> {
+    fn strain<R: Real>(self, q: &Natural<R>, at: &Point) -> Stretch<R> {
         Stretch::green(q, at.phi)
     }
 }

@@ -12,11 +12,12 @@ use ropewalk_core::Real;
 pub struct L4;
 
 impl Longitudinal for L4 {
-    const LABEL: &'static str = "L4";
-    const USUAL: bool = true;
     type Strain<R: Real> = Stretch<R>;
+    fn label(self) -> &'static str {
+        "L4"
+    }
     #[inline(always)]
-    fn strain<R: Real>(q: &Natural<R>, at: &Point) -> Stretch<R> {
+    fn strain<R: Real>(self, q: &Natural<R>, at: &Point) -> Stretch<R> {
         Stretch::engineering(q, at.phi)
     }
 }

@@ -9,29 +9,33 @@ use super::reduced::Reduced;
 use super::shape::{Natural, combine, dot9};
 use ropewalk_core::{Real, Share, V3, dot};
 
-/// A longitudinal model.
+/// A longitudinal model: a type that makes kernels of its own, or a [`LongitudinalModel`](super::LongitudinalModel) that is
+/// chosen at run time.
 pub trait Longitudinal: Copy + Send + Sync + 'static {
-    /// Short name, for labels.
-    const LABEL: &'static str;
-    /// Whether force is the derivative of an energy, and the tangent therefore symmetric.
-    const SYMMETRIC: bool = true;
-    /// Whether it is the usual choice: elements of which many kinds are compiled have wide copies for the usual ones only.
-    const USUAL: bool = false;
+    /// Whether it is known while compiling: the largest elements have wide copies for such models only.
+    const KNOWN: bool = true;
     /// Strain with its derivatives.
     type Strain<R: Real>: Strain<R>;
+    /// Short name, for labels.
+    fn label(self) -> &'static str;
+    /// Whether force is the derivative of an energy, and the tangent therefore symmetric.
+    fn symmetric(self) -> bool {
+        true
+    }
     /// Axial force per stress `EA ε`, as the force goes with the stretch and the stress with the strain.
-    fn lever(_eps: f64) -> f64 {
+    fn lever(self, _eps: f64) -> f64 {
         1.0
     }
-    /// Where the strain is taken: the points of `Q`, or [`WHOLE`](super::quadrature::WHOLE).
-    fn points<Q: Quadrature>() -> &'static [Point] {
-        Q::POINTS
+    /// Where the strain is taken: the points of `rule`, or [`WHOLE`](super::quadrature::WHOLE).
+    #[inline(always)]
+    fn points<Q: Quadrature>(self, rule: Q) -> &'static [Point] {
+        rule.points()
     }
     /// The strain at one of these points.
-    fn strain<R: Real>(q: &Natural<R>, at: &Point) -> Self::Strain<R>;
+    fn strain<R: Real>(self, q: &Natural<R>, at: &Point) -> Self::Strain<R>;
     /// Adds the part of the tangent that has no symmetry, times `material`: none, for a conservative model.
     #[inline(always)]
-    fn add_unsymmetric<R: Real>(_material: R, _q: &Natural<R>, _il: R, _out: &mut Share<R, 12>) {}
+    fn add_unsymmetric<R: Real>(self, _material: R, _q: &Natural<R>, _il: R, _out: &mut Share<R, 12>) {}
 }
 
 /// A strain ε of the natural variables `q`, with its derivatives.
@@ -213,12 +217,14 @@ impl<R: Real> Strain<R> for MeanGreen<R> {
 /// Adds the axial force, and with `TANGENT` its derivative. `ea_l = EA L`.
 #[inline(always)]
 pub fn add_axial<L: Longitudinal, Q: Quadrature, R: Real, const TANGENT: bool>(
+    model: L,
+    rule: Q,
     ea_l: R,
     q: &Natural<R>,
     out: &mut Reduced<R>,
 ) {
-    for at in L::points::<Q>() {
-        let strain = L::strain(q, at);
+    for at in model.points(rule) {
+        let strain = model.strain(q, at);
         let c = ea_l * R::of(at.w);
         let stress = c * strain.eps();
         out.add_force(stress, &strain.gradient());
@@ -230,10 +236,15 @@ pub fn add_axial<L: Longitudinal, Q: Quadrature, R: Real, const TANGENT: bool>(
 
 /// Strain energy of stretching, `½ EA L Σ w ε²`.
 #[inline(always)]
-pub fn axial_energy<L: Longitudinal, Q: Quadrature, R: Real>(ea_l: R, q: &Natural<R>) -> R {
+pub fn axial_energy<L: Longitudinal, Q: Quadrature, R: Real>(
+    model: L,
+    rule: Q,
+    ea_l: R,
+    q: &Natural<R>,
+) -> R {
     let mut sum = R::zero();
-    for at in L::points::<Q>() {
-        let eps = L::strain(q, at).eps();
+    for at in model.points(rule) {
+        let eps = model.strain(q, at).eps();
         sum = (R::of(at.w) * eps).fma(eps, sum);
     }
     R::of(0.5) * ea_l * sum

@@ -5,6 +5,7 @@
 //! - [`Cable`]: elastic force and mass. [`CableModel`] chooses its models at run time, [`push_cable`] makes it.
 
 mod bending_damping;
+mod chosen;
 mod damping;
 pub(crate) mod directed;
 mod element;
@@ -32,10 +33,10 @@ mod t3;
 mod transmitted;
 pub mod transverse;
 
-pub use bending_damping::BendingDamping;
-pub use damping::AxialDamping;
+pub use bending_damping::{BendingDamping, BendingDampingLanes};
+pub use damping::{AxialDamping, AxialDampingLanes};
 pub use directed::{Directed, DirectedLanes, DirectedParams};
-pub use element::{Cable, CableParams, mass};
+pub use element::{Cable, CableLanes, CableParams, mass};
 pub use l1::L1;
 pub use l1n::L1n;
 pub use l2::L2;
@@ -43,8 +44,8 @@ pub use l3::L3;
 pub use l4::L4;
 pub use mesh::{Grading, MeshSpec};
 pub use model::{
-    CableModel, Integration, LongitudinalModel, Sink, TransverseModel, WithModels, legal, push_cable,
-    with_models,
+    CableModel, ChosenModels, Integration, LongitudinalModel, Models, Sink, TransverseModel, WithModels,
+    legal, push_cable, with_models,
 };
 pub use output::{Reading, read};
 pub use part::CablePart;

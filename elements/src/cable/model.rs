@@ -2,9 +2,9 @@
 
 use super::element::{Cable, CableParams};
 use super::longitudinal::Longitudinal;
-use super::quadrature::{Full, LockingFree, Rule};
+use super::quadrature::{LockingFree, Point, Rule};
 use super::transverse::Transverse;
-use super::{L1, L1n, L2, L3, L4, T1, T2, T3};
+use super::{L4, T3};
 use ropewalk_core::{Element, NodeId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -79,36 +79,61 @@ pub trait Sink {
     fn push<E: Element<12, 12>>(&mut self, element: E, nodes: &[NodeId]);
 }
 
-/// Work to be done with the models as types.
+/// The models of an element: types that make a kernel of their own, or the choices of a [`CableModel`].
+#[derive(Clone, Copy, Debug)]
+pub struct Models<L, T, Q> {
+    /// Axial strain.
+    pub longitudinal: L,
+    /// Curvature.
+    pub transverse: T,
+    /// Quadrature.
+    pub rule: Q,
+}
+
+/// Models that are looked up while the kernel runs.
+pub type ChosenModels = Models<LongitudinalModel, TransverseModel, Integration>;
+
+impl<L: Longitudinal, T: Transverse, Q: Rule> Models<L, T, Q> {
+    /// These models.
+    pub fn new(longitudinal: L, transverse: T, rule: Q) -> Self {
+        Models { longitudinal, transverse, rule }
+    }
+    /// Whether they are known while compiling.
+    pub const KNOWN: bool = L::KNOWN && T::KNOWN;
+    /// Where the strain is taken.
+    #[inline(always)]
+    pub fn points(self) -> &'static [Point] {
+        self.longitudinal.points(self.rule.axial())
+    }
+}
+
+impl CableModel {
+    /// Its models, if they go together.
+    pub fn models(self) -> Result<ChosenModels, String> {
+        use LongitudinalModel::{L1, L1n, L2};
+        let CableModel { longitudinal, transverse, integration } = self;
+        legal(longitudinal, transverse)?;
+        // the quadrature of closed forms makes no difference
+        let closed = matches!(longitudinal, L1 | L1n | L2);
+        let rule = if closed { Integration::LockingFree } else { integration };
+        Ok(Models::new(longitudinal, transverse, rule))
+    }
+}
+
+/// Work to be done with models.
 pub trait WithModels {
     /// What comes of it.
     type Output;
     /// Does it.
-    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> Self::Output;
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self, models: Models<L, T, Q>) -> Self::Output;
 }
 
-/// Does work with the chosen models as types. Only legal pairs exist as types.
+/// Does work with the chosen models: the default ones as types, for which fast kernels are compiled, any others as values.
 pub fn with_models<W: WithModels>(model: CableModel, work: W) -> Result<W::Output, String> {
-    use {LongitudinalModel as L, TransverseModel as T};
-    legal(model.longitudinal, model.transverse)?;
-    let full = model.integration == Integration::Full;
-    Ok(match (model.longitudinal, model.transverse, full) {
-        // closed forms: the rule would only double the code
-        (L::L1, ..) => work.go::<L1, T1, LockingFree>(),
-        (L::L1n, ..) => work.go::<L1n, T1, LockingFree>(),
-        (L::L2, ..) => work.go::<L2, T1, LockingFree>(),
-        (L::L3, T::T1, true) => work.go::<L3, T1, Full>(),
-        (L::L3, T::T2, true) => work.go::<L3, T2, Full>(),
-        (L::L3, T::T3, true) => work.go::<L3, T3, Full>(),
-        (L::L4, T::T1, true) => work.go::<L4, T1, Full>(),
-        (L::L4, T::T2, true) => work.go::<L4, T2, Full>(),
-        (L::L4, T::T3, true) => work.go::<L4, T3, Full>(),
-        (L::L3, T::T1, false) => work.go::<L3, T1, LockingFree>(),
-        (L::L3, T::T2, false) => work.go::<L3, T2, LockingFree>(),
-        (L::L3, T::T3, false) => work.go::<L3, T3, LockingFree>(),
-        (L::L4, T::T1, false) => work.go::<L4, T1, LockingFree>(),
-        (L::L4, T::T2, false) => work.go::<L4, T2, LockingFree>(),
-        (L::L4, T::T3, false) => work.go::<L4, T3, LockingFree>(),
+    Ok(if model == CableModel::default() {
+        work.go(Models::new(L4, T3, LockingFree))
+    } else {
+        work.go(model.models()?)
     })
 }
 
@@ -122,8 +147,8 @@ pub fn push_cable(
     struct Push<'a, S>(&'a mut S, CableParams, &'a [NodeId]);
     impl<S: Sink> WithModels for Push<'_, S> {
         type Output = ();
-        fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) {
-            self.0.push(Cable::<L, T, Q>::new(self.1), self.2);
+        fn go<L: Longitudinal, T: Transverse, Q: Rule>(self, models: Models<L, T, Q>) {
+            self.0.push(Cable::new(self.1, models), self.2);
         }
     }
     params.check()?;

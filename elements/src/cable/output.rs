@@ -2,10 +2,10 @@
 
 use super::element::CableParams;
 use super::longitudinal::{Longitudinal, Strain};
-use super::model::{CableModel, WithModels, with_models};
-use super::quadrature::{Point, Quadrature, Rule};
+use super::model::{CableModel, ChosenModels, TransverseModel};
+use super::quadrature::Point;
 use super::shape::{combine, hermite, natural};
-use super::transverse::{Curve, Transverse};
+use super::transverse::Curve;
 use ropewalk_core::V3;
 
 /// Motion and internal forces at a point of a cable element.
@@ -27,58 +27,27 @@ pub struct Reading {
     pub moment: f64,
 }
 
-struct Read<'a> {
-    params: &'a CableParams,
-    q: &'a [f64; 12],
-    v: &'a [f64; 12],
-    xi: f64,
-    rest: Option<&'a [f64; 12]>,
-}
-
 /// Axial strain at `xi`.
 ///
 /// With fewer than five points the strain is interpolated between the quadrature points: only there does the
 /// element control it. In between, the cubic of a bent element stretches by about `(κL)⁴`, which no force answers
 /// to, and which `EA` would turn into a tension that isn't there.
-fn strain_at<L: Longitudinal, Q: Quadrature>(e: &[f64; 12], l: f64, xi: f64) -> f64 {
+fn strain_at(models: ChosenModels, e: &[f64; 12], l: f64, xi: f64) -> f64 {
     let q = natural(e, 1.0 / l);
-    let points = L::points::<Q>();
+    let (points, model) = (models.points(), models.longitudinal);
     if points.len() >= 5 {
-        return L::strain(&q, &Point::new(xi, 1.0)).eps();
+        return model.strain(&q, &Point::new(xi, 1.0)).eps();
     }
     let lagrange = |k: usize| -> f64 {
         let others = points.iter().enumerate().filter(|(j, _)| *j != k);
         others.map(|(_, p)| (xi - p.xi) / (points[k].xi - p.xi)).product()
     };
-    points.iter().enumerate().map(|(k, at)| lagrange(k) * L::strain(&q, at).eps()).sum()
+    points.iter().enumerate().map(|(k, at)| lagrange(k) * model.strain(&q, at).eps()).sum()
 }
 
 /// Curvature at `xi`, directly: interpolated magnitudes would be wrong around a change of sign.
-fn curvature_at<T: Transverse>(e: &[f64; 12], l: f64, xi: f64) -> f64 {
-    Curve::new::<T>(&natural(e, 1.0 / l), &Point::new(xi, 1.0), 1.0 / l).square.value.sqrt()
-}
-
-impl WithModels for Read<'_> {
-    type Output = Reading;
-    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> Reading {
-        let CableParams { l, ea, ei, .. } = *self.params;
-        let s = hermite(self.xi, l);
-        let at = |e: &[f64; 12]| std::array::from_fn(|c| (0..4).map(|i| s[i] * e[3 * i + c]).sum());
-        let strain = strain_at::<L, Q::Axial>(self.q, l, self.xi);
-        let curvature = curvature_at::<T>(self.q, l, self.xi);
-        let (eps0, kappa0) = self.rest.map_or((0.0, 0.0), |e| {
-            (strain_at::<L, Q::Axial>(e, l, self.xi), curvature_at::<T>(e, l, self.xi))
-        });
-        Reading {
-            position: at(self.q),
-            velocity: at(self.v),
-            slope: combine(&Point::new(self.xi, 1.0).phi, &natural(self.q, 1.0 / l)),
-            strain,
-            tension: ea * (strain - eps0) * L::lever(strain),
-            curvature,
-            moment: ei * (curvature - kappa0),
-        }
-    }
+fn curvature_at(model: TransverseModel, e: &[f64; 12], l: f64, xi: f64) -> f64 {
+    Curve::new(model, &natural(e, 1.0 / l), &Point::new(xi, 1.0), 1.0 / l).square.value.sqrt()
 }
 
 /// Reads an element at `xi` of its length, 0 at its start and 1 at its end: `q` and `v` are its twelve dofs and their
@@ -93,5 +62,20 @@ pub fn read(
     xi: f64,
     rest: Option<&[f64; 12]>,
 ) -> Result<Reading, String> {
-    with_models(model, Read { params, q, v, xi, rest })
+    let (models, &CableParams { l, ea, ei, .. }) = (model.models()?, params);
+    let s = hermite(xi, l);
+    let at = |e: &[f64; 12]| std::array::from_fn(|c| (0..4).map(|i| s[i] * e[3 * i + c]).sum());
+    let strain_at = |e| strain_at(models, e, l, xi);
+    let curvature_at = |e| curvature_at(models.transverse, e, l, xi);
+    let (strain, curvature) = (strain_at(q), curvature_at(q));
+    let (eps0, kappa0) = rest.map_or((0.0, 0.0), |e| (strain_at(e), curvature_at(e)));
+    Ok(Reading {
+        position: at(q),
+        velocity: at(v),
+        slope: combine(&Point::new(xi, 1.0).phi, &natural(q, 1.0 / l)),
+        strain,
+        tension: ea * (strain - eps0) * models.longitudinal.lever(strain),
+        curvature,
+        moment: ei * (curvature - kappa0),
+    })
 }

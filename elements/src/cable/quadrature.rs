@@ -24,12 +24,36 @@ impl Point {
 /// The one "point" of a strain that is an average over the element: it sees `Δ` alone.
 pub const WHOLE: [Point; 1] = [Point { xi: 0.5, w: 1.0, phi: [1.0, 0.0, 0.0], psi: [0.0, 0.0] }];
 
-/// A quadrature rule as a type, so that each makes its own kernel.
+/// A quadrature rule: a type, that makes a kernel of its own, or [`Points`], which serve any rule.
 pub trait Quadrature: Copy + Send + Sync + 'static {
     /// Short name, for labels.
-    const LABEL: &'static str;
+    fn label(self) -> &'static str;
     /// Its points in ascending order.
-    const POINTS: &'static [Point];
+    fn points(self) -> &'static [Point];
+}
+
+/// A rule that is chosen at run time.
+#[derive(Clone, Copy, Debug)]
+pub struct Points {
+    label: &'static str,
+    points: &'static [Point],
+}
+
+impl Points {
+    /// Those of this rule.
+    pub fn of(rule: impl Quadrature) -> Self {
+        Points { label: rule.label(), points: rule.points() }
+    }
+}
+
+impl Quadrature for Points {
+    fn label(self) -> &'static str {
+        self.label
+    }
+    #[inline(always)]
+    fn points(self) -> &'static [Point] {
+        self.points
+    }
 }
 
 /// Most points of any rule here.
@@ -40,9 +64,18 @@ macro_rules! rule {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         pub struct $name;
+        impl $name {
+            /// Its points in ascending order.
+            pub const POINTS: &'static [Point] = &[$(Point::new($x, $w)),+];
+        }
         impl Quadrature for $name {
-            const LABEL: &'static str = $label;
-            const POINTS: &'static [Point] = &[$(Point::new($x, $w)),+];
+            fn label(self) -> &'static str {
+                $label
+            }
+            #[inline(always)]
+            fn points(self) -> &'static [Point] {
+                Self::POINTS
+            }
         }
     };
 }
@@ -87,14 +120,16 @@ rule!(
 
 /// Which quadrature rule integrates which part of the strain energy.
 pub trait Rule: Copy + Send + Sync + 'static {
-    /// Name, for labels.
-    const LABEL: &'static str;
-    /// Whether it is the usual choice; see [`Longitudinal::USUAL`](super::longitudinal::Longitudinal::USUAL).
-    const USUAL: bool = false;
     /// For the longitudinal part.
     type Axial: Quadrature;
     /// For the transverse part.
     type Bending: Quadrature;
+    /// Name, for labels.
+    fn label(self) -> &'static str;
+    /// For the longitudinal part.
+    fn axial(self) -> Self::Axial;
+    /// For the transverse part.
+    fn bending(self) -> Self::Bending;
 }
 
 /// Five Gauss points for both parts. Locks: an element that bends can't keep its axial strain at zero everywhere,
@@ -102,9 +137,19 @@ pub trait Rule: Copy + Send + Sync + 'static {
 #[derive(Clone, Copy, Debug)]
 pub struct Full;
 impl Rule for Full {
-    const LABEL: &'static str = "full";
     type Axial = Gauss5;
     type Bending = Gauss5;
+    fn label(self) -> &'static str {
+        "full"
+    }
+    #[inline(always)]
+    fn axial(self) -> Gauss5 {
+        Gauss5
+    }
+    #[inline(always)]
+    fn bending(self) -> Gauss5 {
+        Gauss5
+    }
 }
 
 /// Axial strain at the three Lobatto points, curvature at two Gauss points: no locking, and no spurious modes
@@ -113,8 +158,17 @@ impl Rule for Full {
 #[derive(Clone, Copy, Debug)]
 pub struct LockingFree;
 impl Rule for LockingFree {
-    const LABEL: &'static str = "locking-free";
-    const USUAL: bool = true;
     type Axial = Lobatto3;
     type Bending = Gauss2;
+    fn label(self) -> &'static str {
+        "locking-free"
+    }
+    #[inline(always)]
+    fn axial(self) -> Lobatto3 {
+        Lobatto3
+    }
+    #[inline(always)]
+    fn bending(self) -> Gauss2 {
+        Gauss2
+    }
 }

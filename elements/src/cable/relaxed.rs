@@ -11,6 +11,7 @@
 //! - `EA` is capped at the first iterations by what the load can use, against locking.
 
 use super::longitudinal::{Longitudinal, Strain};
+use super::model::Models;
 use super::quadrature::Rule;
 use super::reduced::Reduced;
 use super::shape::Natural;
@@ -32,6 +33,7 @@ pub fn capped<R: Real>(p: &CableParams<R>, ramp: f64, load: f64) -> R {
 /// Adds force and relaxed tangent of stretching and bending.
 #[inline(always)]
 pub fn add_relaxed<L: Longitudinal, T: Transverse, Q: Rule, R: Real, const TANGENT: bool>(
+    models: Models<L, T, Q>,
     p: &CableParams<R>,
     how: &Relaxation,
     il: R,
@@ -39,10 +41,11 @@ pub fn add_relaxed<L: Longitudinal, T: Transverse, Q: Rule, R: Real, const TANGE
     last: &Natural<R>,
     out: &mut Reduced<R>,
 ) {
+    let Models { longitudinal, transverse, rule } = models;
     let ea_l = capped(p, how.ramp, how.load) * p.l;
     let before_l = capped(p, how.ramp_before, how.load) * p.l;
-    for at in L::points::<Q::Axial>() {
-        let strain = L::strain(q, at);
+    for at in models.points() {
+        let strain = longitudinal.strain(q, at);
         let c = ea_l * R::of(at.w);
         let stress = c * strain.eps();
         out.add_force(stress, &strain.gradient());
@@ -51,7 +54,7 @@ pub fn add_relaxed<L: Longitudinal, T: Transverse, Q: Rule, R: Real, const TANGE
             if how.smooth {
                 let before: Natural<R> =
                     std::array::from_fn(|i| std::array::from_fn(|k| q[i][k] - last[i][k]));
-                let strain = L::strain(&before, at);
+                let strain = longitudinal.strain(&before, at);
                 mixed = before_l * R::of(at.w) * (strain.eps() + strain.rate(last));
             }
             if let Some(floor) = how.floor {
@@ -62,11 +65,11 @@ pub fn add_relaxed<L: Longitudinal, T: Transverse, Q: Rule, R: Real, const TANGE
         }
     }
     if TANGENT && how.floor.is_some() {
-        T::add::<Q::Bending, R, false>(p.ei, p.l, il, q, out);
+        transverse.add::<Q::Bending, R, false>(rule.bending(), p.ei, p.l, il, q, out);
         let force = out.g;
-        T1::add::<Q::Bending, R, true>(p.ei, p.l, il, q, out);
+        T1.add::<Q::Bending, R, true>(rule.bending(), p.ei, p.l, il, q, out);
         out.g = force;
     } else {
-        T::add::<Q::Bending, R, TANGENT>(p.ei, p.l, il, q, out);
+        transverse.add::<Q::Bending, R, TANGENT>(rule.bending(), p.ei, p.l, il, q, out);
     }
 }

@@ -7,7 +7,7 @@ use super::flow::push::{self, Piece};
 use super::mesh::{MeshSpec, counted, even, pinned};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::{CablePart, Directors};
-use super::quadrature::{Gauss2, Gauss5};
+use super::quadrature::Rule;
 use super::rest::{Rest, push_rest};
 use super::{CableParams, CableStations};
 use crate::path::{Corner, Path};
@@ -442,11 +442,7 @@ impl CableSpec {
         for (k, shape) in shapes.iter().enumerate() {
             let params = DirectedParams { l: mesh[k + 1] - mesh[k], ei: s.ei, gj, rho_j };
             let (on, both) = ([nodes[k], nodes[k + 1], own[k], own[k + 1]], [laid[k], laid[k + 1]]);
-            let pushed = match self.integration {
-                Integration::LockingFree => b.element(Directed::<Gauss2>::at_shape(params, shape, both), &on),
-                Integration::Full => b.element(Directed::<Gauss5>::at_shape(params, shape, both), &on),
-            };
-            pushed?;
+            b.element(Directed::at_shape(params, shape, both, self.integration.bending()), &on)?;
         }
         let seats = own.iter().map(|n| (b.nodes()[n.0 as usize].q, b.nodes()[n.0 as usize].v)).collect();
         Ok(Some(Directors { nodes: own, seats, laid }))

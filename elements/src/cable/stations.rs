@@ -1,6 +1,6 @@
 //! Where distributed loads act on a cable element: four Gauss points, exact for loads up to degree four.
 
-use super::quadrature::{Gauss4, Quadrature};
+use super::quadrature::Gauss4;
 use super::shape::{combine, hermite, hermite_slope, natural};
 use ropewalk_core::{Batch, Gives, Load, Local, Real, Share, Station, StationElement, V3, Weights};
 use schemars::JsonSchema;

@@ -14,15 +14,19 @@ use ropewalk_core::Real;
 pub struct T1;
 
 impl Transverse for T1 {
-    const LABEL: &'static str = "T1";
+    fn label(self) -> &'static str {
+        "T1"
+    }
     #[inline(always)]
-    fn square<R: Real>(i: &Invariants<R>) -> Square<R> {
+    fn square<R: Real>(self, i: &Invariants<R>) -> Square<R> {
         let (zero, one) = (R::zero(), R::of(1.0));
         Square { value: i.c, a: zero, b: zero, c: one, aa: zero, ab: zero, ac: zero, bb: zero }
     }
     /// Closed form of the energy `(2 EI/L)(|α|² + α·β + |β|²)`.
     #[inline(always)]
     fn add<Q: Quadrature, R: Real, const TANGENT: bool>(
+        self,
+        _: Q,
         ei: R,
         _: R,
         il: R,

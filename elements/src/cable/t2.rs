@@ -11,9 +11,11 @@ use ropewalk_core::Real;
 pub struct T2;
 
 impl Transverse for T2 {
-    const LABEL: &'static str = "T2";
+    fn label(self) -> &'static str {
+        "T2"
+    }
     #[inline(always)]
-    fn square<R: Real>(i: &Invariants<R>) -> Square<R> {
+    fn square<R: Real>(self, i: &Invariants<R>) -> Square<R> {
         let ia = R::of(1.0) / i.a;
         Square::quotient(3.0, ia * ia, ia, i)
     }

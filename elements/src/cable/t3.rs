@@ -11,10 +11,11 @@ use ropewalk_core::Real;
 pub struct T3;
 
 impl Transverse for T3 {
-    const LABEL: &'static str = "T3";
-    const USUAL: bool = true;
+    fn label(self) -> &'static str {
+        "T3"
+    }
     #[inline(always)]
-    fn square<R: Real>(i: &Invariants<R>) -> Square<R> {
+    fn square<R: Real>(self, i: &Invariants<R>) -> Square<R> {
         let ia = R::of(1.0) / i.a;
         Square::quotient(2.0, ia, ia, i)
     }

@@ -9,10 +9,10 @@
 use super::directed::{Directed, DirectedParams};
 use super::element::CableParams;
 use super::longitudinal::{Longitudinal, Strain, add_axial};
-use super::model::{CableModel, Integration, WithModels, with_models};
-use super::quadrature::{Gauss2, Gauss5, Rule};
+use super::model::{CableModel, Integration, Models};
+use super::quadrature::{MOST, Rule};
 use super::reduced::Reduced;
-use super::rest::{BendingRest, RestLanes};
+use super::rest::BendingRest;
 use super::shape::natural;
 use super::transverse::Transverse;
 use ropewalk_core::{Element, Local, Share, V3, Weights};
@@ -30,43 +30,6 @@ pub(super) struct Unstressed<'a> {
     pub points: Option<&'a [f64]>,
 }
 
-struct Force<'a> {
-    params: &'a CableParams,
-    q: &'a [f64; 12],
-    unstressed: Unstressed<'a>,
-}
-
-impl WithModels for Force<'_> {
-    type Output = V3<f64>;
-    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> V3<f64> {
-        let (CableParams { l, ea, ei, .. }, Unstressed { shape, strain, curvature, points }) =
-            (*self.params, self.unstressed);
-        let il = 1.0 / l;
-        let q = natural(self.q, il);
-        let mut local = Reduced::zero();
-        add_axial::<L, Q::Axial, f64, false>(ea * l, &q, &mut local);
-        T::add::<Q::Bending, f64, false>(ei, l, il, &q, &mut local);
-        let laid = shape.map(|e| natural(e, il));
-        if laid.is_some() || strain != 0.0 || points.is_some() {
-            for (k, at) in L::points::<Q::Axial>().iter().enumerate() {
-                let eps0 = laid.map_or(0.0, |laid| L::strain(&laid, at).eps())
-                    + strain
-                    + points.and_then(|p| p.get(k)).copied().unwrap_or(0.0);
-                local.add_force(-(ea * l * at.w * eps0), &L::strain(&q, at).gradient());
-            }
-        }
-        let mut out = Share::<f64, 12>::zero();
-        local.spread_force::<false>(il, &mut out);
-        if curvature != 0.0 && ei > 0.0 {
-            let x = Local { q: *self.q, v: [0.0; 12], a: [0.0; 12], last: [0.0; 12], relaxed: None };
-            let rest = RestLanes { l, stiffness: ei, rest: [curvature; super::quadrature::MOST] };
-            let w = Weights { q: 0.0, v: 0.0, a: 0.0 };
-            BendingRest::<T, Q::Bending>::add::<f64, false>(&rest, &x, &w, &mut out);
-        }
-        [out.r[6], out.r[7], out.r[8]]
-    }
-}
-
 /// The elastic force that an element with the dofs `q` transmits [N], tension along the cable positive.
 pub(super) fn force(
     model: CableModel,
@@ -74,7 +37,33 @@ pub(super) fn force(
     q: &[f64; 12],
     unstressed: Unstressed<'_>,
 ) -> Result<V3<f64>, String> {
-    with_models(model, Force { params, q, unstressed })
+    let models = model.models()?;
+    let Models { longitudinal, transverse, rule } = models;
+    let (&CableParams { l, ea, ei, .. }, Unstressed { shape, strain, curvature, points }) =
+        (params, unstressed);
+    let (il, dofs) = (1.0 / l, q);
+    let q = natural(dofs, il);
+    let mut local = Reduced::zero();
+    add_axial::<_, _, f64, false>(longitudinal, rule.axial(), ea * l, &q, &mut local);
+    transverse.add::<_, f64, false>(rule.bending(), ei, l, il, &q, &mut local);
+    let laid = shape.map(|e| natural(e, il));
+    if laid.is_some() || strain != 0.0 || points.is_some() {
+        for (k, at) in models.points().iter().enumerate() {
+            let eps0 = laid.map_or(0.0, |laid| longitudinal.strain(&laid, at).eps())
+                + strain
+                + points.and_then(|p| p.get(k)).copied().unwrap_or(0.0);
+            local.add_force(-(ea * l * at.w * eps0), &longitudinal.strain(&q, at).gradient());
+        }
+    }
+    let mut out = Share::<f64, 12>::zero();
+    local.spread_force::<false>(il, &mut out);
+    if curvature != 0.0 && ei > 0.0 {
+        let x = Local { q: *dofs, v: [0.0; 12], a: [0.0; 12], last: [0.0; 12], relaxed: None };
+        let rest = BendingRest::new(l, ei, [curvature; MOST], transverse, rule.bending());
+        let w = Weights { q: 0.0, v: 0.0, a: 0.0 };
+        BendingRest::add::<f64, false>(&rest.to_lanes(), &x, &w, &mut out);
+    }
+    Ok([out.r[6], out.r[7], out.r[8]])
 }
 
 /// What its stress-free curvature with a direction adds to that, where `directors` are those of its nodes and `laid` those
@@ -88,16 +77,8 @@ pub(super) fn directed(
     let x = std::array::from_fn(|i| if i < 12 { q[i] } else { directors[(i - 12) / 3][i % 3] });
     let x = Local { q: x, v: [0.0; 18], a: [0.0; 18], last: [0.0; 18], relaxed: None };
     let (w, mut out) = (Weights { q: 0.0, v: 0.0, a: 0.0 }, Share::zero());
-    match integration {
-        Integration::LockingFree => {
-            let element = Directed::<Gauss2>::at_shape(params, rest, laid).to_lanes();
-            Directed::<Gauss2>::add::<f64, false>(&element, &x, &w, &mut out);
-        }
-        Integration::Full => {
-            let element = Directed::<Gauss5>::at_shape(params, rest, laid).to_lanes();
-            Directed::<Gauss5>::add::<f64, false>(&element, &x, &w, &mut out);
-        }
-    }
+    let element = Directed::at_shape(params, rest, laid, integration.bending());
+    Directed::add::<f64, false>(&element.to_lanes(), &x, &w, &mut out);
     [out.r[6], out.r[7], out.r[8]]
 }
 

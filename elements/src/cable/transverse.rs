@@ -9,30 +9,46 @@ use super::reduced::{Reduced, block};
 use super::shape::{Natural, combine, second};
 use ropewalk_core::{Real, V3, dot};
 
-/// A transverse model.
+/// A transverse model: a type, or a [`TransverseModel`](super::TransverseModel) that is chosen at run time.
 pub trait Transverse: Copy + Send + Sync + 'static {
+    /// Whether it is known while compiling; see [`Longitudinal::KNOWN`](super::longitudinal::Longitudinal::KNOWN).
+    const KNOWN: bool = true;
     /// Short name, for labels.
-    const LABEL: &'static str;
-    /// Whether it is the usual choice; see [`Longitudinal::USUAL`](super::longitudinal::Longitudinal::USUAL).
-    const USUAL: bool = false;
+    fn label(self) -> &'static str;
     /// κ² and its derivatives.
-    fn square<R: Real>(i: &Invariants<R>) -> Square<R>;
+    fn square<R: Real>(self, i: &Invariants<R>) -> Square<R>;
     /// Adds the bending force, and with `TANGENT` its derivative; `il = 1/L`.
     #[inline(always)]
     fn add<Q: Quadrature, R: Real, const TANGENT: bool>(
+        self,
+        rule: Q,
         ei: R,
         l: R,
         il: R,
         q: &Natural<R>,
         out: &mut Reduced<R>,
     ) {
-        for at in Q::POINTS {
-            let curve = Curve::new::<Self>(q, at, il);
-            let s = ei * l * R::of(0.5 * at.w);
-            curve.add_force(s, out);
-            if TANGENT {
-                curve.add_hessian(s, out);
-            }
+        add_bending::<Self, Q, R, TANGENT>(self, rule, ei, l, il, q, out);
+    }
+}
+
+/// Adds the bending force by quadrature, and with `TANGENT` its derivative.
+#[inline(always)]
+pub fn add_bending<T: Transverse, Q: Quadrature, R: Real, const TANGENT: bool>(
+    model: T,
+    rule: Q,
+    ei: R,
+    l: R,
+    il: R,
+    q: &Natural<R>,
+    out: &mut Reduced<R>,
+) {
+    for at in rule.points() {
+        let curve = Curve::new(model, q, at, il);
+        let s = ei * l * R::of(0.5 * at.w);
+        curve.add_force(s, out);
+        if TANGENT {
+            curve.add_hessian(s, out);
         }
     }
 }
@@ -112,11 +128,11 @@ pub struct Curve<R> {
 impl<R: Real> Curve<R> {
     /// The point `at` of the curve with natural variables `nat`.
     #[inline(always)]
-    pub fn new<T: Transverse>(nat: &Natural<R>, at: &Point, il: R) -> Self {
+    pub fn new<T: Transverse>(model: T, nat: &Natural<R>, at: &Point, il: R) -> Self {
         let (p, q) = (combine(&at.phi, nat), second(&at.psi, il, nat));
         let x: V3<R> = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
         let i = Invariants { a: dot(&p, &p), b: dot(&p, &q), c: dot(&q, &q), d: dot(&x, &x) };
-        Curve { p, q, phi: at.phi, psi: at.psi, il, square: T::square(&i) }
+        Curve { p, q, phi: at.phi, psi: at.psi, il, square: model.square(&i) }
     }
 
     #[inline(always)]
@@ -234,10 +250,17 @@ fn blend<R: Real>(a: f64, x: R, b: f64, y: R, c: f64, z: R) -> R {
 
 /// Strain energy of bending, `½ EI L Σ w κ²`.
 #[inline(always)]
-pub fn bending_energy<T: Transverse, Q: Quadrature, R: Real>(ei: R, l: R, il: R, q: &Natural<R>) -> R {
+pub fn bending_energy<T: Transverse, Q: Quadrature, R: Real>(
+    model: T,
+    rule: Q,
+    ei: R,
+    l: R,
+    il: R,
+    q: &Natural<R>,
+) -> R {
     let mut sum = R::zero();
-    for at in Q::POINTS {
-        sum = R::of(at.w).fma(Curve::new::<T>(q, at, il).square.value, sum);
+    for at in rule.points() {
+        sum = R::of(at.w).fma(Curve::new(model, q, at, il).square.value, sum);
     }
     R::of(0.5) * ei * l * sum
 }

@@ -22,11 +22,13 @@ fn spin<R: Real>(a: &V3<R>, j: &[V3<R>; 3]) -> [V3<R>; 3] {
 
 impl Element<7, 6> for Inertia {
     type Lanes<R: Real> = Inertia<R>;
-    // ω × J ω takes no energy but has no symmetric derivative
-    const SYMMETRIC: bool = false;
 
-    fn label() -> String {
+    fn label(&self) -> String {
         "rigid bodies".into()
+    }
+    // ω × J ω takes no energy but has no symmetric derivative
+    fn symmetric(&self) -> bool {
+        false
     }
 
     #[inline(always)]

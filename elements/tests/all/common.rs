@@ -1,7 +1,7 @@
 //! What the tests of the elements share: reference data, single evaluations and differences.
 #![allow(dead_code)]
 
-use ropewalk_core::{Element, Local, Share, Weights};
+use ropewalk_core::{Batch, Element, Local, Real, Share, Weights};
 use serde_json::Value;
 
 /// The reference computed with forty digits by an independent program; see its `_doc`.
@@ -23,12 +23,18 @@ pub fn at(q: [f64; 12], v: [f64; 12], a: [f64; 12]) -> Local<f64, 12, 12> {
     Local { q, v, a, last: [0.0; 12], relaxed: None }
 }
 
+/// The numbers of an element, the same in every lane.
+#[inline(always)]
+pub fn lanes<E: Element<12, 12>, R: Real>(element: &E) -> E::Lanes<R> {
+    E::lanes(&Batch::of(std::slice::from_ref(element)))
+}
+
 /// Residual and weighted tangent of one element.
-pub fn eval<E: Element<12, 12>>(p: &E::Lanes<f64>, x: &Local<f64, 12, 12>, w: Weights) -> Share<f64, 12> {
-    let mut out = Share::zero();
-    E::add::<f64, true>(p, x, &w, &mut out);
+pub fn eval<E: Element<12, 12>>(element: &E, x: &Local<f64, 12, 12>, w: Weights) -> Share<f64, 12> {
+    let (p, mut out) = (lanes(element), Share::zero());
+    E::add::<f64, true>(&p, x, &w, &mut out);
     let mut force = Share::zero();
-    E::add::<f64, false>(p, x, &w, &mut force);
+    E::add::<f64, false>(&p, x, &w, &mut force);
     assert_eq!(force.r, out.r, "the residual doesn't depend on whether the tangent is wanted");
     out
 }
@@ -48,15 +54,15 @@ pub fn apart(a: &[f64], b: &[f64]) -> f64 {
 
 /// The weighted tangent by central differences of fourth order of the residual.
 pub fn differences<E: Element<12, 12>>(
-    p: &E::Lanes<f64>,
+    element: &E,
     x: &Local<f64, 12, 12>,
     w: Weights,
     h: f64,
 ) -> [[f64; 12]; 12] {
-    let mut k = [[0.0; 12]; 12];
+    let (p, mut k) = (lanes(element), [[0.0; 12]; 12]);
     let r = |y: &Local<f64, 12, 12>| {
         let mut out = Share::zero();
-        E::add::<f64, false>(p, y, &Weights::default(), &mut out);
+        E::add::<f64, false>(&p, y, &Weights::default(), &mut out);
         out.r
     };
     for j in 0..12 {

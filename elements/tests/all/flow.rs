@@ -6,12 +6,20 @@ use ropewalk_core::{
     Weights, Width,
 };
 use ropewalk_elements::cable::flow::{Embedding, FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight};
+use ropewalk_elements::cable::quadrature::{Gauss2, Lobatto3, Rule};
 use ropewalk_elements::cable::{
-    AxialDamping, BendingDamping, CableParams, Full, L1, L2, L3, L4, LockingFree, T1, T3,
+    AxialDamping, BendingDamping, CableModel, CableParams, ChosenModels, Full, L1, L2, L3, L4, LockingFree,
+    LongitudinalModel, Models, T1, T3,
 };
 use std::sync::Arc;
 
 const PARAMS: CableParams = CableParams { l: 1.0, ea: 50.0, ei: 0.7, rho_a: 1.3 };
+
+/// Models that are looked up at run time.
+fn chosen() -> ChosenModels {
+    let model = CableModel { longitudinal: LongitudinalModel::L3, ..CableModel::default() };
+    model.models().expect("legal")
+}
 
 /// Two nodes of a cable, and the fronts of its line.
 fn nodes(fronts: usize) -> Vec<Node> {
@@ -85,7 +93,7 @@ fn inertia_is_that_of_material_points() {
     let x = motion();
     let elastic = CableParams { ea: 0.0, ei: 0.0, ..PARAMS };
     let (r, _) = dense(
-        &pool(FlowCable::<L4, T3, LockingFree, 2>::new(elastic, TWO)),
+        &pool(FlowCable::new(elastic, Models::new(L4, T3, LockingFree), TWO)),
         &nodes(2),
         &at(&x),
         Weights::default(),
@@ -138,13 +146,14 @@ fn elastic_force_is_the_derivative_of_the_energy() {
                 moved[0][i] += h;
                 vec![pool.energy(&at(&moved)).potential]
             });
-            assert!((r - numeric[0]).abs() < 1e-9 * size, "{}, {i}: {r} and {}", E::label(), numeric[0]);
+            assert!((r - numeric[0]).abs() < 1e-9 * size, "{}, {i}: {r} and {}", pool.label(), numeric[0]);
         }
     }
-    check(FlowCable::<L1, T1, LockingFree, 2>::new(PARAMS, TWO));
-    check(FlowCable::<L2, T1, LockingFree, 2>::new(PARAMS, TWO));
-    check(FlowCable::<L3, T3, Full, 2>::new(PARAMS, TWO));
-    check(FlowCable::<L4, T3, LockingFree, 2>::new(PARAMS, TWO));
+    check(FlowCable::new(PARAMS, chosen(), TWO));
+    check(FlowCable::new(PARAMS, Models::new(L1, T1, LockingFree), TWO));
+    check(FlowCable::new(PARAMS, Models::new(L2, T1, LockingFree), TWO));
+    check(FlowCable::new(PARAMS, Models::new(L3, T3, Full), TWO));
+    check(FlowCable::new(PARAMS, Models::new(L4, T3, LockingFree), TWO));
 }
 
 #[test]
@@ -155,10 +164,11 @@ fn energy_at_an_end_completes_the_rule_of_the_material() {
     let by = Embedding::<2> { fixed: [0.0; 2], by: [[1.0, 0.0], [0.0, 1.0]] };
     let params = CableParams { ei: 0.0, ..PARAMS };
     let residual = |term: &dyn Term| dense(term, &nodes(2), &at(&x), Weights::default(), Width::One).0;
-    let u = residual(&pool(FlowCable::<L3, T1, Full, 2>::new(params, by)));
+    let u = residual(&pool(FlowCable::new(params, Models::new(L3, T1, Full), by)));
     let l = x[0][13] - x[0][12];
     for (end, sign) in [(0, 1.0), (1, -1.0)] {
-        let w = residual(&pool(FlowEnd::<L3, T1, Full, 2>::new(params, by, end, end)))[12 + end] * sign;
+        let w =
+            residual(&pool(FlowEnd::new(params, Models::new(L3, T1, Full), by, end, end)))[12 + end] * sign;
         let e: Vec<[f64; 3]> = x[0].chunks(3).take(4).map(|c| [c[0], c[1], c[2]]).collect();
         let bend: [f64; 3] = std::array::from_fn(|c| {
             let chord = 6.0 * (e[2][c] - e[0][c]) / (l * l);
@@ -219,17 +229,21 @@ where
 #[test]
 fn tangents_agree_with_differences() {
     let x = motion();
-    let axial = AxialDamping::<L4, ropewalk_elements::cable::quadrature::Lobatto3>::new(1.0, 3.0);
-    let bending = BendingDamping::<ropewalk_elements::cable::quadrature::Gauss2>::new(1.0, 0.6);
+    let axial = AxialDamping::new(1.0, 3.0, L4, Lobatto3);
+    let slow = AxialDamping::new(1.0, 3.0, chosen().longitudinal, chosen().rule.axial());
+    let bending = BendingDamping::new(1.0, 0.6, Gauss2);
     let one = FlowStations::<1> { by: ONE, slip: [1.0], diameter: 0.1, area: 0.01 };
     let two = FlowStations::<2> { by: TWO, slip: [0.7, 0.3], diameter: 0.1, area: 0.01 };
     let terms: Vec<(usize, Box<dyn Term>)> = vec![
-        (1, Box::new(pool::<_, 13>(FlowCable::<L4, T3, LockingFree, 1>::new(PARAMS, ONE)))),
-        (2, Box::new(pool::<_, 14>(FlowCable::<L4, T3, LockingFree, 2>::new(PARAMS, TWO)))),
-        (2, Box::new(pool::<_, 14>(FlowCable::<L2, T1, LockingFree, 2>::new(PARAMS, TWO)))),
-        (1, Box::new(pool::<_, 13>(FlowCable::<L3, T3, Full, 1>::new(PARAMS, ONE)))),
-        (1, Box::new(pool::<_, 13>(FlowEnd::<L4, T3, LockingFree, 1>::new(PARAMS, ONE, 0, 0)))),
-        (2, Box::new(pool::<_, 14>(FlowEnd::<L4, T3, LockingFree, 2>::new(PARAMS, TWO, 1, 1)))),
+        (1, Box::new(pool::<_, 13>(FlowCable::new(PARAMS, Models::new(L4, T3, LockingFree), ONE)))),
+        (2, Box::new(pool::<_, 14>(FlowCable::new(PARAMS, Models::new(L4, T3, LockingFree), TWO)))),
+        (2, Box::new(pool::<_, 14>(FlowCable::new(PARAMS, Models::new(L2, T1, LockingFree), TWO)))),
+        (1, Box::new(pool::<_, 13>(FlowCable::new(PARAMS, Models::new(L3, T3, Full), ONE)))),
+        (1, Box::new(pool::<_, 13>(FlowCable::new(PARAMS, chosen(), ONE)))),
+        (2, Box::new(pool::<_, 14>(FlowEnd::new(PARAMS, chosen(), TWO, 0, 0)))),
+        (2, Box::new(pool::<_, 14>(FlowDamping { damping: slow, by: TWO }))),
+        (1, Box::new(pool::<_, 13>(FlowEnd::new(PARAMS, Models::new(L4, T3, LockingFree), ONE, 0, 0)))),
+        (2, Box::new(pool::<_, 14>(FlowEnd::new(PARAMS, Models::new(L4, T3, LockingFree), TWO, 1, 1)))),
         (1, Box::new(pool::<_, 13>(FlowWeight::<1> { load: [0.3, -0.4, -9.0], by: ONE }))),
         (2, Box::new(pool::<_, 14>(FlowWeight::<2> { load: [0.3, -0.4, -9.0], by: TWO }))),
         (1, Box::new(pool::<_, 13>(FlowDamping { damping: axial, by: ONE }))),
@@ -256,9 +270,10 @@ fn energies_balance_what_flows_over_the_ends() {
     // an element alone with both ends flowing: d/dt (T + U) = carried + residual · velocity
     let x = motion();
     let by = Embedding::<2> { fixed: [0.0; 2], by: [[1.0, 0.0], [0.0, 1.0]] };
-    let cable = pool::<_, 14>(FlowCable::<L4, T3, LockingFree, 2>::new(PARAMS, by));
+    let cable = pool::<_, 14>(FlowCable::new(PARAMS, Models::new(L4, T3, LockingFree), by));
     let weight = pool::<_, 14>(FlowWeight::<2> { load: [0.3, -0.4, -9.0], by });
-    let ends = [0, 1].map(|e| pool::<_, 14>(FlowEnd::<L4, T3, LockingFree, 2>::new(PARAMS, by, e, e)));
+    let ends =
+        [0, 1].map(|e| pool::<_, 14>(FlowEnd::new(PARAMS, Models::new(L4, T3, LockingFree), by, e, e)));
     let terms: [&dyn Term; 4] = [&cable, &weight, &ends[0], &ends[1]];
     let energy = |t: f64| {
         let moved = |x: &[f64], v: &[f64], a: &[f64]| -> Vec<f64> {

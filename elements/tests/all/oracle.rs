@@ -3,19 +3,26 @@
 use crate::common::*;
 use ropewalk_core::{Element, LaneTask, Local, Real, Relaxation, Share, Weights, Width, run};
 use ropewalk_elements::cable::longitudinal::Longitudinal;
-use ropewalk_elements::cable::quadrature::{Gauss2, Gauss3, Gauss5, Lobatto3, Quadrature, Rule};
+use ropewalk_elements::cable::quadrature::{Gauss2, Gauss3, Gauss5, Lobatto3, Points, Quadrature, Rule};
 use ropewalk_elements::cable::transverse::Transverse;
 use ropewalk_elements::cable::*;
 use serde_json::Value;
-use std::marker::PhantomData;
 
 /// One quadrature for both parts.
 #[derive(Clone, Copy)]
-struct Both<Q>(PhantomData<Q>);
+struct Both<Q>(Q);
 impl<Q: Quadrature> Rule for Both<Q> {
-    const LABEL: &'static str = Q::LABEL;
     type Axial = Q;
     type Bending = Q;
+    fn label(self) -> &'static str {
+        self.0.label()
+    }
+    fn axial(self) -> Q {
+        self.0
+    }
+    fn bending(self) -> Q {
+        self.0
+    }
 }
 
 fn params(o: &Value, ea: f64, ei: f64, rho_a: f64) -> CableParams {
@@ -24,20 +31,21 @@ fn params(o: &Value, ea: f64, ei: f64, rho_a: f64) -> CableParams {
 }
 
 /// The largest error over all configurations: energy, force, tangent, in units of the largest tangent entry.
-fn errors<E: Element<12, 12, Lanes<f64> = CableParams>>(
+fn errors<L: Longitudinal, T: Transverse, Q: Rule>(
     model: &str,
     rule: &str,
-    p: &CableParams,
+    element: Cable<L, T, Q>,
     o: &Value,
 ) -> [f64; 3] {
-    let mut worst = [0.0_f64; 3];
+    let (p, mut worst) = (&element.params, [0.0_f64; 3]);
     for (name, e) in configurations(o) {
         let reference = &o["configs"][&name]["models"][model][rule];
         let k: Vec<[f64; 12]> = (0..12).map(|i| numbers(&reference["K"][i])).collect();
         let scale = largest(k.iter().flatten());
         let x = at(e, [0.0; 12], [0.0; 12]);
-        let out = eval::<E>(p, &x, STIFFNESS);
-        let energy = E::energy(p, &x).potential - reference["U"].as_f64().expect("U");
+        let out = eval(&element, &x, STIFFNESS);
+        let energy = Cable::<L, T, Q>::energy::<f64>(&lanes(&element), &x).potential
+            - reference["U"].as_f64().expect("U");
         let force = apart(&out.r, &numbers::<12>(&reference["f"]));
         let tangent = largest((0..12).map(|i| apart(&out.k[i], &k[i])).collect::<Vec<_>>().iter());
         for (w, x) in worst.iter_mut().zip([energy.abs() / (p.l * p.l), force / p.l, tangent]) {
@@ -52,53 +60,61 @@ fn holds(worst: [f64; 3]) {
     assert!(worst.iter().all(|&e| e < 1e-12), "{worst:?}");
 }
 
-fn axial<L: Longitudinal, Q: Quadrature>(model: &str, rule: &str, o: &Value) {
-    holds(errors::<Cable<L, T1, Both<Q>>>(model, rule, &params(o, 1.0, 0.0, 0.0), o));
+/// The models as types, and the same as values.
+fn axial<L: Longitudinal, Q: Quadrature>(known: L, chosen: LongitudinalModel, q: Q, rule: &str, o: &Value) {
+    let p = params(o, 1.0, 0.0, 0.0);
+    holds(errors(known.label(), rule, Cable::new(p, Models::new(known, T1, Both(q))), o));
+    let models = Models::new(chosen, TransverseModel::T1, Both(Points::of(q)));
+    holds(errors(known.label(), rule, Cable::new(p, models), o));
 }
-fn bending<T: Transverse, Q: Quadrature>(model: &str, rule: &str, o: &Value) {
-    holds(errors::<Cable<L2, T, Both<Q>>>(model, rule, &params(o, 0.0, 1.0, 0.0), o));
+fn bending<T: Transverse, Q: Quadrature>(known: T, chosen: TransverseModel, q: Q, rule: &str, o: &Value) {
+    let p = params(o, 0.0, 1.0, 0.0);
+    holds(errors(known.label(), rule, Cable::new(p, Models::new(L2, known, Both(q))), o));
+    let models = Models::new(LongitudinalModel::L2, chosen, Both(Points::of(q)));
+    holds(errors(known.label(), rule, Cable::new(p, models), o));
 }
 
 #[test]
 fn longitudinal_models_agree_with_the_oracle() {
+    use LongitudinalModel as M;
     let o = oracle();
-    axial::<L1, Gauss2>("L1", "exact", &o);
-    axial::<L1n, Gauss2>("L1n", "exact", &o);
-    axial::<L2, Gauss2>("L2", "exact", &o);
-    axial::<L3, Gauss2>("L3", "g2", &o);
-    axial::<L3, Gauss3>("L3", "g3", &o);
-    axial::<L3, Gauss5>("L3", "g5", &o);
-    axial::<L3, Gauss5>("L3", "exact", &o);
-    axial::<L3, Lobatto3>("L3", "lob3", &o);
-    axial::<L4, Gauss2>("L4", "g2", &o);
-    axial::<L4, Gauss3>("L4", "g3", &o);
-    axial::<L4, Gauss5>("L4", "g5", &o);
-    axial::<L4, Lobatto3>("L4", "lob3", &o);
+    axial(L1, M::L1, Gauss2, "exact", &o);
+    axial(L1n, M::L1n, Gauss2, "exact", &o);
+    axial(L2, M::L2, Gauss2, "exact", &o);
+    axial(L3, M::L3, Gauss2, "g2", &o);
+    axial(L3, M::L3, Gauss3, "g3", &o);
+    axial(L3, M::L3, Gauss5, "g5", &o);
+    axial(L3, M::L3, Gauss5, "exact", &o);
+    axial(L3, M::L3, Lobatto3, "lob3", &o);
+    axial(L4, M::L4, Gauss2, "g2", &o);
+    axial(L4, M::L4, Gauss3, "g3", &o);
+    axial(L4, M::L4, Gauss5, "g5", &o);
+    axial(L4, M::L4, Lobatto3, "lob3", &o);
 }
 
 #[test]
 fn transverse_models_agree_with_the_oracle() {
+    use TransverseModel as M;
     let o = oracle();
-    bending::<T1, Gauss2>("T1", "exact", &o);
-    bending::<T1, Gauss5>("T1", "g5", &o);
-    bending::<T2, Gauss2>("T2", "g2", &o);
-    bending::<T2, Gauss3>("T2", "g3", &o);
-    bending::<T2, Gauss5>("T2", "g5", &o);
-    bending::<T2, Lobatto3>("T2", "lob3", &o);
-    bending::<T3, Gauss2>("T3", "g2", &o);
-    bending::<T3, Gauss3>("T3", "g3", &o);
-    bending::<T3, Gauss5>("T3", "g5", &o);
-    bending::<T3, Lobatto3>("T3", "lob3", &o);
+    bending(T1, M::T1, Gauss2, "exact", &o);
+    bending(T1, M::T1, Gauss5, "g5", &o);
+    bending(T2, M::T2, Gauss2, "g2", &o);
+    bending(T2, M::T2, Gauss3, "g3", &o);
+    bending(T2, M::T2, Gauss5, "g5", &o);
+    bending(T2, M::T2, Lobatto3, "lob3", &o);
+    bending(T3, M::T3, Gauss2, "g2", &o);
+    bending(T3, M::T3, Gauss3, "g3", &o);
+    bending(T3, M::T3, Gauss5, "g5", &o);
+    bending(T3, M::T3, Lobatto3, "lob3", &o);
 }
 
 #[test]
 fn mass_agrees_with_the_oracle() {
     let o = oracle();
-    let p = params(&o, 0.0, 0.0, 1.0);
-    type E = Cable<L4, T3, LockingFree>;
+    let cable = Cable::new(params(&o, 0.0, 0.0, 1.0), Models::new(L4, T3, LockingFree));
     let straight = configurations(&o)[0].1;
     let a = noise(3, 1.0);
-    let out = eval::<E>(&p, &at(straight, a, a), Weights { a: 1.0, ..Weights::default() });
+    let out = eval(&cable, &at(straight, a, a), Weights { a: 1.0, ..Weights::default() });
     let mut kinetic = 0.0;
     let mut inertia = [0.0; 12];
     for i in 0..12 {
@@ -110,7 +126,8 @@ fn mass_agrees_with_the_oracle() {
         kinetic += 0.5 * a[i] * inertia[i];
     }
     assert!(apart(&out.r, &inertia) < 1e-15);
-    approx::assert_relative_eq!(E::energy(&p, &at(straight, a, a)).kinetic, kinetic, max_relative = 1e-14);
+    let energy = Cable::<L4, T3, LockingFree>::energy::<f64>(&lanes(&cable), &at(straight, a, a));
+    approx::assert_relative_eq!(energy.kinetic, kinetic, max_relative = 1e-14);
 }
 
 /// Runs one check on every legal pair of models.
@@ -129,22 +146,11 @@ fn all_models(f: &mut dyn FnMut(CableModel)) {
 
 /// Evaluates a whole row of states over lanes.
 struct Row<'a, E> {
-    p: &'a CableParams,
+    element: &'a E,
     states: &'a [Local<f64, 12, 12>],
     out: &'a mut Vec<Share<f64, 12>>,
-    element: PhantomData<E>,
 }
-/// `Element` with its lanes known to the tests.
-trait Kernel {
-    fn add<R: Real>(p: &CableParams, x: &Local<R, 12, 12>, w: &Weights, out: &mut Share<R, 12>);
-}
-impl<L: Longitudinal, T: Transverse, Q: Rule> Kernel for Cable<L, T, Q> {
-    #[inline(always)]
-    fn add<R: Real>(p: &CableParams, x: &Local<R, 12, 12>, w: &Weights, out: &mut Share<R, 12>) {
-        <Self as Element<12, 12>>::add::<R, true>(&p.lanes(), x, w, out);
-    }
-}
-impl<E: Kernel> LaneTask for Row<'_, E> {
+impl<E: Element<12, 12>> LaneTask for Row<'_, E> {
     #[inline(always)]
     fn go<R: Real>(self) {
         for s in self.states.chunks(R::LANES) {
@@ -159,7 +165,8 @@ impl<E: Kernel> LaneTask for Row<'_, E> {
                 relaxed: s[0].relaxed,
             };
             let mut out = Share::zero();
-            E::add(self.p, &x, &Weights { q: 1.0, v: 0.5, a: 3.0 }, &mut out);
+            let w = Weights { q: 1.0, v: 0.5, a: 3.0 };
+            E::add::<R, true>(&lanes(self.element), &x, &w, &mut out);
             for l in 0..s.len() {
                 let k = std::array::from_fn(|i| std::array::from_fn(|j| out.k[i][j].lane(l)));
                 self.out.push(Share { r: std::array::from_fn(|i| out.r[i].lane(l)), k });
@@ -169,10 +176,10 @@ impl<E: Kernel> LaneTask for Row<'_, E> {
 }
 
 /// The largest difference between the widths.
-fn widths<L: Longitudinal, T: Transverse, Q: Rule>(p: &CableParams, states: &[Local<f64, 12, 12>]) {
+fn widths<L: Longitudinal, T: Transverse, Q: Rule>(element: Cable<L, T, Q>, states: &[Local<f64, 12, 12>]) {
     let [one, four, eight] = [Width::One, Width::Four, Width::Eight].map(|width| {
         let mut out = Vec::new();
-        run(width, Row::<Cable<L, T, Q>> { p, states, out: &mut out, element: PhantomData });
+        run(width, Row { element: &element, states, out: &mut out });
         out
     });
     let mut worst = 0.0_f64;
@@ -182,10 +189,10 @@ fn widths<L: Longitudinal, T: Transverse, Q: Rule>(p: &CableParams, states: &[Lo
             for i in 0..12 {
                 worst = worst.max(apart(&a.k[i], &b.k[i]) / scale);
             }
-            worst = worst.max(apart(&a.r, &b.r) / (scale * p.l));
+            worst = worst.max(apart(&a.r, &b.r) / (scale * element.params.l));
         }
     }
-    println!("{}: widths differ by {worst:.1e}", <Cable<L, T, Q> as Element<12, 12>>::label());
+    println!("{}: widths differ by {worst:.1e}", element.label());
     assert!(worst < 1e-13);
 }
 
@@ -196,25 +203,26 @@ fn widths_agree() {
     let states: Vec<_> =
         configurations(&o).into_iter().map(|(_, e)| at(e, noise(1, 1.0), noise(2, 1.0))).collect();
     // every strain and every curvature once: kernels over lanes take long to compile
-    widths::<L4, T3, LockingFree>(&p, &states);
-    widths::<L3, T2, Full>(&p, &states);
-    widths::<L2, T1, LockingFree>(&p, &states);
-    widths::<L1, T1, LockingFree>(&p, &states);
-    widths::<L1n, T1, LockingFree>(&p, &states);
+    widths(Cable::new(p, Models::new(L4, T3, LockingFree)), &states);
+    widths(Cable::new(p, Models::new(L3, T2, Full)), &states);
+    widths(Cable::new(p, Models::new(L2, T1, LockingFree)), &states);
+    widths(Cable::new(p, Models::new(L1, T1, LockingFree)), &states);
+    widths(Cable::new(p, Models::new(L1n, T1, LockingFree)), &states);
 }
 
 struct Symmetry<'a>(&'a CableParams, &'a [f64; 12]);
 impl WithModels for Symmetry<'_> {
     type Output = (bool, f64);
-    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> (bool, f64) {
-        let k = eval::<Cable<L, T, Q>>(self.0, &at(*self.1, [0.0; 12], [0.0; 12]), STIFFNESS).k;
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self, models: Models<L, T, Q>) -> (bool, f64) {
+        let cable = Cable::new(*self.0, models);
+        let k = eval(&cable, &at(*self.1, [0.0; 12], [0.0; 12]), STIFFNESS).k;
         let mut skew = 0.0_f64;
         for i in 0..12 {
             for j in 0..i {
                 skew = skew.max((k[i][j] - k[j][i]).abs());
             }
         }
-        (Cable::<L, T, Q>::SYMMETRIC, skew)
+        (cable.symmetric(), skew)
     }
 }
 
@@ -233,8 +241,9 @@ fn tangents_are_symmetric_where_they_say_so() {
 struct Objectivity<'a>(&'a CableParams, &'a [f64; 12]);
 impl WithModels for Objectivity<'_> {
     type Output = [f64; 2];
-    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> [f64; 2] {
-        let f = |e: &[f64; 12]| eval::<Cable<L, T, Q>>(self.0, &at(*e, [0.0; 12], [0.0; 12]), STIFFNESS);
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self, models: Models<L, T, Q>) -> [f64; 2] {
+        let cable = Cable::new(*self.0, models);
+        let f = |e: &[f64; 12]| eval(&cable, &at(*e, [0.0; 12], [0.0; 12]), STIFFNESS);
         let here = f(self.1);
         let scale = largest(here.k.iter().flatten()) * self.0.l;
         let turn = apart(&f(&rotated(self.1)).r, &rotated(&here.r)) / scale;
@@ -294,8 +303,8 @@ fn nullity(mut k: [[f64; 12]; 12]) -> usize {
 struct Nullity<'a>(&'a CableParams, &'a [f64; 12]);
 impl WithModels for Nullity<'_> {
     type Output = usize;
-    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> usize {
-        nullity(eval::<Cable<L, T, Q>>(self.0, &at(*self.1, [0.0; 12], [0.0; 12]), STIFFNESS).k)
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self, models: Models<L, T, Q>) -> usize {
+        nullity(eval(&Cable::new(*self.0, models), &at(*self.1, [0.0; 12], [0.0; 12]), STIFFNESS).k)
     }
 }
 
@@ -307,7 +316,12 @@ fn nothing_but_rigid_modes_is_free() {
     // three translations and two rotations: spinning about its own axis, a straight element doesn't move
     all_models(&mut |m| assert_eq!(with_models(m, Nullity(&p, &straight)).expect("legal"), 5, "{m:?}"));
     // and what is refused would have two modes more
-    let k = eval::<Cable<L2, T3, LockingFree>>(&p, &at(straight, [0.0; 12], [0.0; 12]), STIFFNESS).k;
+    let k = eval(
+        &Cable::new(p, Models::new(L2, T3, LockingFree)),
+        &at(straight, [0.0; 12], [0.0; 12]),
+        STIFFNESS,
+    )
+    .k;
     assert_eq!(nullity(k), 7);
     assert!(legal(LongitudinalModel::L2, TransverseModel::T3).is_err());
 }
@@ -315,12 +329,13 @@ fn nothing_but_rigid_modes_is_free() {
 struct Mixed<'a>(&'a CableParams, &'a [f64; 12]);
 impl WithModels for Mixed<'_> {
     type Output = [f64; 2];
-    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> [f64; 2] {
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self, models: Models<L, T, Q>) -> [f64; 2] {
         let mut x = at(*self.1, [0.0; 12], [0.0; 12]);
-        let exact = eval::<Cable<L, T, Q>>(self.0, &x, STIFFNESS);
+        let cable = Cable::new(*self.0, models);
+        let exact = eval(&cable, &x, STIFFNESS);
         let scale = largest(exact.k.iter().flatten());
         let distance = |x: &Local<f64, 12, 12>| {
-            let mixed = eval::<Cable<L, T, Q>>(self.0, x, STIFFNESS);
+            let mixed = eval(&cable, x, STIFFNESS);
             assert_eq!(mixed.r, exact.r);
             (0..12).map(|i| apart(&mixed.k[i], &exact.k[i])).fold(0.0, f64::max) / scale
         };

@@ -23,7 +23,7 @@ pub struct Float {
 
 impl Element<3, 3> for Float {
     type Lanes<R: Real> = [R; 2];
-    fn label() -> String {
+    fn label(&self) -> String {
         "float".into()
     }
     #[inline(always)]

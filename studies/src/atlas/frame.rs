@@ -31,7 +31,7 @@ impl Frame {
         let origin = [x?, y?, z?];
         let t = history.columns.first()?.values.clone();
         let course = match panel.along_course {
-            true => course(&origin[0], &origin[1]),
+            true => course(&t, &origin[0], &origin[1]),
             false => vec![(1.0, 0.0); t.len()],
         };
         Some(Frame { t, origin, course })
@@ -53,25 +53,31 @@ impl Frame {
 }
 
 /// Direction of the way in the plane; at rest the one before or, at first, the one to come.
-fn course(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
+fn course(t: &[f64], x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
     const AT_REST: f64 = 1e-6;
-    let last = x.len().saturating_sub(1);
-    let step = |k: usize| {
-        let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
-        (x[b] - x[a], y[b] - y[a])
-    };
-    let size = |(dx, dy): (f64, f64)| dx.hypot(dy);
-    let largest = (0..x.len()).map(|k| size(step(k))).fold(0.0, f64::max);
+    let velocity: Vec<(f64, f64)> = (0..t.len()).map(|k| (slope(t, x, k), slope(t, y, k))).collect();
+    let speed = |k: usize| velocity[k].0.hypot(velocity[k].1);
+    let largest = (0..t.len()).map(speed).fold(0.0, f64::max);
     let direction = |k: usize| {
-        let d = step(k);
-        (size(d) > AT_REST * largest).then(|| (d.0 / size(d), d.1 / size(d)))
+        (speed(k) > AT_REST * largest).then(|| (velocity[k].0 / speed(k), velocity[k].1 / speed(k)))
     };
-    let mut course = (0..x.len()).find_map(direction).unwrap_or((1.0, 0.0));
+    let mut course = (0..t.len()).find_map(direction).unwrap_or((1.0, 0.0));
     let along = |k: usize| {
         course = direction(k).unwrap_or(course);
         course
     };
-    (0..x.len()).map(along).collect()
+    (0..t.len()).map(along).collect()
+}
+
+/// Slope at a row, of the parabola through three rows: at the ends as exact as in between.
+fn slope(t: &[f64], x: &[f64], k: usize) -> f64 {
+    if t.len() < 3 {
+        return if t.len() == 2 { (x[1] - x[0]) / (t[1] - t[0]) } else { 0.0 };
+    }
+    let m = k.clamp(1, t.len() - 2);
+    let (before, after) = ((x[m] - x[m - 1]) / (t[m] - t[m - 1]), (x[m + 1] - x[m]) / (t[m + 1] - t[m]));
+    let curved = (after - before) / (t[m + 1] - t[m - 1]);
+    before + curved * (2.0 * t[k] - t[m - 1] - t[m])
 }
 
 #[cfg(test)]
@@ -93,7 +99,7 @@ mod tests {
         // at rest the course is the first one to come, half a step round
         let seen = frame.at(0, [-3.0, 1.0, 0.0]);
         assert!((seen[0] + 3.0).abs() < 0.02 && (seen[1] - 1.0).abs() < 0.02 && seen[2] == -1.0, "{seen:?}");
-        for k in [150, 300, 399] {
+        for k in [150, 300, 399, 400] {
             let angle = f64::from(k as u32 - 100) * 0.01;
             // 10 m behind on the tangent and 2 m towards the centre
             let (forth, left) = ([angle.cos(), angle.sin()], [-angle.sin(), angle.cos()]);

@@ -12,7 +12,6 @@ use crate::cable::quadrature::{MOST, Point, Quadrature};
 use crate::cable::reduced::Reduced;
 use crate::cable::shape::{Natural, natural};
 use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, Weights, dot};
-use std::marker::PhantomData;
 
 /// Axial damping of an element through which material flows, for models with a strain at several points.
 #[derive(Clone, Copy, Debug)]
@@ -21,13 +20,16 @@ pub struct FlowAxialDamping<L, Q, const F: usize> {
     pub eta_ea: f64,
     /// Embedding of the element.
     pub by: Embedding<F>,
-    models: PhantomData<(L, Q)>,
+    /// Axial strain.
+    pub model: L,
+    /// Where it is taken.
+    pub rule: Q,
 }
 
 impl<L, Q, const F: usize> FlowAxialDamping<L, Q, F> {
     /// The damping of an element with this embedding.
-    pub fn new(eta_ea: f64, by: Embedding<F>) -> Self {
-        FlowAxialDamping { eta_ea, by, models: PhantomData }
+    pub fn new(eta_ea: f64, by: Embedding<F>, model: L, rule: Q) -> Self {
+        FlowAxialDamping { eta_ea, by, model, rule }
     }
 }
 
@@ -51,7 +53,12 @@ struct Rate<R> {
 
 /// The strain rates of the material at all points.
 #[inline(always)]
-fn rates<L: Longitudinal, Q: Quadrature, R: Real>(g: &Grid<R>, q: &[R], v: &[R]) -> [Option<Rate<R>>; MOST] {
+fn rates<L: Longitudinal, Q: Quadrature, R: Real>(
+    (model, rule): (L, Q),
+    g: &Grid<R>,
+    q: &[R],
+    v: &[R],
+) -> [Option<Rate<R>>; MOST] {
     let take = |x: &[R]| std::array::from_fn::<R, 12, _>(|i| x[i]);
     let (q, mut rate) = (natural(&take(q), g.il), natural(&take(v), g.il));
     // the chord per length changes with the length as well
@@ -65,14 +72,14 @@ fn rates<L: Longitudinal, Q: Quadrature, R: Real>(g: &Grid<R>, q: &[R], v: &[R])
             rate[i][c] += g.ld * longer[i][c];
         }
     }
-    let points = L::points::<Q>();
+    let points = model.points(rule);
     let mut eps = [R::zero(); MOST];
     for (eps, at) in eps.iter_mut().zip(points) {
-        *eps = L::strain(&q, at).eps();
+        *eps = model.strain(&q, at).eps();
     }
     let mut out = [None; MOST];
     for (i, at) in points.iter().enumerate() {
-        let strain = L::strain(&q, at);
+        let strain = model.strain(&q, at);
         let gradient = strain.gradient();
         let mut along = R::zero();
         for k in 0..points.len() {
@@ -93,13 +100,16 @@ macro_rules! element {
         impl<L: Longitudinal, Q: Quadrature> FlowAxialDamping<L, Q, $fronts> {
             #[inline(always)]
             fn force<R: Real>(
+                (model, rule): (L, Q),
                 eta_ea: R,
                 by: &Embedding<$fronts, R>,
                 x: &Local<R, $size, $size>,
             ) -> [R; $size] {
                 let g = Grid::new(by, x);
                 let (mut local, mut out) = (Reduced::zero(), [R::zero(); $size]);
-                for (rate, at) in rates::<L, Q, R>(&g, &x.q, &x.v).iter().flatten().zip(L::points::<Q>()) {
+                for (rate, at) in
+                    rates((model, rule), &g, &x.q, &x.v).iter().flatten().zip(model.points(rule))
+                {
                     let force = eta_ea * g.l * R::of(at.w) * rate.value;
                     local.add_force(force, &rate.gradient);
                     for k in 0..$fronts {
@@ -115,25 +125,28 @@ macro_rules! element {
         }
 
         impl<L: Longitudinal, Q: Quadrature> Element<$size, $size> for FlowAxialDamping<L, Q, $fronts> {
-            type Lanes<R: Real> = (R, Embedding<$fronts, R>);
-            const SYMMETRIC: bool = false;
+            type Lanes<R: Real> = (R, Embedding<$fronts, R>, L, Q);
             const WIDE: bool = false;
 
-            fn label() -> String {
-                format!("axial damping {} {} of a flowing cable", L::LABEL, Q::LABEL)
+            fn label(&self) -> String {
+                format!("axial damping {} {} of a flowing cable", self.model.label(), self.rule.label())
+            }
+            fn symmetric(&self) -> bool {
+                false
             }
             #[inline(always)]
             fn lanes<R: Real>(b: &Batch<'_, Self>) -> Self::Lanes<R> {
-                (b.get(|e| e.eta_ea), Embedding::lanes(|f, j| b.get(|e| f(&e.by, j))))
+                let &FlowAxialDamping { model, rule, .. } = b.first();
+                (b.get(|e| e.eta_ea), Embedding::lanes(|f, j| b.get(|e| f(&e.by, j))), model, rule)
             }
             #[inline(always)]
             fn add<R: Real, const TANGENT: bool>(
-                (eta_ea, by): &Self::Lanes<R>,
+                &(eta_ea, ref by, model, rule): &Self::Lanes<R>,
                 x: &Local<R, $size, $size>,
                 w: &Weights,
                 out: &mut Share<R, $size>,
             ) {
-                let force = Self::force(*eta_ea, by, x);
+                let force = Self::force((model, rule), eta_ea, by, x);
                 for i in 0..$size {
                     out.r[i] += force[i];
                 }
@@ -151,7 +164,7 @@ macro_rules! element {
                 };
                 for j in 0..$size {
                     (at.q[j].eps, at.v[j].eps) = (R::of(w.q), R::of(w.v));
-                    let force = Self::force(Dual::constant(*eta_ea), &by, &at);
+                    let force = Self::force((model, rule), Dual::constant(eta_ea), &by, &at);
                     (at.q[j].eps, at.v[j].eps) = (R::zero(), R::zero());
                     for i in 0..$size {
                         out.k[i][j] += force[i].eps;
@@ -159,11 +172,16 @@ macro_rules! element {
                 }
             }
             #[inline(always)]
-            fn power<R: Real>((eta_ea, by): &Self::Lanes<R>, x: &Local<R, $size, $size>) -> Power<R> {
+            fn power<R: Real>(
+                &(eta_ea, ref by, model, rule): &Self::Lanes<R>,
+                x: &Local<R, $size, $size>,
+            ) -> Power<R> {
                 let g = Grid::new(by, x);
                 let mut dissipated = R::zero();
-                for (rate, at) in rates::<L, Q, R>(&g, &x.q, &x.v).iter().flatten().zip(L::points::<Q>()) {
-                    dissipated += *eta_ea * g.l * R::of(at.w) * rate.value * rate.value;
+                for (rate, at) in
+                    rates((model, rule), &g, &x.q, &x.v).iter().flatten().zip(model.points(rule))
+                {
+                    dissipated += eta_ea * g.l * R::of(at.w) * rate.value * rate.value;
                 }
                 Power { dissipated, ..Power::zero() }
             }
@@ -192,7 +210,11 @@ mod tests {
     }
     fn pool(by: Embedding<2>) -> Pool<Damping, 14, 14> {
         let mut pool = Pool::new();
-        assert!(pool.push(&nodes(), Damping::new(3.0, by), &[0, 1, 2, 3].map(NodeId)));
+        assert!(pool.push(
+            &nodes(),
+            Damping::new(3.0, by, L4, LockingFree.axial()),
+            &[0, 1, 2, 3].map(NodeId)
+        ));
         pool
     }
 

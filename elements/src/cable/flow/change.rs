@@ -6,8 +6,8 @@
 
 use super::line::Line;
 use crate::cable::longitudinal::{Longitudinal, Strain};
-use crate::cable::model::{CableModel, WithModels, with_models};
-use crate::cable::quadrature::{Gauss5, Quadrature, Rule};
+use crate::cable::model::CableModel;
+use crate::cable::quadrature::Gauss5;
 use crate::cable::shape::{hermite, hermite_slope, natural, second};
 use ropewalk_core::V3;
 
@@ -193,25 +193,11 @@ pub(crate) fn interpolate(points: &[f64], values: &[f64], x: f64) -> f64 {
 
 /// Where a model takes its strain.
 pub(crate) fn points(model: CableModel) -> Result<Vec<f64>, String> {
-    struct Points;
-    impl WithModels for Points {
-        type Output = Vec<f64>;
-        fn go<L: Longitudinal, T: crate::cable::transverse::Transverse, Q: Rule>(self) -> Vec<f64> {
-            L::points::<Q::Axial>().iter().map(|p| p.xi).collect()
-        }
-    }
-    with_models(model, Points)
+    Ok(model.models()?.points().iter().map(|p| p.xi).collect())
 }
 
 /// The strain there.
 pub(crate) fn strains(model: CableModel, e: &[f64; 12], l: f64) -> Result<Vec<f64>, String> {
-    struct Strains<'a>(&'a [f64; 12], f64);
-    impl WithModels for Strains<'_> {
-        type Output = Vec<f64>;
-        fn go<L: Longitudinal, T: crate::cable::transverse::Transverse, Q: Rule>(self) -> Vec<f64> {
-            let q = natural(self.0, 1.0 / self.1);
-            L::points::<Q::Axial>().iter().map(|at| L::strain(&q, at).eps()).collect()
-        }
-    }
-    with_models(model, Strains(e, l))
+    let (models, q) = (model.models()?, natural(e, 1.0 / l));
+    Ok(models.points().iter().map(|at| models.longitudinal.strain(&q, at).eps()).collect())
 }

@@ -5,16 +5,16 @@ use super::embedding::{Embedding, Grid};
 use super::for_fronts;
 use super::rule::close;
 use super::transport::{Transport, nodal};
-use crate::cable::bending_damping::BendingDamping;
-use crate::cable::damping::AxialDamping;
+use crate::cable::bending_damping::{BendingDamping, BendingDampingLanes};
+use crate::cable::damping::{AxialDamping, AxialDampingLanes};
 use crate::cable::longitudinal::Longitudinal;
 use crate::cable::quadrature::Quadrature;
 use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, V3, Weights};
 
 /// A force of an element on its own material, which needs coordinates, velocities of the material, and the length.
 pub trait Material: Element<12, 12> {
-    /// Its numbers over lanes, `get` being the way to those of each lane's element.
-    fn numbers<R: Real>(get: impl Fn(fn(&Self) -> f64) -> R) -> Self::Lanes<R>;
+    /// Its numbers over lanes, `get` being the way to those of each lane's element; the models are those of the first.
+    fn numbers<R: Real>(first: &Self, get: impl Fn(fn(&Self) -> f64) -> R) -> Self::Lanes<R>;
     /// The same numbers for another length of the element.
     fn at_length<R: Real>(p: &Self::Lanes<R>, l: R) -> Self::Lanes<R>;
     /// The same numbers with derivatives of nothing.
@@ -23,30 +23,31 @@ pub trait Material: Element<12, 12> {
 
 impl<L: Longitudinal, Q: Quadrature> Material for AxialDamping<L, Q> {
     #[inline(always)]
-    fn numbers<R: Real>(get: impl Fn(fn(&Self) -> f64) -> R) -> [R; 2] {
-        [get(|e| e.l), get(|e| e.eta_ea)]
+    fn numbers<R: Real>(first: &Self, get: impl Fn(fn(&Self) -> f64) -> R) -> Self::Lanes<R> {
+        let &AxialDamping { model, rule, .. } = first;
+        AxialDampingLanes { l: get(|e| e.l), eta_ea: get(|e| e.eta_ea), model, rule }
     }
     #[inline(always)]
-    fn at_length<R: Real>(p: &[R; 2], l: R) -> [R; 2] {
-        [l, p[1]]
+    fn at_length<R: Real>(p: &Self::Lanes<R>, l: R) -> Self::Lanes<R> {
+        AxialDampingLanes { l, ..*p }
     }
     #[inline(always)]
-    fn lift<R: Real>(p: &[R; 2], l: Dual<R>) -> [Dual<R>; 2] {
-        [l, Dual::constant(p[1])]
+    fn lift<R: Real>(p: &Self::Lanes<R>, l: Dual<R>) -> Self::Lanes<Dual<R>> {
+        AxialDampingLanes { l, eta_ea: Dual::constant(p.eta_ea), model: p.model, rule: p.rule }
     }
 }
-impl<Q: Quadrature> Material for BendingDamping<Q> {
+impl Material for BendingDamping {
     #[inline(always)]
-    fn numbers<R: Real>(get: impl Fn(fn(&Self) -> f64) -> R) -> [R; 2] {
-        [get(|e| e.l), get(|e| e.eta_ei)]
+    fn numbers<R: Real>(first: &Self, get: impl Fn(fn(&Self) -> f64) -> R) -> Self::Lanes<R> {
+        BendingDampingLanes { l: get(|e| e.l), eta_ei: get(|e| e.eta_ei), rule: first.rule }
     }
     #[inline(always)]
-    fn at_length<R: Real>(p: &[R; 2], l: R) -> [R; 2] {
-        [l, p[1]]
+    fn at_length<R: Real>(p: &Self::Lanes<R>, l: R) -> Self::Lanes<R> {
+        BendingDampingLanes { l, ..*p }
     }
     #[inline(always)]
-    fn lift<R: Real>(p: &[R; 2], l: Dual<R>) -> [Dual<R>; 2] {
-        [l, Dual::constant(p[1])]
+    fn lift<R: Real>(p: &Self::Lanes<R>, l: Dual<R>) -> Self::Lanes<Dual<R>> {
+        BendingDampingLanes { l, eta_ei: Dual::constant(p.eta_ei), rule: p.rule }
     }
 }
 
@@ -81,15 +82,17 @@ macro_rules! element {
     ($fronts:literal, $size:literal) => {
         impl<D: Material> Element<$size, $size> for FlowDamping<D, $fronts> {
             type Lanes<R: Real> = (D::Lanes<R>, Embedding<$fronts, R>);
-            const SYMMETRIC: bool = false;
             const WIDE: bool = false;
 
-            fn label() -> String {
-                format!("{} of a flowing cable", D::label())
+            fn label(&self) -> String {
+                format!("{} of a flowing cable", self.damping.label())
+            }
+            fn symmetric(&self) -> bool {
+                false
             }
             #[inline(always)]
             fn lanes<R: Real>(b: &Batch<'_, Self>) -> Self::Lanes<R> {
-                let damping = D::numbers(|f| b.get(|e| f(&e.damping)));
+                let damping = D::numbers(&b.first().damping, |f| b.get(|e| f(&e.damping)));
                 (damping, Embedding::lanes(|f, j| b.get(|e| f(&e.by, j))))
             }
             #[inline(always)]

@@ -6,12 +6,12 @@ use super::rule::close;
 use super::transport::{Row, Transport, nodal};
 use crate::cable::element::{CableParams, mass};
 use crate::cable::longitudinal::{Longitudinal, add_axial, axial_energy};
+use crate::cable::model::Models;
 use crate::cable::quadrature::Rule;
 use crate::cable::reduced::Reduced;
 use crate::cable::shape::natural;
 use crate::cable::transverse::{Transverse, bending_energy};
 use ropewalk_core::{Batch, Dual, Element, Energy, Local, Power, Real, Share, V3, Weights, dot};
-use std::marker::PhantomData;
 
 /// A cable element like [`Cable`](crate::cable::Cable) whose ends may stand anywhere on the material and move along it.
 ///
@@ -24,21 +24,23 @@ pub struct FlowCable<L, T, Q, const F: usize> {
     pub params: CableParams,
     /// Where its nodes stand on the material.
     pub by: Embedding<F>,
-    models: PhantomData<(L, T, Q)>,
+    /// How it strains.
+    pub models: Models<L, T, Q>,
 }
 
 impl<L: Longitudinal, T: Transverse, Q: Rule, const F: usize> FlowCable<L, T, Q, F> {
     /// An element of these properties.
-    pub fn new(params: CableParams, by: Embedding<F>) -> Self {
-        FlowCable { params, by, models: PhantomData }
+    pub fn new(params: CableParams, models: Models<L, T, Q>, by: Embedding<F>) -> Self {
+        FlowCable { params, by, models }
     }
 }
 
-/// Properties and embedding over lanes.
+/// Properties and embedding over lanes, and the models of all of them.
 #[derive(Clone, Copy, Debug)]
-pub struct FlowLanes<const F: usize, R> {
+pub struct FlowLanes<M, const F: usize, R> {
     params: CableParams<R>,
     by: Embedding<F, R>,
+    models: M,
 }
 
 /// `M A` with the scalars of the mass matrix.
@@ -54,13 +56,16 @@ fn times<R: Real>(m: &[Row<R>; 4], a: &[V3<R>; 4]) -> [V3<R>; 4] {
 /// Strain energy of an element of length `l`.
 #[inline(always)]
 fn strain_energy<L: Longitudinal, T: Transverse, Q: Rule, R: Real>(
+    models: Models<L, T, Q>,
     p: &CableParams<R>,
     e: &[R; 12],
     l: R,
 ) -> R {
     let il = R::of(1.0) / l;
     let q = natural(e, il);
-    axial_energy::<L, Q::Axial, R>(p.ea * l, &q) + bending_energy::<T, Q::Bending, R>(p.ei, l, il, &q)
+    let Models { longitudinal, transverse, rule } = models;
+    axial_energy(longitudinal, rule.axial(), p.ea * l, &q)
+        + bending_energy(transverse, rule.bending(), p.ei, l, il, &q)
 }
 
 #[inline(always)]
@@ -71,8 +76,8 @@ fn lift<R: Real>(p: &CableParams<R>) -> CableParams<Dual<R>> {
 
 /// Inertia: residual, tangent, and the rows and columns of the fronts.
 #[inline(always)]
-fn add_inertia<R: Real, const F: usize, const N: usize, const TANGENT: bool>(
-    p: &FlowLanes<F, R>,
+fn add_inertia<M, R: Real, const F: usize, const N: usize, const TANGENT: bool>(
+    p: &FlowLanes<M, F, R>,
     g: &Grid<R>,
     x: &Local<R, N, N>,
     w: &Weights,
@@ -141,7 +146,7 @@ fn add_elastic<
     const N: usize,
     const TANGENT: bool,
 >(
-    p: &FlowLanes<F, R>,
+    p: &FlowLanes<Models<L, T, Q>, F, R>,
     g: &Grid<R>,
     x: &Local<R, N, N>,
     w: &Weights,
@@ -150,9 +155,10 @@ fn add_elastic<
     let mut e = [R::zero(); 12];
     e.copy_from_slice(&x.q[..12]);
     let q = natural(&e, g.il);
+    let Models { longitudinal, transverse, rule } = p.models;
     let mut local = Reduced::zero();
-    add_axial::<L, Q::Axial, R, TANGENT>(p.params.ea * g.l, &q, &mut local);
-    T::add::<Q::Bending, R, TANGENT>(p.params.ei, g.l, g.il, &q, &mut local);
+    add_axial::<L, Q::Axial, R, TANGENT>(longitudinal, rule.axial(), p.params.ea * g.l, &q, &mut local);
+    transverse.add::<Q::Bending, R, TANGENT>(rule.bending(), p.params.ei, g.l, g.il, &q, &mut local);
     let mut own = Share::<R, 12>::zero();
     local.spread_force::<true>(g.il, &mut own);
     let (params, fixed) = (lift(&p.params), Dual::constants(&e));
@@ -169,12 +175,25 @@ fn add_elastic<
         let il = Dual::of(1.0) / l;
         let natural_l = natural(&fixed, il);
         let mut local = Reduced::zero();
-        add_axial::<L, Q::Axial, Dual<R>, false>(params.ea * l, &natural_l, &mut local);
-        T::add::<Q::Bending, Dual<R>, false>(params.ei, l, il, &natural_l, &mut local);
+        add_axial::<L, Q::Axial, Dual<R>, false>(
+            longitudinal,
+            rule.axial(),
+            params.ea * l,
+            &natural_l,
+            &mut local,
+        );
+        transverse.add::<Q::Bending, Dual<R>, false>(
+            rule.bending(),
+            params.ei,
+            l,
+            il,
+            &natural_l,
+            &mut local,
+        );
         let mut force = Share::<Dual<R>, 12>::zero();
         local.spread_force::<true>(il, &mut force);
         let twice = Dual::new(l, Dual::constant(R::of(1.0)));
-        let energy = strain_energy::<L, T, Q, Dual<Dual<R>>>(&lift(&params), &Dual::constants(&fixed), twice);
+        let energy = strain_energy(p.models, &lift(&params), &Dual::constants(&fixed), twice);
         for k in 0..F {
             let grows = p.by.by[k][1] - p.by.by[k][0];
             out.r[12 + k] += grows * energy.re.eps;
@@ -190,7 +209,7 @@ fn add_elastic<
         }
     } else {
         let l = Dual::new(g.l, R::of(1.0));
-        let energy = strain_energy::<L, T, Q, Dual<R>>(&params, &fixed, l);
+        let energy = strain_energy(p.models, &params, &fixed, l);
         for k in 0..F {
             out.r[12 + k] += (p.by.by[k][1] - p.by.by[k][0]) * energy.eps;
         }
@@ -203,12 +222,15 @@ fn add_elastic<
 macro_rules! element {
     ($fronts:literal, $size:literal) => {
         impl<L: Longitudinal, T: Transverse, Q: Rule> Element<$size, $size> for FlowCable<L, T, Q, $fronts> {
-            type Lanes<R: Real> = FlowLanes<$fronts, R>;
-            const SYMMETRIC: bool = false;
-            const WIDE: bool = $fronts == 1 && L::USUAL && T::USUAL && Q::USUAL;
+            type Lanes<R: Real> = FlowLanes<Models<L, T, Q>, $fronts, R>;
+            const WIDE: bool = $fronts == 1 && Models::<L, T, Q>::KNOWN;
 
-            fn label() -> String {
-                format!("flowing cable {}+{} {}", L::LABEL, T::LABEL, Q::LABEL)
+            fn label(&self) -> String {
+                let Models { longitudinal, transverse, rule } = self.models;
+                format!("flowing cable {}+{} {}", longitudinal.label(), transverse.label(), rule.label())
+            }
+            fn symmetric(&self) -> bool {
+                false
             }
             #[inline(always)]
             fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R> {
@@ -220,6 +242,7 @@ macro_rules! element {
                         rho_a: batch.get(|e| e.params.rho_a),
                     },
                     by: Embedding::lanes(|f, j| batch.get(|e| f(&e.by, j))),
+                    models: batch.first().models,
                 }
             }
             #[inline(always)]
@@ -230,7 +253,7 @@ macro_rules! element {
                 out: &mut Share<R, $size>,
             ) {
                 let g = Grid::new(&p.by, x);
-                add_inertia::<R, $fronts, $size, TANGENT>(p, &g, x, w, out);
+                add_inertia::<_, R, $fronts, $size, TANGENT>(p, &g, x, w, out);
                 add_elastic::<L, T, Q, R, $fronts, $size, TANGENT>(p, &g, x, w, out);
             }
             #[inline(always)]
@@ -244,7 +267,7 @@ macro_rules! element {
                 }
                 let mut e = [R::zero(); 12];
                 e.copy_from_slice(&x.q[..12]);
-                let potential = strain_energy::<L, T, Q, R>(&p.params, &e, g.l);
+                let potential = strain_energy(p.models, &p.params, &e, g.l);
                 Energy { kinetic: R::of(0.5) * twice, potential }
             }
             /// Kinetic energy that material carries over the ends; it cancels between neighbours.

@@ -4,31 +4,41 @@ use super::embedding::{Embedding, Grid};
 use super::for_fronts;
 use crate::cable::element::CableParams;
 use crate::cable::longitudinal::{Longitudinal, axial_energy};
-use crate::cable::quadrature::{Point, Quadrature, Rule};
+use crate::cable::model::Models;
+use crate::cable::quadrature::{Point, Quadrature};
 use crate::cable::shape::natural;
 use crate::cable::transverse::{Transverse, bending_energy};
 use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, Weights};
-use std::marker::PhantomData;
 
 /// The "rule" of one point at the start of an element.
 #[derive(Clone, Copy, Debug)]
 struct AtStart;
 impl Quadrature for AtStart {
-    const LABEL: &'static str = "start";
-    const POINTS: &'static [Point] = &[Point::new(0.0, 1.0)];
+    fn label(self) -> &'static str {
+        "start"
+    }
+    #[inline(always)]
+    fn points(self) -> &'static [Point] {
+        const { &[Point::new(0.0, 1.0)] }
+    }
 }
 /// The same at its end.
 #[derive(Clone, Copy, Debug)]
 struct AtEnd;
 impl Quadrature for AtEnd {
-    const LABEL: &'static str = "end";
-    const POINTS: &'static [Point] = &[Point::new(1.0, 1.0)];
+    fn label(self) -> &'static str {
+        "end"
+    }
+    #[inline(always)]
+    fn points(self) -> &'static [Point] {
+        const { &[Point::new(1.0, 1.0)] }
+    }
 }
 
 /// An open end of a line: material that passes it takes its strain energy `W` per length along, so `+W` acts on the
 /// front at the start, `-W` on that at the end. What is left then on the front is `T |r'|`.
 #[derive(Clone, Copy, Debug)]
-pub struct FlowEnd<L, T, Q, const F: usize> {
+pub struct FlowEnd<L, T, const F: usize> {
     /// What the cable is made of.
     pub params: CableParams,
     /// Embedding of the element at the end.
@@ -37,38 +47,57 @@ pub struct FlowEnd<L, T, Q, const F: usize> {
     pub end: usize,
     /// The front there, among those of the line.
     pub front: usize,
-    models: PhantomData<(L, T, Q)>,
+    /// Axial strain.
+    pub longitudinal: L,
+    /// Curvature.
+    pub transverse: T,
 }
 
-impl<L: Longitudinal, T: Transverse, Q: Rule, const F: usize> FlowEnd<L, T, Q, F> {
+impl<L: Longitudinal, T: Transverse, const F: usize> FlowEnd<L, T, F> {
     /// The open end of this element.
-    pub fn new(params: CableParams, by: Embedding<F>, end: usize, front: usize) -> Self {
-        FlowEnd { params, by, end, front, models: PhantomData }
+    pub fn new<Q>(
+        params: CableParams,
+        models: Models<L, T, Q>,
+        by: Embedding<F>,
+        end: usize,
+        front: usize,
+    ) -> Self {
+        let Models { longitudinal, transverse, .. } = models;
+        FlowEnd { params, by, end, front, longitudinal, transverse }
     }
 }
 
 /// Strain energy per length at an end.
 #[inline(always)]
-fn density<L: Longitudinal, T: Transverse, R: Real>(ea: R, ei: R, e: &[R; 12], l: R, end: usize) -> R {
+fn density<L: Longitudinal, T: Transverse, R: Real>(
+    (longitudinal, transverse): (L, T),
+    ea: R,
+    ei: R,
+    e: &[R; 12],
+    l: R,
+    end: usize,
+) -> R {
     let il = R::of(1.0) / l;
     let (q, one) = (natural(e, il), R::of(1.0));
     if end == 0 {
-        axial_energy::<L, AtStart, R>(ea, &q) + bending_energy::<T, AtStart, R>(ei, one, il, &q)
+        axial_energy(longitudinal, AtStart, ea, &q) + bending_energy(transverse, AtStart, ei, one, il, &q)
     } else {
-        axial_energy::<L, AtEnd, R>(ea, &q) + bending_energy::<T, AtEnd, R>(ei, one, il, &q)
+        axial_energy(longitudinal, AtEnd, ea, &q) + bending_energy(transverse, AtEnd, ei, one, il, &q)
     }
 }
 
 macro_rules! element {
     ($fronts:literal, $size:literal) => {
-        impl<L: Longitudinal, T: Transverse, Q: Rule> Element<$size, $size> for FlowEnd<L, T, Q, $fronts> {
+        impl<L: Longitudinal, T: Transverse> Element<$size, $size> for FlowEnd<L, T, $fronts> {
             /// One at each end of a line.
             type Lanes<R: Real> = Self;
-            const SYMMETRIC: bool = false;
             const WIDE: bool = false;
 
-            fn label() -> String {
-                format!("open end {}+{}", L::LABEL, T::LABEL)
+            fn label(&self) -> String {
+                format!("open end {}+{}", self.longitudinal.label(), self.transverse.label())
+            }
+            fn symmetric(&self) -> bool {
+                false
             }
             #[inline(always)]
             fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self {
@@ -87,7 +116,7 @@ macro_rules! element {
                 let (ea, ei) = (R::of(p.params.ea), R::of(p.params.ei));
                 let mut e = [R::zero(); 12];
                 e.copy_from_slice(&x.q[..12]);
-                out.r[row] += sign * density::<L, T, R>(ea, ei, &e, g.l, p.end);
+                out.r[row] += sign * density((p.longitudinal, p.transverse), ea, ei, &e, g.l, p.end);
                 if !TANGENT {
                     return;
                 }
@@ -99,7 +128,15 @@ macro_rules! element {
                         Some(e) => e.eps = R::of(1.0),
                         None => l.eps = R::of(1.0),
                     }
-                    density::<L, T, Dual<R>>(Dual::constant(ea), Dual::constant(ei), &e, l, p.end).eps
+                    density(
+                        (p.longitudinal, p.transverse),
+                        Dual::constant(ea),
+                        Dual::constant(ei),
+                        &e,
+                        l,
+                        p.end,
+                    )
+                    .eps
                 };
                 for j in 0..12 {
                     out.k[row][j] += s * derivative(j);
@@ -115,7 +152,7 @@ macro_rules! element {
                 let mut e = [R::zero(); 12];
                 e.copy_from_slice(&x.q[..12]);
                 let (ea, ei) = (R::of(p.params.ea), R::of(p.params.ei));
-                let w = density::<L, T, R>(ea, ei, &e, g.l, p.end);
+                let w = density((p.longitudinal, p.transverse), ea, ei, &e, g.l, p.end);
                 let carried = if p.end == 0 { -(w * g.pd[0]) } else { w * g.pd[1] };
                 Power { carried, ..Power::zero() }
             }

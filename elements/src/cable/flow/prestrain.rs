@@ -2,16 +2,13 @@
 
 use super::embedding::Embedding;
 use crate::cable::longitudinal::{Longitudinal, Strain};
-use crate::cable::model::{CableModel, WithModels, with_models};
-use crate::cable::quadrature::Rule;
+use crate::cable::model::{CableModel, ChosenModels};
 use crate::cable::shape::natural;
-use crate::cable::transverse::Transverse;
 use ropewalk_core::{Assembly, At, Dual, Energy, Pattern, Power, Prestrain, Real, Term};
-use std::marker::PhantomData;
 
 /// Adds the energy `EA ∫ (½ ε₀² - ε₀ ε) dx` of one element, `ε₀` fading with time. Elements that have one are few and
 /// have it for a moment, so that all derivatives come from forward differentiation.
-pub(crate) struct Fading<L, Q> {
+pub(crate) struct Fading {
     /// `hose: prestrain`.
     label: String,
     strain: Prestrain,
@@ -22,7 +19,7 @@ pub(crate) struct Fading<L, Q> {
     by: Embedding<2>,
     /// An open end and the front there: 0 or 1, and its number.
     end: Option<(usize, usize)>,
-    models: PhantomData<(L, Q)>,
+    models: ChosenModels,
 }
 
 /// Where a fading strain acts.
@@ -37,18 +34,11 @@ pub(crate) struct Place {
 
 /// The term of a fading strain.
 pub(crate) fn fading(model: CableModel, strain: Prestrain, place: Place) -> Result<Box<dyn Term>, String> {
-    struct Make(Prestrain, Place);
-    impl WithModels for Make {
-        type Output = Box<dyn Term>;
-        fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> Box<dyn Term> {
-            let Make(strain, Place { label, ea, q, v, by, end }) = self;
-            Box::new(Fading::<L, Q> { label, strain, ea, q, v, by, end, models: PhantomData })
-        }
-    }
-    with_models(model, Make(strain, place))
+    let (models, Place { label, ea, q, v, by, end }) = (model.models()?, place);
+    Ok(Box::new(Fading { label, strain, ea, q, v, by, end, models }))
 }
 
-impl<L: Longitudinal, Q: Rule> Fading<L, Q> {
+impl Fading {
     fn length<R: Real>(&self, x: &[R]) -> R {
         let mut l = R::of(self.by.fixed[1] - self.by.fixed[0]);
         for k in 0..x.len() - 12 {
@@ -63,10 +53,11 @@ impl<L: Longitudinal, Q: Rule> Fading<L, Q> {
         e.copy_from_slice(&x[..12]);
         let q = natural(&e, R::of(1.0) / l);
         let (mut sum, mut there) = (R::zero(), R::zero());
-        let points = L::points::<Q::Axial>();
+        let points = self.models.points();
         for (k, (at, &strain)) in points.iter().zip(&self.strain.strain).enumerate() {
             let rest = left * R::of(strain);
-            let density = R::of(self.ea) * rest * (R::of(0.5) * rest - L::strain(&q, at).eps());
+            let density =
+                R::of(self.ea) * rest * (R::of(0.5) * rest - self.models.longitudinal.strain(&q, at).eps());
             sum += R::of(at.w) * density;
             let own = match self.end {
                 Some((0, _)) => k == 0,
@@ -90,7 +81,7 @@ impl<L: Longitudinal, Q: Rule> Fading<L, Q> {
     }
 }
 
-impl<L: Longitudinal, Q: Rule> Term for Fading<L, Q> {
+impl Term for Fading {
     fn label(&self) -> String {
         self.label.clone()
     }

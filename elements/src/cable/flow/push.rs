@@ -5,7 +5,7 @@ use super::line::Line;
 use super::prestrain::{self, Place};
 use super::{FlowAxialDamping, FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight};
 use crate::cable::longitudinal::Longitudinal;
-use crate::cable::model::{CableModel, LongitudinalModel, WithModels, with_models};
+use crate::cable::model::{CableModel, LongitudinalModel, Models, WithModels, with_models};
 use crate::cable::quadrature::Rule;
 use crate::cable::spec::Section;
 use crate::cable::transverse::Transverse;
@@ -51,31 +51,29 @@ struct Push<'a, 'b> {
 }
 
 macro_rules! push {
-    ($self:ident, $fronts:literal, $L:ident, $T:ident, $Q:ident) => {{
+    ($self:ident, $fronts:literal, $models:ident) => {{
         let (line, k) = ($self.piece.line, $self.piece.k);
         let (nodes, by, s) = ($self.piece.nodes(), line.embedding::<$fronts>(k), $self.section);
-        $self.b.element(FlowCable::<$L, $T, $Q, $fronts>::new($self.params, by), &nodes)?;
+        let Models { longitudinal, rule, .. } = $models;
+        $self.b.element(FlowCable::new($self.params, $models, by), &nodes)?;
         for (end, front) in line.opens(k) {
-            let open = FlowEnd::<$L, $T, $Q, $fronts>::new($self.params, by, end, front);
-            $self.b.element(open, &nodes)?;
+            $self.b.element(FlowEnd::new($self.params, $models, by, end, front), &nodes)?;
         }
         if s.axial_damping > 0.0 {
             let eta_ea = s.axial_damping * s.ea;
             // what bends in a layer that the element hardly resolves stretches between the points of its rule; elements that
             // are born and swallowed keep the other form, which is continuous over that
-            let bends = s.ei > 0.0 && $L::points::<<$Q as Rule>::Axial>().len() > 1 && line.zone == [false; 2];
+            let bends = s.ei > 0.0 && $models.points().len() > 1 && line.zone == [false; 2];
             if bends {
-                let damping = FlowAxialDamping::<$L, <$Q as Rule>::Axial, $fronts>::new(eta_ea, by);
-                $self.b.element(damping, &nodes)?;
+                $self.b.element(FlowAxialDamping::new(eta_ea, by, longitudinal, rule.axial()), &nodes)?;
             } else {
-                let damping = AxialDamping::<$L, <$Q as Rule>::Axial>::new($self.params.l, eta_ea);
-                $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
+                let damping = AxialDamping::new($self.params.l, eta_ea, longitudinal, rule.axial());
+                $self.b.element(FlowDamping { damping, by }, &nodes)?;
             }
         }
         if s.bending_damping > 0.0 && s.ei > 0.0 {
-            let damping =
-                BendingDamping::<<$Q as Rule>::Bending>::new($self.params.l, s.bending_damping * s.ei);
-            $self.b.element(FlowDamping::<_, $fronts> { damping, by }, &nodes)?;
+            let damping = BendingDamping::new($self.params.l, s.bending_damping * s.ei, rule.bending());
+            $self.b.element(FlowDamping { damping, by }, &nodes)?;
         }
         Ok(())
     }};
@@ -83,8 +81,8 @@ macro_rules! push {
 
 impl WithModels for Push<'_, '_> {
     type Output = Result<(), BuildError>;
-    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self) -> Self::Output {
-        if self.piece.line.fronts.len() == 1 { push!(self, 1, L, T, Q) } else { push!(self, 2, L, T, Q) }
+    fn go<L: Longitudinal, T: Transverse, Q: Rule>(self, models: Models<L, T, Q>) -> Self::Output {
+        if self.piece.line.fronts.len() == 1 { push!(self, 1, models) } else { push!(self, 2, models) }
     }
 }
 

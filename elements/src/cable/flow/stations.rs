@@ -5,7 +5,7 @@ use super::embedding::{Embedding, Grid};
 use super::for_fronts;
 use super::rule::close;
 use super::transport::{Row, Transport, nodal, row_times};
-use crate::cable::quadrature::{Gauss4, Point, Quadrature};
+use crate::cable::quadrature::{Gauss4, Point};
 use crate::cable::shape::{hermite, hermite_slope};
 use crate::cable::stations::BEFORE;
 use ropewalk_core::{Batch, Dual, Gives, Load, Local, Real, Share, Station, StationElement, V3, Weights};

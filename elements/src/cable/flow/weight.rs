@@ -27,10 +27,12 @@ macro_rules! element {
     ($fronts:literal, $size:literal) => {
         impl Element<$size, $size> for FlowWeight<$fronts> {
             type Lanes<R: Real> = (V3<R>, Embedding<$fronts, R>);
-            const SYMMETRIC: bool = false;
 
-            fn label() -> String {
+            fn label(&self) -> String {
                 "weight of a flowing cable".into()
+            }
+            fn symmetric(&self) -> bool {
+                false
             }
             #[inline(always)]
             fn lanes<R: Real>(b: &Batch<'_, Self>) -> Self::Lanes<R> {
