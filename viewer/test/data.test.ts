@@ -4,7 +4,7 @@ import { deflateSync } from "node:zlib";
 import { advance, fitting, SPEEDS } from "../src/data/clock.ts";
 import { decode, numbers } from "../src/data/decode.ts";
 import { envelope, range } from "../src/data/envelope.ts";
-import { along, heading, moment, points, pose, turned } from "../src/data/motion.ts";
+import { along, heading, moment, points, pose, settle, turned } from "../src/data/motion.ts";
 import type { Body, Line } from "../src/data/run.ts";
 import { short, timeText, withUnit } from "../src/data/text.ts";
 import { TimeWindow } from "../src/plots/window.ts";
@@ -82,6 +82,13 @@ test("between two snapshots a line is between them, unless its points change in 
   assert.equal(along(line, line.x, 3, { k: 1, f: 0.4 }, out), 2);
   assert.equal(along(line, line.x, 3, { k: 1, f: 0.6 }, out), 3);
   assert.equal(out[7], 4);
+});
+
+test("points without a place go to one that has", () => {
+  const x = Float32Array.of(NaN, 0, 0, 1, 2, 3, 4, NaN, 6, 7, 8, 9);
+  assert.ok(settle(x, 4));
+  assert.deepEqual([...x], [1, 2, 3, 1, 2, 3, 1, 2, 3, 7, 8, 9]);
+  assert.ok(!settle(Float32Array.of(NaN, 0, 0), 1) && !settle(new Float32Array(), 0));
 });
 
 test("moments of times", () => {

@@ -108,10 +108,12 @@ function field(): Field {
 
 test("the stage stays with a line that is small beside its path", () => {
   const stage = new Stage(field());
-  assert.equal(stage.followed?.name, "hose, start");
+  assert.equal(stage.followed?.name, "hose, middle");
   assert.ok(stage.exaggeration >= 5, "what is thin is drawn thicker");
   stage.fit("now", 1);
   const before = stage.orbit.target[0];
+  // all of the line is seen
+  for (const x of [0, 1]) assert.ok(Math.abs(project(stage.orbit, [x, 0, 0], 1)[0]) < 0.5);
   stage.to(1.5);
   near(stage.lines[0]!.x[0]!, 150);
   stage.to(2.5);

@@ -40,6 +40,16 @@ export function along(line: Line, of: Float32Array, width: number, at: Moment, o
   return count;
 }
 
+/** Points without a place go to the one before them, or to the first that has one. Returns whether there is any. */
+export function settle(x: Float32Array, count: number): boolean {
+  const there = (i: number) => Number.isFinite(x[3 * i]! + x[3 * i + 1]! + x[3 * i + 2]!);
+  let first = 0;
+  while (first < count && !there(first)) first++;
+  for (let i = 0; i < first && first < count; i++) x.copyWithin(3 * i, 3 * first, 3 * first + 3);
+  for (let i = first + 1; i < count; i++) if (!there(i)) x.copyWithin(3 * i, 3 * i - 3, 3 * i);
+  return first < count;
+}
+
 export interface Pose {
   x: V3;
   q: [number, number, number, number];
@@ -82,7 +92,7 @@ export interface Point {
   heading?(moment: Moment): number;
 }
 
-/** Bodies, then the ends of lines. */
+/** Bodies, then the ends and middles of lines. */
 export function points(field: Field): Point[] {
   const all: Point[] = field.bodies.map((body) => ({
     name: body.name,
@@ -91,12 +101,12 @@ export function points(field: Field): Point[] {
   }));
   for (const line of field.lines) {
     const buffer = new Float32Array(3 * Math.max(0, ...line.counts));
-    const end = (last: boolean) => (m: Moment): V3 => {
+    const at = (share: number) => (m: Moment): V3 => {
       const n = along(line, line.x, 3, m, buffer);
-      const i = last ? 3 * (n - 1) : 0;
+      const i = 3 * Math.round(share * (n - 1));
       return n > 0 ? [buffer[i]!, buffer[i + 1]!, buffer[i + 2]!] : [NaN, NaN, NaN];
     };
-    all.push({ name: `${line.name}, start`, at: end(false) }, { name: `${line.name}, end`, at: end(true) });
+    for (const [name, share] of [["start", 0], ["middle", 0.5], ["end", 1]] as const) all.push({ name: `${line.name}, ${name}`, at: at(share) });
   }
   return all;
 }

@@ -19,7 +19,8 @@ export class Flat implements Picture {
   private shapes = new Map<Shape, V3[][]>();
 
   constructor(stage: Stage) {
-    const pen = this.canvas.getContext("2d");
+    // drawn by the processor: where there is no WebGL, there is rarely a good graphics card
+    const pen = this.canvas.getContext("2d", { willReadFrequently: true });
     if (!pen) throw new Error("no canvas");
     this.pen = pen;
     this.recolour(stage);

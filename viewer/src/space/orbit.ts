@@ -62,6 +62,12 @@ export function fit(orbit: Orbit, [low, high]: Box, aspect: number): void {
   orbit.distance = 1.12 * needed || 1;
 }
 
+/** Looks at a point from where all within `radius` of it is seen, however it turns. */
+export function fitBall(orbit: Orbit, centre: V3, radius: number, aspect: number): void {
+  orbit.target = [...centre];
+  orbit.distance = (1.05 * radius) / (Math.sin(ANGLE / 2) * Math.min(1, aspect)) || 1;
+}
+
 /** Where a point appears, in shares of the view from its middle: right and up, and its distance from the eye. */
 export function project(orbit: Orbit, x: V3, aspect: number): V3 {
   const [r, u, b] = axes(orbit);

@@ -1,11 +1,11 @@
 // What is on the stage at a time: both pictures, with and without WebGL, draw this.
 
 import { range } from "../data/envelope.ts";
-import { along, moment, points, pose, type Moment, type Point, type Pose } from "../data/motion.ts";
+import { along, moment, points, pose, settle, type Moment, type Point, type Pose } from "../data/motion.ts";
 import type { Field, Line, Quantity, V3 } from "../data/run.ts";
 import { DARK, LIGHT, viridis } from "./colour.ts";
 import { seen, stand, type Frame, type Stand } from "./frame.ts";
-import { fit, type Box, type Orbit, VIEWS } from "./orbit.ts";
+import { fit, fitBall, type Box, type Orbit, VIEWS } from "./orbit.ts";
 
 /** A quantity on all lines that have it. */
 export interface Scale {
@@ -69,7 +69,7 @@ export class Stage {
     this.thick();
     // a line that is small beside its path is lost in it: stay with it
     const here = this.box();
-    if (diagonal(here) < this.size / 2.5) this.follow(this.points.find((p) => p.name.endsWith(", start")) ?? this.points[0] ?? null);
+    if (diagonal(here) < this.size / 2.5) this.follow(this.points.find((p) => p.name.endsWith(", middle")) ?? this.points[0] ?? null);
     this.retrail();
   }
 
@@ -89,9 +89,10 @@ export class Stage {
     this.poses = this.field.bodies.map((body) => pose(body, at));
     for (const actor of this.lines) {
       actor.count = along(actor.line, actor.line.x, 3, at, actor.x);
+      if (!settle(actor.x, actor.count)) actor.count = 0;
       this.paint(actor);
     }
-    this.reached = this.trailed ? at.k + 1 : 0;
+    this.reached = this.trail.length > 0 ? at.k + 1 : 0;
     const here = this.here();
     if (here && this.last) for (let i = 0; i < 3; i++) this.orbit.target[i]! += here[i]! - this.last[i]!;
     if (here) this.last = here;
@@ -144,7 +145,8 @@ export class Stage {
       const m = { k, f: 0 };
       this.trail.set(seen(stand(this.frame, m), point!.at(m)), 3 * k);
     }
-    this.reached = count > 0 ? this.at.k + 1 : 0;
+    if (!settle(this.trail, count)) this.trail = new Float32Array();
+    this.reached = this.trail.length > 0 ? this.at.k + 1 : 0;
   }
 
   /** What moves, as it is now in the frame. */
@@ -166,7 +168,13 @@ export class Stage {
   }
 
   fit(what: "now" | "all", aspect: number): void {
-    fit(this.orbit, what === "now" || this.frame.point ? this.box() : this.whole, aspect);
+    const here = this.here();
+    if (here && what === "now") {
+      const [low, high] = this.box();
+      // half of what is there, and what lies to one side of the point
+      const far = Math.hypot(...here.map((x, i) => Math.max(x - low[i]!, high[i]! - x)));
+      fitBall(this.orbit, here, Math.min(far, diagonal([low, high])), aspect);
+    } else fit(this.orbit, what === "now" || this.frame.point ? this.box() : this.whole, aspect);
   }
 
   turn(view: string): void {

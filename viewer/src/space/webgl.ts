@@ -2,7 +2,7 @@
 
 import {
   AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, DynamicDrawUsage, GridHelper, Group, Line as Polyline,
-  LineBasicMaterial, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, PlaneGeometry, Scene, SphereGeometry, WebGLRenderer,
+  LineBasicMaterial, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, PlaneGeometry, Scene, Sphere, SphereGeometry, WebGLRenderer,
 } from "three";
 import type { Shape } from "../data/run.ts";
 import { ANGLE, eye } from "./orbit.ts";
@@ -63,6 +63,7 @@ export class Webgl implements Picture {
     this.levels(stage);
     this.trail = new Polyline(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.8 }));
     this.trail.frustumCulled = false;
+    this.trail.geometry.boundingSphere = new Sphere();
     this.scene.add(this.trail);
     this.recolour(stage);
   }
@@ -95,6 +96,8 @@ export class Webgl implements Picture {
     shape.setAttribute("normal", dynamic(buffers.normals));
     shape.setAttribute("color", dynamic(colours));
     shape.setIndex(new BufferAttribute(tubeIndex(most), 1));
+    // what changes with every frame is never found outside of the view
+    shape.boundingSphere = new Sphere();
     const mesh = new Mesh(shape, new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }));
     mesh.frustumCulled = false;
     this.ground.add(mesh);
@@ -189,7 +192,7 @@ export class Webgl implements Picture {
 
   private drawTrail(stage: Stage): void {
     const shape = this.trail.geometry;
-    if (shape.getAttribute("position")?.array !== stage.trail) shape.setAttribute("position", new BufferAttribute(stage.trail, 3));
+    if (stage.reached > 0 && shape.getAttribute("position")?.array !== stage.trail) shape.setAttribute("position", new BufferAttribute(stage.trail, 3));
     shape.setDrawRange(0, stage.reached);
     this.trail.visible = stage.reached > 1;
   }
