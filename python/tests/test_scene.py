@@ -76,7 +76,7 @@ def test_misspelt_fields_are_no_keywords():
 
 
 def test_the_methods_are_those_of_the_schemas():
-    done = subprocess.run([sys.executable, PYTHON / "generate.py", "--check"], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, PYTHON / "tools" / "generate.py", "--check"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
 
 

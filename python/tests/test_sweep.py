@@ -132,9 +132,22 @@ def test_a_sweep_that_was_killed_goes_on(tmp_path):
     )
 
 
-def test_a_cluster_computes_the_same(tmp_path):
+def test_a_cluster_computes_the_same_with_a_worker_killed(tmp_path):
     distributed = pytest.importorskip("distributed")
+    vary = {"speed": [f"{5 + k} kn" for k in range(30)], "elements": [4, 6]}
+    rows = tmp_path / "a" / "rows"
+
+    def kill(pid):
+        deadline = time.monotonic() + 20
+        while len(list(rows.glob("*.json"))) < 5 and time.monotonic() < deadline:
+            time.sleep(0.002)
+        os.kill(pid, signal.SIGKILL)
+
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         with distributed.Client(cluster) as client:
-            there = rw.sweep("hose-turn", VARY, out=tmp_path / "a", client=client, batch=2, **FIXED)
-    assert same(there, rw.sweep("hose-turn", VARY, out=tmp_path / "b", **FIXED))
+            pid = next(iter(client.run(os.getpid).values()))
+            killer = threading.Thread(target=kill, args=(pid,))
+            killer.start()
+            there = rw.sweep("hose-turn", vary, out=tmp_path / "a", client=client, batch=2, **FIXED)
+            killer.join()
+    assert len(there) == 60 and same(there, rw.sweep("hose-turn", vary, out=tmp_path / "b", **FIXED))

@@ -1,7 +1,7 @@
 """Writes ropewalk/_parts.py: a method for each type and section of a scene, from the schemas that `describe` shows.
 
-    python generate.py            writes it
-    python generate.py --check    says whether it is as it should be
+    python tools/generate.py            writes it
+    python tools/generate.py --check    says whether it is as it should be
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 
 import ropewalk
 
-TARGET = Path(__file__).parent / "ropewalk" / "_parts.py"
+TARGET = Path(__file__).parents[1] / "ropewalk" / "_parts.py"
 WIDTH = 118
 
 HEAD = '''"""Methods that add parts to a scene, one for each type. Made by generate.py from the schemas: don't edit."""
