@@ -360,5 +360,5 @@ fn a_driving_check_needs_something_driven() {
     scene.record(DrivingCheckSpec { of: "hold".into(), axes: vec![], name: None, title: None });
     let model = scene.build().unwrap();
     let message = scene.records(&model).err().unwrap().error.message;
-    assert!(message.contains("no driving constraint `force`; the driving ones are `pull`"), "{message}");
+    assert!(message.contains("no driving constraint `hold`; the driving ones are `pull`"), "{message}");
 }
