@@ -20,7 +20,7 @@ def towed() -> rw.Scene:
     speed = scene.parameter("speed", "4 kn", "of the ship")
     rope = dict(mass="0.4 kg/m", ea="50 kN", ei=0.5, diameter="20 mm")
     line = scene.cable(name="line", points=[[0, 0, 0], [0, 0, "-30 m"]], elements=12, section=rope)
-    weight = scene.point_mass(name="weight", at=line.end, mass="40 kg", volume="0.005 m^3", drag_area="0.05 m^2")
+    weight = scene.point_mass(name="weight", marker=line.end, mass="40 kg", volume="0.005 m^3", drag_area="0.05 m^2")
     course = scene.straight(name="course", speed=speed, ramp="10 s")
     scene.driving(name="ship", marker=line.start, motion=course)
     scene.gravity()

@@ -24,7 +24,7 @@ class Scene(Parts):
     >>> rope = dict(mass="0.4 kg/m", ea="50 kN", ei=0.5, diameter="20 mm")
     >>> line = scene.cable(name="line", points=[[0, 0, 0], [0, 0, "-10 m"]], elements=16, section=rope)
     >>> hook = scene.spherical(name="hook", marker=line.start)
-    >>> weight = scene.point_mass(name="weight", at=line.end, mass="8 kg")
+    >>> weight = scene.point_mass(name="weight", marker=line.end, mass="8 kg")
     >>> _ = scene.gravity(), scene.position(of=weight)
     >>> scene.set_run(duration="5 s")
 

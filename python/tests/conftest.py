@@ -12,7 +12,7 @@ def weight() -> rw.Scene:
     scene = rw.Scene(title="A weight on a line")
     speed = scene.parameter("speed", "2 kn", "current")
     line = scene.cable(name="line", points=[[0, 0, 0], [0, 0, "-10 m"]], elements=8, section=ROPE)
-    body = scene.point_mass(name="weight", at=line.end, mass="8 kg", volume="0.001 m^3")
+    body = scene.point_mass(name="weight", marker=line.end, mass="8 kg", volume="0.001 m^3")
     scene.spherical(name="hook", marker=line.start)
     scene.gravity()
     scene.buoyancy()

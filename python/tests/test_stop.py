@@ -101,8 +101,8 @@ def test_a_run_in_another_thread_is_stopped_by_a_flag(long):
 def failing() -> rw.Scene:
     """Two rods in a row that are pulled longer than they are."""
     scene = rw.Scene(title="pulled apart")
-    scene.point_mass(name="elbow", at=[0.8, 0.6, 0], mass=1)
-    scene.point_mass(name="hand", at=[1.6, 0, 0], mass=1)
+    scene.point_mass(name="elbow", marker=[0.8, 0.6, 0], mass=1)
+    scene.point_mass(name="hand", marker=[1.6, 0, 0], mass=1)
     scene.distance(name="upper", marker="elbow", to=[0, 0, 0])
     scene.distance(name="lower", marker="hand", to="elbow")
     scene.straight(name="away", speed="1 m/s", direction=[1, 0, 0], ramp="0.1 s")
