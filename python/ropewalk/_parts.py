@@ -1920,9 +1920,6 @@ class Parts:
     ) -> None:
         """The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
 
-        ``` use ropewalk_scene::Water; let fresh = Water { density: 1000.0, ..Water::default() };
-        assert!(fresh.check().is_ok()); ```
-
         density: Density [kg/m³]. Default 1025.0.
         viscosity: Dynamic viscosity [Pa s]. Default 0.00108.
         level: Height of its surface, which is at rest [m]; left out, there is water everywhere.
@@ -1975,9 +1972,6 @@ class Parts:
         tables: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
         """What is run and how long.
-
-        ``` use ropewalk_scene::Run; let run = Run { duration: 20.0, output: 0.1, ..Run::default() };
-        assert!(run.check().is_ok()); assert_eq!(run.interval(), 0.1); ```
 
         analysis: What is computed. Default dynamics.
         duration: Length of the run [s]; in statics the end of the load factor. Default 1.0.
@@ -2033,10 +2027,6 @@ class Parts:
         scales: Union[Literal['axial', 'bending'], Mapping[str, Any]] | None = None,
     ) -> None:
         """Options of time integration. The defaults suit cables from 8 to 8192 elements.
-
-        ``` use ropewalk_core::integrator::{Options, Stepping}; let fixed = Options { stepping: Stepping::Fixed { h:
-        1e-3 }, ..Options::default() }; assert!(fixed.check().is_ok()); assert!(Options { h_max: Some(-1.0), ..fixed
-        }.check().is_err()); ```
 
         scheme: The scheme. Default {'generalized-alpha': {'rho_inf': 0.8}}.
         stepping: How the step size is chosen. Default {'controlled': {'tolerance': 0.0001}}.

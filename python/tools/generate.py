@@ -143,7 +143,7 @@ def method(name: str, call: str, result: str, schema: dict[str, Any]) -> str:
     head += "".join(f"        {a},\n" for a in arguments) + f"    ) -> {result}:\n"
     about = [
         line
-        for paragraph in schema.get("description", "").split("\n\n")
+        for paragraph in re.sub(r"\s*```.*?```", "", schema.get("description", ""), flags=re.DOTALL).split("\n\n")
         for line in [*textwrap.wrap(clean(paragraph), WIDTH, initial_indent=" " * 8, subsequent_indent=" " * 8), ""]
     ]
     doc = "\n".join([*about, *w.docs(schema, " " * 8)]).strip()

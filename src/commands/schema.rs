@@ -194,10 +194,12 @@ fn toml(value: &Value) -> String {
     }
 }
 
-/// A doc comment without the links that only rustdoc can follow: ``[`Name`]`` and ``[`Name`](path)``.
+/// A doc comment without what is for programmers: links that only rustdoc can follow, ``[`Name`]`` and
+/// ``[`Name`](path)``, and programs between fences.
 pub(super) fn plain(doc: &str) -> String {
+    let prose: String = doc.split("```").step_by(2).map(str::trim_end).collect();
     let mut out = String::new();
-    let mut rest = doc;
+    let mut rest = prose.as_str();
     while let Some((before, link)) = rest.split_once("[`") {
         let Some((name, after)) = link.split_once("`]") else { break };
         out += &format!("{before}`{name}`");
@@ -216,6 +218,7 @@ mod tests {
     fn links_of_rustdoc_become_names() {
         let doc = "Sum [N], see [`Term`], [`Drag`](crate::Drag) and [`open.";
         assert_eq!(plain(doc), "Sum [N], see `Term`, `Drag` and [`open.");
+        assert_eq!(plain("A run.\n\n```\nlet a = 1;\n```\n\nMore."), "A run.\n\nMore.");
     }
 
     /// Values for a field, each with one quantity that is written as `describe` promises.
