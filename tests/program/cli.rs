@@ -197,7 +197,7 @@ fn a_profile_tells_the_time_of_every_term() {
     assert!(report.contains("profile") && report.contains(" %"), "{report}");
     let summary = json(folder.path().join("out/summary.json"));
     let profile = summary["profile"].as_array().unwrap();
-    for label in ["cable", "weight", "constraints", "factorisation", "solution", "integrator"] {
+    for label in ["cable", "weight", "constraints", "factorisation", "solution", "step control"] {
         let entry = profile.iter().find(|e| e["label"].as_str().unwrap().contains(label));
         let entry = entry.unwrap_or_else(|| panic!("no {label} in {profile:?}"));
         assert!(entry["calls"].as_u64() > Some(0) && entry["seconds"].as_f64() >= Some(0.0));
