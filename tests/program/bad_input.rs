@@ -475,8 +475,8 @@ fn joints_that_hold_nothing_are_refused() {
             ("axis = [0, 0, 1] # cross", "", "[[constraints]]", &["`axis` is missing"]),
             ("axis = [1, 0, 0] # guide", "axis = [0, 0]", "[0, 0]", &["expected a list of 3"]),
             (
-                "of = \"cross\"",
-                "of = \"gross\"",
+                "constraint = \"cross\"",
+                "constraint = \"gross\"",
                 "\"gross\"",
                 &["no constraint `gross`", "`bearing`, `cross`, `guide`"],
             ),

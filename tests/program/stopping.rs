@@ -36,8 +36,8 @@ fn a_flag_stops_the_search_for_the_start_and_modes() {
 const PULLED_APART: &str = r#"
 run = { duration = "5 s", output = "0.05 s" }
 elements = [
-  { type = "point_mass", name = "elbow", at = [0.8, 0.6, 0], mass = 1 },
-  { type = "point_mass", name = "hand", at = [1.6, 0, 0], mass = 1 },
+  { type = "point_mass", name = "elbow", marker = [0.8, 0.6, 0], mass = 1 },
+  { type = "point_mass", name = "hand", marker = [1.6, 0, 0], mass = 1 },
 ]
 motions = [{ type = "straight", name = "away", speed = 1, ramp = "0.1 s" }]
 constraints = [

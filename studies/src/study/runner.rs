@@ -111,6 +111,7 @@ impl Runner {
         let options = RunOptions {
             out: Some(folder.path().to_path_buf()),
             progress: ProgressMode::Quiet,
+            watch: self.watch,
             ..RunOptions::default()
         };
         let progress = |t_end: f64| self.progress.begin(name, t_end);
