@@ -37,7 +37,7 @@ pub struct MeshState {
 ///
 /// ```
 /// use ropewalk_core::Prestrain;
-/// let fading = Prestrain { element: 0, strain: vec![1e-3], since: 10.0, release: 2.0 };
+/// let fading = Prestrain { element: 0, strain: vec![1e-3], since: 10.0, fade: 2.0 };
 /// assert_eq!((fading.left(10.0).0, fading.left(11.0).0, fading.left(12.0).0), (1.0, 0.5, 0.0));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
