@@ -27,7 +27,7 @@ fn scene(case: &str) -> Result<Scene> {
     let n = 400;
     let (ea, stiffness, tension) = (1e5, 1e6, 100.0);
     let length = TURNS * (TAU * RADIUS).hypot(PITCH);
-    let section = Section { diameter: DIAMETER, axial_damping: 1e-3, ..Section::new(0.5, ea, 0.1) };
+    let section = Section { diameter: DIAMETER, axial_retardation_time: 1e-3, ..Section::new(0.5, ea, 0.1) };
     let mut cable = CableSpec::straight("cable", [0.0; 3], [1.0, 0.0, 0.0], ELEMENTS, section)
         .unstretched(length / (1.0 + tension / ea));
     cable.points = Vec::new();
@@ -111,7 +111,8 @@ fn main() -> Result<()> {
         let look = begin.elapsed().as_secs_f64() / (repeats * ELEMENTS) as f64;
         let begin = Instant::now();
         for _ in 0..repeats {
-            sum += term.horizon(&std::hint::black_box(&state).at()).min(1.0);
+            let ahead = term.foresees().map_or(1.0, |t| t.horizon(&std::hint::black_box(&state).at()));
+            sum += ahead.min(1.0);
         }
         let ahead = begin.elapsed().as_secs_f64() / (repeats * ELEMENTS) as f64;
         std::hint::black_box(sum);

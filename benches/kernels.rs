@@ -69,7 +69,7 @@ impl Case {
             }
             Kernel::Other(_, term) => {
                 let whole = Pendulum::new(ELEMENTS).in_water().bent().build()?;
-                let start = Start { q: whole.state().q, v: whole.state().v, modes: Vec::new() };
+                let start = Start { q: whole.state().q, v: whole.state().v, internal: Vec::new() };
                 Model::new(whole.nodes().to_vec(), vec![term(&whole)], vec![], vec![], start, 1.0)
             }
         };

@@ -74,7 +74,7 @@ impl Case {
 const ALONG: usize = 4;
 
 fn section(damped: bool) -> Section {
-    Section { axial_damping: if damped { 0.01 } else { 0.0 }, ..Section::new(0.1, 5000.0, 0.01) }
+    Section { axial_retardation_time: if damped { 0.01 } else { 0.0 }, ..Section::new(0.1, 5000.0, 0.01) }
 }
 
 /// A square net of ropes, knotted where they cross.

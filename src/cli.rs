@@ -165,6 +165,13 @@ enum Command {
         #[command(flatten)]
         scene: SceneArgs,
     },
+    /// Rewrite a scene of version 0.1 with the names of this version
+    #[command(after_help = "Examples:\n  \
+        ropewalk migrate scene.toml             in place; each change is printed\n  \
+        ropewalk migrate scene.toml --check     only prints; exit code 1 if something is to be rewritten\n  \
+        ropewalk migrate scene.toml --out new.toml\n\n\
+        Comments, order and layout stay as they are. A scene that uses the names of this version is not touched.")]
+    Migrate(commands::migrate::MigrateArgs),
 }
 
 /// A scene and its parameters.
@@ -237,12 +244,20 @@ pub fn main_from(
     bundled: &[Bundled],
     arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>,
 ) -> ExitCode {
+    ExitCode::from(exit_from(bundled, arguments))
+}
+
+/// As [`main_from`], with the exit code as a number: for programs that do more than this, or that aren't Rust's `main`.
+pub fn exit_from(
+    bundled: &[Bundled],
+    arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+) -> u8 {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(e) => {
             // a closed pipe is nobody's business
             let _ = e.print();
-            return ExitCode::from(if e.use_stderr() { Exit::Input as u8 } else { 0 });
+            return if e.use_stderr() { Exit::Input as u8 } else { 0 };
         }
     };
     let done = match cli.command {
@@ -259,17 +274,29 @@ pub fn main_from(
         Command::Bench(args) => commands::bench::bench(&args),
         Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
+        Command::Migrate(args) => commands::migrate::run(&args),
     };
     match done {
-        Ok(exit) => ExitCode::from(exit.code()),
+        Ok(exit) => exit.code(),
         Err(e @ Error::Interrupted) => {
             commands::complain(e);
-            ExitCode::from(Exit::Interrupted.code())
+            Exit::Interrupted.code()
         }
         Err(e) => {
-            commands::complain(format!("error: {e}"));
-            ExitCode::from(if e.is_input() { Exit::Input as u8 } else { Exit::Solver as u8 })
+            commands::error(&e);
+            if e.is_input() { Exit::Input as u8 } else { Exit::Solver as u8 }
         }
+    }
+}
+
+/// What `ropewalk describe` says of a scene, a type, or a section of a scene file.
+///
+/// # Errors
+/// There is no such thing, or the scene is wrong.
+pub fn explain(what: &str, bundled: &[Bundled]) -> Result<String, Error> {
+    match commands::describe::explain(what, bundled)? {
+        (text, None) => Ok(text),
+        (_, Some(fault)) => Err(fault.into()),
     }
 }
 

@@ -32,15 +32,16 @@ pub use ropewalk_studies as studies;
 pub use ropewalk_core::integrator::Options;
 pub use ropewalk_core::{BuildError, Model, Simulation, State};
 pub use ropewalk_models::bundled;
+pub use ropewalk_report::Watch;
 pub use ropewalk_scene::{Air, Builder, Bundled, MarkerRef, Run, Scene, SceneError, SceneFile, Water};
 pub use ropewalk_studies::certificate::{Cause, Certificate, Change};
 pub use ropewalk_studies::cost::{CostAdvice, CostOptions, CostOutcome, cost};
 pub use ropewalk_studies::effects::{
-    Advice, Deed, EffectsOptions, EffectsOutcome, Ledger, Tried, Verdict, effects, write_effects,
+    Advice, EffectTrial, EffectWork, EffectsOptions, EffectsOutcome, Ledger, Verdict, effects, write_effects,
 };
 pub use ropewalk_studies::modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
-pub use ropewalk_studies::run::{Every, Manifest, Outcome, RunOptions, resume, run};
-pub use ropewalk_studies::simulate::{History, read, simulate};
+pub use ropewalk_studies::run::{Every, Manifest, Outcome, RunOptions, Status, Summary, resume, run};
+pub use ropewalk_studies::simulate::{History, read, simulate, simulate_with, start};
 pub use ropewalk_studies::{Error, bench, variants, verify};
 
 /// The programs of the README and of CONTRIBUTING must compile and run.

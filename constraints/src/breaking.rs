@@ -6,16 +6,16 @@ use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Breaks a connection for good once its force reaches a limit: a shear pin, a weak link. The moment is located in
+/// Breaks a constraint permanently once its force reaches a limit: a shear pin, a weak link. The event is located in
 /// time and reported.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BreakSpec {
-    /// Name, by which the event is reported.
+    /// Name; the report of the event uses it.
     pub name: String,
-    /// Name of the constraint, which stands above.
-    pub of: String,
-    /// Magnitude of its force at which it breaks [N].
+    /// Name of the constraint that breaks. It must come earlier in the scene.
+    pub constraint: String,
+    /// Magnitude of the force at which the constraint breaks [N].
     #[serde(deserialize_with = "quantity::force")]
     pub force: f64,
 }
@@ -31,9 +31,9 @@ impl ConstraintSpec for BreakSpec {
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         positive("force", self.force)?;
-        let mode = b.mode(&self.name);
-        let constraint = b.release(&self.of, mode)?;
-        b.event(Break { name: self.name.clone(), constraint, mode, force: self.force });
+        let variable = b.internal_variable(&self.name);
+        let constraint = b.release(&self.constraint, variable)?;
+        b.event(Break { name: self.name.clone(), constraint, variable, force: self.force });
         Ok(())
     }
 }
@@ -41,7 +41,7 @@ impl ConstraintSpec for BreakSpec {
 struct Break {
     name: String,
     constraint: usize,
-    mode: usize,
+    variable: usize,
     force: f64,
 }
 
@@ -50,7 +50,7 @@ impl Event for Break {
         self.name.clone()
     }
     fn value(&self, model: &Model, state: &State) -> f64 {
-        if state.modes[self.mode] != 0.0 {
+        if state.internal[self.variable] != 0.0 {
             return -1.0;
         }
         let Some(node) = model.constraints()[self.constraint].markers().iter().rev().find_map(Marker::on)
@@ -64,7 +64,7 @@ impl Event for Break {
         1
     }
     fn act(&self, _: &Model, state: &mut State) -> Action {
-        state.modes[self.mode] = 1.0;
+        state.internal[self.variable] = 1.0;
         Action::Restart
     }
 }

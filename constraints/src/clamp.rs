@@ -1,57 +1,37 @@
-//! The direction of a cable held fast.
+//! An end built in: position and direction held.
 
-use crate::check::unit;
-use crate::connection::{Connection, Equation};
-use ropewalk_core::error::{finite, need};
-use ropewalk_core::rotation::{around, cross};
-use ropewalk_core::{BuildError, Marker, Node, NodeId, NodeKind, V3};
+use crate::direction::Tangent;
+use crate::pair::{aligned, on_cable, pair};
+use crate::weld::weld;
+use ropewalk_core::rotation::IDENTITY;
+use ropewalk_core::{BuildError, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The slope `r'` of a cable node stays along the third axis of a marker, in space or on a rigid body: it is normal to
-/// the first two, two equations.
+/// Holds position and direction: a built-in end.
 ///
-/// The stretch `|r'|` stays free, as the tension there asks for it. The position is not held: add a
-/// [`spherical`](crate::spherical). `r'` and `-r'` both satisfy the equations; the start decides which it is.
-///
-/// # Errors
-/// A node without slope; a marker without axes.
-pub fn clamp(
-    name: impl Into<String>,
-    nodes: &[Node],
-    node: NodeId,
-    to: Marker,
-) -> Result<Connection, BuildError> {
-    let name = name.into();
-    let kind = nodes.get(node.0 as usize).map(|n| n.kind);
-    need(kind == Some(NodeKind::Slope), || {
-        format!("{name}: a clamp holds the slope of a cable node, which node {} doesn't have", node.0)
-    })?;
-    let equations = vec![Equation::normal(0, 0), Equation::normal(1, 0)];
-    Connection::new(name, nodes, [to, Marker::node(node)], equations)
-}
-
-/// Holds the direction of a cable at a marker, in space or on a rigid body; its stretch stays free. With `spherical` a
-/// built-in end. A cable that is bent when free of stress can't twist there either.
+/// On a cable it holds the point and the tangent; the stretch stays free, as the tension there needs. A cable with a
+/// curved stress-free shape can't twist there either. On a rigid body or a link it holds all six degrees of freedom, as
+/// `weld` does. To hold the direction only, use `direction`; to hold the position only, `spherical`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ClampSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records refer to the reaction by it.
     pub name: String,
-    /// The marker on a cable.
+    /// The marker that is held, on a cable or a rigid body.
     pub marker: MarkerRef,
-    /// The rigid body that holds the direction; left out, it is held in space.
+    /// What holds it: a marker on a rigid body or a point in space. Default: the point where the marker starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The direction in space at the start; left out, that which the cable has there.
+    /// Direction of the cable at the start, in space. Default: the direction in which the cable is laid.
     #[serde(default)]
     pub direction: Option<V3<f64>>,
 }
 register_spec!(Constraint, "clamp", ClampSpec);
 
 impl ClampSpec {
-    /// Holds the direction that a cable has at the start.
+    /// Holds a marker in space, where and as it stands at the start.
     pub fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
         ClampSpec { name: name.into(), marker: marker.into(), to: None, direction: None }
     }
@@ -66,32 +46,17 @@ impl ConstraintSpec for ClampSpec {
         std::iter::once(&self.marker).chain(&self.to).collect()
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let marker = b.marker("marker", &self.marker)?;
-        let Some(node) = marker.on() else {
-            return Err(BuildError::at("marker", "a clamp holds a cable, not a point in space"));
-        };
-        let direction = self.direction.unwrap_or(b.place(&marker).axes[0]);
-        finite("direction", &direction)?;
-        let direction = unit("direction", direction)?;
-        let director = b.parts(&[])?.iter().find_map(|(_, part)| part.director(node));
-        let axes = match director.map(|d| b.place(&Marker::node(d)).x) {
-            None => around(direction),
-            Some(d) => {
-                let across = unit("direction", cross(&direction, &d))?;
-                [cross(&across, &direction), across, direction]
+        let markers = pair(b, &self.marker, self.to.as_ref())?;
+        let Some(cable) = (0..2).find(|&k| on_cable(b, &[markers[k]; 2])) else {
+            if self.direction.is_some() {
+                let message = "a body is held as it stands at the start: leave `direction` out";
+                return Err(BuildError::at("direction", message));
             }
+            return b.constraint(weld(&self.name, b.nodes(), aligned(b, markers, IDENTITY))?);
         };
-        let to = match &self.to {
-            Some(to) => b.marker("to", to)?,
-            None => Marker::ground([0.0; 3]),
-        };
-        let to = to.with_axes(b.nodes(), b.coordinates(), axes);
-        if let Some(director) = director {
-            let name = format!("{}.twist", self.name);
-            let held =
-                Connection::new(name, b.nodes(), [to, Marker::node(director)], vec![Equation::normal(1, 0)])?;
-            b.constraint(held)?;
-        }
-        b.constraint(clamp(&self.name, b.nodes(), node, to)?)
+        let tangent = Tangent::new(b, &markers[cable], self.direction)?;
+        let markers = aligned(b, markers, tangent.axes);
+        tangent.hold_twist(b, &self.name, markers[1 - cable])?;
+        b.constraint(weld(&self.name, b.nodes(), markers)?)
     }
 }

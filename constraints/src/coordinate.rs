@@ -1,9 +1,8 @@
 //! One coordinate of a point, held or driven.
 
 use crate::check::unit;
-use crate::connection::{Connection, Equation};
 use crate::pair::pair;
-use ropewalk_core::{BuildError, Marker, Motion, Node, V3};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Motion, Node, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,22 +21,22 @@ pub fn coordinate(
     between: [Marker; 2],
     direction: V3<f64>,
     motion: Option<Arc<dyn Motion>>,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let direction = unit("direction", direction)?;
-    Connection::new(name, nodes, between, vec![Equation::coordinate(direction, motion)])
+    Joint::new(name, nodes, between, vec![Equation::coordinate(direction, motion)])
 }
 
-/// Holds or drives one coordinate of a marker, along a direction, and leaves the other two free.
+/// Holds or drives one coordinate of a marker along a direction. The other two are free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CoordinateSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker.
     pub marker: MarkerRef,
-    /// The direction of the coordinate.
+    /// Direction of the coordinate, in space.
     pub direction: V3<f64>,
-    /// Name of a motion, of which the part along the direction is followed; left out, the coordinate stays.
+    /// Name of a motion; its component along the direction drives the coordinate. Default: the coordinate is held.
     #[serde(default)]
     pub motion: Option<String>,
 }

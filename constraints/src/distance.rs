@@ -1,8 +1,7 @@
 //! Two points at a fixed distance.
 
-use crate::connection::{Connection, Equation};
 use ropewalk_core::error::positive;
-use ropewalk_core::{BuildError, Marker, Node};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,22 +18,22 @@ pub fn distance(
     nodes: &[Node],
     between: [Marker; 2],
     length: f64,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     positive("length", length)?;
-    Connection::new(name, nodes, between, vec![Equation::Distance { length }])
+    Joint::new(name, nodes, between, vec![Equation::Distance { length }])
 }
 
-/// Keeps two points at a constant distance: a rod without mass.
+/// Keeps two points at a constant distance: a massless rod.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DistanceSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// One marker.
     pub marker: MarkerRef,
     /// The other marker, or a point in space.
     pub to: MarkerRef,
-    /// Distance [m]; left out, that at the start.
+    /// Distance [m]. Default: the initial distance.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub length: Option<f64>,
 }

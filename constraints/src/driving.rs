@@ -1,9 +1,8 @@
 //! Points, lengths and angles that follow a prescribed motion.
 
-use crate::connection::{Arrow, Connection, Equation};
 use crate::pair::{aligned, along, pair};
 use ropewalk_core::rotation::IDENTITY;
-use ropewalk_core::{BuildError, Marker, Motion, Node, V3};
+use ropewalk_core::{Arrow, BuildError, Equation, Joint, Marker, Motion, Node, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,9 +20,9 @@ pub fn driving(
     nodes: &[Node],
     between: [Marker; 2],
     motion: Arc<dyn Motion>,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let equations = IDENTITY.map(|d| Equation::coordinate(d, Some(motion.clone()))).to_vec();
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
 /// The second marker lies ahead of the first, along the first one's third axis, by `c + X(t)`: one equation.
@@ -39,10 +38,10 @@ pub fn slide(
     between: [Marker; 2],
     start: f64,
     motion: Arc<dyn Motion>,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let a = Arrow::Axis { of: 0, axis: 2 };
     let equation = Equation::Dot { a, b: Arrow::Between, value: start, motion: Some(motion) };
-    Connection::new(name, nodes, between, vec![equation])
+    Joint::new(name, nodes, between, vec![equation])
 }
 
 /// The second marker is turned against the first, about their common third axis, by the angle `φ(t)`: one equation,
@@ -58,16 +57,16 @@ pub fn rotation(
     nodes: &[Node],
     between: [Marker; 2],
     angle: Arc<dyn Motion>,
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let (a, b) = (Arrow::Turned { of: 0, angle }, Arrow::Axis { of: 1, axis: 0 });
-    Connection::new(name, nodes, between, vec![Equation::Dot { a, b, value: 0.0, motion: None }])
+    Joint::new(name, nodes, between, vec![Equation::Dot { a, b, value: 0.0, motion: None }])
 }
 
-/// Makes a marker follow a prescribed motion from where it starts.
+/// Moves a marker along a prescribed motion, starting at its initial position.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrivingSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is driven.
     pub marker: MarkerRef,
@@ -97,18 +96,18 @@ impl ConstraintSpec for DrivingSpec {
     }
 }
 
-/// Drives a length: the place of a marker along an axis of another.
+/// Drives the displacement of a marker along an axis of another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SlideSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is driven.
     pub marker: MarkerRef,
-    /// The marker that it is driven against; left out, the point where it starts.
+    /// The other marker. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start; it turns with `to`.
+    /// Direction of the axis in space at the start. The axis turns with `to`.
     pub axis: V3<f64>,
     /// Name of the motion, whose x component is the displacement along the axis.
     pub motion: String,
@@ -133,18 +132,18 @@ impl ConstraintSpec for SlideSpec {
     }
 }
 
-/// Drives an angle: the rotation of a part against another, about a common axis. Put it beside a `revolute` joint.
+/// Drives the angle between two parts about a common axis. Use it together with a `revolute` joint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is driven, on a rigid body or a cable.
     pub marker: MarkerRef,
-    /// The marker that it is driven against, on a rigid body; left out, space.
+    /// The other marker, on a rigid body. Default: space.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start.
+    /// Direction of the axis in space at the start.
     pub axis: V3<f64>,
     /// Name of the motion, whose x component is the angle [rad].
     pub motion: String,

@@ -14,14 +14,13 @@
 //! # Ok::<(), ropewalk_scene::SceneError>(())
 //! ```
 //!
-//! Joints between markers, and the motions that drive them. A joint is a list of [`Equation`]s between two markers, in
-//! closed form; a relation of another kind is written as a [`Relation`](ropewalk_core::Relation).
+//! Joints between markers, and the motions that drive them. Each kind of joint here makes a [`Joint`](ropewalk_core::Joint) of its equations.
 
 mod breaking;
 mod check;
 mod clamp;
-mod connection;
 mod coordinate;
+mod direction;
 mod distance;
 mod driving;
 pub mod motion;
@@ -35,9 +34,9 @@ mod weld;
 pub mod winch;
 
 pub use breaking::BreakSpec;
-pub use clamp::{ClampSpec, clamp};
-pub use connection::{Arrow, Connection, Equation};
+pub use clamp::ClampSpec;
 pub use coordinate::{CoordinateSpec, coordinate};
+pub use direction::{DirectionSpec, direction};
 pub use distance::{DistanceSpec, distance};
 pub use driving::{DrivingSpec, RotationSpec, SlideSpec, driving, rotation, slide};
 pub use package::{Package, PackageSpec};

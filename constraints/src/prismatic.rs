@@ -1,8 +1,7 @@
 //! Slides along an axis.
 
-use crate::connection::{Connection, Equation};
 use crate::pair::{aligned, along, pair};
-use ropewalk_core::{BuildError, Marker, Node, V3};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,14 +12,10 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Errors
 /// As for [`spherical`](crate::spherical); a marker that isn't on a rigid body or on the ground.
-pub fn prismatic(
-    name: impl Into<String>,
-    nodes: &[Node],
-    between: [Marker; 2],
-) -> Result<Connection, BuildError> {
+pub fn prismatic(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Joint, BuildError> {
     let mut equations = vec![Equation::in_plane(0), Equation::in_plane(1)];
     equations.extend([(0, 1), (1, 2), (2, 0)].map(|(a, b)| Equation::normal(a, b)));
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
 /// The second marker slides along the third axis of the first and turns about it: four equations.
@@ -33,10 +28,10 @@ pub fn cylindrical(
     name: impl Into<String>,
     nodes: &[Node],
     between: [Marker; 2],
-) -> Result<Connection, BuildError> {
+) -> Result<Joint, BuildError> {
     let equations =
         vec![Equation::in_plane(0), Equation::in_plane(1), Equation::normal(2, 0), Equation::normal(2, 1)];
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
 /// The second marker stays on the line through the first along its third axis: two equations. Every rotation is free.
@@ -49,8 +44,8 @@ pub fn point_on_line(
     name: impl Into<String>,
     nodes: &[Node],
     between: [Marker; 2],
-) -> Result<Connection, BuildError> {
-    Connection::new(name, nodes, between, vec![Equation::in_plane(0), Equation::in_plane(1)])
+) -> Result<Joint, BuildError> {
+    Joint::new(name, nodes, between, vec![Equation::in_plane(0), Equation::in_plane(1)])
 }
 
 /// The second marker stays in the plane through the first that is normal to its third axis: one equation.
@@ -61,22 +56,22 @@ pub fn point_on_plane(
     name: impl Into<String>,
     nodes: &[Node],
     between: [Marker; 2],
-) -> Result<Connection, BuildError> {
-    Connection::new(name, nodes, between, vec![Equation::in_plane(2)])
+) -> Result<Joint, BuildError> {
+    Joint::new(name, nodes, between, vec![Equation::in_plane(2)])
 }
 
-/// Lets a body slide along an axis of another part, or of space, without turning.
+/// Lets a body slide along an axis of another part or of space. It can't turn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PrismaticSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start; it turns with the parts.
+    /// Direction of the axis in space at the start. The axis turns with the parts.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "prismatic", PrismaticSpec);
@@ -96,18 +91,18 @@ impl ConstraintSpec for PrismaticSpec {
     }
 }
 
-/// Lets a body slide along an axis of another part, or of space, and turn about it.
+/// Lets a body slide along an axis of another part or of space, and turn about it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylindricalSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start; it turns with the parts.
+    /// Direction of the axis in space at the start. The axis turns with the parts.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "cylindrical", CylindricalSpec);
@@ -127,18 +122,18 @@ impl ConstraintSpec for CylindricalSpec {
     }
 }
 
-/// Keeps a point on a straight line through another part, or through space.
+/// Keeps a point on a straight line that is fixed to another part or in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointOnLineSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The direction of the line in space at the start; it turns with `to`.
+    /// Direction of the line in space at the start. The line turns with `to`.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "point_on_line", PointOnLineSpec);
@@ -158,18 +153,18 @@ impl ConstraintSpec for PointOnLineSpec {
     }
 }
 
-/// Keeps a point in a plane of another part, or of space.
+/// Keeps a point in a plane that is fixed to another part or in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointOnPlaneSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The normal of the plane in space at the start; it turns with `to`.
+    /// Normal of the plane in space at the start. The plane turns with `to`.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "point_on_plane", PointOnPlaneSpec);

@@ -1,8 +1,7 @@
 //! A hinge.
 
-use crate::connection::{Connection, Equation};
 use crate::pair::{aligned, along, pair};
-use ropewalk_core::{BuildError, Marker, Node, NodeKind, V3};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, NodeKind, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -14,11 +13,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Errors
 /// As for [`spherical`](crate::spherical); a marker without axes.
-pub fn revolute(
-    name: impl Into<String>,
-    nodes: &[Node],
-    between: [Marker; 2],
-) -> Result<Connection, BuildError> {
+pub fn revolute(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Joint, BuildError> {
     let mut equations = Equation::coincide();
     let on_cable =
         |m: &Marker| m.on().is_some_and(|n| nodes.get(n.0 as usize).map(|n| n.kind) == Some(NodeKind::Slope));
@@ -27,22 +22,22 @@ pub fn revolute(
         [_, true] => vec![Equation::normal(2, 0)],
         _ => vec![Equation::normal(2, 0), Equation::normal(2, 1)],
     });
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
-/// A hinge: holds two points together and leaves only the rotation about an axis. The end of a cable swings in the plane
-/// normal to it.
+/// A hinge: holds two points together; only the rotation about an axis is free. The end of a cable swings in the
+/// plane normal to the axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RevoluteSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start; it turns with the parts.
+    /// Direction of the axis in space at the start. The axis turns with the parts.
     pub axis: V3<f64>,
 }
 register_spec!(Constraint, "revolute", RevoluteSpec);

@@ -1,8 +1,7 @@
 //! Two points held together.
 
-use crate::connection::{Connection, Equation};
 use crate::pair::pair;
-use ropewalk_core::{BuildError, Marker, Node};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,23 +12,19 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Errors
 /// Both on the ground or on the same node; a node without position.
-pub fn spherical(
-    name: impl Into<String>,
-    nodes: &[Node],
-    between: [Marker; 2],
-) -> Result<Connection, BuildError> {
-    Connection::new(name, nodes, between, Equation::coincide())
+pub fn spherical(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Joint, BuildError> {
+    Joint::new(name, nodes, between, Equation::coincide())
 }
 
-/// Holds two points together: of two parts, or of a part and space. Leaves every rotation free.
+/// Holds two points together, of two parts or of a part and space. All rotations are free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphericalSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
 }

@@ -1,9 +1,8 @@
 //! Axes at right angles, and the universal joint that they make.
 
-use crate::connection::{Connection, Equation};
 use crate::pair::{direction, pair};
 use ropewalk_core::rotation::around;
-use ropewalk_core::{BuildError, Marker, Node, V3};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,8 +17,8 @@ pub fn perpendicular(
     name: impl Into<String>,
     nodes: &[Node],
     between: [Marker; 2],
-) -> Result<Connection, BuildError> {
-    Connection::new(name, nodes, between, vec![Equation::normal(2, 2)])
+) -> Result<Joint, BuildError> {
+    Joint::new(name, nodes, between, vec![Equation::normal(2, 2)])
 }
 
 /// Two markers are at the same point and their third axes, the arms of the cross, stay at right angles: a universal
@@ -29,14 +28,10 @@ pub fn perpendicular(
 ///
 /// # Errors
 /// As for [`perpendicular`].
-pub fn universal(
-    name: impl Into<String>,
-    nodes: &[Node],
-    between: [Marker; 2],
-) -> Result<Connection, BuildError> {
+pub fn universal(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Joint, BuildError> {
     let mut equations = Equation::coincide();
     equations.push(Equation::normal(2, 2));
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
 /// Refuses axes that are closer to parallel than to a right angle: where they are parallel the equation is singular.
@@ -53,21 +48,22 @@ fn crossed(what: &str, a: V3<f64>, b: V3<f64>) -> Result<(), BuildError> {
     Err(BuildError::new(message))
 }
 
-/// Keeps an axis of one part at right angles to an axis of another, or of space.
+/// Keeps an axis of one part at right angles to an axis of another part or of space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PerpendicularSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis of `to` in space at the start; it turns with it. Left out on a cable, which has only its own direction.
+    /// Axis of `to` in space at the start; it turns with `to`. Leave it out on a cable: there the axis is the
+    /// tangent.
     #[serde(default)]
     pub axis_to: Option<V3<f64>>,
-    /// The axis of `marker` in space at the start; it turns with it. Left out on a cable.
+    /// Axis of `marker` in space at the start; it turns with `marker`. Leave it out on a cable.
     #[serde(default)]
     pub axis: Option<V3<f64>>,
 }
@@ -94,21 +90,23 @@ impl ConstraintSpec for PerpendicularSpec {
     }
 }
 
-/// A universal joint: holds two points together, and an axis of one part at right angles to an axis of the other.
+/// A universal joint: holds two points together, and keeps an axis of one part at right angles to an axis of the
+/// other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UniversalSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis of `to` in space at the start; it turns with it. Left out on a cable, which has only its own direction.
+    /// Axis of `to` in space at the start; it turns with `to`. Leave it out on a cable: there the axis is the
+    /// tangent.
     #[serde(default)]
     pub axis_to: Option<V3<f64>>,
-    /// The axis of `marker` in space at the start; it turns with it. Left out on a cable.
+    /// Axis of `marker` in space at the start; it turns with `marker`. Leave it out on a cable.
     #[serde(default)]
     pub axis: Option<V3<f64>>,
 }

@@ -1,9 +1,8 @@
 //! Two parts joined rigidly.
 
-use crate::connection::{Connection, Equation};
 use crate::pair::{aligned, on_cable, pair};
 use ropewalk_core::rotation::{IDENTITY, around};
-use ropewalk_core::{BuildError, Marker, Node, NodeKind};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, NodeKind};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -15,7 +14,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Errors
 /// As for [`spherical`](crate::spherical); a marker without axes; cables at both markers.
-pub fn weld(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Connection, BuildError> {
+pub fn weld(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Joint, BuildError> {
     let mut equations = Equation::coincide();
     let on_cable =
         |m: &Marker| m.on().is_some_and(|n| nodes.get(n.0 as usize).map(|n| n.kind) == Some(NodeKind::Slope));
@@ -31,18 +30,19 @@ pub fn weld(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Re
         _ => &[(0, 1), (1, 2), (2, 0)],
     };
     equations.extend(normals.iter().map(|&(a, b)| Equation::normal(a, b)));
-    Connection::new(name, nodes, between, equations)
+    Joint::new(name, nodes, between, equations)
 }
 
-/// Joins two parts rigidly, as they stand at the start. The direction of a cable's end is held; its stretch stays free.
+/// Joins two parts rigidly, as they stand at the start. Of a cable, point and tangent are held; the stretch stays
+/// free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WeldSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it: another marker or a point in space; left out, the point where the marker starts.
+    /// The other marker, or a point in space. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
 }

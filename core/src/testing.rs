@@ -277,9 +277,10 @@ impl<L: Law> LaneTask for OneLaw<'_, L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::constraint::{Joint, Relation, RowKind};
+    use crate::model::constraint::RowKind;
     use crate::model::marker::{Jet, Marker, Place};
     use crate::model::node::{NodeId, NodeKind};
+    use crate::model::relation::{Related, Relation};
     use crate::model::station::Gives;
 
     /// A spring `r = (1 + v² + a) q³` on one number, with a stiffness that is off by a factor.
@@ -302,7 +303,7 @@ mod tests {
     #[test]
     fn wrong_tangents_are_seen() {
         let nodes = [Node { kind: NodeKind::Scalars(1), q: 0, v: 0, shared: false }];
-        let at = At { t: 0.0, q: &[1.3], v: &[0.7], a: &[-0.2], modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &[1.3], v: &[0.7], a: &[-0.2], internal: &[], relaxed: None };
         assert!(check_tangent(&Cubic(1.0), &nodes, &at, Width::One) < 1e-9);
         let error = check_tangent(&Cubic(1.01), &nodes, &at, Width::One);
         assert!((error - 0.01).abs() < 1e-3, "{error}");
@@ -367,12 +368,12 @@ mod tests {
             q: &q,
             v: &[0.5, -1.0, 0.3, 1.0, 2.0, -1.0],
             a: &[0.0; 6],
-            modes: &[],
+            internal: &[],
             relaxed: None,
         };
         let axes = crate::algebra::rotation::around([1.0, 0.5, 0.0]);
         let marker = Marker::Node { node: NodeId(0), point: [0.1, 0.5, 0.2], axes };
-        assert!(check_constraint(&Joint::new("curve", Curve(false), vec![marker]), &nodes, &at) < 1e-7);
-        assert!(check_constraint(&Joint::new("curve", Curve(true), vec![marker]), &nodes, &at) > 1e-2);
+        assert!(check_constraint(&Related::new("curve", Curve(false), vec![marker]), &nodes, &at) < 1e-7);
+        assert!(check_constraint(&Related::new("curve", Curve(true), vec![marker]), &nodes, &at) > 1e-2);
     }
 }

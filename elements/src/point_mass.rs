@@ -198,15 +198,15 @@ impl Term for PointMass {
 
 /// A compact body: a sinker, a buoy, the load at the end of a hose.
 ///
-/// On a marker of a cable it is part of that node; at a named point of a body or a link it moves and turns with it; with a
-/// position it is a point of its own. Marker: `name`.
+/// On a cable it belongs to the node; at a point of a body or link it moves and turns with the body; with a position
+/// it is a free point. Marker: `name`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMassSpec {
-    /// Name by which the rest of the scene refers to it.
+    /// Name; the rest of the scene refers to the part by it.
     pub name: String,
-    /// Marker of an earlier element that it sits on, such as `"hose.end"`, or the point where it starts [m].
-    pub at: MarkerRef,
+    /// Marker of an earlier element that carries it, such as `"hose.end"`, or its initial position [m].
+    pub marker: MarkerRef,
     /// Mass [kg].
     #[serde(deserialize_with = "quantity::mass")]
     pub mass: f64,
@@ -219,7 +219,7 @@ pub struct PointMassSpec {
     /// Drag coefficient times area [m²].
     #[serde(default, deserialize_with = "quantity::area")]
     pub drag_area: f64,
-    /// Velocity at the start, of a point of its own [m/s].
+    /// Initial velocity, of a free point only [m/s].
     #[serde(default, deserialize_with = "quantity::vec3::speed")]
     pub velocity: V3<f64>,
 }
@@ -227,10 +227,10 @@ register_spec!(Element, "point_mass", PointMassSpec);
 
 impl PointMassSpec {
     /// A mass at a marker or a point.
-    pub fn new(name: &str, at: impl Into<MarkerRef>, mass: f64) -> Self {
+    pub fn new(name: &str, marker: impl Into<MarkerRef>, mass: f64) -> Self {
         PointMassSpec {
             name: name.into(),
-            at: at.into(),
+            marker: marker.into(),
             mass,
             volume: 0.0,
             added_mass: 0.0,
@@ -259,7 +259,7 @@ impl ElementSpec for PointMassSpec {
         &self.name
     }
     fn markers(&self) -> Vec<&MarkerRef> {
-        vec![&self.at]
+        vec![&self.marker]
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         positive("mass", self.mass)?;
@@ -269,7 +269,7 @@ impl ElementSpec for PointMassSpec {
             not_negative(name, x)?;
         }
         finite("velocity", &self.velocity)?;
-        let (marker, own) = match &self.at {
+        let (marker, own) = match &self.marker {
             MarkerRef::Point(x) => (Marker::node(b.node(NodeKind::Point, x, &self.velocity)?), true),
             MarkerRef::Name(_) if self.velocity != [0.0; 3] => {
                 return Err(BuildError::at(
@@ -277,10 +277,10 @@ impl ElementSpec for PointMassSpec {
                     "a mass on a marker moves with it: leave `velocity` out",
                 ));
             }
-            name @ MarkerRef::Name(_) => (b.marker("at", name)?, false),
+            name @ MarkerRef::Name(_) => (b.marker("marker", name)?, false),
         };
         let Some(node) = marker.on() else {
-            return Err(BuildError::at("at", "a mass needs a marker on a part, or a position"));
+            return Err(BuildError::at("marker", "a mass needs a marker on a part, or a position"));
         };
         let mut mass = PointMass::new(&self.name, b.nodes(), &marker, self.mass)?;
         if self.added_mass > 0.0 || self.drag_area > 0.0 {

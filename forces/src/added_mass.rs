@@ -1,8 +1,11 @@
 //! Added mass: the water that a slender body pushes aside.
 
+use crate::buoyancy::surface;
+use crate::drag::free_tips;
+use crate::{BluntEnd, FeedingEnd, Surface, Wetted, at_tip};
 use ropewalk_core::error::not_negative;
-use ropewalk_core::{BuildError, Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
-use ropewalk_scene::Current;
+use ropewalk_core::{BuildError, Gives, Law, Load, Part, Power, Real, Station, V3, dot, scaled};
+use ropewalk_scene::{Builder, Current, ForceSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -214,6 +217,87 @@ impl Law for AddedMass {
             Theory::Energy => {
                 let [n, _, _] = self.across(at);
                 R::of(0.5) * self.mass(at.diameter) * dot(&n, &n)
+            }
+        }
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Added mass of cables and hulls: inertia of the water, and its forces in flow along the body.
+///
+/// It follows from the kinetic energy of the water: a hull at an angle to the flow has Munk's moment, and flow along
+/// a cable acts like compression and can cause flutter. `theory = "morison"` keeps the inertia only, for comparison
+/// with codes that have no more.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AddedMassSpec {
+    /// Coefficient: added mass over the mass of water in a cylinder of the hydrodynamic diameter.
+    #[serde(default = "one", deserialize_with = "quantity::number")]
+    pub ca: f64,
+    /// `energy` or `morison`. Default: `energy`.
+    #[serde(default)]
+    pub theory: Option<Theory>,
+    /// Fraction of its momentum that the water returns at free ends of cables: 0 for cut ends, about 0.8 for tapered
+    /// ends, 1 for an ideal tail.
+    #[serde(default, deserialize_with = "quantity::number")]
+    pub tail: f64,
+    /// Parts it acts on. Default: all.
+    #[serde(default)]
+    pub on: Vec<String>,
+}
+register_spec!(Force, "added_mass", AddedMassSpec);
+
+impl Default for AddedMassSpec {
+    fn default() -> Self {
+        AddedMassSpec { ca: 1.0, theory: None, tail: 0.0, on: Vec::new() }
+    }
+}
+
+#[typetag::serde(name = "added_mass")]
+impl ForceSpec for AddedMassSpec {
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        not_negative("ca", self.ca)?;
+        if !(0.0..=1.0).contains(&self.tail) {
+            return Err(BuildError::at("tail", format!("`tail` must be between 0 and 1, not {}", self.tail)));
+        }
+        let surface = surface(b)?;
+        let water = b.water()?;
+        let law = AddedMass::new(water.density, self.ca)?.in_current(water.current()?)?;
+        let theory = self.theory.unwrap_or_default();
+        for numbered in b.parts(&self.on)? {
+            b.acts_once("added_mass", &numbered)?;
+            if theory == Theory::Energy {
+                self.add_ends(b, numbered.1.as_ref(), &law, surface);
+            }
+        }
+        let law = law.by(theory);
+        match surface {
+            None => b.load(&self.on, law),
+            Some(surface) => b.load(&self.on, Wetted::below(surface, law)),
+        }
+    }
+}
+
+impl AddedMassSpec {
+    /// Water leaves at the ends of a cable or a chain that nothing holds. Hulls of single bodies keep what it has, as
+    /// Kirchhoff's equations have it. Where an end feeds, more or less of the cable has water beside it.
+    fn add_ends(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass, surface: Option<Surface>) {
+        for tip in free_tips(b, part).into_iter().filter(|tip| tip.sheds) {
+            let (added_mass, taper) = (law.clone(), self.tail);
+            let end = BluntEnd { added_mass, diameter: tip.diameter, taper, first: tip.first, surface };
+            if let Some(term) = at_tip(end, part.name(), b.nodes(), &tip) {
+                b.term(term);
+            }
+        }
+        let diameter = part.tips().first().map_or(0.0, |tip| tip.diameter);
+        for (end, name) in [(0, "start"), (1, "end")] {
+            if let Some(boundary) = part.boundary(end).filter(|_| diameter > 0.0) {
+                let label = format!("{}: water at its {name}", part.name());
+                let added_mass = law.clone();
+                b.term(Box::new(FeedingEnd { label, added_mass, diameter, surface, boundary }));
             }
         }
     }

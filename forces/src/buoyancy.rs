@@ -1,11 +1,15 @@
 //! Buoyancy at the surface of water at rest: a potential, so that energy is kept.
 
 use crate::Surface;
+use crate::gravity::dead_loads;
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::held::{Held, Pull, pull};
 use ropewalk_core::{
-    Assembly, At, BuildError, Energy, Gives, Law, Load, Pattern, Power, Real, Station, Term,
+    Assembly, At, BuildError, Energy, Gives, Law, Load, Pattern, Per, Power, Real, Station, Term, V3,
 };
+use ropewalk_scene::{Builder, ForceSpec, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Buoyancy of a slender body that may lie across the surface, `ρ g A φ` per length upwards.
@@ -140,4 +144,74 @@ impl Term for Float {
         let mean = 0.5 * u + 0.375 * u * u - 0.0625 * u.powi(4) + 0.1875 + (s / r - u).max(0.0);
         Energy { potential: self.specific_weight * self.volume * r * mean, ..Energy::default() }
     }
+}
+
+/// Buoyancy of the displaced volume; if the water has a `level`, of the volume under water.
+///
+/// At the surface, cables, hulls and chains are cylinders; other bodies and point masses are spheres.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BuoyancySpec {
+    /// Parts it acts on. Default: all.
+    #[serde(default)]
+    pub on: Vec<String>,
+}
+register_spec!(Force, "buoyancy", BuoyancySpec);
+
+#[typetag::serde(name = "buoyancy")]
+impl ForceSpec for BuoyancySpec {
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let (density, surface) = (b.water()?.density, surface(b)?);
+        let lift = b.gravity().map(|g| -density * g);
+        match surface {
+            None => dead_loads(b, "buoyancy", &self.on, Per::Volume, lift),
+            Some(surface) => self.floating(b, lift, surface),
+        }
+    }
+}
+
+impl BuoyancySpec {
+    /// Parts that may lie across the surface.
+    fn floating(&self, b: &mut Builder, lift: V3<f64>, surface: Surface) -> Result<(), BuildError> {
+        let mut slender = Vec::new();
+        for part in b.parts(&self.on)? {
+            b.acts_once("buoyancy", &part)?;
+            let (_, part) = part;
+            if part.dead_load(Per::Volume, lift).is_none() {
+                continue;
+            }
+            match part.ball() {
+                Some((held, volume)) => {
+                    let label = format!("{}: buoyancy", part.name());
+                    b.term(Box::new(Float::new(label, held, volume, lift[2], surface)?));
+                }
+                None => slender.push(part.name().to_string()),
+            }
+        }
+        if slender.is_empty() {
+            return Ok(());
+        }
+        let stiff: Vec<bool> =
+            slender.iter().map(|name| b.feeding(name).iter().all(Option::is_none)).collect();
+        b.load_by(&slender, |part| {
+            let couple = slender.iter().zip(&stiff).any(|(name, stiff)| *stiff && name == part.name());
+            Buoyancy { specific_weight: lift[2], surface, couple }
+        })
+    }
+}
+
+/// The surface of the scene's water, if it has one.
+///
+/// # Errors
+/// Gravity doesn't point down: water at rest isn't level then.
+pub(crate) fn surface(b: &Builder) -> Result<Option<Surface>, BuildError> {
+    let Some(level) = b.water()?.level else { return Ok(None) };
+    let g = b.gravity();
+    if g[0] != 0.0 || g[1] != 0.0 || g[2] > 0.0 {
+        let message = format!(
+            "the water has a `level`, but gravity {g:?} m/s² isn't across it: make it point down, along -z"
+        );
+        return Err(BuildError::at("gravity", message));
+    }
+    Ok(Some(Surface { level }))
 }

@@ -26,30 +26,32 @@ mod bushing;
 #[cfg(feature = "contact")]
 pub mod contact;
 mod drag;
+mod drag_coefficient;
+mod gravity;
 mod latch;
 mod line_load;
 mod moment;
 mod point;
-mod spec;
 mod spring;
 mod surface;
 mod time;
 mod tip;
 mod wetted;
 
-pub use added_mass::{AddedMass, Theory};
-pub use buoyancy::{Buoyancy, Float};
+pub use added_mass::{AddedMass, AddedMassSpec, Theory};
+pub use buoyancy::{Buoyancy, BuoyancySpec, Float};
 pub use bushing::{Bushing, BushingSpec, RotationalSpring, RotationalSpringSpec};
-pub use drag::{Drag, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn, choo_casarella_ct_over_mu};
-pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
-pub use line_load::LineLoad;
-pub use moment::PointMoment;
-pub use point::PointForce;
-pub use spec::{
-    AddedMassSpec, BuoyancySpec, DragLaw, DragSpec, GravitySpec, LineLoadSpec, PointForceSpec,
-    PointMomentSpec, SpringSpec,
+pub use drag::{
+    Drag, DragLaw, DragSpec, NormalLaw, PerLength, TangentialLaw, choo_casarella_cn,
+    choo_casarella_ct_over_mu,
 };
-pub use spring::Spring;
+pub use drag_coefficient::DragCoefficientSpec;
+pub use gravity::GravitySpec;
+pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
+pub use line_load::{LineLoad, LineLoadSpec};
+pub use moment::{PointMoment, PointMomentSpec};
+pub use point::{PointForce, PointForceSpec};
+pub use spring::{Spring, SpringSpec};
 pub use surface::{Surface, Wet};
 pub use time::{TimeFunction, TimeTable};
 pub use tip::{BluntEnd, EndDrag, FeedingEnd, TipLaw, at_tip};

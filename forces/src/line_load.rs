@@ -4,6 +4,9 @@ use crate::drag::PerLength;
 use crate::time::TimeFunction;
 use ropewalk_core::error::finite;
 use ropewalk_core::{BuildError, Gives, Law, Load, Real, Station, V3, dot, scaled};
+use ropewalk_scene::{Builder, ForceSpec, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A force per length that keeps its direction in space, times a function of time.
 ///
@@ -14,7 +17,7 @@ pub struct LineLoad {
     pub force: V3<f64>,
     /// Which length it is per.
     pub per: PerLength,
-    /// Factor that changes with time.
+    /// Factor as a function of time.
     pub time: TimeFunction,
 }
 
@@ -67,5 +70,33 @@ impl Law for LineLoad {
                 }
             }
         }
+    }
+}
+
+/// A distributed force in a constant direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineLoadSpec {
+    /// Force per length [N/m].
+    #[serde(deserialize_with = "quantity::vec3::force_per_length")]
+    pub force: V3<f64>,
+    /// Whether it acts per stretched length instead of unstretched length.
+    #[serde(default)]
+    pub stretched: bool,
+    /// Factor as a function of time.
+    #[serde(default)]
+    pub time: TimeFunction,
+    /// Cables it acts on. Default: all.
+    #[serde(default)]
+    pub on: Vec<String>,
+}
+register_spec!(Force, "line_load", LineLoadSpec);
+
+#[typetag::serde(name = "line_load")]
+impl ForceSpec for LineLoadSpec {
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        finite("force", &self.force)?;
+        let per = if self.stretched { PerLength::Stretched } else { PerLength::Unstretched };
+        b.load(&self.on, LineLoad::new(self.force, per, self.time.clone())?)
     }
 }

@@ -6,8 +6,11 @@ use ropewalk_core::error::finite;
 use ropewalk_core::held::{cross, three};
 use ropewalk_core::rotation::{matrix, skew, transposed_times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot,
+    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, Timed, V3, dot,
 };
+use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// What a moment acts on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +32,7 @@ pub struct PointMoment {
     pub label: String,
     /// Moment [N m].
     pub moment: V3<f64>,
-    /// Factor that changes with time.
+    /// Factor as a function of time.
     pub time: TimeFunction,
     on: On,
 }
@@ -114,12 +117,6 @@ impl Term for PointMoment {
     fn is_load(&self) -> bool {
         true
     }
-    fn timed(&self) -> bool {
-        self.time.changes()
-    }
-    fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        Some(self.time.reach(t, h))
-    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let (m, force) = self.now(at);
         for i in 0..3 {
@@ -144,5 +141,51 @@ impl Term for PointMoment {
     fn power(&self, at: &At<'_>) -> Power {
         let (_, force) = self.now(at);
         Power { supplied: dot(&force, &three(at.v, self.first())), ..Power::default() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if self.time.changes() { Some(self) } else { None }
+    }
+}
+
+impl Timed for PointMoment {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(self.time.reach(t, h))
+    }
+}
+
+/// A moment on a rigid body or a cable, in space or in the axes of the body. A component along a cable has no effect:
+/// cables have no torsion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointMomentSpec {
+    /// The marker on which it acts.
+    pub marker: MarkerRef,
+    /// Moment [N m].
+    #[serde(deserialize_with = "quantity::vec3::moment")]
+    pub moment: V3<f64>,
+    /// Whether `moment` is given in the axes of the rigid body and turns with it.
+    #[serde(default)]
+    pub local: bool,
+    /// Factor as a function of time.
+    #[serde(default)]
+    pub time: TimeFunction,
+}
+register_spec!(Force, "point_moment", PointMomentSpec);
+
+#[typetag::serde(name = "point_moment")]
+impl ForceSpec for PointMomentSpec {
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let marker = b.marker("marker", &self.marker)?;
+        let Some(node) = marker.on() else {
+            return Err(BuildError::at("marker", "a moment needs a marker on a rigid body or a cable"));
+        };
+        let label = format!("moment at {}", self.marker);
+        let make = if self.local { PointMoment::on_body } else { PointMoment::new };
+        let term = make(label, b.nodes(), node, self.moment, self.time.clone())?;
+        b.term(Box::new(term));
+        Ok(())
     }
 }

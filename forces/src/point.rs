@@ -5,8 +5,11 @@ use ropewalk_core::error::{finite, need};
 use ropewalk_core::held::{Held, Pull, cross, delta, dofs, find, pull, three};
 use ropewalk_core::rotation::{matrix, product, skew, times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, V3, dot,
+    Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, Timed, V3, dot,
 };
+use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// How a point force is directed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +29,7 @@ enum Aim {
 pub struct PointForce {
     /// A name, such as `tip load`.
     pub label: String,
-    /// Factor that changes with time.
+    /// Factor as a function of time.
     pub time: TimeFunction,
     aim: Aim,
     ends: [Held; 2],
@@ -158,12 +161,6 @@ impl Term for PointForce {
     fn is_load(&self) -> bool {
         true
     }
-    fn timed(&self) -> bool {
-        self.time.changes()
-    }
-    fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        Some(self.time.reach(t, h))
-    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let f = self.force(at);
         let w = out.weights().q * self.time.at(at.t);
@@ -196,5 +193,68 @@ impl Term for PointForce {
     }
     fn power(&self, at: &At<'_>) -> Power {
         Power { supplied: dot(&self.force(at), &self.ends[1].velocity(at)), ..Power::default() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if self.time.changes() { Some(self) } else { None }
+    }
+}
+
+impl Timed for PointForce {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(self.time.reach(t, h))
+    }
+}
+
+/// A force at a marker: in a constant direction, in the axes of a rigid body, or along a cable.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointForceSpec {
+    /// The marker on which it acts.
+    pub marker: MarkerRef,
+    /// Force in space [N].
+    #[serde(default, deserialize_with = "quantity::vec3::force")]
+    pub force: V3<f64>,
+    /// Whether `force` is given in the axes of the rigid body and turns with it.
+    #[serde(default)]
+    pub local: bool,
+    /// Follower force along the cable, towards its end [N], instead of `force`. It turns with the cable.
+    #[serde(default, deserialize_with = "quantity::optional::force")]
+    pub follower: Option<f64>,
+    /// Factor as a function of time.
+    #[serde(default)]
+    pub time: TimeFunction,
+}
+register_spec!(Force, "point_force", PointForceSpec);
+
+impl PointForceSpec {
+    /// A force in space.
+    pub fn new(marker: impl Into<MarkerRef>, force: V3<f64>, time: TimeFunction) -> Self {
+        PointForceSpec { marker: marker.into(), force, local: false, follower: None, time }
+    }
+}
+
+#[typetag::serde(name = "point_force")]
+impl ForceSpec for PointForceSpec {
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let marker = b.marker("marker", &self.marker)?;
+        let label = format!("force at {}", self.marker);
+        let term = match (self.follower, marker.on()) {
+            (None, _) if self.local => {
+                PointForce::on_body(label, b.nodes(), &marker, self.force, self.time.clone())?
+            }
+            (None, _) => PointForce::dead(label, b.nodes(), &marker, self.force, self.time.clone())?,
+            (Some(_), _) if self.force != [0.0; 3] => {
+                return Err(BuildError::at("follower", "give `force` or `follower`, not both"));
+            }
+            (Some(f), Some(node)) => PointForce::follower(label, b.nodes(), node, f, self.time.clone())?,
+            (Some(_), None) => {
+                return Err(BuildError::at("marker", "a follower force needs a marker on a cable"));
+            }
+        };
+        b.term(Box::new(term));
+        Ok(())
     }
 }

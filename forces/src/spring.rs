@@ -2,7 +2,12 @@
 
 use ropewalk_core::error::{need, not_negative};
 use ropewalk_core::held::{Held, Pull as Pair, delta, dofs, pull};
-use ropewalk_core::{Assembly, At, BuildError, Column, Energy, Marker, Node, Pattern, Power, Term, V3, dot};
+use ropewalk_core::{
+    Assembly, At, BuildError, Column, Energy, Marker, Node, Pattern, Power, Shows, Term, V3, dot,
+};
+use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A spring with a damper along the line between two markers: `F = k (l - l0) + c dl/dt`, a pull if positive.
 ///
@@ -125,10 +130,61 @@ impl Term for Spring {
         let p = self.pull(at);
         Power { dissipated: (p.force - p.elastic) * p.rate, ..Power::default() }
     }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
+}
+
+impl Shows for Spring {
     fn columns(&self) -> Vec<Column> {
         vec![Column::new("tension", "N")]
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
         out.push(self.force(at));
+    }
+}
+
+/// A spring and damper between two markers, along the line between them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpringSpec {
+    /// Name.
+    pub name: String,
+    /// One end.
+    pub marker: MarkerRef,
+    /// The other end: a marker or a point in space.
+    pub to: MarkerRef,
+    /// Stiffness [N/m].
+    #[serde(deserialize_with = "quantity::spring_stiffness")]
+    pub stiffness: f64,
+    /// Damping [N s/m].
+    #[serde(default, deserialize_with = "quantity::damping")]
+    pub damping: f64,
+    /// Length without force [m]. Default: the initial length.
+    #[serde(default, deserialize_with = "quantity::optional::length")]
+    pub length: Option<f64>,
+    /// Whether it can only pull.
+    #[serde(default)]
+    pub tension_only: bool,
+}
+register_spec!(Force, "spring", SpringSpec);
+
+#[typetag::serde(name = "spring")]
+impl ForceSpec for SpringSpec {
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker, &self.to]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        not_negative("stiffness", self.stiffness)?;
+        not_negative("damping", self.damping)?;
+        let ends = [b.marker("marker", &self.marker)?, b.marker("to", &self.to)?];
+        let [a, c] = [b.place(&ends[0]).x, b.place(&ends[1]).x];
+        let start = (0..3).map(|i| (c[i] - a[i]).powi(2)).sum::<f64>().sqrt();
+        let length = not_negative("length", self.length.unwrap_or(start))?;
+        let mut spring = Spring::new(&self.name, b.nodes(), ends, self.stiffness, length)?;
+        spring.damping = self.damping;
+        spring.tension_only = self.tension_only;
+        b.term(Box::new(spring));
+        Ok(())
     }
 }

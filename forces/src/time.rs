@@ -68,7 +68,7 @@ pub struct TimeTable {
     pub t: Vec<f64>,
     /// Value at each time.
     pub value: Vec<f64>,
-    /// How the values are joined.
+    /// Interpolation of the values.
     #[serde(default)]
     pub join: Join,
     /// The curve through them, and what steps must not leap over of it; made when it is first asked for.

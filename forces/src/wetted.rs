@@ -125,7 +125,7 @@ impl<L: Law> Law for Wetted<L> {
         self.share(at).0 * self.law.potential(t, at)
     }
 
-    fn coefficient(&self, at: &Station<f64>) -> Option<f64> {
-        self.law.coefficient(at).filter(|_| self.share(at).0 > 0.5)
+    fn local(&self, quantity: &str, at: &Station<f64>) -> Option<f64> {
+        self.law.local(quantity, at).filter(|_| self.share(at).0 > 0.5)
     }
 }

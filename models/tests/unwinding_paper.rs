@@ -43,7 +43,7 @@ fn number(case: &Value, key: &str) -> f64 {
 /// The problem of a reference case.
 fn problem(case: &Value, segments: usize) -> Unwinding {
     let f = |key: &str| number(case, key);
-    let cable = Cable { mass: f("m"), diameter: f("d"), bending: f("EI"), curvature_limit: 1e4 };
+    let cable = Cable { mass: f("m"), diameter: f("d"), ei: f("EI"), curvature_limit: 1e4 };
     let climb = case["params"]["tL"][2].as_f64().unwrap_or(0.0).asin();
     let ring = Ring { radius: f("R"), height: f("h"), climb, inner: true };
     let rule = Rule::Tension(Pull::constant(f("T0")));
@@ -80,7 +80,7 @@ fn turned(case: &Value, p: &Unwinding, turns: f64, per_turn: usize, damping: f64
     let begin = start.x.clone();
     let shapes = (1..=8).map(|k| k as f64 * turns * turn / 8.0).collect();
     let plan = Plan { t_end: turns * turn, every: turn / 20.0, shapes };
-    let stepping = Stepping { damping, ..Stepping::new(turn / per_turn as f64) };
+    let stepping = Stepping { numerical_damping: damping, ..Stepping::new(turn / per_turn as f64) };
     let history = p.run(start, stepping, &plan).unwrap();
     let mut off = 0.0_f64;
     for shape in &history.shapes {
@@ -258,7 +258,7 @@ fn a_stiff_balloon_keeps_its_tension_on_a_fine_mesh() {
 
 /// A cable that is drawn from an inner package, from rest.
 fn launch(speed: f64, height: f64, segments: usize) -> Unwinding {
-    let cable = Cable { mass: 1e-3, diameter: 0.9e-3, bending: 0.0, curvature_limit: 200.0 };
+    let cable = Cable { mass: 1e-3, diameter: 0.9e-3, ei: 0.0, curvature_limit: 200.0 };
     let spec = PackageSpec { origin: [0.0, 0.0, height], ..PackageSpec::new(0.06, 0.2, 0.9e-3) };
     let package = Arc::new(Package::new(&spec).unwrap());
     let draw = Arc::new(Straight::new([1.0, 0.0, 0.0], speed, 0.0, 0.1).unwrap());
@@ -323,12 +323,12 @@ fn the_mesh_converges_from_rest() {
 #[test]
 fn a_cable_that_is_held_tangent_starts_from_rest() {
     let mut p = launch(5.0 * KNOT, 0.1, 40);
-    p.cable.bending = 5e-5;
+    p.cable.ei = 5e-5;
     p.lift_off = LiftOff::Tangent;
     let rest = p.steady(0.0, 0.05, 0.0).unwrap();
     let start = p.start_steady(&rest).unwrap();
     let plan = Plan { t_end: 0.2, every: 0.01, shapes: vec![0.1, 0.2] };
-    let h = p.run(start, Stepping { damping: 0.05, ..Stepping::new(2e-4) }, &plan).unwrap();
+    let h = p.run(start, Stepping { numerical_damping: 0.05, ..Stepping::new(2e-4) }, &plan).unwrap();
     assert!(h.stopped.is_none() && h.shapes.len() == 2, "{:?}", h.stopped);
     let last = h.rows[h.rows.len() - 1];
     let steady = p.steady(5.0 * KNOT, last.tension, last.peeled).unwrap();
@@ -344,7 +344,7 @@ fn a_guided_balloon_keeps_its_first_integral() {
         let mut p = problem(&case, n);
         p.through = Eyelet::Guided([0.0, 0.0, 1.0]);
         let b = p.steady(15.0 * KNOT, 0.5, 0.0).unwrap();
-        let (shape, bending) = (&b.shape, p.cable.bending);
+        let (shape, bending) = (&b.shape, p.cable.ei);
         // along the axis in the eyelet: the first segment turns off it by half of its curvature
         let angle = 0.5 * shape.length / n as f64 * shape.curvature[0];
         assert!(shape.curvature[0] > 5.0);
@@ -378,12 +378,12 @@ fn a_cable_that_sticks_peels_at_its_energy() {
             (2.0 * (x[39][i] - x[40][i] + ell * clamp[i]) / (ell * ell) - wound).powi(2)
         })
         .sum();
-    let energy = 0.5 * p.cable.bending * jump;
+    let energy = 0.5 * p.cable.ei * jump;
     p.rule = Rule::Peel(energy);
     let turn = TAU / number(&case, "Om");
     let plan = Plan { t_end: turn, every: 0.05 * turn, shapes: vec![] };
     let start = p.start_steady(&balloon).unwrap();
-    let h = p.run(start, Stepping { damping: 0.05, ..Stepping::new(turn / 200.0) }, &plan).unwrap();
+    let h = p.run(start, Stepping { numerical_damping: 0.05, ..Stepping::new(turn / 200.0) }, &plan).unwrap();
     assert!(h.stopped.is_none(), "{:?}", h.stopped);
     let last = h.rows[h.rows.len() - 1];
     assert!((last.length / balloon.shape.length - 1.0).abs() < 1e-3, "{}", last.length);
@@ -454,7 +454,7 @@ fn bad_data_are_refused_with_a_remedy() {
         let e = p.start(points, 0.0, 0.0).unwrap_err();
         assert!(e.message.contains(says), "{e}");
     };
-    refused(&Unwinding { segments: 3, ..good.clone() }, &line, "give 6 at least");
+    refused(&Unwinding { elements: 3, ..good.clone() }, &line, "give 6 at least");
     refused(&Unwinding { lift_off: LiftOff::Tangent, ..good.clone() }, &line, "bending stiffness");
     refused(&Unwinding { rule: Rule::Peel(0.1), ..good.clone() }, &line, "peeling needs");
     refused(&Unwinding { rule: Rule::Length, ..good.clone() }, &line, "slack or curved");

@@ -23,9 +23,11 @@
 //! of [`list`] a `Vec<f64>`, whose entries each are a number or a string; [`points`] reads a list of points. Not-a-number and infinities are refused.
 //! Writing stays plain: the `f64` in SI.
 
+mod schema;
 mod unit;
 mod written;
 
+pub use schema::{TextsWithUnits, unit_of};
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, SeqAccess, Visitor};
 use std::fmt;
 pub use unit::Dimension;

@@ -89,6 +89,15 @@ pub enum OutputError {
         axis: &'static str,
     },
 
+    /// A field record whose parts don't go together.
+    #[error("the field record of '{part}' has a hole: {message}")]
+    Field {
+        /// The part, or "times".
+        part: String,
+        /// What is wrong with it.
+        message: String,
+    },
+
     /// The drawing library failed.
     #[error("a plot could not be drawn: {message}")]
     Draw {

@@ -130,6 +130,22 @@ impl RunFolder {
         Ok(plots.join(format!("{}.svg", file_name(name))))
     }
 
+    /// Draws `plots/<name>.svg` and tells whether it is there. A picture that can't be drawn is no reason to fail: `warn`
+    /// is told. One with nothing to show is left out.
+    pub fn draw(
+        &self,
+        name: &str,
+        write: impl FnOnce(&Path) -> Result<(), OutputError>,
+        warn: &mut dyn FnMut(&str),
+    ) -> bool {
+        match self.plot_file(name).and_then(|path| write(&path)) {
+            Ok(()) => return true,
+            Err(OutputError::EmptyPlot { .. } | OutputError::LogAxis { .. }) => {}
+            Err(e) => warn(&e.to_string()),
+        }
+        false
+    }
+
     /// `tables/<name>.csv`; the folder is made if needed.
     ///
     /// # Errors

@@ -1,30 +1,36 @@
 //! What a run leaves behind, and what it shows while it computes.
 //!
 //! - [`RunFolder`]: the folder of a run; nothing in it is ever overwritten by a later run.
-//! - [`Table`], [`TableWriter`]: time histories, as CSV.
+//! - [`Table`], [`TableWriter`]: time histories, as CSV; [`Csv`]: other tables; [`Sheet`]: reports for the terminal.
 //! - [`LinePlot`], [`Panels`], [`BarPlot`], [`ShapePlot`]: SVG pictures that need no fonts and no display.
-//! - [`Progress`], [`SweepProgress`], [`Interrupt`], [`Stopwatch`]: the progress bars, Ctrl-C, and CPU time.
+//! - [`Page`]: all of a run as one page for the browser, with its motion in space.
+//! - [`FieldRecord`]: what moved; [`vtk`] writes it for ParaView.
+//! - [`Progress`], [`SweepProgress`], [`Watch`], [`Interrupt`], [`Stopwatch`]: the progress bars, Ctrl-C and deadlines, CPU
+//!   time.
 
-mod columns;
 mod error;
+mod field;
 mod folder;
 mod interrupt;
 mod number;
+mod page;
 pub mod plot;
 mod progress;
+mod sheet;
 mod stopwatch;
 mod table;
+pub mod vtk;
+mod watch;
 
-pub use columns::in_columns;
 pub use error::OutputError;
-pub use folder::write_durable;
-pub use folder::{RUNS, cannot_create, plain, write_json};
-pub use folder::{RunFolder, write_atomic};
+pub use field::{BodyRecord, FieldRecord, LineRecord, LineSnapshot, Mesh, Pose, Quantity, Shape, Solid};
+pub use folder::{RUNS, RunFolder, cannot_create, plain, write_atomic, write_durable, write_json};
 pub use interrupt::Interrupt;
 pub use number::{number, rough};
+pub use page::{Entry, Event, Page, Panel};
 pub use plot::{Bar, BarPlot, LinePlot, Mark, Panels, Plane, Series, ShapePlot, Snapshot};
-pub use progress::new_bar;
-pub use progress::{Progress, ProgressMode, SweepProgress};
+pub use progress::{Progress, ProgressMode, SweepProgress, new_bar};
+pub use sheet::{Sheet, TERMINAL};
 pub use stopwatch::{Elapsed, Stopwatch};
-pub use table::{Column, Table, TableWriter};
-pub use table::{cells, push_cell, push_number};
+pub use table::{Column, Csv, Table, TableWriter, cells, push_number};
+pub use watch::Watch;

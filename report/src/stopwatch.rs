@@ -1,4 +1,4 @@
-//! How long something takes, on the clock and in CPU time of its thread.
+//! How long something takes, in wall time and in CPU time of its thread.
 
 use std::time::Instant;
 
@@ -7,13 +7,20 @@ use cpu_time::ThreadTime;
 /// How long something took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Elapsed {
-    /// Time on the clock, in seconds.
+    /// Wall time, in seconds.
     pub wall_s: f64,
     /// CPU time of the thread, in seconds; NaN where the system can't tell.
     pub cpu_s: f64,
 }
 
-/// Measures the clock and the CPU time of its thread from its start.
+impl Elapsed {
+    /// CPU time, or wall time where the system can't tell [s].
+    pub fn cpu_or_wall_s(&self) -> f64 {
+        if self.cpu_s.is_finite() { self.cpu_s } else { self.wall_s }
+    }
+}
+
+/// Measures wall time and the CPU time of its thread from its start.
 ///
 /// A run computes on one thread, so this is the CPU time of the run, whatever else the process does.
 #[derive(Debug, Clone, Copy)]

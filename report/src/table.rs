@@ -107,8 +107,7 @@ impl Table {
     /// # Errors
     /// [`OutputError::RowWidth`] if the columns differ in length.
     pub fn to_csv(&self) -> Result<String, OutputError> {
-        let mut text = String::new();
-        push_header(&mut text, &self.columns);
+        let mut text = Csv::new(self.columns.iter().map(Column::heading)).text();
         for column in &self.columns {
             check_width(self.rows(), column.values.len())?;
         }
@@ -244,18 +243,66 @@ fn check_width(expected: usize, found: usize) -> Result<(), OutputError> {
     if expected == found { Ok(()) } else { Err(OutputError::RowWidth { expected, found }) }
 }
 
-fn push_header(text: &mut String, columns: &[Column]) {
-    for (i, column) in columns.iter().enumerate() {
-        if i > 0 {
-            text.push(',');
-        }
-        push_cell(text, &column.heading());
+/// CSV text of words and numbers, cell by cell.
+///
+/// ```
+/// let mut csv = ropewalk_report::Csv::new(["what", "x [m]"]);
+/// csv.cell("a, b").number(0.5).end();
+/// assert_eq!(csv.text(), "what,x [m]\n\"a, b\",0.5\n");
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Csv {
+    text: String,
+    is_behind_cell: bool,
+}
+
+impl Csv {
+    /// A table with these headings and no rows yet.
+    pub fn new(headings: impl IntoIterator<Item = impl AsRef<str>>) -> Self {
+        let mut csv = Self::default();
+        headings.into_iter().for_each(|heading| _ = csv.cell(heading));
+        csv.end();
+        csv
     }
-    text.push('\n');
+    /// A cell with a text.
+    pub fn cell(&mut self, text: impl AsRef<str>) -> &mut Self {
+        self.separate();
+        push_cell(&mut self.text, text.as_ref());
+        self
+    }
+    /// A cell with a number, such that it reads back to the same bits.
+    pub fn number(&mut self, x: f64) -> &mut Self {
+        self.separate();
+        push_number(&mut self.text, x);
+        self
+    }
+    /// A cell with a number, or an empty one.
+    pub fn number_or_none(&mut self, x: Option<f64>) -> &mut Self {
+        match x {
+            Some(x) => self.number(x),
+            None => self.cell(""),
+        }
+    }
+    /// Ends the row.
+    pub fn end(&mut self) {
+        self.text.push('\n');
+        self.is_behind_cell = false;
+    }
+    /// The whole table.
+    pub fn text(self) -> String {
+        self.text
+    }
+
+    fn separate(&mut self) {
+        if self.is_behind_cell {
+            self.text.push(',');
+        }
+        self.is_behind_cell = true;
+    }
 }
 
 /// Writes a text between two commas. It stays on one line, so that a row is a line everywhere in the file.
-pub fn push_cell(text: &mut String, cell: &str) {
+fn push_cell(text: &mut String, cell: &str) {
     let cell = cell.replace(['\n', '\r'], " ");
     if cell.contains([',', '"']) {
         text.push('"');

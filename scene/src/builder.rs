@@ -6,8 +6,8 @@ use crate::scene::GRAVITY;
 use crate::water::{Air, Water};
 use ropewalk_core::error::finite;
 use ropewalk_core::{
-    At, BuildError, Constraint, Element, Event, Feed, FieldTerm, Front, Law, Laws, Marker, Mesh, Model,
-    Motion, Node, NodeId, NodeKind, Part, Place, Pool, Spot, Start, Stations, Switches, Term, V3,
+    At, BuildError, Constraint, Element, Event, Feed, FieldTerm, Law, Laws, Marker, Mesh, Model, Motion,
+    MovingBoundary, Node, NodeId, NodeKind, Part, Place, Pool, Spot, Start, Stations, Switches, Term, V3,
     find_redundancy,
 };
 use std::any::{Any, TypeId};
@@ -59,8 +59,8 @@ pub struct Builder {
     pins: HashMap<String, Vec<Spot>>,
     /// Meshes that replace those of the specs, by part.
     meshes: HashMap<String, Mesh>,
-    /// What flows through the ends of cables, by part: at its start, at its end.
-    feeds: HashMap<String, [Option<Feed>; 2]>,
+    /// What flows through the ends of parts, at the start and at the end, and the constraint that says so.
+    feeds: HashMap<String, [Option<(Feed, String)>; 2]>,
     water: Option<Water>,
     air: Option<Air>,
     /// What acts on which part already and may do so only once.
@@ -162,20 +162,20 @@ impl Builder {
         Ok(())
     }
 
-    /// Adds a mode: a number of the state that events change, at first 0. Returns its place in
-    /// [`State::modes`](ropewalk_core::State::modes).
-    pub fn mode(&mut self, name: impl Into<String>) -> usize {
-        self.switches.modes.push(name.into());
-        self.start.modes.push(0.0);
-        self.start.modes.len() - 1
+    /// Adds an internal variable: a number of the state that events change, at first 0. Returns its place in
+    /// [`State::internal`](ropewalk_core::State::internal).
+    pub fn internal_variable(&mut self, name: impl Into<String>) -> usize {
+        self.switches.internal.push(name.into());
+        self.start.internal.push(0.0);
+        self.start.internal.len() - 1
     }
 
-    /// Adds modes for what a term remembers, at first all 0. Returns the place of the first in
-    /// [`State::modes`](ropewalk_core::State::modes).
+    /// Adds internal variables for what a term remembers, at first all 0. Returns the place of the first in
+    /// [`State::internal`](ropewalk_core::State::internal).
     pub fn memory(&mut self, name: &str, size: usize) -> usize {
-        let first = self.start.modes.len();
-        self.switches.modes.extend(std::iter::repeat_n(name.to_string(), size));
-        self.start.modes.resize(first + size, 0.0);
+        let first = self.start.internal.len();
+        self.switches.internal.extend(std::iter::repeat_n(name.to_string(), size));
+        self.start.internal.resize(first + size, 0.0);
         first
     }
 
@@ -184,19 +184,22 @@ impl Builder {
         self.switches.events.push(Arc::new(event));
     }
 
-    /// Makes a constraint let go once a mode isn't zero. Returns the number of the constraint.
+    /// Makes a constraint let go once an internal variable isn't zero. Returns the number of the constraint.
     ///
     /// # Errors
     /// There is no constraint of this name before, or it can let go already.
-    pub fn release(&mut self, constraint: &str, mode: usize) -> Result<usize, BuildError> {
+    pub fn release(&mut self, constraint: &str, variable: usize) -> Result<usize, BuildError> {
         let Some(c) = self.constraints.iter().position(|c| c.name() == constraint) else {
             let names: Vec<String> = self.constraints.iter().map(|c| format!("`{}`", c.name())).collect();
             let names = if names.is_empty() { "none".into() } else { names.join(", ") };
             let message = format!("there is no constraint `{constraint}` above; those above are {names}");
-            return Err(BuildError::at("of", message));
+            return Err(BuildError::at("constraint", message));
         };
-        if self.switches.released.insert(c, mode).is_some() {
-            return Err(BuildError::at("of", format!("constraint `{constraint}` is to break in two ways")));
+        if self.switches.released.insert(c, variable).is_some() {
+            return Err(BuildError::at(
+                "constraint",
+                format!("constraint `{constraint}` is to break in two ways"),
+            ));
         }
         Ok(c)
     }
@@ -285,45 +288,48 @@ impl Builder {
         pins
     }
 
-    /// Notes that material flows through an end of a cable.
-    pub(crate) fn feed(&mut self, marker: &MarkerRef, feed: Feed) -> Result<(), BuildError> {
+    /// Notes that material flows through an end of a part, by a constraint of this name.
+    pub(crate) fn feed(&mut self, name: &str, marker: &MarkerRef, feed: Feed) -> Result<(), BuildError> {
         let (part, end) = end_of(marker)?;
-        match self.feeds.entry(part.to_string()).or_default()[end].replace(feed) {
+        match self.feeds.entry(part.to_string()).or_default()[end].replace((feed, name.to_string())) {
             None => Ok(()),
-            Some(_) => Err(BuildError::at(
-                "marker",
-                format!(
-                    "two constraints feed at {marker}, but one of `winch`, `eyelet` and `lift_off` with `peel` does"
-                ),
-            )),
+            Some((_, other)) => {
+                let message =
+                    format!("two constraints pay out at {marker}, `{other}` and `{name}`: leave out one");
+                Err(BuildError::at("marker", message))
+            }
         }
     }
 
-    /// What flows through the start and the end of a cable.
+    /// What flows through the start and the end of a part.
     pub fn feeding(&self, part: &str) -> [Option<Feed>; 2] {
-        self.feeds.get(part).copied().unwrap_or_default()
+        let ends = self.feeds.get(part);
+        ends.map_or([None; 2], |ends| ends.each_ref().map(|end| end.as_ref().map(|(feed, _)| *feed)))
     }
 
-    /// The front at an end of a cable that feeds.
+    /// The boundary at an end of a part that feeds; `remedy` says what to add where nothing does.
     ///
     /// # Errors
-    /// The marker isn't an end of a cable.
-    pub fn front(&self, marker: &MarkerRef) -> Result<Front, BuildError> {
+    /// The marker isn't an end of a part that material flows through.
+    pub fn boundary(&self, marker: &MarkerRef, remedy: &str) -> Result<MovingBoundary, BuildError> {
         let (name, end) = end_of(marker)?;
         let (_, part) = self.find(name, "marker")?;
-        part.front(end).ok_or_else(|| {
-            let message = match part.kind() {
-                "cable" => format!("no `winch` or `eyelet` feeds at {marker}: add one"),
-                kind => format!("material can flow through the ends of a cable, but `{name}` is a {kind}"),
+        part.boundary(end).ok_or_else(|| {
+            let message = match part.slender() {
+                Some(_) => format!("nothing feeds at {marker}: {remedy}"),
+                None => {
+                    let kind = part.kind();
+                    format!("material can flow through the ends of a cable, but `{name}` is a {kind}")
+                }
             };
             BuildError::at("marker", message)
         })
     }
 
-    /// The cable at an end of which material flows.
+    /// The part at an end of which material flows.
     ///
     /// # Errors
-    /// As for [`Builder::front`].
+    /// As for [`Builder::boundary`].
     pub fn feeding_part(&self, marker: &MarkerRef) -> Result<Arc<dyn Part>, BuildError> {
         Ok(self.find(end_of(marker)?.0, "marker")?.1)
     }
@@ -332,7 +338,9 @@ impl Builder {
     pub fn start_feeding(&mut self, marker: &MarkerRef, rate: f64) -> Result<(), BuildError> {
         let (name, end) = end_of(marker)?;
         let (_, part) = self.find(name, "marker")?;
-        part.start_feeding(end, rate, &self.start.q, &mut self.start.v);
+        if let Some(line) = part.line() {
+            line.start_feeding(end, rate, &self.start.q, &mut self.start.v);
+        }
         Ok(())
     }
 
@@ -348,7 +356,7 @@ impl Builder {
 
     /// Whether meshes change while the model runs.
     pub(crate) fn changes(&self) -> bool {
-        self.feeds.values().flatten().flatten().any(|f| f.element.is_some())
+        self.feeds.values().flatten().flatten().any(|(feed, _)| feed.element.is_some())
     }
 
     /// Makes a law act on the stations of parts; all parts that have stations if none is named.
@@ -383,7 +391,7 @@ impl Builder {
                     );
                     return Err(BuildError::at("on", message));
                 }
-                let material = law.follows_material() && (0..2).any(|end| part.front(end).is_some());
+                let material = law.follows_material() && (0..2).any(|end| part.boundary(end).is_some());
                 self.laws.entry((k, material)).or_default().push(law);
                 any = true;
             } else if !on.is_empty() {
@@ -399,7 +407,7 @@ impl Builder {
 
     fn least_diameter(&self, stations: &dyn Stations) -> f64 {
         let (q, v) = (&self.start.q, &self.start.v);
-        let at = At { t: 0.0, q, v, a: v, modes: &[], relaxed: None };
+        let at = At { t: 0.0, q, v, a: v, internal: &[], relaxed: None };
         let mut least = f64::INFINITY;
         stations.each(&at, &mut |s| least = least.min(s.diameter));
         least

@@ -20,8 +20,8 @@ mod water;
 pub use builder::{Builder, Numbered};
 pub use current::Current;
 pub use document::{
-    Document, Fault, Format, Key, Kind, Parameter, Place, Span, Table, Value, Varied, did_you_mean, quoted,
-    read_text,
+    Document, Fault, Format, Key, Kind, Migrated, Parameter, Place, Rewrite, Span, Table, Value, Varied,
+    did_you_mean, migrate, quoted, read_text,
 };
 pub use marker::{MarkerRef, split_marker};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};
@@ -29,7 +29,7 @@ pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use scene_file::{Bundled, SceneFile, SceneText};
 pub use spec::{
-    ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecInfo, SpecKind, registered,
+    ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SECTIONS, SpecInfo, SpecKind, registered,
 };
 pub use water::{Air, Level, Water, ball_below};
 

@@ -29,7 +29,7 @@ pub(crate) fn build_all(specs: &[Arc<dyn MotionSpec>]) -> Result<Motions, (usize
     for (k, spec) in specs.iter().enumerate() {
         let find = |name: &String| {
             let there = specs.iter().map(|s| s.name());
-            let missing = || (k, BuildError::at("of", no_motion(name, there)));
+            let missing = || (k, BuildError::at("motions", no_motion(name, there)));
             number.get(name.as_str()).copied().ok_or_else(missing)
         };
         of.push(spec.of().iter().map(find).collect::<Result<_, _>>()?);
@@ -69,7 +69,7 @@ fn circle(
                 "the motions {} are made of each other: take one of them out",
                 names.collect::<Vec<_>>().join(" of ")
             );
-            return (next, BuildError::at("of", message));
+            return (next, BuildError::at("motions", message));
         }
         way.push(next);
     }

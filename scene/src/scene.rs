@@ -12,18 +12,18 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// What is computed.
+/// Type of analysis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Analysis {
-    /// Motion in time.
+    /// Motion as a function of time.
     #[default]
     Dynamics,
-    /// A sequence of equilibria while time runs as the load factor.
+    /// A sequence of equilibria; time is the load factor.
     Statics,
 }
 
-/// What is run and how long.
+/// Analysis, duration and output.
 ///
 /// ```
 /// use ropewalk_scene::Run;
@@ -34,24 +34,24 @@ pub enum Analysis {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Run {
-    /// What is computed.
+    /// Type of analysis.
     pub analysis: Analysis,
-    /// Length of the run [s]; in statics the end of the load factor.
+    /// Duration of the run [s]; in statics the final load factor.
     #[serde(deserialize_with = "ropewalk_quantity::time")]
     pub duration: f64,
-    /// Interval of the history [s]; 0 takes a thousandth of the duration.
+    /// Output interval of the history [s]; 0 means a thousandth of the duration.
     #[serde(deserialize_with = "ropewalk_quantity::time")]
     pub output: f64,
-    /// In statics: the frame that the equilibrium is relative to, such as that of a ship that tows steadily. What is
-    /// held fixed then moves with the frame.
+    /// In statics: the moving frame in which the equilibrium is found, such as that of a ship towing steadily. Fixed
+    /// points move with the frame.
     pub frame: Option<SteadyFrame>,
     /// Start a dynamic run from the equilibrium at t = 0 instead of the configuration as laid.
     pub from_equilibrium: bool,
-    /// Keep account of energy and work at every step.
+    /// Whether energy and work are balanced at every step.
     pub audit: bool,
-    /// Number of snapshots in the pictures of shapes.
+    /// Number of snapshots in the plots of shapes.
     pub snapshots: usize,
-    /// Titles of the pictures of shapes; left out, that of the scene.
+    /// Titles of the plots of shapes. Default: the title of the scene.
     pub shape_titles: ShapeTitles,
     /// Tables of a few columns of the history, each a CSV file of its own.
     pub tables: Vec<TableSpec>,
@@ -84,9 +84,9 @@ pub struct ShapeTitles {
 pub struct TableSpec {
     /// Name of its file, without ending.
     pub name: String,
-    /// Names of its columns in the history; time comes first of its own accord.
+    /// Names of its columns in the history. Time is always the first column.
     pub columns: Vec<String>,
-    /// Time from row to row, a multiple of `output` [s]; left out, every row of the history.
+    /// Interval of the rows, a multiple of `output` [s]. Default: every row of the history.
     #[serde(default, deserialize_with = "ropewalk_quantity::time")]
     pub every: f64,
 }
@@ -179,7 +179,7 @@ pub struct Scene {
     pub records: Vec<Arc<dyn RecordSpec>>,
     /// A problem with equations of its own; then it is the only one, and there are no elements.
     pub processes: Vec<Arc<dyn ProcessSpec>>,
-    /// What is run and how long.
+    /// Analysis, duration and output.
     pub run: Run,
     /// How it is integrated.
     pub solver: Options,
@@ -343,7 +343,7 @@ impl Scene {
         }
         for (k, c) in self.constraints.iter().enumerate() {
             if let Some((marker, feed)) = c.feeds() {
-                b.feed(marker, feed).map_err(of(SpecKind::Constraint, k))?;
+                b.feed(c.name(), marker, feed).map_err(of(SpecKind::Constraint, k))?;
             }
         }
         for (k, e) in self.elements.iter().enumerate() {

@@ -36,6 +36,12 @@ pub struct SceneText {
 }
 
 impl SceneText {
+    /// A text that is no file, or no longer. `name` is what messages and run folders call it; files that the scene names
+    /// are looked for in `folder`, or where the program runs.
+    pub fn new(name: &str, text: String, format: Format, folder: Option<PathBuf>) -> Self {
+        Self { name: name.into(), text, label: name.into(), format, folder }
+    }
+
     /// Finds a scene as [`SceneFile::open`] does.
     pub fn open(scene: &str, bundled: &[Bundled]) -> Result<Self, Fault> {
         let path = Path::new(scene);

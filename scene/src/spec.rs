@@ -6,14 +6,19 @@
 
 use crate::builder::Builder;
 use crate::marker::MarkerRef;
+use crate::scene::Run;
+use crate::water::{Air, Water};
+use ropewalk_core::integrator::Options;
+use ropewalk_core::statics::StaticsOptions;
 use ropewalk_core::{BuildError, Feed, Motion, Record};
+use ropewalk_quantity::TextsWithUnits;
 use std::fmt::Debug;
 use std::sync::Arc;
 
 /// A part of a scene: a cable, a point mass.
 #[typetag::serde]
 pub trait ElementSpec: Debug + Send + Sync {
-    /// Name by which the rest of the scene refers to it.
+    /// Name; the rest of the scene refers to the part by it.
     fn name(&self) -> &str;
     /// Markers of other elements that it holds on to; a cable puts a node where one is.
     fn markers(&self) -> Vec<&MarkerRef> {
@@ -111,10 +116,22 @@ pub struct SpecInfo {
     /// Its name in a scene file.
     pub name: &'static str,
     /// Its fields, types and doc comments.
-    pub schema: fn() -> schemars::Schema,
+    pub schema: MakeSchema,
 }
 
 inventory::collect!(SpecInfo);
+
+/// Makes the schema of a type.
+pub type MakeSchema = fn() -> schemars::Schema;
+
+/// Sections of a scene file that are no lists of parts.
+pub const SECTIONS: [(&str, MakeSchema); 5] = [
+    ("water", TextsWithUnits::schema_for::<Water>),
+    ("air", TextsWithUnits::schema_for::<Air>),
+    ("run", TextsWithUnits::schema_for::<Run>),
+    ("solver", TextsWithUnits::schema_for::<Options>),
+    ("statics", TextsWithUnits::schema_for::<StaticsOptions>),
+];
 
 /// All registered types, by kind and name.
 pub fn registered() -> Vec<&'static SpecInfo> {
@@ -131,7 +148,7 @@ macro_rules! register_spec {
             $crate::SpecInfo {
                 kind: $crate::SpecKind::$kind,
                 name: $name,
-                schema: || $crate::schemars::schema_for!($type),
+                schema: $crate::quantity::TextsWithUnits::schema_for::<$type>,
             }
         }
     };

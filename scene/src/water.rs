@@ -5,7 +5,7 @@ use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::{BuildError, Real};
 use serde::{Deserialize, Serialize};
 
-/// The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
+/// The water around a scene. Drag, buoyancy and added mass need it.
 ///
 /// ```
 /// use ropewalk_scene::Water;
@@ -21,13 +21,13 @@ pub struct Water {
     /// Dynamic viscosity [Pa s].
     #[serde(deserialize_with = "ropewalk_quantity::viscosity")]
     pub viscosity: f64,
-    /// Height of its surface, which is at rest [m]; left out, there is water everywhere.
+    /// Height of its surface, which is flat [m]. Default: water everywhere.
     #[serde(deserialize_with = "ropewalk_quantity::optional::length")]
     pub level: Option<f64>,
-    /// Velocity of the water, the same everywhere [m/s].
+    /// Uniform velocity of the water [m/s].
     #[serde(deserialize_with = "ropewalk_quantity::vec3::speed")]
     pub current: [f64; 3],
-    /// Velocity of the water by height, instead of `current`: piecewise linear between the levels, constant beyond.
+    /// Current profile over height, instead of `current`: piecewise linear, constant beyond the ends.
     pub profile: Vec<Level>,
 }
 
@@ -67,7 +67,7 @@ impl Water {
     }
 }
 
-/// The air above the water, or around a scene without water: only drag looks at it. Left out, there is nothing.
+/// The air above the water, or around a scene without water: only drag looks at it. Default: vacuum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Air {

@@ -1,8 +1,8 @@
 //! `ropewalk atlas ATLAS`
 
-use super::{Exit, complain, say};
+use super::{Exit, error, interrupted, progress, say, warn};
 use ropewalk_models::{Bundled, atlases};
-use ropewalk_report::{Interrupt, ProgressMode};
+use ropewalk_report::Watch;
 pub use ropewalk_studies::Error;
 pub use ropewalk_studies::atlas::{AtlasFile, AtlasOptions, Laid, atlas as make};
 use std::path::PathBuf;
@@ -52,7 +52,8 @@ pub(crate) fn atlas(args: AtlasArgs, bundled: &[Bundled]) -> Result<Exit, Error>
         quick: args.quick,
         jobs: args.jobs,
         overlay: args.overlay,
-        progress: if args.quiet { ProgressMode::Quiet } else { ProgressMode::Auto },
+        progress: progress(args.quiet),
+        watch: Watch::signals(warn),
     };
     let outcome = make(&file, &options, bundled)?;
     if !args.quiet {
@@ -61,15 +62,11 @@ pub(crate) fn atlas(args: AtlasArgs, bundled: &[Bundled]) -> Result<Exit, Error>
     let (runs, complete) = outcome.runs;
     let again = if options.fresh { "without --fresh, the same command" } else { "the same command" };
     Ok(if outcome.interrupted {
-        complain(format!(
-            "stopped by {}: {complete} of {runs} runs are complete, {again} computes the others",
-            Interrupt::cause()
-        ));
-        Exit::Interrupted
+        interrupted(format!("{complete} of {runs} runs are complete, {again} computes the others"))
     } else if outcome.failed > 0 || outcome.broken > 0 {
         let (failed, broken) = (outcome.failed, outcome.broken);
-        complain(format!(
-            "error: {failed} of {runs} runs failed, and {broken} entries could not be made of their results"
+        error(format!(
+            "{failed} of {runs} runs failed, and {broken} entries could not be made of their results"
         ));
         Exit::Solver
     } else {

@@ -1,12 +1,14 @@
 //! `ropewalk bench`
 
 use super::{Exit, say};
+use indicatif::ProgressBar;
 use ropewalk_core::Width;
+use ropewalk_elements::cable::CableModel;
 use ropewalk_report::{OutputError, RunFolder, new_bar, write_atomic};
 use ropewalk_scene::Fault;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::bench::measure::{Meter, VariantMeter, memory};
-pub use ropewalk_studies::bench::{Cost, Links, Pendulum, Report, models, report};
+pub use ropewalk_studies::bench::{Cost, Links, Pendulum, Report, VariantCost, models, report};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -64,68 +66,14 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, Error> {
     let models = models();
     // a stiffness model has fewer numbers than a mesh
     let share = args.seconds / ((3.0 * meshes.len() as f64 + 0.3 * models.len() as f64) * f64::from(ROUNDS));
-    let budget = Duration::from_secs_f64(share);
-    let bar = new_bar(u64::from(ROUNDS) * (3 * meshes.len() + models.len()) as u64);
-    let show = |text: String| {
-        if !args.json {
-            bar.suspend(|| say(text));
-        }
+    let bench = Bench {
+        width,
+        budget: Duration::from_secs_f64(share),
+        bar: new_bar(u64::from(ROUNDS) * (3 * meshes.len() + models.len()) as u64),
+        meshes,
+        is_silent: args.json,
     };
-    show(format!(
-        "ropewalk {} on {}, {} elements at once, one thread; the shortest of many samples\n\
-         full Newton iteration: force, exact tangent, assembly, factors, solution; step: 1 ms, default policy\n",
-        env!("CARGO_PKG_VERSION"),
-        std::env::consts::ARCH,
-        width.lanes()
-    ));
-    bar.set_message("memory");
-    let memory = memory(meshes.last().copied().unwrap_or(0), width)?;
-    let costs = |title: &str, meter: &dyn Fn(usize) -> Result<Meter, Error>| {
-        let mut meters = meshes.iter().map(|n| meter(*n)).collect::<Result<Vec<_>, _>>()?;
-        for _ in 0..ROUNDS {
-            for (meter, n) in meters.iter_mut().zip(&meshes) {
-                bar.set_message(format!("{title}: {n} elements"));
-                meter.round(budget)?;
-                bar.inc(1);
-            }
-        }
-        let costs: Vec<Cost> = meters.iter().map(Meter::cost).collect();
-        show(report::costs(title, &costs));
-        Ok::<_, Error>(costs)
-    };
-    let dry = costs("pendulum in air, gravity", &|n| Meter::new(&Pendulum::new(n), width))?;
-    let water = costs("pendulum in water, gravity, buoyancy, drag, added mass", &|n| {
-        Meter::new(&Pendulum::new(n).in_water(), width)
-    })?;
-    let links = costs("chain of rigid links, gravity", &|links| Meter::links(&Links { links }, width))?;
-
-    let mesh = meshes.iter().copied().filter(|n| *n <= COMPARED).max().unwrap_or(COMPARED);
-    let meter = |m| VariantMeter::new(m, mesh, width);
-    let mut meters = models.into_iter().map(meter).collect::<Result<Vec<_>, _>>()?;
-    bar.set_message("stiffness models");
-    for _ in 0..ROUNDS {
-        for meter in &mut meters {
-            meter.round(budget.mul_f64(0.3))?;
-            bar.inc(1);
-        }
-    }
-    let variants: Vec<_> = meters.iter().map(VariantMeter::cost).collect();
-    show(report::variants(&variants));
-    if let Some(memory) = &memory {
-        show(memory.line());
-    }
-    bar.finish_and_clear();
-
-    let report = Report {
-        ropewalk: env!("CARGO_PKG_VERSION"),
-        architecture: std::env::consts::ARCH,
-        lanes: width.lanes(),
-        dry,
-        water,
-        links,
-        variants,
-        memory,
-    };
+    let report = bench.run(models)?;
     let json = serde_json::to_string_pretty(&report).map_err(|e| Fault::new(e.to_string()))?;
     if args.json {
         say(&json);
@@ -144,6 +92,88 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, Error> {
         }
     }
     Ok(Exit::Done)
+}
+
+/// Everything that is measured, in rounds.
+struct Bench {
+    meshes: Vec<usize>,
+    width: Width,
+    /// Time for one mesh in one round.
+    budget: Duration,
+    bar: ProgressBar,
+    /// Whether tables are left out.
+    is_silent: bool,
+}
+
+impl Bench {
+    fn run(&self, models: Vec<CableModel>) -> Result<Report, Error> {
+        let width = self.width;
+        self.show(format!(
+            "ropewalk {} on {}, {} elements at once, one thread; the shortest of many samples\n\
+             full Newton iteration: force, exact tangent, assembly, factors, solution; step: 1 ms, default policy\n",
+            env!("CARGO_PKG_VERSION"),
+            std::env::consts::ARCH,
+            width.lanes()
+        ));
+        self.bar.set_message("memory");
+        let memory = memory(self.meshes.last().copied().unwrap_or(0), width)?;
+        let pendulum = |n| Meter::new(&Pendulum::new(n), width);
+        let in_water = |n| Meter::new(&Pendulum::new(n).in_water(), width);
+        let report = Report {
+            ropewalk: env!("CARGO_PKG_VERSION"),
+            architecture: std::env::consts::ARCH,
+            lanes: width.lanes(),
+            dry: self.costs("pendulum in air, gravity", &pendulum)?,
+            water: self.costs("pendulum in water, gravity, buoyancy, drag, added mass", &in_water)?,
+            links: self
+                .costs("chain of rigid links, gravity", &|links| Meter::links(&Links { links }, width))?,
+            variants: self.variants(models)?,
+            memory,
+        };
+        if let Some(memory) = &report.memory {
+            self.show(memory.line());
+        }
+        self.bar.finish_and_clear();
+        Ok(report)
+    }
+
+    fn show(&self, text: String) {
+        if !self.is_silent {
+            self.bar.suspend(|| say(text));
+        }
+    }
+
+    /// One problem on all meshes.
+    fn costs(&self, title: &str, meter: &dyn Fn(usize) -> Result<Meter, Error>) -> Result<Vec<Cost>, Error> {
+        let mut meters = self.meshes.iter().map(|n| meter(*n)).collect::<Result<Vec<_>, _>>()?;
+        for _ in 0..ROUNDS {
+            for (meter, n) in meters.iter_mut().zip(&self.meshes) {
+                self.bar.set_message(format!("{title}: {n} elements"));
+                meter.round(self.budget)?;
+                self.bar.inc(1);
+            }
+        }
+        let costs: Vec<Cost> = meters.iter().map(Meter::cost).collect();
+        self.show(report::costs(title, &costs));
+        Ok(costs)
+    }
+
+    /// The stiffness models on one mesh.
+    fn variants(&self, models: Vec<CableModel>) -> Result<Vec<VariantCost>, Error> {
+        let mesh = self.meshes.iter().copied().filter(|n| *n <= COMPARED).max().unwrap_or(COMPARED);
+        let meters = models.into_iter().map(|m| VariantMeter::new(m, mesh, self.width));
+        let mut meters = meters.collect::<Result<Vec<_>, _>>()?;
+        self.bar.set_message("stiffness models");
+        for _ in 0..ROUNDS {
+            for meter in &mut meters {
+                meter.round(self.budget.mul_f64(0.3))?;
+                self.bar.inc(1);
+            }
+        }
+        let variants: Vec<_> = meters.iter().map(VariantMeter::cost).collect();
+        self.show(report::variants(&variants));
+        Ok(variants)
+    }
 }
 
 /// The width asked for. One that the processor can't do would silently be measured as another.

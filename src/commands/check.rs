@@ -1,6 +1,6 @@
 //! `ropewalk check SCENE`
 
-use super::{Exit, complain, say};
+use super::{Exit, say, warn};
 use crate::cli::SceneArgs;
 use ropewalk_models::Bundled;
 use ropewalk_scene::SceneFile;
@@ -12,7 +12,7 @@ pub(crate) fn check(args: &SceneArgs, bundled: &[Bundled]) -> Result<Exit, Error
     let model = file.build()?;
     let manifest = Manifest::new(&file, &model)?;
     for name in file.document().unused_parameters() {
-        complain(format!("warning: parameter `{name}` is not used by the scene"));
+        warn(&format!("parameter `{name}` is not used by the scene"));
     }
     say(manifest);
     Ok(Exit::Done)

@@ -1,9 +1,9 @@
 //! `ropewalk cost SCENE --of RECORD`
 
-use super::{Exit, complain, say};
+use super::{Exit, error, interrupted, progress, say, warn};
 use crate::cli::SceneArgs;
 use ropewalk_models::Bundled;
-use ropewalk_report::{Interrupt, ProgressMode};
+use ropewalk_report::Watch;
 use ropewalk_scene::quantity;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::cost::{CostOptions, cost as find};
@@ -18,7 +18,7 @@ pub(crate) struct CostArgs {
     /// The record, or one of its columns; with @TIME at that time only
     #[arg(long, value_name = "RECORD[@TIME]")]
     of: String,
-    /// Time on the clock after which no more is tried, half of it for the reference
+    /// Wall time after which no more is tried, half of it for the reference
     #[arg(long, value_name = "TIME", default_value = "10 min", value_parser = time)]
     budget: Duration,
     /// Folder for the results: new, empty, or that of the same study [default: runs/SCENE-cost, numbered]
@@ -49,7 +49,8 @@ pub(crate) fn cost(args: CostArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
         out: args.out,
         fresh: args.fresh,
         budget: args.budget,
-        progress: if args.quiet { ProgressMode::Quiet } else { ProgressMode::Auto },
+        progress: progress(args.quiet),
+        watch: Watch::signals(warn),
     };
     let outcome = find(&args.scene.scene, bundled, &options)?;
     if !args.quiet && !outcome.report.is_empty() {
@@ -57,15 +58,9 @@ pub(crate) fn cost(args: CostArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     }
     Ok(if outcome.interrupted {
         let folder = outcome.folder.display();
-        complain(format!(
-            "stopped by {}: what was computed is in {folder}, the same command goes on with it",
-            Interrupt::cause()
-        ));
-        Exit::Interrupted
-    } else if outcome.doubt.is_nan() {
-        complain(
-            "error: no reference was found in the time given\n  = help: raise --budget, the same command goes on",
-        );
+        interrupted(format!("what was computed is in {folder}, the same command goes on with it"))
+    } else if outcome.uncertainty.is_nan() {
+        error("no reference was found in the time given\n  = help: raise --budget, the same command goes on");
         Exit::Solver
     } else {
         Exit::Done

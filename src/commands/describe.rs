@@ -1,50 +1,41 @@
 //! `ropewalk describe SCENE|TYPE`
 
 use super::{Exit, first_line, say, schema, wrapped};
-use ropewalk_core::integrator::Options;
-use ropewalk_core::statics::StaticsOptions;
 use ropewalk_models::Bundled;
 use ropewalk_scene::{
-    Air, Document, Fault, Format, Kind, Parameter, Run, SceneFile, SpecInfo, Value, Water, did_you_mean,
-    quoted, registered, schemars,
+    Document, Fault, Format, Kind, Parameter, SECTIONS, SceneFile, SpecInfo, Value, did_you_mean, quoted,
+    registered,
 };
 pub use ropewalk_studies::Error;
 use std::path::{Path, is_separator};
 
-pub(super) type MakeSchema = fn() -> schemars::Schema;
-
-/// Sections of a scene file that are no lists of parts.
-pub(super) const SECTIONS: [(&str, MakeSchema); 5] = [
-    ("water", || schemars::schema_for!(Water)),
-    ("air", || schemars::schema_for!(Air)),
-    ("run", || schemars::schema_for!(Run)),
-    ("solver", || schemars::schema_for!(Options)),
-    ("statics", || schemars::schema_for!(StaticsOptions)),
-];
-
 pub(crate) fn describe(what: &str, bundled: &[Bundled]) -> Result<Exit, Error> {
+    let (text, fault) = explain(what, bundled)?;
+    say(text);
+    // what is wrong with the scene is said after what it is about
+    fault.map_or(Ok(Exit::Done), |fault| Err(fault.into()))
+}
+
+/// The explanation, and what is wrong with a scene that is explained all the same.
+pub(crate) fn explain(what: &str, bundled: &[Bundled]) -> Result<(String, Option<Fault>), Error> {
     let lower = what.to_lowercase();
     let is_path = what.contains(is_separator) || lower.ends_with(".toml") || lower.ends_with(".json");
     if !is_path && let Some(b) = bundled.iter().find(|b| b.name == what) {
-        say(scene(&Document::parse(b.text, b.name, Format::Toml, &[])?, what)?);
-        return Ok(Exit::Done);
+        return Ok(scene(&Document::parse(b.text, b.name, Format::Toml, &[])?, what));
     }
     let types: Vec<&SpecInfo> = registered().into_iter().filter(|s| s.name == what).collect();
     if !is_path && !types.is_empty() {
         let texts: Vec<String> = types.into_iter().map(of_type).collect();
-        say(texts.join("\n").trim_end());
-        return Ok(Exit::Done);
+        return Ok((texts.join("\n").trim_end().to_string(), None));
     }
     if !is_path && let Some((name, schema)) = SECTIONS.iter().find(|(name, _)| *name == what) {
         let text = format!("[{name}]\n\n{}", schema::explain(&schema()));
-        say(text.trim_end());
-        return Ok(Exit::Done);
+        return Ok((text.trim_end().to_string(), None));
     }
     if !is_path && !Path::new(what).exists() {
         return Err(unknown(what, bundled).into());
     }
-    say(scene(&Document::read(Path::new(what), &[])?, what)?);
-    Ok(Exit::Done)
+    Ok(scene(&Document::read(Path::new(what), &[])?, what))
 }
 
 fn of_type(s: &SpecInfo) -> String {
@@ -52,7 +43,7 @@ fn of_type(s: &SpecInfo) -> String {
 }
 
 /// Title, description, parameters and parts of a scene.
-fn scene(document: &Document, name: &str) -> Result<String, Fault> {
+fn scene(document: &Document, name: &str) -> (String, Option<Fault>) {
     let text = |key: &str| document.get(key).and_then(Value::as_str).unwrap_or_default();
     let mut out = match text("title") {
         "" => format!("{name}\n"),
@@ -85,14 +76,8 @@ fn scene(document: &Document, name: &str) -> Result<String, Fault> {
     if !sections.is_empty() {
         out += &format!("\nsections: {}\n", sections.join(", "));
     }
-    // what is wrong with the scene is said after what it is about
-    match SceneFile::parse(&document.to_toml(), name, Format::Toml, &[]) {
-        Ok(_) => Ok(out.trim_end().to_string()),
-        Err(fault) => {
-            say(out.trim_end());
-            Err(fault)
-        }
-    }
+    let fault = SceneFile::parse(&document.to_toml(), name, Format::Toml, &[]).err();
+    (out.trim_end().to_string(), fault)
 }
 
 fn label(p: &Parameter) -> String {

@@ -1,9 +1,9 @@
 //! `ropewalk effects SCENE --of RECORD`
 
-use super::{Exit, complain, say};
+use super::{Exit, progress, say, warn};
 use crate::cli::SceneArgs;
 use ropewalk_models::Bundled;
-use ropewalk_report::ProgressMode;
+use ropewalk_report::Watch;
 use ropewalk_scene::SceneFile;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::effects::{EffectsOptions, write_effects};
@@ -30,9 +30,10 @@ pub(crate) struct EffectsArgs {
 
 pub(crate) fn effects(args: &EffectsArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     let file = SceneFile::open(&args.scene.scene, &args.scene.overrides, bundled)?;
-    let progress = if args.quiet { ProgressMode::Quiet } else { ProgressMode::Auto };
-    let options = EffectsOptions { accuracy: args.accuracy, out: args.out.clone(), progress };
-    let written = write_effects(&file, &args.of, &options, &mut |w| complain(format!("warning: {w}")));
+    let progress = progress(args.quiet);
+    let (accuracy, out, watch) = (args.accuracy, args.out.clone(), Watch::signals(warn));
+    let options = EffectsOptions { accuracy, out, progress, watch };
+    let written = write_effects(&file, &args.of, &options, &mut warn);
     if let Err(Error::Interrupted) = written {
         return Ok(Exit::Interrupted);
     }

@@ -7,6 +7,7 @@ pub(crate) mod cost;
 pub(crate) mod describe;
 pub(crate) mod effects;
 pub(crate) mod list;
+pub(crate) mod migrate;
 pub(crate) mod modes;
 pub(crate) mod resume;
 pub(crate) mod run;
@@ -15,7 +16,7 @@ pub(crate) mod sweep;
 pub(crate) mod variants;
 pub(crate) mod verify;
 
-use ropewalk_report::Interrupt;
+use ropewalk_report::{Interrupt, ProgressMode};
 use std::fmt::Display;
 use std::io::Write;
 
@@ -47,9 +48,30 @@ pub(crate) fn say(text: impl Display) {
     let _ = writeln!(std::io::stdout(), "{text}");
 }
 
-/// Writes an error or a warning.
+/// Writes to standard error.
 pub(crate) fn complain(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Writes an error. Messages themselves have no such prefix.
+pub(crate) fn error(text: impl Display) {
+    complain(format!("error: {text}"));
+}
+
+/// Writes a warning.
+pub(crate) fn warn(text: &str) {
+    complain(format!("warning: {text}"));
+}
+
+/// Says what is left of a command that a signal stopped.
+pub(crate) fn interrupted(what: impl Display) -> Exit {
+    complain(format!("stopped by {}: {what}", Interrupt::cause()));
+    Exit::Interrupted
+}
+
+/// How progress is shown.
+pub(crate) fn progress(quiet: bool) -> ProgressMode {
+    if quiet { ProgressMode::Quiet } else { ProgressMode::Auto }
 }
 
 /// Breaks a text into lines of at most 96 characters, each behind `indent`; paragraphs stay apart, and those set in by

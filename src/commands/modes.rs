@@ -1,10 +1,10 @@
 //! `ropewalk modes SCENE`
 
-use super::{Exit, complain, say};
+use super::{Exit, progress, say, warn};
 use crate::cli::SceneArgs;
 use ropewalk_core::modes::ModesError;
 use ropewalk_models::Bundled;
-use ropewalk_report::ProgressMode;
+use ropewalk_report::Watch;
 use ropewalk_scene::{SceneFile, quantity};
 pub use ropewalk_studies::Error;
 use ropewalk_studies::modes::{ModesOptions, write_modes};
@@ -35,9 +35,14 @@ fn time(text: &str) -> Result<f64, String> {
 
 pub(crate) fn modes(args: &ModesArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     let file = SceneFile::open(&args.scene.scene, &args.scene.overrides, bundled)?;
-    let progress = if args.quiet { ProgressMode::Quiet } else { ProgressMode::Auto };
-    let options = ModesOptions { count: args.count as usize, time: args.at, out: args.out.clone(), progress };
-    let done = write_modes(&file, &options, &mut |warning| complain(format!("warning: {warning}")));
+    let options = ModesOptions {
+        count: args.count as usize,
+        time: args.at,
+        out: args.out.clone(),
+        progress: progress(args.quiet),
+        watch: Watch::signals(warn),
+    };
+    let done = write_modes(&file, &options, &mut warn);
     if let Err(Error::Modes(ModesError::Interrupted)) = done {
         return Ok(Exit::Interrupted);
     }

@@ -1,15 +1,14 @@
 //! `ropewalk resume DIR`
 
 use super::run::tell;
-use super::{Exit, complain};
-use ropewalk_report::ProgressMode;
+use super::{Exit, progress, warn};
+use ropewalk_report::Watch;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::run::{Every, RunOptions, resume as resume_run};
 use std::path::PathBuf;
 
 pub(crate) fn resume(folder: PathBuf, checkpoint: Option<Every>, quiet: bool) -> Result<Exit, Error> {
-    let progress = if quiet { ProgressMode::Quiet } else { ProgressMode::Auto };
-    let options = RunOptions { out: Some(folder), profile: false, progress, checkpoint };
-    let outcome = resume_run(&options, &mut |warning| complain(format!("warning: {warning}")))?;
-    Ok(tell(&outcome, quiet))
+    let (progress, watch) = (progress(quiet), Watch::signals(warn));
+    let options = RunOptions { out: Some(folder), profile: false, progress, checkpoint, watch };
+    Ok(tell(&resume_run(&options, &mut warn)?, quiet))
 }

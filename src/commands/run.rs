@@ -1,14 +1,14 @@
 //! `ropewalk run SCENE`
 
-use super::{Exit, complain, say};
+use super::{Exit, complain, error, interrupted, progress, say, warn};
 use crate::cli::SceneArgs;
 use ropewalk_models::Bundled;
-use ropewalk_report::{Interrupt, ProgressMode, SweepProgress, rough};
+use ropewalk_report::{Interrupt, SweepProgress, Watch, rough};
 use ropewalk_scene::{Fault, SceneFile, SceneText};
 pub use ropewalk_studies::Error;
-pub use ropewalk_studies::certificate::{Certificate, Trials, certify, choose};
-use ropewalk_studies::run::{Every, Outcome, RunOptions, run as run_scene};
-use ropewalk_studies::study::{Axes, Target, Watch};
+pub use ropewalk_studies::certificate::{Certificate, certify, choose};
+use ropewalk_studies::run::{Every, Outcome, RunOptions, Status, run as run_scene};
+use ropewalk_studies::study::{Axes, Runs, Target};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -35,7 +35,7 @@ pub(crate) struct RunArgs {
     /// The record that `--accuracy` and `--certify` look at, with @TIME at that time only
     #[arg(long, value_name = "RECORD[@TIME]")]
     of: Option<String>,
-    /// Time on the clock that the search of `--accuracy` may take
+    /// Wall time that the search of `--accuracy` may take
     #[arg(long, value_name = "TIME", default_value = "10 min", value_parser = super::cost::time)]
     budget: Duration,
     /// Say nothing but errors and warnings
@@ -72,35 +72,33 @@ pub(crate) fn run(args: &RunArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
 }
 
 impl RunArgs {
-    fn progress(&self) -> ProgressMode {
-        if self.quiet { ProgressMode::Quiet } else { ProgressMode::Auto }
-    }
-
     /// Runs a scene into its folder.
     fn go(&self, file: &SceneFile) -> Result<Outcome, Error> {
         let (out, checkpoint) = (self.out.clone(), self.checkpoint);
-        let options = RunOptions { out, profile: self.profile, progress: self.progress(), checkpoint };
-        run_scene(file, &options, &mut |warning| complain(format!("warning: {warning}")))
+        let (progress, watch) = (progress(self.quiet), Watch::signals(warn));
+        let options = RunOptions { out, profile: self.profile, progress, checkpoint, watch };
+        run_scene(file, &options, &mut warn)
     }
 
-    fn trials<'a>(&self, axes: &'a Axes<'a>, until: Option<f64>, deadline: Option<Instant>) -> Trials<'a> {
-        let interrupt = Interrupt::install().map_err(|e| complain(format!("warning: {e}"))).ok();
-        Trials::new(axes, until, Watch { interrupt, deadline }, SweepProgress::new(0, self.progress()))
+    /// Further runs, all of which end at the time that is looked at.
+    fn runs<'a>(&self, axes: &'a Axes<'a>, until: Option<f64>) -> Runs<'a> {
+        Runs::in_memory(axes, until, SweepProgress::new(0, progress(self.quiet)))
     }
 
     /// Runs with settings that reach the accuracy, or come nearest to it.
     fn accurate(&self, axes: &Axes<'_>, of: &Target, accuracy: f64) -> Result<Exit, Error> {
-        let trials = self.trials(axes, of.t, Instant::now().checked_add(self.budget));
-        let Some(chosen) = choose(&trials, of, accuracy)? else {
-            if trials.watch.is_interrupted() {
+        let runs = self.runs(axes, of.t);
+        let watch = Watch::signals(warn).until(Instant::now().checked_add(self.budget));
+        let Some(chosen) = choose(&runs, of, accuracy, watch)? else {
+            if watch.is_interrupted() {
                 complain(format!("stopped by {}", Interrupt::cause()));
                 return Ok(Exit::Interrupted);
             }
-            complain("error: no settings were found in the time given\n  = help: raise --budget");
+            error("no settings were found in the time given\n  = help: raise --budget");
             return Ok(Exit::Solver);
         };
-        let spent = format!("{} runs and {} s of CPU", trials.runs(), rough(trials.spent()));
-        trials.progress.finish();
+        let spent = format!("{} runs and {} s of CPU", runs.len(), rough(runs.spent()));
+        runs.progress.finish();
         if !self.quiet {
             let word = if chosen.reached { "chosen" } else { "nearest" };
             say(format!("{word}: {}, after {spent}", chosen.certificate.settings));
@@ -109,8 +107,8 @@ impl RunArgs {
         let outcome = self.go(&axes.with(&chosen.settings, None)?)?;
         let exit = self.keep(outcome, chosen.certificate)?;
         if exit == Exit::Done && !chosen.reached {
-            complain(format!(
-                "error: the accuracy {accuracy:e} was not reached: the results are those of the nearest settings\n  = \
+            error(format!(
+                "the accuracy {accuracy:e} was not reached: the results are those of the nearest settings\n  = \
                  help: allow a larger error or a longer --budget, or look at an earlier time with `--of RECORD@TIME`"
             ));
             return Ok(Exit::Solver);
@@ -121,16 +119,16 @@ impl RunArgs {
     /// Runs with the settings as they are, and certifies the record that is asked for, or all.
     fn certified(&self, axes: &Axes<'_>, of: Option<Target>) -> Result<Exit, Error> {
         let outcome = self.go(axes.file())?;
-        if matches!(outcome.summary.status.as_str(), "failed" | "interrupted") {
+        if !outcome.summary.status.is_complete() {
             return Ok(tell(&outcome, self.quiet));
         }
-        let trials = self.trials(axes, of.as_ref().and_then(|of| of.t), None);
+        let runs = self.runs(axes, of.as_ref().and_then(|of| of.t));
         let records = match of {
             Some(of) => vec![of],
             None => sized(Target::all(axes.file())?, &outcome),
         };
-        let certificate = certify(&trials, &axes.base, &records, None);
-        trials.progress.finish();
+        let certificate = certify(&runs, &axes.base, &records, None, Watch::signals(warn));
+        runs.progress.finish();
         let certificate = certificate.inspect_err(|_| {
             // the run itself is complete
             tell(&outcome, self.quiet);
@@ -139,11 +137,7 @@ impl RunArgs {
             Some(certificate) => self.keep(outcome, certificate),
             None => {
                 tell(&outcome, self.quiet);
-                complain(format!(
-                    "stopped by {}: the run is complete, the certificate is missing",
-                    Interrupt::cause()
-                ));
-                Ok(Exit::Interrupted)
+                Ok(interrupted("the run is complete, the certificate is missing"))
             }
         }
     }
@@ -152,7 +146,7 @@ impl RunArgs {
     fn keep(&self, mut outcome: Outcome, certificate: Certificate) -> Result<Exit, Error> {
         outcome.report += &certificate.text();
         if certificate.sensitive && self.quiet {
-            complain("warning: the run is sensitive: see the certificate in summary.json");
+            warn("the run is sensitive: see the certificate in summary.json");
         }
         outcome.summary.certificate = Some(certificate);
         let exit = tell(&outcome, self.quiet);
@@ -179,13 +173,13 @@ pub(super) fn tell(outcome: &Outcome, quiet: bool) -> Exit {
         say(outcome.report.trim_end());
     }
     let message = outcome.summary.message.as_deref().unwrap_or_default();
-    match outcome.summary.status.as_str() {
-        "failed" => {
+    match outcome.summary.status {
+        Status::Failed | Status::Refused => {
             let folder = outcome.folder.path().display();
-            complain(format!("error: {message}\n  = note: the results until then are in {folder}"));
+            error(format!("{message}\n  = note: the results until then are in {folder}"));
             Exit::Solver
         }
-        "interrupted" => Exit::Interrupted,
-        _ => Exit::Done,
+        Status::Interrupted => Exit::Interrupted,
+        Status::Finished | Status::Stopped => Exit::Done,
     }
 }

@@ -1,6 +1,7 @@
 //! A JSON schema in words: what can be written, with units, defaults and the doc comments of the source.
 
 use super::wrapped;
+use ropewalk_scene::quantity::unit_of;
 use ropewalk_scene::schemars::Schema;
 use serde_json::Value;
 
@@ -83,7 +84,7 @@ impl<'a> Words<'a> {
     /// What stands there, in words.
     fn kind(&self, field: &'a Value, doc: &str) -> String {
         let s = self.resolved(field);
-        let unit = unit(doc);
+        let unit = unit_of(doc);
         let names: Vec<String> =
             variants(s).into_iter().flat_map(names).map(|n| format!("\"{n}\"")).collect();
         if !names.is_empty() {
@@ -171,15 +172,6 @@ fn names(variant: &Value) -> Vec<String> {
     }
 }
 
-/// The unit that a doc comment ends with: `Stiffness [N/m].`
-fn unit(doc: &str) -> Option<&str> {
-    let first = doc.split("\n\n").next()?;
-    let start = first.rfind('[')?;
-    let unit = first[start + 1..].split(']').next()?;
-    let like_unit = !unit.is_empty() && unit.len() < 24 && !unit.contains([',', '`', '<', '(', '-', ')']);
-    (like_unit && unit != "1").then_some(unit)
-}
-
 /// A default, if it is short enough to be said.
 fn short(default: &Value) -> Option<String> {
     let text = match default {
@@ -202,10 +194,12 @@ fn toml(value: &Value) -> String {
     }
 }
 
-/// A doc comment without the links that only rustdoc can follow: ``[`Name`]`` and ``[`Name`](path)``.
+/// A doc comment without what is for programmers: links that only rustdoc can follow, ``[`Name`]`` and
+/// ``[`Name`](path)``, and programs between fences.
 pub(super) fn plain(doc: &str) -> String {
+    let prose: String = doc.split("```").step_by(2).map(str::trim_end).collect();
     let mut out = String::new();
-    let mut rest = doc;
+    let mut rest = prose.as_str();
     while let Some((before, link)) = rest.split_once("[`") {
         let Some((name, after)) = link.split_once("`]") else { break };
         out += &format!("{before}`{name}`");
@@ -224,6 +218,7 @@ mod tests {
     fn links_of_rustdoc_become_names() {
         let doc = "Sum [N], see [`Term`], [`Drag`](crate::Drag) and [`open.";
         assert_eq!(plain(doc), "Sum [N], see `Term`, `Drag` and [`open.");
+        assert_eq!(plain("A run.\n\n```\nlet a = 1;\n```\n\nMore."), "A run.\n\nMore.");
     }
 
     /// Values for a field, each with one quantity that is written as `describe` promises.
@@ -240,7 +235,7 @@ mod tests {
         if !all.is_empty() || !variants(s).is_empty() {
             return all;
         }
-        match (type_of(s), unit(doc)) {
+        match (type_of(s), unit_of(doc)) {
             ("number", Some(unit)) => all.push(json!(format!("0.25 {unit}"))),
             ("array", _) => {
                 let items = s.get("items").or_else(|| s.get("prefixItems").and_then(|p| p.get(0)));
@@ -272,7 +267,7 @@ mod tests {
         use ropewalk_scene::Format;
         use ropewalk_scene::SceneFile;
         let types = ropewalk_scene::registered().into_iter().map(|s| (Some(s), s.name, (s.schema)()));
-        let sections = super::super::describe::SECTIONS.iter().map(|(name, schema)| (None, *name, schema()));
+        let sections = ropewalk_scene::SECTIONS.iter().map(|(name, schema)| (None, *name, schema()));
         let (mut count, mut wrong) = (0, Vec::new());
         for (spec, name, schema) in types.chain(sections) {
             let root = schema.as_value();

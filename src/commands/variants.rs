@@ -1,9 +1,9 @@
 //! `ropewalk variants`
 
-use super::{Exit, say};
+use super::{Exit, say, warn};
 use indicatif::ProgressBar;
 use ropewalk_elements::cable::CableModel;
-use ropewalk_report::{Interrupt, LinePlot, OutputError, RunFolder, new_bar, write_atomic};
+use ropewalk_report::{LinePlot, RunFolder, Watch, new_bar, write_atomic, write_json};
 use ropewalk_scene::Fault;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::bench::models;
@@ -49,7 +49,7 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
             return Err(Fault::new(format!("`{name}` must be positive and at most 100000, not {x}")).into());
         }
     }
-    let interrupt = Interrupt::install()?;
+    let watch = Watch::signals(warn);
     let folder = match &args.out {
         Some(path) => RunFolder::at(path.clone())?,
         None => RunFolder::numbered(Path::new("runs"), "variants")?,
@@ -70,10 +70,10 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
     };
     let mut plots = Vec::new();
     let budget = Duration::from_secs_f64(args.seconds);
-    let mut compared = compare_models(&mut found, models, budget, &bar, interrupt);
+    let mut compared = compare_models(&mut found, models, budget, &bar, watch);
     for &problem in problems {
-        if compared.is_ok() && !interrupt.requested() {
-            compared = compare_forms(&mut found, problem, &meshes, args.absolute, &bar, interrupt)
+        if compared.is_ok() && !watch.is_interrupted() {
+            compared = compare_forms(&mut found, problem, &meshes, args.absolute, &bar, watch)
                 .map(|pictures| plots.extend(pictures));
         }
     }
@@ -81,7 +81,7 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
     // what was found until Ctrl-C or a failure is kept
     leave(&found, &plots, &folder, args.quiet)?;
     compared?;
-    Ok(if interrupt.requested() { Exit::Interrupted } else { Exit::Done })
+    Ok(if watch.is_interrupted() { Exit::Interrupted } else { Exit::Done })
 }
 
 /// The stiffness models: first what they are, then what they cost.
@@ -90,10 +90,10 @@ fn compare_models(
     models: Vec<CableModel>,
     budget: Duration,
     bar: &ProgressBar,
-    interrupt: Interrupt,
+    watch: Watch,
 ) -> Result<(), Error> {
     for m in models {
-        if interrupt.requested() {
+        if watch.is_interrupted() {
             return Ok(());
         }
         bar.set_message(format!("{:?}+{:?}: errors", m.longitudinal, m.transverse));
@@ -111,7 +111,7 @@ fn compare_forms(
     meshes: &[usize],
     limit: f64,
     bar: &ProgressBar,
-    interrupt: Interrupt,
+    watch: Watch,
 ) -> Result<Vec<(String, LinePlot)>, Error> {
     let mut traces = Vec::new();
     for &n in meshes {
@@ -124,7 +124,7 @@ fn compare_forms(
                 if absolute.is_none() && form == Form::Si || absolute.is_some() && form == Form::Scaled {
                     continue;
                 }
-                if interrupt.requested() {
+                if watch.is_interrupted() {
                     return Ok(Vec::new());
                 }
                 let run = scaling::run(problem, n, form, absolute, Some(&plain))?;
@@ -156,23 +156,17 @@ fn leave(
 ) -> Result<(), Error> {
     let path = folder.path();
     let text = found.text();
-    let json = serde_json::to_string_pretty(found).map_err(|e| Fault::new(e.to_string()))?;
     write_atomic(&path.join("variants.txt"), &text)?;
-    write_atomic(&path.join("variants.json"), &(json + "\n"))?;
+    write_json(&path.join("variants.json"), found)?;
     if !found.stiffness.is_empty() {
         write_atomic(&folder.table_file("stiffness")?, &found.stiffness_csv())?;
     }
     if !found.scaling.is_empty() {
         write_atomic(&folder.table_file("scaling")?, &found.scaling_csv())?;
     }
-    let mut drawn = 0;
-    for (name, plot) in histories.iter().chain(&found.pictures()) {
-        match plot.write(&folder.plot_file(name)?) {
-            Ok(()) => drawn += 1,
-            Err(OutputError::EmptyPlot { .. } | OutputError::LogAxis { .. }) => {}
-            Err(e) => return Err(e.into()),
-        }
-    }
+    let own = found.pictures();
+    let plots = histories.iter().chain(&own);
+    let drawn = plots.filter(|(name, plot)| folder.draw(name, |path| plot.write(path), &mut warn)).count();
     if !quiet {
         say(text.trim_end());
         say(format!("\n{drawn} pictures, tables and variants.json are in {}", path.display()));

@@ -1,10 +1,10 @@
 //! `ropewalk verify [NAME...]`
 
-use super::{Exit, complain, say};
-use ropewalk_report::{Interrupt, OutputError, ProgressMode, write_atomic};
+use super::{Exit, complain, interrupted, progress, say, warn};
+use ropewalk_report::{OutputError, Watch, write_atomic};
 use ropewalk_scene::{Fault, did_you_mean, quoted};
 pub use ropewalk_studies::Error;
-use ropewalk_studies::verify::{Case, Followed, Outcome, cases, heading, lines, page, picture};
+use ropewalk_studies::verify::{Case, Outcome, cases, heading, lines, page, picture};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -45,16 +45,12 @@ pub(crate) fn verify(args: &VerifyArgs) -> Result<Exit, Error> {
     if let Some(out) = &args.out {
         check_page(out)?;
     }
-    let followed = Followed {
-        progress: if args.quiet { ProgressMode::Quiet } else { ProgressMode::Auto },
-        interrupt: Interrupt::install().ok(),
-    };
+    let watch = Watch::signals(warn);
     let mut outcomes: Vec<Outcome> = Vec::new();
     for case in chosen {
-        let outcome = case.run(followed);
+        let outcome = case.run(progress(args.quiet), watch);
         if outcome.interrupted {
-            complain(format!("stopped by {}: no page is written", Interrupt::cause()));
-            return Ok(Exit::Interrupted);
+            return Ok(interrupted("no page is written"));
         }
         let runs = outcome.case.quantities() > 0;
         if !args.quiet || (runs && !outcome.is_within()) {

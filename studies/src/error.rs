@@ -4,8 +4,9 @@ use ropewalk_core::integrator::StepError;
 use ropewalk_core::modes::ModesError;
 use ropewalk_core::statics::StaticsError;
 use ropewalk_report::{Interrupt, OutputError};
-use ropewalk_scene::{Fault, SceneError};
+use ropewalk_scene::{Fault, SceneError, SceneFile};
 use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Why there are no results.
 ///
@@ -26,7 +27,7 @@ pub enum Error {
     Process(String),
     /// An equilibrium was not found.
     #[error("{0}")]
-    Statics(#[from] StaticsError),
+    Statics(StaticsError),
     /// The vibration modes could not be found.
     #[error("{0}")]
     Modes(#[from] ModesError),
@@ -38,13 +39,19 @@ pub enum Error {
     Output(#[from] OutputError),
 }
 
+impl From<StaticsError> for Error {
+    fn from(e: StaticsError) -> Self {
+        if e.interrupted { Error::Interrupted } else { Error::Statics(e) }
+    }
+}
+
 impl Error {
     /// Whether the scene or the command is to blame, not the solver: something has to be changed before the run
     /// can even begin.
     pub fn is_input(&self) -> bool {
         match self {
             Error::File(_) | Error::Scene(_) | Error::Output(_) => true,
-            Error::Step(e) => matches!(e, StepError::Scheme(_) | StepError::Inconsistent(_)),
+            Error::Step(e) => Error::is_input_step(e),
             Error::Statics(_) | Error::Process(_) | Error::Interrupted => false,
             Error::Modes(e) => matches!(
                 e,
@@ -52,6 +59,37 @@ impl Error {
             ),
         }
     }
+}
+
+impl Error {
+    fn is_input_step(e: &StepError) -> bool {
+        matches!(e, StepError::Scheme(_) | StepError::Inconsistent(_))
+    }
+
+    /// With the place in the file that is to blame, where it is known.
+    #[must_use]
+    pub fn in_file(self, file: &SceneFile) -> Self {
+        match self {
+            Error::Step(e) if Error::is_input_step(&e) => Error::File(file.at_solver(e.to_string())),
+            Error::Scene(e) => Error::File(file.fault(&e)),
+            e => e,
+        }
+    }
+
+    /// The message without the place in a file, which means nothing where several scenes are run.
+    pub(crate) fn brief(&self) -> String {
+        match self {
+            Error::File(fault) => fault.message.clone(),
+            Error::Scene(e) => e.error.message.clone(),
+            other => other.to_string(),
+        }
+    }
+}
+
+/// Does this; a defect becomes an error, so that it takes nothing else with it.
+pub(crate) fn caught<T>(work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    let defect = || Err(Error::Process("an internal error, see above: please report it".into()));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| defect())
 }
 
 impl fmt::Debug for Error {

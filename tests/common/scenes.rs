@@ -2,7 +2,7 @@
 #![allow(dead_code)]
 
 use ropewalk_constraints::motion::StraightSpec;
-use ropewalk_constraints::{ClampSpec, DrivingSpec, SphericalSpec};
+use ropewalk_constraints::{DirectionSpec, DrivingSpec, SphericalSpec};
 use ropewalk_core::{Model, State};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
@@ -67,7 +67,7 @@ pub fn cantilever(n: usize, ea: f64, force: f64, (l, t, rule): Models) -> Scene 
     scene
         .element(cable.models(l, t, rule))
         .constraint(SphericalSpec::pin("root", "beam.start"))
-        .constraint(ClampSpec::new("clamp", "beam.start"))
+        .constraint(DirectionSpec::new("clamp", "beam.start"))
         .force(PointForceSpec::new("beam.end", [0.0, force, 0.0], linear()));
     scene
 }
@@ -164,8 +164,12 @@ pub fn case(name: &str) -> Vec<Reference> {
 
 /// A cable in water, sprung, with a mass: everything that takes or brings energy.
 pub fn everything() -> Scene {
-    let section =
-        Section { diameter: 0.03, axial_damping: 1e-3, bending_damping: 1e-2, ..Section::new(2.0, 1e5, 1.0) };
+    let section = Section {
+        diameter: 0.03,
+        axial_retardation_time: 1e-3,
+        bending_retardation_time: 1e-2,
+        ..Section::new(2.0, 1e5, 1.0)
+    };
     let mut scene = Scene::new();
     scene.water = Some(Water::default());
     scene

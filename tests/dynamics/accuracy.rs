@@ -127,7 +127,7 @@ fn accuracy_is_relative_to_a_part_s_own_length() {
                 [[elements]]
                 type = "point_mass"
                 name = "bob"
-                at = [{length}, 0, 0]
+                marker = [{length}, 0, 0]
                 mass = 1
                 [[constraints]]
                 type = "distance"
@@ -170,11 +170,11 @@ fn a_heavy_ship_that_stands_still_dilutes_no_error() {
             name = "line"
             points = [[0, 0, 0], [30, 0, -40]]
             elements = 8
-            section = {{ mass = 1.0, ea = 1e6, ei = 1.0, diameter = "0.02 m", axial_damping = 0.01 }}
+            section = {{ mass = 1.0, ea = 1e6, ei = 1.0, diameter = "0.02 m", axial_retardation_time = 0.01 }}
             [[elements]]
             type = "point_mass"
             name = "load"
-            at = "line.end"
+            marker = "line.end"
             mass = 20
             [[forces]]
             type = "gravity"
@@ -241,7 +241,7 @@ fn tow(ea: f64, elements: usize, duration: f64, solver: &str) -> String {
         name = "hose"
         points = [[25, 0, 0], [25, 0, -30]]
         elements = {elements}
-        section = {{ mass = 0.5, flooded = 0.361, ea = {ea}, ei = 0.1, diameter = 0.023, displaced = 6.305e-5, axial_damping = 0.01 }}
+        section = {{ mass = 0.5, flooded = 0.361, ea = {ea}, ei = 0.1, diameter = 0.023, displaced = 6.305e-5, axial_retardation_time = 0.01 }}
         [[motions]]
         type = "circle"
         name = "circle"

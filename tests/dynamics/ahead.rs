@@ -6,6 +6,7 @@ use ropewalk_constraints::CoordinateSpec;
 use ropewalk_core::integrator::{Options, Scheme, StepReport, Stepping};
 use ropewalk_core::{
     Assembly, At, BuildError, End, Model, Motion, Moving, Observer, Pattern, Power, Simulation, State, Term,
+    Timed,
 };
 use ropewalk_elements::PointMassSpec;
 use ropewalk_forces::{PointForceSpec, TimeFunction};
@@ -146,9 +147,12 @@ impl Term for ThrustTerm {
         let on = at.t >= self.0.from && at.t < self.0.to;
         Power { supplied: if on { 0.5 * at.v[self.1] } else { 0.0 }, ..Power::default() }
     }
-    fn timed(&self) -> bool {
-        true
+    fn timed(&self) -> Option<&dyn Timed> {
+        Some(self)
     }
+}
+
+impl Timed for ThrustTerm {
     fn jump(&self, t: f64) -> f64 {
         let all = [self.0.from, self.0.to].into_iter();
         if self.0.tells { all.filter(|x| *x > t).fold(f64::INFINITY, f64::min) } else { f64::INFINITY }

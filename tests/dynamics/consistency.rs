@@ -5,7 +5,7 @@ use crate::mechanisms::{
     Stand, chain, energy, fixed, for_output, four_bars, go, hooke, largest, listed, slider_crank, start,
     tight,
 };
-use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec, UniversalSpec};
+use ropewalk_constraints::{DirectionSpec, RevoluteSpec, SphericalSpec, UniversalSpec};
 use ropewalk_core::integrator::{ConstraintForm, Options, Scheme, StepReport};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::statics::{Statics, StaticsOptions};
@@ -125,7 +125,7 @@ fn constraints_hold_at_three_levels_over_long_runs() {
 
 /// Two bodies and a cable that float freely: a universal joint between the bodies, the cable built into the second.
 fn floating() -> Scene {
-    let section = Section { axial_damping: 0.0, ..Section::new(0.5, 500.0, 0.2) };
+    let section = Section { axial_retardation_time: 0.0, ..Section::new(0.5, 500.0, 0.2) };
     let mut scene = Scene::new();
     let first = RigidBodySpec {
         velocity: [0.3, -0.2, 0.1],
@@ -154,7 +154,10 @@ fn floating() -> Scene {
             axis: Some([0.0, 0.0, 1.0]),
         })
         .constraint(SphericalSpec::new("root", "cable.start", "second.flange"))
-        .constraint(ClampSpec { to: Some("second".into()), ..ClampSpec::new("clamp", "cable.start") });
+        .constraint(DirectionSpec {
+            to: Some("second".into()),
+            ..DirectionSpec::new("clamp", "cable.start")
+        });
     scene
 }
 
@@ -220,8 +223,12 @@ fn momentum_of_a_floating_system_stays() {
 
 /// Everything with a tangent of its own in one scene: bodies in water, joints, cables, springs, a mass, loads.
 fn everything() -> Scene {
-    let section =
-        Section { diameter: 0.03, axial_damping: 1e-3, bending_damping: 1e-2, ..Section::new(2.0, 1e3, 1.0) };
+    let section = Section {
+        diameter: 0.03,
+        axial_retardation_time: 1e-3,
+        bending_retardation_time: 1e-2,
+        ..Section::new(2.0, 1e3, 1.0)
+    };
     let hull = RigidBodySpec {
         mass: None,
         inertia: None,
@@ -246,7 +253,7 @@ fn everything() -> Scene {
         .element(CableSpec::straight("cable", [0.3, 0.0, 0.0], [1.3, 0.0, 0.0], 3, section))
         .element(PointMassSpec::new("bob", "cable.end", 0.5))
         .constraint(SphericalSpec::new("root", "cable.start", "hull.nose"))
-        .constraint(ClampSpec { to: Some("hull".into()), ..ClampSpec::new("clamp", "cable.start") })
+        .constraint(DirectionSpec { to: Some("hull".into()), ..DirectionSpec::new("clamp", "cable.start") })
         .constraint(RevoluteSpec {
             name: "hinge".into(),
             marker: "hull.tail".into(),
@@ -319,7 +326,7 @@ impl Stirred {
         Stirred { model, q, v, a, lambda }
     }
     fn at(&self) -> At<'_> {
-        At { t: 0.3, q: &self.q, v: &self.v, a: &self.a, modes: &[], relaxed: None }
+        At { t: 0.3, q: &self.q, v: &self.v, a: &self.a, internal: &[], relaxed: None }
     }
 }
 

@@ -7,7 +7,7 @@ use ropewalk_core::{End, Simulation};
 
 const BODY: &str = "[[elements]]\ntype='rigid_body'\nname='b'\nposition=[0,0,0]\nmass=1\ninertia=[1,1,1]\n";
 const CABLE: &str = "[[elements]]\ntype='cable'\nname='c'\npoints=[[0,0,0],[2,0,0]]\nelements=4\nsection={mass=0.5,ea=1e4,ei=0.1}\n";
-const BALL: &str = "[[elements]]\ntype='point_mass'\nname='b'\nat=[1,0,0]\nmass=1\n";
+const BALL: &str = "[[elements]]\ntype='point_mass'\nname='b'\nmarker=[1,0,0]\nmass=1\n";
 const RUN: &str = "[[motions]]\ntype='straight'\nname='run'\nspeed=1\n";
 const SPIN: &str = "[[motions]]\ntype='spin'\nname='turn'\nrate=1\n";
 

@@ -6,7 +6,7 @@ use crate::mechanisms::{
     Stand, attitude, dzhanibekov, go, largest, minus, pointing, slider_crank, squeezer, squeezer_angles,
     start, tight, whereabouts,
 };
-use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};
+use ropewalk_constraints::{DirectionSpec, RevoluteSpec, SphericalSpec};
 use ropewalk_core::V3;
 use ropewalk_core::rotation::{bryant, exp, then};
 use ropewalk_core::statics::{Statics, StaticsOptions};
@@ -146,7 +146,7 @@ fn slider_crank_does_not_care_which_marker_comes_first() {
 
 /// A body on a hinge, a cable built into it, and a second body at the cable's other end.
 fn mixed(swapped: bool) -> Scene {
-    let section = Section { axial_damping: 1e-3, ..Section::new(0.8, 2e3, 0.3) };
+    let section = Section { axial_retardation_time: 1e-3, ..Section::new(0.8, 2e3, 0.3) };
     let (from, to) = ([0.5, 0.0, 0.0], [1.5, 0.0, 0.0]);
     let (first, last) = if swapped { (to, from) } else { (from, to) };
     let (near, far) = if swapped { ("cable.end", "cable.start") } else { ("cable.start", "cable.end") };
@@ -164,7 +164,7 @@ fn mixed(swapped: bool) -> Scene {
         to: Some([0.0; 3].into()),
         axis: [0.2, 1.0, 0.1],
     };
-    let clamp = ClampSpec { to: Some("arm".into()), ..ClampSpec::new("clamp", near) };
+    let clamp = DirectionSpec { to: Some("arm".into()), ..DirectionSpec::new("clamp", near) };
     let mut scene = Scene::new();
     if swapped {
         scene

@@ -6,7 +6,7 @@ use crate::mechanisms::{
     four_bars, go, hooke, largest, listed, minus, radau, reaction, rod, slider_crank, squeezer,
     squeezer_angles, start, tight, time_of, whereabouts,
 };
-use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};
+use ropewalk_constraints::{DirectionSpec, RevoluteSpec, SphericalSpec};
 use ropewalk_core::integrator::{ConstraintForm, Options};
 use ropewalk_core::rotation::matrix;
 use ropewalk_core::{Observer, Sample, Simulation, State, V3, dot};
@@ -289,7 +289,7 @@ fn arm(hub: bool) -> Scene {
             .element(RigidBodySpec::new("hub", [0.0; 3], 1.0, [1.0; 3]))
             .constraint(RevoluteSpec { axis, ..crate::mechanisms::hinge("bearing", "hub", [0.0; 3]) })
             .constraint(SphericalSpec::new("root", "arm.start", "hub"))
-            .constraint(ClampSpec { to: Some("hub".into()), ..ClampSpec::new("clamp", "arm.start") });
+            .constraint(DirectionSpec { to: Some("hub".into()), ..DirectionSpec::new("clamp", "arm.start") });
         drive(&mut scene, "hub", axis, Angle::SpinUp(6.0, 15.0));
     } else {
         scene.constraint(RevoluteSpec { axis, ..crate::mechanisms::hinge("bearing", "arm.start", [0.0; 3]) });

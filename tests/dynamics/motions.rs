@@ -13,7 +13,7 @@ output = "0.1 s"
 [[elements]]
 type = "point_mass"
 name = "ball"
-at = [0, 0, 0]
+marker = [0, 0, 0]
 mass = 1
 [[constraints]]
 type = "driving"
@@ -75,11 +75,11 @@ fn motions_add_up_whatever_their_order() {
 [[motions]]
 type = "sum"
 name = "path"
-of = ["both", "swing"]
+motions = ["both", "swing"]
 [[motions]]
 type = "sum"
 name = "both"
-of = ["run"]
+motions = ["run"]
 [[motions]]
 type = "straight"
 name = "run"
@@ -161,7 +161,8 @@ fn motions_that_make_no_sense_are_refused_where_they_stand() {
     write("order.csv", "t [s],z\n0,0\n1,1\n\n1,2\n");
     write("kink.csv", "t [s],z\n0,0\n1,0\n2,3\n");
     let table = |rest: &str| format!("[[motions]]\ntype = \"table\"\nname = \"path\"\n{rest}\n");
-    let sum = |name: &str, of: &str| format!("[[motions]]\ntype = \"sum\"\nname = \"{name}\"\nof = [{of}]\n");
+    let sum =
+        |name: &str, of: &str| format!("[[motions]]\ntype = \"sum\"\nname = \"{name}\"\nmotions = [{of}]\n");
     for (motions, line, holds) in [
         (
             table("file = \"none.csv\""),
@@ -189,12 +190,12 @@ fn motions_that_make_no_sense_are_refused_where_they_stand() {
             "ends",
             &["leave `ends` out"],
         ),
-        (sum("path", ""), "of", &["name the motions to add"]),
-        (sum("path", "\"heave\""), "of", &["there is no motion `heave`; the motions are `path`"]),
-        (sum("path", "\"path\""), "of", &["`path` of `path` are made of each other"]),
+        (sum("path", ""), "motions", &["name the motions to add"]),
+        (sum("path", "\"heave\""), "motions", &["there is no motion `heave`; the motions are `path`"]),
+        (sum("path", "\"path\""), "motions", &["`path` of `path` are made of each other"]),
         (
             sum("path", "\"a\"") + &sum("a", "\"b\"") + &sum("b", "\"path\""),
-            "of",
+            "motions",
             &["`path` of `a` of `b` of `path` are made of each other"],
         ),
     ] {

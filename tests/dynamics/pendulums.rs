@@ -83,7 +83,7 @@ fn stiff_pendulum_falls_as_the_reference() {
 /// The stiff cable, softened so that steps resolve its highest frequency, let go from its hanging equilibrium with
 /// a swing that starts without a shock.
 fn soft_pendulum(n: usize) -> Scene {
-    let section = Section { axial_damping: 0.0, ..Section::new(1.0, 400.0, 0.02) };
+    let section = Section { axial_retardation_time: 0.0, ..Section::new(1.0, 400.0, 0.02) };
     let mut scene = Scene::new();
     let cable = CableSpec::straight("cable", [0.0; 3], [0.6, -0.8, 0.0], n, section);
     scene

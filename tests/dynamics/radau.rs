@@ -277,7 +277,8 @@ fn motion_does_not_depend_on_the_frame() {
         std::array::from_fn(|i| (0..3).map(|j| r[i][j] / 3.0 * x[j]).sum::<f64>() + shift * (i as f64 - 2.0))
     };
     let run = |map: &dyn Fn([f64; 3], f64) -> [f64; 3]| {
-        let section = Section { diameter: 0.03, bending_damping: 1e-2, ..Section::new(2.0, 1e4, 1.0) };
+        let section =
+            Section { diameter: 0.03, bending_retardation_time: 1e-2, ..Section::new(2.0, 1e4, 1.0) };
         let mut scene = Scene::new();
         scene.water = Some(Water::default());
         scene

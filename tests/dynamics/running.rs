@@ -174,7 +174,8 @@ fn turned(x: [f64; 3], shift: bool) -> [f64; 3] {
 #[test]
 fn motion_does_not_depend_on_the_frame() {
     let run = |turn: bool, base: [f64; 3], end: [f64; 3], g: [f64; 3], to: [f64; 3]| {
-        let section = Section { diameter: 0.03, bending_damping: 1e-2, ..Section::new(2.0, 1e4, 1.0) };
+        let section =
+            Section { diameter: 0.03, bending_retardation_time: 1e-2, ..Section::new(2.0, 1e4, 1.0) };
         let mut scene = Scene::new();
         scene.water = Some(Water::default());
         scene

@@ -203,7 +203,9 @@ fn the_command_compares_models_and_refuses_what_makes_no_sense() {
         &["variants", "--only", "stiffness", "--seconds", "0.1", "--out", "out"],
     );
     assert_eq!(said.code, Some(0), "{}", said.stderr);
-    assert!(said.stdout.contains("cable L4+T3 locking-free") && said.stdout.contains("L2+T3 isn't there"));
+    assert!(
+        said.stdout.contains("cable L4+T3 locking-free") && said.stdout.contains("L2+T3 is not available")
+    );
     for file in ["variants.txt", "variants.json", "tables/stiffness.csv", "plots/stiffness.svg"] {
         let text = std::fs::read_to_string(folder.path().join("out").join(file)).expect(file);
         assert!(text.contains("L1n+T1"), "{file}");

@@ -43,7 +43,7 @@ type = "spherical"
 name = "root"
 marker = "column.start"
 [[constraints]]
-type = "clamp"
+type = "direction"
 name = "clamp"
 marker = "column.start"
 [[records]]
@@ -195,7 +195,7 @@ steps = "$steps"
 [[elements]]
 type = "point_mass"
 name = "top"
-at = [0, 0, 0.5]
+marker = [0, 0, 0.5]
 mass = 1
 [[constraints]]
 type = "coordinate"
@@ -328,7 +328,7 @@ type = "spherical"
 name = "p"
 marker = "a.start"
 [[constraints]]
-type = "clamp"
+type = "direction"
 name = "c"
 marker = "a.start"
 [[constraints]]

@@ -6,7 +6,7 @@ use crate::mechanisms::{
     controlled, fixed, for_output, go, hooke, largest, listed, minus, squeezer, start, tight,
 };
 use ropewalk_constraints::motion::HarmonicSpec;
-use ropewalk_constraints::{ClampSpec, DrivingSpec, SphericalSpec};
+use ropewalk_constraints::{DirectionSpec, DrivingSpec, SphericalSpec};
 use ropewalk_core::integrator::{NewtonPolicy, Options, Scheme};
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Simulation, State, V3, Width};
@@ -19,7 +19,11 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// A free cable of 1 m, 1 kg/m and EI = 1 whose state is set to a smooth bend of this amplitude, at rest.
 fn bent_rod(amplitude: f64, damping: f64, options: &Options, duration: f64) -> Simulation {
     let n = 8;
-    let section = Section { axial_damping: damping, bending_damping: damping, ..Section::new(1.0, 1e4, 1.0) };
+    let section = Section {
+        axial_retardation_time: damping,
+        bending_retardation_time: damping,
+        ..Section::new(1.0, 1e4, 1.0)
+    };
     let mut scene = Scene::new();
     scene.element(CableSpec::straight("rod", [0.0; 3], [1.0, 0.0, 0.0], n, section));
     let model = scene.build().expect("model");
@@ -173,7 +177,7 @@ fn a_slack_tether_snaps_taut_with_the_force_of_its_energy() {
         let u = PI * s;
         [0.02 * (1.0 - u.cos()), 0.0, -0.48 * u.sin()]
     };
-    let light = Section { axial_damping: 1e-4, ..Section::new(1e-3, k, 1e-6) };
+    let light = Section { axial_retardation_time: 1e-4, ..Section::new(1e-3, k, 1e-6) };
     let curve: Vec<V3<f64>> = (0..=40).map(|i| loop_(f64::from(i) / 40.0)).collect();
     let spec = CableSpec {
         points: Vec::new(),
@@ -247,12 +251,16 @@ fn a_column_buckles_at_eulers_load_into_the_elastica() {
 
     // beyond, it is pushed aside by a load that then goes, and comes to rest in the elastica
     let load = 1.2 * critical;
-    let section = Section { axial_damping: 1e-3, bending_damping: 0.05, ..Section::new(1.0, 1e6, 1.0) };
+    let section = Section {
+        axial_retardation_time: 1e-3,
+        bending_retardation_time: 0.05,
+        ..Section::new(1.0, 1e6, 1.0)
+    };
     let mut scene = Scene::new();
     scene
         .element(CableSpec::straight("beam", [0.0; 3], [1.0, 0.0, 0.0], 16, section))
         .constraint(SphericalSpec::pin("root", "beam.start"))
-        .constraint(ClampSpec::new("clamp", "beam.start"))
+        .constraint(DirectionSpec::new("clamp", "beam.start"))
         .force(PointForceSpec::new("beam.end", [-load, 1e-3, 0.0], ropewalk_forces::TimeFunction::default()));
     let mut s = start(&scene, &controlled(1e-5), 40.0);
     go(&mut s, 40.0);
@@ -266,7 +274,7 @@ fn a_column_buckles_at_eulers_load_into_the_elastica() {
 fn a_whip_cracks_without_breaking_the_balance_of_energy() {
     let run = |tolerance: f64| {
         let mut scene = Scene::new();
-        let whip = Section { axial_damping: 1e-5, ..Section::new(0.05, 500.0, 1e-4) };
+        let whip = Section { axial_retardation_time: 1e-5, ..Section::new(0.05, 500.0, 1e-4) };
         scene
             .element(CableSpec::straight("whip", [0.0; 3], [0.0, 0.0, -1.0], 16, whip))
             .motion(HarmonicSpec {
@@ -450,7 +458,7 @@ fn columns_bend_beyond_their_critical_load() {
                 "[run]\nanalysis = 'statics'\n[statics]\nsteps = {steps}\n[[elements]]\ntype = 'cable'\nname = 'column'\n\
                  points = [[0, 0, 0], [0, 0, 1]]\nelements = 16\nsection = {{ mass = 1, ea = 1e8, ei = 1 }}\n\
                  [[constraints]]\ntype = 'spherical'\nname = 'root'\nmarker = 'column.start'\n\
-                 [[constraints]]\ntype = 'clamp'\nname = 'clamp'\nmarker = 'column.start'\n\
+                 [[constraints]]\ntype = 'direction'\nname = 'clamp'\nmarker = 'column.start'\n\
                  [[forces]]\ntype = 'point_force'\nmarker = 'column.end'\nforce = [{}, 0, -{load}]\n\
                  time = {{ table = {{ t = [0, 1], value = [0, 1] }} }}\n[[records]]\ntype = 'position'\nof = 'column.end'\n",
                 1e-6 * load

@@ -101,7 +101,11 @@ fn part(rng: &mut Rng, text: &mut String, k: usize, water: bool, parts: &mut Vec
                 _ = write!(text, ", diameter = {:.4e}", rng.log(1e-3, 0.1));
             }
             if rng.chance(0.4) {
-                _ = write!(text, ", axial_damping = {0:.2e}, bending_damping = {0:.2e}", rng.log(1e-5, 0.1));
+                _ = write!(
+                    text,
+                    ", axial_retardation_time = {0:.2e}, bending_retardation_time = {0:.2e}",
+                    rng.log(1e-5, 0.1)
+                );
             }
             text.push_str(" }\n");
             if rng.chance(0.3) {
@@ -136,7 +140,7 @@ fn part(rng: &mut Rng, text: &mut String, k: usize, water: bool, parts: &mut Vec
         7..=8 => {
             _ = write!(
                 text,
-                "[[elements]]\ntype = \"point_mass\"\nname = \"{name}\"\nmass = {:.4e}\nat = ",
+                "[[elements]]\ntype = \"point_mass\"\nname = \"{name}\"\nmass = {:.4e}\nmarker = ",
                 rng.log(1e-3, 1e4)
             );
             match &last {
@@ -212,7 +216,7 @@ fn hold(rng: &mut Rng, text: &mut String, part: &Part) {
     match kind {
         "clamped" => {
             one(text, "spherical", "");
-            one(text, "clamp", "");
+            one(text, "direction", "");
         }
         "winch" => {
             one(text, "spherical", "");

@@ -15,7 +15,7 @@ fn unwound(segments: &str, layers: &str) -> String {
     format!(
         "[[motions]]\ntype = \"straight\"\nname = \"draw\"\nspeed = 5\n\n[[processes]]\ntype = \"unwound_cable\"\n\
          name = \"cable\"\nmass = 0.001\nmotion = \"draw\"\nrule = {{ tension = {{ rest = 0.02, per_speed2 = 0.0227 }} }}\n\
-         segments = {segments}\n[processes.package]\nlength = 0.2\nradius = 0.06\ndiameter = 0.0009\nlayers = {layers}\n"
+         elements = {segments}\n[processes.package]\nlength = 0.2\nradius = 0.06\ndiameter = 0.0009\nlayers = {layers}\n"
     )
 }
 

@@ -26,7 +26,7 @@ fn bundled_run(scene: &str, set: &[String]) -> History {
 fn a_winch_without_speed_costs_nothing_and_changes_no_bit() {
     let without = tow_start();
     let mut with = tow_start();
-    with.constraint(WinchSpec { final_length: Some(3.0), element: Some(0.5), ..winch(0.0) });
+    with.constraint(WinchSpec { final_length: Some(3.0), element_length: Some(0.5), ..winch(0.0) });
     let results = [without, with].map(|scene| {
         let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
         let size = (model.velocities(), model.multipliers(), model.events().len(), model.terms().len());
@@ -41,7 +41,7 @@ fn a_winch_without_speed_costs_nothing_and_changes_no_bit() {
 /// A hose that streams steadily in water that comes at it, and is reeled in from one length to another.
 fn streaming(speed: f64, angle: f64, elements: usize) -> Scene {
     let end = [-30.0 * angle.cos(), 0.0, -30.0 * angle.sin()];
-    let section = Section { axial_damping: 0.01, ..hose(1e6, 2.0) };
+    let section = Section { axial_retardation_time: 0.01, ..hose(1e6, 2.0) };
     let mut scene = towed([0.0; 3], end, elements, section, DragLaw::Constant);
     scene.water.as_mut().expect("water").current = [-speed, 0.0, 0.0];
     scene
@@ -175,7 +175,8 @@ fn a_scene_winds_in_and_says_how_fast() {
 fn energy_of_reeling_in_closes_at_second_order() {
     let mut imbalance = Vec::new();
     for h in [4e-3, 2e-3, 1e-3] {
-        let section = Section { axial_damping: 0.01, bending_damping: 0.01, ..hose(1e5, 2.0) };
+        let section =
+            Section { axial_retardation_time: 0.01, bending_retardation_time: 0.01, ..hose(1e5, 2.0) };
         let mut scene = towed([0.0; 3], [0.0, 0.0, -30.0], 8, section, DragLaw::Constant);
         scene.motion(ropewalk_constraints::motion::StraightSpec {
             name: "course".into(),
@@ -208,7 +209,7 @@ fn energy_of_reeling_in_closes_at_second_order() {
 
 /// A hose that hangs short in still water.
 fn short(winch: WinchSpec) -> Scene {
-    let section = Section { axial_damping: 0.01, ..hose(1e6, 2.0) };
+    let section = Section { axial_retardation_time: 0.01, ..hose(1e6, 2.0) };
     let mut scene = towed([0.0; 3], [0.0, 0.0, -30.0], 4, section, DragLaw::Constant);
     scene.constraint(SphericalSpec::new("ship", "hose.start", [0.0; 3])).constraint(winch);
     scene
@@ -223,7 +224,7 @@ fn a_run_ends_where_a_winch_is_at_its_limits() {
             "`winch` has reeled in `hose` to its shortest, 4 m",
             4.0,
         ),
-        (WinchSpec { stock: 6.0, ..winch(1.0) }, "`winch` has fed out all of its 6 m", 36.0),
+        (WinchSpec { stored_length: 6.0, ..winch(1.0) }, "`winch` has paid out all of its 6 m", 36.0),
     ] {
         let model = short(winch).build().unwrap_or_else(|e| panic!("{e}"));
         let options = Options { stepping: Stepping::Controlled { tolerance: 1e-4 }, ..Options::default() };
@@ -251,18 +252,18 @@ fn what_cannot_be_reeled_is_refused() {
     let cases: [(Change<'_>, &str, &str); 16] = [
         (&|w| w.tension = Some(5.0), "tension", "the speed of this winch is prescribed"),
         (&|w| w.ramp = 0.0, "ramp", "jump of velocity"),
-        (&|w| w.total = Some(5.0), "total", "their signs must be the same"),
-        (&|w| w.total = Some(0.0), "total", "never feeds out 0 m"),
-        (&|w| w.total = Some(f64::NAN), "total", "never feeds out NaN m"),
-        (&|w| w.total = Some(-0.5), "total", "over before the speed has risen"),
-        (&|w| (w.total, w.stop) = (Some(-5.0), Some(9.0)), "total", "not both"),
-        (&|w| (w.total, w.final_length) = (Some(-5.0), Some(9.0)), "final_length", "not both"),
+        (&|w| w.payout = Some(5.0), "payout", "their signs must be the same"),
+        (&|w| w.payout = Some(0.0), "payout", "never pays out 0 m"),
+        (&|w| w.payout = Some(f64::NAN), "payout", "never pays out NaN m"),
+        (&|w| w.payout = Some(-0.5), "payout", "over before the speed has risen"),
+        (&|w| (w.payout, w.stop) = (Some(-5.0), Some(9.0)), "payout", "not both"),
+        (&|w| (w.payout, w.final_length) = (Some(-5.0), Some(9.0)), "final_length", "not both"),
         (&|w| w.final_length = Some(30.0), "final_length", "30 m long already"),
         (&|w| w.final_length = Some(31.0), "final_length", "can't be reeled in to 31 m"),
         (&|w| w.final_length = Some(-1.0), "final_length", "must be positive"),
         (&|w| w.final_length = Some(1.0), "final_length", "the run ends at 1.5 m"),
         (&|w| w.stop = Some(0.5), "stop", "before its speed has risen"),
-        (&|w| (w.speed, w.tension, w.total) = (None, Some(5.0), Some(1.0)), "total", "has none"),
+        (&|w| (w.speed, w.tension, w.payout) = (None, Some(5.0), Some(1.0)), "payout", "has none"),
         (&|w| (w.speed, w.motion, w.stop) = (None, Some("haul".into()), Some(9.0)), "stop", "has none"),
         // of a winch that isn't one, too
         (&|w| (w.speed, w.ramp) = (Some(0.0), 0.0), "ramp", "jump of velocity"),

@@ -149,7 +149,7 @@ fn a_pin_breaks_at_its_strength_at_a_time_that_is_located() {
             join: ropewalk_core::Join::Monotone,
         })
         .constraint(DrivingSpec::new("pin", "weight", "jerk"))
-        .constraint(BreakSpec { name: "shear".into(), of: "pin".into(), force: mass * (g + 5.0) })
+        .constraint(BreakSpec { name: "shear".into(), constraint: "pin".into(), force: mass * (g + 5.0) })
         .force(GravitySpec::default())
         .record(ReactionSpec { of: "pin".into(), what: ReactionPart::Magnitude, name: None, title: None })
         .record(ReleasedSpec { of: "shear".into(), name: None, title: None });
@@ -180,7 +180,12 @@ fn every_picture_of_the_model_shows_what_it_names() {
         let mut said = Vec::new();
         let outcome = ropewalk::run(&file, &options, &mut |w| said.push(w.to_string()))
             .unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(outcome.summary.status, "stopped", "{:?} {said:?}", outcome.summary.message);
+        assert_eq!(
+            outcome.summary.status,
+            ropewalk::Status::Stopped,
+            "{:?} {said:?}",
+            outcome.summary.message
+        );
         assert_eq!(outcome.summary.message.as_deref(), Some("stopped by spool"));
         let plot = |name: &str| {
             let path = folder.path().join(format!("run/plots/{name}.svg"));
@@ -266,7 +271,7 @@ duration = "2 s"
 [[elements]]
 type = "point_mass"
 name = "vehicle"
-at = [0, 0, 0]
+marker = [0, 0, 0]
 mass = "1 kg"
 [[motions]]
 type = "speed_table"
@@ -332,14 +337,14 @@ fn bad_latches_are_refused_with_the_remedy() {
         }
     };
     for (change, words) in [
-        (&(|l: &mut LatchSpec| l.hold = 0.0) as &dyn Fn(&mut LatchSpec), "`hold` must be positive"),
+        (&(|l: &mut LatchSpec| l.force = 0.0) as &dyn Fn(&mut LatchSpec), "`force` must be positive"),
         (&|l| l.stiffness = -1.0, "`stiffness` must be positive"),
         (&|l| l.damping = f64::NAN, "`damping` must not be negative"),
         (&|l| l.fade = 0.0, "`fade` must be positive"),
-        (&|l| l.of = vec!["rope".into()], "there is no part `rope`"),
-        (&|l| l.of = vec![], "names nothing to hold"),
-        (&|l| l.of = vec!["hose".into(), "hose.link2".into()], "named twice"),
-        (&|l| l.of = vec!["hose.middle".into()], "`hose.link3`"),
+        (&|l| l.on = vec!["rope".into()], "there is no part `rope`"),
+        (&|l| l.on = vec![], "names nothing to hold"),
+        (&|l| l.on = vec!["hose".into(), "hose.link2".into()], "named twice"),
+        (&|l| l.on = vec!["hose.middle".into()], "`hose.link3`"),
         (&|l| l.direction = Some([0.0; 3]), "`direction` must have a length"),
         (&|l| l.to = Some("mass".into()), "only be on a rigid body"),
         (&|l| l.to = Some("hose.link1".into()), "seat on itself"),

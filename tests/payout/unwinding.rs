@@ -7,7 +7,7 @@ use ropewalk_constraints::{LiftOffSpec, PackageSpec, SphericalSpec, WinchSpec};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{
-    BuildError, End, Jet, Joint, Model, Place, Relation, RowKind, Simulation, State, SteadyFrame, V3,
+    BuildError, End, Jet, Model, Place, Related, Relation, RowKind, Simulation, State, SteadyFrame, V3,
 };
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{DragLaw, DragSpec};
@@ -111,7 +111,7 @@ impl ConstraintSpec for RingSpec {
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let marker = b.marker("marker", &self.marker)?;
-        b.constraint(Joint::new("ring", Round(self.clone()), vec![marker]))
+        b.constraint(Related::new("ring", Round(self.clone()), vec![marker]))
     }
 }
 struct Round(RingSpec);
@@ -161,7 +161,7 @@ fn laid(c: &Case, off: Off, n: usize, eta: f64) -> (Model, State, Vec<V3<f64>>) 
     // stiff enough that the cable is as long as the inextensible one of the reference to 1e-4
     let ea = 1e4 * t0;
     let mut section = Section::new(m, ea, ei);
-    (section.diameter, section.axial_damping) = (d, eta);
+    (section.diameter, section.axial_retardation_time) = (d, eta);
     let bent = ei > 0.0;
     // material per arc length, so that the cable has the reference's tension where it starts
     let steps = 4000;
@@ -203,7 +203,11 @@ fn laid(c: &Case, off: Off, n: usize, eta: f64) -> (Model, State, Vec<V3<f64>>) 
     let marker: MarkerRef = "fibre.end".into();
     if off != Off::Ring {
         let peel = (off == Off::Peeled).then(|| c.bond());
-        scene.constraint(LiftOffSpec { tangent: bent, peel, ..LiftOffSpec::new("off", marker, package) });
+        scene.constraint(LiftOffSpec {
+            tangent: bent,
+            adhesion_energy: peel,
+            ..LiftOffSpec::new("off", marker, package)
+        });
     } else {
         let height = start(c.length())[2];
         scene.constraint(RingSpec { marker, radius, height, spin, climb });
@@ -407,8 +411,7 @@ fn a_cable_that_sticks_peels_at_its_energy() {
     let turn = TAU / c.get("Om");
     let climb = c.params["tL"][2].as_f64().unwrap_or(0.0).asin();
     let ring = fd::Ring { radius: c.get("R"), height: c.get("h"), climb, inner: true };
-    let cable =
-        fd::Cable { mass: c.get("m"), diameter: c.get("d"), bending: c.get("EI"), curvature_limit: 1e4 };
+    let cable = fd::Cable { mass: c.get("m"), diameter: c.get("d"), ei: c.get("EI"), curvature_limit: 1e4 };
     let draw = Arc::new(Straight::new([1.0, 0.0, 0.0], c.get("V"), -1.0, 0.1).expect("speed"));
     let mut problem = fd::Unwinding::new(cable, Arc::new(ring), draw, fd::Rule::Peel(c.bond()), 60);
     problem.lift_off = fd::LiftOff::Tangent;
@@ -418,7 +421,7 @@ fn a_cable_that_sticks_peels_at_its_energy() {
     let points: Vec<V3<f64>> = c.rows.iter().map(|r| [r[1], r[2], r[3]]).collect();
     let start = problem.start(&points, c.get("Om"), 0.0).expect("start");
     let plan = fd::Plan { t_end: 0.5 * turn, every: 0.025 * turn, shapes: vec![] };
-    let stepping = fd::Stepping { damping: 0.05, ..fd::Stepping::new(turn / 200.0) };
+    let stepping = fd::Stepping { numerical_damping: 0.05, ..fd::Stepping::new(turn / 200.0) };
     let history = problem.run(start, stepping, &plan).expect("run");
     assert!(history.stopped.is_none(), "{:?}", history.stopped);
     let rows = &history.rows[history.rows.len() / 2..];
@@ -443,7 +446,7 @@ fn a_flexible_cable_peels_at_its_angle_and_energy_closes() {
         let from = [0.06, 0.0, 0.1];
         let whole = (0.06_f64.powi(2) + 0.01).sqrt();
         let mut section = Section::new(mass, ea, 0.0);
-        (section.diameter, section.axial_damping, section.displaced) = (0.9e-3, 1e-5, Some(0.0));
+        (section.diameter, section.axial_retardation_time, section.displaced) = (0.9e-3, 1e-5, Some(0.0));
         let mut scene = Scene::new();
         scene.water = Some(Water::default());
         let package =
@@ -456,8 +459,8 @@ fn a_flexible_cable_peels_at_its_angle_and_energy_closes() {
             .constraint(SphericalSpec::new("eyelet", "fibre.start", [0.0; 3]))
             .constraint(WinchSpec::tension("pull", "fibre.start", tension))
             .constraint(LiftOffSpec {
-                peel: Some(bond),
-                slip: 1e-2,
+                adhesion_energy: Some(bond),
+                slip_speed: 1e-2,
                 ..LiftOffSpec::new("off", "fibre.end", package)
             })
             .force(DragSpec { cn: 1.2, ct: 0.01, ..DragSpec::default() });
@@ -476,23 +479,23 @@ fn a_flexible_cable_peels_at_its_angle_and_energy_closes() {
             let at = s.state.at();
             let part = s.model.part("fibre").expect("fibre");
             let length = part.length_now(&at);
-            let front = part.front(1).expect("front");
+            let boundary = part.boundary(1).expect("boundary");
             let pull = part.observe(ropewalk_core::Quantity::Tension, length, &at).expect("tension");
-            let x: V3<f64> = std::array::from_fn(|i| at.q[front.end_q + i]);
-            let slope: V3<f64> = std::array::from_fn(|i| at.q[front.end_q + 3 + i]);
+            let x: V3<f64> = std::array::from_fn(|i| at.q[boundary.end_q + i]);
+            let slope: V3<f64> = std::array::from_fn(|i| at.q[boundary.end_q + 3 + i]);
             let size = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
             // close-wound: a pitch of a diameter a turn
             let climb = (0.9e-3 / (TAU * 0.06)).atan();
             let round = (x[0] * slope[1] - x[1] * slope[0]) / (x[0].hypot(x[1]) * size);
-            let (cos, u) = (round * climb.cos() + slope[2] / size * climb.sin(), front.rate(&at));
+            let (cos, u) = (round * climb.cos() + slope[2] / size * climb.sin(), boundary.rate(&at));
             let found = (pull - mass * u * u) * (1.0 - cos) + 0.5 * pull * pull / ea;
             eprintln!("{k}: u {u:.3}, T {pull:.4}, cos D {cos:.4}, {:.2e}", found / bond - 1.0);
             assert!(u > 0.1);
             worst = worst.max((found / bond - 1.0).abs());
         }
         eprintln!("{:?}, {:e}", s.audit, s.audit.imbalance() / s.audit.scale);
-        let front = s.model.part("fibre").expect("fibre").front(1).expect("front");
-        let peeled = front.fed(&s.state.at());
+        let boundary = s.model.part("fibre").expect("fibre").boundary(1).expect("boundary");
+        let peeled = boundary.fed(&s.state.at());
         assert!(s.audit.dissipated > 0.99 * bond * peeled, "{peeled}");
         (worst, s.audit.imbalance() / s.audit.scale)
     };
@@ -505,7 +508,7 @@ fn a_flexible_cable_peels_at_its_angle_and_energy_closes() {
 fn a_bond_that_makes_no_sense_is_refused() {
     let refused = |change: fn(&mut LiftOffSpec), winch: bool| {
         let mut off = LiftOffSpec::new("off", "fibre.end", PackageSpec::new(0.06, 0.2, 0.9e-3));
-        off.peel = Some(0.3);
+        off.adhesion_energy = Some(0.3);
         change(&mut off);
         let mut scene = Scene::new();
         let section = Section::new(1e-3, 1e3, 0.0);
@@ -520,17 +523,21 @@ fn a_bond_that_makes_no_sense_is_refused() {
         scene.build().err().expect("refused").to_string()
     };
     for (change, winch, says) in [
-        ((|off| off.peel = Some(-0.3)) as fn(&mut LiftOffSpec), false, "`peel` must not be negative"),
-        (|off| off.peel = Some(f64::NAN), false, "`peel` must not be negative"),
-        (|off| off.slip = 0.0, false, "slip"),
+        (
+            (|off| off.adhesion_energy = Some(-0.3)) as fn(&mut LiftOffSpec),
+            false,
+            "`adhesion_energy` must not be negative",
+        ),
+        (|off| off.adhesion_energy = Some(f64::NAN), false, "`adhesion_energy` must not be negative"),
+        (|off| off.slip_speed = 0.0, false, "slip_speed"),
         (|off| off.tangent = true, false, "nothing to peel it off"),
-        (|_| (), true, "two constraints feed at"),
-        (|off| off.peel = None, false, "no `winch`"),
+        (|_| (), true, "two constraints pay out at"),
+        (|off| off.adhesion_energy = None, false, "add a `winch`"),
     ] {
         let message = refused(change, winch);
         assert!(message.contains(says), "{message}");
     }
-    let without = r#"{"lift_off": {"name": "off", "marker": "fibre.end", "peel": 0.3}}"#;
+    let without = r#"{"lift_off": {"name": "off", "marker": "fibre.end", "adhesion_energy": 0.3}}"#;
     let message = serde_json::from_str::<Box<dyn ConstraintSpec>>(without).expect_err("refused").to_string();
     assert!(message.contains("package"), "{message}");
 }
@@ -561,7 +568,7 @@ fn finite_differences_and_finite_elements_agree_from_rest_to_15_knots() {
     let water = Water::default();
     let drag = DragSpec { cn: 1.2, ct: 0.01, ..DragSpec::default() };
 
-    let cable = fd::Cable { mass, diameter, bending: 0.0, curvature_limit: 1e4 };
+    let cable = fd::Cable { mass, diameter, ei: 0.0, curvature_limit: 1e4 };
     let draw = Arc::new(Straight::new([1.0, 0.0, 0.0], speed, 0.0, ramp).expect("ramp"));
     let rule = fd::Rule::Tension(fd::Pull { rest, time: Default::default(), per_speed2 });
     let package = Arc::new(spec.build().expect("package"));
@@ -576,7 +583,7 @@ fn finite_differences_and_finite_elements_agree_from_rest_to_15_knots() {
     let ea = 1840.0;
     let whole = (0.06_f64.powi(2) + 0.01).sqrt();
     let mut section = Section::new(mass, ea, 0.0);
-    (section.diameter, section.axial_damping, section.displaced) = (diameter, 1e-5, Some(0.0));
+    (section.diameter, section.axial_retardation_time, section.displaced) = (diameter, 1e-5, Some(0.0));
     let mut scene = Scene::new();
     scene.water = Some(water);
     scene.run.duration = time;
@@ -617,8 +624,8 @@ fn finite_differences_and_finite_elements_agree_from_rest_to_15_knots() {
         let part = s.model.part("fibre").expect("fibre");
         let row =
             history.rows.iter().min_by(|a, b| (a.t - t).abs().total_cmp(&(b.t - t).abs())).expect("row");
-        let front = part.front(0).expect("front");
-        let (speed_error, length) = (-front.rate(&at) - row.speed, part.length_now(&at));
+        let boundary = part.boundary(0).expect("boundary");
+        let (speed_error, length) = (-boundary.rate(&at) - row.speed, part.length_now(&at));
         // the strain of an element is right as its mean, and ripples about that
         let mut tension = 0.0_f64;
         for e in 0..20 {

@@ -175,7 +175,7 @@ fn what_is_wrong_is_said_with_its_place() {
     let scene = |of: &str| {
         format!(
             "title = \"x\"\n[run]\nduration = 0.01\n[[motions]]\ntype = \"rest\"\nname = \"draw\"\n[[processes]]\ntype = \
-             \"unwound_cable\"\nname = \"c\"\nmass = 1e-3\nmotion = \"draw\"\nrule = {{ tension = {{ rest = 1 }} }}\n{of}"
+             \"unwound_cable\"\nname = \"c\"\nmass = 1e-3\nmotion = \"draw\"\nrule = {{ tension = {{ tension = 1 }} }}\n{of}"
         )
     };
     let package = "[processes.package]\nradius = 0.06\nlength = 0.1\ndiameter = 1e-3\norigin = [0, 0, 0.1]\n";
@@ -183,15 +183,15 @@ fn what_is_wrong_is_said_with_its_place() {
         (scene(package), ""),
         (scene(&package.replace("radius = 0.06", "radius = -1")), "`radius` must be positive"),
         (scene(&format!("{package}pitch = 1e-4\n")), "below the diameter"),
-        (scene(&format!("{package}bend_limit = 0.1\n")), "may not be bent"),
+        (scene(&format!("{package}min_bend_radius = 0.1\n")), "may not be bent"),
         (scene(package).replace("motion = \"draw\"", "motion = \"pull\""), "there is no motion `pull`"),
         (scene(&format!("tangent = true\n{package}")), "without bending stiffness"),
-        (scene(&format!("segments = 2\n{package}")), "too few"),
+        (scene(&format!("elements = 2\n{package}")), "too few"),
         (scene(&format!("drag = {{}}\n{package}")), "[water] section"),
-        (scene(&format!("step = 0\n{package}")), "`h` must be positive"),
+        (scene(&format!("h = 0\n{package}")), "`h` must be positive"),
         (
             scene(&format!(
-                "{package}[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nmass = 1\nat = [0, 0, 0]\n"
+                "{package}[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nmass = 1\nmarker = [0, 0, 0]\n"
             )),
             "of its own",
         ),

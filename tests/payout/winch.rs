@@ -108,12 +108,12 @@ fn steadily(name: &str, speed: f64) -> ropewalk_constraints::motion::SpeedTableS
 
 #[test]
 fn top_tension_of_a_ramp_holds_the_acceleration() {
-    // T_top = (w - m dV/dt) L up to terms of order 1/EA; without the acceleration of the front it is 15 % off
+    // T_top = (w - m dV/dt) L up to terms of order 1/EA; without the acceleration of the boundary it is 15 % off
     let (m, g, l0) = (1.0, 8.0, 5.0);
     let mut last = f64::INFINITY;
     for ea in [1e4, 1e5, 1e6] {
         let mut section = Section::new(m, ea, 0.0);
-        section.axial_damping = 0.01;
+        section.axial_retardation_time = 0.01;
         let winch = WinchSpec { ramp: 2.0, ..WinchSpec::speed("winch", "rope.start", 2.0) };
         let scene = hanging(l0, 4, section, winch, g);
         let mut s = hang(&scene, &fixed(2e-3), ea, m * g, l0);
@@ -163,7 +163,7 @@ fn free_payout_follows_its_tension() {
         let mut errors = Vec::new();
         for ea in [1e4, 1e5, 1e6] {
             let mut section = Section::new(m, ea, 0.0);
-            section.axial_damping = 0.005;
+            section.axial_retardation_time = 0.005;
             let mut winch = WinchSpec::tension("winch", "rope.start", t0);
             winch.pile = pile;
             let scene = hanging(l0, 6, section, winch, g);
@@ -235,7 +235,7 @@ fn pendulum_of_changing_length() {
         let velocity = [v * theta.sin(), 0.0, -v * theta.cos()];
         let mut scene = Scene::new();
         let mut section = Section::new(1e-4, 1e6, 0.0);
-        section.axial_damping = 1e-3;
+        section.axial_retardation_time = 1e-3;
         scene
             .element(CableSpec { velocity, ..CableSpec::straight("rope", [0.0; 3], end, 2, section) })
             .element(PointMassSpec::new("bob", "rope.end", 1.0))
@@ -265,9 +265,9 @@ fn feeding_is_prescribed_by_a_constraint() {
         hanging(2.0, 3, Section::new(1.0, 1e5, 0.0), WinchSpec::speed("winch", "rope.start", 1.0), 9.81);
     let model = scene.build().expect("model");
     let part = model.part("rope").expect("rope");
-    let front = part.front(0).expect("a front");
+    let boundary = part.boundary(0).expect("a boundary");
     let motion = ropewalk_constraints::motion::Straight::new([1.0, 0.0, 0.0], 1.0, 0.0, 1.0).expect("ramp");
-    let feeding = Feeding::new("winch", front, std::sync::Arc::new(motion));
+    let feeding = Feeding::new("winch", boundary, std::sync::Arc::new(motion));
     let state = model.state();
     let at = ropewalk_core::At { t: 0.4, ..state.at() };
     assert!(ropewalk_core::testing::check_constraint(&feeding, model.nodes(), &at) < 1e-8);
@@ -335,8 +335,8 @@ enum Divided {
 fn hauled(way: f64, element: Option<f64>, eta: f64, divided: Divided, water: bool) -> Hauled {
     let (l0, ea, m) = (1.0, 1e6, 1.0);
     let mut section = Section::new(m, ea, 0.0);
-    (section.axial_damping, section.diameter) = (eta, 0.02);
-    let winch = WinchSpec { element, ..WinchSpec::motion("winch", "rope.start", "haul") };
+    (section.axial_retardation_time, section.diameter) = (eta, 0.02);
+    let winch = WinchSpec { element_length: element, ..WinchSpec::motion("winch", "rope.start", "haul") };
     let mut scene = match divided {
         Divided::Evenly(elements) => hanging(l0, elements, section, winch, 9.81),
         Divided::Into(lengths) => {
@@ -406,21 +406,21 @@ fn a_graded_end_stays_graded_while_it_feeds() {
     assert!(hauled.changes > 10 && hauled.tension < 5e-3 && hauled.tip < 1e-2, "{hauled:?}");
     assert!(hauled.jump < 5e-3 && hauled.impulse < 1e-4 && hauled.imbalance.abs() < 1e-5, "{hauled:?}");
 
-    let section = Section { axial_damping: 0.01, ..Section::new(1.0, 1e6, 0.0) };
+    let section = Section { axial_retardation_time: 0.01, ..Section::new(1.0, 1e6, 0.0) };
     let rope = CableSpec {
         mesh: Some(ropewalk_elements::cable::MeshSpec::Lengths(lengths)),
         ..CableSpec::straight("rope", [0.0; 3], [0.0, 0.0, -1.0], 0, section)
     };
-    let winch = WinchSpec { element: Some(0.4), ..WinchSpec::speed("winch", "rope.start", 1.0) };
+    let winch = WinchSpec { element_length: Some(0.4), ..WinchSpec::speed("winch", "rope.start", 1.0) };
     let scene = hung(rope.clone(), winch.clone(), 9.81);
     let mut s = Simulation::new(scene.build().expect("model"), &fixed(0.01), 4.0).expect("start");
     go(&mut s, 4.0);
-    let mesh = s.model.part("rope").expect("rope").mesh_now(&s.state.at());
+    let mesh = s.model.part("rope").expect("rope").line().expect("a line").mesh_now(&s.state.at());
     assert!(mesh.len() > 9);
     for (k, l) in [0.02, 0.03, 0.05].into_iter().enumerate() {
         assert!((mesh[k + 1] - mesh[k] - l).abs() < 1e-9, "{mesh:?}");
     }
-    let too_fine = WinchSpec { element: Some(0.49), ..winch };
+    let too_fine = WinchSpec { element_length: Some(0.49), ..winch };
     let rope = CableSpec { mesh: Some(ropewalk_elements::cable::MeshSpec::Lengths(vec![0.2; 5])), ..rope };
     let refused = hung(rope, too_fine, 9.81).build().err().expect("all elements are short").error;
     assert!(refused.message.contains("grade it less"), "{}", refused.message);
@@ -500,9 +500,9 @@ mod running {
         let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
         let mut state = model.state();
         // fixed in space while the material runs through
-        let fronts = 6 * (n + 1);
+        let boundaries = 6 * (n + 1);
         state.v.fill(0.0);
-        (state.v[fronts], state.v[fronts + 1]) = (line.v / stretch, line.v / stretch);
+        (state.v[boundaries], state.v[boundaries + 1]) = (line.v / stretch, line.v / stretch);
         // unknowns: y and y' of every node, without y at both ends
         let dofs: Vec<usize> =
             (0..=n).flat_map(|k| [6 * k + 1, 6 * k + 4]).filter(|&d| d != 1 && d != 6 * n + 1).collect();
@@ -602,8 +602,12 @@ fn strings_that_run_along_themselves_have_the_right_modes() {
 
 /// A cable in water that hangs from a moving point, with bending stiffness, damping and drag.
 fn wet() -> Scene {
-    let section =
-        Section { diameter: 0.02, axial_damping: 0.01, bending_damping: 0.01, ..Section::new(0.8, 1e4, 2.0) };
+    let section = Section {
+        diameter: 0.02,
+        axial_retardation_time: 0.01,
+        bending_retardation_time: 0.01,
+        ..Section::new(0.8, 1e4, 2.0)
+    };
     let mut scene = Scene::new();
     scene.water = Some(ropewalk_scene::Water::default());
     scene
@@ -654,7 +658,7 @@ fn an_eyelet_is_a_point_and_a_winch_in_one() {
         (
             &|s| {
                 s.motion(steadily("in", 1.5)).constraint(EyeletSpec {
-                    element: Some(0.5),
+                    element_length: Some(0.5),
                     ..EyeletSpec::motion("eyelet", "rope.start", "in")
                 });
             },
@@ -662,7 +666,7 @@ fn an_eyelet_is_a_point_and_a_winch_in_one() {
                 let winch = WinchSpec::motion("", "rope.start", "in");
                 s.motion(steadily("in", 1.5))
                     .constraint(SphericalSpec::pin("eyelet", "rope.start"))
-                    .constraint(feed(WinchSpec { element: Some(0.5), ..winch }));
+                    .constraint(feed(WinchSpec { element_length: Some(0.5), ..winch }));
             },
         ),
         // on a cart that runs by itself
@@ -708,7 +712,7 @@ fn what_no_eyelet_can_do_is_refused() {
     let speed = || EyeletSpec::speed("eyelet", "rope.start", -0.8);
     let tension = || EyeletSpec::tension("eyelet", "rope.start", 5.0);
     let cases: [(EyeletSpec, &str, &str); 14] = [
-        (EyeletSpec { speed: None, ..speed() }, "name", "say what draws the cable"),
+        (EyeletSpec { speed: None, ..speed() }, "name", "needs one of"),
         (EyeletSpec { motion: Some("course".into()), ..speed() }, "motion", "not both"),
         (EyeletSpec { tension: Some(5.0), ..speed() }, "tension", "the tension at this eyelet is a result"),
         (EyeletSpec { damping: 5.0, ..speed() }, "damping", "goes with `tension`"),
@@ -721,11 +725,19 @@ fn what_no_eyelet_can_do_is_refused() {
         (EyeletSpec { path: Some("corse".into()), ..speed() }, "path", "there is no motion `corse`"),
         (EyeletSpec { ramp: 0.0, ..speed() }, "ramp", "jump of velocity"),
         (EyeletSpec { stop: Some(0.5), ..speed() }, "stop", "before its speed has risen"),
-        (EyeletSpec { element: Some(4.0), ..speed() }, "element", "less than half of that"),
+        (EyeletSpec { element_length: Some(4.0), ..speed() }, "element_length", "less than half of that"),
         (EyeletSpec { shortest: Some(7.0), ..speed() }, "shortest", "must be less"),
         (EyeletSpec { marker: "rope@2m".into(), ..speed() }, "marker", "end of a cable"),
-        (EyeletSpec { pace: Some("corse".into()), ..tension() }, "pace", "there is no motion `corse`"),
-        (EyeletSpec { pace: Some("in".into()), ..tension() }, "pace", "not defined for ever"),
+        (
+            EyeletSpec { reference_speed: Some("corse".into()), ..tension() },
+            "reference_speed",
+            "there is no motion `corse`",
+        ),
+        (
+            EyeletSpec { reference_speed: Some("in".into()), ..tension() },
+            "reference_speed",
+            "not defined for ever",
+        ),
     ];
     for (spec, field, message) in cases {
         let mut scene = wet();
@@ -762,7 +774,7 @@ fn balance(speed: f64, h: f64) -> (f64, usize) {
         })
         .constraint(EyeletSpec {
             path: Some("heave".into()),
-            element: Some(0.7),
+            element_length: Some(0.7),
             start: 0.1,
             ramp: 0.5,
             stop: Some(2.6),
@@ -797,7 +809,7 @@ fn an_eyelet_that_moves_stays_on_its_path_over_changes_of_the_mesh() {
         let mut scene = wet();
         scene.constraint(EyeletSpec {
             path: Some("course".into()),
-            element: Some(0.5),
+            element_length: Some(0.5),
             ..EyeletSpec::speed("eyelet", "rope.start", speed)
         });
         let mut s = Simulation::new(scene.build().unwrap_or_else(|e| panic!("{e}")), &fixed(2e-3), 2.0)

@@ -145,7 +145,7 @@ fn pipes_and_devices_are_refused_as_scene_table_and_mesh() {
     refuse(folder.path(), &["run", "fifo.toml"])
         .refused(&["`fifo.toml` is a pipe or a device", "/dev/stdin"]);
     refuse(folder.path(), &["run", "/dev/zero"]).refused(&["`/dev/zero` is a pipe or a device"]);
-    let mass = "[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nat = [0, 0, 0]\nmass = 1\n";
+    let mass = "[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nmarker = [0, 0, 0]\nmass = 1\n";
     for file in ["fifo.csv", "/dev/zero"] {
         let motion = format!("[[motions]]\ntype = \"speed_table\"\nname = \"launch\"\nfile = \"{file}\"\n");
         refuse_scene(folder.path(), &(mass.to_string() + &motion)).refused(&["is a pipe or a device"]);
@@ -163,7 +163,7 @@ fn pipes_and_devices_are_refused_as_scene_table_and_mesh() {
 #[test]
 fn a_history_without_end_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let mass = "[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nat = [0, 0, 0]\nmass = 1\n";
+    let mass = "[[elements]]\ntype = \"point_mass\"\nname = \"m\"\nmarker = [0, 0, 0]\nmass = 1\n";
     let said = refuse_scene(folder.path(), &format!("[run]\noutput = 1e-300\n{mass}"));
     said.refused(&["a history of 1e300 rows is too long"]);
     assert_eq!(place(&said), (2, "1e-300".into()));
@@ -181,7 +181,12 @@ fn zero_and_negative_numbers_are_refused_where_they_make_no_sense() {
         ("diameter = 0.02 ", "diameter = -0.02 ", "-0.02", &["`diameter` must not be negative"]),
         ("diameter = 0.02 ", "diameter = 0 ", "[[forces]]", &["drag needs a diameter, and `line` has none"]),
         ("flooded = 0.1 ", "flooded = -0.1 ", "-0.1", &["`flooded` must not be negative"]),
-        ("axial_damping = 0.001", "axial_damping = -1", "-1", &["`axial_damping` must not be negative"]),
+        (
+            "axial_retardation_time = 0.001",
+            "axial_retardation_time = -1",
+            "-1",
+            &["`axial_retardation_time` must not be negative"],
+        ),
         ("elements = 4 # line", "elements = 0", "0", &["`elements` must be between 1 and 1000000"]),
         ("elements = 4 # line", "elements = -4", "-4", &[]),
         ("elements = 4 # line", "elements = 2.5", "2.5", &[]),
@@ -470,8 +475,8 @@ fn joints_that_hold_nothing_are_refused() {
             ("axis = [0, 0, 1] # cross", "", "[[constraints]]", &["`axis` is missing"]),
             ("axis = [1, 0, 0] # guide", "axis = [0, 0]", "[0, 0]", &["expected a list of 3"]),
             (
-                "of = \"cross\"",
-                "of = \"gross\"",
+                "constraint = \"cross\"",
+                "constraint = \"gross\"",
                 "\"gross\"",
                 &["no constraint `gross`", "`bearing`, `cross`, `guide`"],
             ),

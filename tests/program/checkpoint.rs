@@ -29,7 +29,7 @@ impl Observer for Keeper {
         true
     }
     fn sample(&mut self, s: &Sample<'_>) -> ControlFlow<()> {
-        let all = [&[s.at.t, s.audit.dissipated][..], s.at.q, s.at.v, s.at.a, s.lambda, s.at.modes];
+        let all = [&[s.at.t, s.audit.dissipated][..], s.at.q, s.at.v, s.at.a, s.lambda, s.at.internal];
         self.samples.extend(all.iter().flat_map(|x| x.iter()).map(|x| x.to_bits()));
         ControlFlow::Continue(())
     }
@@ -203,7 +203,7 @@ fn killed_run_is_resumed_and_leaves_the_results_of_one_that_was_not() {
 
 /// The same cable, drawn through a ring: elements are swallowed and born all the time.
 fn drawn() -> String {
-    let ring = "[[constraints]]\ntype = \"eyelet\"\nname = \"hook\"\nmarker = \"rope.start\"\nspeed = 1\nramp = 0.02\nelement = \"40 mm\"\n";
+    let ring = "[[constraints]]\ntype = \"eyelet\"\nname = \"hook\"\nmarker = \"rope.start\"\nspeed = 1\nramp = 0.02\nelement_length = \"40 mm\"\n";
     let hook = "[[constraints]]\ntype = \"spherical\"\nname = \"hook\"\nmarker = \"rope.start\"\n";
     assert!(SWING.contains(hook));
     SWING.replace(hook, ring)

@@ -197,7 +197,7 @@ fn a_profile_tells_the_time_of_every_term() {
     assert!(report.contains("profile") && report.contains(" %"), "{report}");
     let summary = json(folder.path().join("out/summary.json"));
     let profile = summary["profile"].as_array().unwrap();
-    for label in ["cable", "weight", "constraints", "factorisation", "solution", "integrator"] {
+    for label in ["cable", "weight", "constraints", "factorisation", "solution", "step control"] {
         let entry = profile.iter().find(|e| e["label"].as_str().unwrap().contains(label));
         let entry = entry.unwrap_or_else(|| panic!("no {label} in {profile:?}"));
         assert!(entry["calls"].as_u64() > Some(0) && entry["seconds"].as_f64() >= Some(0.0));
@@ -259,7 +259,7 @@ fn json_scenes_are_read_too() {
     let scene = r#"{
         "title": "A weight in free fall",
         "run": { "duration": "1 s" },
-        "elements": [{ "type": "point_mass", "name": "stone", "at": [0, 0, 5], "mass": "2 kg" }],
+        "elements": [{ "type": "point_mass", "name": "stone", "marker": [0, 0, 5], "mass": "2 kg" }],
         "forces": [{ "type": "gravity" }],
         "records": [{ "type": "position", "of": "stone" }]
     }"#;
@@ -396,7 +396,7 @@ fn what_was_computed_is_kept_when_the_solver_gives_up() {
 [[elements]]
 type = "point_mass"
 name = "weight"
-at = [0, 0, -1]
+marker = [0, 0, -1]
 mass = "1 kg"
 
 [[constraints]]

@@ -8,4 +8,5 @@ mod checkpoint;
 mod cli;
 mod examples;
 mod plugin;
+mod stopping;
 mod verification;

@@ -2,14 +2,13 @@
 //! says, writes and refuses.
 
 use crate::program::run;
-use ropewalk::report::ProgressMode;
-use ropewalk::verify::{Followed, case, cases, heading, lines};
+use ropewalk::report::{ProgressMode, Watch};
+use ropewalk::verify::{case, cases, heading, lines};
 use std::fs;
 
 #[track_caller]
 fn within(name: &str) {
-    let outcome =
-        case(name).expect("a case").run(Followed { progress: ProgressMode::Quiet, interrupt: None });
+    let outcome = case(name).expect("a case").run(ProgressMode::Quiet, Watch::default());
     println!("{}\n{}", heading(&outcome), lines(&outcome).join("\n"));
     assert!(outcome.is_within(), "{}\n{}", heading(&outcome), lines(&outcome).join("\n"));
 }

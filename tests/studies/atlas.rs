@@ -24,7 +24,7 @@ snapshots = 11
 [[elements]]
 type = "point_mass"
 name = "weight"
-at = "$end"
+marker = "$end"
 mass = "1 kg"
 
 [[constraints]]

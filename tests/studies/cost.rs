@@ -23,13 +23,13 @@ output = "0.05 s"
 [[elements]]
 type = "point_mass"
 name = "upper"
-at = [1, 0, 0]
+marker = [1, 0, 0]
 mass = "1 kg"
 
 [[elements]]
 type = "point_mass"
 name = "lower"
-at = [1, 0, 1]
+marker = [1, 0, 1]
 mass = "1 kg"
 
 [[constraints]]
@@ -261,7 +261,7 @@ fn certificates_name_the_cause() {
         format!(
             "[run]\nduration = '0.5 s'\noutput = '0.01 s'\n[solver]\n{solver}\n[[elements]]\ntype = 'cable'\nname = 'c'\n\
              points = [[0, 0, 0], [1, 0, 0]]\nelements = {elements}\n\
-             section = {{ mass = 1, ea = 1e4, ei = 0.1, axial_damping = 0.01, bending_damping = 0.01 }}\n\
+             section = {{ mass = 1, ea = 1e4, ei = 0.1, axial_retardation_time = 0.01, bending_retardation_time = 0.01 }}\n\
              [[constraints]]\ntype = 'spherical'\nname = 'h'\nmarker = 'c.start'\n[[forces]]\ntype = 'gravity'\n\
              [[records]]\ntype = 'position'\nof = 'c.end'\n"
         )

@@ -11,8 +11,8 @@ use ropewalk::forces::{AddedMass, DragSpec, Spring};
 use ropewalk::scene::records::PositionSpec;
 use ropewalk::scene::{Builder, ForceSpec, Format, register_spec};
 use ropewalk::{
-    Deed, EffectsOptions, Ledger, Manifest, Scene, SceneFile, Simulation, Verdict, Water, bundled, effects,
-    simulate,
+    EffectWork, EffectsOptions, Ledger, Manifest, Scene, SceneFile, Simulation, Verdict, Water, bundled,
+    effects, simulate,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -68,7 +68,7 @@ const MANIFESTS: [(&str, &str, &str, &str, [usize; 3]); 8] = [
         "unwinding",
         "flowing cable L4+T3 locking-free; open end L4+T3; axial damping L4 lob3 of a flowing cable; eyelet.feed; cable: drag",
         "eyelet spool package",
-        "eyelet.tension lift_off.tension cable.length drawn.fed drawn.speed peeled.fed peeled.speed peeled.pull lift_off.x \
+        "eyelet.tension lift_off.tension cable.length drawn.payout drawn.payout_rate peeled.payout peeled.payout_rate peeled.pull lift_off.x \
          lift_off.y lift_off.z centre.x centre.y centre.z centre.acceleration.ax centre.acceleration.ay \
          centre.acceleration.az cable.cn@25% cable.cn@50% cable.cn@75% lift_off.curvature energy.kinetic energy.potential energy.supplied energy.dissipated \
          energy.imbalance",
@@ -295,8 +295,8 @@ fn ledger(scene: &Scene, record: &str) -> Ledger {
     effects(scene, record, &EffectsOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn deed<'a>(ledger: &'a Ledger, effect: &str) -> &'a Deed {
-    ledger.deeds.iter().find(|d| d.effect == effect).unwrap_or_else(|| panic!("{effect}: {:?}", ledger.deeds))
+fn work<'a>(ledger: &'a Ledger, effect: &str) -> &'a EffectWork {
+    ledger.work.iter().find(|w| w.effect == effect).unwrap_or_else(|| panic!("{effect}: {:?}", ledger.work))
 }
 
 #[test]
@@ -326,14 +326,14 @@ fn the_ledger_adds_up_and_knows_what_effects_do() {
     assert_eq!(calls("cable: weight"), calls("constraints"));
 
     // the work of all effects is nothing but the error of the balance
-    let sum: f64 = found.deeds.iter().map(|d| d.work).sum();
+    let sum: f64 = found.work.iter().map(|w| w.work).sum();
     assert!((sum + audit.imbalance()).abs() < 1e-9 * audit.scale, "{sum} and {}", audit.imbalance());
     // and that of weight, height by mass
     let fallen = |name: &str| {
         let z = history.column("cable.end.z").expect("z");
         (z[0] - z[z.len() - 1]) * if name == "bob" { 9.81 } else { f64::NAN }
     };
-    let weight = deed(&found, "bob: weight");
+    let weight = work(&found, "bob: weight");
     assert!(
         (weight.work - fallen("bob")).abs() < 1e-9 * weight.work.abs(),
         "{} and {}",
@@ -341,8 +341,8 @@ fn the_ledger_adds_up_and_knows_what_effects_do() {
         fallen("bob")
     );
     assert!((weight.peak - 9.81).abs() < 1e-12, "{}", weight.peak);
-    assert!((deed(&found, "cable: weight").peak - 2.0 * 2.0 * 9.81).abs() < 1e-9);
-    assert!(deed(&found, "cable: drag").work < 0.0 && deed(&found, "cable: drag").peak > 0.0);
+    assert!((work(&found, "cable: weight").peak - 2.0 * 2.0 * 9.81).abs() < 1e-9);
+    assert!(work(&found, "cable: drag").work < 0.0 && work(&found, "cable: drag").peak > 0.0);
 }
 
 #[test]
@@ -395,11 +395,11 @@ fn removing_an_effect_saves_the_work_that_the_ledger_says() {
 fn equilibria_and_growing_meshes_have_a_ledger_too() {
     let scene = open("cantilever", &[]).into_scene();
     let found = ledger(&scene, "beam.end.z");
-    let work = |effect: &str| deed(&found, effect).work;
+    let done = |effect: &str| work(&found, effect).work;
     // what the force does, by the trapezoidal rule over ten steps, is stored
-    let (force, cable) = (work("force at `beam.end`"), work("cable L4+T3 locking-free"));
+    let (force, cable) = (done("force at `beam.end`"), done("cable L4+T3 locking-free"));
     assert!((force + cable).abs() < 0.01 * force && force > 0.5, "{force} and {cable}");
-    assert!((deed(&found, "force at `beam.end`").peak - 3.0).abs() < 1e-12);
+    assert!((work(&found, "force at `beam.end`").peak - 3.0).abs() < 1e-12);
     assert!(found.own_error.is_none());
 
     // elements are born while the clocks run
@@ -427,7 +427,7 @@ type = "cable"
 name = "rope"
 points = [[0, 0, 0], [0, 0, -4]]
 elements = 4
-section = { mass = "1 kg/m", ea = "1e5 N", ei = "0.1 N m^2", axial_damping = "0.01 s" }
+section = { mass = "1 kg/m", ea = "1e5 N", ei = "0.1 N m^2", axial_retardation_time = "0.01 s" }
 [[constraints]]
 type = "spherical"
 name = "eyelet"
@@ -437,7 +437,7 @@ type = "winch"
 name = "winch"
 marker = "rope.start"
 speed = "1 m/s"
-element = "1 m"
+element_length = "1 m"
 [[forces]]
 type = "gravity"
 [[records]]

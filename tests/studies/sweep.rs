@@ -41,7 +41,7 @@ type = "gravity"
 [[elements]]
 type = "point_mass"
 name = "weight"
-at = [0, 0, -1]
+marker = [0, 0, -1]
 mass = "1 kg"
 
 [[constraints]]
@@ -136,12 +136,12 @@ output = "0.05 s"
 [[elements]]
 type = "point_mass"
 name = "swinging"
-at = [1, 0, 0]
+marker = [1, 0, 0]
 mass = "$mass"
 [[elements]]
 type = "point_mass"
 name = "damped"
-at = [1, 0, 5]
+marker = [1, 0, 5]
 mass = "$mass"
 [[forces]]
 type = "spring"
@@ -218,7 +218,7 @@ fn every_combination_is_the_run_that_one_would_make_alone() {
     let folder = folder();
     let at = |path: &str| folder.path().join(path);
     let report = done(sweep(folder.path(), &format!("{GRID} --jobs 2")));
-    for word in ["mass [kg/m]", "6 finished", "of CPU", "runs/swing-sweep", "table.csv"] {
+    for word in ["mass [kg/m]", "6 finished", "CPU time", "runs/swing-sweep", "table.csv"] {
         assert!(report.contains(word), "no {word} in\n{report}");
     }
     let rows = table(at("runs/swing-sweep/table.csv"));

@@ -2,7 +2,7 @@
 //! without friction are a case of the verification suite.
 
 use ropewalk_constraints::motion::StraightSpec;
-use ropewalk_constraints::{ClampSpec, DrivingSpec, RevoluteSpec, SphericalSpec};
+use ropewalk_constraints::{DirectionSpec, DrivingSpec, RevoluteSpec, SphericalSpec};
 use ropewalk_core::integrator::{Options, StepReport, Stepping};
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{End, Model, Observer, Quantity, Simulation, State};
@@ -44,7 +44,7 @@ fn near(got: f64, wanted: f64, relative: f64) {
 fn shown(model: &Model, state: &State, force: &str) -> Vec<f64> {
     let term = model.terms().iter().find(|t| t.label() == force).expect(force);
     let mut out = Vec::new();
-    term.observe(&state.at(), &mut out);
+    term.shows().unwrap().observe(&state.at(), &mut out);
     out
 }
 
@@ -109,7 +109,7 @@ fn drum(radius: f64, stiffness_per_length: f64) -> ContactSpec {
 #[test]
 fn tension_along_a_slipping_rope_falls_exponentially() {
     let (radius, d, mu, pull) = (0.5, 0.01, 0.3, 100.0);
-    let section = Section { diameter: d, axial_damping: 2e-3, ..Section::new(0.1, 1e5, 0.0) };
+    let section = Section { diameter: d, axial_retardation_time: 2e-3, ..Section::new(0.1, 1e5, 0.0) };
     let mut scene = Scene::new();
     scene.motion(StraightSpec {
         name: "winch".into(),
@@ -195,7 +195,7 @@ fn statics_lays_a_cable_on_the_floor() {
     scene
         .element(CableSpec::straight("cable", [0.0, 0.0, 0.2], [3.0, 0.0, 0.2], 60, section))
         .constraint(SphericalSpec::pin("pin", "cable.start"))
-        .constraint(ClampSpec::new("clamp", "cable.start"))
+        .constraint(DirectionSpec::new("clamp", "cable.start"))
         .force(GravitySpec::default())
         .force(ContactSpec {
             stiffness_per_length: 1e5,
@@ -226,7 +226,7 @@ fn fixed_steps_pass_from_slip_to_stick() {
     assert_eq!(s.work.counts.rejected, 0, "{:?}", s.work.counts);
 
     // a rope that is let go over a drum, slipping here and sticking there
-    let section = Section { diameter: 0.02, axial_damping: 1e-3, ..Section::new(1.0, 1e6, 0.5) };
+    let section = Section { diameter: 0.02, axial_retardation_time: 1e-3, ..Section::new(1.0, 1e6, 0.5) };
     let mut scene = Scene::new();
     scene.element(rope(over(0.51, 1.0, 1.2), 100, section)).force(GravitySpec::default()).force(
         ContactSpec {
@@ -246,7 +246,7 @@ fn fixed_steps_pass_from_slip_to_stick() {
 fn a_drum_turns_with_the_rope_that_it_carries() {
     // Atwood's machine with a heavy pulley and a light rope that sticks
     let (radius, d, m, rho) = (0.2, 0.004, [1.2, 1.0], 0.05);
-    let section = Section { diameter: d, axial_damping: 1e-3, ..Section::new(rho, 1e5, 0.0) };
+    let section = Section { diameter: d, axial_retardation_time: 1e-3, ..Section::new(rho, 1e5, 0.0) };
     let inertia = 0.02;
     let mut wheel = RigidBodySpec::new("wheel", [0.0; 3], 2.0, [inertia; 3]);
     // a shape on a body turns with it, so its axes are those of the body
@@ -268,7 +268,7 @@ fn a_drum_turns_with_the_rope_that_it_carries() {
             on: vec!["rope".into()],
             marker: "wheel".into(),
             friction: Some(Friction::new(1.0)),
-            damping: Damping::KelvinVoigt { time: 1e-3, until: Leaving::Force },
+            damping: Damping::KelvinVoigt { retardation_time: 1e-3, until: Leaving::Force },
             ..drum(radius - d / 2.0, 1e6)
         });
     let mut s = start(&scene, &controlled(1e-5), 0.6);
@@ -294,7 +294,7 @@ fn a_ball_that_slides_begins_to_roll() {
     body.velocity = [2.0, 0.0, 0.0];
     let mut scene = Scene::new();
     scene.element(body).force(GravitySpec::default()).force(ContactSpec {
-        at: vec!["ball.com".into()],
+        points: vec!["ball.com".into()],
         radius: Some(radius),
         friction: Some(Friction::new(mu)),
         ..floor(k)
@@ -575,7 +575,7 @@ fn keys_that_are_gone_say_what_to_do() {
         [[elements]]
         type = "point_mass"
         name = "stone"
-        at = [0, 0, 1]
+        marker = [0, 0, 1]
         mass = 1
         [[forces]]
         type = "contact"
@@ -587,7 +587,7 @@ fn keys_that_are_gone_say_what_to_do() {
     "#;
     fs::write(&file, text).unwrap();
     let message = ropewalk::read(&file).expect_err("refused").to_string();
-    says(&message, &["`per_element` is gone", "Leave it out"]);
+    says(&message, &["`per_element` is gone", "leave `per_element` out"]);
     fs::write(&file, text.replace("per_element = 3", "slip_speed = 1e-3")).unwrap();
     let message = ropewalk::read(&file).expect_err("refused").to_string();
     says(&message, &["`slip_speed` is gone", "`friction = { mu = 0.3, elastic_slip"]);
@@ -610,7 +610,7 @@ fn a_scene_file_has_contact_and_shows_its_force() {
         [[elements]]
         type = "point_mass"
         name = "stone"
-        at = [0, 0, "49.99019 mm"]
+        marker = [0, 0, "49.99019 mm"]
         mass = 1
         [[forces]]
         type = "gravity"
@@ -629,7 +629,7 @@ fn a_scene_file_has_contact_and_shows_its_force() {
         marker = [1, 0, 0]
         radius = "5 cm"
         stiffness = 1e6
-        damping = { kelvin_voigt = { time = "0.1 ms", until = "depth" } }
+        damping = { kelvin_voigt = { retardation_time = "0.1 ms", until = "depth" } }
         [[forces]]
         type = "contact"
         name = "rock"

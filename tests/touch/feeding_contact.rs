@@ -30,11 +30,11 @@ fn scene(speed: f64, more: &str, contact: &str) -> String {
         curve = {points:?}
         elements = 60
         tension = {tension}
-        section = {{ mass = {MASS}, ea = {EA}, diameter = 0.01, axial_damping = 2e-2 }}
+        section = {{ mass = {MASS}, ea = {EA}, diameter = 0.01, axial_retardation_time = 2e-2 }}
         [[elements]]
         type = "point_mass"
         name = "load"
-        at = "rope.end"
+        marker = "rope.end"
         mass = {LOAD}
         [[constraints]]
         type = "spherical"
@@ -73,7 +73,7 @@ fn scene(speed: f64, more: &str, contact: &str) -> String {
     )
 }
 
-const SMOOTH: &str = "stiffness_per_length = 1e6\ndamping = { kelvin_voigt = { time = 1e-3 } }";
+const SMOOTH: &str = "stiffness_per_length = 1e6\ndamping = { kelvin_voigt = { retardation_time = 1e-3 } }";
 
 fn file(text: &str) -> SceneFile {
     SceneFile::parse(text, "feeding", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"))
@@ -85,7 +85,7 @@ fn run(text: &str) -> History {
 
 #[test]
 fn what_a_winch_pays_out_runs_over_a_smooth_drum() {
-    for (speed, more) in [(0.3, ""), (-0.3, ""), (0.3, "element = 0.05")] {
+    for (speed, more) in [(0.3, ""), (-0.3, ""), (0.3, "element_length = 0.05")] {
         let h = run(&scene(speed, more, SMOOTH));
         let (t, z) = (h.times(), h.column("load.z").unwrap());
         let at = |time: f64| z[t.iter().position(|t| (t - time).abs() < 1e-9).unwrap()];
@@ -114,7 +114,9 @@ fn tangents_of_what_runs_are_those_of_its_force() {
     let turning = "marker = \"wheel\"\nstiffness_per_length = 1e4\ndamping = { hunt_crossley = 2.0 }";
     let wheel = "[[elements]]\ntype = \"rigid_body\"\nname = \"wheel\"\nposition = [0, 0, 0]\nmass = 3\ninertia = [1, 1, 1]\n";
     let ground = turning.replace("marker = \"wheel\"", "");
-    for (more, contact) in [("", ground.as_str()), ("element = 0.05\n", ground.as_str()), (wheel, turning)] {
+    for (more, contact) in
+        [("", ground.as_str()), ("element_length = 0.05\n", ground.as_str()), (wheel, turning)]
+    {
         // 3 mm deep
         let text = scene(0.3, more, contact).replace("radius = 0.295", "radius = 0.298");
         let text = text.replace("name = \"drum\"", "name = \"drum\"\n        overlap = \"allow\"");

@@ -164,7 +164,7 @@ fn a_sphere_that_slides_begins_to_roll() {
         body.velocity = [v, 0.0, 0.0];
         let mut scene = Scene::new();
         scene.element(body).force(GravitySpec::default()).force(ContactSpec {
-            at: vec!["ball.com".into()],
+            points: vec!["ball.com".into()],
             radius: Some(r),
             ..floor(k, Friction::new(mu))
         });
@@ -184,7 +184,7 @@ fn a_checkpoint_keeps_what_friction_remembers() {
     let mut one = Simulation::new(slope().build().unwrap(), &options, 1.0).unwrap();
     one.advance(0.1, f64::INFINITY, &mut ()).unwrap();
     let kept = one.checkpoint().unwrap();
-    assert!(kept.state.modes.iter().any(|m| *m != 0.0));
+    assert!(kept.state.internal.iter().any(|m| *m != 0.0));
     let mut two = Simulation::restore(slope().build().unwrap(), &options, 1.0, kept).unwrap();
     for s in [&mut one, &mut two] {
         s.advance(1.0, f64::INFINITY, &mut ()).unwrap();
@@ -207,7 +207,7 @@ fn over(radius: f64, side: f64) -> Vec<[f64; 3]> {
 fn a_rope_on_a_drum_slips_where_it_must_and_holds_where_it_can() {
     // 100 N at both ends, then 150, 110 and 150 N at one: what has slipped keeps its tension until it slips back
     let (radius, d, mu) = (0.5, 0.01, 0.3);
-    let section = Section { diameter: d, axial_damping: 5e-3, ..Section::new(0.05, 1e5, 0.0) };
+    let section = Section { diameter: d, axial_retardation_time: 5e-3, ..Section::new(0.05, 1e5, 0.0) };
     let mut rope = CableSpec::straight("rope", [0.0; 3], [1.0, 0.0, 0.0], 60, section);
     // as deep in the drum as it will be
     let k = 3e7;
@@ -224,7 +224,7 @@ fn a_rope_on_a_drum_slips_where_it_must_and_holds_where_it_can() {
         .force(ContactSpec {
             stiffness_per_length: k,
             friction: Some(Friction::new(mu)),
-            damping: Damping::KelvinVoigt { time: 1e-3, until: Leaving::Force },
+            damping: Damping::KelvinVoigt { retardation_time: 1e-3, until: Leaving::Force },
             ..ContactSpec::new("drum", shape)
         });
     let model = scene.build().unwrap_or_else(|e| panic!("{e}"));

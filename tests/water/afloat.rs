@@ -47,7 +47,7 @@ fn a_buoy_floats() {
             [[elements]]
             type = "point_mass"
             name = "buoy"
-            at = [0, 0, -10]
+            marker = [0, 0, -10]
             mass = 100
             volume = 0.2
             added_mass = 50
@@ -324,7 +324,8 @@ fn a_hull_has_the_drag_of_its_faces_its_side_and_its_skin() {
 
 #[test]
 fn what_makes_no_sense_is_refused() {
-    let ball = "[[elements]]\ntype = \"point_mass\"\nname = \"b\"\nat = [0, 0, 0]\nmass = 1\nvolume = 1\n";
+    let ball =
+        "[[elements]]\ntype = \"point_mass\"\nname = \"b\"\nmarker = [0, 0, 0]\nmass = 1\nvolume = 1\n";
     let tilted = refused(&format!("gravity = [1, 0, -9]\n[water]\nlevel = 0\n{ball}{WEIGHT}"));
     assert!(tilted.contains("make it point down"), "{tilted}");
     let air = refused(&format!("[water]\n[air]\n{ball}{WEIGHT}"));

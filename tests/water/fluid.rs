@@ -30,7 +30,7 @@ fn noise(n: usize, seed: u64, size: f64) -> Vec<f64> {
 
 fn kinetic(model: &Model, q: &[f64], v: &[f64]) -> f64 {
     let a = vec![0.0; v.len()];
-    model.energy(&At { t: 0.0, q, v, a: &a, modes: &[], relaxed: None }).kinetic
+    model.energy(&At { t: 0.0, q, v, a: &a, internal: &[], relaxed: None }).kinetic
 }
 
 /// Lagrange's equations of the kinetic energy, by differences, are what the forces are: for a cable that moves in any way in
@@ -77,7 +77,7 @@ fn forces_are_those_of_the_energy() {
         let mut sys = System::default();
         let rest = vec![0.0; n];
         let mut residual = |v: &[f64], a: &[f64]| {
-            let at = At { t: 0.0, q: &q, v, a, modes: &[], relaxed: None };
+            let at = At { t: 0.0, q: &q, v, a, internal: &[], relaxed: None };
             model.assemble(&at, &[], None, &mut sys);
             sys.residual.clone()
         };
@@ -193,9 +193,11 @@ fn a_free_cable_keeps_what_its_ends_do_not_shed() {
 /// A cable that is fed out or reeled in under water while its eyelet moves: the water beside it is closed, and keeps its balance.
 #[test]
 fn the_water_beside_a_cable_that_feeds_keeps_its_balance() {
-    for (speed, current, element) in
-        [(0.8, "[0, 0, 0]", ""), (-0.5, "[0.3, 0.2, 0]", ""), (0.8, "[0.3, 0.2, 0.1]", "element = 0.25")]
-    {
+    for (speed, current, element) in [
+        (0.8, "[0, 0, 0]", ""),
+        (-0.5, "[0.3, 0.2, 0]", ""),
+        (0.8, "[0.3, 0.2, 0.1]", "element_length = 0.25"),
+    ] {
         let left = |elements: usize| {
             let h = run(&format!(
                 r#"
@@ -258,7 +260,7 @@ fn growth(ends: &str, beta: f64, u: f64, tail: f64) -> f64 {
     let clamp = |end: &str| {
         format!(
             "[[constraints]]\ntype = \"spherical\"\nname = \"pin {end}\"\nmarker = \"cylinder.{end}\"\n\
-             [[constraints]]\ntype = \"clamp\"\nname = \"clamp {end}\"\nmarker = \"cylinder.{end}\"\n"
+             [[constraints]]\ntype = \"direction\"\nname = \"clamp {end}\"\nmarker = \"cylinder.{end}\"\n"
         )
     };
     let pin = |end: &str| {

@@ -61,7 +61,7 @@ fn a_mass_on_a_body_is_where_it_was_put() {
     let inertia = [1e-3, 0.08333, 0.08333];
     let apart = rod(
         "mass = 1\ninertia = [1e-3, 0.08333, 0.08333]\ncentre = [0.5, 0, 0]",
-        "[[elements]]\ntype = \"point_mass\"\nname = \"lump\"\nat = \"rod.side\"\nmass = 5\n",
+        "[[elements]]\ntype = \"point_mass\"\nname = \"lump\"\nmarker = \"rod.side\"\nmass = 5\n",
     );
     let total = rod_mass + mass;
     let centre: [f64; 3] = std::array::from_fn(|i| (rod_mass * own[i] + mass * place[i]) / total);
@@ -100,7 +100,7 @@ fn gravity_counts_once_and_is_one() {
         [[elements]]
         type = "point_mass"
         name = "ball"
-        at = [0, 0, 0]
+        marker = [0, 0, 0]
         mass = 1
         volume = 1e-3
         [[forces]]
@@ -111,11 +111,11 @@ fn gravity_counts_once_and_is_one() {
     // where older scenes had it
     for kind in ["gravity", "buoyancy"] {
         let old = format!(
-            "[[elements]]\ntype = \"point_mass\"\nname = \"b\"\nat = [0, 0, 0]\nmass = 1\n[[forces]]\ntype = \"{kind}\"\ng = [0, 0, -1.62]\n"
+            "[[elements]]\ntype = \"point_mass\"\nname = \"b\"\nmarker = [0, 0, 0]\nmass = 1\n[[forces]]\ntype = \"{kind}\"\ng = [0, 0, -1.62]\n"
         );
         let moved = refused(&old);
-        assert!(moved.contains("unknown field `g`"), "{moved}");
         assert!(moved.contains("gravity belongs to the scene"), "{moved}");
+        assert!(moved.contains("`ropewalk migrate world` rewrites the scene"), "{moved}");
         assert!(moved.contains("world:8:1"), "{moved}");
     }
     // one for each part is fine

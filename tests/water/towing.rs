@@ -11,7 +11,7 @@ use ropewalk_scene::Scene;
 
 /// Nearly inextensible and limp, with a little damping against axial ringing.
 fn limp(ea: f64, ei: f64) -> Section {
-    Section { axial_damping: 1e-3, ..hose(ea, ei) }
+    Section { axial_retardation_time: 1e-3, ..hose(ea, ei) }
 }
 
 /// End relative to the ship's point, and the force on the ship, after a run.

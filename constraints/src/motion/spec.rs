@@ -14,11 +14,11 @@ fn ahead() -> V3<f64> {
     [1.0, 0.0, 0.0]
 }
 
-/// Stays where it is.
+/// At rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RestSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
 }
 register_spec!(Motion, "rest", RestSpec);
@@ -33,11 +33,11 @@ impl MotionSpec for RestSpec {
     }
 }
 
-/// Rests, then runs straight ahead; the speed rises smoothly.
+/// At rest, then straight ahead; the speed rises smoothly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StraightSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
     /// Speed after the ramp [m/s].
     #[serde(deserialize_with = "quantity::speed")]
@@ -45,7 +45,7 @@ pub struct StraightSpec {
     /// Direction of travel.
     #[serde(default = "ahead")]
     pub direction: V3<f64>,
-    /// Time at which it starts [s].
+    /// Start time [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
     /// Time in which the speed rises [s].
@@ -84,11 +84,11 @@ impl From<Towards> for Side {
     }
 }
 
-/// Rests, then runs on a circle from the first moment; the speed rises smoothly.
+/// At rest, then on a circle from the first moment; the speed rises smoothly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CircleSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
     /// Speed after the ramp [m/s].
     #[serde(deserialize_with = "quantity::speed")]
@@ -99,10 +99,10 @@ pub struct CircleSpec {
     /// Direction of travel at the start, horizontal.
     #[serde(default = "ahead")]
     pub heading: V3<f64>,
-    /// Which way it turns.
+    /// Side to which it turns.
     #[serde(default)]
     pub towards: Towards,
-    /// Time at which it starts [s].
+    /// Start time [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
     /// Time in which the speed rises [s].
@@ -122,11 +122,11 @@ impl MotionSpec for CircleSpec {
     }
 }
 
-/// Runs straight and then turns: speed and, later, yaw rate rise smoothly.
+/// Straight ahead, then a turn: the speed and, later, the yaw rate rise smoothly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TurnSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
     /// Speed after the ramp [m/s].
     #[serde(deserialize_with = "quantity::speed")]
@@ -137,16 +137,16 @@ pub struct TurnSpec {
     /// Direction of travel at the start, horizontal.
     #[serde(default = "ahead")]
     pub heading: V3<f64>,
-    /// Which way it turns.
+    /// Side to which it turns.
     #[serde(default)]
     pub towards: Towards,
-    /// Time at which it starts to run [s].
+    /// Start time [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
     /// Time in which the speed rises [s].
     #[serde(default = "ramp", deserialize_with = "quantity::time")]
     pub ramp: f64,
-    /// Time at which it starts to turn [s]; left out, when it starts to run.
+    /// Time at which the turn starts [s]. Default: `start`.
     #[serde(default, deserialize_with = "quantity::optional::time")]
     pub turn_start: Option<f64>,
     /// Time in which the yaw rate rises from 0 to speed over radius [s].
@@ -174,11 +174,11 @@ impl MotionSpec for TurnSpec {
     }
 }
 
-/// Goes to and fro.
+/// Oscillates harmonically.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HarmonicSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
     /// Amplitude [m].
     #[serde(deserialize_with = "quantity::vec3::length")]
@@ -189,10 +189,11 @@ pub struct HarmonicSpec {
     /// Phase [rad].
     #[serde(default, deserialize_with = "quantity::angle")]
     pub phase: f64,
-    /// Time at which it starts [s].
+    /// Start time [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
-    /// Time in which the amplitude rises [s]; 0 for what swings from the first moment on and starts with that velocity.
+    /// Time in which the amplitude rises [s]; with 0 it oscillates from the first moment on and starts with that
+    /// velocity.
     #[serde(default = "ramp", deserialize_with = "quantity::time")]
     pub ramp: f64,
 }

@@ -60,14 +60,14 @@ fn ahead() -> V3<f64> {
     [1.0, 0.0, 0.0]
 }
 
-/// Runs straight ahead with the speeds of a table, in the scene or in a CSV file: a measured launch, the course of a winch.
+/// Straight ahead with the speeds of a table, in the scene or in a CSV file: a measured launch, the speed of a winch.
 ///
-/// The speed goes straight from row to row, so that the way is the area under the table: 1 m from 0 to 1 m/s in 2 s. The
-/// acceleration jumps at the rows, where steps end; `join = "monotone"` rounds the speed off.
+/// The speed is piecewise linear, so the distance is the area under the table: 1 m from 0 to 1 m/s in 2 s. The
+/// acceleration jumps at the rows, and steps end there; `join = "monotone"` smooths the speed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpeedTableSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
     /// Direction of travel.
     #[serde(default = "ahead")]
@@ -82,7 +82,7 @@ pub struct SpeedTableSpec {
     /// Speeds at these times [m/s].
     #[serde(default, deserialize_with = "quantity::list::speed")]
     pub v: Vec<f64>,
-    /// How the speeds are joined.
+    /// Interpolation of the speeds.
     #[serde(default)]
     pub join: Join,
 }

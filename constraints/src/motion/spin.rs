@@ -60,22 +60,22 @@ fn ramp() -> f64 {
     1.0
 }
 
-/// An angle for the constraint `rotation`: rests, then turns at a steady rate, which rises smoothly.
+/// An angle for the constraint `rotation`: at rest, then at a constant rate, which rises smoothly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpinSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
     /// Rate after the ramp [rad/s].
     #[serde(deserialize_with = "quantity::angular_velocity")]
     pub rate: f64,
-    /// Time at which it starts [s].
+    /// Start time [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
-    /// Time in which the rate rises [s]; 0 for what turns from the first moment on and starts with that velocity.
+    /// Time in which the rate rises [s]; with 0 it turns from the first moment on and starts with that velocity.
     #[serde(default = "ramp", deserialize_with = "quantity::time")]
     pub ramp: f64,
-    /// How it rises meanwhile.
+    /// Shape of the rise.
     #[serde(default)]
     pub rise: Shape,
 }

@@ -54,14 +54,14 @@ impl Motion for Sum {
     }
 }
 
-/// Adds motions up: displacements, velocities and accelerations. The parts may be of any type, a sum as well.
+/// The sum of motions: displacements, velocities and accelerations add. The motions may be of any type, also sums.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SumSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
-    /// Names of the motions that it is the sum of: `of = ["surge", "heave"]`.
-    pub of: Vec<String>,
+    /// Names of the motions to add: `motions = ["surge", "heave"]`.
+    pub motions: Vec<String>,
 }
 register_spec!(Motion, "sum", SumSpec);
 
@@ -71,11 +71,14 @@ impl MotionSpec for SumSpec {
         &self.name
     }
     fn of(&self) -> &[String] {
-        &self.of
+        &self.motions
     }
     fn build(&self, of: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
         if of.is_empty() {
-            return Err(BuildError::at("of", "name the motions to add, as in `of = [\"surge\", \"heave\"]`"));
+            return Err(BuildError::at(
+                "motions",
+                "name the motions to add, as in `motions = [\"surge\", \"heave\"]`",
+            ));
         }
         Ok(Arc::new(Sum::new(of.to_vec())))
     }

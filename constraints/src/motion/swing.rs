@@ -11,11 +11,11 @@ fn ramp() -> f64 {
     5.0
 }
 
-/// An angle for the constraint `rotation` that goes to and fro, faded in smoothly.
+/// An oscillating angle for the constraint `rotation`; the amplitude rises smoothly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SwingSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
     /// Amplitude [rad].
     #[serde(deserialize_with = "quantity::angle")]
@@ -26,10 +26,11 @@ pub struct SwingSpec {
     /// Phase [rad].
     #[serde(default, deserialize_with = "quantity::angle")]
     pub phase: f64,
-    /// Time at which it starts [s].
+    /// Start time [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
-    /// Time in which the amplitude rises [s]; 0 for what swings from the first moment on and starts with that velocity.
+    /// Time in which the amplitude rises [s]; with 0 it oscillates from the first moment on and starts with that
+    /// velocity.
     #[serde(default = "ramp", deserialize_with = "quantity::time")]
     pub ramp: f64,
 }

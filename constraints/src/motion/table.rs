@@ -105,12 +105,12 @@ fn monotone() -> Join {
 
 /// Follows a table of displacements, in the scene or in a CSV file, or a table of angles for the constraint `rotation`.
 ///
-/// Between the rows it never overshoots. Its acceleration jumps there, unless `join = "cubic"`, which is the better choice
-/// for records of smooth motions with many rows, such as the heave of a ship. A table of speeds is a `speed_table`.
+/// Between rows it never overshoots. The acceleration jumps at the rows, unless `join = "cubic"`: choose that for
+/// smooth records with many rows, such as the heave of a ship. For a table of speeds use `speed_table`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TableSpec {
-    /// Name, by which constraints refer to it.
+    /// Name; constraints refer to it.
     pub name: String,
     /// A CSV file, its path as seen from the scene file. Its first line names the columns, `t` and any of `x`, `y`, `z`, or
     /// `angle`, with their units in brackets (`t [s],z [cm]`, `t [s],angle [deg]`) or without in s, m and rad; other
@@ -120,7 +120,7 @@ pub struct TableSpec {
     /// Times [s], ascending, instead of a file; the run must not go beyond the last.
     #[serde(default, deserialize_with = "quantity::list::time")]
     pub t: Vec<f64>,
-    /// Displacements along x at these times [m]; left out, none.
+    /// Displacements along x at these times [m]. Default: none.
     #[serde(default, deserialize_with = "quantity::list::length")]
     pub x: Vec<f64>,
     /// Displacements along y [m].
@@ -133,10 +133,11 @@ pub struct TableSpec {
     /// unit: `"90 deg"`.
     #[serde(default, deserialize_with = "quantity::list::angle", skip_serializing_if = "Vec::is_empty")]
     pub angle: Vec<f64>,
-    /// How the rows are joined. By straight lines only where all lie on one: the velocity would jump.
+    /// Interpolation between the rows. `linear` is accepted only if all rows lie on one line, since the velocity
+    /// would jump.
     #[serde(default = "monotone")]
     pub join: Join,
-    /// What it does at its ends.
+    /// Condition at its ends.
     #[serde(default)]
     pub ends: Ends,
 }

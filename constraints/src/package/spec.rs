@@ -55,47 +55,46 @@ const MOST_LAYERS: usize = 10_000;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PackageSpec {
-    /// Where its axis begins: the centre of one end [m].
+    /// Origin of its axis: the centre of one end [m].
     #[serde(default, deserialize_with = "quantity::vec3::length")]
     pub origin: V3<f64>,
-    /// Direction of its axis, from that end to the other.
+    /// Direction of its axis, from the origin to the other end.
     #[serde(default = "up")]
     pub axis: V3<f64>,
-    /// Direction from the axis in which the first lift-off point lies; left out, that of x, or of y if the axis is
-    /// along x.
+    /// Direction from the axis to the first lift-off point. Default: x, or y if the axis is along x.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<V3<f64>>,
-    /// Whether the cable lifts off inside or outside.
+    /// Side of the package from which the cable lifts off.
     #[serde(default)]
     pub side: Side,
-    /// Radius of the layer that unwinds first, to the middle of the cable [m].
+    /// Radius of the first layer to unwind, to the middle of the cable [m].
     #[serde(deserialize_with = "quantity::length")]
     pub radius: f64,
-    /// Way along the axis per turn [m]; left out, the diameter of the cable: turn beside turn.
+    /// Distance along the axis per turn [m]. Default: the diameter of the cable, turns side by side.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub pitch: Option<f64>,
-    /// Length along the axis that is wound, the same for all layers [m].
+    /// Wound length along the axis, the same for all layers [m].
     #[serde(deserialize_with = "quantity::length")]
     pub length: f64,
-    /// How many layers there are.
+    /// Number of layers.
     #[serde(default = "one")]
     pub layers: usize,
-    /// Diameter of the cable: the radius changes by it from layer to layer [m].
+    /// Diameter of the cable [m]; the radius changes by it from layer to layer.
     #[serde(deserialize_with = "quantity::length")]
     pub diameter: f64,
-    /// Which way the lift-off point runs round the axis.
+    /// Sense in which the lift-off point runs round the axis.
     #[serde(default)]
     pub hand: Hand,
-    /// Which way along the axis the first layer unwinds.
+    /// Direction along the axis in which the first layer unwinds.
     #[serde(default)]
     pub traverse: Traverse,
-    /// Where along the axis, from its origin, the first lift-off point lies [m]; left out, at the end of the package
-    /// where a full first layer begins.
+    /// Position of the first lift-off point along the axis, from its origin [m]. Default: the end where a full first
+    /// layer begins.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub first: Option<f64>,
-    /// Smallest radius to which the cable may be bent [m]; left out, any.
+    /// Minimum bend radius of the cable [m]; below it the run reports an event. Default: no limit.
     #[serde(default, deserialize_with = "quantity::optional::length")]
-    pub bend_limit: Option<f64>,
+    pub min_bend_radius: Option<f64>,
 }
 
 impl PackageSpec {
@@ -114,7 +113,7 @@ impl PackageSpec {
             hand: Hand::Right,
             traverse: Traverse::Forward,
             first: None,
-            bend_limit: None,
+            min_bend_radius: None,
         }
     }
 
@@ -209,8 +208,8 @@ impl PackageSpec {
             let message = format!("{where_}, less than that of the cable: give fewer `layers`");
             return Err(BuildError::at(if self.layers > 1 { "layers" } else { "radius" }, message));
         }
-        match self.bend_limit {
-            Some(limit) if not_negative("bend_limit", limit)? > narrowest => {
+        match self.min_bend_radius {
+            Some(limit) if not_negative("min_bend_radius", limit)? > narrowest => {
                 let message = format!("{where_}, but the cable may not be bent below {limit} m");
                 Err(BuildError::at("radius", message))
             }

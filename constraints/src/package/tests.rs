@@ -122,7 +122,7 @@ fn what_cannot_be_wound_is_refused_by_field() {
         (PackageSpec { layers: 0, ..spec() }, "layers", "no cable"),
         (PackageSpec { layers: usize::MAX, ..spec() }, "layers", "at most 10000"),
         (PackageSpec { side: Side::Outer, layers: 70, ..spec() }, "layers", "fewer"),
-        (PackageSpec { bend_limit: Some(0.07), ..spec() }, "radius", "may not be bent"),
+        (PackageSpec { min_bend_radius: Some(0.07), ..spec() }, "radius", "may not be bent"),
         (PackageSpec { first: Some(0.011), ..spec() }, "first", "within the package"),
         (PackageSpec { first: Some(0.01), ..spec() }, "first", "turn `traverse` round"),
         (PackageSpec { axis: [0.0; 3], ..spec() }, "axis", "no length"),
@@ -137,7 +137,7 @@ fn what_cannot_be_wound_is_refused_by_field() {
 #[test]
 fn a_spec_is_read_with_units() {
     let text = r#"{ "radius": "6 cm", "length": "20 cm", "diameter": "0.9 mm", "side": "outer", "hand": "left",
-        "traverse": "backward", "layers": 4, "first": "15 cm", "bend_limit": "10 mm" }"#;
+        "traverse": "backward", "layers": 4, "first": "15 cm", "min_bend_radius": "10 mm" }"#;
     let spec: PackageSpec = serde_json::from_str(text).unwrap();
     assert_eq!((spec.radius, spec.pitch(), spec.first(), spec.layers), (0.06, 0.9e-3, 0.15, 4));
     assert!(serde_json::from_str::<PackageSpec>(r#"{ "radius": 1, "lenght": 2, "diameter": 1 }"#).is_err());

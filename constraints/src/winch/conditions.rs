@@ -1,7 +1,7 @@
 //! What is worth a word while a cable unwinds; the run goes on.
 
 use crate::package::Package;
-use ropewalk_core::{Action, Event, Front, Model, Part, Quantity, State};
+use ropewalk_core::{Action, Event, Model, MovingBoundary, Part, Quantity, State};
 use ropewalk_scene::Builder;
 use std::sync::Arc;
 
@@ -22,25 +22,31 @@ struct Condition {
     what: What,
     name: String,
     part: String,
-    front: Front,
+    boundary: MovingBoundary,
     package: Arc<Package>,
 }
 
-/// Watches for all conditions of a cable that lifts off from a package at this front.
-pub(super) fn watch(b: &mut Builder, name: &str, part: &str, front: Front, package: &Arc<Package>) {
+/// Watches for all conditions of a cable that lifts off from a package at this boundary.
+pub(super) fn watch(
+    b: &mut Builder,
+    name: &str,
+    part: &str,
+    boundary: MovingBoundary,
+    package: &Arc<Package>,
+) {
     for what in [What::Critical, What::Contact, What::Bending, What::Slack] {
-        if what == What::Bending && package.spec().bend_limit.is_none_or(|limit| limit <= 0.0) {
+        if what == What::Bending && package.spec().min_bend_radius.is_none_or(|limit| limit <= 0.0) {
             continue;
         }
         let (name, part, package) = (name.to_string(), part.to_string(), package.clone());
-        b.event(Condition { what, name, part, front, package });
+        b.event(Condition { what, name, part, boundary, package });
     }
 }
 
 impl Condition {
     /// Unstretched distance of the lift-off point from the start, and of the other end.
     fn ends(&self, length: f64) -> [f64; 2] {
-        if self.front.sign > 0.0 { [length, 0.0] } else { [0.0, length] }
+        if self.boundary.sign > 0.0 { [length, 0.0] } else { [0.0, length] }
     }
 
     /// Above zero where the condition holds; of the order of one.
@@ -51,8 +57,8 @@ impl Condition {
         let observe = |what, s| part.observe(what, s, &at).unwrap_or(f64::NAN);
         match self.what {
             What::Critical => {
-                let v = self.front.rate(&at);
-                let (flow, tension) = (self.front.rho_a * v * v, observe(Quantity::Tension, eyelet));
+                let v = self.boundary.rate(&at);
+                let (flow, tension) = (self.boundary.rho_a * v * v, observe(Quantity::Tension, eyelet));
                 if flow == 0.0 { -1.0 } else { (flow - tension) / flow }
             }
             What::Slack => {
@@ -61,7 +67,7 @@ impl Condition {
                 if size == 0.0 { -1.0 } else { -here / size }
             }
             What::Bending => {
-                let limit = self.package.spec().bend_limit.unwrap_or(0.0);
+                let limit = self.package.spec().min_bend_radius.unwrap_or(0.0);
                 let points = (0..=32).map(|k| length * f64::from(k) / 32.0);
                 points.map(|s| observe(Quantity::Curvature, s)).fold(0.0, f64::max) * limit - 1.0
             }
@@ -77,8 +83,8 @@ impl Condition {
     /// The point of the free cable that is deepest in the package: where it is along the cable, and how deep [m].
     fn deepest(&self, part: &dyn Part, state: &State) -> (f64, f64) {
         let at = state.at();
-        let line = part.line(&at);
-        let off = if self.front.sign > 0.0 { line.last() } else { line.first() };
+        let line = part.centre_line(&at);
+        let off = if self.boundary.sign > 0.0 { line.last() } else { line.first() };
         let Some(off) = off else { return (0.0, f64::NEG_INFINITY) };
         let depths = line.iter().map(|x| self.package.depth(x, off));
         let deepest = depths.zip(part.arc_lengths(&at)).max_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -94,7 +100,7 @@ impl Event for Condition {
                 format!("`{part}`: tension below rho A V^2 at the eyelet: no wave runs against the cable")
             }
             What::Contact => format!("`{part}` touches the package of `{name}`"),
-            What::Bending => format!("`{part}` is bent more than `bend_limit` allows"),
+            What::Bending => format!("`{part}` is bent more than `min_bend_radius` allows"),
             What::Slack => format!("`{part}`: negative tension where it lifts off from `{name}`"),
         }
     }

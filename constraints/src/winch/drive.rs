@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// What moves cable through an end.
 pub(super) enum Drive {
-    /// The length fed out follows a motion.
+    /// The payout length follows a motion.
     Motion(Arc<dyn Motion>),
     /// The tension of the cable, against what holds it back.
     Held,
@@ -42,7 +42,7 @@ impl WinchSpec {
         if speed == 0.0 {
             return Ok((speed, None));
         }
-        let total = match (self.stop, self.total, self.final_length) {
+        let total = match (self.stop, self.payout, self.final_length) {
             (None, None, None) => return Ok((speed, None)),
             (Some(stop), None, None) if stop < self.start + self.ramp => {
                 let message = format!("it would stop at {stop} s, before its speed has risen");
@@ -52,16 +52,16 @@ impl WinchSpec {
             (None, Some(total), None) => total,
             (None, None, Some(last)) => positive("final_length", last)? - whole,
             (Some(_), ..) => {
-                let field = if self.total.is_some() { "total" } else { "final_length" };
+                let field = if self.payout.is_some() { "payout" } else { "final_length" };
                 let message = format!("give `stop` or `{field}`, not both: one follows from the other");
                 return Err(BuildError::at(field, message));
             }
             _ => {
-                let message = "give `total` or `final_length`, not both: one follows from the other";
+                let message = "give `payout` or `final_length`, not both: one follows from the other";
                 return Err(BuildError::at("final_length", message));
             }
         };
-        let field = if self.total.is_some() { "total" } else { "final_length" };
+        let field = if self.payout.is_some() { "payout" } else { "final_length" };
         // a length tells the direction as well
         let speed = if self.final_length.is_some() && speed > 0.0 { speed.copysign(total) } else { speed };
         let time = total / speed;
@@ -69,7 +69,7 @@ impl WinchSpec {
             let message = match self.final_length {
                 Some(last) if total == 0.0 => format!("the cable is {last} m long already"),
                 Some(last) => format!("a cable of {whole} m can't be reeled in to {last} m"),
-                None => format!("at {speed} m/s it never feeds out {total} m: their signs must be the same"),
+                None => format!("at {speed} m/s it never pays out {total} m: their signs must be the same"),
             };
             return Err(BuildError::at(field, message));
         }
@@ -96,7 +96,7 @@ impl WinchSpec {
             (Some(_), None) | (None, Some(_)) if free || self.pile => Err(BuildError::at(
                 if self.tension.is_some() { "tension" } else { "brake" },
                 "the speed of this winch is prescribed, so its tension is a result: leave out `tension`, `brake`, \
-                 `damping`, `inertia` and `pile`, or the speed. A cable whose other end feeds too can have the \
+                 `damping`, `inertia` and `pile`, or the speed. A cable that also runs at its other end can have the \
                  tension here and the speed there, as in the scene `unwinding`",
             )),
             (Some(speed), None) => {
@@ -108,10 +108,10 @@ impl WinchSpec {
                 let fall = stop.map(|stop| Straight::new(ahead, speed, stop, self.ramp)).transpose()?;
                 Ok(Drive::Motion(Arc::new(Haul { rise, fall })))
             }
-            (None, _) if [self.stop, self.total, self.final_length].iter().any(Option::is_some) => {
-                let field = match (self.stop, self.total) {
+            (None, _) if [self.stop, self.payout, self.final_length].iter().any(Option::is_some) => {
+                let field = match (self.stop, self.payout) {
                     (Some(_), _) => "stop",
-                    (None, Some(_)) => "total",
+                    (None, Some(_)) => "payout",
                     (None, None) => "final_length",
                 };
                 let message = format!("`{field}` says when a `speed` ends, and this winch has none");
@@ -121,7 +121,7 @@ impl WinchSpec {
             (None, None) if free => Ok(Drive::Held),
             (None, None) => Err(BuildError::at(
                 "name",
-                "say how this winch feeds: `speed` or `motion`, or what holds it back: `tension`, `brake`, `damping`",
+                "a winch needs `speed` or `motion`, or a resistance: `tension`, `brake`, `damping` or `inertia`",
             )),
         }
     }

@@ -12,29 +12,29 @@ use serde::{Deserialize, Serialize};
 fn ramp() -> f64 {
     1.0
 }
-fn release() -> f64 {
+fn fade() -> f64 {
     0.1
 }
 
-/// An eyelet that an end of a cable runs through: a fixed or moving point, and what draws the cable there.
+/// An eyelet through which an end of a cable runs: a fixed or moving point, and what draws the cable there.
 ///
-/// It is a `spherical` or `driving` constraint and a `winch` in one. The point stays where the end starts, or goes with
-/// `to`, or along `path`. Give one of `speed`, `motion` and `tension`: what isn't given is a result. The constraint of
-/// the point has the name of the eyelet, by which records ask for its reaction; what draws is called `name.feed`.
+/// It combines a `spherical` or `driving` constraint with a `winch`. The point stays where the end starts, moves with
+/// `to`, or along `path`. Give one of `speed`, `motion` and `tension`; the others are results. The constraint of the
+/// point has the name of the eyelet; the winch is called `name.feed`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EyeletSpec {
-    /// Name, by which records and events refer to it.
+    /// Name; records and events refer to it.
     pub name: String,
     /// The end of the cable: `fibre.start` or `fibre.end`.
     pub marker: MarkerRef,
-    /// What the eyelet is on: a marker of a part or a point in space; left out, the point where the end starts.
+    /// The marker that carries the eyelet, or a point in space. Default: the point where the end starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// Name of a motion along which the eyelet moves from where the end starts, instead of `to`.
+    /// Name of a motion of the eyelet, starting where the end starts, instead of `to`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
-    /// Speed at which cable comes in through the eyelet after the ramp [m/s]; negative draws it out of the free cable.
+    /// Speed at which cable enters through the eyelet after the ramp [m/s]; negative draws it out of the free cable.
     #[serde(
         default,
         deserialize_with = "quantity::optional::speed",
@@ -44,13 +44,13 @@ pub struct EyeletSpec {
     /// Time at which the speed begins to rise [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
-    /// Time in which the speed rises, and falls at the stop [s].
+    /// Time in which the speed rises, and falls again at the stop [s].
     #[serde(default = "ramp", deserialize_with = "quantity::time")]
     pub ramp: f64,
-    /// Time at which the speed begins to fall again [s]; left out, it goes on.
+    /// Time at which the speed begins to fall again [s]. Default: never.
     #[serde(default, deserialize_with = "quantity::optional::time", skip_serializing_if = "Option::is_none")]
     pub stop: Option<f64>,
-    /// Name of a motion whose x component is the length that has come in, instead of `speed`.
+    /// Name of a motion whose x component is the length that has entered, instead of `speed`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
     /// Tension with which the cable is drawn [N], instead of a speed.
@@ -60,33 +60,34 @@ pub struct EyeletSpec {
         skip_serializing_if = "Option::is_none"
     )]
     pub tension: Option<f64>,
-    /// Tension by the square of the speed, besides `tension` [kg/m].
+    /// Tension per speed squared, added to `tension` [kg/m].
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub per_speed2: f64,
-    /// Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs here, which
-    /// then drives itself.
+    /// Name of a motion whose speed along x `per_speed2` refers to. Default: the speed of the cable here, which can
+    /// be unstable.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pace: Option<String>,
-    /// Resistance per speed, besides `tension` [N s/m].
+    pub reference_speed: Option<String>,
+    /// Linear damping, added to `tension` [N s/m].
     #[serde(default, deserialize_with = "quantity::damping")]
     pub damping: f64,
-    /// Shortest length of the free cable [m], where the run ends; left out, as for `winch`.
+    /// Shortest length of the free cable [m]; the run ends there. Default: as for `winch`.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
     pub shortest: Option<f64>,
-    /// Length of elements [m] that are born and swallowed at the eyelet; left out, all elements grow and shrink together.
+    /// Length of the elements that are added and removed at the eyelet [m]. Default: all elements grow and shrink
+    /// together.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
-    pub element: Option<f64>,
-    /// Time in which the strain fades that keeps the tension from jumping when an element is born or swallowed [s].
-    #[serde(default = "release", deserialize_with = "quantity::time")]
-    pub release: f64,
+    pub element_length: Option<f64>,
+    /// Fade time [s] of the strain that keeps the tension continuous when an element is added or removed.
+    #[serde(default = "fade", deserialize_with = "quantity::time")]
+    pub fade: f64,
 }
 register_spec!(Constraint, "eyelet", EyeletSpec);
 
@@ -116,11 +117,11 @@ impl EyeletSpec {
             motion: None,
             tension: None,
             per_speed2: 0.0,
-            pace: None,
+            reference_speed: None,
             damping: 0.0,
             shortest: None,
-            element: None,
-            release: release(),
+            element_length: None,
+            fade: fade(),
         }
     }
 
@@ -134,11 +135,11 @@ impl EyeletSpec {
             motion: self.motion.clone(),
             tension: self.tension,
             per_speed2: self.per_speed2,
-            pace: self.pace.clone(),
+            reference_speed: self.reference_speed.clone(),
             damping: self.damping,
             shortest: self.shortest,
-            element: self.element,
-            release: self.release,
+            element_length: self.element_length,
+            fade: self.fade,
             ..WinchSpec::new(&format!("{}.feed", self.name), self.marker.clone())
         }
     }
@@ -147,10 +148,9 @@ impl EyeletSpec {
         let given = [("speed", self.speed.is_some()), ("motion", self.motion.is_some())];
         let given: Vec<_> = given.iter().filter(|(_, is)| *is).map(|(field, _)| *field).collect();
         match (given.as_slice(), self.tension) {
-            ([], None) => Err(BuildError::at(
-                "name",
-                "say what draws the cable through this eyelet: `speed`, `motion` or `tension`",
-            )),
+            ([], None) => {
+                Err(BuildError::at("name", "an eyelet needs one of `speed`, `motion` and `tension`"))
+            }
             ([_, second, ..], _) => Err(BuildError::at(*second, "give `speed` or `motion`, not both")),
             ([first], Some(_)) => Err(BuildError::at(
                 "tension",

@@ -1,6 +1,6 @@
 //! Feeding at a prescribed speed.
 
-use ropewalk_core::{At, Constraint, Front, Marker, Motion, Node, NodeId, RowKind};
+use ropewalk_core::{At, Constraint, Marker, Motion, MovingBoundary, Node, NodeId, RowKind};
 use std::sync::Arc;
 
 /// The length fed out at an end of a cable follows a motion: `X(t) - fed = 0`, one equation.
@@ -9,15 +9,15 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Feeding {
     name: String,
-    front: Front,
+    boundary: MovingBoundary,
     nodes: [NodeId; 1],
     motion: Arc<dyn Motion>,
 }
 
 impl Feeding {
     /// Feeds by this motion.
-    pub fn new(name: impl Into<String>, front: Front, motion: Arc<dyn Motion>) -> Self {
-        Feeding { name: name.into(), front, nodes: [front.node], motion }
+    pub fn new(name: impl Into<String>, boundary: MovingBoundary, motion: Arc<dyn Motion>) -> Self {
+        Feeding { name: name.into(), boundary, nodes: [boundary.node], motion }
     }
 }
 
@@ -38,8 +38,8 @@ impl Constraint for Feeding {
         true
     }
     fn jacobian(&self, _: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
-        g[0] = self.front.fed(at) - self.motion.at(at.t).x[0];
-        jac[0] = self.front.sign;
+        g[0] = self.boundary.fed(at) - self.motion.at(at.t).x[0];
+        jac[0] = self.boundary.sign;
     }
     fn geometric(&self, _: &[Node], _: &At<'_>, _: &[f64], h: &mut [f64]) {
         h[0] = 0.0;
@@ -55,11 +55,11 @@ impl Constraint for Feeding {
         self.motion.reach(t, h)
     }
     fn prescribes(&self) -> Option<(usize, usize)> {
-        Some((self.front.q, self.front.v))
+        Some((self.boundary.q, self.boundary.v))
     }
     fn prescribed(&self, t: f64) -> [f64; 3] {
-        let (moving, sign) = (self.motion.at(t), self.front.sign);
-        [self.front.home + sign * moving.x[0], sign * moving.v[0], sign * moving.a[0]]
+        let (moving, sign) = (self.motion.at(t), self.boundary.sign);
+        [self.boundary.home + sign * moving.x[0], sign * moving.v[0], sign * moving.a[0]]
     }
     fn range(&self) -> (f64, f64) {
         self.motion.range()

@@ -4,7 +4,9 @@ use super::{Limit, Peel, Side};
 use crate::package::{Lay, Package, PackageSpec};
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::rotation::cross;
-use ropewalk_core::{At, BuildError, Constraint, Feed, Front, Marker, Node, NodeId, RowKind, V3, dot};
+use ropewalk_core::{
+    At, BuildError, Constraint, Feed, Marker, MovingBoundary, Node, NodeId, RowKind, V3, dot,
+};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,7 +19,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct LiftOff {
     name: String,
-    front: Front,
+    boundary: MovingBoundary,
     marker: [Marker; 1],
     nodes: [NodeId; 2],
     package: Arc<Package>,
@@ -29,9 +31,14 @@ const ROWS: [RowKind; 5] =
 
 impl LiftOff {
     /// Lifts off at this end.
-    pub fn new(name: impl Into<String>, front: Front, package: Arc<Package>, tangent: bool) -> Self {
-        let (marker, nodes) = ([Marker::node(front.end)], [front.end, front.node]);
-        LiftOff { name: name.into(), front, marker, nodes, package, tangent }
+    pub fn new(
+        name: impl Into<String>,
+        boundary: MovingBoundary,
+        package: Arc<Package>,
+        tangent: bool,
+    ) -> Self {
+        let (marker, nodes) = ([Marker::node(boundary.end)], [boundary.end, boundary.node]);
+        LiftOff { name: name.into(), boundary, marker, nodes, package, tangent }
     }
 
     /// The lift-off point now; beyond the end of the cable it goes straight on, so that the run gets to see the end.
@@ -105,16 +112,16 @@ impl Constraint for LiftOff {
         false
     }
     fn jacobian(&self, _: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
-        let (sigma, sign) = (self.front.fed(at), self.front.sign);
+        let (sigma, sign) = (self.boundary.fed(at), self.boundary.sign);
         let lay = self.lay(sigma);
         jac.fill(0.0);
         for i in 0..3 {
-            g[i] = at.q[self.front.end_q + i] - lay.x[i];
+            g[i] = at.q[self.boundary.end_q + i] - lay.x[i];
             jac[7 * i + i] = 1.0;
             jac[7 * i + 6] = -sign * lay.tangent[i];
         }
         if self.tangent {
-            let slope = self.slope(at.q, self.front.end_q);
+            let slope = self.slope(at.q, self.boundary.end_q);
             let [d, by_sigma] = self.directions(&lay);
             for r in 0..2 {
                 g[3 + r] = dot(&d[r], &slope);
@@ -124,8 +131,8 @@ impl Constraint for LiftOff {
         }
     }
     fn geometric(&self, _: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
-        let (sigma, sign) = (self.front.fed(at), self.front.sign);
-        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.front.end_q));
+        let (sigma, sign) = (self.boundary.fed(at), self.boundary.sign);
+        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.boundary.end_q));
         h.fill(0.0);
         let seconds = self.seconds(sigma, &lay, &slope);
         h[7 * 6 + 6] = seconds.iter().zip(lambda).map(|(s, l)| s * l).sum();
@@ -139,15 +146,15 @@ impl Constraint for LiftOff {
         }
     }
     fn rates(&self, _: &[Node], at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
-        let (sigma, u) = (self.front.fed(at), self.front.rate(at));
-        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.front.end_q));
+        let (sigma, u) = (self.boundary.fed(at), self.boundary.rate(at));
+        let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.boundary.end_q));
         rate.fill(0.0);
         let seconds = self.seconds(sigma, &lay, &slope);
         for (bias, second) in bias.iter_mut().zip(seconds) {
             *bias = second * u * u;
         }
         if self.tangent {
-            let (turning, [_, by_sigma]) = (self.slope(at.v, self.front.end_v), self.directions(&lay));
+            let (turning, [_, by_sigma]) = (self.slope(at.v, self.boundary.end_v), self.directions(&lay));
             for r in 0..2 {
                 bias[3 + r] += 2.0 * u * dot(&by_sigma[r], &turning);
             }
@@ -155,40 +162,39 @@ impl Constraint for LiftOff {
     }
 }
 
-/// Lets an end of a cable lift off from a package: the lift-off point runs round the package as cable is peeled.
+/// The lift-off point of a cable from a package. It runs round the package as the cable unwinds.
 ///
-/// A `winch` at the same end says what peels it: `speed` or `motion`, or `tension` for what the package holds it back with.
-/// Or `peel` says, without a winch, at which energy it comes off a package to which it sticks.
-/// Where the cable goes to is told by an eyelet at the other end: a `spherical` constraint and a winch of its own. Reports
-/// what happens on the way: a tension below what keeps the cable taut, contact with the package, too much bending.
+/// A `winch` at the same end drives the unwinding: by `speed` or `motion`, or by the `tension` at the package. Or,
+/// without a winch, the cable sticks to the package with `adhesion_energy`. The other end needs an `eyelet`. Events
+/// are reported on the way: a tension too low to keep the cable taut, contact with the package, too much bending.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LiftOffSpec {
-    /// Name, by which records ask for its reaction.
+    /// Name; records of the reaction refer to it.
     pub name: String,
-    /// The end of the cable that is wound: `fibre.end` or `fibre.start`.
+    /// The wound end of the cable: `fibre.end` or `fibre.start`.
     pub marker: MarkerRef,
     /// The package.
     pub package: PackageSpec,
-    /// Whether the cable is tangent to the wound layer where it lifts off; needs bending stiffness.
+    /// Whether the cable is tangent to the wound layer at the lift-off point. Needs bending stiffness.
     #[serde(default)]
     pub tangent: bool,
-    /// Energy per length that it takes to peel the cable off [J/m], instead of a winch at this end. The cable then lifts off
-    /// at a curvature with `EI (κ - κ_w)²/2 = peel`, `κ_w` being that of the wound cable, or if it isn't `tangent`, at an
-    /// angle `D` with `T (1 - cos D) = peel`.
+    /// Adhesion energy `Γ` per length [J/m], instead of a winch at this end. A `tangent` cable lifts off where
+    /// `EI (κ - κ_w)²/2 = Γ`, with the curvature `κ_w` of the wound cable; another one at the angle `D` with
+    /// `T (1 - cos D) = Γ`.
     #[serde(
         default,
         deserialize_with = "quantity::optional::force",
         skip_serializing_if = "Option::is_none"
     )]
-    pub peel: Option<f64>,
-    /// Speed below which a cable that sticks creeps [m/s], with `peel`.
-    #[serde(default = "slip", deserialize_with = "quantity::speed")]
-    pub slip: f64,
+    pub adhesion_energy: Option<f64>,
+    /// Slip speed [m/s]: below it the adhesion creeps instead of sticking. Goes with `adhesion_energy`.
+    #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
+    pub slip_speed: f64,
 }
 register_spec!(Constraint, "lift_off", LiftOffSpec);
 
-fn slip() -> f64 {
+fn slip_speed() -> f64 {
     1e-3
 }
 
@@ -196,7 +202,7 @@ impl LiftOffSpec {
     /// Lifts off from a package, peeled by a winch.
     pub fn new(name: &str, marker: impl Into<MarkerRef>, package: PackageSpec) -> Self {
         let (name, marker) = (name.into(), marker.into());
-        LiftOffSpec { name, marker, package, tangent: false, peel: None, slip: slip() }
+        LiftOffSpec { name, marker, package, tangent: false, adhesion_energy: None, slip_speed: slip_speed() }
     }
 }
 
@@ -209,33 +215,33 @@ impl ConstraintSpec for LiftOffSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        self.peel.map(|_| (&self.marker, Feed { element: None, unstrained: true }))
+        self.adhesion_energy.map(|_| (&self.marker, Feed { element: None, unstrained: true }))
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let package = Arc::new(self.package.build()?);
-        let front = b.front(&self.marker)?;
+        let boundary = b.boundary(&self.marker, "add a `winch` or `eyelet` there, or give `peel`")?;
         let part = b.feeding_part(&self.marker)?;
-        positive("slip", self.slip)?;
-        if let Some(energy) = self.peel {
+        positive("slip_speed", self.slip_speed)?;
+        if let Some(energy) = self.adhesion_energy {
             let ei = part.slender().map_or(0.0, |s| s.ei);
             if self.tangent && ei == 0.0 {
                 let message = "a cable without bending stiffness that goes on along the wound layer has nothing to peel it \
                                off: leave out `tangent`, or give the cable an `ei`";
                 return Err(BuildError::at("tangent", message));
             }
-            let (name, energy) = (self.name.clone(), not_negative("peel", energy)?);
+            let (name, energy) = (self.name.clone(), not_negative("adhesion_energy", energy)?);
             let package = package.clone();
-            b.term(Box::new(Peel { name, front, package, energy, slip: self.slip, ei }));
+            b.term(Box::new(Peel { name, boundary, package, energy, slip_speed: self.slip_speed, ei }));
         }
         b.event(Limit {
             name: self.name.clone(),
-            front,
+            boundary,
             part: part.name().to_string(),
             side: Side::Empty,
             length: package.wound(),
         });
-        super::conditions::watch(b, &self.name, part.name(), front, &package);
-        b.constraint(LiftOff::new(&self.name, front, package, self.tangent))
+        super::conditions::watch(b, &self.name, part.name(), boundary, &package);
+        b.constraint(LiftOff::new(&self.name, boundary, package, self.tangent))
     }
 }
 
@@ -253,7 +259,7 @@ mod tests {
         ];
         let package = Arc::new(PackageSpec::new(0.06, 0.2, 0.009).build().unwrap());
         for (sign, p) in [(-1.0, -0.9), (1.0, 1.3), (1.0, 0.2)] {
-            let front = Front {
+            let boundary = MovingBoundary {
                 node: NodeId(1),
                 q: 6,
                 v: 6,
@@ -266,9 +272,9 @@ mod tests {
             };
             let q = [0.1, 0.05, 0.3, 0.9, 0.5, -0.4, p];
             let v = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
-            let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], modes: &[], relaxed: None };
+            let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 7], internal: &[], relaxed: None };
             for tangent in [false, true] {
-                let off = LiftOff::new("off", front, package.clone(), tangent);
+                let off = LiftOff::new("off", boundary, package.clone(), tangent);
                 let error = check_constraint(&off, &nodes, &at);
                 assert!(error < 1e-5, "{sign}, tangent {tangent}: {error:e}");
             }

@@ -1,6 +1,6 @@
 //! What ends a run of a winch.
 
-use ropewalk_core::{Action, Event, Front, Model, State};
+use ropewalk_core::{Action, Event, Model, MovingBoundary, State};
 
 /// Which limit it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,13 +11,13 @@ pub enum Side {
     Short,
 }
 
-/// Ends the run where a winch has fed out all that it has, or reeled in all that may be.
+/// Ends the run where a winch has paid out all that it has, or reeled in all that may be.
 #[derive(Clone, Debug)]
 pub struct Limit {
     /// Name of the winch.
     pub name: String,
     /// The end that feeds.
-    pub front: Front,
+    pub boundary: MovingBoundary,
     /// The part that feeds, for its length.
     pub part: String,
     /// Which limit.
@@ -29,7 +29,7 @@ pub struct Limit {
 impl Event for Limit {
     fn name(&self) -> String {
         match self.side {
-            Side::Empty => format!("`{}` has fed out all of its {} m", self.name, self.length),
+            Side::Empty => format!("`{}` has paid out all of its {} m", self.name, self.length),
             Side::Short => {
                 format!("`{}` has reeled in `{}` to its shortest, {} m", self.name, self.part, self.length)
             }
@@ -38,7 +38,7 @@ impl Event for Limit {
     fn value(&self, model: &Model, state: &State) -> f64 {
         let at = state.at();
         match self.side {
-            Side::Empty => self.length - self.front.fed(&at),
+            Side::Empty => self.length - self.boundary.fed(&at),
             Side::Short => model.part(&self.part).map_or(1.0, |p| p.length_now(&at) - self.length),
         }
     }

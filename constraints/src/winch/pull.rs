@@ -1,33 +1,35 @@
 //! Feeding under a force: tension, brake, the inertia of a drum.
 
-use ropewalk_core::{Assembly, At, Column, Energy, Front, Motion, Pattern, Power, Term};
+use ropewalk_core::{
+    Assembly, At, Column, Energy, Motion, MovingBoundary, Pattern, Power, Shows, Term, Timed,
+};
 use std::sync::Arc;
 
-/// What a winch that isn't driven pulls with, as force on the front: `P |r'|` with
-/// `P = tension + brake u/√(u² + slip²) + damping u + per_speed2 u² + pile`, and `inertia u̇` of its drum; `u` is the speed at which it
+/// What a winch that isn't driven pulls with, as force on the boundary: `P |r'|` with
+/// `P = tension + brake u/√(u² + slip_speed²) + damping u + per_speed2 u² + pile`, and `inertia u̇` of its drum; `u` is the speed at which it
 /// feeds out.
 ///
-/// A brake is dry friction, so below its force the end creeps at a part of `slip`. Cable picked up from a pile at rest
+/// A brake is dry friction, so below its force the end creeps at a part of `slip_speed`. Cable picked up from a pile at rest
 /// has to be set moving, which takes `ρA u²` for `u > 0` (without rebound; a drum that turns with the cable takes none).
 #[derive(Clone)]
 pub struct Pull {
     /// Name of the winch.
     pub name: String,
     /// The end that feeds.
-    pub front: Front,
+    pub boundary: MovingBoundary,
     /// Constant part [N].
     pub tension: f64,
     /// Friction of the brake [N].
     pub brake: f64,
     /// Speed below which the brake creeps [m/s].
-    pub slip: f64,
-    /// Resistance per speed [N s/m].
+    pub slip_speed: f64,
+    /// Linear damping: tension per payout rate [N s/m].
     pub damping: f64,
     /// Tension by the square of the speed, whichever way it feeds [kg/m].
     pub per_speed2: f64,
     /// The motion along x whose speed that is, if it isn't the speed at which this end feeds.
-    pub pace: Option<Arc<dyn Motion>>,
-    /// Inertia of the drum over the square of its radius [kg].
+    pub reference: Option<Arc<dyn Motion>>,
+    /// Moment of inertia of the drum over its radius squared [kg].
     pub inertia: f64,
     /// Whether the cable is picked up from rest.
     pub pile: bool,
@@ -36,21 +38,23 @@ pub struct Pull {
 impl Pull {
     /// The part of the tension that is given from outside.
     fn given(&self, t: f64, u: f64) -> f64 {
-        let pace = self.pace.as_ref().map_or(u, |motion| motion.at(t).v[0]);
-        self.tension + self.per_speed2 * pace * pace
+        let reference = self.reference.as_ref().map_or(u, |motion| motion.at(t).v[0]);
+        self.tension + self.per_speed2 * reference * reference
     }
     /// The pull, and its derivative by the speed of feeding.
     fn pull(&self, t: f64, u: f64) -> (f64, f64) {
-        let root = (u * u + self.slip * self.slip).sqrt();
-        let pile = if self.pile && u > 0.0 { self.front.rho_a } else { 0.0 };
-        let rho = pile + if self.pace.is_none() { self.per_speed2 } else { 0.0 };
+        let root = (u * u + self.slip_speed * self.slip_speed).sqrt();
+        let pile = if self.pile && u > 0.0 { self.boundary.rho_a } else { 0.0 };
+        let rho = pile + if self.reference.is_none() { self.per_speed2 } else { 0.0 };
         (
             self.given(t, u) + self.brake * u / root + self.damping * u + pile * u * u,
-            self.brake * self.slip * self.slip / (root * root * root) + self.damping + 2.0 * rho * u,
+            self.brake * self.slip_speed * self.slip_speed / (root * root * root)
+                + self.damping
+                + 2.0 * rho * u,
         )
     }
     fn slope(&self, at: &At<'_>) -> [f64; 3] {
-        std::array::from_fn(|i| at.q[self.front.end_q + 3 + i])
+        std::array::from_fn(|i| at.q[self.boundary.end_q + 3 + i])
     }
 }
 
@@ -59,43 +63,52 @@ impl Term for Pull {
         self.name.clone()
     }
     fn pattern(&self, p: &mut Pattern) {
-        p.clique([self.front.v].into_iter().chain((3..6).map(|i| self.front.end_v + i)));
+        p.clique([self.boundary.v].into_iter().chain((3..6).map(|i| self.boundary.end_v + i)));
     }
     fn symmetric(&self) -> bool {
         false
     }
-    fn timed(&self) -> bool {
-        self.pace.is_some()
-    }
-    fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        self.pace.as_ref().map_or(Some(h), |motion| motion.reach(t, h))
-    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        let (front, slope) = (&self.front, self.slope(at));
-        let (stretch, (pull, by_u)) = (front.stretch(at), self.pull(at.t, front.rate(at)));
-        // feeding out moves the front by its sign, and the pull resists that
-        out.add(front.v, front.sign * pull * stretch + self.inertia * at.a[front.v]);
+        let (boundary, slope) = (&self.boundary, self.slope(at));
+        let (stretch, (pull, by_u)) = (boundary.stretch(at), self.pull(at.t, boundary.rate(at)));
+        // feeding out moves the boundary by its sign, and the pull resists that
+        out.add(boundary.v, boundary.sign * pull * stretch + self.inertia * at.a[boundary.v]);
         let w = out.weights();
         out.add_block(0, 4, |i, j| match (i, j) {
             (0, 0) => w.v * by_u * stretch + w.a * self.inertia,
-            (0, j) => w.q * front.sign * pull * slope[j - 1] / stretch,
+            (0, j) => w.q * boundary.sign * pull * slope[j - 1] / stretch,
             _ => 0.0,
         });
     }
     fn energy(&self, at: &At<'_>) -> Energy {
-        let u = self.front.rate(at);
+        let u = self.boundary.rate(at);
         Energy { kinetic: 0.5 * self.inertia * u * u, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let (u, stretch) = (self.front.rate(at), self.front.stretch(at));
+        let (u, stretch) = (self.boundary.rate(at), self.boundary.stretch(at));
         let given = self.given(at.t, u) * u * stretch;
         Power { supplied: -given, dissipated: self.pull(at.t, u).0 * u * stretch - given, ..Power::default() }
     }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if self.reference.is_some() { Some(self) } else { None }
+    }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
+}
+
+impl Timed for Pull {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.reference.as_ref().map_or(Some(h), |motion| motion.reach(t, h))
+    }
+}
+
+impl Shows for Pull {
     fn columns(&self) -> Vec<Column> {
         vec![Column::new(format!("{}.pull", self.name), "N")]
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
-        out.push(self.pull(at.t, self.front.rate(at)).0);
+        out.push(self.pull(at.t, self.boundary.rate(at)).0);
     }
 }
 
@@ -113,10 +126,10 @@ mod tests {
             Node { kind: NodeKind::Scalars(1), q: 6, v: 6, shared: true },
         ];
         let steady = Straight::new([1.0, 0.0, 0.0], 3.0, -1.0, 0.1).expect("a speed");
-        for (sign, rate, pace) in
+        for (sign, rate, reference) in
             [(-1.0, 0.7, None), (-1.0, -0.4, Some(Arc::new(steady) as Arc<dyn Motion>)), (1.0, 0.3, None)]
         {
-            let front = Front {
+            let boundary = MovingBoundary {
                 node: NodeId(1),
                 q: 6,
                 v: 6,
@@ -129,19 +142,19 @@ mod tests {
             };
             let pull = Pull {
                 name: "drum".into(),
-                front,
+                boundary,
                 tension: 4.0,
                 brake: 3.0,
-                slip: 0.5,
+                slip_speed: 0.5,
                 damping: 0.7,
                 per_speed2: 0.4,
-                pace,
+                reference,
                 inertia: 2.0,
                 pile: true,
             };
             let q = [0.1, 0.2, 0.3, 0.9, 0.5, -0.4, 0.8];
             let (v, a) = ([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, rate], [0.3; 7]);
-            let at = At { t: 0.0, q: &q, v: &v, a: &a, modes: &[], relaxed: None };
+            let at = At { t: 0.0, q: &q, v: &v, a: &a, internal: &[], relaxed: None };
             assert!(check_tangent(&pull, &nodes, &at, Width::One) < 1e-8);
         }
     }

@@ -12,113 +12,112 @@ use std::sync::Arc;
 fn ramp() -> f64 {
     1.0
 }
-fn slip() -> f64 {
+fn slip_speed() -> f64 {
     1e-3
 }
-fn release() -> f64 {
+fn fade() -> f64 {
     0.1
 }
 fn rest() -> f64 {
     f64::INFINITY
 }
 
-/// Feeds out and reels in cable at one of its ends: the cable's length changes, with the right mass, momentum and drag.
+/// Pays out or reels in cable at one end. Mass, momentum and drag follow the changing length.
 ///
-/// Where that end is in space is told by another constraint, such as `spherical` or `driving`. Prescribe the speed by
-/// `speed` or by `motion`; or leave the end free and give what holds it back: `tension`, `brake`, `damping`, `inertia`.
-/// A winch whose `speed` is 0 is no winch: the cable is as it would be without.
+/// Position that end with another constraint, such as `spherical` or `driving`. Prescribe the payout rate with
+/// `speed` or `motion`, or leave it free and give the resistance: `tension`, `brake`, `damping`, `inertia`. With
+/// `speed = 0` the winch has no effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WinchSpec {
-    /// Name, by which records and events refer to it.
+    /// Name; records and events refer to it.
     pub name: String,
     /// The end of the cable: `hose.start` or `hose.end`.
     pub marker: MarkerRef,
-    /// Speed at which it feeds out after the ramp [m/s]; negative reels in. Where `final_length` says which of the two it
-    /// is, it may be positive for both.
+    /// Payout rate after the ramp [m/s]; negative reels in. With `final_length` the sign may be left positive.
     #[serde(
         default,
         deserialize_with = "quantity::optional::speed",
         skip_serializing_if = "Option::is_none"
     )]
     pub speed: Option<f64>,
-    /// Time at which it starts [s].
+    /// Start time [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
-    /// Time in which the speed rises, and falls at the stop [s].
+    /// Time in which the speed rises, and falls again at the stop [s].
     #[serde(default = "ramp", deserialize_with = "quantity::time")]
     pub ramp: f64,
-    /// Time at which it begins to slow down again [s]; left out, it goes on.
+    /// Time at which the speed begins to fall again [s]. Default: never.
     #[serde(default, deserialize_with = "quantity::optional::time", skip_serializing_if = "Option::is_none")]
     pub stop: Option<f64>,
-    /// Length that it feeds out in all before it stops [m], with the sign of the speed, instead of `stop`.
+    /// Length paid out when it stops [m], with the sign of the speed, instead of `stop`.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
-    pub total: Option<f64>,
-    /// Length of the cable at which it stops [m], instead of `stop` and `total`.
+    pub payout: Option<f64>,
+    /// Length of the cable when it stops [m], instead of `stop` and `payout`.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
     pub final_length: Option<f64>,
-    /// Name of a motion whose x component is the length fed out, instead of `speed`.
+    /// Name of a motion whose x component is the payout length, instead of `speed`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
-    /// Tension that holds the end back where the speed isn't prescribed [N].
+    /// Constant tension of the winch [N], if the speed isn't prescribed.
     #[serde(
         default,
         deserialize_with = "quantity::optional::force",
         skip_serializing_if = "Option::is_none"
     )]
     pub tension: Option<f64>,
-    /// Dry friction of a brake [N].
+    /// Dry friction of the brake [N].
     #[serde(default, deserialize_with = "quantity::force")]
     pub brake: f64,
-    /// Speed below which the brake creeps instead of sticking [m/s].
-    #[serde(default = "slip", deserialize_with = "quantity::speed")]
-    pub slip: f64,
-    /// Resistance per speed [N s/m].
+    /// Slip speed of the brake [m/s]: below it the brake creeps instead of sticking.
+    #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
+    pub slip_speed: f64,
+    /// Linear damping: tension per payout rate [N s/m].
     #[serde(default, deserialize_with = "quantity::damping")]
     pub damping: f64,
-    /// Tension by the square of the speed, besides `tension` [kg/m]: what is measured at an eyelet often goes by it.
+    /// Tension per speed squared, added to `tension` [kg/m]. Measurements at eyelets often follow this law.
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub per_speed2: f64,
-    /// Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs here. A
-    /// tension that draws, and grows with the speed to which it draws, drives itself: then name the motion that is meant.
+    /// Name of a motion whose speed along x `per_speed2` refers to. Default: the payout rate here. A tension that
+    /// draws the cable and grows with its speed is unstable: then name a motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pace: Option<String>,
-    /// Inertia of the drum over the square of its radius [kg].
+    pub reference_speed: Option<String>,
+    /// Moment of inertia of the drum over its radius squared [kg].
     #[serde(default, deserialize_with = "quantity::mass")]
     pub inertia: f64,
-    /// Whether cable is picked up from a pile at rest, and not from a drum that turns with it.
+    /// Whether the cable comes from a pile at rest instead of a turning drum.
     #[serde(default)]
     pub pile: bool,
-    /// Length on the spool at the start [m]: once it is fed out, the run ends. Left out, there is always more.
+    /// Length stored on the spool at the start [m]. The run ends when it is paid out. Default: unlimited.
     #[serde(default = "rest", deserialize_with = "quantity::length", skip_serializing_if = "is_infinite")]
-    pub stock: f64,
-    /// Shortest length that the cable is reeled in to [m], where the run ends; left out, a twentieth of its length at
-    /// the start, or two elements.
+    pub stored_length: f64,
+    /// Shortest length of the cable [m]; the run ends there. Default: 5 % of the initial length, at least two
+    /// elements.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
     pub shortest: Option<f64>,
-    /// Length of elements [m] that are born and swallowed at this end; left out, all elements of the cable grow and
-    /// shrink together, which is smoother and does for a change of length up to ten times or so.
+    /// Length of the elements that are added and removed at this end [m]. Default: all elements grow and shrink
+    /// together. Smoother; suits length changes up to about tenfold.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
-    pub element: Option<f64>,
-    /// Time in which the strain fades that keeps the tension from jumping when an element is born or swallowed [s].
-    #[serde(default = "release", deserialize_with = "quantity::time")]
-    pub release: f64,
+    pub element_length: Option<f64>,
+    /// Fade time [s] of the strain that keeps the tension continuous when an element is added or removed.
+    #[serde(default = "fade", deserialize_with = "quantity::time")]
+    pub fade: f64,
 }
 register_spec!(Constraint, "winch", WinchSpec);
 
@@ -147,32 +146,32 @@ impl WinchSpec {
             start: 0.0,
             ramp: ramp(),
             stop: None,
-            total: None,
+            payout: None,
             final_length: None,
             motion: None,
             tension: None,
             brake: 0.0,
-            slip: slip(),
+            slip_speed: slip_speed(),
             damping: 0.0,
             per_speed2: 0.0,
-            pace: None,
+            reference_speed: None,
             inertia: 0.0,
             pile: false,
-            stock: rest(),
+            stored_length: rest(),
             shortest: None,
-            element: None,
-            release: release(),
+            element_length: None,
+            fade: fade(),
         }
     }
 
     /// The motion whose speed the tension goes by.
-    fn pace(&self, b: &Builder) -> Result<Option<Arc<dyn Motion>>, BuildError> {
-        let Some(name) = &self.pace else { return Ok(None) };
-        let motion = b.motion(name).map_err(|e| e.of("pace"))?;
+    fn reference_speed(&self, b: &Builder) -> Result<Option<Arc<dyn Motion>>, BuildError> {
+        let Some(name) = &self.reference_speed else { return Ok(None) };
+        let motion = b.motion(name).map_err(|e| e.of("reference_speed"))?;
         if motion.range() != (f64::NEG_INFINITY, f64::INFINITY) {
             let message =
                 format!("the speed of `{name}` is not defined for ever: take another motion, or longer");
-            return Err(BuildError::at("pace", message));
+            return Err(BuildError::at("reference_speed", message));
         }
         Ok(Some(motion))
     }
@@ -192,7 +191,7 @@ impl ConstraintSpec for WinchSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        (!self.idle()).then_some((&self.marker, Feed { element: self.element, unstrained: false }))
+        (!self.idle()).then_some((&self.marker, Feed { element: self.element_length, unstrained: false }))
     }
     fn notes(&self, model: &Model) -> Vec<String> {
         let (Some(speed), MarkerRef::Name(marker)) = (self.speed.filter(|v| *v != 0.0), &self.marker) else {
@@ -220,37 +219,37 @@ impl ConstraintSpec for WinchSpec {
         for (name, x) in [("brake", self.brake), ("damping", self.damping), ("inertia", self.inertia)] {
             not_negative(name, x)?;
         }
-        positive("slip", self.slip)?;
+        positive("slip_speed", self.slip_speed)?;
         let part = b.feeding_part(&self.marker)?;
         let whole = part.length();
         if self.idle() {
             // it adds nothing, but what is wrong with it is said all the same
             return self.drive(b, whole).map(drop);
         }
-        let front = b.front(&self.marker)?;
+        let boundary = b.boundary(&self.marker, "give this winch something to do")?;
         match self.drive(b, whole)? {
             Drive::Motion(motion) => {
                 let start = motion.at(0.0);
                 if start.x[0] != 0.0 {
-                    let message = format!("the motion has fed out {} m before the run begins", start.x[0]);
+                    let message = format!("the motion has paid out {} m before the run begins", start.x[0]);
                     return Err(BuildError::at("motion", message));
                 }
-                b.start_feeding(&self.marker, front.sign * start.v[0])?;
-                b.constraint(Feeding::new(&self.name, front, motion))?;
+                b.start_feeding(&self.marker, boundary.sign * start.v[0])?;
+                b.constraint(Feeding::new(&self.name, boundary, motion))?;
             }
             Drive::Held => {
                 let tension = self.tension.unwrap_or(0.0);
                 finite("tension", &[tension])?;
-                let pace = self.pace(b)?;
+                let reference_speed = self.reference_speed(b)?;
                 b.term(Box::new(Pull {
                     name: self.name.clone(),
-                    front,
+                    boundary,
                     tension,
                     brake: self.brake,
-                    slip: self.slip,
+                    slip_speed: self.slip_speed,
                     damping: self.damping,
                     per_speed2: self.per_speed2,
-                    pace,
+                    reference: reference_speed,
                     inertia: self.inertia,
                     pile: self.pile,
                 }));
@@ -258,22 +257,22 @@ impl ConstraintSpec for WinchSpec {
         }
         let limit = |side, length| Limit {
             name: self.name.clone(),
-            front,
+            boundary,
             part: part.name().to_string(),
             side,
             length,
         };
-        if self.stock.is_finite() {
-            b.event(limit(Side::Empty, positive("stock", self.stock)?));
+        if self.stored_length.is_finite() {
+            b.event(limit(Side::Empty, positive("stored_length", self.stored_length)?));
         }
-        if self.element.is_some_and(|e| e >= 0.5 * whole) {
+        if self.element_length.is_some_and(|e| e >= 0.5 * whole) {
             let message =
                 format!("the cable is {whole} m long at the start: take elements of less than half of that");
-            return Err(BuildError::at("element", message));
+            return Err(BuildError::at("element_length", message));
         }
         // an element can't be swallowed by the last one
-        let riding: f64 = [0, 1].map(|end| part.riding(end)).iter().sum();
-        let least = self.element.map_or(0.05 * whole, |e| (riding + 2.0 * e).max(0.05 * whole));
+        let riding: f64 = [0, 1].map(|end| part.line().map_or(0.0, |line| line.riding(end))).iter().sum();
+        let least = self.element_length.map_or(0.05 * whole, |e| (riding + 2.0 * e).max(0.05 * whole));
         let shortest = positive("shortest", self.shortest.unwrap_or(least))?;
         if shortest >= whole {
             let message = format!("the cable is {whole} m long at the start, and `shortest` must be less");
@@ -286,8 +285,8 @@ impl ConstraintSpec for WinchSpec {
             return Err(BuildError::at("final_length", message));
         }
         b.event(limit(Side::Short, shortest));
-        if let Some(element) = self.element {
-            let (element, release) = (positive("element", element)?, positive("release", self.release)?);
+        if let Some(element) = self.element_length {
+            let (element, fade) = (positive("element_length", element)?, positive("fade", self.fade)?);
             if self.shortest.is_some_and(|s| s < riding + 2.0 * element) {
                 let besides =
                     if riding > 0.0 { format!(", and {riding} m of graded mesh,") } else { String::new() };
@@ -300,9 +299,9 @@ impl ConstraintSpec for WinchSpec {
                 b.event(Zone {
                     winch: self.name.clone(),
                     part: part.name().to_string(),
-                    end: usize::from(front.sign > 0.0),
+                    end: usize::from(boundary.sign > 0.0),
                     element,
-                    release,
+                    fade,
                     grows,
                 });
             }

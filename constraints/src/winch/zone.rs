@@ -1,4 +1,4 @@
-//! Elements that are born and swallowed at an end that feeds.
+//! Elements that are added and removed at an end that pays out.
 
 use ropewalk_core::{Action, Change, Event, Model, Plan, State};
 
@@ -11,15 +11,15 @@ pub struct Zone {
     pub part: String,
     /// Its end: 0 the start, 1 the end.
     pub end: usize,
-    /// Wished length of elements [m].
+    /// Target length of elements [m].
     pub element: f64,
     /// Time in which the strain fades that keeps the tension from jumping [s].
-    pub release: f64,
+    pub fade: f64,
     /// Whether it watches for growth, or for shrinking.
     pub grows: bool,
 }
 
-/// Length of an element that is split, and of one that is merged, in parts of the wished length. After a split 0.6 are
+/// Length of an element that is split, and of one that is merged, in parts of the target length. After a split 0.6 are
 /// left and after a merge there are 1.5: each is well away from where the other happens.
 pub(super) const SPLIT: f64 = 1.6;
 pub(super) const MERGE: f64 = 0.5;
@@ -27,7 +27,10 @@ pub(super) const MERGE: f64 = 0.5;
 impl Zone {
     /// Length of the element at the end [m].
     fn length(&self, model: &Model, state: &State) -> f64 {
-        model.part(&self.part).and_then(|p| p.end_element(self.end, &state.at())).unwrap_or(self.element)
+        model
+            .part(&self.part)
+            .and_then(|p| p.line()?.end_element(self.end, &state.at()))
+            .unwrap_or(self.element)
     }
 }
 
@@ -45,13 +48,13 @@ impl Event for Zone {
     }
     fn act(&self, model: &Model, state: &mut State) -> Action {
         let change = match self.grows {
-            true => Change::Split { end: self.end, keep: self.element, release: self.release },
-            false => Change::Merge { end: self.end, release: self.release },
+            true => Change::Split { end: self.end, keep: self.element, fade: self.fade },
+            false => Change::Merge { end: self.end, fade: self.fade },
         };
         let mut plan = Plan::new();
         for part in model.parts() {
             let own = if part.name() == self.part { change } else { Change::None };
-            match part.remesh(own, &state.at()) {
+            match part.line().map_or(Ok(None), |line| line.remesh(own, &state.at())) {
                 Ok(Some(mesh)) => drop(plan.insert(part.name().to_string(), mesh)),
                 Ok(None) => {}
                 Err(message) => return Action::Fail(message),

@@ -2,13 +2,14 @@
 
 use ropewalk_constraints::motion::{Circle, Harmonic, Side, Table};
 use ropewalk_constraints::{
-    Connection, clamp, coordinate, cylindrical, distance, driving, perpendicular, point_on_line,
-    point_on_plane, prismatic, revolute, rotation, slide, spherical, universal, weld,
+    coordinate, cylindrical, direction, distance, driving, perpendicular, point_on_line, point_on_plane,
+    prismatic, revolute, rotation, slide, spherical, universal, weld,
 };
 use ropewalk_core::rotation::around;
 use ropewalk_core::testing::check_constraint;
 use ropewalk_core::{
-    At, BuildError, Constraint, Jet, Joint, Marker, Motion, Node, NodeId, NodeKind, Place, Relation, RowKind,
+    At, BuildError, Constraint, Jet, Joint, Marker, Motion, Node, NodeId, NodeKind, Place, Related, Relation,
+    RowKind,
 };
 use std::sync::Arc;
 
@@ -66,10 +67,10 @@ fn heave() -> Arc<dyn Motion> {
     Arc::new(Harmonic::new([0.4, 0.1, 0.5], 0.2, 0.3, 0.0, 2.0).unwrap())
 }
 
-type Make = fn(&'static str, &[Node], [Marker; 2]) -> Result<Connection, BuildError>;
+type Make = fn(&'static str, &[Node], [Marker; 2]) -> Result<Joint, BuildError>;
 
 /// Every joint between every kind of marker that it can hold, and whether it is linear.
-fn joints() -> Vec<(Connection, bool)> {
+fn joints() -> Vec<(Joint, bool)> {
     let n = nodes();
     let node = Marker::node;
     let mut all = vec![
@@ -81,8 +82,8 @@ fn joints() -> Vec<(Connection, bool)> {
         (distance("rod", &n, [node(POINT), node(CABLE)], 2.0), false),
         (distance("rod", &n, [on(BODY), ground()], 2.0), false),
         (distance("rod", &n, [on(BODY), on(OTHER)], 2.0), false),
-        (clamp("clamp", &n, CABLE, ground()), true),
-        (clamp("clamp", &n, CABLE, on(BODY)), false),
+        (direction("direction", &n, CABLE, ground()), true),
+        (direction("direction", &n, CABLE, on(BODY)), false),
         (driving("ship", &n, [ground(), node(CABLE)], ship()), true),
         (driving("ship", &n, [ground(), on(BODY)], heave()), false),
         (coordinate("plane", &n, [ground(), node(POINT)], [1.0, 1.0, 0.0], None), true),
@@ -125,7 +126,7 @@ fn derivatives_are_exact() {
     let mut worst = 0.0_f64;
     for seed in 1..=6 {
         let s = numbers(seed);
-        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], modes: &[], relaxed: None };
+        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], internal: &[], relaxed: None };
         for (joint, linear) in joints() {
             assert_eq!(joint.linear(), linear, "{}", joint.name());
             let error = check_constraint(&joint, &nodes(), &at);
@@ -158,10 +159,10 @@ fn closed_forms_agree_with_forward_differentiation() {
     // the relation orders its nodes by number
     let markers = [on(BODY), on(OTHER)];
     let (closed, dual) =
-        (revolute("hinge", &n, markers).unwrap(), Joint::new("hinge", Hinge, markers.to_vec()));
+        (revolute("hinge", &n, markers).unwrap(), Related::new("hinge", Hinge, markers.to_vec()));
     for seed in 1..=6 {
         let s = numbers(seed);
-        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], modes: &[], relaxed: None };
+        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], internal: &[], relaxed: None };
         let all = |c: &dyn Constraint| {
             let (mut g, mut jac, mut h) = ([0.0; 5], [0.0; 60], [0.0; 144]);
             let (mut rate, mut bias) = ([0.0; 5], [0.0; 5]);
@@ -177,15 +178,15 @@ fn closed_forms_agree_with_forward_differentiation() {
 }
 
 #[test]
-fn clamp_holds_the_direction_and_leaves_the_stretch() {
+fn the_direction_is_held_and_the_stretch_is_free() {
     let nodes = nodes();
     let mut s = numbers(1);
-    let clamp = clamp("clamp", &nodes, CABLE, ground()).unwrap();
+    let tangent = direction("direction", &nodes, CABLE, ground()).unwrap();
     for (slope, held) in [([1.0, 2.0, -3.0], true), ([0.1, 0.2, -0.3], true), ([1.0, 2.0, -2.9], false)] {
         s.q[6..9].copy_from_slice(&slope);
-        let at = At { t: 0.0, q: &s.q, v: &s.v, a: &s.v, modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &s.q, v: &s.v, a: &s.v, internal: &[], relaxed: None };
         let (mut g, mut jac) = ([0.0; 2], [0.0; 12]);
-        clamp.jacobian(&nodes, &at, &mut g, &mut jac);
+        tangent.jacobian(&nodes, &at, &mut g, &mut jac);
         assert_eq!(g.iter().all(|g| g.abs() < 1e-14), held);
     }
 }
@@ -223,8 +224,8 @@ fn what_holds_nothing_is_refused() {
     }
     assert!(distance("j", &n, [node(POINT), node(CABLE)], 0.0).is_err());
     assert!(distance("j", &n, [node(POINT), node(CABLE)], f64::NAN).is_err());
-    assert!(clamp("j", &n, POINT, ground()).is_err());
-    assert!(clamp("j", &n, CABLE, node(POINT)).is_err());
+    assert!(direction("j", &n, POINT, ground()).is_err());
+    assert!(direction("j", &n, CABLE, node(POINT)).is_err());
     assert!(driving("j", &n, [ground(), ground()], ship()).is_err());
     assert!(driving("j", &n, [Marker::ground([f64::NAN; 3]), node(POINT)], ship()).is_err());
     assert!(coordinate("j", &n, [ground(), node(POINT)], [0.0; 3], None).is_err());

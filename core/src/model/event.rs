@@ -5,10 +5,10 @@ use crate::model::state::State;
 
 /// What an event does once its time is located.
 pub enum Action {
-    /// Nothing that forces feel at once. If it changed a mode, what it started sets in smoothly: the step ends there, and
+    /// Nothing that forces feel at once. If it changed an internal variable, what it started sets in smoothly: the step ends there, and
     /// the integrator goes on with its memory. If it changed none, it was only of interest, and the step stays as it is.
     Continue,
-    /// The state (a mode, a velocity) was changed: the integrator starts anew from it.
+    /// The state (an internal variable, a velocity) was changed: the integrator starts anew from it.
     Restart,
     /// The mesh changes: the simulation goes on with another model.
     Remesh(Box<Model>),

@@ -1,27 +1,27 @@
-//! Ends of cables that material flows through: what winches and eyelets hold on to.
+//! Moving boundaries: ends of parts that material flows through, at winches and eyelets.
 
 use crate::model::node::NodeId;
 use crate::model::state::At;
 
-/// What a winch asks of the cable on it, before the cable is built.
+/// What a constraint that feeds asks of a part, before that is built.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Feed {
-    /// Length of elements [m] that are born and swallowed at the end while the rest of the cable stays on its material.
-    /// Left out, all elements of the cable grow and shrink together.
+    /// Length of elements [m] that are born and swallowed at the end while the rest of the part stays on its material.
+    /// Left out, all elements of the part grow and shrink together.
     pub element: Option<f64>,
-    /// Whether what passes the end is free of strain energy outside, as cable that sticks to a package is up to what its
-    /// law of peeling counts. Else it is strained outside as it is inside.
+    /// Whether what passes the end is free of strain energy outside, or what it has there is counted by others. Else it is
+    /// strained outside as it is inside.
     pub unstrained: bool,
 }
 
 /// An end of a cable that feeds: the material coordinate there is an unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Front {
+pub struct MovingBoundary {
     /// The node that carries the material coordinate.
     pub node: NodeId,
     /// Place of the coordinate and of its rate.
     pub q: usize,
-    /// See [`Front::q`].
+    /// See [`MovingBoundary::q`].
     pub v: usize,
     /// -1 at the start of the cable, where feeding out moves the coordinate back, +1 at its end.
     pub sign: f64,
@@ -29,15 +29,15 @@ pub struct Front {
     pub home: f64,
     /// The node of the cable that stands there, and the place of its coordinates.
     pub end: NodeId,
-    /// See [`Front::end`].
+    /// See [`MovingBoundary::end`].
     pub end_q: usize,
-    /// See [`Front::end`].
+    /// See [`MovingBoundary::end`].
     pub end_v: usize,
     /// Mass per unstretched length of what is fed [kg/m].
     pub rho_a: f64,
 }
 
-impl Front {
+impl MovingBoundary {
     /// Length fed out since the start [m].
     pub fn fed(&self, at: &At<'_>) -> f64 {
         self.sign * (at.q[self.q] - self.home)

@@ -168,7 +168,7 @@ mod tests {
         let marker = Marker::beside(NodeId(0), [2.0, 0.0, 0.0]);
         let q = [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
         let v = [0.5, 0.0, 0.0, 0.0, 0.0, 3.0];
-        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 6], modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 6], internal: &[], relaxed: None };
         assert_eq!(marker.now(&nodes, &at).x, [3.0, 1.0, 1.0]);
         assert_eq!(marker.velocity(&nodes, &at), [0.5, 6.0, 0.0]);
         assert_eq!(marker.acceleration(&nodes, &at), [-18.0, 0.0, 0.0]);

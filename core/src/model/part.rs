@@ -1,11 +1,11 @@
 //! Parts: what a scene names, and what forces, constraints and records ask of it.
 
 use crate::algebra::lane::V3;
-use crate::model::feed::Front;
+use crate::model::feed::MovingBoundary;
 use crate::model::held::Held;
+use crate::model::line::{Line, Quantity, Slender};
 use crate::model::marker::Marker;
 use crate::model::node::{Node, NodeId};
-use crate::model::remesh::{Change, Mesh};
 use crate::model::span::ContactSpan;
 use crate::model::state::At;
 use crate::model::station::Stations;
@@ -21,38 +21,6 @@ pub enum Per {
     Volume,
 }
 
-/// What can be observed along a part, besides the motion of its markers.
-///
-/// ```
-/// use ropewalk_core::Quantity;
-/// assert_eq!(Quantity::Moment.unit(), "N m");
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
-pub enum Quantity {
-    /// Axial force [N].
-    Tension,
-    /// Axial strain [1].
-    Strain,
-    /// Curvature [1/m].
-    Curvature,
-    /// Bending moment [N m].
-    Moment,
-}
-
-impl Quantity {
-    /// Its SI unit.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Quantity::Tension => "N",
-            Quantity::Strain => "1",
-            Quantity::Curvature => "1/m",
-            Quantity::Moment => "N m",
-        }
-    }
-}
-
 /// A ball by which a compact part touches shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
@@ -60,38 +28,6 @@ pub struct ContactPoint {
     pub held: Held,
     /// Its radius [m]; 0 if the part has none.
     pub radius: f64,
-}
-
-/// An element of a slender part and what it is made of.
-///
-/// ```
-/// use ropewalk_core::Slender;
-/// let rope = Slender { element: 0.5, mass: 0.4, ea: 1e5, ei: 0.1 };
-/// // sound passes an element in a millisecond, bending in a quarter of a second
-/// assert!((rope.axial_time() - 1e-3).abs() < 1e-9 && (rope.bending_time() - 0.5).abs() < 1e-9);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slender {
-    /// Its length [m].
-    pub element: f64,
-    /// Its mass per length, of the water that it is flooded with too [kg/m].
-    pub mass: f64,
-    /// Its axial stiffness [N].
-    pub ea: f64,
-    /// Its bending stiffness [N m²].
-    pub ei: f64,
-}
-
-impl Slender {
-    /// Time in which bending runs along the element, `l² √(ρA/EI)` [s]; infinite without bending stiffness.
-    pub fn bending_time(&self) -> f64 {
-        self.element.powi(2) * (self.mass / self.ei).sqrt()
-    }
-
-    /// Time in which sound runs along it, `l √(ρA/EA)` [s].
-    pub fn axial_time(&self) -> f64 {
-        self.element * (self.mass / self.ea).sqrt()
-    }
 }
 
 /// An end of a slender part, where a fluid may meet or leave it.
@@ -150,25 +86,16 @@ pub trait Part: Send + Sync {
     fn tips(&self) -> Vec<Tip> {
         Vec::new()
     }
-    /// Something along the part, at unstretched arc length `s`.
-    fn observe(&self, _what: Quantity, _s: f64, _at: &At<'_>) -> Option<f64> {
-        None
-    }
-    /// Size of the axial force at unstretched arc length `s` [N], by which Newton's method judges residuals: as
-    /// [`Quantity::Tension`], or what is cheaper and of its order.
-    fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {
-        self.observe(Quantity::Tension, s, at)
-    }
     /// Position and velocity at unstretched arc length `s`.
     fn point(&self, _s: f64, _at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         None
     }
-    /// Interpolates coordinates (or velocities) `x` of its nodes at arc length `s`: position and slope, for remeshing.
-    fn slope(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {
+    /// What only a line is asked, if it is one.
+    fn line(&self) -> Option<&dyn Line> {
         None
     }
-    /// Points of its centre line, for pictures.
-    fn line(&self, _at: &At<'_>) -> Vec<V3<f64>> {
+    /// Points of its centre line.
+    fn centre_line(&self, _at: &At<'_>) -> Vec<V3<f64>> {
         Vec::new()
     }
     /// Unstretched arc lengths of these points [m], one for each; empty if it has no length to go along.
@@ -181,68 +108,39 @@ pub trait Part: Send + Sync {
     fn mass(&self) -> f64 {
         0.0
     }
-    /// Unstretched length now [m]: what winches have fed out included.
-    fn length_now(&self, _at: &At<'_>) -> f64 {
-        self.length()
-    }
-    /// What its elements are like on average, if it is a cable.
-    fn slender(&self) -> Option<Slender> {
-        None
-    }
-    /// The front at an end that feeds: 0 the start, 1 the end.
-    fn front(&self, _end: usize) -> Option<Front> {
-        None
-    }
-    /// Whether elements are born and swallowed at an end, instead of growing and shrinking together.
-    fn makes_elements(&self, _end: usize) -> bool {
-        false
-    }
-    /// Sets velocities `v` such that an end feeds at this rate of its material coordinate [m/s] while the material keeps
-    /// the velocity that it has.
-    fn start_feeding(&self, _end: usize, _rate: f64, _q: &[f64], _v: &mut [f64]) {}
     /// Where on the part a node is, for messages; `None` if it isn't on it.
     fn place_of(&self, node: NodeId) -> Option<String>;
-    /// Its material points where nodes are, by unstretched arc length.
-    fn mesh(&self) -> &[f64] {
-        &[]
-    }
-    /// Unstretched arc length of each node from the start as it is now [m]: of a cable that feeds, other than its mesh.
-    fn mesh_now(&self, _at: &At<'_>) -> Vec<f64> {
-        self.mesh().to_vec()
-    }
-    /// Lays its nodes evenly along the straight line between its ends, as the start of another search for
-    /// equilibrium. Parts that can't be laid wrong do nothing.
-    fn straighten(&self, _q: &mut [f64]) {}
     /// First coordinate and velocity of each of its own nodes, in order.
     fn seats(&self) -> Vec<(usize, usize)> {
         Vec::new()
     }
-    /// The node, three numbers, that tells which way the section at a node of a cable looks; `None` where it doesn't know.
-    fn director(&self, _node: NodeId) -> Option<NodeId> {
-        None
-    }
-    /// Interpolates the numbers of those nodes, or their rates, at arc length `s`.
-    fn looks(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<V3<f64>> {
-        None
-    }
-    /// Length of the element at an end that others are born of [m]: 0 the start, 1 the end.
-    fn end_element(&self, _end: usize, _at: &At<'_>) -> Option<f64> {
-        None
-    }
-    /// Length of the elements between that one and the end, which keep their lengths [m].
-    fn riding(&self, _end: usize) -> f64 {
-        0.0
-    }
-    /// Its mesh after a change, with the state that it goes on from; nothing where the mesh of its spec does.
-    ///
-    /// # Errors
-    /// The change can't be made.
-    fn remesh(&self, _change: Change, _at: &At<'_>) -> Result<Option<Mesh>, String> {
-        Ok(None)
-    }
     /// Its state carried over to this part of another model, where the mesh may differ: sets the coordinates and
     /// velocities of this part's nodes by interpolation of `old`.
     fn carry(&self, _nodes: &[Node], _old: &dyn Part, _at: &At<'_>, _q: &mut [f64], _v: &mut [f64]) {}
+}
+
+/// What is asked of any part and told by lines alone.
+impl dyn Part + '_ {
+    /// Something along a line, at unstretched arc length `s`.
+    pub fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {
+        self.line()?.observe(what, s, at)
+    }
+    /// Unstretched length now [m]: what has been fed out included.
+    pub fn length_now(&self, at: &At<'_>) -> f64 {
+        self.line().map_or_else(|| self.length(), |line| line.length_now(at))
+    }
+    /// Material points where nodes of a line are, by unstretched arc length; none of other parts.
+    pub fn mesh(&self) -> &[f64] {
+        self.line().map_or(&[], |line| line.mesh())
+    }
+    /// What the elements of a line are like on average.
+    pub fn slender(&self) -> Option<Slender> {
+        self.line().map(|line| line.slender())
+    }
+    /// The boundary at an end that feeds: 0 the start, 1 the end.
+    pub fn boundary(&self, end: usize) -> Option<MovingBoundary> {
+        self.line()?.boundary(end)
+    }
 }
 
 /// A place on a part, as written in a scene behind the part's name.

@@ -29,7 +29,7 @@ pub struct MeshState {
     /// Velocities of each node.
     pub v: Vec<Vec<f64>>,
     /// For the start and the end, where they feed: rate of the material coordinate there [m/s].
-    pub fronts: [f64; 2],
+    pub boundaries: [f64; 2],
 }
 
 /// A stress-free strain of one element that fades out smoothly: what keeps its tension from jumping when its neighbours
@@ -37,7 +37,7 @@ pub struct MeshState {
 ///
 /// ```
 /// use ropewalk_core::Prestrain;
-/// let fading = Prestrain { element: 0, strain: vec![1e-3], since: 10.0, release: 2.0 };
+/// let fading = Prestrain { element: 0, strain: vec![1e-3], since: 10.0, fade: 2.0 };
 /// assert_eq!((fading.left(10.0).0, fading.left(11.0).0, fading.left(12.0).0), (1.0, 0.5, 0.0));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -50,14 +50,14 @@ pub struct Prestrain {
     /// When it begins to fade [s].
     pub since: f64,
     /// How long it takes [s].
-    pub release: f64,
+    pub fade: f64,
 }
 
 impl Prestrain {
     /// What is left of it at time `t`, between 1 and 0, and the rate of that [1/s].
     pub fn left(&self, t: f64) -> (f64, f64) {
-        let u = ((t - self.since) / self.release).clamp(0.0, 1.0);
-        let fall = 30.0 * u * u * (1.0 - u) * (1.0 - u) / self.release;
+        let u = ((t - self.since) / self.fade).clamp(0.0, 1.0);
+        let fall = 30.0 * u * u * (1.0 - u) * (1.0 - u) / self.fade;
         (1.0 - u * u * u * (10.0 + u * (6.0 * u - 15.0)), -fall)
     }
 }
@@ -75,14 +75,14 @@ pub enum Change {
         /// Length of the piece that goes on with the rest [m].
         keep: f64,
         /// Time in which prestrain fades [s].
-        release: f64,
+        fade: f64,
     },
     /// The element at this end is merged with its neighbour.
     Merge {
         /// 0 the start, 1 the end.
         end: usize,
         /// Time in which prestrain fades [s].
-        release: f64,
+        fade: f64,
     },
 }
 

@@ -23,16 +23,16 @@ pub struct ContactSpan {
     pub flow: Option<SpanFlow>,
 }
 
-/// How the nodes of a piece stand on a cable whose ends feed: at `p_i = fixed_i + Σ_k by_ki π_k` with its fronts `π`.
+/// How the nodes of a piece stand on a cable whose ends feed: at `p_i = fixed_i + Σ_k by_ki π_k` with its boundaries `π`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpanFlow {
-    /// Places of the coordinate and of the rate of each front.
-    pub fronts: [(usize, usize); 2],
-    /// How many fronts there are.
+    /// Places of the coordinate and of the rate of each boundary.
+    pub boundaries: [(usize, usize); 2],
+    /// How many boundaries there are.
     pub count: usize,
-    /// What doesn't move with any front [m].
+    /// What doesn't move with any boundary [m].
     pub fixed: [f64; 2],
-    /// Share of each front, by front and node.
+    /// Share of each boundary, by boundary and node.
     pub by: [[f64; 2]; 2],
 }
 
@@ -40,12 +40,12 @@ impl SpanFlow {
     /// Material coordinates of both nodes [m].
     pub fn places(&self, q: &[f64]) -> [f64; 2] {
         std::array::from_fn(|i| {
-            (0..self.count).fold(self.fixed[i], |p, k| p + self.by[k][i] * q[self.fronts[k].0])
+            (0..self.count).fold(self.fixed[i], |p, k| p + self.by[k][i] * q[self.boundaries[k].0])
         })
     }
     /// Their rates [m/s].
     pub fn rates(&self, v: &[f64]) -> [f64; 2] {
-        std::array::from_fn(|i| (0..self.count).map(|k| self.by[k][i] * v[self.fronts[k].1]).sum())
+        std::array::from_fn(|i| (0..self.count).map(|k| self.by[k][i] * v[self.boundaries[k].1]).sum())
     }
 }
 

@@ -19,8 +19,9 @@ pub struct State {
     pub aux: Vec<f64>,
     /// Multipliers of the constraints, in the order of their rows.
     pub lambda: Vec<f64>,
-    /// Modes of parts that latch, break or stick; one number per mode, named by the model.
-    pub modes: Vec<f64>,
+    /// Internal variables of parts that latch, break or stick, which change at events and accepted states alone; named by the
+    /// model.
+    pub internal: Vec<f64>,
     /// What the step-size controller remembers between steps.
     pub control: Control,
 }
@@ -82,7 +83,7 @@ macro_rules! clone_in_place {
         }
     };
 }
-clone_in_place!(State { t, q, v, a, aux, lambda, modes, control });
+clone_in_place!(State { t, q, v, a, aux, lambda, internal, control });
 clone_in_place!(Control {
     h_last,
     h_start,
@@ -113,8 +114,8 @@ pub struct At<'a> {
     pub v: &'a [f64],
     /// True accelerations.
     pub a: &'a [f64],
-    /// Modes of parts that latch, break or stick.
-    pub modes: &'a [f64],
+    /// Internal variables of parts that latch, break or stick.
+    pub internal: &'a [f64],
     /// How a search for equilibrium wants stiffness to be relaxed. `None` in dynamics and once it has been found.
     pub relaxed: Option<Relaxed<'a>>,
 }
@@ -157,7 +158,7 @@ impl Relaxation {
 impl State {
     /// The state as a place of evaluation.
     pub fn at(&self) -> At<'_> {
-        At { t: self.t, q: &self.q, v: &self.v, a: &self.a, modes: &self.modes, relaxed: None }
+        At { t: self.t, q: &self.q, v: &self.v, a: &self.a, internal: &self.internal, relaxed: None }
     }
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {

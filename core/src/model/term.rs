@@ -1,7 +1,7 @@
 //! A term is one share of the equations of motion; a model is a flat list of them.
 
 use crate::algebra::lane::{Real, Width};
-use crate::model::column::Column;
+use crate::model::capability::{Foresees, Remembers, Shows, Timed};
 use crate::model::pattern::Pattern;
 use crate::model::state::At;
 use crate::model::structure::Structure;
@@ -115,54 +115,25 @@ pub trait Term: Send + Sync {
     fn power(&self, _at: &At<'_>) -> Power {
         Power::default()
     }
-    /// Whether it has something ahead that a long step could miss: only then [`Term::horizon`] is asked.
-    fn foresees(&self) -> bool {
-        false
-    }
-    /// The longest step from here that is sure not to leap over what it has ahead, such as a shape that a point flies
-    /// towards [s]. Error control takes no longer one; fixed steps are left alone.
-    fn horizon(&self, _at: &At<'_>) -> f64 {
-        f64::INFINITY
-    }
-    /// Whether it depends on time otherwise than through the state: only then [`Term::reach`] and [`Term::jump`] are asked.
-    fn timed(&self) -> bool {
-        false
-    }
-    /// How much of a step `h` from `t` may be taken that leaps over nothing of what time does to it [s], as the functions
-    /// of [`reach`](crate::model::reach) tell for rises, periods and knots. `None` if it doesn't know: error control then looks at
-    /// its force at the quarter points of every step, between which a short pulse may hide.
-    fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
-        None
-    }
-    /// When its force jumps next after `t` [s]; infinite if it never does. Error control ends a step just before and
-    /// starts anew there.
-    fn jump(&self, _t: f64) -> f64 {
-        f64::INFINITY
-    }
     /// Whether its force has a kink in velocities that a step may leap over, such as dry friction between slip and stick:
     /// only then does [`Assembly::leap`] say anything.
     fn kinked(&self) -> bool {
         false
     }
-    /// Whether it remembers something in [`State::modes`](crate::State::modes), such as where dry friction took hold: only
-    /// then is [`Term::remember`] called.
-    fn remembers(&self) -> bool {
-        false
-    }
-    /// Brings what it remembers up to date at a state that was accepted: `memory` is all of the modes, as they were at the
-    /// start of the step, and `at` has none.
-    fn remember(&self, _at: &At<'_>, _memory: &mut [f64]) {}
-    /// What has gone where it can't have gone in a step between two states, such as through a wall; nothing if all is well.
-    /// The step is then repeated smaller, and if that doesn't help the run ends with these words.
-    fn passes(&self, _before: &At<'_>, _after: &At<'_>) -> Option<String> {
+    /// What time does to it, if it depends on time otherwise than through the state.
+    fn timed(&self) -> Option<&dyn Timed> {
         None
     }
-    /// What one should know of it at the end of a run, in a sentence: such as that a mesh is too coarse for it.
-    fn remark(&self, _at: &At<'_>) -> Option<String> {
+    /// What it has ahead, if a long step could miss something.
+    fn foresees(&self) -> Option<&dyn Foresees> {
         None
     }
-    /// The drag coefficient of the flow across a part at an arc length of its material [m], if it is the drag on this part.
-    fn coefficient(&self, _part: &str, _s: f64, _at: &At<'_>) -> Option<f64> {
+    /// What it remembers, if it does.
+    fn remembers(&self) -> Option<&dyn Remembers> {
+        None
+    }
+    /// What it shows of itself, if it does.
+    fn shows(&self) -> Option<&dyn Shows> {
         None
     }
     /// The effects that it applies together, each as a term of its own; none if it is a single one. For ledgers: these
@@ -170,12 +141,6 @@ pub trait Term: Send + Sync {
     fn effects(&self) -> Vec<Box<dyn Term>> {
         Vec::new()
     }
-    /// What a record of type `force` shows of it; names are put behind that of the record.
-    fn columns(&self) -> Vec<Column> {
-        Vec::new()
-    }
-    /// Appends the values of [`Term::columns`].
-    fn observe(&self, _at: &At<'_>, _out: &mut Vec<f64>) {}
 }
 
 /// What an evaluation of Newton's method comes from.

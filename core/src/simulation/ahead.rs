@@ -54,8 +54,8 @@ impl Simulation {
     /// which they first do: what they do between two steps isn't seen.
     pub fn faster_than(&self, h: f64, end: f64) -> Vec<(String, f64)> {
         let (model, from) = (&self.model, self.state.t);
-        let terms = model.timed_terms().map(|term| {
-            let missed = missed(|t, h| term.reach(t, h), h, from, end);
+        let terms = model.timed_terms().map(|(term, timed)| {
+            let missed = missed(|t, h| timed.reach(t, h), h, from, end);
             missed.map(|t| (term.label(), t))
         });
         let constraints = model.moving_constraints().map(|(_, c)| {
@@ -88,11 +88,11 @@ impl Model {
     fn reach(&self, at: &At<'_>, h: f64) -> f64 {
         // a kink that the last step ended at is passed
         let part = |told: f64, h: f64| if told > SAME * at.t.abs() { told.min(h) } else { h };
-        let h = self.timed_terms().fold(h, |h, term| match term.reach(at.t, h) {
+        let h = self.timed_terms().fold(h, |h, (term, timed)| match timed.reach(at.t, h) {
             Some(told) => part(told, h),
             None => self.shown_by(term, at, h),
         });
-        let holding = self.moving_constraints().filter(|(c, _)| self.holds(*c, at.modes));
+        let holding = self.moving_constraints().filter(|(c, _)| self.holds(*c, at.internal));
         holding.fold(h, |h, (_, constraint)| match constraint.reach(at.t, h) {
             Some(told) => part(told, h),
             None => self.shown_in(constraint, at, h),
@@ -101,7 +101,10 @@ impl Model {
 
     /// When a force jumps next.
     fn jump(&self, t: f64) -> f64 {
-        self.timed_terms().map(|term| term.jump(t)).filter(|&jump| jump > t).fold(f64::INFINITY, f64::min)
+        self.timed_terms()
+            .map(|(_, timed)| timed.jump(t))
+            .filter(|&jump| jump > t)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The part of a step within which the force of a term looks smooth while everything stays where it is.

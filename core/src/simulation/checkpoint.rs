@@ -18,7 +18,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Checkpoint {
-    /// Time, configuration, velocities, multipliers, modes and the memory of the integrator.
+    /// Time, configuration, velocities, multipliers, internal variables and the memory of the integrator.
     pub state: State,
     /// The balance of energy.
     pub audit: Audit,
@@ -58,7 +58,7 @@ fn traits(model: &Model) -> Vec<(String, usize)> {
     let mut all = vec![
         ("coordinates".into(), model.start.q.len()),
         ("velocities".into(), model.velocities()),
-        ("modes".into(), model.modes().len()),
+        ("internal variables".into(), model.internal_variables().len()),
     ];
     all.extend(model.terms().iter().map(|t| (t.label(), 1)));
     all.extend(model.constraints().iter().map(|c| (c.name().to_string(), c.rows().len())));

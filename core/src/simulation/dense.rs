@@ -38,7 +38,7 @@ impl<'a> Dense<'a> {
         Dense { model, from, to, d, v, a, derived }
     }
 
-    /// Sets time, positions, velocities, both accelerations, multipliers and modes of `out` to those at time `t` of the step.
+    /// Sets time, positions, velocities, both accelerations, multipliers and internal variables of `out` to those at time `t` of the step.
     pub fn at(&self, t: f64, out: &mut State) {
         let (a, b) = (self.from, self.to);
         let h = b.t - a.t;
@@ -82,8 +82,8 @@ impl<'a> Dense<'a> {
             out.lambda[i] = a.lambda[i] + x * (b.lambda[i] - a.lambda[i]);
         }
         retract(self.model.nodes(), &a.q, &d, &mut out.q);
-        // modes change at the ends of steps
-        out.modes.clone_from(&a.modes);
+        // internal variables change at the ends of steps
+        out.internal.clone_from(&a.internal);
         out.t = t;
     }
 }
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn a_quintic_is_met_exactly() {
         let nodes = vec![Node { kind: NodeKind::Scalars(1), q: 0, v: 0, shared: false }];
-        let start = Start { q: vec![0.0], v: vec![0.0], modes: vec![] };
+        let start = Start { q: vec![0.0], v: vec![0.0], internal: vec![] };
         let model = Model::new(nodes, vec![], vec![], vec![], start, 1.0);
         let f = |t: f64| {
             [
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn turning_is_interpolated_to_sixth_order() {
         let nodes = vec![Node { kind: NodeKind::Frame, q: 0, v: 0, shared: false }];
-        let start = Start { q: vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], v: vec![0.0; 6], modes: vec![] };
+        let start = Start { q: vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], v: vec![0.0; 6], internal: vec![] };
         let model = Model::new(nodes, vec![], vec![], vec![], start, 1.0);
         // turned about z by t, then about the new x by 2 t
         let state = |t: f64, derived: bool| {

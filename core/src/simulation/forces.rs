@@ -86,7 +86,7 @@ impl Simulation {
             }
             s.lambda.iter_mut().zip(&x[nv..]).for_each(|(l, x)| *l += x);
             retract(model.nodes(), &start.q, &d, &mut s.q);
-            model.drive(s.t, &s.modes, &mut s.q, &mut s.v, &mut s.a);
+            model.drive(s.t, &s.internal, &mut s.q, &mut s.v, &mut s.a);
         }
         // an iteration that doesn't come to its end leaves the interpolation
         *s = start;

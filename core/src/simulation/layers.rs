@@ -5,8 +5,9 @@
 //! result tells. [`Layers`] looks at all such places now and then, and says afterwards what was missed.
 
 use crate::model::Model;
+use crate::model::line::Quantity;
 use crate::model::node::NodeKind;
-use crate::model::part::{Part, Quantity};
+use crate::model::part::Part;
 use crate::model::state::At;
 
 /// Elements in a layer with which the curvature is right to about a hundredth.
@@ -91,7 +92,7 @@ impl Layers {
     pub fn look(&mut self, model: &Model, at: &At<'_>) {
         for k in 0..self.held.len() {
             let Held { part, node, constraint } = self.held[k];
-            if model.holds(constraint, at.modes) {
+            if model.holds(constraint, at.internal) {
                 let (part, by) = (model.parts()[part].as_ref(), model.constraints()[constraint].name());
                 self.beside(part, node, by, true, at);
                 self.beside(part, node, by, false, at);
@@ -101,19 +102,20 @@ impl Layers {
 
     /// Looks at the element before or behind a node.
     fn beside(&mut self, part: &dyn Part, node: usize, by: &str, before: bool, at: &At<'_>) {
-        let (mesh, seats) = (part.mesh_now(at), part.seats());
+        let Some(line) = part.line() else { return };
+        let (mesh, seats) = (line.mesh_now(at), part.seats());
         let last = mesh.len() - 1;
         let step =
             |i: usize| if before { node.checked_sub(i) } else { Some(node + i).filter(|k| *k <= last) };
         let Some(next) = step(1) else { return };
         let element = (mesh[next] - mesh[node]).abs();
-        let Some(ei) = part.slender().map(|s| s.ei) else { return };
+        let ei = line.slender().ei;
         // where the cable is held itself the tension may be small: its force points across
         let places = [Some(node), step(1), step(2)];
         let tension = places
             .into_iter()
             .flatten()
-            .filter_map(|k| part.observe(Quantity::Tension, mesh[k], at))
+            .filter_map(|k| line.observe(Quantity::Tension, mesh[k], at))
             .fold(0.0_f64, f64::max);
         let layer = (ei / tension).sqrt();
         if !(layer < element) {

@@ -14,7 +14,7 @@ pub use checkpoint::{Checkpoint, Unfit};
 
 use crate::model::Model;
 use crate::model::event::{Action, Event};
-use crate::model::part::Quantity;
+use crate::model::line::Quantity;
 use crate::model::remesh::Remeshed;
 use crate::model::state::State;
 use crate::model::term::{Energy, Power};
@@ -84,7 +84,7 @@ struct Fired {
     action: Action,
     /// The state as it left it.
     after: State,
-    /// Whether it changed a mode.
+    /// Whether it changed an internal variable.
     changed: bool,
 }
 
@@ -406,7 +406,7 @@ impl Simulation {
             }
             let mut after = self.scratch.clone();
             let action = self.events[event].0.act(&self.model, &mut after);
-            let changed = after.modes != self.scratch.modes;
+            let changed = after.internal != self.scratch.internal;
             if !changed && matches!(action, Action::Continue) {
                 let report = self.events[event].0.report(&self.model, &self.scratch);
                 observer.event(&report, t);
@@ -470,9 +470,9 @@ impl Simulation {
             }
         }
         // history doesn't reach across an event
-        let now = self.state.modes.clone();
+        let now = self.state.internal.clone();
         restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
-        self.state.modes = now;
+        self.state.internal = now;
         self.state.control.h_next = 0.1 * h;
         self.resume(k, changed);
         Ok(None)
@@ -502,7 +502,7 @@ impl Simulation {
         observer.remeshed(&report);
     }
 
-    /// Goes on from a state that event `k` has seen; `changed` says that it has changed a mode.
+    /// Goes on from a state that event `k` has seen; `changed` says that it has changed an internal variable.
     fn resume(&mut self, k: usize, changed: bool) {
         self.previous.clone_from(&self.state);
         self.scratch.clone_from(&self.state);

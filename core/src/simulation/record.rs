@@ -19,7 +19,7 @@ pub struct Sample<'a> {
 
 /// An output: what it is called, and its value at an instant.
 pub trait Record: Send {
-    /// Its title in pictures.
+    /// What it is, in a few words for people.
     fn title(&self) -> String;
     /// Its name in the summary, such as `hose.end`.
     fn name(&self) -> String;

@@ -97,7 +97,7 @@ impl Simulation {
         let (t, h) = (self.state.t, self.state.control.h_last);
         observer.warn(&format!(
             "{MANY} steps so far, at t = {t:.4} s of {end} s, the last of {h:.1e} s: fast motion that nothing damps asks for \
-             them. A little `axial_damping` or `bending_damping`, a looser `tolerance`, a shorter `horizon` or Radau IIA \
+             them. A little `axial_retardation_time` or `bending_retardation_time`, a looser `tolerance`, a shorter `horizon` or Radau IIA \
              need fewer"
         ));
     }

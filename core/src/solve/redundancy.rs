@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::model::redundancy::Redundancy;
 use crate::model::state::At;
 use crate::model::structure::Structure;
-use crate::solve::linear::Guard;
+use crate::solve::linear::{Guard, SolveError};
 use std::collections::BTreeSet;
 
 /// Diagonal of the multipliers relative to the size of `G A⁻¹ Gᵀ`, equation by equation. Larger ones get in the way
@@ -99,141 +99,197 @@ impl Softening {
 /// # Errors
 /// A constraint that isn't defined or holds nothing at the start; constraints that contradict each other.
 pub fn find_redundancy(model: &Model) -> Result<Option<Redundancy>, BuildError> {
-    let m = model.multipliers();
-    if m == 0 {
+    if model.multipliers() == 0 {
         return Ok(None);
     }
-    let (state, s, nv) = (model.state(), model.structure(), model.velocities());
-    let still = vec![0.0; nv];
+    let (state, still) = (model.state(), vec![0.0; model.velocities()]);
     let at = At { v: &still, ..state.at() };
-    let mut values = vec![0.0; s.entries()];
-    // translations weigh one, turns the square of the model's size
-    let square = model.length().powi(2);
-    for node in model.nodes() {
-        for (k, d) in node.dofs().enumerate() {
-            values[s.diagonal[d] as usize] = if k < 3 { 1.0 } else { square };
-        }
+    let mut unresisted = Unresisted::new(model, &at)?;
+    let (equations, rows) = unresisted.rank()?;
+    if equations == 0 {
+        return Ok(None);
     }
-    let mut g = vec![0.0; m];
-    for (c, constraint) in model.constraints().iter().enumerate() {
-        let dofs: Vec<usize> = constraint.nodes().iter().flat_map(|&k| model.node(k).dofs()).collect();
-        let (rows, n) = (model.rows_of(c), dofs.len());
-        let mut jac = vec![0.0; rows.len() * n];
-        constraint.jacobian(model.nodes(), &at, &mut g[rows.clone()], &mut jac);
-        if jac.iter().chain(&g[rows.clone()]).any(|x| !x.is_finite()) {
+    unresisted.check_start(&at)?;
+    unresisted.check_motions(at)?;
+    let constraints =
+        model.constraints_where(|r| rows.contains(&r)).into_iter().map(str::to_string).collect();
+    Ok(Some(Redundancy { equations, constraints }))
+}
+
+/// Projects vectors of the size of the multipliers onto what no motion of the model changes.
+struct Unresisted<'a> {
+    model: &'a Model,
+    /// `[A, Gᵀ; G, -E]` with unit masses, and its factors.
+    values: Vec<f64>,
+    solver: Guard,
+    softening: Softening,
+    x: Vec<f64>,
+    /// Values of the constraints at the start.
+    g: Vec<f64>,
+}
+
+impl<'a> Unresisted<'a> {
+    fn new(model: &'a Model, at: &At<'_>) -> Result<Self, BuildError> {
+        let s = model.structure();
+        let (mut values, mut g) = (vec![0.0; s.entries()], vec![0.0; model.multipliers()]);
+        // translations weigh one, turns the square of the model's size
+        let square = model.length().powi(2);
+        for node in model.nodes() {
+            for (k, d) in node.dofs().enumerate() {
+                values[s.diagonal[d] as usize] = if k < 3 { 1.0 } else { square };
+            }
+        }
+        for c in 0..model.constraints().len() {
+            differentiate(model, c, at, &mut g, &mut values)?;
+        }
+        let softening = Softening::new(model, s);
+        softening.apply_scaled(&mut values, RANK);
+        let mut solver = Guard::new(s).map_err(not_finite)?;
+        solver.factor(s, &values).map_err(not_finite)?;
+        Ok(Unresisted { model, values, solver, softening, x: vec![0.0; s.n], g })
+    }
+
+    /// The part of a vector that no motion of the model changes: `E (G A⁻¹ Gᵀ + E)⁻¹ z`.
+    fn of(&mut self, z: &[f64]) -> Result<Vec<f64>, BuildError> {
+        let (s, nv) = (self.model.structure(), self.model.velocities());
+        let mut rhs = vec![0.0; s.n];
+        rhs[nv..].copy_from_slice(z);
+        s.order(&rhs, &mut self.x);
+        self.solver.solve(s, &self.values, &mut self.x).map_err(not_finite)?;
+        s.restore(&self.x, &mut rhs);
+        let mut part = rhs.split_off(nv);
+        self.softening.times(&self.values, &mut part);
+        Ok(part.into_iter().map(|x| -x).collect())
+    }
+
+    /// The number of equations that follow from others, and the rows that take part in that.
+    fn rank(&mut self) -> Result<(usize, BTreeSet<usize>), BuildError> {
+        let m = self.model.multipliers();
+        let (mut basis, mut rows) = (Vec::<Vec<f64>>::new(), BTreeSet::new());
+        let mut seed = 1u64;
+        while basis.len() < m {
+            let z: Vec<f64> = (0..m)
+                .map(|_| {
+                    seed =
+                        seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    0.5 + (seed >> 11) as f64 / (1_u64 << 53) as f64
+                })
+                .collect();
+            let mut y = self.of(&z)?;
+            if y.iter().all(|y| y.abs() <= NOTHING) {
+                break;
+            }
+            let size = norm(&y);
+            for b in &basis {
+                let along: f64 = b.iter().zip(&y).map(|(b, y)| b * y).sum();
+                y.iter_mut().zip(b).for_each(|(y, b)| *y -= along * b);
+            }
+            let new = norm(&y);
+            if new <= 1e-4 * size {
+                break;
+            }
+            y.iter_mut().for_each(|y| *y /= new);
+            rows.extend((0..m).filter(|&r| y[r].abs() > NOTHING));
+            basis.push(y);
+        }
+        Ok((basis.len(), rows))
+    }
+
+    /// Checks that redundant constraints ask for the same at the start.
+    fn check_start(&mut self, at: &At<'_>) -> Result<(), BuildError> {
+        let (model, m) = (self.model, self.model.multipliers());
+        let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
+        model.rates(at, &mut rate, &mut bias);
+        for (what, values, limit) in [
+            ("ask for different positions", &self.g.clone(), 1e-5 * model.length()),
+            ("prescribe different velocities", &rate, 1e-6 * largest(&rate)),
+            ("prescribe different accelerations", &bias, 1e-6 * largest(&bias)),
+        ] {
+            let conflict = self.of(values)?;
+            let who = model.constraints_where(|r| conflict[r].abs() > limit);
+            if !who.is_empty() {
+                return Err(contradiction(&who, what));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that redundant constraints ask for the same velocities later on.
+    fn check_motions(&mut self, at: At<'_>) -> Result<(), BuildError> {
+        let (model, m) = (self.model, self.model.multipliers());
+        let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
+        let ahead = Ahead { model, at, g: self.g.clone() };
+        for (t, moved) in ahead.times() {
+            model.rates(&At { t, ..at }, &mut rate, &mut bias);
+            let largest = largest(&rate);
+            let conflict = if largest > 0.0 { self.of(&rate)? } else { continue };
+            let differ =
+                |share: f64| (0..m).filter(|&r| conflict[r].abs() > share * largest).collect::<BTreeSet<_>>();
+            // what is linear stays redundant for ever, anything else as long as it has hardly moved
+            let linear = Some(differ(1e-6)).filter(|rows| rows.iter().all(|&r| model.linear_row(r)));
+            let rows = linear.unwrap_or_else(|| if moved < MOVED { differ(0.05) } else { BTreeSet::new() });
+            if !rows.is_empty() {
+                let who = model.constraints_where(|r| rows.contains(&r));
+                return Err(contradiction(&who, &format!("prescribe different velocities at t = {t:.3} s")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Adds the Jacobian of one constraint to the matrix, and its values to `g`.
+fn differentiate(
+    model: &Model,
+    c: usize,
+    at: &At<'_>,
+    g: &mut [f64],
+    values: &mut [f64],
+) -> Result<(), BuildError> {
+    let (constraint, s, nv) = (&model.constraints()[c], model.structure(), model.velocities());
+    let dofs: Vec<usize> = constraint.nodes().iter().flat_map(|&k| model.node(k).dofs()).collect();
+    let (rows, n) = (model.rows_of(c), dofs.len());
+    let mut jac = vec![0.0; rows.len() * n];
+    constraint.jacobian(model.nodes(), at, &mut g[rows.clone()], &mut jac);
+    if jac.iter().chain(&g[rows.clone()]).any(|x| !x.is_finite()) {
+        let message = format!(
+            "constraint `{}` is not defined where the scene starts (two of its points coincide?)",
+            constraint.name()
+        );
+        return Err(BuildError::at(constraint.name(), message));
+    }
+    for (r, row) in rows.enumerate() {
+        if jac[r * n..(r + 1) * n].iter().all(|&x| x == 0.0) {
             let message = format!(
-                "constraint `{}` is not defined where the scene starts (two of its points coincide?)",
+                "equation {} of constraint `{}` holds nothing where the scene starts: it is singular there",
+                r + 1,
                 constraint.name()
             );
             return Err(BuildError::at(constraint.name(), message));
         }
-        for (r, row) in rows.enumerate() {
-            if jac[r * n..(r + 1) * n].iter().all(|&x| x == 0.0) {
-                let message = format!(
-                    "equation {} of constraint `{}` holds nothing where the scene starts: it is singular there",
-                    r + 1,
-                    constraint.name()
-                );
-                return Err(BuildError::at(constraint.name(), message));
-            }
-            let p = s.position[nv + row];
+        let p = s.position[nv + row];
+        for (j, &d) in dofs.iter().enumerate() {
+            values[s.slot(p, s.position[d])] = jac[r * n + j];
+        }
+        if !s.symmetric {
             for (j, &d) in dofs.iter().enumerate() {
-                values[s.slot(p, s.position[d])] = jac[r * n + j];
-            }
-            if !s.symmetric {
-                for (j, &d) in dofs.iter().enumerate() {
-                    values[s.slot(s.position[d], p)] = jac[r * n + j];
-                }
+                values[s.slot(s.position[d], p)] = jac[r * n + j];
             }
         }
     }
-    let softening = Softening::new(model, s);
-    softening.apply_scaled(&mut values, RANK);
-    let failed = |_| BuildError::new("the constraints can't be analysed: their equations are not finite");
-    let mut solver = Guard::new(s).map_err(failed)?;
-    solver.factor(s, &values).map_err(failed)?;
-    // the part of a vector that no motion of the model changes: E (G A⁻¹ Gᵀ + E)⁻¹ z
-    let mut x = vec![0.0; s.n];
-    let mut left = |z: &[f64]| -> Result<Vec<f64>, BuildError> {
-        let mut rhs = vec![0.0; s.n];
-        rhs[nv..].copy_from_slice(z);
-        s.order(&rhs, &mut x);
-        solver.solve(s, &values, &mut x).map_err(failed)?;
-        s.restore(&x, &mut rhs);
-        let mut part = rhs.split_off(nv);
-        softening.times(&values, &mut part);
-        Ok(part.into_iter().map(|x| -x).collect())
-    };
+    Ok(())
+}
 
-    let (mut basis, mut rows) = (Vec::<Vec<f64>>::new(), BTreeSet::new());
-    let mut seed = 1u64;
-    while basis.len() < m {
-        let z: Vec<f64> = (0..m)
-            .map(|_| {
-                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                0.5 + (seed >> 11) as f64 / (1_u64 << 53) as f64
-            })
-            .collect();
-        let mut y = left(&z)?;
-        if y.iter().all(|y| y.abs() <= NOTHING) {
-            break;
-        }
-        let size = norm(&y);
-        for b in &basis {
-            let along: f64 = b.iter().zip(&y).map(|(b, y)| b * y).sum();
-            y.iter_mut().zip(b).for_each(|(y, b)| *y -= along * b);
-        }
-        let new = norm(&y);
-        if new <= 1e-4 * size {
-            break;
-        }
-        y.iter_mut().for_each(|y| *y /= new);
-        rows.extend((0..m).filter(|&r| y[r].abs() > NOTHING));
-        basis.push(y);
-    }
-    if basis.is_empty() {
-        return Ok(None);
-    }
+fn not_finite(_: SolveError) -> BuildError {
+    BuildError::new("the constraints can't be analysed: their equations are not finite")
+}
 
-    let contradiction = |names: &[&str], what: &str| {
-        let message = format!(
-            "the constraints {} contradict each other: they hold the same parts twice and {what}. Remove one of them or \
-             correct it",
-            names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
-        );
-        BuildError::at(names.last().copied().unwrap_or_default(), message)
-    };
-    let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
-    model.rates(&at, &mut rate, &mut bias);
-    for (what, values, limit) in [
-        ("ask for different positions", &g, 1e-5 * model.length()),
-        ("prescribe different velocities", &rate, 1e-6 * largest(&rate)),
-        ("prescribe different accelerations", &bias, 1e-6 * largest(&bias)),
-    ] {
-        let conflict = left(values)?;
-        let who = model.constraints_where(|r| conflict[r].abs() > limit);
-        if !who.is_empty() {
-            return Err(contradiction(&who, what));
-        }
-    }
-    let ahead = Ahead { model, at, g };
-    for (t, moved) in ahead.times() {
-        model.rates(&At { t, ..at }, &mut rate, &mut bias);
-        let largest = largest(&rate);
-        let conflict = if largest > 0.0 { left(&rate)? } else { continue };
-        let differ =
-            |share: f64| (0..m).filter(|&r| conflict[r].abs() > share * largest).collect::<BTreeSet<_>>();
-        // what is linear stays redundant for ever, anything else as long as it has hardly moved
-        let linear = Some(differ(1e-6)).filter(|rows| rows.iter().all(|&r| model.linear_row(r)));
-        let rows = linear.unwrap_or_else(|| if moved < MOVED { differ(0.05) } else { BTreeSet::new() });
-        if !rows.is_empty() {
-            let who = model.constraints_where(|r| rows.contains(&r));
-            return Err(contradiction(&who, &format!("prescribe different velocities at t = {t:.3} s")));
-        }
-    }
-    let constraints =
-        model.constraints_where(|r| rows.contains(&r)).into_iter().map(str::to_string).collect();
-    Ok(Some(Redundancy { equations: basis.len(), constraints }))
+fn contradiction(names: &[&str], what: &str) -> BuildError {
+    let message = format!(
+        "the constraints {} contradict each other: they hold the same parts twice and {what}. Remove one of them or \
+         correct it",
+        names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
+    );
+    BuildError::at(names.last().copied().unwrap_or_default(), message)
 }
 
 /// Motions as they are at later times, while the model stays where it starts.

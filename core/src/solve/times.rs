@@ -1,7 +1,8 @@
 //! Where the time goes: calls and times of terms, constraints and the phases of a solution. The clocks stand still unless
 //! profiling was asked for.
 
-use crate::model::{Model, Spent, System};
+use crate::model::Model;
+use crate::model::assembly::{Spent, System};
 use std::time::{Duration, Instant};
 
 /// What an analysis does beside evaluating terms and constraints.

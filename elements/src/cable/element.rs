@@ -47,7 +47,7 @@ impl CableParams {
 /// own. Which models go together is told by [`legal`](super::legal).
 #[derive(Clone, Copy, Debug)]
 pub struct Cable<L, T, Q> {
-    /// What it is made of.
+    /// Cross-section.
     pub params: CableParams,
     /// How it strains.
     pub models: Models<L, T, Q>,

@@ -35,14 +35,14 @@ pub enum MeshSpec {
 pub struct Grading {
     /// Number of elements.
     pub elements: usize,
-    /// Length of the element at the start [m]; left out, as the others need it.
+    /// Length of the element at the start [m]. Default: from the grading.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
     pub first: Option<f64>,
-    /// Length of the element at the end [m]; left out, as the others need it.
+    /// Length of the element at the end [m]. Default: from the grading.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",

@@ -2,15 +2,15 @@
 
 use super::directed::curvature;
 use super::flow::change::{self, Snapshot};
-use super::flow::{Line, push};
+use super::flow::{self, push};
 use super::output::{Reading, read};
 use super::shape::{hermite, hermite_slope, natural, second};
 use super::spec::Section;
 use super::transmitted::{self, Unstressed};
 use super::{CableModel, CableParams, DirectedParams};
 use ropewalk_core::{
-    At, Change, ContactSpan, DeadEntry, DeadLoad, Front, Marker, Mesh, MeshState, Node, NodeId, Part, Per,
-    Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
+    At, Change, ContactSpan, DeadEntry, DeadLoad, Line, Marker, Mesh, MeshState, MovingBoundary, Node,
+    NodeId, Part, Per, Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ pub struct CablePart {
     /// The nodes between which the force in the cable is smooth, ascending: its ends, and where something holds it.
     pub(crate) breaks: Vec<usize>,
     /// How its nodes move along its material, if an end feeds.
-    pub(crate) line: Option<Line>,
+    pub(crate) line: Option<flow::Line>,
     /// Length at the start of the run [m], where an end feeds.
     pub(crate) laid: f64,
     /// Whether it goes on from a state that it was given.
@@ -187,7 +187,7 @@ impl CablePart {
     }
 
     /// The state of a line, node by node.
-    fn snapshot(&self, line: &Line, at: &At<'_>) -> Result<Snapshot, String> {
+    fn snapshot(&self, line: &flow::Line, at: &At<'_>) -> Result<Snapshot, String> {
         let three = |x: &[f64], i: usize| [x[i], x[i + 1], x[i + 2]];
         let nodes = 0..self.mesh.len();
         let mut snapshot = Snapshot {
@@ -251,44 +251,6 @@ impl Part for CablePart {
     fn mass(&self) -> f64 {
         self.section.mass * self.length()
     }
-    fn length_now(&self, at: &At<'_>) -> f64 {
-        match &self.line {
-            None => self.length(),
-            Some(line) => line.p(self.mesh.len() - 1, at.q) - line.p(0, at.q),
-        }
-    }
-    fn front(&self, end: usize) -> Option<Front> {
-        self.line.as_ref()?.fronts.iter().find(|(at, _)| *at == end).map(|(_, front)| *front)
-    }
-
-    fn makes_elements(&self, end: usize) -> bool {
-        self.line.as_ref().is_some_and(|line| line.zone[end])
-    }
-
-    fn start_feeding(&self, end: usize, rate: f64, q: &[f64], v: &mut [f64]) {
-        let (Some(line), Some(front)) = (&self.line, self.front(end)) else { return };
-        if self.carried {
-            return;
-        }
-        let before: Vec<f64> = (0..self.mesh.len()).map(|k| line.rate(k, v)).collect();
-        v[front.v] = rate;
-        for (k, before) in before.into_iter().enumerate() {
-            let change = line.rate(k, v) - before;
-            let (q0, v0) = self.seats[k];
-            // the slope's own rate is that of the curve on both sides of the node
-            let sides = [k.checked_sub(1), Some(k)];
-            let bends: Vec<V3<f64>> =
-                sides.iter().flatten().filter_map(|&e| self.bend(e, e == k, q)).collect();
-            for i in 0..3 {
-                v[v0 + i] += change * q[q0 + 3 + i];
-                v[v0 + 3 + i] += change * bends.iter().map(|b| b[i]).sum::<f64>() / bends.len().max(1) as f64;
-            }
-        }
-    }
-
-    fn mesh(&self) -> &[f64] {
-        &self.mesh
-    }
 
     fn marker(&self, spot: &Spot) -> Result<Marker, String> {
         let end = self.nodes.len() - 1;
@@ -351,12 +313,6 @@ impl Part for CablePart {
             .collect()
     }
 
-    fn slender(&self) -> Option<Slender> {
-        let s = &self.section;
-        let element = self.laid / (self.mesh.len() - 1) as f64;
-        Some(Slender { element, mass: s.mass + s.flooded, ea: s.ea, ei: s.ei })
-    }
-
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
         let (what, density) = match per {
             Per::Mass => ("weight", self.section.mass),
@@ -400,6 +356,95 @@ impl Part for CablePart {
         vec![tip(0), tip(last)]
     }
 
+    fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
+        let (k, l, xi) = self.find(s, at.q)?;
+        let c = hermite::<f64>(xi, l);
+        Some((interpolate(c, &self.dofs(k, at.q)), interpolate(c, &self.velocities(k, at.v))))
+    }
+
+    fn centre_line(&self, at: &At<'_>) -> Vec<V3<f64>> {
+        let mesh = self.material(at.q);
+        let point = |(k, xi): (usize, f64)| {
+            interpolate(hermite::<f64>(xi, mesh[k + 1] - mesh[k]), &self.dofs(k, at.q))
+        };
+        self.drawn().map(point).collect()
+    }
+
+    fn arc_lengths(&self, at: &At<'_>) -> Vec<f64> {
+        let mesh = self.material(at.q);
+        self.drawn().map(|(k, xi)| mesh[k] - mesh[0] + xi * (mesh[k + 1] - mesh[k])).collect()
+    }
+
+    fn place_of(&self, node: NodeId) -> Option<String> {
+        if let Some(line) = &self.line
+            && let Some((end, _)) = line.boundaries.iter().find(|(_, f)| f.node == node)
+        {
+            return Some(format!("what is fed at its {}", ["start", "end"][*end]));
+        }
+        if let Some(directors) = &self.directors
+            && let Some(k) = directors.nodes.iter().position(|&n| n == node)
+        {
+            return Some(format!("director at {:.4} m", self.mesh[k]));
+        }
+        let k = self.nodes.iter().position(|&n| n == node)?;
+        Some(format!("at {:.4} m", self.mesh[k]))
+    }
+
+    fn seats(&self) -> Vec<(usize, usize)> {
+        self.seats.clone()
+    }
+
+    fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
+        let Some(old) = old.line().filter(|_| !self.carried) else { return };
+        for (k, &id) in self.nodes.iter().enumerate() {
+            let node = &nodes[id.0 as usize];
+            if let Some((x, dx)) = old.slope(self.mesh[k], at.q, true) {
+                q[node.q..node.q + 3].copy_from_slice(&x);
+                q[node.q + 3..node.q + 6].copy_from_slice(&dx);
+            }
+            if let Some((x, dx)) = old.slope(self.mesh[k], at.v, false) {
+                v[node.v..node.v + 3].copy_from_slice(&x);
+                v[node.v + 3..node.v + 6].copy_from_slice(&dx);
+            }
+        }
+        let seats = self.directors.iter().flat_map(|d| &d.seats);
+        for (s, &(own_q, own_v)) in self.mesh.iter().zip(seats) {
+            for (x, all, own, coordinates) in [(at.q, &mut *q, own_q, true), (at.v, &mut *v, own_v, false)] {
+                if let Some(d) = old.looks(*s, x, coordinates) {
+                    all[own..own + 3].copy_from_slice(&d);
+                }
+            }
+        }
+    }
+
+    fn line(&self) -> Option<&dyn Line> {
+        Some(self)
+    }
+}
+
+impl Line for CablePart {
+    fn slender(&self) -> Slender {
+        let s = &self.section;
+        let element = self.laid / (self.mesh.len() - 1) as f64;
+        Slender { element, mass: s.mass + s.flooded, ea: s.ea, ei: s.ei }
+    }
+
+    fn mesh(&self) -> &[f64] {
+        &self.mesh
+    }
+
+    fn mesh_now(&self, at: &At<'_>) -> Vec<f64> {
+        let mesh = self.material(at.q);
+        mesh.iter().map(|p| p - mesh[0]).collect()
+    }
+
+    fn length_now(&self, at: &At<'_>) -> f64 {
+        match &self.line {
+            None => self.length(),
+            Some(line) => line.p(self.mesh.len() - 1, at.q) - line.p(0, at.q),
+        }
+    }
+
     fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {
         let (k, l, xi) = self.find(s, at.q)?;
         let r = self.reading(k, l, xi, at)?;
@@ -418,28 +463,66 @@ impl Part for CablePart {
         self.by_strain(k, l, xi, at)
     }
 
-    fn mesh_now(&self, at: &At<'_>) -> Vec<f64> {
-        let mesh = self.material(at.q);
-        mesh.iter().map(|p| p - mesh[0]).collect()
+    fn straighten(&self, q: &mut [f64]) {
+        let (first, last) = (self.seats[0].0, self.seats[self.seats.len() - 1].0);
+        let from: V3<f64> = std::array::from_fn(|i| q[first + i]);
+        let mut way: V3<f64> = std::array::from_fn(|i| q[last + i] - from[i]);
+        if way.iter().all(|x| x.abs() < 1e-3 * self.length()) {
+            // ends that coincide give no direction; any will do
+            way = [1e-3 * self.length(), 0.0, 0.0];
+        }
+        for (k, &(at, _)) in self.seats.iter().enumerate() {
+            for i in 0..3 {
+                q[at + i] = from[i] + way[i] * self.mesh[k] / self.length();
+                q[at + 3 + i] = way[i] / self.length();
+            }
+        }
     }
 
-    fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
-        let (k, l, xi) = self.find(s, at.q)?;
-        let c = hermite::<f64>(xi, l);
-        Some((interpolate(c, &self.dofs(k, at.q)), interpolate(c, &self.velocities(k, at.v))))
+    fn director(&self, node: NodeId) -> Option<NodeId> {
+        let k = self.nodes.iter().position(|&n| n == node)?;
+        Some(self.directors.as_ref()?.nodes[k])
     }
 
-    fn line(&self, at: &At<'_>) -> Vec<V3<f64>> {
-        let mesh = self.material(at.q);
-        let point = |(k, xi): (usize, f64)| {
-            interpolate(hermite::<f64>(xi, mesh[k + 1] - mesh[k]), &self.dofs(k, at.q))
-        };
-        self.drawn().map(point).collect()
+    fn looks(&self, s: f64, x: &[f64], coordinates: bool) -> Option<V3<f64>> {
+        let (directors, (k, _, xi)) = (self.directors.as_ref()?, Self::locate(&self.mesh, s)?);
+        let seat = |k: usize| if coordinates { directors.seats[k].0 } else { directors.seats[k].1 };
+        Some(std::array::from_fn(|i| (1.0 - xi) * x[seat(k) + i] + xi * x[seat(k + 1) + i]))
     }
 
-    fn arc_lengths(&self, at: &At<'_>) -> Vec<f64> {
-        let mesh = self.material(at.q);
-        self.drawn().map(|(k, xi)| mesh[k] - mesh[0] + xi * (mesh[k + 1] - mesh[k])).collect()
+    fn slope(&self, s: f64, x: &[f64], coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {
+        let (k, l, xi) = Self::locate(&self.mesh, s)?;
+        let e = if coordinates { self.dofs(k, x) } else { self.velocities(k, x) };
+        Some((interpolate(hermite::<f64>(xi, l), &e), interpolate(hermite_slope::<f64>(xi, 1.0 / l), &e)))
+    }
+
+    fn boundary(&self, end: usize) -> Option<MovingBoundary> {
+        self.line.as_ref()?.boundaries.iter().find(|(at, _)| *at == end).map(|(_, boundary)| *boundary)
+    }
+
+    fn makes_elements(&self, end: usize) -> bool {
+        self.line.as_ref().is_some_and(|line| line.zone[end])
+    }
+
+    fn start_feeding(&self, end: usize, rate: f64, q: &[f64], v: &mut [f64]) {
+        let (Some(line), Some(boundary)) = (&self.line, self.boundary(end)) else { return };
+        if self.carried {
+            return;
+        }
+        let before: Vec<f64> = (0..self.mesh.len()).map(|k| line.rate(k, v)).collect();
+        v[boundary.v] = rate;
+        for (k, before) in before.into_iter().enumerate() {
+            let change = line.rate(k, v) - before;
+            let (q0, v0) = self.seats[k];
+            // the slope's own rate is that of the curve on both sides of the node
+            let sides = [k.checked_sub(1), Some(k)];
+            let bends: Vec<V3<f64>> =
+                sides.iter().flatten().filter_map(|&e| self.bend(e, e == k, q)).collect();
+            for i in 0..3 {
+                v[v0 + i] += change * q[q0 + 3 + i];
+                v[v0 + 3 + i] += change * bends.iter().map(|b| b[i]).sum::<f64>() / bends.len().max(1) as f64;
+            }
+        }
     }
 
     fn end_element(&self, end: usize, at: &At<'_>) -> Option<f64> {
@@ -464,15 +547,15 @@ impl Part for CablePart {
         let mut time = 0.0;
         match what {
             Change::None => {}
-            Change::Split { end, keep, release } => {
+            Change::Split { end, keep, fade } => {
                 let k = line.grows(end);
                 let p = if end == 0 { new.p[k + 1] - keep } else { new.p[k] + keep };
                 fading.retain(|p| p.element != k);
                 fading.iter_mut().filter(|p| p.element > k).for_each(|p| p.element += 1);
                 let [a, b] = new.split(k, p, self.model)?;
-                (born, time) = (vec![(k, a), (k + 1, b)], release);
+                (born, time) = (vec![(k, a), (k + 1, b)], fade);
             }
-            Change::Merge { end, release } => {
+            Change::Merge { end, fade } => {
                 if last < 2 + line.rides[0] + line.rides[1] {
                     return Err("there is but one element left, which can't be merged".into());
                 }
@@ -484,7 +567,7 @@ impl Part for CablePart {
                 };
                 fading.retain(|p| p.element + 1 != k && p.element != k);
                 fading.iter_mut().filter(|p| p.element >= k).for_each(|p| p.element -= 1);
-                (born, time) = (vec![(k - 1, new.merge(k, end, self.model)?)], release);
+                (born, time) = (vec![(k - 1, new.merge(k, end, self.model)?)], fade);
                 if let Some(beside) = beside {
                     fading.retain(|p| p.element != beside);
                     born.push((beside, new.stress[beside].clone()));
@@ -493,90 +576,13 @@ impl Part for CablePart {
         }
         for (element, stress) in born {
             let strain = new.prestrain(element, &stress, self.model)?;
-            fading.push(Prestrain { element, strain, since: at.t, release: time });
+            fading.push(Prestrain { element, strain, since: at.t, fade: time });
         }
         let both = |a: &[V3<f64>], b: &[V3<f64>]| -> Vec<Vec<f64>> {
             a.iter().zip(b).map(|(a, b)| [*a, *b].concat()).collect()
         };
-        let fronts = new.rates(line);
-        let state = MeshState { q: both(&new.r, &new.s), v: both(&new.rd, &new.sd), fronts };
+        let boundaries = new.rates(line);
+        let state = MeshState { q: both(&new.r, &new.s), v: both(&new.rd, &new.sd), boundaries };
         Ok(Some(Mesh { nodes: new.p, state: Some(state), prestrain: fading }))
-    }
-
-    fn place_of(&self, node: NodeId) -> Option<String> {
-        if let Some(line) = &self.line
-            && let Some((end, _)) = line.fronts.iter().find(|(_, f)| f.node == node)
-        {
-            return Some(format!("what is fed at its {}", ["start", "end"][*end]));
-        }
-        if let Some(directors) = &self.directors
-            && let Some(k) = directors.nodes.iter().position(|&n| n == node)
-        {
-            return Some(format!("director at {:.4} m", self.mesh[k]));
-        }
-        let k = self.nodes.iter().position(|&n| n == node)?;
-        Some(format!("at {:.4} m", self.mesh[k]))
-    }
-
-    fn seats(&self) -> Vec<(usize, usize)> {
-        self.seats.clone()
-    }
-
-    fn director(&self, node: NodeId) -> Option<NodeId> {
-        let k = self.nodes.iter().position(|&n| n == node)?;
-        Some(self.directors.as_ref()?.nodes[k])
-    }
-
-    fn looks(&self, s: f64, x: &[f64], coordinates: bool) -> Option<V3<f64>> {
-        let (directors, (k, _, xi)) = (self.directors.as_ref()?, Self::locate(&self.mesh, s)?);
-        let seat = |k: usize| if coordinates { directors.seats[k].0 } else { directors.seats[k].1 };
-        Some(std::array::from_fn(|i| (1.0 - xi) * x[seat(k) + i] + xi * x[seat(k + 1) + i]))
-    }
-
-    fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
-        if self.carried {
-            return;
-        }
-        for (k, &id) in self.nodes.iter().enumerate() {
-            let node = &nodes[id.0 as usize];
-            if let Some((x, dx)) = old.slope(self.mesh[k], at.q, true) {
-                q[node.q..node.q + 3].copy_from_slice(&x);
-                q[node.q + 3..node.q + 6].copy_from_slice(&dx);
-            }
-            if let Some((x, dx)) = old.slope(self.mesh[k], at.v, false) {
-                v[node.v..node.v + 3].copy_from_slice(&x);
-                v[node.v + 3..node.v + 6].copy_from_slice(&dx);
-            }
-        }
-        let seats = self.directors.iter().flat_map(|d| &d.seats);
-        for (s, &(own_q, own_v)) in self.mesh.iter().zip(seats) {
-            for (x, all, own, coordinates) in [(at.q, &mut *q, own_q, true), (at.v, &mut *v, own_v, false)] {
-                if let Some(d) = old.looks(*s, x, coordinates) {
-                    all[own..own + 3].copy_from_slice(&d);
-                }
-            }
-        }
-    }
-
-    fn straighten(&self, q: &mut [f64]) {
-        let (first, last) = (self.seats[0].0, self.seats[self.seats.len() - 1].0);
-        let from: V3<f64> = std::array::from_fn(|i| q[first + i]);
-        let mut way: V3<f64> = std::array::from_fn(|i| q[last + i] - from[i]);
-        if way.iter().all(|x| x.abs() < 1e-3 * self.length()) {
-            // ends that coincide give no direction; any will do
-            way = [1e-3 * self.length(), 0.0, 0.0];
-        }
-        for (k, &(at, _)) in self.seats.iter().enumerate() {
-            for i in 0..3 {
-                q[at + i] = from[i] + way[i] * self.mesh[k] / self.length();
-                q[at + 3 + i] = way[i] / self.length();
-            }
-        }
-    }
-
-    fn slope(&self, s: f64, x: &[f64], coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {
-        let (k, l, xi) = Self::locate(&self.mesh, s)?;
-        let e = if coordinates { self.dofs(k, x) } else { self.velocities(k, x) };
-        Some((interpolate(hermite::<f64>(xi, l), &e), interpolate(hermite_slope::<f64>(xi, 1.0 / l), &e)))
     }
 }

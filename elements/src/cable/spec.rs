@@ -13,7 +13,7 @@ use super::{CableParams, CableStations};
 use crate::path::{Corner, Path};
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::{
-    BuildError, Element, Feed, Front, Node, NodeId, NodeKind, StationPool, Stations, V3, dot,
+    BuildError, Element, Feed, MovingBoundary, Node, NodeId, NodeKind, StationPool, Stations, V3, dot,
 };
 use ropewalk_scene::{Builder, ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
@@ -24,38 +24,39 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Section {
-    /// Mass of the structure per unstretched length [kg/m]; what gravity pulls at.
+    /// Structural mass per unstretched length [kg/m]; gravity acts on it.
     #[serde(deserialize_with = "quantity::mass_per_length")]
     pub mass: f64,
     /// Axial stiffness EA [N].
     #[serde(deserialize_with = "quantity::axial_stiffness")]
     pub ea: f64,
-    /// Bending stiffness EI [N m²]. Of a limp cable (0) the first and last element have a little, a hundredth of their weight
-    /// times the square of their length, so that free ends have a direction.
+    /// Bending stiffness EI [N m²]. With 0, the first and last element keep 1 % of their weight times their length
+    /// squared, so that free ends have a direction.
     #[serde(default, deserialize_with = "quantity::bending_stiffness")]
     pub ei: f64,
-    /// Torsional stiffness GJ [N m²] of a cable that is bent when free of stress; left out, EI. Others don't know twist.
+    /// Torsional stiffness GJ [N m²] of a cable with a curved stress-free shape. Default: EI. Other cables have no
+    /// torsion.
     #[serde(
         default,
         deserialize_with = "quantity::optional::bending_stiffness",
         skip_serializing_if = "Option::is_none"
     )]
     pub gj: Option<f64>,
-    /// Mass of water inside that moves along but has no weight in water [kg/m].
+    /// Mass of the water inside [kg/m]. It moves with the part and has no weight in water.
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub flooded: f64,
     /// Hydrodynamic diameter, for drag and added mass [m].
     #[serde(default, deserialize_with = "quantity::length")]
     pub diameter: f64,
-    /// Displaced volume per length, for buoyancy [m²]; left out, that of the full diameter.
+    /// Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
     #[serde(default, deserialize_with = "quantity::optional::area")]
     pub displaced: Option<f64>,
-    /// Kelvin–Voigt damping of stretching: stress grows by this time times the rate of strain [s].
+    /// Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ ε̇)`.
     #[serde(default, deserialize_with = "quantity::time")]
-    pub axial_damping: f64,
-    /// Kelvin–Voigt damping of bending [s].
+    pub axial_retardation_time: f64,
+    /// Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`.
     #[serde(default, deserialize_with = "quantity::time")]
-    pub bending_damping: f64,
+    pub bending_retardation_time: f64,
 }
 
 /// Bending stiffness of the end elements of a cable that has none, in parts of their weight times the square of their length.
@@ -72,8 +73,8 @@ impl Section {
             flooded: 0.0,
             diameter: 0.0,
             displaced: None,
-            axial_damping: 0.0,
-            bending_damping: 0.0,
+            axial_retardation_time: 0.0,
+            bending_retardation_time: 0.0,
         }
     }
     /// Displaced volume per length [m²].
@@ -89,8 +90,8 @@ impl Section {
             ("flooded", self.flooded),
             ("diameter", self.diameter),
             ("displaced", self.displaced.unwrap_or(0.0)),
-            ("axial_damping", self.axial_damping),
-            ("bending_damping", self.bending_damping),
+            ("axial_retardation_time", self.axial_retardation_time),
+            ("bending_retardation_time", self.bending_retardation_time),
         ] {
             not_negative(name, x)?;
         }
@@ -105,61 +106,60 @@ pub enum StressFree {
     /// Straight and unstretched.
     #[default]
     Straight,
-    /// As it is laid: the initial stretch and curvature cost nothing. Sections know then which way they look, and
-    /// resist twist.
+    /// As laid: the initial stretch and curvature cause no stress. Sections then have an orientation and resist
+    /// torsion.
     AsLaid,
 }
 
-/// A cable, hose or tether: stretches and bends however far it likes. It doesn't twist, unless it is laid bent and free of
-/// stress.
+/// A cable, hose or tether with large displacements, stretch and bending. It has no torsion, unless its stress-free
+/// shape is curved.
 ///
 /// It is a chain of ANCF elements with 6 coordinates per node. Markers: `name.start`, `name.end`, `name@12.5m`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CableSpec {
-    /// Name by which the rest of the scene refers to it.
+    /// Name; the rest of the scene refers to the part by it.
     pub name: String,
-    /// Points along which it is laid, from start to end [m]: straight lines between them. Where they meet at an angle, give
-    /// a `radius`: a cable that is laid round a sharp corner would be strained there.
+    /// Points of the path along which it is laid, from start to end [m], joined by straight lines. At corners, give a
+    /// `radius`: a sharp corner would strain the cable.
     #[serde(default, deserialize_with = "quantity::points")]
     pub points: Vec<V3<f64>>,
-    /// Bend radius at the corners of `points` [m]. The arcs cut the corners, and get elements of their own.
+    /// Bend radius at the corners of `points` [m]. The arcs have elements of their own.
     #[serde(
         default,
         deserialize_with = "quantity::optional::length",
         skip_serializing_if = "Option::is_none"
     )]
     pub radius: Option<f64>,
-    /// Points of a smooth curve along which it is laid [m], instead of `points`: a cubic spline through them.
+    /// Points of a smooth path [m], instead of `points`: a cubic spline passes through them.
     #[serde(default, deserialize_with = "quantity::points")]
     pub curve: Vec<V3<f64>>,
-    /// Direction of `curve` at its start; left out, it is as curved there as its first points say.
+    /// Direction of `curve` at its start. Default: follows from the first points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start_direction: Option<V3<f64>>,
-    /// Direction of `curve` at its end, towards which it goes on; left out, it is as curved there as its last points say.
+    /// Direction of `curve` at its end. Default: follows from the last points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_direction: Option<V3<f64>>,
-    /// Unstretched length [m]; left out, that of the path. A different length is spread evenly over the path.
+    /// Unstretched length [m]. Default: the length of the path. Another length is strained uniformly to fit the path.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub length: Option<f64>,
-    /// Tension with which it is laid [N], instead of `length`: the path is longer than the cable by the strain
-    /// `tension / ea`.
+    /// Initial tension [N], instead of `length`: the path is longer than the cable by the strain `tension / ea`.
     #[serde(
         default,
         deserialize_with = "quantity::optional::force",
         skip_serializing_if = "Option::is_none"
     )]
     pub tension: Option<f64>,
-    /// Number of elements of equal length. Give it, or `mesh`.
+    /// Number of elements of equal length. Give `elements` or `mesh`.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub elements: usize,
-    /// Elements of different lengths instead of `elements`: `{ elements = 24, last = "1 mm" }` grades them towards the end,
-    /// `first` towards the start, both towards both; or a list with the length of each, from start to end [m]. Where the
-    /// cable's direction is held, elements should be shorter than its bending layer `√(EI/T)`. A graded end stays graded
-    /// while a winch feeds there.
+    /// Elements of different lengths instead of `elements`: `{ elements = 24, last = "1 mm" }` grades them towards
+    /// the end, `first` towards the start, both towards both; or a list with the length of each, from start to end
+    /// [m]. Where the direction is held, elements should be shorter than the bending layer `√(EI/T)`. A graded end
+    /// stays graded while a winch pays out there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshSpec>,
-    /// What it is made of.
+    /// Cross-section.
     pub section: Section,
     /// Longitudinal stiffness model: L1, L1n, L2, L3 or L4.
     #[serde(default)]
@@ -170,18 +170,17 @@ pub struct CableSpec {
     /// Quadrature of the pointwise models.
     #[serde(default)]
     pub integration: Integration,
-    /// Velocity of the whole cable at the start [m/s].
+    /// Initial velocity of the whole cable [m/s].
     #[serde(default, deserialize_with = "quantity::vec3::speed")]
     pub velocity: V3<f64>,
-    /// The shape in which it is free of stress.
+    /// Stress-free shape.
     #[serde(default)]
     pub stress_free: StressFree,
-    /// Strain at which it is free of stress, on top of `stress_free` [1].
+    /// Stress-free strain, added to that of `stress_free` [1].
     #[serde(default, deserialize_with = "quantity::number")]
     pub strain: f64,
-    /// Curvature at which it is free of stress, on top of `stress_free` [1/m]. A scalar without direction, of a cable
-    /// that turns about its axis as it likes: it curls to any side. One with a direction is laid bent, `stress_free =
-    /// "as-laid"`.
+    /// Stress-free curvature, added to that of `stress_free` [1/m]. It has no direction: a cable without torsion can
+    /// curl to any side. For a curvature with a direction, lay the cable curved and set `stress_free = "as-laid"`.
     #[serde(default, deserialize_with = "quantity::curvature")]
     pub curvature: f64,
 }
@@ -311,7 +310,7 @@ impl CableSpec {
 }
 
 impl CableSpec {
-    /// The fronts at the ends that feed, and how the mesh follows them.
+    /// The boundaries at the ends that feed, and how the mesh follows them.
     fn line(
         &self,
         b: &mut Builder,
@@ -328,15 +327,15 @@ impl CableSpec {
                            `stress_free`, `strain` and `curvature`";
             return Err(BuildError::at("stress_free", message));
         }
-        let mut fronts = Vec::new();
+        let mut boundaries = Vec::new();
         for (end, _) in feeding.iter().enumerate().filter(|(_, f)| f.is_some()) {
             let at = if end == 0 { 0 } else { mesh.len() - 1 };
             let node = b.node(NodeKind::Scalars(1), &[mesh[at]], &[rates[end]])?;
             b.share(node);
             let (own, there) = (b.nodes()[node.0 as usize], b.nodes()[nodes[at].0 as usize]);
-            fronts.push((
+            boundaries.push((
                 end,
-                Front {
+                MovingBoundary {
                     node,
                     q: own.q,
                     v: own.v,
@@ -350,7 +349,7 @@ impl CableSpec {
             ));
         }
         let ends = |is: fn(&Feed) -> bool| feeding.map(|f| f.as_ref().is_some_and(is));
-        let line = Line::new(mesh, fronts, ends(|f| f.element.is_some()), self.rides(mesh, feeding)?);
+        let line = Line::new(mesh, boundaries, ends(|f| f.element.is_some()), self.rides(mesh, feeding)?);
         Ok(Line { unstrained: ends(|f| f.unstrained), ..line })
     }
 
@@ -394,12 +393,12 @@ impl CableSpec {
             let rest = Rest::Uniform { eps0: self.strain, kappa0: self.curvature };
             push_rest(pools, model, params, rest, on).map_err(BuildError::new)?;
         }
-        if s.axial_damping > 0.0 {
-            push_axial_damping(pools, model, params.l, s.axial_damping * s.ea, on)
+        if s.axial_retardation_time > 0.0 {
+            push_axial_damping(pools, model, params.l, s.axial_retardation_time * s.ea, on)
                 .map_err(BuildError::new)?;
         }
-        if s.bending_damping > 0.0 && s.ei > 0.0 {
-            push_bending_damping(pools, model, params.l, s.bending_damping * s.ei, on)
+        if s.bending_retardation_time > 0.0 && s.ei > 0.0 {
+            push_bending_damping(pools, model, params.l, s.bending_retardation_time * s.ei, on)
                 .map_err(BuildError::new)?;
         }
         Ok(())
@@ -569,7 +568,7 @@ impl ElementSpec for CableSpec {
             transverse: self.transverse,
             integration: self.integration,
         };
-        let rates = state.map_or([0.0; 2], |s| s.fronts);
+        let rates = state.map_or([0.0; 2], |s| s.boundaries);
         let line =
             if feeds { Some(self.line(b, model, length, &mesh, &nodes, feeding, rates)?) } else { None };
         let flows = |k: usize| line.as_ref().filter(|line| line.flows(k));

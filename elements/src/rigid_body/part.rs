@@ -113,7 +113,7 @@ impl Part for BodyPart {
         let v = three(at.v, self.v);
         Some((self.place(&self.origin, at), [v[0] + swing[0], v[1] + swing[1], v[2] + swing[2]]))
     }
-    fn line(&self, at: &At<'_>) -> Vec<V3<f64>> {
+    fn centre_line(&self, at: &At<'_>) -> Vec<V3<f64>> {
         match &self.hull {
             Some(ends) => ends.iter().map(|e| self.place(e, at)).collect(),
             None if self.points.is_empty() => Vec::new(),

@@ -14,38 +14,38 @@ use std::sync::Arc;
 
 /// A rigid body with full inertia.
 ///
-/// Everything on it is given in its own frame, whose origin stands at `position`. Markers: `name` (that origin),
+/// All its data are in the body's own frame, whose origin starts at `position`. Markers: `name` (that origin),
 /// `name.com` (the centre of mass), and the `points` that the scene names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigidBodySpec {
-    /// Name by which the rest of the scene refers to it.
+    /// Name; the rest of the scene refers to the part by it.
     pub name: String,
-    /// Where the origin of its frame starts [m].
+    /// Initial position of the origin of its frame [m].
     #[serde(deserialize_with = "quantity::vec3::length")]
     pub position: V3<f64>,
-    /// Orientation at the start as Bryant angles 1-2-3: turns about its x axis, its new y axis, its new z axis [rad].
+    /// Initial orientation as Bryant angles 1-2-3: turns about its x axis, its new y axis, its new z axis [rad].
     #[serde(default, deserialize_with = "quantity::vec3::angle")]
     pub angles: V3<f64>,
-    /// Velocity of the origin at the start [m/s].
+    /// Initial velocity of the origin [m/s].
     #[serde(default, deserialize_with = "quantity::vec3::speed")]
     pub velocity: V3<f64>,
-    /// Angular velocity at the start, in space [rad/s].
+    /// Initial angular velocity, in space [rad/s].
     #[serde(default, deserialize_with = "quantity::vec3::angular_velocity")]
     pub angular_velocity: V3<f64>,
-    /// Mass [kg]; left out, that of the `shape` with its `density`.
+    /// Mass [kg]. Default: from `shape` and `density`.
     #[serde(default, deserialize_with = "quantity::optional::mass")]
     pub mass: Option<f64>,
     /// Density of the `shape` [kg/m³].
     #[serde(default, deserialize_with = "quantity::optional::density")]
     pub density: Option<f64>,
-    /// Homogeneous shape, from which the moments of inertia follow.
+    /// Homogeneous shape; the moments of inertia follow from it.
     #[serde(default)]
     pub shape: Option<Shape>,
     /// Moments of inertia `Jxx`, `Jyy`, `Jzz` about the centre of mass [kg m²], instead of a shape.
     #[serde(default, deserialize_with = "triple")]
     pub inertia: Option<V3<f64>>,
-    /// Products of inertia `Jxy`, `Jxz`, `Jyz`: the other entries of the inertia matrix [kg m²].
+    /// Products of inertia `Jxy`, `Jxz`, `Jyz`: the off-diagonal entries of the inertia matrix [kg m²].
     #[serde(default, deserialize_with = "quantity::vec3::inertia")]
     pub products: V3<f64>,
     /// Centre of mass [m].
@@ -54,14 +54,14 @@ pub struct RigidBodySpec {
     /// Displaced volume, for buoyancy [m³].
     #[serde(default, deserialize_with = "quantity::volume")]
     pub volume: f64,
-    /// Centre of the displaced volume [m]; left out, the centre of mass. Where the water has a `level`, the volume of a body
-    /// with a hull lies along the hull.
+    /// Centre of buoyancy [m]. Default: the centre of mass. If the water has a `level`, the volume of a body with a
+    /// hull is distributed along the hull.
     #[serde(default, deserialize_with = "place")]
     pub centre_of_volume: Option<V3<f64>>,
-    /// Cylinder along which drag and added mass act; left out, they don't.
+    /// Cylinder for drag and added mass. Default: none, and neither acts.
     #[serde(default)]
     pub hull: Option<HullSpec>,
-    /// Points by which the rest of the scene can hold it, each with its name [m].
+    /// Named points of the body [m]; each is a marker.
     #[serde(default)]
     pub points: BTreeMap<String, Point>,
 }

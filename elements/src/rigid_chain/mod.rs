@@ -1,7 +1,6 @@
 //! Chains of rigid links: hoses and chains that bend at joints only.
 //!
 //! Each link is a rigid cylinder with its frame's x axis from its start to its end; spherical joints hold them together.
-//! The joints are constraints, which is why this crate depends on that of constraints.
 
 mod bends;
 mod lay;

@@ -6,10 +6,9 @@ use super::part::ChainPart;
 use crate::cable::StressFree;
 use crate::path::Path;
 use crate::rigid_body::{Hull, Inertia};
-use ropewalk_constraints::spherical;
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::rotation::{around, exp, from_matrix, matrix, then, transposed_times};
-use ropewalk_core::{BuildError, Marker, NodeKind, StationPool, V3, dot};
+use ropewalk_core::{BuildError, Equation, Joint, Marker, NodeKind, StationPool, V3, dot};
 use ropewalk_scene::{Builder, ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -20,19 +19,19 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinkSection {
-    /// Mass of the structure per length [kg/m]; what gravity pulls at.
+    /// Structural mass per length [kg/m]; gravity acts on it.
     #[serde(deserialize_with = "quantity::mass_per_length")]
     pub mass: f64,
-    /// Mass of water inside that moves along but has no weight in water [kg/m].
+    /// Mass of the water inside [kg/m]. It moves with the part and has no weight in water.
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub flooded: f64,
     /// Hydrodynamic diameter, for drag and added mass [m]; without one, neither acts.
     #[serde(default, deserialize_with = "quantity::length")]
     pub diameter: f64,
-    /// Displaced volume per length, for buoyancy [m²]; left out, that of the full diameter.
+    /// Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
     #[serde(default, deserialize_with = "quantity::optional::area")]
     pub displaced: Option<f64>,
-    /// Radius of gyration about a link's axis [m]; left out, that of a solid cylinder, 0.354 times the diameter.
+    /// Radius of gyration about a link's axis [m]. Default: that of a solid cylinder, 0.354 times the diameter.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub gyration: Option<f64>,
     /// Bending stiffness EI, as springs EI/l at the joints [N m²].
@@ -97,46 +96,46 @@ pub struct SpoolSpec {
     /// A point on the axis [m].
     #[serde(deserialize_with = "quantity::vec3::length")]
     pub centre: V3<f64>,
-    /// Direction of the axis, in which turn follows turn, right-handed about it.
+    /// Direction of the axis. The turns follow it, right-handed about it.
     pub axis: V3<f64>,
     /// Distance from turn to turn along the axis [m]; negative for turns that are left-handed about it.
     #[serde(deserialize_with = "quantity::length")]
     pub pitch: f64,
-    /// Number of turns; left out, as many as the `length` of the chain takes.
+    /// Number of turns. Default: as many as the `length` of the chain needs.
     #[serde(default, deserialize_with = "quantity::optional::number")]
     pub turns: Option<f64>,
 }
 
-/// A chain of rigid links with spherical joints, all of one length: a hose, a tether, a chain.
+/// A chain of rigid links of equal length with spherical joints: a hose, a tether, a chain.
 ///
-/// It lies at rest along its path, the ends of all links on it. Markers: `name.start`, `name.end`, `name@12.5m` (a
-/// point of a link), `name.link3` (the centre of the third). The joint between the third and the fourth link is the
+/// It starts at rest with the ends of all links on its path. Markers: `name.start`, `name.end`, `name@12.5m` (a point
+/// of a link), `name.link3` (the centre of the third). The joint between the third and the fourth link is the
 /// constraint `name/3`, so its reaction is the tension there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigidChainSpec {
-    /// Name by which the rest of the scene refers to it.
+    /// Name; the rest of the scene refers to the part by it.
     pub name: String,
     /// Number of links.
     pub links: usize,
-    /// Length of the chain [m]; left out, such that it fills its path. Shorter, it ends on the path where it ends.
+    /// Length of the chain [m]. Default: the chain fills its path. A shorter chain ends on the path.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub length: Option<f64>,
-    /// Points along which it is laid, from start to end [m]: straight lines between them.
+    /// Points of the path along which it is laid, from start to end [m], joined by straight lines.
     #[serde(default, deserialize_with = "quantity::points")]
     pub points: Vec<V3<f64>>,
-    /// Points of a smooth curve along which it is laid [m], instead of `points`.
+    /// Points of a smooth path [m], instead of `points`.
     #[serde(default, deserialize_with = "quantity::points")]
     pub curve: Vec<V3<f64>>,
-    /// The spool on which it goes on after the last of the points.
+    /// Spool that carries the rest of the chain, after the last of the points.
     #[serde(default)]
     pub spool: Option<SpoolSpec>,
-    /// What it is made of.
+    /// Cross-section.
     pub section: LinkSection,
-    /// The shape in which its joints are free of bending moment.
+    /// Shape in which its joints have no bending moment.
     #[serde(default)]
     pub stress_free: StressFree,
-    /// Velocity of the whole chain at the start [m/s].
+    /// Initial velocity of the whole chain [m/s].
     #[serde(default, deserialize_with = "quantity::vec3::speed")]
     pub velocity: V3<f64>,
 }
@@ -291,7 +290,8 @@ impl ElementSpec for RigidChainSpec {
         let half = 0.5 * link;
         for (k, w) in nodes.windows(2).enumerate() {
             let between = [Marker::beside(w[0], [half, 0.0, 0.0]), Marker::beside(w[1], [-half, 0.0, 0.0])];
-            b.constraint(spherical(format!("{}/{}", self.name, k + 1), b.nodes(), between)?)?;
+            let name = format!("{}/{}", self.name, k + 1);
+            b.constraint(Joint::new(name, b.nodes(), between, Equation::coincide())?)?;
         }
         if s.ei > 0.0 || s.joint_damping > 0.0 {
             let all = b.coordinates();

@@ -21,25 +21,25 @@ fn chosen() -> ChosenModels {
     model.models().expect("legal")
 }
 
-/// Two nodes of a cable, and the fronts of its line.
-fn nodes(fronts: usize) -> Vec<Node> {
+/// Two nodes of a cable, and the boundaries of its line.
+fn nodes(boundaries: usize) -> Vec<Node> {
     let mut nodes: Vec<Node> =
         (0..2).map(|k| Node { kind: NodeKind::Slope, q: 6 * k, v: 6 * k, shared: false }).collect();
-    for k in 0..fronts {
+    for k in 0..boundaries {
         nodes.push(Node { kind: NodeKind::Scalars(1), q: 12 + k, v: 12 + k, shared: true });
     }
     nodes
 }
 
-fn on(fronts: usize) -> Vec<NodeId> {
-    (0..2 + fronts as u32).map(NodeId).collect()
+fn on(boundaries: usize) -> Vec<NodeId> {
+    (0..2 + boundaries as u32).map(NodeId).collect()
 }
 
 /// One of two elements of a line whose start flows, or whose both ends do.
 const ONE: Embedding<1> = Embedding { fixed: [0.4, 1.3], by: [[0.8, 0.35]] };
 const TWO: Embedding<2> = Embedding { fixed: [0.02, 0.1], by: [[0.8, 0.35], [0.2, 0.65]] };
 
-/// A bent element in motion: coordinates, velocities and accelerations, the fronts behind the dofs.
+/// A bent element in motion: coordinates, velocities and accelerations, the boundaries behind the dofs.
 fn motion() -> [Vec<f64>; 3] {
     let q = vec![0.1, -0.2, 0.3, 0.9, 0.35, -0.3, 0.75, 0.25, 0.2, 0.8, 0.5, 0.45, -0.3, 0.9];
     let v = vec![0.4, -0.3, 0.5, 0.2, -0.6, 0.1, 0.3, 0.7, -0.2, 0.5, 0.15, -0.45, 0.8, -0.37];
@@ -48,7 +48,7 @@ fn motion() -> [Vec<f64>; 3] {
 }
 
 fn at<'a>(x: &'a [Vec<f64>; 3]) -> At<'a> {
-    At { t: 0.3, q: &x[0], v: &x[1], a: &x[2], modes: &[], relaxed: None }
+    At { t: 0.3, q: &x[0], v: &x[1], a: &x[2], internal: &[], relaxed: None }
 }
 
 fn pool<E: Element<N, N>, const N: usize>(element: E) -> Pool<E, N, N> {
@@ -76,7 +76,7 @@ const GAUSS: [(f64, f64); 5] = [
 
 type Twice = Dual<Dual<f64>>;
 
-/// The position of the material point `p` as time goes on, by value and two derivatives: twelve dofs and fronts move
+/// The position of the material point `p` as time goes on, by value and two derivatives: twelve dofs and boundaries move
 /// on parabolas.
 fn material_point(by: &Embedding<2>, x: &[Vec<f64>; 3], p: f64) -> [Twice; 3] {
     let t: Twice = Dual::new(Dual::new(0.0, 1.0), Dual::constant(1.0));
@@ -105,7 +105,7 @@ fn inertia_is_that_of_material_points() {
     for (xi, w) in GAUSS {
         let acceleration = material_point(&TWO, &x, a + xi * l).map(|r| r.eps.eps);
         let s = hermite(xi, l);
-        // how the material point moves when a front does: by differences of where the curve has it
+        // how the material point moves when a boundary does: by differences of where the curve has it
         let virtual_by_front = |k: usize| {
             difference(|h| {
                 let mut moved = x.clone();
@@ -177,7 +177,7 @@ fn energy_at_an_end_completes_the_rule_of_the_material() {
         });
         let i = 6 * end;
         let slide: f64 = (0..3).map(|c| e[2 * end + 1][c] * u[i + c] + bend[c] * u[i + 3 + c]).sum();
-        // d'Alembert's force on the front: that of the energy, and what passes the end
+        // d'Alembert's force on the boundary: that of the energy, and what passes the end
         let expected = -sign * w - slide;
         approx::assert_relative_eq!(u[12 + end], expected, max_relative = 1e-12);
     }
@@ -253,14 +253,14 @@ fn tangents_agree_with_differences() {
         (2, Box::new(loaded(two))),
         (2, Box::new(loaded(FlowStations { slip: [0.0; 2], ..two }))),
     ];
-    for (fronts, term) in terms {
+    for (boundaries, term) in terms {
         let x = x.clone().map(|mut x| {
-            x.truncate(12 + fronts);
+            x.truncate(12 + boundaries);
             x
         });
         for width in [Width::One, Width::Four] {
-            let error = check_tangent(term.as_ref(), &nodes(fronts), &at(&x), width);
-            assert!(error < 1e-7, "{} with {fronts} fronts, {width:?}: {error:e}", term.label());
+            let error = check_tangent(term.as_ref(), &nodes(boundaries), &at(&x), width);
+            assert!(error < 1e-7, "{} with {boundaries} boundaries, {width:?}: {error:e}", term.label());
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Elements against references that are not this code.
 
+mod clamp;
 mod common;
 mod directed;
 mod flow;

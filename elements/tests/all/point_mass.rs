@@ -47,7 +47,7 @@ fn masses() -> Vec<PointMass> {
 fn tangent_is_exact() {
     for seed in [0.3, 0.7, 1.1, 1.9] {
         let [q, v, a] = state(seed);
-        let at = At { t: 0.0, q: &q, v: &v, a: &a, modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &q, v: &v, a: &a, internal: &[], relaxed: None };
         for mass in masses() {
             assert!(check_tangent(&mass, &nodes(), &at, Width::One) < 1e-8);
             // and where it lies across the surface
@@ -65,7 +65,7 @@ fn energy_balances_power() {
     // dE/dt, less what is supplied and plus what is lost, is the work of the residual
     for seed in [0.3, 0.7, 1.1, 1.9] {
         let [q, v, a] = state(seed);
-        let at = At { t: 0.0, q: &q, v: &v, a: &a, modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &q, v: &v, a: &a, internal: &[], relaxed: None };
         for mass in masses() {
             let rate = difference(|h| {
                 let v: Vec<f64> = v.iter().zip(&a).map(|(v, a)| v + h * a).collect();
@@ -95,7 +95,7 @@ fn weight_is_less_buoyancy() {
 #[test]
 fn tangent_is_finite_at_rest() {
     let (q, v) = ([0.0; 17], [0.0; 16]);
-    let at = At { t: 0.0, q: &q, v: &v, a: &v, modes: &[], relaxed: None };
+    let at = At { t: 0.0, q: &q, v: &v, a: &v, internal: &[], relaxed: None };
     let w = Weights { q: 1.0, v: 1.0, a: 1.0 };
     for mass in masses() {
         let (r, k) = dense(&mass, &nodes(), &at, w, Width::One);

@@ -41,7 +41,7 @@ fn numbers() -> Numbers {
 
 impl Numbers {
     fn at(&self) -> At<'_> {
-        At { t: 0.4, q: &self.q, v: &self.v, a: &self.a, modes: &[], relaxed: None }
+        At { t: 0.4, q: &self.q, v: &self.v, a: &self.a, internal: &[], relaxed: None }
     }
 }
 

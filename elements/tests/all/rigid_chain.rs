@@ -29,7 +29,7 @@ fn bends(rest: [f64; 3]) -> Bends {
 #[test]
 fn tangent_and_energy_of_bending_are_exact() {
     let (q, v) = state();
-    let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 12], modes: &[], relaxed: None };
+    let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 12], internal: &[], relaxed: None };
     for rest in [[1.0, 0.0, 0.0], [0.6, 0.0, 0.8]] {
         let bends = bends(rest);
         let error = check_tangent(&bends, &NODES, &at, Width::One);
@@ -67,7 +67,7 @@ fn a_chain_on_a_spool_meets_its_joints_and_weighs_what_it_should() {
     }
     let part = model.part("hose").unwrap();
     let weight = part.dead_load(Per::Mass, [0.0, 0.0, -10.0]).unwrap();
-    let line = part.line(&state.at());
+    let line = part.centre_line(&state.at());
     assert_eq!(line.len(), 61);
     // the potential of the weight is that of the links at their centres
     let height: f64 = line.windows(2).map(|w| 0.5 * (w[0][2] + w[1][2])).sum();

@@ -143,7 +143,7 @@ mod tests {
     fn tangent_is_that_of_the_residual_at_every_width() {
         let nodes = [Node { kind: NodeKind::Point, q: 0, v: 0, shared: false }];
         let (q, v, a) = ([1.0, 2.0, -0.4], [0.3, -0.7, 0.2], [2.0, 0.5, -1.0]);
-        let at = At { t: 0.0, q: &q, v: &v, a: &a, modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &q, v: &v, a: &a, internal: &[], relaxed: None };
         let mut pool = Pool::new();
         assert!(pool.push(&nodes, Float { mass: 2.0, resistance: 0.3 }, &[NodeId(0)]));
         for width in [Width::One, Width::Four, Width::Eight] {

@@ -107,7 +107,7 @@ mod tests {
         let term = Waterplane { label: "lift".into(), k: 30.0, height: 2.0, surface: 0.5, z: (2, 2) };
         for (z, lift) in [(-0.7, 36.0), (-3.0, 60.0), (0.9, 0.0)] {
             let q = [1.0, 2.0, z];
-            let at = At { t: 0.0, q: &q, v: &[0.0; 3], a: &[0.0; 3], modes: &[], relaxed: None };
+            let at = At { t: 0.0, q: &q, v: &[0.0; 3], a: &[0.0; 3], internal: &[], relaxed: None };
             assert!(check_tangent(&term, &nodes, &at, Width::One) < 1e-8);
             // and the lift is what the energy falls by
             let energy = |dz: f64| term.energy(&At { q: &[1.0, 2.0, z + dz], ..at }).potential;

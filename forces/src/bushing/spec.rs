@@ -8,8 +8,8 @@ use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A spring and damper in all directions between two rigid bodies, or one and space: a rubber mount, a soft joint. Without
-/// force as the bodies stand at the start; rotations count up to half a turn.
+/// A spring and damper in all six directions between two rigid bodies, or a body and space: a rubber mount, a soft
+/// joint. There is no force in the initial position. Rotations up to half a turn are valid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BushingSpec {
@@ -17,14 +17,14 @@ pub struct BushingSpec {
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// What holds it, whose axes the numbers belong to: a marker on a rigid body, or a point in space; left out, the
-    /// point where the marker starts.
+    /// The other marker, on a rigid body, or a point in space; its axes are those of the stiffnesses. Default: the
+    /// point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// Direction in space at the start of the first of these axes; left out, with `axis_y`, the axes of space.
+    /// Direction of the first axis in space at the start. Default, with `axis_y`: the axes of space.
     #[serde(default)]
     pub axis_x: Option<V3<f64>>,
-    /// Direction in space at the start of the second, at right angles to the first.
+    /// Direction of the second axis in space at the start, at right angles to the first.
     #[serde(default)]
     pub axis_y: Option<V3<f64>>,
     /// Stiffness along each axis [N/m].
@@ -96,19 +96,19 @@ impl ForceSpec for BushingSpec {
     }
 }
 
-/// A torsion spring and damper about an axis, beside a `revolute` joint; angles count up to half a turn from the one
-/// without moment.
+/// A torsion spring and damper about an axis, used with a `revolute` joint. Angles up to half a turn from the
+/// stress-free angle are valid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationalSpringSpec {
     /// Name.
     pub name: String,
-    /// The marker on the body that is turned.
+    /// The marker, on a rigid body.
     pub marker: MarkerRef,
-    /// The body that it is turned against; left out, space.
+    /// The other marker, on a rigid body. Default: space.
     #[serde(default)]
     pub to: Option<MarkerRef>,
-    /// The axis in space at the start.
+    /// Direction of the axis in space at the start.
     pub axis: V3<f64>,
     /// Stiffness [N m/rad].
     #[serde(default, deserialize_with = "quantity::rotational_stiffness")]
@@ -116,7 +116,7 @@ pub struct RotationalSpringSpec {
     /// Damping [N m s/rad].
     #[serde(default, deserialize_with = "quantity::rotational_damping")]
     pub damping: f64,
-    /// Angle without moment, from where the bodies stand at the start [rad].
+    /// Angle without moment, from the initial position [rad].
     #[serde(default, deserialize_with = "quantity::angle")]
     pub angle: f64,
 }

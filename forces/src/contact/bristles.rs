@@ -24,7 +24,7 @@ fn back([w, x, y, z]: [f64; 4]) -> [f64; 4] {
 
 impl Contact {
     /// Adds dry friction. Each group, points first and then slender pieces, has bristles as its grip says; what they
-    /// remember is at `memory` of the modes, [`Contact::memory`] numbers.
+    /// remember is at `memory` of the internal variables, [`Contact::memory`] numbers.
     #[must_use]
     pub fn with_grips(mut self, grips: &[Grip], memory: usize) -> Self {
         let mut at = memory;
@@ -118,7 +118,7 @@ impl Contact {
                 continue;
             }
             let Some(Bristle { held, pair, mut hold }) =
-                self.bristle(group, cell, pressed, frame, at, at.modes)
+                self.bristle(group, cell, pressed, frame, at, at.internal)
             else {
                 continue;
             };
@@ -174,7 +174,7 @@ impl Contact {
             let mut cells = self.press(group, &frame, at, &mut scratch);
             for (cell, pressed) in cells[..bristles.cells].iter_mut().enumerate() {
                 if pressed.settle()
-                    && let Some(b) = self.bristle(group, cell, pressed, &frame, at, at.modes)
+                    && let Some(b) = self.bristle(group, cell, pressed, &frame, at, at.internal)
                 {
                     see(&b.hold, pressed.normal);
                 }

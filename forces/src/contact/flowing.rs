@@ -1,8 +1,8 @@
-//! Pieces of cables that feed: material runs through them, so that what touches acts on the fronts of the line as well.
+//! Pieces of cables that feed: material runs through them, so that what touches acts on the boundaries of the line as well.
 //!
 //! Positions, velocities and virtual displacements of the material are cubics with the nodal values `r`, `r'`, for
 //! velocities `ν = ṙ - ṗ r'`, `ν' = ṙ' - ṗ r''`, where `p` is the material coordinate of a node. So the contact is that of an
-//! ordinary piece of the length `l` that is there now, and a force with the nodal vector `F` acts on a front that moves a
+//! ordinary piece of the length `l` that is there now, and a force with the nodal vector `F` acts on a boundary that moves a
 //! node by `b` with `-b (r'·F + r''·F')`, as inertia and weight do.
 
 use super::block::{Block, MOST};
@@ -12,7 +12,7 @@ use super::term::Contact;
 use ropewalk_core::held::three;
 use ropewalk_core::{Assembly, At, SpanFlow, SpanLine, V3, Weights, dot};
 
-/// Unknowns of the nodes; and of these, two fronts and a body.
+/// Unknowns of the nodes; and of these, two boundaries and a body.
 const NODES: usize = 12;
 const ALL: usize = 20;
 /// Part of the length by which it is changed to see what the force does.
@@ -43,7 +43,7 @@ pub(crate) struct Now {
 impl Now {
     /// Its own unknowns at the same time.
     pub fn at<'a>(&'a self, at: &At<'a>) -> At<'a> {
-        At { t: at.t, q: &self.q, v: &self.v, a: &self.a, modes: &[], relaxed: None }
+        At { t: at.t, q: &self.q, v: &self.v, a: &self.a, internal: &[], relaxed: None }
     }
 
     fn vectors(&self) -> [V3<f64>; 4] {
@@ -74,7 +74,7 @@ impl Flowing {
     /// Its unknowns.
     pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
         let nodes = self.v.iter().flat_map(|&v| v..v + 3);
-        nodes.chain(self.flow.fronts[..self.flow.count].iter().map(|f| f.1))
+        nodes.chain(self.flow.boundaries[..self.flow.count].iter().map(|f| f.1))
     }
 
     /// The piece with the length `l` on unknowns of its own.
@@ -143,7 +143,7 @@ impl Flowing {
         if f.iter().all(|f| *f == 0.0) {
             return;
         }
-        let (body, fronts) = (contact.body(), self.flow.count);
+        let (body, boundaries) = (contact.body(), self.flow.count);
         let (e, [by, by_l]) = (now.vectors(), bends(now.l));
         // what the material at each node is displaced by, where the node moves along it
         let slide = [e[1], sum(&by[0], &e), e[3], sum(&by[1], &e)];
@@ -152,9 +152,9 @@ impl Flowing {
         for (i, dof) in self.dofs().take(NODES).enumerate() {
             out.add(dof, f[i]);
         }
-        for k in 0..fronts {
+        for k in 0..boundaries {
             let q = (0..4).map(|n| share(k, n) * dot(&slide[n], &nodal(n))).sum::<f64>();
-            out.add(self.flow.fronts[k].1, -q);
+            out.add(self.flow.boundaries[k].1, -q);
         }
         for (i, dof) in body.clone().enumerate() {
             out.add(dof, f[NODES + i]);
@@ -171,7 +171,7 @@ impl Flowing {
             [-step, step].map(|d| self.local(contact, &self.piece(now.l + d), frame, &own, None, scratch).r);
         let by_length: [f64; MOST] = std::array::from_fn(|i| (more[i] - less[i]) / (2.0 * step));
         let of_front = |k: usize| self.flow.by[k][1] - self.flow.by[k][0];
-        // how the nodal velocities of the material change: with the vectors of the nodes, and with a front
+        // how the nodal velocities of the material change: with the vectors of the nodes, and with a boundary
         let velocity_by = |m: usize, j: usize| -> f64 {
             let (n, same) = (m / 3, m % 3 == j % 3);
             let rate = now.rates[n / 2];
@@ -199,21 +199,21 @@ impl Flowing {
                 let flows: f64 = (0..NODES).map(|m| by_v[i][m] * velocity_by(m, j)).sum();
                 row[j] = w.q * (by_q[i][j] + flows) + w.v * by_v[i][j];
             }
-            for k in 0..fronts {
+            for k in 0..boundaries {
                 let flows: f64 = (0..NODES).map(|m| by_v[i][m] * velocity_by_front(m, k)).sum();
                 let slid: f64 = (0..NODES).map(|m| by_v[i][m] * share(k, m / 3) * slide[m / 3][m % 3]).sum();
                 row[NODES + k] = w.q * (by_length[i] * of_front(k) + flows) - w.v * slid;
             }
             for j in 0..body.len() {
-                row[NODES + fronts + j] = w.q * by_q[i][NODES + j] + w.v * by_v[i][NODES + j];
+                row[NODES + boundaries + j] = w.q * by_q[i][NODES + j] + w.v * by_v[i][NODES + j];
             }
         }
         let mut all = [[0.0; ALL]; ALL];
         all[..NODES].copy_from_slice(&d[..NODES]);
         for j in 0..body.len() {
-            all[NODES + fronts + j] = d[NODES + j];
+            all[NODES + boundaries + j] = d[NODES + j];
         }
-        for k in 0..fronts {
+        for k in 0..boundaries {
             let row = &mut all[NODES + k];
             for n in 0..4 {
                 let (b, force) = (share(k, n), nodal(n));
@@ -228,7 +228,7 @@ impl Flowing {
                         for j in 0..4 {
                             row[3 * j + i] -= w.q * b * by[n / 2][j] * force[i];
                         }
-                        for m in 0..fronts {
+                        for m in 0..boundaries {
                             row[NODES + m] -= w.q * b * bent_by_l[n / 2][i] * of_front(m) * force[i];
                         }
                     }

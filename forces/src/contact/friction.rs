@@ -21,10 +21,10 @@ pub struct Friction {
     /// Coefficient.
     #[serde(deserialize_with = "quantity::number")]
     pub mu: f64,
-    /// Coefficient across what is slender; left out, the same.
+    /// Coefficient across what is slender. Default: the same.
     #[serde(default, deserialize_with = "quantity::optional::number")]
     pub across: Option<f64>,
-    /// How far it gives way before it slips, about, under what touches by its weight [m]; left out, a hundredth of its
+    /// How far it gives way before it slips, about, under what touches by its weight [m]. Default: a hundredth of its
     /// thickness, and less where that would smear out slip along a cable.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub elastic_slip: Option<f64>,

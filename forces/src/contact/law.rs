@@ -32,12 +32,12 @@ pub enum Damping {
         #[serde(deserialize_with = "quantity::time_per_length")]
         f64,
     ),
-    /// `F = F_e + k τ ḋ`: a linear damper (Kelvin & Voigt). The force jumps when a point arrives.
+    /// `F = F_e + k τ ḋ`: a linear damper (Kelvin & Voigt). The force jumps at first contact.
     KelvinVoigt {
-        /// `τ`, the damping over the stiffness [s].
+        /// Retardation time `τ`, the damping over the stiffness [s].
         #[serde(deserialize_with = "quantity::time")]
-        time: f64,
-        /// Where the contact ends.
+        retardation_time: f64,
+        /// Condition that ends the contact.
         #[serde(default)]
         until: Leaving,
     },
@@ -48,7 +48,7 @@ pub enum Damping {
 pub struct ContactLaw {
     /// Exponent `p` of the elastic force `k d^p` of the depth `d` in metres: 1, or 1.5 as between balls (Hertz).
     pub exponent: f64,
-    /// What it loses along the normal.
+    /// Damping law along the normal.
     pub damping: Damping,
     /// Dry friction, if there is any.
     pub friction: Option<Friction>,
@@ -85,7 +85,7 @@ impl ContactLaw {
         }
         match self.damping {
             Damping::None => {}
-            Damping::HuntCrossley(x) | Damping::KelvinVoigt { time: x, .. } => {
+            Damping::HuntCrossley(x) | Damping::KelvinVoigt { retardation_time: x, .. } => {
                 not_negative("damping", x)?;
             }
         }
@@ -125,7 +125,7 @@ impl ContactLaw {
                 let by_rate = 1.5 * alpha * elastic;
                 Normal { force: elastic * factor, by_depth: stiff * factor, by_rate, elastic }
             }
-            Damping::KelvinVoigt { time, until } => {
+            Damping::KelvinVoigt { retardation_time: time, until } => {
                 let force = elastic + k * time * rate;
                 if force <= 0.0 && until == Leaving::Force {
                     return released;

@@ -20,9 +20,9 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ShapeSpec {
-    /// All of one side of a plane through the marker: a floor, a wall.
+    /// A half-space below a plane through the marker: a floor, a wall.
     Plane {
-        /// The side from which it is touched; left out, upwards (z).
+        /// Outward normal. Default: upwards (z).
         #[serde(default = "upwards")]
         normal: V3<f64>,
     },
@@ -39,22 +39,22 @@ pub enum ShapeSpec {
         /// Radius [m].
         #[serde(deserialize_with = "quantity::length")]
         radius: f64,
-        /// Length [m]; left out, without end.
+        /// Length [m]. Default: infinite.
         #[serde(default, deserialize_with = "quantity::optional::length")]
         length: Option<f64>,
     },
-    /// A tube from inside: a round hole through a wall that has no outer side.
+    /// The inside of a tube: a round hole through a wall without outer side.
     Tube {
         /// Direction of its axis.
         axis: V3<f64>,
         /// Inner radius [m].
         #[serde(deserialize_with = "quantity::length")]
         radius: f64,
-        /// Length [m]; left out, without end.
+        /// Length [m]. Default: infinite.
         #[serde(default, deserialize_with = "quantity::optional::length")]
         length: Option<f64>,
     },
-    /// A cuboid: a deck, a wall of some thickness.
+    /// A cuboid: a deck, a thick wall.
     Cuboid {
         /// Lengths of the edges [m].
         #[serde(deserialize_with = "quantity::vec3::length")]
@@ -71,7 +71,7 @@ pub enum ShapeSpec {
     },
     /// Triangles from a file.
     Mesh {
-        /// An STL or OBJ file; a scene file names it from its own folder.
+        /// An STL or OBJ file; its path is relative to the scene file.
         file: PathBuf,
         /// Size of the file's unit of length [m]: 0.001 where it is in millimetres.
         #[serde(default = "one", deserialize_with = "quantity::length")]
@@ -79,8 +79,8 @@ pub enum ShapeSpec {
         /// Turns about x, the new y and the new z [rad].
         #[serde(default, deserialize_with = "quantity::vec3::angle")]
         angles: V3<f64>,
-        /// Whether it is a surface with borders, such as a sea floor, and no closed solid. It is touched from the side
-        /// that the triangles' normals point to.
+        /// Whether it is an open surface, such as a sea floor, instead of a closed solid. Contact is on the side of
+        /// the triangles' normals.
         #[serde(default)]
         open: bool,
     },
@@ -93,90 +93,69 @@ fn one() -> f64 {
     1.0
 }
 
-/// What is done about points that start deep in the shape.
+/// What to do with points that start deep in the shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Overlap {
-    /// The scene is refused if a point starts deeper than half of its radius.
+    /// Refuses the scene if a point starts deeper than half of its radius.
     #[default]
     Refuse,
-    /// The scene starts as it is, with the force that belongs to the depth.
+    /// Starts with the force of that depth.
     Allow,
 }
 
-/// Contact of cables and bodies with a shape on the ground or on a rigid body, which feels the opposite force.
+/// Contact of cables and bodies with a shape, on the ground or on a rigid body. The body of the shape feels the
+/// opposite force.
 ///
-/// Cables, links and bodies with a hull touch all along, wherever the shape is nearer than their radius, point masses and
-/// single points of bodies by a ball of the `radius` given. A record of type `force` shows the force.
+/// Cables, links and bodies with a hull are in contact anywhere along their length where the shape is nearer than
+/// their radius. Point masses and single points are spheres of the given `radius`. A record of type `force` shows the
+/// force.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSpec {
     /// Name.
     pub name: String,
-    /// What touches it: cables, bodies with a hull, point masses; left out and without `at`, all of them that are not
-    /// the shape's own body.
+    /// Parts in contact with the shape: cables, bodies with a hull, point masses. Default, without `points`: all
+    /// except the shape's own body.
     #[serde(default)]
     pub on: Vec<String>,
-    /// Single points that touch it, such as corners of bodies, as balls of the `radius`.
+    /// Single points in contact, such as corners of bodies: markers, each a sphere of the `radius`.
     #[serde(default)]
-    pub at: Vec<MarkerRef>,
+    pub points: Vec<MarkerRef>,
     /// The shape.
     pub shape: ShapeSpec,
-    /// Where the shape is: a point in space, or a marker on a rigid body that it is part of; left out, the origin.
+    /// Position of the shape: a point in space, or a marker on the rigid body that carries it. Default: the origin.
     #[serde(default = "origin")]
     pub marker: MarkerRef,
-    /// Radius of what touches [m]; left out, half of the diameter of the cable or hull.
+    /// Contact radius of the parts [m]. Default: half of the diameter of the cable or hull.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub radius: Option<f64>,
-    /// Stiffness of a ball that stands for a whole point mass or point [N/m]; with an exponent `p` other than 1, that
-    /// at a depth of 1 m.
+    /// Contact stiffness of a point mass or point [N/m]; with an exponent `p` other than 1, at a depth of 1 m.
     #[serde(default, deserialize_with = "quantity::spring_stiffness")]
     pub stiffness: f64,
-    /// Stiffness per length of cables and hulls [N/m²]; with an exponent other than 1, that at a depth of 1 m.
+    /// Contact stiffness per length of cables and hulls [N/m²]; with an exponent other than 1, at a depth of 1 m.
     #[serde(default, deserialize_with = "quantity::stiffness_per_length")]
     pub stiffness_per_length: f64,
-    /// Stiffness of the tips of cables and hulls, in addition [N/m]; with an exponent other than 1, that at a depth of 1 m.
-    /// Left out, that of a length as long as they are thick; 0 without.
+    /// Additional contact stiffness of the tips of cables and hulls [N/m]; with an exponent other than 1, at a depth
+    /// of 1 m. Default: that of a piece as long as its diameter.
     #[serde(default, deserialize_with = "quantity::optional::spring_stiffness")]
     pub end_stiffness: Option<f64>,
     /// Exponent `p` of the elastic force `k d^p`.
     #[serde(default = "one", deserialize_with = "quantity::number")]
     pub exponent: f64,
-    /// What it loses along the normal.
+    /// Damping law along the normal.
     #[serde(default)]
     pub damping: Damping,
-    /// Dry friction: a coefficient, or `{ mu, across, elastic_slip }`. Equilibria are found without it: those with it are
-    /// many.
+    /// Dry friction: a coefficient, or `{ mu, across, elastic_slip }`. Equilibria are computed without it, since with
+    /// friction they are not unique.
     #[serde(default, deserialize_with = "dry")]
     #[schemars(with = "Option<Dry>")]
     pub friction: Option<Friction>,
-    /// What is done about points that start deep in the shape.
+    /// What to do with points that start deep in the shape.
     #[serde(default)]
     pub overlap: Overlap,
-    /// Keys that are gone.
-    #[doc(hidden)]
-    #[serde(default, skip_serializing, rename = "per_element", deserialize_with = "per_element")]
-    #[schemars(skip)]
-    pub per_element: (),
-    #[doc(hidden)]
-    #[serde(default, skip_serializing, rename = "slip_speed", deserialize_with = "slip_speed")]
-    #[schemars(skip)]
-    pub slip_speed: (),
 }
 register_spec!(Force, "contact", ContactSpec);
-
-fn per_element<'de, D: serde::Deserializer<'de>>(_: D) -> Result<(), D::Error> {
-    Err(serde::de::Error::custom(
-        "`per_element` is gone: what touches is found wherever it is along an element. Leave it out",
-    ))
-}
-
-fn slip_speed<'de, D: serde::Deserializer<'de>>(_: D) -> Result<(), D::Error> {
-    Err(serde::de::Error::custom(
-        "`slip_speed` is gone: friction holds now, by bristles that give way by a length before they slip. Leave it out, \
-         or give that length: `friction = { mu = 0.3, elastic_slip = \"0.1 mm\" }`",
-    ))
-}
 
 /// How a scene may write friction.
 #[derive(Deserialize, JsonSchema)]
@@ -206,7 +185,7 @@ impl ContactSpec {
         ContactSpec {
             name: name.into(),
             on: Vec::new(),
-            at: Vec::new(),
+            points: Vec::new(),
             shape,
             marker: origin(),
             radius: None,
@@ -217,8 +196,6 @@ impl ContactSpec {
             damping: Damping::None,
             friction: None,
             overlap: Overlap::Refuse,
-            per_element: (),
-            slip_speed: (),
         }
     }
 
@@ -230,7 +207,7 @@ impl ContactSpec {
     /// What touches, each with what it is called in messages.
     fn touching(&self, b: &Builder, own_seat: Option<(usize, usize)>) -> Result<Touching, BuildError> {
         let mut all = Touching::default();
-        if !self.on.is_empty() || self.at.is_empty() {
+        if !self.on.is_empty() || self.points.is_empty() {
             for (_, part) in b.parts(&self.on)? {
                 let own = own_seat.is_some_and(|seat| part.seats() == [seat]);
                 let before = all.len();
@@ -262,7 +239,7 @@ impl ContactSpec {
                         format!("`{}` carries the shape itself: leave it out of `on`", part.name())
                     } else {
                         format!(
-                            "`{}` has nothing to touch with: give it a `hull`, or name points of it in `at`",
+                            "`{}` has nothing to touch with: give it a `hull`, or name points of it in `points`",
                             part.name()
                         )
                     };
@@ -270,10 +247,13 @@ impl ContactSpec {
                 }
             }
         }
-        for name in &self.at {
-            let marker = b.marker("at", name)?;
+        for name in &self.points {
+            let marker = b.marker("points", name)?;
             let Some(node) = marker.on() else {
-                return Err(BuildError::at("at", format!("{name} doesn't move: name a marker on a part")));
+                return Err(BuildError::at(
+                    "points",
+                    format!("{name} doesn't move: name a marker on a part"),
+                ));
             };
             let n = b.nodes()[node.0 as usize];
             let held = match (Held::new(b.nodes(), &marker, &self.name)?, n.kind) {
@@ -347,7 +327,7 @@ impl ContactSpec {
         let q = b.coordinates();
         // no velocity is needed to see how deep they are
         let still = vec![0.0; q.len()];
-        let at = At { t: 0.0, q, v: &still, a: &still, modes: &[], relaxed: None };
+        let at = At { t: 0.0, q, v: &still, a: &still, internal: &[], relaxed: None };
         let points = all.points.iter().map(|(name, p)| (name.clone(), p.radius));
         let spans = all.spans.iter().map(|(name, s)| {
             let place = format!("`{name}` between {:.4} m and {:.4} m", s.s, s.s + s.length);
@@ -479,7 +459,7 @@ impl ShapeSpec {
 #[typetag::serde(name = "contact")]
 impl ForceSpec for ContactSpec {
     fn markers(&self) -> Vec<&MarkerRef> {
-        std::iter::once(&self.marker).chain(&self.at).collect()
+        std::iter::once(&self.marker).chain(&self.points).collect()
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         not_negative("stiffness", self.stiffness)?;

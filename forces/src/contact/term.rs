@@ -13,8 +13,8 @@ use ropewalk_core::error::{need, positive};
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Column, ContactPoint, ContactSpan, Energy, Marker, Node, NodeKind, Pattern,
-    Power, Relaxed, SpanLine, Term, V3, Weights, dot,
+    Assembly, At, BuildError, Column, ContactPoint, ContactSpan, Energy, Foresees, Marker, Node, NodeKind,
+    Pattern, Power, Relaxed, Remembers, Shows, SpanLine, Term, V3, Weights, dot,
 };
 use std::ops::Range;
 
@@ -399,18 +399,24 @@ impl Term for Contact {
     fn kinked(&self) -> bool {
         self.law.friction.is_some()
     }
-    fn remembers(&self) -> bool {
-        self.law.friction.is_some()
+    fn remembers(&self) -> Option<&dyn Remembers> {
+        if self.law.friction.is_some() { Some(self) } else { None }
     }
+    fn foresees(&self) -> Option<&dyn Foresees> {
+        Some(self)
+    }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
+}
+
+impl Remembers for Contact {
     fn remember(&self, at: &At<'_>, memory: &mut [f64]) {
         self.move_anchors(at, memory);
     }
-    fn passes(&self, before: &At<'_>, after: &At<'_>) -> Option<String> {
-        self.passed(before, after)
-    }
-    fn foresees(&self) -> bool {
-        true
-    }
+}
+
+impl Foresees for Contact {
     fn horizon(&self, at: &At<'_>) -> f64 {
         let frame = self.fixed.frame(at);
         let fixed = self.groups.iter().map(|g| self.free(g, &frame, at));
@@ -420,9 +426,12 @@ impl Term for Contact {
         });
         fixed.chain(flowing).fold(f64::INFINITY, f64::min)
     }
-    fn remark(&self, at: &At<'_>) -> Option<String> {
-        self.coarse(at)
+    fn passes(&self, before: &At<'_>, after: &At<'_>) -> Option<String> {
+        self.passed(before, after)
     }
+}
+
+impl Shows for Contact {
     fn columns(&self) -> Vec<Column> {
         let force = |name: &str| Column::new(name, "N");
         let mut all = ["fx", "fy", "fz", "normal"].map(force).to_vec();
@@ -467,5 +476,8 @@ impl Term for Contact {
         if self.law.friction.is_some() {
             out.push(if all > 0.0 { slipping / all } else { 0.0 });
         }
+    }
+    fn remark(&self, at: &At<'_>) -> Option<String> {
+        self.coarse(at)
     }
 }

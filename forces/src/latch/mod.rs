@@ -6,7 +6,9 @@ pub use spec::{FloorSpec, LatchSpec};
 
 use ropewalk_core::held::{Held, Pull, delta, dofs, pull};
 use ropewalk_core::rotation::M3;
-use ropewalk_core::{Action, Assembly, At, Energy, Event, Model, Pattern, Power, State, Term, V3, dot};
+use ropewalk_core::{
+    Action, Assembly, At, Energy, Event, Foresees, Model, Pattern, Power, State, Term, V3, dot,
+};
 
 /// A plane that pushes back what has left its seat, [`Latch::floor`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +17,7 @@ pub struct Floor {
     pub point: V3<f64>,
     /// Its normal, of length 1; what is behind the plane is pushed along it.
     pub normal: V3<f64>,
-    /// Force by depth [N/m].
+    /// Contact stiffness [N/m].
     pub stiffness: f64,
 }
 
@@ -24,8 +26,8 @@ pub struct Floor {
 pub struct Seat {
     /// The seat: fixed in space or on a rigid body. And the point that is held there.
     pub ends: [Held; 2],
-    /// Place of its mode in [`State::modes`]: 0 while it is held, then the time of its release [s].
-    pub mode: usize,
+    /// Place of its internal variable in [`State::internal`]: 0 while it is held, then the time of its release [s].
+    pub variable: usize,
 }
 
 /// Many points, each held at a seat by a spring and damper, `F = -k (x - x_0) - c v`, until the force reaches a limit;
@@ -73,7 +75,7 @@ impl Latch {
     fn moment(&self, seat: &Seat, at: &At<'_>) -> Moment {
         let [x0, x1] = [seat.ends[0].x(at), seat.ends[1].x(at)];
         let [v0, v1] = [seat.ends[0].velocity(at), seat.ends[1].velocity(at)];
-        let released = at.modes[seat.mode];
+        let released = at.internal[seat.variable];
         let (left, rate) = if released == 0.0 {
             (1.0, 0.0)
         } else {
@@ -95,7 +97,7 @@ impl Latch {
 
     /// The pull of a point on its seat that counts, in parts of the limit; `None` where it has let go.
     fn load(&self, seat: &Seat, at: &At<'_>) -> Option<f64> {
-        if at.modes[seat.mode] != 0.0 {
+        if at.internal[seat.variable] != 0.0 {
             return None;
         }
         let m = self.moment(seat, at);
@@ -153,14 +155,6 @@ impl Term for Latch {
             }
         }
     }
-    fn foresees(&self) -> bool {
-        true
-    }
-    fn horizon(&self, at: &At<'_>) -> f64 {
-        // what fades is not leapt over
-        let fades = |s: &Seat| at.modes[s.mode] != 0.0 && at.t < at.modes[s.mode] + self.fade;
-        if self.seats.iter().any(fades) { 0.25 * self.fade } else { f64::INFINITY }
-    }
     fn energy(&self, at: &At<'_>) -> Energy {
         let stored = |seat: &Seat| {
             let m = self.moment(seat, at);
@@ -177,6 +171,17 @@ impl Term for Latch {
                 + 0.5 * m.rate * (floor - self.stiffness * dot(&m.d, &m.d))
         };
         Power { dissipated: self.seats.iter().map(lost).sum(), ..Power::default() }
+    }
+    fn foresees(&self) -> Option<&dyn Foresees> {
+        Some(self)
+    }
+}
+
+impl Foresees for Latch {
+    fn horizon(&self, at: &At<'_>) -> f64 {
+        // what fades is not leapt over
+        let fades = |s: &Seat| at.internal[s.variable] != 0.0 && at.t < at.internal[s.variable] + self.fade;
+        if self.seats.iter().any(fades) { 0.25 * self.fade } else { f64::INFINITY }
     }
 }
 
@@ -204,12 +209,12 @@ impl Event for Release {
         let due: Vec<usize> = {
             let at = state.at();
             let over = |s: &&Seat| self.latch.load(s, &at).is_some_and(|load| load >= 1.0 - 1e-9);
-            self.latch.seats.iter().filter(over).map(|s| s.mode).collect()
+            self.latch.seats.iter().filter(over).map(|s| s.variable).collect()
         };
-        for mode in due {
-            state.modes[mode] = state.t.max(f64::MIN_POSITIVE);
+        for variable in due {
+            state.internal[variable] = state.t.max(f64::MIN_POSITIVE);
         }
-        let all = self.latch.seats.iter().all(|s| state.modes[s.mode] != 0.0);
+        let all = self.latch.seats.iter().all(|s| state.internal[s.variable] != 0.0);
         if all && self.stop { Action::Stop } else { Action::Restart }
     }
 }

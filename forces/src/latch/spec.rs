@@ -13,18 +13,19 @@ fn fade() -> f64 {
     1e-3
 }
 
-/// Holds points where they start by a spring and damper each, until the pull on one reaches a limit: then it lets go
-/// for good. Each release is located in time and reported.
+/// Holds points at their initial positions, each by a spring and damper, until the force on one reaches a limit: that
+/// point is then released permanently. Each release is located in time and reported.
 ///
-/// A hose on its spool, a cable tied up with tape, a load that is dropped. Records: `released` counts.
+/// Use it for a hose on its spool, a cable tied with tape, a load that is dropped. The record `released` counts the
+/// releases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatchSpec {
-    /// Name, by which releases are reported.
+    /// Name; the reports of releases use it.
     pub name: String,
-    /// What is held: parts, of which every node or link is held, and single markers.
-    pub of: Vec<String>,
-    /// Where the seats are: on this rigid body, as it stands at the start; left out, fixed in space.
+    /// What it holds: parts (every node or link of them) and single markers.
+    pub on: Vec<String>,
+    /// Marker on the rigid body that carries the seats. Default: fixed in space.
     #[serde(default)]
     pub to: Option<MarkerRef>,
     /// Stiffness of a seat [N/m].
@@ -33,19 +34,19 @@ pub struct LatchSpec {
     /// Damping of a seat [N s/m].
     #[serde(default, deserialize_with = "quantity::damping")]
     pub damping: f64,
-    /// Force of a seat at which it lets go [N].
+    /// Force of a seat at which the point is released [N].
     #[serde(deserialize_with = "quantity::force")]
-    pub hold: f64,
-    /// Direction in space: only the pull in it counts; left out, the magnitude of the force.
+    pub force: f64,
+    /// Direction in space; only the component along it counts. Default: the magnitude of the force.
     #[serde(default)]
     pub direction: Option<V3<f64>>,
-    /// Time in which the force fades after the release [s].
+    /// Fade time of the force after a release [s].
     #[serde(default = "fade", deserialize_with = "quantity::time")]
     pub fade: f64,
-    /// A plane, fixed in space, behind which released points are pushed back.
+    /// A plane fixed in space that pushes released points back.
     #[serde(default)]
     pub floor: Option<FloorSpec>,
-    /// Whether the run ends once the last one has let go.
+    /// Whether the run ends when the last point is released.
     #[serde(default)]
     pub stop: bool,
 }
@@ -60,21 +61,21 @@ pub struct FloorSpec {
     pub point: V3<f64>,
     /// Its normal, on the side where points may be.
     pub normal: V3<f64>,
-    /// Force by depth [N/m].
+    /// Contact stiffness [N/m].
     #[serde(deserialize_with = "quantity::spring_stiffness")]
     pub stiffness: f64,
 }
 
 impl LatchSpec {
     /// Holds all of these parts, in space, with a stiffness [N/m], a damping [N s/m] and a limit [N].
-    pub fn new(name: &str, of: &[&str], stiffness: f64, damping: f64, hold: f64) -> Self {
+    pub fn new(name: &str, on: &[&str], stiffness: f64, damping: f64, force: f64) -> Self {
         LatchSpec {
             name: name.into(),
-            of: of.iter().map(|s| s.to_string()).collect(),
+            on: on.iter().map(|s| s.to_string()).collect(),
             to: None,
             stiffness,
             damping,
-            hold,
+            force,
             direction: None,
             fade: fade(),
             floor: None,
@@ -85,7 +86,7 @@ impl LatchSpec {
     /// The points that are held.
     fn points(&self, b: &Builder) -> Result<Vec<Held>, BuildError> {
         let mut points = Vec::new();
-        for name in &self.of {
+        for name in &self.on {
             // a part as a whole, or else a marker
             if let Ok(found) = b.parts(std::slice::from_ref(name))
                 && let Some((_, part)) = found.first()
@@ -94,7 +95,7 @@ impl LatchSpec {
                 points.extend(part.seats().into_iter().map(|(q, v)| Held::Moves { q, v }));
                 continue;
             }
-            let marker = b.marker("of", &MarkerRef::Name(name.clone()))?;
+            let marker = b.marker("on", &MarkerRef::Name(name.clone()))?;
             points.push(Held::new(b.nodes(), &marker, &self.name)?);
         }
         Ok(points)
@@ -129,7 +130,7 @@ impl ForceSpec for LatchSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         positive("stiffness", self.stiffness)?;
         not_negative("damping", self.damping)?;
-        positive("hold", self.hold)?;
+        positive("force", self.force)?;
         positive("fade", self.fade)?;
         need(!self.name.contains('/'), || {
             format!("`{}` can't be the name of a latch: it holds `/`", self.name)
@@ -152,17 +153,17 @@ impl ForceSpec for LatchSpec {
         }
         let points = self.points(b)?;
         if points.is_empty() {
-            return Err(BuildError::at("of", "`of` names nothing to hold: give parts or markers"));
+            return Err(BuildError::at("on", "`on` names nothing to hold: give parts or markers"));
         }
         let mut seats: Vec<Seat> = Vec::with_capacity(points.len());
         let q = b.coordinates().to_vec();
-        let at = ropewalk_core::At { t: 0.0, q: &q, v: &[], a: &[], modes: &[], relaxed: None };
+        let at = ropewalk_core::At { t: 0.0, q: &q, v: &[], a: &[], internal: &[], relaxed: None };
         for (k, point) in points.into_iter().enumerate() {
             if seats.iter().any(|s| s.ends[1] == point) {
-                return Err(BuildError::at("of", "the same point is named twice"));
+                return Err(BuildError::at("on", "the same point is named twice"));
             }
             if point.size() == 0 {
-                return Err(BuildError::at("of", "a point that is fixed in space needs no latch"));
+                return Err(BuildError::at("on", "a point that is fixed in space needs no latch"));
             }
             let seat = self.seat(b, on, point.x(&at));
             if let (Held::Beside { v: body, .. }, Some(own)) = (seat, point.dofs().next())
@@ -170,14 +171,14 @@ impl ForceSpec for LatchSpec {
             {
                 return Err(BuildError::at("to", "a body can't be held at a seat on itself"));
             }
-            let mode = b.mode(format!("{}/{}", self.name, k + 1));
-            seats.push(Seat { ends: [seat, point], mode });
+            let variable = b.internal_variable(format!("{}/{}", self.name, k + 1));
+            seats.push(Seat { ends: [seat, point], variable });
         }
         let latch = Latch {
             label: self.name.clone(),
             stiffness: self.stiffness,
             damping: self.damping,
-            hold: self.hold,
+            hold: self.force,
             direction,
             fade: self.fade,
             floor,

@@ -2,12 +2,12 @@
 
 use crate::{AddedMass, Surface};
 use ropewalk_core::held::three;
-use ropewalk_core::{Assembly, At, Dual, Front, Pattern, Power, Real, Term, V3, dot};
+use ropewalk_core::{Assembly, At, Dual, MovingBoundary, Pattern, Power, Real, Term, V3, dot};
 
 /// What the energy of the water beside a cable asks at an end through which material flows.
 ///
 /// The water is closed while the cable grows: with the added mass `m_a`, the velocity `n` across the axis relative to the water, and
-/// the rate `ṗ` of the material coordinate there, the end's node feels `±ṗ m_a n` and its front `∓½ m_a |n|²`, the upper
+/// the rate `ṗ` of the material coordinate there, the end's node feels `±ṗ m_a n` and its boundary `∓½ m_a |n|²`, the upper
 /// signs at the start. At an eyelet at rest in still water both are nothing.
 pub struct FeedingEnd {
     /// A name, such as `hose: water at its start`.
@@ -19,7 +19,7 @@ pub struct FeedingEnd {
     /// The surface of the water, if it has one.
     pub surface: Option<Surface>,
     /// The end.
-    pub front: Front,
+    pub boundary: MovingBoundary,
 }
 
 /// How an end moves: height, velocity, slope, rate of the material coordinate.
@@ -32,7 +32,7 @@ struct End<R> {
 
 impl FeedingEnd {
     fn end(&self, at: &At<'_>) -> End<f64> {
-        let f = &self.front;
+        let f = &self.boundary;
         End {
             z: at.q[f.end_q + 2],
             v: three(at.v, f.end_v),
@@ -51,11 +51,11 @@ impl FeedingEnd {
         (wet * self.added_mass.mass(R::of(self.diameter)), n)
     }
 
-    /// The force on the node, and that on the front, over single numbers.
+    /// The force on the node, and that on the boundary, over single numbers.
     fn force<R: Real>(&self, end: &End<R>) -> [R; 4] {
         let (mass, n) = self.across(end);
-        // the sign of a front is -1 at the start
-        let sign = R::of(-self.front.sign) * mass;
+        // the sign of a boundary is -1 at the start
+        let sign = R::of(-self.boundary.sign) * mass;
         let f = n.map(|n| sign * end.rate * n);
         [f[0], f[1], f[2], -(R::of(0.5) * sign * dot(&n, &n))]
     }
@@ -66,7 +66,7 @@ impl Term for FeedingEnd {
         self.label.clone()
     }
     fn pattern(&self, p: &mut Pattern) {
-        let f = &self.front;
+        let f = &self.boundary;
         p.clique((f.end_v..f.end_v + 6).chain([f.v]));
     }
     fn symmetric(&self) -> bool {
@@ -76,7 +76,7 @@ impl Term for FeedingEnd {
         true
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        let (f, end) = (&self.front, self.end(at));
+        let (f, end) = (&self.boundary, self.end(at));
         let force = self.force(&end);
         for i in 0..3 {
             out.add(f.end_v + i, -force[i]);
@@ -106,6 +106,6 @@ impl Term for FeedingEnd {
         let end = self.end(at);
         let (mass, n) = self.across(&end);
         let (u, _) = self.added_mass.current.at(end.z);
-        Power { supplied: -self.front.sign * end.rate * mass * dot(&n, &u), ..Power::default() }
+        Power { supplied: -self.boundary.sign * end.rate * mass * dot(&n, &u), ..Power::default() }
     }
 }

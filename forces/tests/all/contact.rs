@@ -5,7 +5,8 @@ use ropewalk_core::held::Held;
 use ropewalk_core::rotation::{around, exp, from_bryant, matrix, times};
 use ropewalk_core::testing::{check_tangent, dense, difference};
 use ropewalk_core::{
-    At, ContactPoint, ContactSpan, Marker, Node, NodeId, NodeKind, SpanLine, Term, V3, Weights, Width,
+    At, ContactPoint, ContactSpan, Foresees, Marker, Node, NodeId, NodeKind, Remembers, Shows, SpanLine,
+    Term, V3, Weights, Width,
 };
 use ropewalk_forces::contact::{
     Contact, ContactLaw, Damping, Friction, Grip, Leaving, Mesh, Shape, Soup, Stiffness,
@@ -44,7 +45,7 @@ impl Numbers {
         s
     }
     fn at(&self) -> At<'_> {
-        At { t: 0.0, q: &self.q, v: &self.v, a: &self.a, modes: &[], relaxed: None }
+        At { t: 0.0, q: &self.q, v: &self.v, a: &self.a, internal: &[], relaxed: None }
     }
     fn axes(&self) -> [V3<f64>; 3] {
         let q = nodes()[SEAT].q;
@@ -145,7 +146,10 @@ fn laws() -> Vec<ContactLaw> {
         plain,
         ContactLaw { exponent: 1.5, ..plain },
         ContactLaw { damping: Damping::HuntCrossley(0.2), ..plain },
-        ContactLaw { damping: Damping::KelvinVoigt { time: 0.05, until: Leaving::Depth }, ..plain },
+        ContactLaw {
+            damping: Damping::KelvinVoigt { retardation_time: 0.05, until: Leaving::Depth },
+            ..plain
+        },
         ContactLaw { exponent: 1.5, damping: Damping::HuntCrossley(0.2), ..plain },
     ]
 }
@@ -260,7 +264,7 @@ fn tangents_of_friction_are_exact_while_it_holds_and_while_it_slips() {
     for (way, bent) in [(1e-3, 0.05), (3e-2, 0.6)] {
         let (mut worst, mut slip, mut hold) = (0.0_f64, 0, 0);
         rough(way, |contact, s, memory, what| {
-            let at = At { modes: memory, ..s.at() };
+            let at = At { internal: memory, ..s.at() };
             let mut shown = Vec::new();
             contact.observe(&at, &mut shown);
             if shown[3] == 0.0 {
@@ -285,7 +289,7 @@ fn tangents_of_friction_are_exact_while_it_holds_and_while_it_slips() {
 fn what_friction_takes_up_is_told() {
     rough(0.02, |contact, s, memory, what| {
         let nodes = nodes();
-        let at = At { modes: memory, ..s.at() };
+        let at = At { internal: memory, ..s.at() };
         let mut shown = Vec::new();
         contact.observe(&at, &mut shown);
         if shown[3] == 0.0 {
@@ -309,7 +313,7 @@ fn what_friction_takes_up_is_told() {
 fn both_sides_get_opposite_forces_and_moments() {
     rough(0.05, |contact, s, memory, what| {
         let nodes = nodes();
-        let at = At { modes: memory, ..s.at() };
+        let at = At { internal: memory, ..s.at() };
         if contact.depths(&at).next().unwrap().is_none() {
             return;
         }

@@ -288,7 +288,7 @@ fn ends_take_energy_from_the_flow() {
         } else {
             (&cable, on_cable, [r.vector(3.0), r.vector(1.0)].concat())
         };
-        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 6], modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 6], internal: &[], relaxed: None };
         let z = Held::new(nodes, &marker, "end").unwrap().x(&at)[2];
         let surface = (k % 5 < 2).then_some(Surface { level: z + r.number(0.08) });
         let (diameter, first, axis) = (0.2, k % 2 == 0, [0.6, 0.0, -0.8]);

@@ -19,14 +19,15 @@ const B: NodeId = NodeId(1);
 struct Numbers {
     q: Vec<f64>,
     v: Vec<f64>,
-    modes: Vec<f64>,
+    internal: Vec<f64>,
     t: f64,
 }
 
 impl Numbers {
     fn new(seed: u64) -> Self {
         let mut r = Random(seed);
-        let mut s = Numbers { q: r.list(17, 1.0), v: r.list(15, 1.0), modes: vec![0.0, 0.2, 0.05], t: 0.3 };
+        let mut s =
+            Numbers { q: r.list(17, 1.0), v: r.list(15, 1.0), internal: vec![0.0, 0.2, 0.05], t: 0.3 };
         for k in [3, 10] {
             let norm: f64 = s.q[k..k + 4].iter().map(|x| x * x).sum::<f64>().sqrt();
             s.q[k..k + 4].iter_mut().for_each(|x| *x /= norm);
@@ -34,7 +35,7 @@ impl Numbers {
         s
     }
     fn at(&self) -> At<'_> {
-        At { t: self.t, q: &self.q, v: &self.v, a: &[0.0; 15], modes: &self.modes, relaxed: None }
+        At { t: self.t, q: &self.q, v: &self.v, a: &[0.0; 15], internal: &self.internal, relaxed: None }
     }
 }
 
@@ -67,7 +68,9 @@ fn latches() -> Vec<Latch> {
     let ground = Held::Ground([0.1, 0.2, -0.4]);
     let on = Held::Beside { q: 0, v: 0, arm: [0.2, 0.1, -0.3] };
     let floor = Floor { point: [0.0, 0.0, 3.0], normal: [0.0, 0.6, 0.8], stiffness: 300.0 };
-    let seats = |ends: [[Held; 2]; 3]| (0..3).map(|mode| Seat { ends: ends[mode], mode }).collect::<Vec<_>>();
+    let seats = |ends: [[Held; 2]; 3]| {
+        (0..3).map(|variable| Seat { ends: ends[variable], variable }).collect::<Vec<_>>()
+    };
     let mut all = Vec::new();
     for seats in [
         seats([[ground, point], [on, point], [ground, body]]),

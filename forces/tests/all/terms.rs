@@ -30,7 +30,7 @@ impl Numbers {
         s
     }
     fn at(&self) -> At<'_> {
-        At { t: 0.3, q: &self.q, v: &self.v, a: &self.a, modes: &[], relaxed: None }
+        At { t: 0.3, q: &self.q, v: &self.v, a: &self.a, internal: &[], relaxed: None }
     }
 }
 

@@ -28,7 +28,7 @@ impl Unwinding {
 
     fn bend2(&self, y: &State, now: &Now, j: usize) -> f64 {
         let k = self.curvature(y, now, j);
-        self.cable.bending * dot(&k, &k)
+        self.cable.ei * dot(&k, &k)
     }
 
     /// Rate of `T + EI κ²/2` along the cable at an end, by the tangential part of the equation of motion.
@@ -70,7 +70,7 @@ impl Unwinding {
 
     /// The equation of the lift-off point, in the border's row.
     pub(super) fn find(&self, y: &State, now: &Now, rates: &Rates, column: &Column, out: &mut Bordered) {
-        let n = self.segments;
+        let n = self.elements;
         match &self.rule {
             Rule::Length => {}
             Rule::Tension(pull) => {
@@ -79,7 +79,7 @@ impl Unwinding {
             Rule::Peel(energy) => {
                 let ell = y.length[0] / n as f64;
                 let jump = minus(&self.curvature(y, now, n), &now.lay.curvature);
-                let ei = self.cable.bending;
+                let ei = self.cable.ei;
                 // over the weight of the momentum rows
                 let scale = self.cable.mass / energy;
                 out.rhs[4 * n - 3] = -scale * (0.5 * ei * dot(&jump, &jump) - energy);
@@ -107,9 +107,9 @@ impl Unwinding {
         column: &Column,
         out: &mut Bordered,
     ) {
-        let n = self.segments;
+        let n = self.elements;
         let row = 4 * n - 3;
-        let (len, ei, half) = (y.length[0], self.cable.bending, 0.5 * y.length[0] / n as f64);
+        let (len, ei, half) = (y.length[0], self.cable.ei, 0.5 * y.length[0] / n as f64);
         let ell = 2.0 * half;
         out.rhs[row] = tension - self.tensions(y, now)[0];
         out.add(row, 0, 1.0);

@@ -61,8 +61,8 @@ pub(super) type Form = [f64; 3];
 impl Unwinding {
     /// Reach of the band: the bending stiffness couples nodes over two segments.
     pub(super) fn system(&self, scalar: bool) -> Bordered {
-        let reach = if self.cable.bending > 0.0 { 10 } else { 6 };
-        Bordered::new(4 * self.segments - 3, reach, usize::from(scalar))
+        let reach = if self.cable.ei > 0.0 { 10 } else { 6 };
+        Bordered::new(4 * self.elements - 3, reach, usize::from(scalar))
     }
 
     /// Sets the system up at a state: its tangent, and minus its residual on the right. The unknowns are `λ` of every
@@ -77,10 +77,10 @@ impl Unwinding {
         out: &mut Bordered,
     ) {
         out.clear();
-        for j in 1..self.segments {
+        for j in 1..self.elements {
             self.momentum(y, now, rates, column, j, out);
         }
-        for j in 1..=self.segments {
+        for j in 1..=self.elements {
             constrain(y, rates, column, form, self.cable.mass, j, out);
         }
     }
@@ -111,9 +111,9 @@ impl Unwinding {
         j: usize,
         out: &mut Bordered,
     ) {
-        let n = self.segments;
+        let n = self.elements;
         let (m, ell) = (self.cable.mass, y.length[0] / n as f64);
-        let (s1, s2, s4) = (0.5 / ell, 1.0 / (ell * ell), self.cable.bending / ell.powi(4));
+        let (s1, s2, s4) = (0.5 / ell, 1.0 / (ell * ell), self.cable.ei / ell.powi(4));
         let s = self.stencil(y, now, j);
         let [before, after] = [y.lambda[j - 1], y.lambda[j]];
         let [back, ahead] = [minus(&y.x[j], &y.x[j - 1]), minus(&y.x[j + 1], &y.x[j])];
@@ -208,7 +208,7 @@ impl Unwinding {
         s4: f64,
         out: &mut Bordered,
     ) {
-        let n = self.segments;
+        let n = self.elements;
         let row = 4 * (j - 1) + 1;
         let mut node = |k: usize, w: f64| {
             if k == n {

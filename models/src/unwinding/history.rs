@@ -121,7 +121,7 @@ impl Running {
         let Some(now) = problem.now(start.t, start.peeled[0]) else {
             return Err(BuildError::at("peeled", "the package is empty at the start"));
         };
-        if problem.cable.bending > 0.0 {
+        if problem.cable.ei > 0.0 {
             problem.accelerate(&mut start, &now, stepping.h)?;
         }
         let newmark = Newmark::new(&problem, stepping, start, now);

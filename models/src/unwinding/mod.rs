@@ -24,7 +24,7 @@
 //! use ropewalk_models::unwinding::{Cable, Plan, Pull, Rule, Stepping, Unwinding};
 //! use std::sync::Arc;
 //!
-//! let cable = Cable { mass: 1e-3, diameter: 0.9e-3, bending: 0.0, curvature_limit: 200.0 };
+//! let cable = Cable { mass: 1e-3, diameter: 0.9e-3, ei: 0.0, curvature_limit: 200.0 };
 //! let spec = PackageSpec { origin: [0.0, 0.0, 0.1], ..PackageSpec::new(0.06, 0.2, 0.9e-3) };
 //! let package = Arc::new(Package::new(&spec)?);
 //! let draw = Arc::new(Straight::new([1.0, 0.0, 0.0], 2.57, 0.0, 0.1)?);

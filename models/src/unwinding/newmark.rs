@@ -13,7 +13,7 @@ pub struct Stepping {
     pub h: f64,
     /// Numerical damping `δ`: `γ = 1/2 + δ`, `β = (1/2 + γ)²/4`. At 0 the method is the average acceleration, of second
     /// order and without damping; above, of first order.
-    pub damping: f64,
+    pub numerical_damping: f64,
     /// Smallest step over `h` before the run gives up.
     pub least: f64,
     /// Whether steps are shortened to what the mesh allows; else a longer `h` is refused.
@@ -23,11 +23,11 @@ pub struct Stepping {
 impl Stepping {
     /// Steps of `h` [s] without numerical damping.
     pub fn new(h: f64) -> Self {
-        Stepping { h, damping: 0.0, least: 1e-4, follows: true }
+        Stepping { h, numerical_damping: 0.0, least: 1e-4, follows: true }
     }
     pub(super) fn check(&self) -> Result<(), BuildError> {
         positive("h", self.h)?;
-        not_negative("damping", self.damping)?;
+        not_negative("numerical_damping", self.numerical_damping)?;
         positive("least", self.least).map(drop)
     }
 }
@@ -134,7 +134,7 @@ impl Newmark {
             let longest = problem.longest_step(&self.y, &self.now);
             if h.min(left) > longest * (1.0 + 1e-9) {
                 if !self.stepping.follows {
-                    let (t, h, segments) = (self.y.t, self.stepping.h, problem.segments);
+                    let (t, h, segments) = (self.y.t, self.stepping.h, problem.elements);
                     return Err(Stopped::TooLong { t, h, segments, longest });
                 }
                 h = longest;
@@ -163,7 +163,7 @@ impl Newmark {
     }
 
     fn blame(&self, problem: &Unwinding, h: f64, why: &'static str, row: usize) -> Stopped {
-        let (n, t, len) = (problem.segments, self.y.t, self.y.length[0]);
+        let (n, t, len) = (problem.elements, self.y.t, self.y.length[0]);
         let ell = len / n as f64;
         if !(len > 0.1 * ell) {
             return Stopped::Taut { t };
@@ -178,7 +178,7 @@ impl Newmark {
 
     /// One step of `h`; on failure the state is as before.
     fn attempt(&mut self, problem: &Unwinding, h: f64) -> Result<(), Failed> {
-        let gamma = 0.5 + self.stepping.damping;
+        let gamma = 0.5 + self.stepping.numerical_damping;
         let beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
         let (g1, g2) = (gamma / (beta * h), 1.0 / (beta * h * h));
         let old = &self.y;
@@ -281,12 +281,12 @@ impl Unwinding {
     /// moving, and the tension there means nothing. Other problems are stable with any step.
     pub(super) fn longest_step(&self, y: &State, now: &Now) -> f64 {
         let Rule::Tension(pull) = &self.rule else { return f64::INFINITY };
-        if self.cable.bending == 0.0 {
+        if self.cable.ei == 0.0 {
             return f64::INFINITY;
         }
         let tension = pull.at(now.t, now.speed[0]).max(0.0);
         let waves = (tension / self.cable.mass).sqrt() + now.speed[0].abs();
-        REACH * y.length[0] / self.segments as f64 / waves
+        REACH * y.length[0] / self.elements as f64 / waves
     }
 
     /// Solves for the accelerations and tensions of a state whose positions and velocities are consistent.
@@ -298,7 +298,7 @@ impl Unwinding {
         // a peel law and a tangent lift-off say nothing about accelerations: peel at the drawing speed
         let scalar = matches!(self.rule, Rule::Tension(_)) && self.lift_off == super::LiftOff::Free;
         let rates = Rates { x: 0.25 * h * h, v: identity(0.5 * h), a: identity(1.0) };
-        let n = self.segments;
+        let n = self.elements;
         y.a.fill([0.0; 3]);
         y.lambda.fill(0.0);
         let mut system = self.system(scalar);

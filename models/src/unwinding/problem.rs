@@ -18,7 +18,7 @@ pub struct Cable {
     /// Diameter [m].
     pub diameter: f64,
     /// Bending stiffness [N m²]; 0 for a flexible cable.
-    pub bending: f64,
+    pub ei: f64,
     /// Largest curvature that it bears [1/m]; beyond, the run says so and goes on.
     pub curvature_limit: f64,
 }
@@ -102,7 +102,7 @@ pub struct Unwinding {
     /// Weight minus buoyancy per length [N/m].
     pub weight: V3<f64>,
     /// Into how many segments the free cable is divided.
-    pub segments: usize,
+    pub elements: usize,
     /// Factor of the Coriolis term: -2. Tests put another, to see that they would notice.
     #[doc(hidden)]
     pub coriolis: f64,
@@ -128,7 +128,7 @@ impl Unwinding {
             drag: None,
             added_mass: None,
             weight: [0.0; 3],
-            segments,
+            elements: segments,
             coriolis: -2.0,
         }
     }
@@ -140,30 +140,30 @@ impl Unwinding {
     pub fn check(&self) -> Result<(), BuildError> {
         positive("mass", self.cable.mass)?;
         positive("diameter", self.cable.diameter)?;
-        not_negative("bending", self.cable.bending)?;
+        not_negative("ei", self.cable.ei)?;
         finite("eyelet", &self.eyelet)?;
         finite("weight", &self.weight)?;
         if !(self.cable.curvature_limit > 0.0) {
             return Err(BuildError::at("curvature_limit", "`curvature_limit` must be positive"));
         }
-        if self.segments < 6 {
+        if self.elements < 6 {
             let message =
-                format!("{} segments are too few for fourth derivatives: give 6 at least", self.segments);
-            return Err(BuildError::at("segments", message));
+                format!("{} segments are too few for fourth derivatives: give 6 at least", self.elements);
+            return Err(BuildError::at("elements", message));
         }
-        if self.segments > MOST_SEGMENTS {
+        if self.elements > MOST_SEGMENTS {
             let message =
-                format!("{} segments are more than the {MOST_SEGMENTS} there may be", self.segments);
-            return Err(BuildError::at("segments", message));
+                format!("{} segments are more than the {MOST_SEGMENTS} there may be", self.elements);
+            return Err(BuildError::at("elements", message));
         }
         if let Eyelet::Guided(d) = self.through
             && !((dot(&d, &d) - 1.0).abs() < 1e-9)
         {
             return Err(BuildError::at("through", "the direction of a guided eyelet must be a unit vector"));
         }
-        let stiff = self.cable.bending > 0.0;
+        let stiff = self.cable.ei > 0.0;
         if self.lift_off == LiftOff::Tangent && !stiff {
-            let message = "a cable without bending stiffness can't be held tangent to the package: give `bending`, \
+            let message = "a cable without bending stiffness can't be held tangent to the package: give `ei`, \
                            or leave the lift-off free";
             return Err(BuildError::at("lift_off", message));
         }

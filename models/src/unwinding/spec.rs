@@ -22,33 +22,33 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum RuleSpec {
-    /// The tension at the eyelet is given, and the lift-off point moves as the balloon demands.
+    /// The tension at the eyelet is given; the lift-off point follows.
     Tension {
-        /// Tension without speed [N].
+        /// Tension at rest [N].
         #[serde(deserialize_with = "quantity::force")]
-        rest: f64,
-        /// Tension per square of the speed [kg/m].
+        tension: f64,
+        /// Tension per speed squared [kg/m].
         #[serde(default, deserialize_with = "quantity::mass_per_length")]
         per_speed2: f64,
-        /// Factor of `rest` that changes with time.
+        /// Factor of `tension` as a function of time.
         #[serde(default)]
         time: TimeFunction,
     },
-    /// The free length stays as it was at the start; the tension is an output.
+    /// The free length is constant; the tension is a result.
     Length {
-        /// Tension at the eyelet of the steady balloon to start from [N].
+        /// Tension at the eyelet of the initial steady balloon [N].
         #[serde(deserialize_with = "quantity::force")]
-        start: f64,
+        tension: f64,
     },
-    /// The cable sticks to the package and peels at a given energy.
-    Peel {
-        /// Energy per length: `EI |κ - κ_w|²/2` at the lift-off point, with the curvatures of the free and of the wound
-        /// cable [N].
+    /// The cable sticks to the package with a given adhesion energy.
+    Adhesion {
+        /// Adhesion energy per length [J/m]: `EI |κ - κ_w|²/2` at the lift-off point, with the curvatures of the free
+        /// and the wound cable.
         #[serde(deserialize_with = "quantity::force")]
-        energy: f64,
-        /// Tension at the eyelet of the steady balloon to start from [N].
+        adhesion_energy: f64,
+        /// Tension at the eyelet of the initial steady balloon [N].
         #[serde(deserialize_with = "quantity::force")]
-        start: f64,
+        tension: f64,
     },
 }
 
@@ -56,7 +56,7 @@ pub enum RuleSpec {
 const CHANNELS: [&str; 9] =
     ["tension", "length", "speed", "lift", "radius", "centre", "acceleration", "drag", "curvature"];
 
-fn segments() -> usize {
+fn elements() -> usize {
     40
 }
 /// Reads a time step, or `auto`, which is none.
@@ -89,59 +89,61 @@ fn chosen<'de, D: Deserializer<'de>>(d: D) -> Result<Option<f64>, D::Error> {
 /// Time step where the mesh allows it [s].
 const STEP: f64 = 2e-4;
 
-/// A cable that is drawn from a package through an eyelet, by finite differences: an inextensible cable, Newmark's method
-/// and a tension that comes from the constraint. It shares no equation with the elements of type `cable`.
+/// A cable that is drawn from a package through an eyelet, by finite differences: inextensible, with Newmark's
+/// method, and with the tension as a Lagrange multiplier. It shares no equation with the elements of type `cable`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UnwindingSpec {
-    /// Name, with which the columns of the history begin.
+    /// Name; the columns of the history begin with it.
     pub name: String,
     /// Mass per length [kg/m].
     #[serde(deserialize_with = "quantity::mass_per_length")]
     pub mass: f64,
-    /// Bending stiffness [N m^2]; left out, the cable is flexible.
+    /// Bending stiffness [N m²]. Default: 0.
     #[serde(default, deserialize_with = "quantity::bending_stiffness")]
-    pub bending: f64,
-    /// The package that it is wound on, with its diameter and the radius to which it may be bent.
+    pub ei: f64,
+    /// The package, with the diameter of the cable and its minimum bend radius.
     pub package: PackageSpec,
     /// Position of the eyelet [m].
     #[serde(default, deserialize_with = "quantity::vec3::length")]
     pub eyelet: V3<f64>,
-    /// Whether the eyelet holds the cable along the axis of the package; needs bending stiffness to matter.
+    /// Whether the eyelet holds the direction along the axis of the package. Has an effect only with bending
+    /// stiffness.
     #[serde(default)]
     pub guided: bool,
-    /// Whether the cable is tangent to the wound layer where it lifts off; needs bending stiffness.
+    /// Whether the cable is tangent to the wound layer at the lift-off point. Needs bending stiffness.
     #[serde(default)]
     pub tangent: bool,
-    /// Motion that draws the cable: its way along x is the length drawn through the eyelet.
+    /// Name of the motion that draws the cable: its x component is the length drawn through the eyelet.
     pub motion: String,
-    /// What finds the lift-off point.
+    /// Condition that determines the lift-off point.
     pub rule: RuleSpec,
-    /// Shape at the start, at rest: points from the eyelet to the lift-off point [m]. Left out, the steady balloon of the
-    /// speed and the tension at the start; without speed and weight, a straight line.
+    /// Initial shape, at rest: points from the eyelet to the lift-off point [m]. Default: the steady balloon of the
+    /// initial speed and tension; without speed and weight, a straight line.
     #[serde(default, deserialize_with = "quantity::points", skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<V3<f64>>,
-    /// Drag of the water; left out, none.
+    /// Drag of the water. Default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drag: Option<DragSpec>,
-    /// Coefficient of the water that the cable carries along across its axis; left out, 0.
+    /// Added-mass coefficient across the axis.
     #[serde(default, deserialize_with = "quantity::number")]
     pub added_mass: f64,
-    /// Whether the scene's gravity pulls at it, less the buoyancy of its volume.
+    /// Whether weight and buoyancy act.
     #[serde(default)]
     pub weight: bool,
-    /// Into how many segments the free cable is divided.
-    #[serde(default = "segments")]
-    pub segments: usize,
-    /// Time step [s]; `auto` or left out, 0.2 ms, or with bending stiffness and a given tension what the segments allow: two of them
-    /// over the speed of waves. A longer one ends the run there with an error, since the lift-off point would tremble.
+    /// Number of segments of the free cable.
+    #[serde(default = "elements")]
+    pub elements: usize,
+    /// Time step [s], or `auto`. Default: `auto`, which is 0.2 ms, or with bending stiffness and a given tension two
+    /// segments over the wave speed. A longer step ends the run with an error, since the lift-off point would
+    /// oscillate.
     #[serde(default, deserialize_with = "chosen", skip_serializing_if = "Option::is_none")]
-    pub step: Option<f64>,
-    /// Numerical damping of Newmark's method; left out, 0.05 with bending stiffness and 0 without.
+    pub h: Option<f64>,
+    /// Numerical damping of Newmark's method. Default: 0.05 with bending stiffness, 0 without.
     #[serde(default, deserialize_with = "quantity::optional::number")]
-    pub damping: Option<f64>,
+    pub numerical_damping: Option<f64>,
     /// Titles of its pictures, by what they show: `tension`, `length`, `speed`, `lift`, `radius`, `centre`,
-    /// `acceleration`, `drag`, `curvature`; left out, what it is.
+    /// `acceleration`, `drag`, `curvature`. Default: the quantity.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub titles: BTreeMap<String, String>,
 }
@@ -159,21 +161,21 @@ impl UnwindingSpec {
             _ => e,
         })?;
         let (axis, diameter) = (package.axis(), self.package.diameter);
-        let limit = self.package.bend_limit.filter(|r| *r > 0.0).map_or(f64::INFINITY, |r| 1.0 / r);
+        let limit = self.package.min_bend_radius.filter(|r| *r > 0.0).map_or(f64::INFINITY, |r| 1.0 / r);
         positive("mass", self.mass)?;
-        let cable = Cable { mass: self.mass, diameter, bending: self.bending, curvature_limit: limit };
+        let cable = Cable { mass: self.mass, diameter, ei: self.ei, curvature_limit: limit };
         let feed = around.motion("motion", &self.motion)?;
         let rule = match &self.rule {
-            RuleSpec::Tension { rest, per_speed2, time } => {
+            RuleSpec::Tension { tension, per_speed2, time } => {
                 time.check()?;
-                Rule::Tension(Pull { rest: *rest, time: time.clone(), per_speed2: *per_speed2 })
+                Rule::Tension(Pull { rest: *tension, time: time.clone(), per_speed2: *per_speed2 })
             }
             RuleSpec::Length { .. } => Rule::Length,
-            RuleSpec::Peel { energy, .. } => Rule::Peel(*energy),
+            RuleSpec::Adhesion { adhesion_energy, .. } => Rule::Peel(*adhesion_energy),
         };
         let towards =
             [0, 1, 2].map(|i| self.package.origin[i] + 0.5 * self.package.length * axis[i] - self.eyelet[i]);
-        let mut p = Unwinding::new(cable, Arc::new(package), feed, rule, self.segments);
+        let mut p = Unwinding::new(cable, Arc::new(package), feed, rule, self.elements);
         p.eyelet = self.eyelet;
         if self.guided {
             let sign = if dot(&towards, &axis) < 0.0 { -1.0 } else { 1.0 };
@@ -206,8 +208,12 @@ impl UnwindingSpec {
 
     /// The numbers of the time stepping.
     pub fn stepping(&self) -> Stepping {
-        let damping = self.damping.unwrap_or(if self.bending > 0.0 { 0.05 } else { 0.0 });
-        Stepping { damping, follows: self.step.is_none(), ..Stepping::new(self.step.unwrap_or(STEP)) }
+        let damping = self.numerical_damping.unwrap_or(if self.ei > 0.0 { 0.05 } else { 0.0 });
+        Stepping {
+            numerical_damping: damping,
+            follows: self.h.is_none(),
+            ..Stepping::new(self.h.unwrap_or(STEP))
+        }
     }
 
     /// Names of the channels with title, labels of the columns and their unit.
@@ -229,7 +235,7 @@ impl UnwindingSpec {
                 "1",
             ));
         }
-        if self.bending > 0.0 {
+        if self.ei > 0.0 {
             all.push(("curvature", "Curvature at the lift-off point", &["lift"], "1/m"));
         }
         all
@@ -251,7 +257,7 @@ impl ProcessSpec for UnwindingSpec {
         self.outputs().into_iter().map(channel).collect()
     }
     fn unknowns(&self) -> usize {
-        4 * self.segments - 3 + usize::from(!matches!(self.rule, RuleSpec::Length { .. }))
+        4 * self.elements - 3 + usize::from(!matches!(self.rule, RuleSpec::Length { .. }))
     }
     fn build(&self, around: &Surroundings) -> Result<Box<dyn Process>, BuildError> {
         if let Some(what) = self.titles.keys().find(|what| !CHANNELS.contains(&what.as_str())) {
@@ -264,7 +270,7 @@ impl ProcessSpec for UnwindingSpec {
         let start = if self.points.is_empty() {
             let tension = match (&self.rule, &problem.rule) {
                 (_, Rule::Tension(pull)) => pull.at(0.0, speed),
-                (RuleSpec::Length { start } | RuleSpec::Peel { start, .. }, _) => *start,
+                (RuleSpec::Length { tension } | RuleSpec::Adhesion { tension, .. }, _) => *tension,
                 (RuleSpec::Tension { .. }, _) => 0.0,
             };
             let balloon = problem.steady(speed, tension, 0.0).map_err(|e| match e {
@@ -277,7 +283,7 @@ impl ProcessSpec for UnwindingSpec {
         };
         let running = Running::new(problem, start, self.stepping(), around.duration)
             .map_err(|e| if e.field.as_deref() == Some("feed") { e.of("motion") } else { e })?;
-        Ok(Box::new(Unwound { running, drag: self.drag.is_some(), bending: self.bending > 0.0 }))
+        Ok(Box::new(Unwound { running, drag: self.drag.is_some(), bending: self.ei > 0.0 }))
     }
 }
 

@@ -30,7 +30,7 @@ impl Unwinding {
                 format!("{peeled} m can't have been peeled: only {} m are wound", self.path.wound());
             return Err(BuildError::at("peeled", message));
         };
-        let n = self.segments;
+        let n = self.elements;
         let (x, ell) = equal(points, n)?;
         let total = n as f64 * ell;
         for (what, k, place) in [("eyelet", 0, self.eyelet), ("lift-off point", n, now.lay.x)] {
@@ -89,8 +89,8 @@ impl Unwinding {
         let Some(now) = self.now(0.0, peeled) else {
             return Err(BuildError::at("peeled", format!("{peeled} m can't have been peeled")));
         };
-        let (x, ell) = equal(points, self.segments)?;
-        let n = self.segments;
+        let (x, ell) = equal(points, self.elements)?;
+        let n = self.elements;
         let mut y = State {
             t: 0.0,
             v: x.iter().map(velocity).collect(),
@@ -108,7 +108,7 @@ impl Unwinding {
     /// Puts the ends where they are held, and the velocities where segments keep their lengths.
     fn consistent(&self, y: &mut State, now: &Now) -> Result<(), BuildError> {
         now.hold(y);
-        let n = self.segments;
+        let n = self.elements;
         // the least change of the velocities: v += Gᵀμ, G Gᵀ μ = -g'; rates of the free length are left to the start of
         // the motion, where the lift-off point peels as fast as the cable is drawn
         let d: Vec<V3<f64>> = (0..n).map(|j| minus(&y.x[j + 1], &y.x[j])).collect();

@@ -159,7 +159,7 @@ impl Unwinding {
 
     /// Turns the cable at the lift-off point from where a hinge leaves it to where it is held.
     fn turn(&self, from: Member, now: Now, spin: V3<f64>, tension: f64) -> Result<Member, SteadyError> {
-        let n = self.segments;
+        let n = self.elements;
         let d = minus(&from.y.x[n], &from.y.x[n - 1]);
         let begin = d.map(|x| x / length(&d));
         let angle = dot(&begin, &now.clamp).clamp(-1.0, 1.0).acos();
@@ -255,7 +255,7 @@ impl Frame<'_> {
 
     /// The member with a tension, looked for from a straight line.
     fn straight(&self, tension: f64) -> Option<Member> {
-        let (n, begin) = (self.problem.segments, self.problem.eyelet);
+        let (n, begin) = (self.problem.elements, self.problem.eyelet);
         let way = minus(&self.now.lay.x, &begin);
         let y = State {
             t: 0.0,
@@ -323,7 +323,7 @@ impl Frame<'_> {
 
     /// Newton's method: with the length given, or with the tension at the eyelet.
     fn settle(&self, mut y: State, tension: Option<f64>) -> Option<Member> {
-        let (problem, n) = (self.problem, self.problem.segments);
+        let (problem, n) = (self.problem, self.problem.elements);
         let turning = turning(&self.spin);
         let rates = Rates { x: 1.0, v: turning, a: product(&turning, &turning) };
         let column = Column { length: [1.0, 0.0, 0.0], ..Column::default() };

@@ -22,7 +22,7 @@ fn matrix(k: usize, scale: f64) -> M3 {
 }
 
 fn problem(through: Eyelet, lift_off: LiftOff, rule: Rule) -> Unwinding {
-    let cable = Cable { mass: 0.9, diameter: 0.1, bending: 0.02, curvature_limit: 1e3 };
+    let cable = Cable { mass: 0.9, diameter: 0.1, ei: 0.02, curvature_limit: 1e3 };
     let ring = Ring { radius: 0.6, height: 1.0, climb: 0.1, inner: true };
     let mut p = Unwinding::new(cable, Arc::new(ring), Arc::new(Rest), rule, 8);
     let mut drag = Drag::new(3.0, 1e-2, NormalLaw::ChooCasarella, TangentialLaw::Quadratic(0.4)).unwrap();
@@ -77,7 +77,7 @@ fn the_tangent_is_that_of_differences() {
         problem(guided, LiftOff::Tangent, Rule::Peel(0.3)),
     ];
     for p in &cases {
-        let n = p.segments;
+        let n = p.elements;
         let mut now = p.now(0.0, 0.3).unwrap();
         now.speed = [1.1, 0.6];
         let y = state(n, &now);
@@ -170,7 +170,7 @@ fn eliminate(a: &mut [Vec<C>], b: &mut [C]) -> bool {
 
 /// Stiffness, gyroscopic and mass matrices across the straight cable, `[K, C, M]`.
 fn matrices(p: &Unwinding, length: f64, tension: f64, speed: f64) -> [Vec<Vec<f64>>; 3] {
-    let n = p.segments;
+    let n = p.elements;
     let mut now = p.now(0.0, 0.0).unwrap();
     now.speed = [speed, 0.0];
     let mut y = State {
@@ -195,7 +195,7 @@ fn matrices(p: &Unwinding, length: f64, tension: f64, speed: f64) -> [Vec<Vec<f6
 }
 
 fn string(segments: usize, bending: f64) -> Unwinding {
-    let cable = Cable { mass: 1e-3, diameter: 0.9e-3, bending, curvature_limit: 1e3 };
+    let cable = Cable { mass: 1e-3, diameter: 0.9e-3, ei: bending, curvature_limit: 1e3 };
     let guide = super::Guide { x: [0.0, 0.0, 0.25], direction: [0.0, 0.0, 1.0] };
     Unwinding::new(cable, Arc::new(guide), Arc::new(Rest), Rule::Length, segments)
 }

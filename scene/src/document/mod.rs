@@ -7,6 +7,8 @@
 //! 3. `deserialize` hands parts of the tree to serde, and turns whatever goes wrong into a [`Fault`];
 //! 4. `write` makes TOML of the tree again.
 //!
+//! [`migrate`](migrate()) rewrites the text of a scene of an older version; `moved` knows its names.
+//!
 //! [`Document`] leads through all of them:
 //!
 //! ```
@@ -26,6 +28,7 @@
 mod deserialize;
 mod fault;
 mod json;
+mod migrate;
 mod moved;
 mod parameters;
 mod read;
@@ -39,6 +42,7 @@ mod write;
 
 pub use fault::Fault;
 pub use fault::{did_you_mean, quoted};
+pub use migrate::{Migrated, Rewrite, migrate};
 pub use parameters::Parameter;
 pub use read::read_text;
 pub use read::{Document, Format};

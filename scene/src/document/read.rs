@@ -5,7 +5,7 @@ use super::fault::{Fault, did_you_mean, expected, quoted};
 use super::parameters::{self, Parameter};
 use super::source::{Sources, Span};
 use super::value::{DEEPEST, Key, Kind, Table, Value};
-use super::{json, toml, write};
+use super::{json, moved, toml, write};
 use serde::de::DeserializeOwned;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -167,6 +167,9 @@ impl Document {
     pub fn take_list<T: DeserializeOwned>(&mut self, name: &str) -> Result<Vec<(T, Span)>, Fault> {
         self.ask(name);
         let Some(value) = self.get(name) else { return Ok(Vec::new()) };
+        if let Some(found) = moved::found(name, value, &moved::Reach { parameters: None }).first() {
+            return Err(self.moved(found));
+        }
         let Kind::Array(list) = &value.kind else {
             let message = format!("{} is a list, found {}", quoted(name), value.describe());
             return Err(self
@@ -179,6 +182,16 @@ impl Document {
             Ok((deserialize::read(value, Form::Tagged, &path, &self.sources)?, value.span))
         };
         list.iter().enumerate().map(part).collect()
+    }
+
+    /// What a name of an older version is now, and the command that rewrites the scene.
+    fn moved(&self, found: &moved::Found<'_>) -> Fault {
+        let command = format!("`ropewalk migrate {}` rewrites the scene", self.sources.name(0));
+        let fault = self.fault(found.span, &found.message).with_path(&found.path);
+        match found.help {
+            Some(help) => fault.with_help(help),
+            None => fault.with_help(command),
+        }
     }
 
     /// Refuses what stands at the top level and was never asked for.

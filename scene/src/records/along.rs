@@ -15,15 +15,15 @@ use std::sync::Arc;
 pub struct AlongSpec {
     /// The cable.
     pub of: String,
-    /// What is recorded: tension [N], strain, curvature [1/m] or moment [N m].
+    /// Recorded quantity: tension [N], strain, curvature [1/m] or moment [N m].
     pub what: Quantity,
     /// Where: `start`, `end`, an unstretched arc length from the start as it is now [m], or a share of the length like
     /// `50 %`.
     pub at: Station,
-    /// Name in results; left out, cable, place and quantity.
+    /// Name in results. Default: cable, place and quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

@@ -8,21 +8,21 @@ use ropewalk_core::{BuildError, Column, Marker, Model, Record, Sample};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A driving constraint against the motion that it imposes: columns `ship.imposed_x` and `ship.actual_x` in m, the same
-/// of velocities, `ship.imposed_vx` and `ship.actual_vx` in m/s, and `ship.difference`, the distance between where the
+/// A driving constraint compared with its motion: columns `ship.imposed_x` and `ship.actual_x` in m, the same of
+/// velocities, `ship.imposed_vx` and `ship.actual_vx` in m/s, and `ship.difference`, the distance between where the
 /// marker is and where it should be, in m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrivingCheckSpec {
     /// Name of the driving constraint.
     pub of: String,
-    /// The axes of space that are recorded; left out, all three.
+    /// Recorded axes of space. Default: all three.
     #[serde(default = "all_axes")]
     pub axes: Vec<SpaceAxis>,
-    /// Name in results; left out, that of the constraint and `.check`.
+    /// Name in results. Default: that of the constraint and `.check`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

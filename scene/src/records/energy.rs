@@ -9,15 +9,15 @@ use serde::{Deserialize, Serialize};
 
 /// Balance of energy: columns `energy.kinetic`, `.potential`, `.supplied`, `.dissipated` and `.imbalance` in J.
 ///
-/// Work is counted from the start of the run. The imbalance is what the integration gained (positive) or, by its
-/// numerical damping, lost (negative).
+/// Work is counted from the start of the run. The imbalance is the energy gained by the integration (positive) or
+/// lost by its numerical damping (negative).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EnergySpec {
-    /// Name in results; left out, `energy`.
+    /// Name in results. Default: `energy`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

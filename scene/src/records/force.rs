@@ -3,19 +3,19 @@
 use super::{listed, named};
 use crate::register_spec;
 use crate::spec::RecordSpec;
-use ropewalk_core::{BuildError, Column, Model, Record, Sample};
+use ropewalk_core::{BuildError, Column, Model, Record, Sample, Term};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a force has to show. Of a contact: columns `drum.fx`, `.fy` and `.fz`, the force of the shape on all that touches
-/// it in N, `.normal`, the sum of what presses in N, `.depth`, the deepest point in m, and `.points`, how many touch. Of a
-/// spring: `mooring.tension` in N.
+/// Output of a force. Of a contact: columns `drum.fx`, `.fy` and `.fz`, the force of the shape on all that touches it
+/// in N, `.normal`, the sum of what presses in N, `.depth`, the deepest point in m, and `.points`, how many touch. Of
+/// a spring: `mooring.tension` in N.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForceRecordSpec {
     /// Name of the force.
     pub of: String,
-    /// Name in results; left out, that of the force.
+    /// Name in results. Default: that of the force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
 }
@@ -40,7 +40,9 @@ impl Record for Force {
         self.columns.clone()
     }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
-        s.model.terms()[self.term].observe(&s.at, out);
+        if let Some(term) = s.model.terms()[self.term].shows() {
+            term.observe(&s.at, out);
+        }
     }
 }
 
@@ -48,7 +50,8 @@ impl Record for Force {
 impl RecordSpec for ForceRecordSpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
         let of = self.of.trim();
-        let shown = || model.terms().iter().enumerate().filter(|(_, t)| !t.columns().is_empty());
+        let columns = |t: &dyn Term| t.shows().map(|t| t.columns()).unwrap_or_default();
+        let shown = || model.terms().iter().enumerate().filter(|(_, t)| !columns(t.as_ref()).is_empty());
         let mut found = shown().filter(|(_, t)| t.label() == of);
         let Some((term, t)) = found.next() else {
             let labels: Vec<String> = shown().map(|(_, t)| t.label()).collect();
@@ -64,8 +67,10 @@ impl RecordSpec for ForceRecordSpec {
             ));
         }
         let name = named(&self.name, || of.to_string());
-        let columns =
-            t.columns().into_iter().map(|c| Column::new(format!("{name}.{}", c.name), c.unit)).collect();
+        let columns = columns(t.as_ref())
+            .into_iter()
+            .map(|c| Column::new(format!("{name}.{}", c.name), c.unit))
+            .collect();
         Ok(Box::new(Force { term, columns, name, of: of.to_string() }))
     }
 }

@@ -9,16 +9,16 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Unstretched length of a cable, with what winches have fed out and reeled in: column `hose.length` in m.
+/// Unstretched length of a cable, including the payout of winches: column `hose.length` in m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LengthSpec {
     /// The cable.
     pub of: String,
-    /// Name in results; left out, that of the cable and `.length`.
+    /// Name in results. Default: that of the cable and `.length`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

@@ -5,29 +5,27 @@
 //! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
 
 mod along;
-mod coefficient;
 mod driving;
 mod energy;
-mod feeding;
 mod force;
 mod length;
 mod momentum;
 mod motion;
+mod payout;
 mod place;
 mod reaction;
 mod released;
 mod turning;
 
 pub use along::AlongSpec;
-pub use coefficient::DragCoefficientSpec;
 pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
-pub use feeding::FeedingSpec;
 pub use force::ForceRecordSpec;
 pub use length::LengthSpec;
 pub use momentum::MomentumSpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
-pub use place::{SpaceAxis, Station as RecordPlace};
+pub use payout::PayoutSpec;
+pub use place::{SpaceAxis, Station as RecordPlace, off, part};
 pub use reaction::{ReactionPart, ReactionSpec};
 pub use released::ReleasedSpec;
 pub use turning::{AngularVelocitySpec, OrientationSpec, SeenFrom};
@@ -39,7 +37,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>, none: &str) -> String {
 }
 
 /// The name that a record was given, or the one that it has otherwise.
-fn named(given: &Option<String>, otherwise: impl FnOnce() -> String) -> String {
+pub fn named(given: &Option<String>, otherwise: impl FnOnce() -> String) -> String {
     given.as_ref().map(|n| n.trim().to_string()).filter(|n| !n.is_empty()).unwrap_or_else(otherwise)
 }
 

@@ -11,14 +11,14 @@ use serde::{Deserialize, Serialize};
 /// Momentum of the whole scene: columns `momentum.px`, `.py`, `.pz` in kg m/s, `.lx`, `.ly`, `.lz`, the angular momentum
 /// about the origin, in kg m²/s, and `.x`, `.y`, `.z`, the centre of mass, in m.
 ///
-/// Water that is carried along as added mass counts.
+/// Added mass is included.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MomentumSpec {
-    /// Name in results; left out, `momentum`.
+    /// Name in results. Default: `momentum`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

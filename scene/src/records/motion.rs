@@ -12,15 +12,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PositionSpec {
-    /// The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
+    /// The point: a marker like `hose.end`, or an arc length like `hose@12.5m`.
     pub of: String,
-    /// The axes of space that are recorded; left out, all three.
+    /// Recorded axes of space. Default: all three.
     #[serde(default = "all_axes")]
     pub axes: Vec<SpaceAxis>,
-    /// Name in results; left out, that of the point.
+    /// Name in results. Default: that of the point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }
@@ -29,28 +29,29 @@ pub struct PositionSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VelocitySpec {
-    /// The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
+    /// The point: a marker like `hose.end`, or an arc length like `hose@12.5m`.
     pub of: String,
-    /// Name in results; left out, that of the point and `.velocity`.
+    /// Name in results. Default: that of the point and `.velocity`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }
 
 /// Acceleration of a point: columns `hose.end.ax`, `.ay` and `.az` in m/s².
 ///
-/// It is the one that fits positions and velocities by the equations of motion, less noisy than the integrator's own.
+/// It satisfies the equations of motion at the given positions and velocities, and is less noisy than the
+/// integrator's own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AccelerationSpec {
-    /// The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
+    /// The point: a marker like `hose.end`, or an arc length like `hose@12.5m`.
     pub of: String,
-    /// Name in results; left out, that of the point and `.acceleration`.
+    /// Name in results. Default: that of the point and `.acceleration`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

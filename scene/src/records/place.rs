@@ -118,7 +118,10 @@ pub(super) fn check_axes(axes: &[SpaceAxis]) -> Result<(), BuildError> {
 }
 
 /// The part of this name.
-pub(super) fn part(model: &Model, name: &str) -> Result<Arc<dyn Part>, BuildError> {
+///
+/// # Errors
+/// There is none.
+pub fn part(model: &Model, name: &str) -> Result<Arc<dyn Part>, BuildError> {
     model.part(name).cloned().ok_or_else(|| {
         let parts = listed(model.parts().iter().map(|p| p.name()), "none");
         BuildError::at("of", format!("there is no part `{name}`; the parts are {parts}"))
@@ -126,7 +129,7 @@ pub(super) fn part(model: &Model, name: &str) -> Result<Arc<dyn Part>, BuildErro
 }
 
 /// An arc length that a part doesn't have.
-pub(super) fn off(part: &dyn Part, field: &'static str, s: f64) -> BuildError {
+pub fn off(part: &dyn Part, field: &'static str, s: f64) -> BuildError {
     let (name, length) = (part.name(), part.length());
     BuildError::at(field, format!("`{name}` has no point at arc length {s} m: it goes from 0 to {length} m"))
 }

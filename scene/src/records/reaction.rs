@@ -33,13 +33,13 @@ pub enum ReactionPart {
 pub struct ReactionSpec {
     /// Name of the constraint.
     pub of: String,
-    /// Only some of it: `force`, `magnitude` or `moment`.
+    /// What is recorded: `all`, `force`, `magnitude` or `moment`.
     #[serde(default)]
     pub what: ReactionPart,
-    /// Name in results; left out, that of the constraint and `.reaction`.
+    /// Name in results. Default: that of the constraint and `.reaction`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

@@ -2,15 +2,15 @@ use super::*;
 use crate::builder::Builder;
 use crate::spec::RecordSpec;
 use ropewalk_core::{
-    Assembly, At, Audit, BuildError, Jet, Joint, Marker, Model, NodeId, NodeKind, Part, Per, Place, Quantity,
-    Relation, RowKind, Sample, Spot, Term, V3,
+    Assembly, At, Audit, BuildError, Jet, Line, Marker, Model, NodeId, NodeKind, Part, Per, Place, Quantity,
+    Related, Relation, RowKind, Sample, Slender, Spot, Term, V3,
 };
 use std::sync::Arc;
 
 /// A straight line between two points.
-struct Line([NodeId; 2]);
+struct Straight([NodeId; 2]);
 
-impl Part for Line {
+impl Part for Straight {
     fn name(&self) -> &str {
         "line"
     }
@@ -30,14 +30,29 @@ impl Part for Line {
         let mix = |x: &[f64]| std::array::from_fn(|i| x[i] + 0.5 * s * (x[3 + i] - x[i]));
         (0.0..=2.0).contains(&s).then(|| (mix(at.q), mix(at.v)))
     }
-    fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {
-        ((0.0..=2.0).contains(&s) && what == Quantity::Tension).then(|| s + at.q[3])
-    }
     fn length(&self) -> f64 {
         2.0
     }
     fn place_of(&self, _: NodeId) -> Option<String> {
         None
+    }
+    fn line(&self) -> Option<&dyn Line> {
+        Some(self)
+    }
+}
+
+impl Line for Straight {
+    fn slender(&self) -> Slender {
+        Slender { element: 2.0, mass: 0.0, ea: 0.0, ei: 0.0 }
+    }
+    fn mesh(&self) -> &[f64] {
+        &[]
+    }
+    fn length_now(&self, _: &At<'_>) -> f64 {
+        2.0
+    }
+    fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64> {
+        ((0.0..=2.0).contains(&s) && what == Quantity::Tension).then(|| s + at.q[3])
     }
 }
 
@@ -69,10 +84,10 @@ fn model() -> Model {
         b.node(NodeKind::Point, &[0.0; 3], &[0.0; 3]).unwrap(),
         b.node(NodeKind::Point, &[2.0, 0.0, 0.0], &[0.0, 4.0, 0.0]).unwrap(),
     ];
-    b.part(Arc::new(Line(ends))).unwrap();
+    b.part(Arc::new(Straight(ends))).unwrap();
     b.term(Box::new(Nothing));
     let held = vec![Marker::ground([2.0, 0.0, 0.0]), Marker::node(ends[1])];
-    b.constraint(Joint::new("rail", Rail, held)).unwrap();
+    b.constraint(Related::new("rail", Rail, held)).unwrap();
     b.finish().unwrap()
 }
 

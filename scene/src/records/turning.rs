@@ -26,22 +26,22 @@ pub enum SeenFrom {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AngularVelocitySpec {
-    /// The body, or any point on it, such as `hose.link3`.
+    /// The body, or a marker on it, such as `hose.link3`.
     pub of: String,
-    /// The body that it is relative to; left out, space. The relative angular velocity of a joint's two bodies is the
-    /// speed of the joint.
+    /// The other body. Default: space. The relative angular velocity of a joint's two bodies is the speed of the
+    /// joint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<String>,
-    /// The axes that it is given in: of `space`, of the `body`, or of the body `to` which it is relative.
+    /// Axes of the components: of `space`, of the `body`, or of the other body, `to`.
     #[serde(default)]
     pub frame: SeenFrom,
-    /// The components that are recorded; left out, all three.
+    /// Recorded components. Default: all three.
     #[serde(default = "all_axes")]
     pub axes: Vec<SpaceAxis>,
-    /// Name in results; left out, that of the body and `.angular_velocity`.
+    /// Name in results. Default: that of the body and `.angular_velocity`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }
@@ -51,15 +51,15 @@ pub struct AngularVelocitySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrientationSpec {
-    /// The body, or any point on it.
+    /// The body, or a marker on it.
     pub of: String,
-    /// Whether angles are in degrees.
+    /// Whether the angles are in degrees.
     #[serde(default)]
     pub degrees: bool,
-    /// Name in results; left out, that of the body and `.orientation`.
+    /// Name in results. Default: that of the body and `.orientation`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Title of its pictures; left out, what it is.
+    /// Title of its plots. Default: the quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }

@@ -6,7 +6,7 @@ use super::overlay::Measured;
 use super::plan::Plan;
 use super::read::AtlasFile;
 use super::spec::{Figure, Panel};
-use ropewalk_report::{LinePlot, Mark, Panels, Series, push_cell, push_number};
+use ropewalk_report::{Csv, LinePlot, Mark, Panels, Series};
 
 impl AtlasFile {
     /// The panels of a figure, each with its path in the file.
@@ -87,24 +87,14 @@ pub(super) fn csv(picture: &Panels) -> String {
             std::iter::once((b.x_label.as_str(), b.x.as_slice())).chain(curves)
         })
         .collect();
-    let mut text = String::new();
-    for (k, (name, _)) in columns.iter().enumerate() {
-        text.extend((k > 0).then_some(','));
-        push_cell(&mut text, name);
-    }
-    text.push('\n');
+    let mut csv = Csv::new(columns.iter().map(|(name, _)| name));
     let rows = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
     for row in 0..rows {
-        for (k, (_, values)) in columns.iter().enumerate() {
-            text.extend((k > 0).then_some(','));
-            // curves of other lengths end earlier
-            if let Some(value) = values.get(row) {
-                push_number(&mut text, *value);
-            }
-        }
-        text.push('\n');
+        // curves of other lengths end earlier
+        columns.iter().for_each(|(_, values)| _ = csv.number_or_none(values.get(row).copied()));
+        csv.end();
     }
-    text
+    csv.text()
 }
 
 /// `z [m]: end, start 40 s`

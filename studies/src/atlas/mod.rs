@@ -23,12 +23,13 @@ pub use overlay::Laid;
 pub use read::AtlasFile;
 
 use crate::error::Error;
-use crate::study::{Runner, Study, StudyFolder};
+use crate::run::Status;
+use crate::study::{Runner, Study, StudyFolder, lock};
 use overlay::Measured;
 use page::Outcome;
 use plan::Plan;
 use ropewalk_models::Bundled;
-use ropewalk_report::{OutputError, ProgressMode, RunFolder, Stopwatch, write_atomic};
+use ropewalk_report::{OutputError, ProgressMode, RunFolder, Sheet, Stopwatch, Watch, write_atomic};
 use ropewalk_scene::Fault;
 use serde::{Deserialize, Serialize};
 use spec::{Entry, Overlay};
@@ -36,7 +37,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// What may be chosen about an atlas beside its file.
+/// Options of [`atlas`].
 pub struct AtlasOptions {
     /// Names of entries, such as `4.43` and `table-4.11`; all without it.
     pub only: Vec<String>,
@@ -52,6 +53,8 @@ pub struct AtlasOptions {
     pub overlay: Vec<Laid>,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 /// How an atlas ended.
@@ -112,19 +115,19 @@ pub fn atlas(file: &AtlasFile, options: &AtlasOptions, scenes: &[Bundled]) -> Re
     let folder = StudyFolder::open(options.out.clone(), options.fresh, &manifest)?;
 
     let needed = plan.needed(file);
-    let runner = Runner::new(needed.len(), options.progress);
-    let state = Mutex::new((vec![None; plan.cases.len()], 0));
+    let runner = Runner::new(needed.len(), options.progress, options.watch);
+    let state = Mutex::new((vec![None::<Status>; plan.cases.len()], 0));
     runner.for_each(needed.len(), options.jobs, |i| {
         let k = needed[i];
         let case = &plan.cases[k];
         let ran = runner.run(Ok(&case.file), &case.title, &RunFolder::earlier(folder.run(&case.name)));
-        let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.0[k] = Some(ran.summary.status.clone());
+        let mut state = lock(&state);
+        state.0[k] = Some(ran.summary.status);
         state.1 += usize::from(ran.earlier);
         Ok(())
     })?;
     let (status, earlier) = state.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let complete = |case: usize| matches!(status[case].as_deref(), Some("finished" | "stopped"));
+    let complete = |case: usize| status[case].is_some_and(Status::is_complete);
     let waits = |k: usize| {
         let all = plan.uses[k].iter().filter(|u| !complete(u.case)).count();
         if file.atlas.entries[k].needs_results() { all } else { 0 }
@@ -148,7 +151,7 @@ pub fn atlas(file: &AtlasFile, options: &AtlasOptions, scenes: &[Bundled]) -> Re
     runner.progress.finish();
 
     let runs = (needed.len(), needed.iter().filter(|k| complete(**k)).count());
-    let failed = status.iter().flatten().filter(|s| matches!(s.as_str(), "failed" | "refused")).count();
+    let failed = status.iter().flatten().filter(|s| s.is_failure()).count();
     let interrupted = runs.1 + failed < runs.0;
     let count = |of: fn(&Outcome) -> bool| outcomes.iter().filter(|o| of(o)).count();
     let figures = count(|o| matches!(o, Outcome::Figure(_)));
@@ -156,17 +159,15 @@ pub fn atlas(file: &AtlasFile, options: &AtlasOptions, scenes: &[Bundled]) -> Re
     let others = count(|o| matches!(o, Outcome::NotComputed));
     let missing = count(|o| matches!(o, Outcome::Missing(_)));
     let broken = missing - chosen.iter().filter(|k| waits(**k) > 0).count();
-    let report = format!(
-        "{}\n  figures     {figures}\n  tables      {tables}\n  others      {others}, not computed\n  \
-         missing     {missing}\n  runs        {} of {}, {earlier} of them from an earlier call\n  \
-         time        {:.0} s\n  results     {}\n",
-        file.atlas.title,
-        runs.1,
-        runs.0,
-        stopwatch.elapsed().wall_s,
-        index.display()
-    );
-    Ok(AtlasOutcome { interrupted, failed, broken, runs, report })
+    let mut sheet = Sheet::new(&file.atlas.title).with_labels(11);
+    sheet.entry("figures", figures);
+    sheet.entry("tables", tables);
+    sheet.entry("others", format!("{others}, not computed"));
+    sheet.entry("missing", missing);
+    sheet.entry("runs", format!("{} of {}, {earlier} of them from an earlier call", runs.1, runs.0));
+    sheet.entry("time", format!("{:.0} s", stopwatch.elapsed().wall_s));
+    sheet.entry("results", index.display());
+    Ok(AtlasOutcome { interrupted, failed, broken, runs, report: sheet.to_string() })
 }
 
 /// Makes entries of what the runs left.

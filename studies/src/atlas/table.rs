@@ -6,7 +6,7 @@ use super::known;
 use super::number::printed;
 use super::plan::{CASE, Plan, Use, inline, printed as printed_value};
 use super::spec::{Cell, Sheet};
-use ropewalk_report::{number, push_cell, push_number};
+use ropewalk_report::{Csv, number};
 use ropewalk_scene::Value;
 
 /// A cell.
@@ -197,34 +197,23 @@ impl Printed {
 
     /// Numbers with all their digits; the last column names what is unsteady, if anything is.
     pub(super) fn csv(&self) -> String {
-        let mut text = String::new();
         let marked = self.is_unsteady();
-        let headings = self.headings.iter().cloned().chain(marked.then(|| "unsteady".to_string()));
-        for (k, heading) in headings.enumerate() {
-            text.extend((k > 0).then_some(','));
-            push_cell(&mut text, &heading);
-        }
-        text.push('\n');
+        let mut csv = Csv::new(self.headings.iter().map(String::as_str).chain(marked.then_some("unsteady")));
         for row in &self.rows {
-            for (k, item) in row.iter().enumerate() {
-                text.extend((k > 0).then_some(','));
+            for item in row {
                 match item {
-                    Item::Text(t) => push_cell(&mut text, t),
-                    Item::Number(x, _) if x.is_nan() => {}
-                    Item::Number(x, _) => push_number(&mut text, *x),
-                }
+                    Item::Text(t) => csv.cell(t),
+                    Item::Number(x, _) => csv.number_or_none((!x.is_nan()).then_some(*x)),
+                };
             }
             if marked {
-                let swings = |(heading, item): (&String, &Item)| {
-                    matches!(item, Item::Number(_, true)).then(|| heading.clone())
-                };
-                let which: Vec<String> = self.headings.iter().zip(row).filter_map(swings).collect();
-                text.push(',');
-                push_cell(&mut text, &which.join("; "));
+                let unsteady =
+                    self.headings.iter().zip(row).filter(|(_, i)| matches!(i, Item::Number(_, true)));
+                csv.cell(unsteady.map(|(heading, _)| heading.as_str()).collect::<Vec<_>>().join("; "));
             }
-            text.push('\n');
+            csv.end();
         }
-        text
+        csv.text()
     }
 
     /// The table alone, to be put on a page.

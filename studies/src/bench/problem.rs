@@ -67,8 +67,8 @@ impl Pendulum {
         let damping = if self.damped { 1e-3 } else { 0.0 };
         Section {
             diameter: if self.water { 0.02 } else { 0.0 },
-            axial_damping: damping,
-            bending_damping: damping,
+            axial_retardation_time: damping,
+            bending_retardation_time: damping,
             ..Section::new(0.5, 5000.0, 0.1)
         }
     }

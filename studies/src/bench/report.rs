@@ -1,9 +1,8 @@
 //! What was measured, as tables for people, CSV, JSON and a picture. All times are µs per element.
 
 use ropewalk_elements::cable::CableModel;
-use ropewalk_report::{LinePlot, Mark, Series};
+use ropewalk_report::{Csv, LinePlot, Mark, Series, Sheet};
 use serde::Serialize;
-use std::fmt::Write;
 
 /// Everything that `ropewalk bench` measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -123,52 +122,42 @@ fn counts(costs: &[Cost]) -> Rows {
 
 /// The table of a pendulum in air or in water: a row for each phase, a column for each mesh.
 pub fn costs(title: &str, costs: &[Cost]) -> String {
-    let mut out = format!("{title}: µs per element\n");
-    let rows = [times(costs), counts(costs)].concat();
-    let wide = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
-    let header: String = costs.iter().map(|c| format!("{:>9}", c.elements)).collect();
-    _ = writeln!(out, "  {:<wide$}{header}", "elements");
-    for (label, values) in rows {
-        let cells: String = values.iter().map(|x| format!("{x:9.3}")).collect();
-        _ = writeln!(out, "  {label:<wide$}{cells}");
-    }
+    let mut sheet = Sheet::new(format!("{title}: µs per element"));
+    let headings: Vec<String> =
+        std::iter::once("elements".to_string()).chain(costs.iter().map(|c| c.elements.to_string())).collect();
+    let cells = |(label, values): (String, Vec<f64>)| {
+        std::iter::once(label).chain(values.iter().map(|x| format!("{x:.3}"))).collect()
+    };
+    let rows: Vec<Vec<String>> = [times(costs), counts(costs)].concat().into_iter().map(cells).collect();
+    sheet.table(&headings, &rows);
     let fine = costs.iter().filter(|c| c.elements >= 32).map(|c| c.iteration);
     let (low, high) = fine.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
     if high > low {
-        _ = writeln!(
-            out,
-            "  from 32 elements on, the dearest iteration is {:.2} times the cheapest",
-            high / low
-        );
+        let ratio = high / low;
+        sheet.line(format!("  from 32 elements on, the dearest iteration is {ratio:.2} times the cheapest"));
     }
     let fallbacks: u64 = costs.iter().map(|c| c.fallbacks).sum();
     if fallbacks > 0 {
-        _ = writeln!(out, "  note: LU with pivoting had to step in {fallbacks} times");
+        sheet.line(format!("  note: LU with pivoting had to step in {fallbacks} times"));
     }
-    out
+    sheet.to_string()
 }
 
 /// The table of the stiffness models.
 pub fn variants(variants: &[VariantCost]) -> String {
     let Some(first) = variants.first() else { return String::new() };
-    let mut out = format!(
-        "stiffness models, {} elements: µs per element, and relative to the default\n",
+    let mut sheet = Sheet::new(format!(
+        "stiffness models, {} elements: µs per element, and relative to the default",
         first.elements
-    );
-    let wide = variants.iter().map(|v| v.label.chars().count()).max().unwrap_or(0);
-    _ = writeln!(out, "  {:<wide$}{:>16}{:>18}{:>18}", "", "force", "force + tangent", "full iteration");
-    for v in variants {
-        let cell = |x: f64, of: f64| format!("{x:9.3} {:5.2}x", x / of);
-        _ = writeln!(
-            out,
-            "  {:<wide$}{:>16}{:>18}{:>18}",
-            v.label,
-            cell(v.force, first.force),
-            cell(v.tangent, first.tangent),
-            cell(v.iteration, first.iteration)
-        );
-    }
-    out
+    ));
+    let cell = |x: f64, of: f64| format!("{x:.3} {:5.2}x", x / of);
+    let row = |v: &VariantCost| {
+        let cells = [(v.force, first.force), (v.tangent, first.tangent), (v.iteration, first.iteration)];
+        std::iter::once(v.label.clone()).chain(cells.map(|(x, of)| cell(x, of))).collect()
+    };
+    let rows: Vec<Vec<String>> = variants.iter().map(row).collect();
+    sheet.table(&["", "force", "force + tangent", "full iteration"], &rows);
+    sheet.to_string()
 }
 
 impl Memory {
@@ -186,20 +175,21 @@ impl Memory {
 impl Report {
     /// One number a row: what, which mesh, how much.
     pub fn csv(&self) -> String {
-        let mut out = String::from("what,elements,quantity,value [us per element]\n");
+        let mut csv = Csv::new(["what", "elements", "quantity", "value [us per element]"]);
+        let mut row = |what: &str, elements: usize, quantity: &str, x: f64| {
+            csv.cell(what).cell(elements.to_string()).cell(quantity).number(x).end();
+        };
         for (what, costs) in [("dry", &self.dry), ("water", &self.water), ("links", &self.links)] {
             for (label, values) in times(costs) {
-                for (c, x) in costs.iter().zip(values) {
-                    _ = writeln!(out, "{what},{},{},{x}", c.elements, quoted(label.trim()));
-                }
+                costs.iter().zip(values).for_each(|(c, x)| row(what, c.elements, label.trim(), x));
             }
         }
         for v in &self.variants {
             for (quantity, x) in [("force", v.force), ("tangent", v.tangent), ("iteration", v.iteration)] {
-                _ = writeln!(out, "{},{},{quantity},{x}", quoted(&v.label), v.elements);
+                row(&v.label, v.elements, quantity, x);
             }
         }
-        out
+        csv.text()
     }
 
     /// µs per element over the number of elements.
@@ -223,8 +213,4 @@ impl Report {
             ..LinePlot::default()
         }
     }
-}
-
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into() }
 }

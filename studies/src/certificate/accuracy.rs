@@ -1,11 +1,14 @@
-//! Settings that reach an accuracy: from coarse to fine, what the error hangs on more is refined, until the certificate
-//! says that it is reached.
+//! Settings that reach an accuracy: from coarse to fine, of steps and mesh what the error depends on more is refined, until
+//! the certificate says that it is reached.
 
-use super::{Certificate, FINER, Trials, certify};
+use super::compare::{Refined, all, change};
+use super::statement::Certificate;
+use super::{FINER, certify};
 use crate::error::Error;
-use crate::study::{Measured, Settings, Target, difference, on_all_cores};
+use crate::study::{Axes, Runs, Settings, Target};
 use ropewalk_core::integrator::Scheme;
-use std::sync::Arc;
+use ropewalk_report::Watch;
+use ropewalk_scene::Fault;
 
 /// Below this error the scheme of higher order is cheaper.
 const OF_HIGH_ORDER: f64 = 1e-5;
@@ -16,7 +19,9 @@ const FINEST: f64 = 512.0;
 
 /// Settings, and how far they can be trusted.
 pub struct Chosen {
+    /// The settings.
     pub settings: Settings,
+    /// How far they can be trusted.
     pub certificate: Certificate,
     /// Whether the accuracy is reached.
     pub reached: bool,
@@ -27,88 +32,121 @@ pub struct Chosen {
 ///
 /// # Errors
 /// A record that has no size, or a scene that doesn't run at all.
-pub fn choose(trials: &Trials<'_>, target: &Target, accuracy: f64) -> Result<Option<Chosen>, Error> {
-    let axes = trials.axes;
-    let own = axes.base;
-    let scheme = match own.scheme {
-        Some(Scheme::GeneralizedAlpha { .. }) if accuracy <= OF_HIGH_ORDER => Some(Scheme::RadauIia5),
-        own => own,
-    };
-    // the error of a step is about its tolerance
-    let mut level = ((1e-3 / accuracy).log10().floor() as i32).clamp(0, LAST_LEVEL - 1);
-    let coarsest = axes.coarsest();
-    let mut mesh = coarsest.map(|c| 2.0 * c);
+pub fn choose(
+    runs: &Runs<'_>,
+    target: &Target,
+    accuracy: f64,
+    watch: Watch,
+) -> Result<Option<Chosen>, Error> {
+    let mut place = Place::coarse(runs.axes, accuracy);
     let mut best: Option<(f64, Settings)> = None;
-    let mut complaint = String::new();
+    let mut complaint = None;
     loop {
-        let here = Settings { mesh, scheme, stepping: axes.level(level), ..own };
-        let tighter = here.stepping.map(|_| here.stepped(axes.level(level + 1)));
-        let finer = here.mesh.map(|m| here.meshed(Some(2.0 * m)));
-        let all: Vec<Settings> = [Some(here), tighter, finer].into_iter().flatten().collect();
-        let Some(mut done) = on_all_cores(|| trials.get(&all))?.into_iter().collect::<Option<Vec<_>>>()
-        else {
-            break;
-        };
-        let base = done.remove(0);
-        let apart = |other: Arc<Measured>| -> Result<f64, Error> {
-            if let Some(message) = base.failure.as_ref().or(other.failure.as_ref()) {
-                return Err(ropewalk_scene::Fault::new(message).into());
+        let here = place.settings(runs.axes);
+        let errors = match errors(runs, &place, target, accuracy, watch)? {
+            Found::Stopped => break,
+            Found::Failed(message) => {
+                complaint = Some(message);
+                [f64::INFINITY; 2]
             }
-            let (a, b) = (target.of(&base.history), target.of(&other.history));
-            let change = difference(&a, &b, target.t.is_some()) / target.size_in(&base.history)?;
-            Ok(if change.is_nan() { f64::INFINITY } else { change })
-        };
-        let failed = base.failure.is_some() || done.iter().any(|r| r.failure.is_some());
-        let (mut step, mut grid) = (0.0, 0.0);
-        if failed {
-            complaint =
-                base.failure.clone().or(done.iter().find_map(|r| r.failure.clone())).unwrap_or_default();
-            (step, grid) = (f64::INFINITY, f64::INFINITY);
-        } else {
-            if tighter.is_some() {
-                step = apart(done.remove(0))?;
-            }
-            if let (Some(m), true) = (here.mesh, finer.is_some()) {
-                // of second order, a doubling shows three quarters of the error
-                grid = apart(done.remove(0))? * 4.0 / 3.0;
-                if step + grid <= accuracy {
-                    let Some(fine) = trials.get(&[here.meshed(Some(FINER * m))]).pop().flatten() else {
-                        break;
-                    };
-                    grid = apart(fine)?;
+            Found::Errors(errors) => {
+                let error = errors[0] + errors[1];
+                if best.is_none_or(|(least, _)| error < least) {
+                    best = Some((error, here));
                 }
+                errors
             }
-        }
-        let error = step + grid;
-        if best.is_none_or(|(least, _)| error < least) && !failed {
-            best = Some((error, here));
-        }
-        if error <= accuracy {
-            break;
-        }
-        let refine_steps = tighter.is_some() && (step >= 0.5 * accuracy || step > grid);
-        let refine_mesh = finer.is_some() && (grid >= 0.5 * accuracy || grid > step);
-        if refine_steps {
-            level += if step.is_finite() && step > 20.0 * accuracy { 2 } else { 1 };
-        }
-        if refine_mesh {
-            mesh = mesh.map(|m| 2.0 * m);
-        }
-        let finest = mesh.zip(coarsest).is_some_and(|(m, c)| m > FINEST * c);
-        if level > LAST_LEVEL || finest || trials.watch.is_over() {
+        };
+        if errors[0] + errors[1] <= accuracy || !place.refine(errors, accuracy) || watch.is_over() {
             break;
         }
     }
     let Some((error, settings)) = best else {
-        if trials.watch.is_over() || complaint.is_empty() {
-            return Ok(None);
-        }
-        let fault = ropewalk_scene::Fault::new(format!("the scene doesn't run: {complaint}"));
+        let Some(message) = complaint.filter(|_| !watch.is_over()) else { return Ok(None) };
+        let fault = Fault::new(format!("the scene doesn't run: {message}"));
         return Err(fault.with_help("try it without `--accuracy` first").into());
     };
     // that is known already, but for what was interrupted
-    let certificate = certify(trials, &settings, std::slice::from_ref(target), Some(accuracy))?;
+    let certificate = certify(runs, &settings, std::slice::from_ref(target), Some(accuracy), watch)?;
     let Some(mut certificate) = certificate else { return Ok(None) };
-    certificate.cpu_s = trials.spent();
+    certificate.cpu_s = runs.spent();
     Ok(Some(Chosen { settings, reached: error <= accuracy && certificate.holds(), certificate }))
+}
+
+/// How fine steps and mesh are.
+struct Place {
+    base: Settings,
+    level: i32,
+    mesh: Option<f64>,
+    finest: f64,
+}
+
+impl Place {
+    /// Where the search begins: the error of a step is about its tolerance.
+    fn coarse(axes: &Axes<'_>, accuracy: f64) -> Self {
+        let scheme = match axes.base.scheme {
+            Some(Scheme::GeneralizedAlpha { .. }) if accuracy <= OF_HIGH_ORDER => Some(Scheme::RadauIia5),
+            own => own,
+        };
+        let coarsest = axes.coarsest();
+        Place {
+            base: Settings { scheme, ..axes.base },
+            level: ((1e-3 / accuracy).log10().floor() as i32).clamp(0, LAST_LEVEL - 1),
+            mesh: coarsest.map(|c| 2.0 * c),
+            finest: coarsest.map_or(f64::INFINITY, |c| FINEST * c),
+        }
+    }
+
+    fn settings(&self, axes: &Axes<'_>) -> Settings {
+        self.base.meshed(self.mesh).stepped(axes.level(self.level))
+    }
+
+    /// Refines what the error of steps and mesh depends on; whether there was anything left to refine.
+    fn refine(&mut self, [step, mesh]: [f64; 2], accuracy: f64) -> bool {
+        if self.base.stepping.is_some() && (step >= 0.5 * accuracy || step > mesh) {
+            self.level += if step.is_finite() && step > 20.0 * accuracy { 2 } else { 1 };
+        }
+        if mesh >= 0.5 * accuracy || mesh > step {
+            self.mesh = self.mesh.map(|m| 2.0 * m);
+        }
+        self.level <= LAST_LEVEL && self.mesh.is_none_or(|m| m <= self.finest)
+    }
+}
+
+enum Found {
+    Stopped,
+    /// One of the runs failed.
+    Failed(String),
+    /// Errors of steps and mesh.
+    Errors([f64; 2]),
+}
+
+/// What tighter steps and a finer mesh change in the record.
+fn errors(
+    runs: &Runs<'_>,
+    place: &Place,
+    target: &Target,
+    accuracy: f64,
+    watch: Watch,
+) -> Result<Found, Error> {
+    let here = place.settings(runs.axes);
+    let tighter = here.stepping.map(|_| here.stepped(runs.axes.level(place.level + 1)));
+    let finer = here.mesh.map(|m| here.meshed(Some(2.0 * m)));
+    let Some(refined) = Refined::new(runs, [Some(here), tighter, finer], watch)? else {
+        return Ok(Found::Stopped);
+    };
+    if let Some(message) = refined.named().find_map(|(_, run)| run.failure.clone()) {
+        return Ok(Found::Failed(message));
+    }
+    let base = &refined.base;
+    let step = refined.tighter.as_ref().map_or(Ok(0.0), |run| change(target, base, run))?;
+    // of second order, a doubling shows three quarters of the error
+    let mut mesh = refined.finer.as_ref().map_or(Ok(0.0), |run| change(target, base, run))? * 4.0 / 3.0;
+    if let Some(m) = here.mesh.filter(|_| step + mesh <= accuracy) {
+        let Some(fine) = all(runs, &[here.meshed(Some(FINER * m))], watch)? else {
+            return Ok(Found::Stopped);
+        };
+        mesh = change(target, base, &fine[0])?;
+    }
+    Ok(Found::Errors([step, mesh]))
 }

@@ -1,7 +1,7 @@
 //! The errors of the runs, and which of them are worth their time.
 
 use super::reference::Reference;
-use super::runs::{Run, Runs};
+use crate::study::{Run, Target};
 use std::sync::Arc;
 
 /// A run and its error, relative to the size of the record.
@@ -10,25 +10,15 @@ pub(super) struct Point {
     pub run: Arc<Run>,
     /// Its error; NaN if it has none.
     pub error: f64,
-    /// The same, or a larger one that a finer run has: then this one is small by luck.
+    /// The same, or a larger one that a finer run has: then this one is small by coincidence.
     pub sure: f64,
 }
 
 impl Point {
-    pub(super) fn new(run: Arc<Run>, runs: &Runs<'_>, reference: &Reference) -> Self {
-        let error = runs.between_reference(&run, reference);
+    pub(super) fn new(run: Arc<Run>, target: &Target, reference: &Reference) -> Self {
+        let exact = Run { values: reference.values.clone(), failure: None, ..(*run).clone() };
+        let error = run.difference(&exact, target) / reference.size;
         Point { run, error, sure: error }
-    }
-}
-
-impl Runs<'_> {
-    /// The error of a run, relative to the size of the record.
-    pub(super) fn between_reference(&self, run: &Run, reference: &Reference) -> f64 {
-        let exact = Run { values: reference.values.clone(), failure: None, ..run.clone() };
-        match &run.failure {
-            Some(_) => f64::NAN,
-            None => self.between(run, &exact) / reference.size,
-        }
     }
 }
 

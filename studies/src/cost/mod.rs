@@ -4,34 +4,29 @@
 mod front;
 mod reference;
 mod report;
-mod runs;
 mod walk;
 
 pub use report::CostAdvice;
 
-use crate::error::Error;
-use crate::study::{Axes, Study, StudyFolder, Target, Watch, measure, on_all_cores};
+use crate::error::{Error, caught};
+use crate::run::Ending;
+use crate::simulate::{How, compute};
+use crate::study::{Axes, Runs, Study, StudyFolder, Target, on_all_cores};
 use front::distrust;
 use reference::Reference;
-use report::Report;
+use report::{GOALS, Report};
 use ropewalk_models::Bundled;
-use ropewalk_report::{
-    Interrupt, OutputError, Progress, ProgressMode, RunFolder, SweepProgress, plain, rough, write_json,
-};
+use ropewalk_report::{ProgressMode, Sheet, Stopwatch, SweepProgress, Watch, plain, rough, write_json};
 use ropewalk_scene::{Fault, SceneText};
-use runs::Runs;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use walk::Walk;
 
-/// The accuracies that advice is given for, relative to the size of the record.
-const GOALS: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
-
 /// Longer than this nothing is checked beforehand.
 const LONGEST_CHECK: Duration = Duration::from_secs(2);
 
-/// What may be chosen about a study of cost.
+/// Options of [`cost`].
 #[derive(Clone, Debug)]
 pub struct CostOptions {
     /// The record, or one of its columns, over the whole run or at a time: `NAME` or `NAME@TIME`.
@@ -42,10 +37,12 @@ pub struct CostOptions {
     pub out: Option<PathBuf>,
     /// Whether to delete what an earlier study left in the folder.
     pub fresh: bool,
-    /// Time on the clock after which no more is tried; half of it may go into the reference.
+    /// Wall time after which no more is tried; half of it may go into the reference.
     pub budget: Duration,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 /// What a study of cost found.
@@ -56,7 +53,7 @@ pub struct CostOutcome {
     /// The cheapest settings for each accuracy.
     pub advice: Vec<CostAdvice>,
     /// How far the reference may be from the truth, relative to the size of the record; NaN without reference.
-    pub doubt: f64,
+    pub uncertainty: f64,
     /// The folder.
     pub folder: PathBuf,
     /// Table, front and advice for people.
@@ -106,12 +103,13 @@ struct Found<'a> {
 /// A cheap run, before anything is begun: is there something of which an error can be a part?
 fn check(axes: &Axes<'_>, target: &Target) -> Result<(), Error> {
     let coarse = axes.base.meshed(axes.coarsest()).stepped(axes.level(0));
-    let watch = Watch { deadline: Instant::now().checked_add(LONGEST_CHECK), ..Watch::default() };
+    let watch = Watch::default().until(Instant::now().checked_add(LONGEST_CHECK));
     let file = axes.with(&coarse, target.t)?;
-    let run = measure(&file, false, watch, Progress::new(0.0, 1.0, ProgressMode::Quiet));
     // a coarse run may well fail, and one that takes too long is no reason to stop
-    if run.failure.is_none() && !run.stopped {
-        target.size_in(&run.history)?;
+    if let Ok(run) = caught(|| compute(file.scene(), How { watch, ..How::default() }))
+        && matches!(run.ending, Ending::Finished | Ending::Stopped(_))
+    {
+        target.size_in(&run.table)?;
     }
     Ok(())
 }
@@ -125,11 +123,8 @@ pub fn cost(scene: &str, bundled: &[Bundled], options: &CostOptions) -> Result<C
     let axes = Axes::new(&text, &options.set)?;
     let target = Target::parse(&options.of, axes.file())?;
     if axes.is_empty() {
-        return Err(Fault::new(
-            "there is nothing to vary: the scene has neither elements nor time steps of the solver",
-        )
-        .with_help("vary its own parameters with `ropewalk sweep`")
-        .into());
+        let message = "there is nothing to vary: the scene has neither elements nor time steps of the solver";
+        return Err(Fault::new(message).with_help("vary its own parameters with `ropewalk sweep`").into());
     }
     check(&axes, &target)?;
     let manifest = Manifest {
@@ -140,75 +135,76 @@ pub fn cost(scene: &str, bundled: &[Bundled], options: &CostOptions) -> Result<C
     };
     let folder = StudyFolder::open(options.out.clone(), options.fresh, &manifest)?;
     let progress = SweepProgress::new(0, options.progress);
-    let mut watch = Watch::default();
-    match Interrupt::install() {
-        Ok(interrupt) => watch.interrupt = Some(interrupt),
-        Err(e) => progress.say(&format!("warning: {e}")),
-    }
+    let signals = options.watch;
+    let stopwatch = Stopwatch::start();
     let start = Instant::now();
     let until = |share: f64| start.checked_add(options.budget.mul_f64(share));
-    let quiet = options.progress == ProgressMode::Quiet;
-    let runs = Runs::new(&axes, &target, &folder, progress, quiet);
+    let runs = Runs::in_folder(&axes, &target, &folder, progress);
     let earlier = runs.len();
-    let find =
-        || Reference::find(&runs, GOALS[4] / 3.0, until(0.25), Watch { deadline: until(0.5), ..watch });
-    let reference = on_all_cores(find)??;
     let path = folder.path().to_path_buf();
-    let Some(reference) = reference else {
-        let interrupted = watch.is_interrupted();
-        let report = match interrupted {
-            true => String::new(),
-            false => {
-                "no reference was found in half of the time given: raise --budget; what was computed is kept"
-                    .into()
-            }
-        };
-        return Ok(CostOutcome { interrupted, advice: Vec::new(), doubt: f64::NAN, folder: path, report });
+    let find = || Reference::find(&runs, &target, GOALS[4] / 3.0, until(0.25), signals.until(until(0.5)));
+    let Some(reference) = on_all_cores(find)?? else {
+        let interrupted = signals.is_interrupted();
+        let why =
+            "no reference was found in half of the time given: raise --budget; what was computed is kept";
+        let report = if interrupted { String::new() } else { why.into() };
+        let (advice, uncertainty) = (Vec::new(), f64::NAN);
+        return Ok(CostOutcome { interrupted, advice, uncertainty, folder: path, report });
     };
-    runs.say(&format!(
-        "reference sure to {}, {} s",
-        rough(reference.doubt()),
-        rough(start.elapsed().as_secs_f64())
-    ));
-    let goal = GOALS[4].max(reference.doubt()) - reference.doubt().min(0.5 * GOALS[4]);
-    let walk =
-        Walk { runs: &runs, reference: &reference, goal, watch: Watch { deadline: until(1.0), ..watch } };
+    let uncertainty = reference.uncertainty();
+    if options.progress != ProgressMode::Quiet {
+        let spent = rough(stopwatch.elapsed().wall_s);
+        runs.progress.say(&format!("reference: uncertainty {}, wall time {spent} s", rough(uncertainty)));
+    }
+    let goal = GOALS[4].max(uncertainty) - uncertainty.min(0.5 * GOALS[4]);
+    let watch = signals.until(until(1.0));
+    let walk = Walk { runs: &runs, target: &target, reference: &reference, goal, watch };
     // one after the other, so that each has the machine to itself
     on_all_cores(|| walk.go())??;
     let mut points = walk.points();
     distrust(&mut points);
     points.sort_by(|a, b| a.run.cpu_s.total_cmp(&b.run.cpu_s));
     let report = Report { axes: &axes, target: &target, reference: &reference, points };
-    report.write_table(&folder)?;
-    report.write_scenes(&folder)?;
-    let advice = report.advice();
-    let found = Found {
-        of: &target.text,
-        size: reference.size,
-        unit: &target.unit,
-        doubt_of_steps: reference.step,
-        doubt_of_mesh: reference.mesh,
-        reference: &reference.notes,
-        advice: &advice,
-    };
-    write_json(&RunFolder::earlier(path.clone()).path().join("advice.json"), &found)?;
-    match folder.plot_file("cost").and_then(|file| report.plot(&text.name).write(&file)) {
-        Ok(()) | Err(OutputError::EmptyPlot { .. }) => {}
-        Err(e) => runs.progress.say(&format!("warning: {e}")),
+    let advice = write(&report, &folder, &text.name, &runs.progress)?;
+
+    let interrupted = signals.is_interrupted();
+    let mut sheet = Sheet::new(report.text());
+    if watch.is_over() && !interrupted {
+        sheet.line("  the time given is up: the same command with a larger --budget goes on\n");
     }
-    let mut said = report.text();
-    let interrupted = watch.is_interrupted();
-    if walk.watch.is_over() && !interrupted {
-        said += "\n  the time given is up: the same command with a larger --budget goes on\n";
-    }
-    said += &format!(
-        "\n  runs      {}, {} of them from before\n  time      {} s on the clock, {} s of CPU\n  folder    {}\n  results   table.csv, advice.json, advice/*.toml (scenes with these settings), plots/cost.svg, runs/\n",
-        runs.len(),
-        earlier,
-        rough(start.elapsed().as_secs_f64()),
-        rough(runs.spent()),
-        path.display()
+    sheet.entry("runs", format!("{}, {earlier} of them from before", runs.len()));
+    let (wall, cpu) = (rough(stopwatch.elapsed().wall_s), rough(runs.spent()));
+    sheet.entry("time", format!("wall time {wall} s, CPU time {cpu} s"));
+    sheet.entry("folder", path.display());
+    sheet.entry(
+        "results",
+        "table.csv, advice.json, advice/*.toml (scenes with these settings), plots/cost.svg, runs/",
     );
     runs.progress.finish();
-    Ok(CostOutcome { interrupted, advice, doubt: reference.doubt(), folder: path, report: said })
+    Ok(CostOutcome { interrupted, advice, uncertainty, folder: path, report: sheet.to_string() })
+}
+
+/// Writes table, advice and picture.
+fn write(
+    report: &Report<'_>,
+    folder: &StudyFolder,
+    scene: &str,
+    progress: &SweepProgress,
+) -> Result<Vec<CostAdvice>, Error> {
+    report.write_table(folder)?;
+    report.write_scenes(folder)?;
+    let advice = report.advice();
+    let found = Found {
+        of: &report.target.text,
+        size: report.reference.size,
+        unit: &report.target.unit,
+        doubt_of_steps: report.reference.step,
+        doubt_of_mesh: report.reference.mesh,
+        reference: &report.reference.notes,
+        advice: &advice,
+    };
+    write_json(&folder.path().join("advice.json"), &found)?;
+    let warn = &mut |text: &str| progress.say(&format!("warning: {text}"));
+    folder.files().draw("cost", |path| report.plot(scene).write(path), warn);
+    Ok(advice)
 }

@@ -1,12 +1,11 @@
 //! The reference that errors are taken against: steps tightened until they make no difference any more and another
 //! integrator agrees, meshes doubled until they hardly do, and the rest extrapolated.
 
-use super::runs::{Run, Runs};
 use crate::error::Error;
-use crate::study::{Settings, Watch, difference, words};
+use crate::study::{Run, Runs, Settings, Target, When, difference, words};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use ropewalk_core::integrator::{Scheme, Stepping};
-use ropewalk_report::{Table, rough};
+use ropewalk_report::{Table, Watch, rough};
 use ropewalk_scene::Fault;
 use std::sync::Arc;
 use std::time::Instant;
@@ -40,7 +39,7 @@ pub(super) struct Reference {
 
 impl Reference {
     /// How far it may be from the truth.
-    pub(super) fn doubt(&self) -> f64 {
+    pub(super) fn uncertainty(&self) -> f64 {
         self.step + self.mesh
     }
 
@@ -48,26 +47,24 @@ impl Reference {
     /// Steps have until `half` of that time.
     pub(super) fn find(
         runs: &Runs<'_>,
+        target: &Target,
         wanted: f64,
         half: Option<Instant>,
         watch: Watch,
     ) -> Result<Option<Self>, Error> {
-        let Some(steps) = steps(runs, 0.5 * wanted, Watch { deadline: half, ..watch })? else {
-            return Ok(None);
-        };
+        let Some(steps) = steps(runs, target, 0.5 * wanted, watch.until(half))? else { return Ok(None) };
         let Steps { run, size, left, mut notes, .. } = steps;
         let whole = Reference { values: run.values.clone(), size, step: left, mesh: 0.0, notes: Vec::new() };
         let Some(first) = runs.axes.base.mesh else { return Ok(Some(Reference { notes, ..whole })) };
-        let Some(found) = meshes(runs, &run.settings, first, 0.5 * wanted * size, watch)? else {
-            return Ok(None);
-        };
+        let meshes = Meshes { runs, target, settings: run.settings, watch };
+        let Some(found) = meshes.limit(first, 0.5 * wanted * size)? else { return Ok(None) };
         notes.push(found.said);
         let mut step = left;
         // finer meshes move faster than the one on which steps were tried
         if let Some(looser) = steps.looser
             && let Some(loose) = runs.get(&found.finest.settings.stepped(looser), watch)?
         {
-            let change = runs.between(&loose, &found.finest) / size / (steps.rate - 1.0);
+            let change = loose.difference(&found.finest, target) / size / (steps.rate - 1.0);
             notes.push(format!("steps on that mesh leave {}", rough(change)));
             step = if change.is_nan() { f64::INFINITY } else { step.max(change) };
         }
@@ -90,7 +87,7 @@ struct Steps {
 }
 
 /// Tightens the steps of both schemes until one changes no more than wanted and the other agrees.
-fn steps(runs: &Runs<'_>, wanted: f64, watch: Watch) -> Result<Option<Steps>, Error> {
+fn steps(runs: &Runs<'_>, target: &Target, wanted: f64, watch: Watch) -> Result<Option<Steps>, Error> {
     let own = runs.axes.base;
     let coarse = runs.axes.coarsest().map(|c| EIGHTFOLD * c).zip(own.mesh).map(|(c, own)| c.min(own));
     let base = own.meshed(coarse);
@@ -99,7 +96,7 @@ fn steps(runs: &Runs<'_>, wanted: f64, watch: Watch) -> Result<Option<Steps>, Er
     schemes.sort_by_key(|s| *s != Scheme::RadauIia5);
     if schemes.is_empty() {
         let Some(run) = runs.get(&base, watch)? else { return Ok(None) };
-        let size = usable(runs, &run)?;
+        let size = usable(target, &run)?;
         return Ok(Some(Steps { run, size, left: 0.0, rate: MOST_TENFOLD, looser: None, notes: Vec::new() }));
     }
     let mut levels: Vec<Vec<Arc<Run>>> = vec![Vec::new(); schemes.len()];
@@ -124,10 +121,10 @@ fn steps(runs: &Runs<'_>, wanted: f64, watch: Watch) -> Result<Option<Steps>, Er
             continue;
         };
         let run = &levels[lead][levels[lead].len() - 1];
-        let size = usable(runs, run)?;
+        let size = usable(target, run)?;
         // what a tenfold tightening changed the last time, and the time before
         let changes = |s: usize| {
-            let pairs = levels[s].windows(2).map(|w| runs.between(&w[0], &w[1]) / size);
+            let pairs = levels[s].windows(2).map(|w| w[0].difference(&w[1], target) / size);
             let all: Vec<f64> = pairs.collect();
             (all.last().copied(), all.len().checked_sub(2).map(|n| all[n]))
         };
@@ -139,7 +136,7 @@ fn steps(runs: &Runs<'_>, wanted: f64, watch: Watch) -> Result<Option<Steps>, Er
         let other = (0..schemes.len()).find(|s| *s != lead && sound(&levels[*s]) && !levels[*s].is_empty());
         match other.and_then(|s| Some((s, levels[s].last()?))) {
             Some((s, theirs)) => {
-                let (apart, change) = (runs.between(theirs, run) / size, changes(s).0.unwrap_or(1.0));
+                let (apart, change) = (theirs.difference(run, target) / size, changes(s).0.unwrap_or(1.0));
                 let agrees = apart <= 2.0 * change.min(1.0) + left;
                 let words = if agrees { "they agree" } else { "they don't agree" };
                 let (apart_, change) = (rough(apart), rough(change));
@@ -189,19 +186,17 @@ fn broken(message: &str) -> Error {
 }
 
 /// The size of the record in a run that can be a reference.
-fn usable(runs: &Runs<'_>, run: &Run) -> Result<f64, Error> {
+fn usable(target: &Target, run: &Run) -> Result<f64, Error> {
     if let Some(message) = &run.failure {
         return Err(broken(message));
     }
     let end = run.values.columns.first().and_then(|c| c.values.last()).copied().unwrap_or(f64::NAN);
-    if let Some(t) = runs.target.t.filter(|t| (t - end).abs() > 1e-9 * t.abs()) {
-        let fault = Fault::new(format!(
-            "an event ends the run at {end:.6}, before the {t} of `{}`",
-            runs.target.text
-        ));
+    if let Some(t) = target.t.filter(|t| (t - end).abs() > 1e-9 * t.abs()) {
+        let fault =
+            Fault::new(format!("an event ends the run at {end:.6}, before the {t} of `{}`", target.text));
         return Err(fault.with_help("choose an earlier time").into());
     }
-    Ok(runs.target.size(&run.values)?)
+    Ok(target.size(&run.values)?)
 }
 
 /// The limit of finer and finer meshes.
@@ -213,78 +208,82 @@ struct Limit {
     finest: Arc<Run>,
 }
 
-/// Doubles the mesh until the extrapolated result is known as well as wanted; none if two meshes were too many.
-fn meshes(
-    runs: &Runs<'_>,
-    settings: &Settings,
-    first: f64,
-    wanted: f64,
+/// A scene on finer and finer meshes, with steps that are tight enough.
+struct Meshes<'a> {
+    runs: &'a Runs<'a>,
+    target: &'a Target,
+    settings: Settings,
     watch: Watch,
-) -> Result<Option<Limit>, Error> {
-    let mut all: Vec<Arc<Run>> = Vec::new();
-    let mut best: Option<Limit> = None;
-    // half the mesh of the scene is a test as well
-    let coarse = if runs.axes.coarsest().is_some_and(|c| c < first) { 0.5 * first } else { first };
-    for next in (0..=DOUBLINGS).step_by(2) {
-        let two: Vec<f64> = (next..next + 2).map(|k| coarse * 2.0_f64.powi(k)).collect();
-        let run = |mesh: &f64| runs.get(&settings.meshed(Some(*mesh)), watch);
-        let done: Vec<Result<Option<Arc<Run>>, Error>> = two.par_iter().map(run).collect();
-        for run in done {
-            let Some(run) = run? else { break };
-            if run.failure.is_some() {
-                all.clear();
-                continue;
-            }
-            all.push(run);
-            if let Some(found) = extrapolated(runs, &all)
-                && best.as_ref().is_none_or(|b| found.left <= b.left)
-            {
-                best = Some(found);
-            }
-        }
-        if best.as_ref().is_some_and(|b| b.left <= wanted) || watch.is_over() {
-            break;
-        }
-    }
-    Ok(best)
 }
 
-/// The limit of the last meshes, if what is left of its error can be told.
-fn extrapolated(runs: &Runs<'_>, all: &[Arc<Run>]) -> Option<Limit> {
-    let n = all.len();
-    let change = |k: usize| runs.between(&all[k], &all[k - 1]);
-    let rate = |k: usize| change(k - 1) / change(k);
-    let finest = all.last()?;
-    let what = runs.axes.words(&finest.settings);
-    let (values, left, said) = match n {
-        1 => return None,
-        2 => {
-            let left = change(1);
-            (
-                finest.values.clone(),
-                left,
-                format!("{what}: half the elements change the record by {left:.1e}"),
-            )
-        }
-        _ if rate(n - 1) > LEAST_RATE => {
-            let steady = rate(n - 1).min(MOST_RATE);
-            let values = limit(&finest.values, &all[n - 2].values, steady)?;
-            let mut left = change(n - 1) / (steady - 1.0);
-            if n > 3 && rate(n - 2) > LEAST_RATE {
-                // the limit that was found without the finest mesh
-                let before = limit(&all[n - 2].values, &all[n - 3].values, rate(n - 2).min(MOST_RATE))?;
-                left = left.min(difference(&values, &before, runs.target.t.is_some()));
+impl Meshes<'_> {
+    /// Doubles the mesh until the extrapolated result is known as well as wanted; none if two meshes were too many.
+    fn limit(&self, first: f64, wanted: f64) -> Result<Option<Limit>, Error> {
+        let mut all: Vec<Arc<Run>> = Vec::new();
+        let mut best: Option<Limit> = None;
+        // half the mesh of the scene is a test as well
+        let coarse = if self.runs.axes.coarsest().is_some_and(|c| c < first) { 0.5 * first } else { first };
+        for next in (0..=DOUBLINGS).step_by(2) {
+            let two: Vec<f64> = (next..next + 2).map(|k| coarse * 2.0_f64.powi(k)).collect();
+            let run = |mesh: &f64| self.runs.get(&self.settings.meshed(Some(*mesh)), self.watch);
+            let done: Vec<Result<Option<Arc<Run>>, Error>> = two.par_iter().map(run).collect();
+            for run in done {
+                let Some(run) = run? else { break };
+                if run.failure.is_some() {
+                    all.clear();
+                    continue;
+                }
+                all.push(run);
+                if let Some(found) = self.extrapolated(&all)
+                    && best.as_ref().is_none_or(|b| found.left <= b.left)
+                {
+                    best = Some(found);
+                }
             }
-            let said =
-                format!("extrapolated from {what}, where twice the elements divide the error by {steady:.1}");
-            (values, left, said)
+            if best.as_ref().is_some_and(|b| b.left <= wanted) || self.watch.is_over() {
+                break;
+            }
         }
-        _ => {
-            let said = format!("{what}: doubling the elements changes the record hardly less than before");
-            (finest.values.clone(), change(n - 1).max(change(n - 2)), said)
-        }
-    };
-    left.is_finite().then(|| Limit { values, left, said, finest: finest.clone() })
+        Ok(best)
+    }
+
+    /// The limit of the last meshes, if what is left of its error can be told.
+    fn extrapolated(&self, all: &[Arc<Run>]) -> Option<Limit> {
+        let n = all.len();
+        let change = |k: usize| all[k].difference(&all[k - 1], self.target);
+        let rate = |k: usize| change(k - 1) / change(k);
+        let finest = all.last()?;
+        let what = self.runs.axes.words(&finest.settings);
+        let (values, left, said) = match n {
+            1 => return None,
+            2 => {
+                let left = change(1);
+                let said = format!("{what}: half the elements change the record by {left:.1e}");
+                (finest.values.clone(), left, said)
+            }
+            _ if rate(n - 1) > LEAST_RATE => {
+                let steady = rate(n - 1).min(MOST_RATE);
+                let values = limit(&finest.values, &all[n - 2].values, steady)?;
+                let mut left = change(n - 1) / (steady - 1.0);
+                if n > 3 && rate(n - 2) > LEAST_RATE {
+                    // the limit that was found without the finest mesh
+                    let before = limit(&all[n - 2].values, &all[n - 3].values, rate(n - 2).min(MOST_RATE))?;
+                    let when = if self.target.t.is_some() { When::End } else { When::Whole };
+                    left = left.min(difference(&values, &before, when));
+                }
+                let said = format!(
+                    "extrapolated from {what}, where twice the elements divide the error by {steady:.1}"
+                );
+                (values, left, said)
+            }
+            _ => {
+                let said =
+                    format!("{what}: doubling the elements changes the record hardly less than before");
+                (finest.values.clone(), change(n - 1).max(change(n - 2)), said)
+            }
+        };
+        left.is_finite().then(|| Limit { values, left, said, finest: finest.clone() })
+    }
 }
 
 /// Where the fine and the coarse result lead if each doubling divides the error by `rate` (Richardson).

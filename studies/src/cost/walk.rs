@@ -1,15 +1,15 @@
-//! Which settings are tried: for both schemes a walk from coarse to fine that refines what the error hangs on, mesh or
+//! Which settings are tried: for both schemes a walk from coarse to fine that refines what the error depends on, mesh or
 //! step; then, along the best of these, the other stiffness models and quadratures, each until it has fallen behind.
 
 use super::front::{Point, front};
 use super::reference::Reference;
-use super::runs::{Run, Runs};
 use crate::error::Error;
-use crate::study::{Settings, Watch};
+use crate::study::{Run, Runs, Settings, Target};
 use ropewalk_core::integrator::Scheme;
 use ropewalk_elements::cable::CableModel;
+use ropewalk_report::Watch;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Tightest level of steps.
 const LAST_LEVEL: i32 = 7;
@@ -25,6 +25,7 @@ const LONGEST: f64 = 1e7;
 /// A walk against a reference.
 pub(super) struct Walk<'a> {
     pub runs: &'a Runs<'a>,
+    pub target: &'a Target,
     pub reference: &'a Reference,
     /// The smallest error that is of interest.
     pub goal: f64,
@@ -50,31 +51,22 @@ impl Walk<'_> {
 
     /// The runs so far, with their errors.
     pub(super) fn points(&self) -> Vec<Point> {
-        self.runs.timed().into_iter().map(|run| Point::new(run, self.runs, self.reference)).collect()
-    }
-
-    /// The error of a run, or that it is of no use.
-    fn error(&self, run: &Run) -> f64 {
-        let error = self.runs.between_reference(run, self.reference);
-        if error.is_nan() { f64::INFINITY } else { error }
+        self.runs.timed().into_iter().map(|run| Point::new(run, self.target, self.reference)).collect()
     }
 
     /// A run with its error; none if there is no time for it.
     fn take(&self, settings: &Settings, like: Option<&Run>) -> Result<Option<(Arc<Run>, f64)>, Error> {
         let dear = like.map_or(0.0, |run| DEARER * run.cpu_s).clamp(0.0, LONGEST);
-        if self
-            .watch
-            .deadline
-            .is_some_and(|d| d.saturating_duration_since(Instant::now()).as_secs_f64() < dear)
-        {
+        if self.watch.left() < dear {
             return Ok(None);
         }
         let worth =
             Duration::from_secs_f64(like.map_or(LONGEST, |run| (TOO_DEAR * run.cpu_s).clamp(1.0, LONGEST)));
         let run = self.runs.timed_for(settings, worth, self.watch)?;
         Ok(run.map(|run| {
-            let error = self.error(&run);
-            (run, error)
+            let error = Point::new(run.clone(), self.target, self.reference).error;
+            // one that failed is of no use
+            (run, if error.is_nan() { f64::INFINITY } else { error })
         }))
     }
 

@@ -44,8 +44,8 @@ pub(super) type Hint = (String, String);
 /// Fields of elements, or of their sections, that are an effect each; 0 switches it off.
 const FIELDS: [(&str, &str); 8] = [
     ("ei", "bending"),
-    ("axial_damping", "damping of stretching"),
-    ("bending_damping", "damping of bending"),
+    ("axial_retardation_time", "damping of stretching"),
+    ("bending_retardation_time", "damping of bending"),
     ("joint_damping", "damping of joints"),
     ("flooded", "water inside"),
     ("added_mass", "added mass"),
@@ -205,7 +205,6 @@ pub(super) fn present(scene: &Scene) -> Vec<Candidate> {
 pub(super) fn absent(scene: &Scene) -> (Vec<Candidate>, Vec<Hint>) {
     let (mut all, mut hints): (Vec<Candidate>, Vec<Hint>) = (Vec::new(), Vec::new());
     let mut add = |name: String, edits: Vec<Edit>, note: String| all.push(Candidate { name, edits, note });
-    let mut hint = |name: &str, text: String| hints.push((name.to_string(), text));
 
     for (kind, note) in [
         ("gravity", "the scene's gravity"),
@@ -230,6 +229,27 @@ pub(super) fn absent(scene: &Scene) -> (Vec<Candidate>, Vec<Hint>) {
         add(name, vec![Edit::Force(k, json!({ "normal": law, "tangential": law }))], note.into());
     }
 
+    absent_of_elements(scene, &mut all, &mut hints);
+    let mut hint = |name: &str, text: String| hints.push((name.to_string(), text));
+    if scene.water.as_ref().is_some_and(|w| w.current == [0.0; 3] && w.profile.is_empty()) {
+        hint("current", "`current = [\"0.5 m/s\", 0, 0]` in [water]".into());
+    }
+    if scene.water.as_ref().is_some_and(|w| w.level.is_none()) {
+        hint("surface of the water", "`level = 0` in [water]".into());
+    }
+    let offered = registered().iter().any(|s| s.name == "contact");
+    if offered && !scene.forces.iter().any(|f| f.typetag_name() == "contact") {
+        let text = "[[forces]]: type = \"contact\", name = \"ground\", shape = { plane = {} }, marker = [0, 0, -10], \
+                    stiffness_per_length = 1e4";
+        hint("contact", text.into());
+    }
+    (all, hints)
+}
+
+/// Bending, damping and material flow of the elements.
+fn absent_of_elements(scene: &Scene, all: &mut Vec<Candidate>, hints: &mut Vec<Hint>) {
+    let mut add = |name: String, edits: Vec<Edit>, note: String| all.push(Candidate { name, edits, note });
+    let mut hint = |name: &str, text: String| hints.push((name.to_string(), text));
     let statics = scene.run.analysis == Analysis::Statics;
     let mut flows = statics || scene.constraints.iter().any(|c| c.feeds().is_some());
     for (k, element) in scene.elements.iter().enumerate() {
@@ -264,9 +284,9 @@ pub(super) fn absent(scene: &Scene) -> (Vec<Candidate>, Vec<Hint>) {
         // the same retardation time for stretching and bending, as in one material
         let length = length(&of);
         let time = 0.02 * 2.0 * length / PI * ((section("mass") + section("flooded")) / ea).sqrt();
-        let fresh = ["axial_damping", "bending_damping"]
+        let fresh = ["axial_retardation_time", "bending_retardation_time"]
             .into_iter()
-            .filter(|f| section(f) == 0.0 && (*f == "axial_damping" || ei > 0.0));
+            .filter(|f| section(f) == 0.0 && (*f == "axial_retardation_time" || ei > 0.0));
         let edits: Vec<Edit> =
             fresh.map(|f| Edit::Element(k, format!("/section/{f}"), json!(time))).collect();
         if !edits.is_empty() && time > 0.0 && time.is_finite() {
@@ -274,19 +294,6 @@ pub(super) fn absent(scene: &Scene) -> (Vec<Candidate>, Vec<Hint>) {
             add(format!("damping of {name}"), edits, note);
         }
     }
-    if scene.water.as_ref().is_some_and(|w| w.current == [0.0; 3] && w.profile.is_empty()) {
-        hint("current", "`current = [\"0.5 m/s\", 0, 0]` in [water]".into());
-    }
-    if scene.water.as_ref().is_some_and(|w| w.level.is_none()) {
-        hint("surface of the water", "`level = 0` in [water]".into());
-    }
-    let offered = registered().iter().any(|s| s.name == "contact");
-    if offered && !scene.forces.iter().any(|f| f.typetag_name() == "contact") {
-        let text = "[[forces]]: type = \"contact\", name = \"ground\", shape = { plane = {} }, marker = [0, 0, -10], \
-                    stiffness_per_length = 1e4";
-        hint("contact", text.into());
-    }
-    (all, hints)
 }
 
 /// Unstretched length of a cable, as its fields tell [m].

@@ -1,7 +1,8 @@
 //! Pictures of a ledger: where the time goes, and how far the record changes by each effect.
 
-use super::{Ledger, Tried, Verdict};
-use ropewalk_report::{Bar, BarPlot, OutputError, RunFolder, rough};
+use super::ledger::{EffectTrial, Ledger, Verdict};
+use crate::run::ProfileEntry;
+use ropewalk_report::{Bar, BarPlot, RunFolder, rough};
 
 /// Draws both and gives the names of those that could be. One that can't is no reason to fail.
 pub(super) fn draw(
@@ -11,21 +12,15 @@ pub(super) fn draw(
     accuracy: f64,
     warn: &mut dyn FnMut(&str),
 ) -> Vec<String> {
-    let mut drawn = Vec::new();
-    for (name, plot) in [("ledger", times(title, ledger)), ("effects", changes(title, ledger, accuracy))] {
-        match folder.plot_file(name).and_then(|path| plot.write(&path)) {
-            Ok(()) => drawn.push(name.to_string()),
-            Err(OutputError::EmptyPlot { .. }) => {}
-            Err(e) => warn(&e.to_string()),
-        }
-    }
-    drawn
+    let plots = [("ledger", times(title, ledger)), ("effects", changes(title, ledger, accuracy))];
+    let drawn = plots.iter().filter(|(name, plot)| folder.draw(name, |path| plot.write(path), warn));
+    drawn.map(|(name, _)| name.to_string()).collect()
 }
 
 fn times(title: &str, ledger: &Ledger) -> BarPlot {
     let mut costs: Vec<_> = ledger.costs.iter().collect();
     costs.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
-    let bar = |c: &&crate::run::ProfileEntry| Bar {
+    let bar = |c: &&ProfileEntry| Bar {
         label: c.label.clone(),
         value: 100.0 * c.share,
         note: match c.calls {
@@ -43,7 +38,7 @@ fn times(title: &str, ledger: &Ledger) -> BarPlot {
 }
 
 fn changes(title: &str, ledger: &Ledger, accuracy: f64) -> BarPlot {
-    let bar = |t: &Tried, way: &str, group| match &t.verdict {
+    let bar = |t: &EffectTrial, way: &str, group| match &t.verdict {
         Verdict::Ran { change, cpu_s, .. } => {
             let ratio = cpu_s / ledger.cpu_s;
             let time = match ratio {

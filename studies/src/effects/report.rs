@@ -1,11 +1,8 @@
 //! The ledger as tables, for people and as CSV, and what follows from it.
 
-use super::{Ledger, Tried, Verdict};
-use ropewalk_report::{
-    Elapsed, Interrupt, OutputError, RunFolder, number, push_cell, push_number, rough, write_atomic,
-};
+use super::ledger::{Advice, EffectTrial, Ledger, Verdict};
+use ropewalk_report::{Csv, Elapsed, Interrupt, OutputError, RunFolder, Sheet, number, rough, write_atomic};
 use ropewalk_scene::SceneFile;
-use std::fmt::Write as _;
 
 /// A line of the ledger: a term, a phase of the solution, or one of the effects of a term.
 struct Line {
@@ -15,7 +12,7 @@ struct Line {
     /// Calls, time and share; of effects inside of a term they are not told apart.
     cost: Option<(u64, f64, f64)>,
     /// Work and peak force.
-    deed: Option<(f64, f64)>,
+    work: Option<(f64, f64)>,
 }
 
 /// The largest first, the effects of a term below it.
@@ -24,19 +21,19 @@ fn lines(ledger: &Ledger) -> Vec<Line> {
     costs.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
     let mut all = Vec::new();
     for c in costs {
-        let deeds: Vec<_> = ledger.deeds.iter().filter(|d| d.term == c.label).collect();
+        let effects: Vec<_> = ledger.work.iter().filter(|d| d.term == c.label).collect();
         let (cost, label) = (Some((c.calls, c.seconds, c.share)), c.label.clone());
-        match deeds.as_slice() {
+        match effects.as_slice() {
             [one] if one.effect == one.term => {
-                all.push(Line { label, effect: None, cost, deed: Some((one.work, one.peak)) });
+                all.push(Line { label, effect: None, cost, work: Some((one.work, one.peak)) });
             }
             several => {
-                all.push(Line { label, effect: None, cost, deed: None });
+                all.push(Line { label, effect: None, cost, work: None });
                 all.extend(several.iter().map(|d| Line {
                     label: d.term.clone(),
                     effect: Some(d.effect.clone()),
                     cost: None,
-                    deed: Some((d.work, d.peak)),
+                    work: Some((d.work, d.peak)),
                 }));
             }
         }
@@ -46,68 +43,40 @@ fn lines(ledger: &Ledger) -> Vec<Line> {
 
 /// Writes `tables/ledger.csv` and `tables/effects.csv`.
 pub(super) fn write(folder: &RunFolder, ledger: &Ledger) -> Result<(), OutputError> {
-    let mut out = String::from("term,effect,calls,time [s],share,work [J],peak force [N]\n");
+    let mut csv = Csv::new(["term", "effect", "calls", "time [s]", "share", "work [J]", "peak force [N]"]);
     for l in lines(ledger) {
-        push_cell(&mut out, &l.label);
-        out.push(',');
-        push_cell(&mut out, l.effect.as_deref().unwrap_or_default());
-        let (calls, cost) = (l.cost.map(|c| c.0), l.cost.map(|c| [c.1, c.2]));
-        out.push(',');
-        _ = calls.map(|calls| write!(out, "{calls}"));
-        for x in [cost.map(|c| c[0]), cost.map(|c| c[1]), l.deed.map(|d| d.0), l.deed.map(|d| d.1)] {
-            out.push(',');
-            x.into_iter().for_each(|x| push_number(&mut out, x));
+        csv.cell(&l.label).cell(l.effect.as_deref().unwrap_or_default());
+        csv.cell(l.cost.map_or(String::new(), |c| c.0.to_string()));
+        for x in [l.cost.map(|c| c.1), l.cost.map(|c| c.2), l.work.map(|w| w.0), l.work.map(|w| w.1)] {
+            csv.number_or_none(x);
         }
-        out.push('\n');
+        csv.end();
     }
-    write_atomic(&folder.table_file("ledger")?, &out)?;
+    write_atomic(&folder.table_file("ledger")?, &csv.text())?;
 
-    let mut out = String::from("way,effect,change,cpu [s],saved,steps,iterations,note\n");
-    for (way, tried) in [("without", &ledger.without), ("with", &ledger.with)] {
-        for t in tried {
-            out += way;
-            out.push(',');
-            push_cell(&mut out, &t.name);
-            out.push(',');
-            let mut notes = vec![t.note.as_str()];
-            match &t.verdict {
-                Verdict::Ran { change, cpu_s, counts, note } => {
-                    for x in [*change, *cpu_s, 1.0 - cpu_s / ledger.cpu_s] {
-                        push_number(&mut out, x);
-                        out.push(',');
-                    }
-                    _ = write!(out, "{},{},", counts.steps, counts.newton_iterations);
-                    notes.push(note);
-                }
-                Verdict::Failed(why) => {
-                    out += ",,,,,";
-                    notes.push(why);
-                }
+    let mut csv = Csv::new(["way", "effect", "change", "cpu [s]", "saved", "steps", "iterations", "note"]);
+    let trials = [("without", &ledger.without), ("with", &ledger.with)];
+    for (way, t) in trials.iter().flat_map(|(way, all)| all.iter().map(move |t| (way, t))) {
+        csv.cell(way).cell(&t.name);
+        let note = match &t.verdict {
+            Verdict::Ran { change, cpu_s, counts, note } => {
+                csv.number(*change).number(*cpu_s).number(1.0 - cpu_s / ledger.cpu_s);
+                csv.cell(counts.steps.to_string()).cell(counts.newton_iterations.to_string());
+                note
             }
-            notes.retain(|n| !n.is_empty());
-            push_cell(&mut out, &notes.join("; "));
-            out.push('\n');
-        }
+            Verdict::Failed(why) => {
+                (0..5).for_each(|_| _ = csv.cell(""));
+                why
+            }
+        };
+        csv.cell(both(&t.note, note)).end();
     }
-    write_atomic(&folder.table_file("effects")?, &out)
+    write_atomic(&folder.table_file("effects")?, &csv.text())
 }
 
-/// Cells under their headings: the first column to the left, and what stands behind the others.
-fn table(out: &mut String, head: &[&str], rows: &[(Vec<String>, String)]) {
-    let wide = |c: usize| {
-        let cells = rows.iter().map(|(cells, _)| cells[c].chars().count());
-        cells.chain([head[c].chars().count()]).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..head.len()).map(wide).collect();
-    let head: Vec<String> = head.iter().map(|h| (*h).to_string()).collect();
-    for (cells, note) in [(head, String::new())].iter().chain(rows) {
-        let mut line = format!("  {:<w$}", cells[0], w = widths[0]);
-        for (cell, w) in cells.iter().zip(&widths).skip(1) {
-            _ = write!(line, "  {cell:>w$}");
-        }
-        _ = writeln!(out, "{}", format!("{line}  {note}").trim_end());
-    }
-    out.push('\n');
+/// Two notes, of which either may be empty.
+fn both(one: &str, other: &str) -> String {
+    [one, other].into_iter().filter(|n| !n.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
 fn percent(x: f64) -> String {
@@ -138,132 +107,110 @@ pub(super) fn report(
     pictures: &[String],
     elapsed: Elapsed,
 ) -> String {
-    let mut out = format!(
-        "{}\n  {}: largest value {}; changes are in parts of it\n\n",
-        file.title(),
-        ledger.record,
-        number(ledger.scale)
-    );
-    let mut rows: Vec<(Vec<String>, String)> = lines(ledger)
-        .iter()
-        .map(|l| {
-            let name = l.effect.as_ref().map_or(l.label.clone(), |e| format!("  {e}"));
-            let cost = l.cost.map_or(Default::default(), |(calls, time, share)| {
-                [calls.to_string(), rough(time), percent(share)]
-            });
-            let deed = l.deed.map_or(Default::default(), |(work, peak)| [or_none(work), or_none(peak)]);
-            let cells: Vec<String> = [name].into_iter().chain(cost).chain(deed).collect();
-            (cells, String::new())
-        })
-        .collect();
-    let sum = ledger.measured_s();
-    let share = ledger.costs.iter().map(|c| c.share).sum();
-    let all = ["together", "", &rough(sum), &percent(share), "", ""].map(String::from);
-    rows.push((all.to_vec(), format!("the run without clocks: {} s", rough(ledger.cpu_s))));
-    table(&mut out, &["term", "calls", "time [s]", "share", "work [J]", "peak force [N]"], &rows);
-
-    let tried = |out: &mut String, head: &str, all: &[Tried], saves: bool| {
-        if all.is_empty() {
-            return;
-        }
-        let mut rows: Vec<_> = all.iter().map(|t| row(t, ledger, saves)).collect();
-        if saves {
-            let c = &ledger.counts;
-            let cells = ["nothing", "", "", &c.steps.to_string(), &c.newton_iterations.to_string()];
-            rows.insert(0, (cells.map(String::from).to_vec(), String::new()));
-        }
-        table(out, &[head, "change", if saves { "saves" } else { "costs" }, "steps", "iterations"], &rows);
-    };
-    tried(&mut out, "without", &ledger.without, true);
-    tried(&mut out, "with", &ledger.with, false);
-    if !ledger.hints.is_empty() {
-        out += "  to try what can't be guessed from the scene, write\n";
-        for (name, text) in &ledger.hints {
-            _ = writeln!(out, "    {name}: {text}");
-        }
-        out.push('\n');
+    let mut sheet = Sheet::new(file.title());
+    let (record, scale) = (&ledger.record, number(ledger.scale));
+    sheet.line(format!("  {record}: largest value {scale}; changes are in parts of it\n"));
+    costs(&mut sheet, ledger);
+    let c = &ledger.counts;
+    let nothing = ["nothing", "", "", &c.steps.to_string(), &c.newton_iterations.to_string(), ""];
+    if !ledger.without.is_empty() {
+        let rows = ledger.without.iter().map(|t| row(t, ledger, true));
+        let rows: Vec<Vec<String>> =
+            std::iter::once(nothing.map(String::from).to_vec()).chain(rows).collect();
+        sheet.table(&["without", "change", "saves", "steps", "iterations", ""], &rows);
+        sheet.line("");
     }
-    advise(&mut out, ledger, accuracy);
+    if !ledger.with.is_empty() {
+        let rows: Vec<Vec<String>> = ledger.with.iter().map(|t| row(t, ledger, false)).collect();
+        sheet.table(&["with", "change", "costs", "steps", "iterations", ""], &rows);
+        sheet.line("");
+    }
+    if !ledger.hints.is_empty() {
+        sheet.line("  to try what can't be guessed from the scene, write");
+        ledger.hints.iter().for_each(|(name, text)| sheet.line(format!("    {name}: {text}")));
+        sheet.line("");
+    }
+    advise(&mut sheet, ledger, accuracy);
     let files = pictures.iter().map(|p| format!(", plots/{p}.svg")).collect::<String>();
-    _ = writeln!(
-        out,
-        "{}: tables/ledger.csv, tables/effects.csv{files} ({} s of CPU time)",
-        folder.path().display(),
-        rough(elapsed.cpu_s)
-    );
-    out
+    let (path, cpu) = (folder.path().display(), rough(elapsed.cpu_s));
+    sheet.line(format!("{path}: tables/ledger.csv, tables/effects.csv{files} ({cpu} s of CPU time)"));
+    sheet.to_string()
 }
 
-fn row(t: &Tried, ledger: &Ledger, saves: bool) -> (Vec<String>, String) {
+/// Where the time goes, and the work of the effects.
+fn costs(sheet: &mut Sheet, ledger: &Ledger) {
+    let row = |l: &Line| {
+        let name = l.effect.as_ref().map_or(l.label.clone(), |e| format!("  {e}"));
+        let cost = l.cost.map_or(Default::default(), |(calls, time, share)| {
+            [calls.to_string(), rough(time), percent(share)]
+        });
+        let work = l.work.map_or(Default::default(), |(work, peak)| [or_none(work), or_none(peak)]);
+        [name].into_iter().chain(cost).chain(work).chain([String::new()]).collect()
+    };
+    let mut rows: Vec<Vec<String>> = lines(ledger).iter().map(row).collect();
+    let share = percent(ledger.costs.iter().map(|c| c.share).sum());
+    let without_clocks = format!("the run without clocks: {} s", rough(ledger.cpu_s));
+    let sum = ["together", "", &rough(ledger.measured_s()), &share, "", "", &without_clocks];
+    rows.push(sum.map(String::from).to_vec());
+    sheet.table(&["term", "calls", "time [s]", "share", "work [J]", "peak force [N]", ""], &rows);
+    sheet.line("");
+}
+
+fn row(t: &EffectTrial, ledger: &Ledger, saves: bool) -> Vec<String> {
     match &t.verdict {
-        Verdict::Ran { change, cpu_s, counts, note } => {
-            let cells = vec![
-                t.name.clone(),
-                rough(*change),
-                time(*cpu_s, ledger, saves),
-                counts.steps.to_string(),
-                counts.newton_iterations.to_string(),
-            ];
-            let both: Vec<&str> = [t.note.as_str(), note].into_iter().filter(|n| !n.is_empty()).collect();
-            (cells, both.join("; "))
-        }
-        Verdict::Failed(why) => {
-            let none = || "-".to_string();
-            (vec![t.name.clone(), none(), none(), none(), none()], why.clone())
-        }
+        Verdict::Ran { change, cpu_s, counts, note } => vec![
+            t.name.clone(),
+            rough(*change),
+            time(*cpu_s, ledger, saves),
+            counts.steps.to_string(),
+            counts.newton_iterations.to_string(),
+            both(&t.note, note),
+        ],
+        Verdict::Failed(why) => [t.name.as_str(), "-", "-", "-", "-", why].map(String::from).to_vec(),
     }
 }
 
 /// What can be left out, what is missing, and how far that can be believed.
-fn advise(out: &mut String, ledger: &Ledger, accuracy: f64) {
-    let at = format!("  at an accuracy of {}:", rough(accuracy));
+fn advise(sheet: &mut Sheet, ledger: &Ledger, accuracy: f64) {
     if ledger.interrupted {
-        _ = writeln!(out, "  stopped by {} before all effects were tried\n", Interrupt::cause());
+        sheet.line(format!("  stopped by {} before all effects were tried\n", Interrupt::cause()));
         return;
     }
+    let at = format!("  at an accuracy of {}:", rough(accuracy));
     match &ledger.advice {
-        None => _ = writeln!(out, "{at} nothing can be left out"),
-        Some(a) => {
-            let names = a.names.join(", ");
-            if let Verdict::Ran { change, cpu_s, .. } = &a.verdict {
-                let together = if a.names.len() > 1 { " together" } else { "" };
-                let saved = 1.0 - cpu_s / ledger.cpu_s;
-                let time = match saved {
-                    x if x >= 0.005 => format!("and saves {} of the time", percent(x)),
-                    _ => "and saves no time".into(),
-                };
-                let change = rough(*change);
-                _ = writeln!(
-                    out,
-                    "{at} {names} can be left out; that{together} changes the record by {change} {time}"
-                );
-            }
+        Some(Advice { names, verdict: Verdict::Ran { change, cpu_s, .. } }) => {
+            let together = if names.len() > 1 { " together" } else { "" };
+            let time = match 1.0 - cpu_s / ledger.cpu_s {
+                x if x >= 0.005 => format!("and saves {} of the time", percent(x)),
+                _ => "and saves no time".into(),
+            };
+            let (names, change) = (names.join(", "), rough(*change));
+            sheet.line(format!(
+                "{at} {names} can be left out; that{together} changes the record by {change} {time}"
+            ));
         }
+        _ => sheet.line(format!("{at} nothing can be left out")),
     }
-    let large = |t: &&Tried| t.verdict.change().is_some_and(|change| !(change <= accuracy));
-    let missing: Vec<String> = ledger
-        .with
-        .iter()
-        .filter(large)
+    let large = |t: &&EffectTrial| t.verdict.change().is_some_and(|change| !(change <= accuracy));
+    let missing = ledger.with.iter().filter(large);
+    let missing: Vec<String> = missing
         .map(|t| format!("{} ({})", t.name, t.verdict.change().map_or(String::new(), rough)))
         .collect();
     if !missing.is_empty() {
-        _ = writeln!(out, "{at} what the scene lacks but would matter is {}", missing.join(", "));
+        sheet.line(format!("{at} what the scene lacks but would matter is {}", missing.join(", ")));
     }
     if let Some(own) = ledger.own_error {
         let note = if own > 0.3 * accuracy { ": the steps are too coarse for this accuracy" } else { "" };
-        _ = writeln!(
-            out,
-            "  finer time steps alone change the record by {}; smaller changes can't be told from that{note}",
-            rough(own)
-        );
+        let own = rough(own);
+        sheet.line(format!(
+            "  finer time steps alone change the record by {own}; smaller changes can't be told from that{note}"
+        ));
     }
     if ledger.noise > 0.03 {
         let noise = percent(ledger.noise);
-        _ = writeln!(
-            out,
+        sheet.line(format!(
             "  the same run took {noise} longer or shorter at the end: smaller savings can't be told here"
-        );
+        ));
     }
-    out.push('\n');
+    sheet.line("");
 }

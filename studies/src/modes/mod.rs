@@ -4,13 +4,12 @@ mod pictures;
 mod report;
 
 use crate::error::Error;
-use crate::run::Manifest;
+use crate::run::{NewFolder, prepare};
 use ropewalk_core::modes::{self as core, Critical, Mode, ModesError, OnLook};
 use ropewalk_core::statics::{Found, Statics, StaticsError};
 use ropewalk_core::{Model, SolveError, State};
-use ropewalk_report::{Interrupt, ProgressMode, RunFolder, Stopwatch, Table, new_bar};
+use ropewalk_report::{ProgressMode, RunFolder, Stopwatch, Table, Watch, new_bar};
 use ropewalk_scene::{Analysis, Fault, Scene, SceneFile};
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 /// The modes of a scene, and what they are about.
@@ -31,7 +30,7 @@ pub struct Modal {
     pub warnings: Vec<String>,
 }
 
-/// What may be chosen about modes beside the scene.
+/// Options of [`modes`].
 #[derive(Clone, Debug)]
 pub struct ModesOptions {
     /// How many modes; those with the lowest frequencies.
@@ -43,11 +42,14 @@ pub struct ModesOptions {
     pub out: Option<PathBuf>,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 impl Default for ModesOptions {
     fn default() -> Self {
-        ModesOptions { count: 20, time: None, out: None, progress: ProgressMode::Quiet }
+        let (progress, watch) = (ProgressMode::Quiet, Watch::default());
+        ModesOptions { count: 20, time: None, out: None, progress, watch }
     }
 }
 
@@ -60,7 +62,7 @@ impl Default for ModesOptions {
 /// The scene can't be built, has no equilibrium, moves, or has something without mass.
 pub fn modes(scene: &Scene, options: &ModesOptions) -> Result<Modal, Error> {
     let model = scene.build()?;
-    find(scene, model, options, &mut |_, _, _| ControlFlow::Continue(()))
+    find(scene, model, options, &mut |_, _, _| options.watch.check())
 }
 
 impl Modal {
@@ -80,7 +82,7 @@ pub struct ModesOutcome {
     pub report: String,
 }
 
-/// Computes the modes of a scene into a folder. What one should know is said by `warn`.
+/// Computes the modes of a scene into a folder. Warnings are given to `warn`.
 ///
 /// # Errors
 /// As [`modes`]; the folder can't be used.
@@ -89,60 +91,38 @@ pub fn write_modes(
     options: &ModesOptions,
     warn: &mut dyn FnMut(&str),
 ) -> Result<ModesOutcome, Error> {
-    let model = file.build()?;
-    let manifest = Manifest::new(file, &model)?;
-    for name in file.document().unused_parameters() {
-        warn(&format!("parameter `{name}` is not used by the scene"));
-    }
-    let is_new = options.out.as_ref().is_none_or(|out| !out.exists());
-    let folder = RunFolder::create(options.out.clone(), &format!("{}-modes", file.name()))?;
+    let (model, manifest) = prepare(file, warn)?;
+    let folder = NewFolder::create(options.out.clone(), &format!("{}-modes", file.name()))?;
     let stopwatch = Stopwatch::start();
-    let interrupt = Interrupt::install().ok();
     let bar = match options.progress {
         ProgressMode::Quiet => None,
         _ => Some(new_bar(options.count as u64)),
     };
+    let watch = options.watch;
     let mut look = |good: usize, _: usize, vectors: usize| {
         if let Some(bar) = &bar {
             bar.set_position(good as u64);
             bar.set_message(format!("modes, {vectors} vectors"));
         }
-        match interrupt.is_some_and(|i| i.requested()) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
+        watch.check()
     };
     let found = find(file.scene(), model, options, &mut look);
     if let Some(bar) = &bar {
         bar.finish_and_clear();
     }
-    let modal = found.inspect_err(|_| {
-        if is_new {
-            // best effort, and it only removes a folder that is empty
-            let _ = std::fs::remove_dir(folder.path());
-        }
-    })?;
+    let modal = found?;
     modal.warnings.iter().for_each(|w| warn(w));
-    folder.write_scene(&file.document().to_toml())?;
-    folder.write_manifest(&manifest)?;
+    let folder = folder.keep(file, &manifest)?;
     modal.table().write(&folder.table_file("modes")?)?;
     let pictures = pictures::draw(&folder, &modal, warn);
     let report = report::report(file, &modal, &folder, pictures, stopwatch.elapsed());
     Ok(ModesOutcome { folder, modal, report })
 }
 
-/// As [`modes`], stopped by Ctrl-C.
-pub(crate) fn modes_showing(
-    scene: &Scene,
-    count: usize,
-    interrupt: Option<Interrupt>,
-) -> Result<Modal, Error> {
-    let options = ModesOptions { count, ..ModesOptions::default() };
-    let mut look = |_: usize, _: usize, _: usize| match interrupt.is_some_and(Interrupt::requested) {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
-    };
-    find(scene, scene.build()?, &options, &mut look)
+/// As [`modes`], until it is stopped.
+pub(crate) fn modes_watched(scene: &Scene, count: usize, watch: Watch) -> Result<Modal, Error> {
+    let options = ModesOptions { count, watch, ..ModesOptions::default() };
+    find(scene, scene.build()?, &options, &mut |_, _, _| watch.check())
 }
 
 fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'_>) -> Result<Modal, Error> {
@@ -166,7 +146,7 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
     let search = if core::in_balance(&model, &mut state, &scene.statics, run.frame)? {
         None
     } else {
-        Some(equilibrium(scene, &model, &mut state, time)?)
+        Some(equilibrium(scene, &model, &mut state, time, options.watch)?)
     };
     let found = core::modes(&model, &state, &scene.statics, run.frame, options.count, look)?;
     if let Some(of) = found.of.filter(|of| *of < options.count) {
@@ -204,9 +184,16 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
 }
 
 /// The equilibrium at a time: of statics scenes along the load path.
-fn equilibrium(scene: &Scene, model: &Model, state: &mut State, time: f64) -> Result<Found, Error> {
+fn equilibrium(
+    scene: &Scene,
+    model: &Model,
+    state: &mut State,
+    time: f64,
+    watch: Watch,
+) -> Result<Found, Error> {
     let no_memory = |e: SolveError| Error::Modes(ModesError::Solver(e));
     let mut search = Statics::relative(model, &scene.statics, scene.run.frame).map_err(no_memory)?;
+    search.stop_if(move || watch.is_over());
     if scene.run.analysis == Analysis::Dynamics || time == 0.0 {
         return Ok(search.find(state, true)?);
     }

@@ -3,7 +3,7 @@
 use super::{Modal, report};
 use ropewalk_core::modes::Mode;
 use ropewalk_core::{At, V3};
-use ropewalk_report::{OutputError, Plane, RunFolder, ShapePlot};
+use ropewalk_report::{Plane, RunFolder, ShapePlot};
 use std::f64::consts::FRAC_PI_2;
 
 /// How large the motion is drawn, in parts of the size of the scene.
@@ -15,17 +15,11 @@ const MARKS: usize = 17;
 pub(super) fn draw(folder: &RunFolder, modal: &Modal, warn: &mut dyn FnMut(&str)) -> usize {
     let rest = points(modal, &modal.state.q);
     let extent = extents(&rest);
-    let mut drawn = 0;
-    for (k, mode) in modal.modes.iter().enumerate() {
-        let plot = picture(modal, k + 1, mode, &rest, extent);
-        let written = folder.plot_file(&format!("mode-{:02}", k + 1)).and_then(|path| plot.write(&path));
-        match written {
-            Ok(()) => drawn += 1,
-            Err(OutputError::EmptyPlot { .. }) => {}
-            Err(e) => warn(&e.to_string()),
-        }
-    }
-    drawn
+    let drawn = modal.modes.iter().zip(1..).filter(|(mode, number)| {
+        let plot = picture(modal, *number, mode, &rest, extent);
+        folder.draw(&format!("mode-{number:02}"), |path| plot.write(path), warn)
+    });
+    drawn.count()
 }
 
 fn picture(modal: &Modal, number: usize, mode: &Mode, rest: &[V3<f64>], extent: V3<f64>) -> ShapePlot {
@@ -33,7 +27,7 @@ fn picture(modal: &Modal, number: usize, mode: &Mode, rest: &[V3<f64>], extent: 
     let scale = SIZE * if largest > 0.0 { largest } else { modal.model.length() } / amplitude(modal, mode);
     let standing = mode.quadrature.iter().all(|x| x.abs() < 0.02 * largest_of(&mode.shape));
     let phases: &[(f64, &str)] = match standing {
-        true => &[(0.0, "one way"), (2.0, "the other")],
+        true => &[(0.0, "phase 0°"), (2.0, "phase 180°")],
         false => &[(0.0, "0°"), (1.0, "90°"), (2.0, "180°"), (3.0, "270°")],
     };
     let mut shapes = vec![(0.0, rest.to_vec())];
@@ -66,7 +60,7 @@ fn points(modal: &Modal, q: &[f64]) -> Vec<V3<f64>> {
     let at = At { q, ..modal.state.at() };
     let mut all = Vec::new();
     for part in modal.model.parts() {
-        all.extend(part.line(&at));
+        all.extend(part.centre_line(&at));
         all.push(BREAK);
         let mesh = part.mesh();
         let stride = mesh.len().div_ceil(MARKS).max(1);

@@ -3,7 +3,7 @@
 use super::Modal;
 use ropewalk_core::modes::{Critical, Mode};
 use ropewalk_core::{Model, NodeId};
-use ropewalk_report::{Column, Elapsed, RunFolder, Table, number};
+use ropewalk_report::{Column, Elapsed, RunFolder, Sheet, Table, number};
 use ropewalk_scene::{Analysis, SceneFile};
 use std::fmt::Write as _;
 
@@ -75,7 +75,7 @@ pub(super) fn kind(m: &Mode) -> &'static str {
     match () {
         () if m.rigid => "rigid",
         () if m.is_unstable() && m.omega == 0.0 => "unstable",
-        () if m.is_unstable() => "unstable, swinging",
+        () if m.is_unstable() => "unstable, oscillating",
         () if m.omega == 0.0 => "creeping",
         () => "",
     }
@@ -89,7 +89,7 @@ pub(super) fn report(
     pictures: usize,
     elapsed: Elapsed,
 ) -> String {
-    let mut out = format!("{}\n", file.title());
+    let mut sheet = Sheet::new(file.title());
     let about = match &modal.search {
         None => "in balance as laid".to_string(),
         Some(found) => format!("equilibrium after {} iterations", found.iterations),
@@ -98,36 +98,23 @@ pub(super) fn report(
         Analysis::Dynamics => format!("t = {} s", number(modal.state.t)),
         Analysis::Statics => format!("load factor {}", number(modal.state.t)),
     };
-    let _ = writeln!(out, "{about}, {when}\n");
-    let row = if modal.unstable { growing } else { vibrating };
-    let rows: Vec<[String; 6]> =
-        modal.modes.iter().enumerate().map(|(k, m)| row(&modal.model, k, m)).collect();
-    let head = match modal.unstable {
-        false => ["", "Hz", "rad/s", "damping", "moves", ""],
-        true => ["", "growth 1/s", "e-fold s", "swings Hz", "moves", ""],
+    sheet.line(format!("{about}, {when}\n"));
+    let (row, head): (Row, _) = match modal.unstable {
+        false => (vibrating, ["", "Hz", "rad/s", "damping", "moves", ""]),
+        true => (growing, ["", "growth 1/s", "e-fold s", "oscillates Hz", "moves", ""]),
     };
-    let head = head.map(str::to_string);
-    let width = |c: usize| rows.iter().chain([&head]).map(|r| r[c].chars().count()).max().unwrap_or(0);
-    let widths: [usize; 6] = std::array::from_fn(width);
-    for row in std::iter::once(&head).chain(&rows) {
-        let mut line = String::new();
-        for (c, cell) in row.iter().enumerate() {
-            let w = widths[c];
-            let _ = if c < 4 { write!(line, "{cell:>w$}  ") } else { write!(line, "{cell:<w$}  ") };
-        }
-        let _ = writeln!(out, "  {}", line.trim_end());
-    }
+    let rows = modal.modes.iter().enumerate().map(|(k, m)| row(&modal.model, k, m).to_vec());
+    sheet.table(&head, &rows.collect::<Vec<_>>());
     if let Some(critical) = &modal.critical {
-        let _ = writeln!(out, "\n{}", buckling(&modal.model, critical));
+        sheet.line(format!("\n{}", buckling(&modal.model, critical)));
     }
-    let _ = writeln!(
-        out,
-        "\n{}: tables/modes.csv, {pictures} pictures in plots/ ({:.2} s of CPU time)",
-        folder.path().display(),
-        elapsed.cpu_s
-    );
-    out
+    let (path, cpu) = (folder.path().display(), elapsed.cpu_s);
+    sheet.line(format!("\n{path}: tables/modes.csv, {pictures} pictures in plots/ ({cpu:.2} s of CPU time)"));
+    sheet.to_string()
 }
+
+/// Makes the row of a mode.
+type Row = fn(&Model, usize, &Mode) -> [String; 6];
 
 /// The row of a mode of vibration.
 fn vibrating(model: &Model, k: usize, m: &Mode) -> [String; 6] {

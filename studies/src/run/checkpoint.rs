@@ -3,10 +3,10 @@
 //! The file is replaced as a whole, so that there is always one that can be read. It holds the simulation and everything
 //! recorded so far, with every bit of every number, behind a line that says which program wrote it.
 
+use super::recorder::Recorder;
 use super::shapes::Shape;
-use super::{Recorder, Started, Summary};
+use super::summary::{Happened, Status, Summary};
 use crate::error::Error;
-use crate::run::Happened;
 use ropewalk_core::{Checkpoint, Remeshed};
 use ropewalk_report::{Elapsed, OutputError, RunFolder, Stopwatch, Table};
 use ropewalk_scene::{Fault, quantity};
@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 /// When checkpoints are written.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Every {
-    /// After so much time on the clock, and when the run is interrupted.
+    /// After so much wall time, and when the run is interrupted.
     Time(Duration),
     /// After so many steps: the same checkpoints whatever else the machine does.
     Steps(u64),
@@ -87,20 +87,15 @@ const MAGIC: &str = concat!("ropewalk checkpoint ", env!("CARGO_PKG_VERSION"), "
 const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI);
 
 impl Saver {
-    /// Prepares checkpoints of a run in this folder that goes on from `started`.
+    /// Prepares checkpoints of a run in this folder that has made so many `steps`.
     pub(crate) fn new(
         folder: &RunFolder,
         name: &str,
         every: Every,
-        started: &Started,
+        (flutter, steps): (f64, u64),
         warnings: &[String],
-        before: Elapsed,
-        stopwatch: Stopwatch,
+        (before, stopwatch): (Elapsed, Stopwatch),
     ) -> Result<Self, Error> {
-        let (flutter, steps) = match started {
-            Started::Dynamics(s, flutter, _) => (*flutter, s.work.counts.steps),
-            Started::Statics(done) | Started::Process(_, done) => (done.flutter, 0),
-        };
         Ok(Saver {
             path: folder.checkpoint_file(),
             scene: scene_checksum(folder)?,
@@ -201,11 +196,11 @@ fn without_checkpoint(folder: &RunFolder) -> Fault {
     let again = "its results so far stay where they are; `ropewalk run` with `--checkpoint 60s` and another folder runs \
                  it again such that it can be resumed";
     match folder.read_summary().map(|summary: Summary| summary.status) {
-        Ok(status) if matches!(status.as_str(), "finished" | "stopped") => {
+        Ok(status) if status.is_complete() => {
             Fault::new(format!("there is nothing to resume in {shown}: that run came to its end"))
         }
         Ok(status) => {
-            let how = if status == "failed" { "failed" } else { "was interrupted" };
+            let how = if status == Status::Failed { "failed" } else { "was interrupted" };
             Fault::new(format!("there is no checkpoint in {shown}: that run {how} before it wrote one"))
                 .with_help(again)
         }

@@ -2,6 +2,7 @@
 
 use super::pictures::shape_titles;
 use ropewalk_core::{Guard, Model, Width};
+use ropewalk_report::Sheet;
 use ropewalk_scene::{Analysis, Fault, Scene, SceneFile};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -93,29 +94,25 @@ pub(super) fn notes(scene: &Scene, model: &Model) -> Vec<String> {
 
 impl fmt::Display for Manifest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |f: &mut fmt::Formatter<'_>, what: &str, lines: &[String]| {
-            for (k, line) in lines.iter().enumerate() {
-                writeln!(f, "  {:<12} {line}", if k == 0 { what } else { "" })?;
-            }
-            Ok(())
-        };
-        writeln!(f, "{}", self.title)?;
-        let parts: Vec<String> = self.parts.iter().map(|(n, kind)| format!("{n} ({kind})")).collect();
-        list(f, "parts", &parts)?;
-        list(f, "terms", &self.terms)?;
+        let mut sheet = Sheet::new(&self.title).with_labels(12);
         let equations = |n: usize| if n == 1 { "1 equation".to_string() } else { format!("{n} equations") };
-        let constraints: Vec<String> =
-            self.constraints.iter().map(|(n, rows)| format!("{n} ({})", equations(*rows))).collect();
-        list(f, "constraints", &constraints)?;
-        list(f, "notes", &self.notes)?;
-        list(f, "records", &self.records)?;
-        if self.non_zeros == 0 {
-            // a process has its own
-            return write!(f, "  {:<12} {}", "unknowns", self.unknowns);
+        sheet.entries("parts", self.parts.iter().map(|(name, kind)| format!("{name} ({kind})")));
+        sheet.entries("terms", &self.terms);
+        sheet.entries(
+            "constraints",
+            self.constraints.iter().map(|(n, rows)| format!("{n} ({})", equations(*rows))),
+        );
+        sheet.entries("notes", &self.notes);
+        sheet.entries("records", &self.records);
+        // a process has its own equations
+        let multipliers = format!(", and {} multipliers", self.multipliers);
+        let multipliers = if self.non_zeros == 0 { "" } else { &multipliers };
+        sheet.entry("unknowns", format!("{}{multipliers}", self.unknowns));
+        if self.non_zeros > 0 {
+            let symmetric = if self.symmetric { "symmetric" } else { "unsymmetric" };
+            sheet.entry("matrix", format!("{} non-zeros, {symmetric}", self.non_zeros));
+            sheet.entry("solver", format!("{}, {} elements at once", self.solver, self.lanes));
         }
-        let symmetric = if self.symmetric { "symmetric" } else { "unsymmetric" };
-        writeln!(f, "  {:<12} {}, and {} multipliers", "unknowns", self.unknowns, self.multipliers)?;
-        writeln!(f, "  {:<12} {} non-zeros, {symmetric}", "matrix", self.non_zeros)?;
-        write!(f, "  {:<12} {}, {} elements at once", "solver", self.solver, self.lanes)
+        f.write_str(sheet.to_string().trim_end())
     }
 }

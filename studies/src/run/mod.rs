@@ -3,6 +3,7 @@
 mod checkpoint;
 mod manifest;
 mod pictures;
+mod prepare;
 mod recorder;
 mod report;
 mod shapes;
@@ -14,21 +15,22 @@ mod tables;
 pub use checkpoint::Every;
 pub use manifest::Manifest;
 pub(crate) use pictures::{PLANES, planes, view};
+pub(crate) use prepare::{NewFolder, prepare};
 pub(crate) use recorder::Recorder;
 use recorder::Warnings;
 pub(crate) use shapes::{Shape, last as last_shape, read as read_shapes};
-pub(crate) use start::{Ending, Started};
-pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, Summary};
+pub(crate) use start::Started;
+pub(crate) use summary::Ending;
+pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, Status, Summary};
 
 use crate::error::Error;
 use checkpoint::Saver;
-use ropewalk_core::Audit;
-use ropewalk_report::{Elapsed, Interrupt, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter};
+use ropewalk_report::{Elapsed, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch};
 use ropewalk_scene::{Fault, SceneFile};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
+use std::time::Duration;
 
-/// What may be chosen about a run beside its scene.
+/// Options of [`run`].
 #[derive(Clone, Debug, Default)]
 pub struct RunOptions {
     /// The folder for the results, which must be new or empty; without it `runs/<scene>`, numbered.
@@ -39,6 +41,8 @@ pub struct RunOptions {
     pub progress: ProgressMode,
     /// When to write checkpoints, from which [`resume`] goes on; without it, none.
     pub checkpoint: Option<Every>,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
 }
 
 /// How a run ended and where its results are.
@@ -46,8 +50,7 @@ pub struct RunOptions {
 pub struct Outcome {
     /// The folder with all results.
     pub folder: RunFolder,
-    /// What `summary.json` says. The status is `finished`, `stopped` (by an event), `interrupted` (by Ctrl-C) or
-    /// `failed` (the solver gave up).
+    /// What `summary.json` says.
     pub summary: Summary,
     /// What `history.csv` says.
     pub history: Table,
@@ -57,7 +60,7 @@ pub struct Outcome {
     pub report: String,
 }
 
-/// Runs a scene into a folder of its own. What one should know although the run goes on is said by `warn`, at once.
+/// Runs a scene into a folder of its own. Warnings are given to `warn` at once.
 ///
 /// A run that fails or is interrupted is an `Ok` too: all that it computed until then is in the folder, and the
 /// summary says how it ended.
@@ -77,60 +80,39 @@ pub(crate) fn run_showing(
 ) -> Result<Outcome, Error> {
     let mut warnings = Warnings { all: Vec::new(), tell: Some(warn) };
     let scene = file.scene();
-    let model = file.build()?;
-    let records = file.records(&model)?;
-    let manifest = Manifest::new(file, &model)?;
-    for name in file.document().unused_parameters() {
-        warnings.say(&format!("parameter `{name}` is not used by the scene"));
-    }
-
-    let mut recorder = Recorder::new(scene, records);
+    let (model, manifest) = prepare(file, &mut |text| warnings.say(text))?;
+    let mut recorder = Recorder::new(scene, file.records(&model)?);
     if let Err(message) = tables::check(scene, &recorder.table) {
         return Err(file.document().fault_at("run.tables", message).into());
     }
-
-    let is_new = options.out.as_ref().is_none_or(|out| !out.exists());
-    let folder = RunFolder::create(options.out.clone(), file.name())?;
+    let folder = NewFolder::create(options.out.clone(), file.name())?;
     let stopwatch = Stopwatch::start();
-    let started = match Started::new(scene, model) {
-        Err(e) if e.is_input() => {
-            if is_new {
-                // best effort, and it only removes a folder that is empty
-                let _ = std::fs::remove_dir(folder.path());
-            }
-            return Err(at_section(file, e));
-        }
+    let started = match Started::new(scene, model, options.watch) {
+        Err(e) if e.is_input() => return Err(e.in_file(file)),
         other => other,
     };
-    folder.write_scene(&file.document().to_toml())?;
-    folder.write_manifest(&manifest)?;
-    let notes = manifest.notes;
+    let folder = folder.keep(file, &manifest)?;
     recorder.writer = Some(TableWriter::create(&folder.history_file(), &recorder.table)?);
     recorder.progress = Some(progress(scene.run.duration));
+    let before = Elapsed::default();
     if let Ok(started) = &started {
         started.warnings(scene).iter().for_each(|w| warnings.say(w));
         match (started, options.checkpoint) {
-            (Started::Statics(_) | Started::Process(..), Some(_)) => {
-                warnings.say("no checkpoints are written: they are for runs in time of elements and bodies");
+            (Started::Dynamics(s, flutter, _), Some(every)) => {
+                let state = (*flutter, s.work.counts.steps);
+                let clock = (before, stopwatch);
+                let saver = Saver::new(&folder, file.name(), every, state, &warnings.all, clock)?;
+                recorder.saver = Some(saver);
             }
-            (_, Some(every)) => {
-                let saver = Saver::new(
-                    &folder,
-                    file.name(),
-                    every,
-                    started,
-                    &warnings.all,
-                    Elapsed::default(),
-                    stopwatch,
-                );
-                recorder.saver = Some(saver?);
+            (_, Some(_)) => {
+                warnings.say("no checkpoints are written: they are for runs in time of elements and bodies");
             }
             (_, None) => {}
         }
     }
-    let before = Elapsed::default();
-    let course = Course { file, folder, recorder, stopwatch, before, resumed: false, notes };
-    course.complete(started, options.profile, warnings)
+    (recorder.warnings, recorder.watch) = (warnings, options.watch);
+    let job = Job { file, folder, recorder, stopwatch, before, is_resumed: false, notes: manifest.notes };
+    Ok(job.complete(started, options.profile))
 }
 
 /// Goes on with the run in the folder `options.out`, from its last checkpoint. What it recorded after that is computed
@@ -144,161 +126,105 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let path = folder.scene_file();
     let file = SceneFile::open(&path.display().to_string(), &[], &[])?.named(&saved.name);
     let stopwatch = Stopwatch::start();
-    let started = Started::resumed(&file, &saved)?;
+    let started = Started::restored(&file, saved.simulation.clone(), saved.flutter)?;
     let Started::Dynamics(simulation, ..) = &started else { unreachable!("only runs in time are resumed") };
     let mut recorder = Recorder::new(file.scene(), file.records(&simulation.model)?);
     recorder.take_up(&saved).map_err(Fault::new)?;
-    let warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
     let before = Elapsed { cpu_s: saved.cpu_s, wall_s: saved.wall_s };
     let every = options.checkpoint.unwrap_or(saved.every);
-    recorder.saver =
-        Some(Saver::new(&folder, &saved.name, every, &started, &warnings.all, before, stopwatch)?);
+    let state = (saved.flutter, simulation.work.counts.steps);
+    let saver = Saver::new(&folder, &saved.name, every, state, &saved.warnings, (before, stopwatch))?;
+    recorder.saver = Some(saver);
     recorder.writer = Some(TableWriter::resume(&folder.history_file(), &recorder.table)?);
     // what it says is of rows that are computed again
     let _ = std::fs::remove_file(folder.summary_file());
     let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
     recorder.progress = Some(Progress::new(t, end, options.progress));
+    recorder.warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
+    recorder.watch = options.watch;
     let notes = manifest::notes(file.scene(), &simulation.model);
-    let course = Course { file: &file, folder, recorder, stopwatch, before, resumed: true, notes };
-    course.complete(Ok(started), options.profile, warnings)
+    let job = Job { file: &file, folder, recorder, stopwatch, before, is_resumed: true, notes };
+    Ok(job.complete(Ok(started), options.profile))
 }
 
 /// A run from where everything is ready for it to where everything is written.
-struct Course<'a> {
+struct Job<'a> {
     file: &'a SceneFile,
     folder: RunFolder,
     recorder: Recorder<'a>,
     stopwatch: Stopwatch,
     /// What was spent on it before it was resumed.
     before: Elapsed,
-    resumed: bool,
+    is_resumed: bool,
     /// What its constraints have to say.
     notes: Vec<String>,
 }
 
-impl<'a> Course<'a> {
-    fn complete(
-        self,
-        mut started: Result<Started, Error>,
-        measure: bool,
-        mut warnings: Warnings<'a>,
-    ) -> Result<Outcome, Error> {
-        let Course { file, folder, mut recorder, stopwatch, before, resumed, notes } = self;
-        match Interrupt::install() {
-            Ok(interrupt) => recorder.interrupt = Some(interrupt),
-            Err(e) => warnings.say(&e.to_string()),
-        }
-        let mut profile = None;
-        let ending = match &mut started {
-            Err(_) => None,
-            Ok(started) => {
-                if measure {
-                    started.profile();
-                }
-                let clock = std::time::Instant::now();
-                recorder.warnings = warnings;
-                // a defect must not take what was computed with it
-                let go = || started.go(file.scene(), &mut recorder, resumed);
-                let ending = catch_unwind(AssertUnwindSafe(go)).unwrap_or_else(|_| {
-                    Ending::Failed(Error::Process("an internal error, see above: please report it".into()))
-                });
-                warnings = std::mem::take(&mut recorder.warnings);
-                started.afterthought().iter().for_each(|w| warnings.say(w));
-                recorder.afterthought().iter().for_each(|w| warnings.say(w));
-                if measure {
-                    profile = Some(shares(started.times(), clock.elapsed().as_secs_f64()));
-                }
-                Some(ending)
+impl Job<'_> {
+    fn complete(mut self, started: Result<Started, Error>, profile: bool) -> Outcome {
+        let mut summary = Summary { notes: std::mem::take(&mut self.notes), ..Summary::default() };
+        let ending = match started {
+            Ok(started) => self.compute(started, profile, &mut summary),
+            Err(e) => {
+                self.recorder.progress = None;
+                e.into()
             }
         };
-        if let Some(progress) = recorder.progress.take() {
-            progress.finish("");
+        (summary.status, summary.message) = (ending.status(), ending.message());
+        let elapsed = self.stopwatch.elapsed();
+        (summary.cpu_s, summary.wall_s) =
+            (self.before.cpu_s + elapsed.cpu_s, self.before.wall_s + elapsed.wall_s);
+        self.write(summary)
+    }
+
+    /// Moves the analysis to its end.
+    fn compute(&mut self, mut started: Started, profile: bool, summary: &mut Summary) -> Ending {
+        let recorder = &mut self.recorder;
+        if profile {
+            started.profile();
+            recorder.spent = Some((0, Duration::ZERO));
         }
-        let elapsed = stopwatch.elapsed();
+        let clock = Stopwatch::start();
+        let ending = started.go(recorder, self.is_resumed);
+        if profile {
+            let wall_s = clock.elapsed().wall_s;
+            let mut entries = started.times(recorder.spent, wall_s);
+            entries.iter_mut().for_each(|e| e.share = if wall_s > 0.0 { e.seconds / wall_s } else { 0.0 });
+            summary.profile = Some(entries);
+        }
         if let Some(e) = recorder.saver.as_mut().and_then(|s| s.trouble.take()) {
-            warnings.say(&format!("the last checkpoint is older than it should be: {e}"));
+            recorder.warnings.say(&format!("the last checkpoint is older than it should be: {e}"));
         }
-        let mut summary = Summary {
-            cpu_s: before.cpu_s + elapsed.cpu_s,
-            wall_s: before.wall_s + elapsed.wall_s,
-            profile,
-            notes,
-            ..Summary::default()
-        };
-        let ending = match (started, ending) {
-            (Ok(started), ending) => {
-                let done = started.done();
-                recorder.last_shape(&done.model, &done.state);
-                summary.critical = done.critical_loads();
-                (summary.counts, summary.energy) = (done.counts, energy(&done.audit));
-                ending.unwrap_or(Ending::Finished)
-            }
-            (Err(e), _) => Ending::Failed(e),
-        };
-        let word = match &ending {
-            Ending::Finished => "finished",
-            Ending::Stopped(_) => "stopped",
-            Ending::Interrupted => "interrupted",
-            Ending::Failed(_) => "failed",
-        };
-        summary.status = word.into();
-        summary.message = match &ending {
-            Ending::Finished => None,
-            Ending::Stopped(by) => Some(format!("stopped by {by}")),
-            Ending::Interrupted => Some(format!("stopped by {}", Interrupt::cause())),
-            Ending::Failed(error) => Some(error.to_string()),
-        };
+        let done = started.done();
+        recorder.last_shape(&done.model, &done.state);
+        summary.critical = done.critical_loads();
+        (summary.counts, summary.energy) = (done.counts, (&done.audit).into());
+        ending
+    }
+
+    /// Writes everything that is left to be written; what can't be is told.
+    fn write(self, mut summary: Summary) -> Outcome {
+        let Job { file, folder, mut recorder, .. } = self;
+        let mut warnings = std::mem::take(&mut recorder.warnings);
         if let Some(writer) = recorder.writer.take() {
             writer.finish().unwrap_or_else(|e| warnings.say(&e.to_string()));
         }
         recorder.finals(&mut summary);
-        let pictures =
-            pictures::draw(&folder, file.title(), &recorder, &summary.critical, &mut |w| warnings.say(w));
+        let mut warn = |text: &str| warnings.say(text);
+        let pictures = pictures::draw(&folder, file.title(), &recorder, &summary.critical, &mut warn);
         shapes::write(&folder, &recorder.table.columns[0], &recorder.shapes)
-            .unwrap_or_else(|e| warnings.say(&e.to_string()));
-        let tables = tables::write(&folder, &recorder, &mut |w| warnings.say(w));
+            .unwrap_or_else(|e| warn(&e.to_string()));
+        let tables = tables::write(&folder, &recorder, &mut warn);
         summary.warnings = warnings.all;
-        if matches!(ending, Ending::Finished | Ending::Stopped(_)) && recorder.saver.is_some() {
+        if summary.status.is_complete() && recorder.saver.is_some() {
             // there is nothing left to go on with
             let _ = std::fs::remove_file(folder.checkpoint_file());
         }
         // last of all: who finds a summary finds everything
         if let Err(e) = folder.write_summary(&summary) {
-            (summary.status, summary.message) = ("failed".into(), Some(e.to_string()));
+            (summary.status, summary.message) = (Status::Failed, Some(e.to_string()));
         }
         let report = report::report(file, &summary, &recorder, &folder, &pictures, &tables);
-        Ok(Outcome { folder, summary, history: recorder.table, pictures, report })
+        Outcome { folder, summary, history: recorder.table, pictures, report }
     }
-}
-
-/// A start that is refused is the fault of a section of the scene: point there.
-fn at_section(file: &SceneFile, e: Error) -> Error {
-    match e {
-        Error::Step(e) => Error::File(file.at_solver(e.to_string())),
-        Error::Scene(e) => Error::File(file.fault(&e)),
-        e => e,
-    }
-}
-
-fn energy(a: &Audit) -> EnergyTotals {
-    EnergyTotals {
-        kinetic: a.kinetic,
-        potential: a.potential,
-        supplied: a.supplied,
-        carried: a.carried,
-        dissipated: a.dissipated,
-        initial: a.initial,
-        imbalance: a.imbalance(),
-    }
-}
-
-/// Adds what is not in any term or phase: Newton's method, recording.
-fn shares(mut entries: Vec<ProfileEntry>, total: f64) -> Vec<ProfileEntry> {
-    let known: f64 = entries.iter().map(|e| e.seconds).sum();
-    let label = "integrator and output".to_string();
-    entries.push(ProfileEntry { label, calls: 1, seconds: (total - known).max(0.0), share: 0.0 });
-    for e in &mut entries {
-        e.share = if total > 0.0 { e.seconds / total } else { 0.0 };
-    }
-    entries
 }

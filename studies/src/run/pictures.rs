@@ -1,10 +1,9 @@
 //! The pictures of a run: every record over time, and the shape of all parts.
 
-use super::Recorder;
-use super::recorder::Figure;
-use crate::run::CriticalLoad;
+use super::recorder::{Figure, Recorder};
+use super::summary::CriticalLoad;
 use ropewalk_core::V3;
-use ropewalk_report::{LinePlot, Mark, OutputError, Plane, RunFolder, Series, ShapePlot};
+use ropewalk_report::{LinePlot, Mark, Plane, RunFolder, Series, ShapePlot};
 use ropewalk_scene::ShapeTitles;
 
 /// All ways to look at shapes.
@@ -19,16 +18,9 @@ pub(crate) fn draw(
     warn: &mut dyn FnMut(&str),
 ) -> Vec<String> {
     let mut drawn = Vec::new();
-    let mut keep = |name: String, result: Result<(), OutputError>| match result {
-        Ok(()) => drawn.push(name),
-        // nothing to show is no fault: a run that failed at once has no history
-        Err(OutputError::EmptyPlot { .. }) => {}
-        Err(e) => warn(&e.to_string()),
-    };
-    for figure in &recorder.figures {
-        for (name, plot) in histories(figure, recorder, critical) {
-            let written = folder.plot_file(&name).and_then(|path| plot.write(&path));
-            keep(name, written);
+    for (name, plot) in recorder.figures.iter().flat_map(|figure| histories(figure, recorder, critical)) {
+        if folder.draw(&name, |path| plot.write(path), warn) {
+            drawn.push(name);
         }
     }
     let titles = &recorder.scene.run.shape_titles;
@@ -44,8 +36,9 @@ pub(crate) fn draw(
         let title = shape_title(titles, plane).cloned().unwrap_or_else(|| format!("{title}, {from}"));
         let plot = ShapePlot::of_positions(title, plane, &shapes);
         let plot = ShapePlot { t_label: t_label.clone(), ..plot };
-        let written = folder.plot_file(name).and_then(|path| plot.write(&path));
-        keep(name.to_string(), written);
+        if folder.draw(name, |path| plot.write(path), warn) {
+            drawn.push(name.to_string());
+        }
     }
     drawn
 }

@@ -2,17 +2,16 @@
 
 use super::checkpoint::{Saved, Saver};
 use super::shapes::{Line, Shape};
-use super::start::Ending;
+use super::summary::{Ending, Happened, Summary};
 use super::surfacing::Surfacing;
 use crate::error::Error;
-use crate::run::{Happened, Summary};
 use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{At, Checkpoint, Layers, Model, NodeKind, Observer, Record, Remeshed, Sample, State, V3};
 use ropewalk_report as output;
-use ropewalk_report::{Interrupt, Progress, Table, TableWriter};
+use ropewalk_report::{Progress, Table, TableWriter, Watch};
 use ropewalk_scene::{Analysis, Channel, Process, Scene};
 use std::ops::ControlFlow;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// About how many rows keep the positions of all nodes, where they are tracked.
 const TRACKED: f64 = 200.0;
@@ -40,12 +39,12 @@ pub struct Recorder<'a> {
     pub writer: Option<TableWriter>,
     /// Where the progress is shown.
     pub progress: Option<Progress>,
-    /// Whether Ctrl-C was pressed.
-    pub interrupt: Option<Interrupt>,
+    /// What may stop the run.
+    pub watch: Watch,
+    /// How often samples were taken and how long that took, if it is to be measured.
+    pub spent: Option<(u64, Duration)>,
     /// Positions of all nodes at some hundred rows, if they are wanted.
     pub track: Option<Vec<Vec<V3<f64>>>>,
-    /// When the run has taken too long and stops as by Ctrl-C.
-    pub deadline: Option<Instant>,
     /// Lines of all parts at several times.
     pub shapes: Vec<Shape>,
     /// When shapes are still to be kept, last first.
@@ -117,9 +116,9 @@ impl<'a> Recorder<'a> {
             figures,
             writer: None,
             progress: None,
-            interrupt: None,
+            watch: Watch::default(),
+            spent: None,
             track: None,
-            deadline: None,
             shapes: Vec::new(),
             due: due.collect(),
             surfacing: Surfacing::of(scene),
@@ -228,15 +227,11 @@ impl<'a> Recorder<'a> {
     pub(crate) fn finals(&self, summary: &mut Summary) {
         summary.events.clone_from(&self.events);
         summary.rows = self.table.rows();
-        for column in &self.table.columns {
-            if let Some(last) = column.values.last() {
-                summary.set(&column.name, *last);
-            }
-        }
+        summary.set_finals(&self.table);
     }
 
     /// What one should know of the mesh, after all that was recorded.
-    pub(crate) fn afterthought(&self) -> Vec<String> {
+    pub(crate) fn remarks(&self) -> Vec<String> {
         self.layers.iter().flat_map(Layers::remarks).collect()
     }
 
@@ -245,17 +240,13 @@ impl<'a> Recorder<'a> {
         self.table.columns.first().and_then(|c| c.values.last()).copied().unwrap_or(0.0)
     }
 
-    fn is_to_stop(&self) -> bool {
-        self.interrupt.is_some_and(Interrupt::requested) || self.deadline.is_some_and(|d| Instant::now() >= d)
-    }
-
     /// Ends the run if that is asked for.
     fn look_for_end(&mut self) -> ControlFlow<()> {
-        if !self.is_to_stop() {
-            return ControlFlow::Continue(());
+        let flow = self.watch.check();
+        if flow.is_break() {
+            self.stop = Some(Ending::Interrupted);
         }
-        self.stop = Some(Ending::Interrupted);
-        ControlFlow::Break(())
+        flow
     }
 
     fn go_on(&mut self, result: Result<(), Error>) -> ControlFlow<()> {
@@ -308,9 +299,13 @@ impl Observer for Recorder<'_> {
         self.remeshed.push(report.clone());
     }
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
+        let begin = self.spent.map(|_| Instant::now());
         let risen = self.surfacing.as_mut().map(|s| s.look(sample.model, &sample.at));
         risen.into_iter().flatten().for_each(|text| self.warn(&text));
         let recorded = self.record(sample);
+        if let (Some((calls, time)), Some(begin)) = (&mut self.spent, begin) {
+            (*calls, *time) = (*calls + 1, *time + begin.elapsed());
+        }
         self.go_on(recorded)
     }
 }

@@ -1,10 +1,9 @@
 //! What is said on the terminal when a run has ended.
 
-use super::Recorder;
-use crate::run::{Happened, Summary};
-use ropewalk_report::{Column, RunFolder, number, rough};
+use super::recorder::{Figure, Recorder};
+use super::summary::{CriticalLoad, Happened, ProfileEntry, Summary};
+use ropewalk_report::{Column, RunFolder, Sheet, number, rough};
 use ropewalk_scene::{Analysis, SceneFile};
-use std::fmt::Write;
 
 /// The whole report: status, work, energy, records, files.
 pub(crate) fn report(
@@ -15,87 +14,73 @@ pub(crate) fn report(
     pictures: &[String],
     tables: &[String],
 ) -> String {
-    let mut out = format!("{}\n", file.title());
-    let mut line = |what: &str, text: String| _ = writeln!(out, "  {what:<9} {text}");
-    let statics = file.scene().run.analysis == Analysis::Statics;
+    let mut sheet = Sheet::new(file.title());
+    let scene = file.scene();
+    let statics = scene.run.analysis == Analysis::Statics;
     let t = recorder.t();
-    let at =
-        if statics { format!("at load factor {}", number(t)) } else { format!("at t = {} s", number(t)) };
-    match &summary.message {
-        Some(message) => line(&summary.status, format!("{at}: {message}")),
-        None => line(&summary.status, at),
-    }
-    let c = &summary.counts;
-    let steps = if statics { "equilibria" } else { "steps" };
-    line(
-        steps,
-        format!(
-            "{}{}, {} Newton iterations, {} factorizations",
-            c.steps,
-            if c.rejected > 0 { format!(" ({} rejected)", c.rejected) } else { String::new() },
-            c.newton_iterations,
-            c.factorizations
-        ),
-    );
-    let mut time = format!("{} s on the clock, {} s of CPU", rough(summary.wall_s), rough(summary.cpu_s));
-    if !statics && summary.wall_s > 0.0 {
-        _ = write!(time, ": {} x real time", rough(t / summary.wall_s));
-    }
-    line("time", time);
-    if file.scene().run.audit && !statics && file.scene().processes.is_empty() {
+    let at = if statics { format!("load factor {}", number(t)) } else { format!("t = {} s", number(t)) };
+    let why = summary.message.as_ref().map_or(String::new(), |message| format!(": {message}"));
+    sheet.entry(&summary.status.to_string(), format!("at {at}{why}"));
+    work(&mut sheet, summary, (!statics).then_some(t));
+    if scene.run.audit && !statics && scene.processes.is_empty() {
         let e = &summary.energy;
-        line(
+        let [kinetic, potential, supplied, dissipated, imbalance] =
+            [e.kinetic, e.potential, e.supplied + e.carried, e.dissipated, e.imbalance].map(rough);
+        sheet.entry(
             "energy",
             format!(
-                "kinetic {} J, potential {} J; supplied {} J, dissipated {} J, imbalance {} J",
-                rough(e.kinetic),
-                rough(e.potential),
-                rough(e.supplied + e.carried),
-                rough(e.dissipated),
-                rough(e.imbalance)
+                "kinetic {kinetic} J, potential {potential} J; supplied {supplied} J, dissipated {dissipated} J, \
+                 imbalance {imbalance} J"
             ),
         );
     }
-    for (k, note) in summary.notes.iter().enumerate() {
-        line(if k == 0 { "notes" } else { "" }, note.clone());
-    }
-    for (k, c) in summary.critical.iter().enumerate() {
-        let many = if c.directions > 1 { format!(" in {} directions", c.directions) } else { String::new() };
-        let text = format!("load factor {}, {}{many}: {}", number(c.load_factor), c.kind, c.what);
-        line(if k == 0 { "critical" } else { "" }, text);
-    }
-    for (k, (name, times)) in by_name(&summary.events).into_iter().enumerate() {
-        let when = match times.as_slice() {
-            [one] => format!("at t = {} s", number(*one)),
-            [first, .., last] => {
-                format!("{} times from t = {} s to {} s", times.len(), number(*first), number(*last))
-            }
-            [] => continue,
-        };
-        line(if k == 0 { "events" } else { "" }, format!("{name} {when}"));
-    }
-    let finals: Vec<_> =
-        recorder.figures.iter().flat_map(|f| finals(&recorder.table.columns[f.columns.clone()])).collect();
+    sheet.entries("notes", &summary.notes);
+    sheet.entries("critical", summary.critical.iter().map(critical));
+    sheet.entries("events", by_name(&summary.events).iter().map(|(name, times)| event(name, times)));
+    let columns = |f: &Figure| finals(&recorder.table.columns[f.columns.clone()]);
+    let finals: Vec<_> = recorder.figures.iter().flat_map(columns).collect();
     let wide = finals.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-    for (k, (name, values)) in finals.iter().enumerate() {
-        line(if k == 0 { "final" } else { "" }, format!("{name:<wide$}  {values}"));
-    }
-    if let Some(profile) = &summary.profile {
-        let mut entries: Vec<_> = profile.iter().collect();
-        entries.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
-        for (k, e) in entries.iter().enumerate() {
-            let text = format!("{:5.1} %  {} s  {}", 100.0 * e.share, rough(e.seconds), e.label);
-            line(if k == 0 { "profile" } else { "" }, text);
+    sheet.entries("final", finals.iter().map(|(name, values)| format!("{name:<wide$}  {values}")));
+    let mut profile: Vec<_> = summary.profile.iter().flatten().collect();
+    profile.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
+    let time = |e: &&ProfileEntry| format!("{:5.1} %  {} s  {}", 100.0 * e.share, rough(e.seconds), e.label);
+    sheet.entries("profile", profile.iter().map(time));
+    sheet.entry("folder", folder.path().display());
+    let list = |names: &[String], folder: &str, ending: &str| {
+        names.iter().map(|name| format!("{folder}/{name}.{ending}")).collect::<Vec<_>>().join(", ")
+    };
+    sheet.entries("tables", (!tables.is_empty()).then(|| list(tables, "tables", "csv")));
+    sheet.entries("pictures", (!pictures.is_empty()).then(|| list(pictures, "plots", "svg")));
+    sheet.to_string()
+}
+
+/// Steps and time; of a run in time, up to `t`, also how fast it was.
+fn work(sheet: &mut Sheet, summary: &Summary, t: Option<f64>) {
+    let c = &summary.counts;
+    let rejected = if c.rejected > 0 { format!(" ({} rejected)", c.rejected) } else { String::new() };
+    let (steps, iterations, factorizations) = (c.steps, c.newton_iterations, c.factorizations);
+    sheet.entry(
+        if t.is_some() { "steps" } else { "equilibria" },
+        format!("{steps}{rejected}, {iterations} Newton iterations, {factorizations} factorizations"),
+    );
+    let speed =
+        t.filter(|_| summary.wall_s > 0.0).map(|t| format!(": {} x real time", rough(t / summary.wall_s)));
+    let (wall, cpu) = (rough(summary.wall_s), rough(summary.cpu_s));
+    sheet.entry("time", format!("wall time {wall} s, CPU time {cpu} s{}", speed.unwrap_or_default()));
+}
+
+fn critical(c: &CriticalLoad) -> String {
+    let many = if c.directions > 1 { format!(" in {} directions", c.directions) } else { String::new() };
+    format!("load factor {}, {}{many}: {}", number(c.load_factor), c.kind, c.what)
+}
+
+fn event(name: &str, times: &[f64]) -> String {
+    match times {
+        [first, .., last] => {
+            format!("{name} {} times from t = {} s to {} s", times.len(), number(*first), number(*last))
         }
+        _ => format!("{name} at t = {} s", times.first().map_or("-".into(), |t| number(*t))),
     }
-    line("folder", folder.path().display().to_string());
-    if !tables.is_empty() {
-        line("tables", tables.iter().map(|t| format!("tables/{t}.csv")).collect::<Vec<_>>().join(", "));
-    }
-    if !pictures.is_empty() {
-        line("pictures", pictures.iter().map(|p| format!("plots/{p}.svg")).collect::<Vec<_>>().join(", "));
-    }
-    out
 }
 
 /// The last values of a record, under the names that its columns have in the history: those that differ only behind

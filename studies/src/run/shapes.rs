@@ -1,7 +1,7 @@
 //! The lines of all parts at the times of the snapshots: what pictures are drawn of, and `shapes.csv`.
 
 use ropewalk_core::{At, Model, V3};
-use ropewalk_report::{Column, OutputError, RunFolder, cells, push_cell, push_number, write_atomic};
+use ropewalk_report::{Column, Csv, OutputError, RunFolder, cells, write_atomic};
 use ropewalk_scene::Process;
 use serde::{Deserialize, Serialize};
 
@@ -41,7 +41,7 @@ impl Shape {
     /// All parts of a model that have a line.
     pub(super) fn of(model: &Model, at: &At<'_>) -> Self {
         let line = |part: &std::sync::Arc<dyn ropewalk_core::Part>| {
-            let (x, mut s) = (part.line(at), part.arc_lengths(at));
+            let (x, mut s) = (part.centre_line(at), part.arc_lengths(at));
             s.resize(x.len(), f64::NAN);
             Line { part: part.name().to_string(), s, x }
         };
@@ -67,24 +67,16 @@ pub(crate) fn write(folder: &RunFolder, first: &Column, shapes: &[Shape]) -> Res
     if shapes.is_empty() {
         return Ok(());
     }
-    let mut text = String::new();
-    push_cell(&mut text, &first.heading());
-    text += ",part,s [m],x [m],y [m],z [m]\n";
+    let mut csv = Csv::new([first.heading().as_str(), "part", "s [m]", "x [m]", "y [m]", "z [m]"]);
     for shape in shapes {
         for line in &shape.lines {
             for (s, x) in line.s.iter().zip(&line.x) {
-                push_number(&mut text, shape.t);
-                text.push(',');
-                push_cell(&mut text, &line.part);
-                for value in [s, &x[0], &x[1], &x[2]] {
-                    text.push(',');
-                    push_number(&mut text, *value);
-                }
-                text.push('\n');
+                csv.number(shape.t).cell(&line.part);
+                csv.number(*s).number(x[0]).number(x[1]).number(x[2]).end();
             }
         }
     }
-    write_atomic(&folder.shapes_file(), &text)
+    write_atomic(&folder.shapes_file(), &csv.text())
 }
 
 /// Reads them back.

@@ -1,28 +1,16 @@
 //! The analyses: motion in time, and a path of equilibria.
 
-use super::Recorder;
-use super::checkpoint::Saved;
-use crate::error::Error;
-use crate::run::{Counts, CriticalLoad, ProfileEntry};
+use super::recorder::Recorder;
+use super::summary::{Counts, CriticalLoad, Ending, ProfileEntry};
+use crate::error::{Error, caught};
 use ropewalk_core::integrator::{StepError, StepReport, Stepping};
 use ropewalk_core::statics::{Critical, Statics};
-use ropewalk_core::{Audit, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit};
+use ropewalk_core::{Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit};
+use ropewalk_report::Watch;
 use ropewalk_scene::{Analysis, Fault, Process, Scene, SceneFile};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
-
-/// How an analysis ended.
-pub enum Ending {
-    /// At its end.
-    Finished,
-    /// By an event.
-    Stopped(String),
-    /// By Ctrl-C.
-    Interrupted,
-    /// With an error.
-    Failed(Error),
-}
 
 /// Rate at which disturbances of an equilibrium grow [1/s]; 0 if they don't.
 type Flutter = f64;
@@ -40,6 +28,8 @@ pub(crate) struct Done {
     remarks: Vec<String>,
     /// Where the time of statics went, if that was asked for.
     times: Option<Vec<Spent>>,
+    /// What may stop a search.
+    watch: Watch,
 }
 
 /// A label with calls and time.
@@ -56,14 +46,14 @@ pub enum Started {
 }
 
 impl Started {
-    /// Brings the model to its start.
-    pub(crate) fn new(scene: &Scene, model: Model) -> Result<Self, Error> {
+    /// Brings the model to its start, unless that is stopped.
+    pub(crate) fn new(scene: &Scene, model: Model, watch: Watch) -> Result<Self, Error> {
         let run = &scene.run;
         if let Some(process) = scene.start_process()? {
-            return Ok(Started::Process(process, Box::new(Done::at_rest(model))));
+            return Ok(Started::Process(process, Box::new(Done::at_rest(model, watch))));
         }
         if run.analysis == Analysis::Statics {
-            return Ok(Started::Statics(Box::new(Done::at_rest(model))));
+            return Ok(Started::Statics(Box::new(Done::at_rest(model, watch))));
         }
         // an unsuitable scheme should not have to wait for the equilibrium
         scene.solver.integrator(&model, run.duration)?;
@@ -71,6 +61,7 @@ impl Started {
         if run.from_equilibrium {
             state.v.fill(0.0);
             let mut search = Statics::new(&model, &scene.statics).map_err(no_memory)?;
+            search.stop_if(move || watch.is_over());
             flutter = search.find(&mut state, true)?.flutter;
             remarks = remarks_on(&search);
             remarks.extend(without_friction(&model));
@@ -116,54 +107,52 @@ impl Started {
     }
 
     /// What only the run could tell: equilibria that aren't stable, multipliers that ring.
-    pub(crate) fn afterthought(&self) -> Vec<String> {
-        let (flutter, counts, ringing) = match self {
+    pub(crate) fn remarks(&self) -> Vec<String> {
+        let unstable = |flutter: f64| {
+            (flutter > 0.0).then(|| {
+                format!(
+                    "the equilibrium is not stable: small disturbances swing ever wider, e-fold in {:.2} s. In motion it \
+                     will flutter",
+                    1.0 / flutter
+                )
+            })
+        };
+        let mut all = Vec::new();
+        match self {
             Started::Process(process, _) => return process.warnings(),
-            Started::Dynamics(s, flutter, _) => (*flutter, s.work.counts, s.ringing),
-            Started::Statics(done) => (done.flutter, Default::default(), 0.0),
-        };
-        let rang = || {
-            format!("the multipliers rang: from step to step they swung by up to {ringing:.1e} of their size")
-        };
-        let unstable = || {
-            format!(
-                "the equilibrium is not stable: small disturbances swing ever wider, e-fold in {:.2} s. In motion it \
-                 will flutter",
-                1.0 / flutter
-            )
-        };
-        let (unmet, cut, steps) = (counts.unmet, counts.cut, counts.steps);
-        let stopped = || {
-            format!(
-                "{unmet} steps never met the stopping test of Newton's method: rounding leaves more than it allows. They \
-                 are as good as they get"
-            )
-        };
-        let shorter = || {
-            format!(
-                "{cut} of {steps} steps are shorter than `h`, since longer ones failed: they didn't converge, or the motion \
-                 jumped. Take a smaller `h`, or error control"
-            )
-        };
-        let mut remarks = match self {
-            Started::Statics(done) => done.remarks.clone(),
-            _ => Vec::new(),
-        };
-        if let Started::Statics(done) = self {
-            remarks.extend(without_friction(&done.model));
+            Started::Statics(done) => {
+                all.extend(unstable(done.flutter));
+                all.extend(done.remarks.iter().cloned().chain(without_friction(&done.model)));
+                all.extend(done.model.remarks(&done.state.at()));
+            }
+            Started::Dynamics(s, flutter, _) => {
+                let c = s.work.counts;
+                if s.ringing > 0.0 {
+                    let size = s.ringing;
+                    all.push(format!(
+                        "the multipliers rang: from step to step they swung by up to {size:.1e} of their size"
+                    ));
+                } else {
+                    all.extend(unstable(*flutter));
+                    all.extend((c.unmet > 0).then(|| {
+                        format!(
+                            "{} steps never met the stopping test of Newton's method: rounding leaves more than it allows. \
+                             They are as good as they get",
+                            c.unmet
+                        )
+                    }));
+                }
+                if c.cut > 0 {
+                    all.push(format!(
+                        "{} of {} steps are shorter than `h`, since longer ones failed: they didn't converge, or the motion \
+                         jumped. Take a smaller `h`, or error control",
+                        c.cut, c.steps
+                    ));
+                }
+                all.extend(s.model.remarks(&s.state.at()));
+            }
         }
-        remarks.extend(match self {
-            Started::Process(..) => Vec::new(),
-            Started::Dynamics(s, ..) => s.model.remarks(&s.state.at()),
-            Started::Statics(done) => done.model.remarks(&done.state.at()),
-        });
-        let all = [
-            (ringing > 0.0).then(rang),
-            (flutter > 0.0 && ringing == 0.0).then(unstable),
-            (unmet > 0 && ringing == 0.0).then(stopped),
-            (cut > 0).then(shorter),
-        ];
-        all.into_iter().flatten().chain(remarks).collect()
+        all
     }
 
     /// Measures the time of every term from now on.
@@ -175,49 +164,58 @@ impl Started {
         }
     }
 
-    /// The measured times.
-    pub(crate) fn times(&self) -> Vec<ProfileEntry> {
+    /// The measured times, and what is left of `wall_s`, with `recording` as it was measured.
+    pub(crate) fn times(&self, recording: Option<(u64, Duration)>, wall_s: f64) -> Vec<ProfileEntry> {
         let times = match self {
             Started::Dynamics(s, ..) => s.work.times(&s.model),
             Started::Statics(done) => done.times.clone().unwrap_or_default(),
             Started::Process(..) => Vec::new(),
         };
-        let entry = |(label, calls, time): Spent| ProfileEntry {
-            label,
-            calls,
-            seconds: time.as_secs_f64(),
-            share: 0.0,
-        };
-        times.into_iter().map(entry).collect()
+        let recording =
+            recording.filter(|r| r.0 > 0).map(|(calls, time)| ("recording".to_string(), calls, time));
+        let entry = |(label, calls, time): Spent| ProfileEntry::new(label, calls, time.as_secs_f64());
+        let mut all: Vec<ProfileEntry> = times.into_iter().chain(recording).map(entry).collect();
+        let known: f64 = all.iter().map(|e| e.seconds).sum();
+        all.push(ProfileEntry::new("Newton's method and step control", 1, (wall_s - known).max(0.0)));
+        all
     }
 
     /// A run in time as it was at a checkpoint.
-    pub(crate) fn resumed(file: &SceneFile, saved: &Saved<'_>) -> Result<Self, Error> {
-        let (scene, checkpoint) = (file.scene(), saved.simulation.clone());
+    pub(crate) fn restored(file: &SceneFile, checkpoint: Checkpoint, flutter: f64) -> Result<Self, Error> {
+        let scene = file.scene();
         let mut model = file.build()?;
         if !checkpoint.meshes.is_empty() {
             model = scene.build_on(&checkpoint.meshes)?;
         }
         match Simulation::restore(model, &scene.solver, scene.run.duration, checkpoint) {
-            Ok(simulation) => Ok(Started::Dynamics(Box::new(simulation), saved.flutter, Vec::new())),
+            Ok(simulation) => Ok(Started::Dynamics(Box::new(simulation), flutter, Vec::new())),
             Err(Unfit::Step(e)) => Err(e.into()),
             Err(e) => Err(Fault::new(e.to_string()).into()),
         }
     }
 
-    /// Computes until the end, or until something stops it; `resumed` says that a checkpoint was gone on from.
-    pub(crate) fn go(&mut self, scene: &Scene, recorder: &mut Recorder<'_>, resumed: bool) -> Ending {
+    /// Computes until the end, or until something stops it, and takes the progress away; `resumed` says that it goes on
+    /// from a checkpoint. What only the run could tell is said at the end.
+    pub(crate) fn go(&mut self, recorder: &mut Recorder<'_>, resumed: bool) -> Ending {
+        let scene = recorder.scene;
         let (duration, interval) = (scene.run.duration, scene.run.interval());
-        let end = match self {
-            Started::Dynamics(s, ..) if resumed => s.go_on(duration, interval, recorder).map_err(Error::from),
+        // a defect must not take what was computed with it
+        let end = caught(|| match self {
+            Started::Dynamics(s, ..) if resumed => Ok(s.go_on(duration, interval, recorder)?),
             Started::Process(process, _) => through(process.as_mut(), scene, recorder),
             _ => self.drive(scene, recorder),
-        };
+        });
+        if let Some(progress) = recorder.progress.take() {
+            progress.finish("");
+        }
+        for text in self.remarks().into_iter().chain(recorder.remarks()) {
+            recorder.warnings.say(&text);
+        }
         match (end, recorder.stop.take()) {
-            (_, Some(error)) => error,
+            (_, Some(ending)) => ending,
             (Ok(End::Done), None) => Ending::Finished,
             (Ok(End::Stopped { by }), None) => Ending::Stopped(by),
-            (Err(error), None) => Ending::Failed(error),
+            (Err(error), None) => error.into(),
         }
     }
 
@@ -241,7 +239,8 @@ impl Started {
                 let counts = counts(s.work.counts);
                 let (critical, remarks) = (Vec::new(), Vec::new());
                 let (model, state, audit) = (s.model, s.state, s.audit);
-                Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None }
+                let watch = Watch::default();
+                Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None, watch }
             }
         }
     }
@@ -275,13 +274,13 @@ fn counts(c: ropewalk_core::integrator::Counts) -> Counts {
 
 impl Done {
     /// A model that doesn't move, as it was laid.
-    fn at_rest(model: Model) -> Self {
+    fn at_rest(model: Model, watch: Watch) -> Self {
         let mut state = model.state();
         state.v.fill(0.0);
         let audit = Audit::start(model.energy(&state.at()));
         let (critical, remarks) = (Vec::new(), Vec::new());
         let (model, counts) = (Arc::new(model), Counts::default());
-        Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None }
+        Done { model, state, audit, counts, flutter: 0.0, critical, remarks, times: None, watch }
     }
 
     /// The critical loads for summaries.
@@ -299,6 +298,8 @@ impl Done {
     fn go(&mut self, scene: &Scene, observer: &mut dyn Observer) -> Result<End, Error> {
         let model = self.model.clone();
         let mut search = Statics::relative(&model, &scene.statics, scene.run.frame).map_err(no_memory)?;
+        let watch = self.watch;
+        search.stop_if(move || watch.is_over());
         if self.times.is_some() {
             search.profile();
         }
@@ -379,7 +380,7 @@ fn no_memory(source: SolveError) -> Error {
 
 /// What to say of an equilibrium that dry friction takes no part in.
 fn without_friction(model: &Model) -> Option<String> {
-    let rough = model.terms().iter().filter(|t| t.remembers()).map(|t| format!("`{}`", t.label()));
+    let rough = model.terms().iter().filter(|t| t.remembers().is_some()).map(|t| format!("`{}`", t.label()));
     let rough: Vec<String> = rough.collect();
     (!rough.is_empty()).then(|| {
         format!(

@@ -1,9 +1,13 @@
 //! `summary.json`: the few numbers that say how a run ended.
 
-use crate::certificate::Certificate;
+use crate::certificate::statement::Certificate;
+use crate::error::Error;
+use ropewalk_core::Audit;
 use ropewalk_core::statics::CriticalKind;
+use ropewalk_report::{Interrupt, Table};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
+use std::fmt;
 
 /// How a run ended, as `summary.json` holds it.
 ///
@@ -12,7 +16,7 @@ use serde_json::{Map, Value};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Summary {
     /// One word for scripts, such as `finished`, `interrupted`, `failed`.
-    pub status: String,
+    pub status: Status,
     /// What a human should know about it.
     #[serde(default)]
     pub message: Option<String>,
@@ -43,7 +47,7 @@ pub struct Summary {
     /// CPU time of the run, in seconds.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub cpu_s: f64,
-    /// Time on the clock, in seconds.
+    /// Wall time, in seconds.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub wall_s: f64,
     /// How far the run can be trusted, if that was asked for.
@@ -55,6 +59,15 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Sets the final values of all columns of a history.
+    pub(crate) fn set_finals(&mut self, history: &Table) {
+        for column in &history.columns {
+            if let Some(last) = column.values.last() {
+                self.set(&column.name, *last);
+            }
+        }
+    }
+
     /// Sets the final value of a column; columns keep the order in which they are set.
     ///
     /// ```
@@ -64,6 +77,92 @@ impl Summary {
     /// ```
     pub fn set(&mut self, column: impl Into<String>, value: f64) {
         self.final_values.insert(column.into(), value.into());
+    }
+}
+
+/// How a run ended, in a word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// It came to its end.
+    Finished,
+    /// An event ended it.
+    Stopped,
+    /// A signal such as Ctrl-C, or the end of the time given, stopped it.
+    Interrupted,
+    /// The solver gave up.
+    #[default]
+    Failed,
+    /// It could not begin.
+    Refused,
+}
+
+impl Status {
+    /// All of them.
+    pub const ALL: [Status; 5] =
+        [Status::Finished, Status::Stopped, Status::Failed, Status::Refused, Status::Interrupted];
+
+    /// Whether there is nothing left to compute.
+    pub fn is_complete(self) -> bool {
+        matches!(self, Status::Finished | Status::Stopped)
+    }
+    /// Whether there is no result, and not because it was interrupted.
+    pub fn is_failure(self) -> bool {
+        matches!(self, Status::Failed | Status::Refused)
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Status::Finished => "finished",
+            Status::Stopped => "stopped",
+            Status::Interrupted => "interrupted",
+            Status::Failed => "failed",
+            Status::Refused => "refused",
+        })
+    }
+}
+
+/// How an analysis ended.
+pub(crate) enum Ending {
+    Finished,
+    /// By an event of this name.
+    Stopped(String),
+    /// By a signal or a deadline.
+    Interrupted,
+    Failed(Error),
+}
+
+impl From<Error> for Ending {
+    fn from(error: Error) -> Self {
+        if matches!(error, Error::Interrupted) { Ending::Interrupted } else { Ending::Failed(error) }
+    }
+}
+
+impl Ending {
+    pub(crate) fn status(&self) -> Status {
+        match self {
+            Ending::Finished => Status::Finished,
+            Ending::Stopped(_) => Status::Stopped,
+            Ending::Interrupted => Status::Interrupted,
+            Ending::Failed(_) => Status::Failed,
+        }
+    }
+    /// What stopped it before its end, if anything did.
+    pub(crate) fn stopped_by(&self) -> Option<String> {
+        match self {
+            Ending::Stopped(by) => Some(by.clone()),
+            Ending::Interrupted => Some(Interrupt::cause().into()),
+            Ending::Finished | Ending::Failed(_) => None,
+        }
+    }
+    /// What a human should know about it.
+    pub(crate) fn message(&self) -> Option<String> {
+        match self {
+            Ending::Failed(error) => Some(error.to_string()),
+            other => other.stopped_by().map(|by| format!("stopped by {by}")),
+        }
     }
 }
 
@@ -130,6 +229,20 @@ pub struct EnergyTotals {
     pub imbalance: f64,
 }
 
+impl From<&Audit> for EnergyTotals {
+    fn from(a: &Audit) -> Self {
+        EnergyTotals {
+            kinetic: a.kinetic,
+            potential: a.potential,
+            supplied: a.supplied,
+            carried: a.carried,
+            dissipated: a.dissipated,
+            initial: a.initial,
+            imbalance: a.imbalance(),
+        }
+    }
+}
+
 /// One line of a run's profile.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ProfileEntry {
@@ -145,6 +258,12 @@ pub struct ProfileEntry {
     pub share: f64,
 }
 
+impl ProfileEntry {
+    pub(crate) fn new(label: impl Into<String>, calls: u64, seconds: f64) -> Self {
+        ProfileEntry { label: label.into(), calls, seconds, share: 0.0 }
+    }
+}
+
 fn null_as_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
@@ -155,11 +274,12 @@ mod tests {
 
     #[test]
     fn numbers_that_are_not_finite_become_null() {
-        let mut summary = Summary { status: "failed".into(), cpu_s: f64::INFINITY, ..Summary::default() };
+        let mut summary = Summary { status: Status::Failed, cpu_s: f64::INFINITY, ..Summary::default() };
         summary.set("hose.tension", f64::NAN);
         summary.set("hose.end.x", f64::INFINITY);
         summary.energy.imbalance = f64::NAN;
         let value = serde_json::to_value(&summary).unwrap();
+        assert_eq!(value["status"], "failed");
         assert_eq!(value["final"]["hose.tension"], Value::Null);
         assert_eq!(value["final"]["hose.end.x"], Value::Null);
         assert_eq!(value["cpu_s"], Value::Null);
@@ -170,7 +290,7 @@ mod tests {
     #[test]
     fn a_summary_reads_back_and_keeps_the_order_of_columns() {
         let mut summary = Summary {
-            status: "finished".into(),
+            status: Status::Finished,
             message: Some("reached t = 10 s".into()),
             counts: Counts { steps: 100, rejected: 2, newton_iterations: 310, factorizations: 120 },
             cpu_s: 0.25,

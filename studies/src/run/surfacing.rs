@@ -43,6 +43,6 @@ impl Surfacing {
 
 /// Height of the highest point of a part.
 fn top(part: &dyn Part, at: &At<'_>) -> f64 {
-    let line = part.line(at).into_iter().chain(part.point(0.0, at).map(|(x, _)| x));
+    let line = part.centre_line(at).into_iter().chain(part.point(0.0, at).map(|(x, _)| x));
     line.map(|x| x[2]).fold(f64::NEG_INFINITY, f64::max)
 }

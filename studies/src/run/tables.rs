@@ -1,6 +1,6 @@
 //! Some columns of the history as tables of their own.
 
-use super::Recorder;
+use super::recorder::Recorder;
 use ropewalk_core::Remeshed;
 use ropewalk_report::{Column, RunFolder, Table};
 use ropewalk_scene::{Scene, TableSpec};

@@ -347,7 +347,9 @@ impl Settings {
 
 /// Settings in words.
 pub mod words {
-    use super::{CableModel, Integration, Scheme, Stepping, closed};
+    use super::closed;
+    use ropewalk_core::integrator::{Scheme, Stepping};
+    use ropewalk_elements::cable::{CableModel, Integration};
 
     /// `L4+T3`, `L4+T3 full`
     pub(crate) fn models(m: CableModel) -> String {

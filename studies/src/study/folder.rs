@@ -117,20 +117,9 @@ impl StudyFolder {
     pub(crate) fn run(&self, name: &str) -> PathBuf {
         self.path.join("runs").join(name)
     }
-    /// `plots/<name>.svg`
-    ///
-    /// # Errors
-    /// A folder `plots` that can't be made.
-    pub(crate) fn plot_file(&self, name: &str) -> Result<PathBuf, OutputError> {
-        RunFolder::earlier(self.path.clone()).plot_file(name)
-    }
-
-    /// `tables/<record>-<ending>.csv`, such as `height-final.csv`
-    ///
-    /// # Errors
-    /// A folder `tables` that can't be made.
-    pub(crate) fn final_file(&self, record: &str, ending: &str) -> Result<PathBuf, OutputError> {
-        RunFolder::earlier(self.path.clone()).table_file(&format!("{record}-{ending}"))
+    /// The folder itself as one of pictures and tables.
+    pub(crate) fn files(&self) -> RunFolder {
+        RunFolder::earlier(self.path.clone())
     }
 
     /// Deletes what a study leaves; that it was one is forgotten last, so that this may be interrupted.

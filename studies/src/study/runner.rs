@@ -1,31 +1,49 @@
 //! The runs of a study, on all cores, each into a folder of its own: what an earlier call has computed is not computed
 //! again.
 
-use crate::error::Error;
-use crate::run::{RunOptions, Summary, run_showing};
+use crate::error::{Error, caught};
+use crate::run::{RunOptions, Status, Summary, run_showing};
 use rayon::iter::{ParallelBridge, ParallelIterator};
-use ropewalk_report::{Interrupt, ProgressMode, RunFolder, SweepProgress, Table};
+use ropewalk_report::{ProgressMode, RunFolder, SweepProgress, Table, Watch};
 use ropewalk_scene::{Fault, SceneFile};
 use std::collections::HashSet;
 use std::fs;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Stack of a thread that runs scenes: as large as that of the main thread usually is.
 const STACK: usize = 8 << 20;
 
+/// What several threads write to; one that panicked has left it whole.
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Does this on a pool of so many threads, or of as many as there are cores.
+fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, Fault> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).stack_size(STACK).build();
+    Ok(pool.map_err(|e| Fault::new(format!("no threads to compute on: {e}")))?.install(work))
+}
+
+/// Does this on a pool of as many threads as there are cores.
+///
+/// # Errors
+/// The system gives no threads.
+pub(crate) fn on_all_cores<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Fault> {
+    on_threads(None, work)
+}
+
 /// What all threads of a study share.
-pub struct Runner {
+pub(crate) struct Runner {
     /// Where the progress is shown and what goes wrong is said.
     pub progress: SweepProgress,
-    interrupt: Option<Interrupt>,
+    watch: Watch,
     /// Warnings that have been said: most of them hold for all runs.
     said: Mutex<HashSet<String>>,
 }
 
 /// What a run came to, now or in an earlier call.
 pub(crate) struct Ran {
-    /// How it ended; `refused` if it could not begin.
+    /// How it ended.
     pub summary: Summary,
     /// Its records, as far as they were computed.
     pub history: Table,
@@ -36,25 +54,16 @@ pub(crate) struct Ran {
 impl Ran {
     /// A run that could not begin.
     pub(crate) fn refused(message: String) -> Self {
-        let summary = Summary { status: "refused".into(), message: Some(message), ..Summary::default() };
+        let summary = Summary { status: Status::Refused, message: Some(message), ..Summary::default() };
         Ran { summary, history: Table::default(), earlier: false }
     }
 }
 
 impl Runner {
-    /// Begins to show the progress of so many runs, and listens to Ctrl-C.
-    pub(crate) fn new(runs: usize, mode: ProgressMode) -> Self {
+    /// Begins to show the progress of so many runs.
+    pub(crate) fn new(runs: usize, mode: ProgressMode, watch: Watch) -> Self {
         let progress = SweepProgress::new(runs, mode);
-        let interrupt = Interrupt::install();
-        if let Err(e) = &interrupt {
-            progress.say(&format!("warning: {e}"));
-        }
-        Runner { progress, interrupt: interrupt.ok(), said: Mutex::default() }
-    }
-
-    /// Whether Ctrl-C was pressed.
-    pub(crate) fn is_interrupted(&self) -> bool {
-        self.interrupt.is_some_and(Interrupt::requested)
+        Runner { progress, watch, said: Mutex::default() }
     }
 
     /// Does this for every run, `jobs` at a time or as many as there are cores.
@@ -68,15 +77,10 @@ impl Runner {
         work: impl Fn(usize) -> Result<(), Error> + Sync,
     ) -> Result<(), Error> {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(jobs.unwrap_or_else(cores).min(runs).max(1))
-            .stack_size(STACK)
-            .build()
-            .map_err(|e| {
-                Fault::new(format!("no threads to compute on: {e}")).with_help("try fewer `--jobs`")
-            })?;
-        let one = |k| if self.is_interrupted() { Ok(()) } else { work(k) };
-        pool.install(|| (0..runs).par_bridge().try_for_each(one))
+        let threads = jobs.unwrap_or_else(cores).min(runs).max(1);
+        let one = |k| if self.watch.is_interrupted() { Ok(()) } else { work(k) };
+        on_threads(Some(threads), || (0..runs).par_bridge().try_for_each(one))
+            .map_err(|fault| fault.with_help("try fewer `--jobs`"))?
     }
 
     /// What is in the folder, if it is a complete run of this very scene; else runs it. A run that fails is told.
@@ -85,7 +89,7 @@ impl Runner {
             Err(fault) => Ran::refused(fault.message.clone()),
             Ok(file) => complete(folder, file).unwrap_or_else(|| self.compute(file, name, folder)),
         };
-        if matches!(ran.summary.status.as_str(), "failed" | "refused") {
+        if ran.summary.status.is_failure() {
             let message = ran.summary.message.as_deref().unwrap_or("failed");
             let place = match folder.history_file().exists() {
                 true => format!("\n  = note: the results until then are in {}", folder.path().display()),
@@ -106,22 +110,20 @@ impl Runner {
         }
         let options = RunOptions {
             out: Some(folder.path().to_path_buf()),
-            profile: false,
             progress: ProgressMode::Quiet,
-            checkpoint: None,
+            watch: self.watch,
+            ..RunOptions::default()
         };
         let progress = |t_end: f64| self.progress.begin(name, t_end);
         let mut warn = |text: &str| {
-            if self.said.lock().unwrap_or_else(PoisonError::into_inner).insert(text.to_string()) {
+            if lock(&self.said).insert(text.to_string()) {
                 self.progress.say(&format!("warning: {name}: {text}"));
             }
         };
         // a defect that shows in one run must not take the others with it
-        match catch_unwind(AssertUnwindSafe(|| run_showing(file, &options, &progress, &mut warn))) {
-            Ok(Ok(outcome)) => Ran { summary: outcome.summary, history: outcome.history, earlier: false },
-            Ok(Err(Error::File(fault))) => Ran::refused(fault.message),
-            Ok(Err(e)) => Ran::refused(e.to_string()),
-            Err(_) => Ran::refused("an internal error, see above: please report it".into()),
+        match caught(|| run_showing(file, &options, &progress, &mut warn)) {
+            Ok(outcome) => Ran { summary: outcome.summary, history: outcome.history, earlier: false },
+            Err(e) => Ran::refused(e.brief()),
         }
     }
 }
@@ -147,6 +149,5 @@ fn complete(folder: &RunFolder, file: &SceneFile) -> Option<Ran> {
         }
     });
     let whole = history.rows() == summary.rows && ended;
-    let complete = matches!(summary.status.as_str(), "finished" | "stopped");
-    (complete && whole).then_some(Ran { summary, history, earlier: true })
+    (summary.status.is_complete() && whole).then_some(Ran { summary, history, earlier: true })
 }

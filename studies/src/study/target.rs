@@ -17,8 +17,10 @@ pub struct Target {
     pub name: String,
     /// When, if not all the time [s]; in statics a load factor.
     pub t: Option<f64>,
-    /// The columns of the history.
+    /// The columns of the history …
     pub columns: Range<usize>,
+    /// … and their names.
+    pub names: Vec<String>,
     /// Their unit.
     pub unit: String,
 }
@@ -93,18 +95,33 @@ impl Target {
     /// All records of a recorder, then their columns.
     pub(crate) fn recorded(recorder: &Recorder<'_>) -> Vec<Self> {
         let of = |name: &str, columns: Range<usize>| {
-            let unit = recorder.table.columns.get(columns.start).map_or("", |c| c.unit.as_str()).to_string();
-            Target { text: name.into(), name: name.into(), t: None, columns, unit }
+            let own = &recorder.table.columns[columns.clone()];
+            let unit = own.first().map_or("", |c| c.unit.as_str()).to_string();
+            let names = own.iter().map(|c| c.name.clone()).collect();
+            Target { text: name.into(), name: name.into(), t: None, columns, names, unit }
         };
         let records = recorder.figures.iter().map(|f| of(&f.name, f.columns.clone()));
         let columns = recorder.table.columns.iter().enumerate().skip(1).map(|(k, c)| of(&c.name, k..k + 1));
         records.chain(columns).collect()
     }
 
-    /// Time and the columns that are looked at, of a history with all columns.
+    /// Time and the columns that are looked at, of a history that has these and others.
     pub(crate) fn of(&self, history: &Table) -> Table {
-        let columns = history.columns.get(self.columns.clone()).unwrap_or_default();
-        Table { columns: history.columns.first().into_iter().chain(columns).cloned().collect() }
+        self.find_in(history).unwrap_or_default()
+    }
+
+    /// The same; none if the history lacks one of them.
+    pub(crate) fn find_in(&self, history: &Table) -> Option<Table> {
+        let mut columns = vec![history.columns.first()?.clone()];
+        for name in &self.names {
+            columns.push(history.column(name)?.clone());
+        }
+        Some(Table { columns })
+    }
+
+    /// The largest magnitude of the record over the run; 0 if it never has one.
+    pub(crate) fn magnitude(&self, values: &Table) -> f64 {
+        (0..values.rows()).map(|row| magnitude(values, row)).filter(|x| x.is_finite()).fold(0.0, f64::max)
     }
 
     /// The size by which differences are divided: the largest magnitude of the record over the run.
@@ -112,19 +129,14 @@ impl Target {
     /// # Errors
     /// It is zero or no number all the time, or at the time that is asked for.
     pub(crate) fn size(&self, values: &Table) -> Result<f64, Fault> {
-        let rows = 0..values.rows();
-        let magnitude =
-            |row: usize| values.columns.iter().skip(1).map(|c| c.values[row].powi(2)).sum::<f64>().sqrt();
-        let size = rows.clone().map(magnitude).filter(|x| x.is_finite()).fold(0.0, f64::max);
-        let last = rows.last().map_or(f64::NAN, magnitude);
-        let name = quoted(&self.text);
+        let size = self.magnitude(values);
+        let last = values.rows().checked_sub(1).map_or(f64::NAN, |row| magnitude(values, row));
         if size == 0.0 {
             return Err(self.nothing());
         }
         if self.t.is_some() && !last.is_finite() {
-            return Err(
-                Fault::new(format!("{name} has no value at that time")).with_help("choose another time")
-            );
+            let fault = Fault::new(format!("{} has no value at that time", quoted(&self.text)));
+            return Err(fault.with_help("choose another time"));
         }
         Ok(size)
     }
@@ -148,39 +160,82 @@ impl Target {
     }
 }
 
-/// How far two histories of the same columns differ: the largest distance, or the one at the end if `last` is set. Rows
-/// are those of the same times; what isn't a number in one of them only, or an end that comes at quite another time, makes
-/// it NaN.
-pub fn difference(a: &Table, b: &Table, last: bool) -> f64 {
-    let (Some(ta), Some(tb)) = (a.columns.first(), b.columns.first()) else { return f64::NAN };
-    let (ta, tb) = (&ta.values, &tb.values);
+/// The moments at which two histories are compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum When {
+    /// All that both have; they must end at about the same time.
+    Whole,
+    /// All that both have, whatever their ends.
+    Common,
+    /// The end, which must be the same.
+    End,
+    /// A time, between rows along a straight line.
+    At(f64),
+}
+
+/// How far two histories of the same columns differ: the largest distance. It is NaN where one has a value and the other
+/// none, and where there is nothing to compare.
+pub(crate) fn difference(a: &Table, b: &Table, when: When) -> f64 {
+    let times = |table: &Table| table.columns.first().map_or(Vec::new(), |c| c.values.clone());
+    let (ta, tb) = (times(a), times(b));
     let (Some(&ea), Some(&eb)) = (ta.last(), tb.last()) else { return f64::NAN };
-    let same = |x: f64, y: f64| (x - y).abs() <= 1e-9 * ea.abs().max(eb.abs());
-    let distance = |i: usize, j: usize| {
-        let of = |(p, q): (f64, f64)| if p.is_nan() && q.is_nan() { 0.0 } else { (p - q).powi(2) };
-        let pairs = a.columns.iter().zip(&b.columns).skip(1).map(|(p, q)| (p.values[i], q.values[j]));
-        pairs.map(of).sum::<f64>().sqrt()
-    };
-    if last {
-        return if same(ea, eb) { distance(ta.len() - 1, tb.len() - 1) } else { f64::NAN };
-    }
-    // an event may end the run a little earlier or later
-    if (ea - eb).abs() > 0.02 * ea.abs().max(eb.abs()) {
-        return f64::NAN;
-    }
-    let (mut i, mut j, mut largest, mut rows) = (0, 0, 0.0_f64, 0);
-    while i < ta.len() && j < tb.len() {
-        if same(ta[i], tb[j]) {
-            let d = distance(i, j);
-            largest = if d.is_nan() || largest.is_nan() { f64::NAN } else { largest.max(d) };
-            (i, j, rows) = (i + 1, j + 1, rows + 1);
-        } else if ta[i] < tb[j] {
-            i += 1;
-        } else {
-            j += 1;
+    let largest_time = ea.abs().max(eb.abs());
+    let same = |x: f64, y: f64| (x - y).abs() <= 1e-9 * largest_time;
+    match when {
+        When::End if same(ea, eb) => distance(&row(a, ta.len() - 1), &row(b, tb.len() - 1)),
+        When::End => f64::NAN,
+        When::At(t) => match (row_at(a, &ta, t), row_at(b, &tb, t)) {
+            (Some(x), Some(y)) => distance(&x, &y),
+            _ => f64::NAN,
+        },
+        // an event may end the run a little earlier or later
+        When::Whole if (ea - eb).abs() > 0.02 * largest_time => f64::NAN,
+        When::Whole | When::Common => {
+            let (mut i, mut j, mut largest) = (0, 0, None);
+            while i < ta.len() && j < tb.len() {
+                if same(ta[i], tb[j]) {
+                    let d = distance(&row(a, i), &row(b, j));
+                    largest = Some(largest.map_or(d, |m: f64| if d <= m || m.is_nan() { m } else { d }));
+                    (i, j) = (i + 1, j + 1);
+                } else if ta[i] < tb[j] {
+                    i += 1;
+                } else {
+                    j += 1;
+                }
+            }
+            largest.unwrap_or(f64::NAN)
         }
     }
-    if rows == 0 { f64::NAN } else { largest }
+}
+
+/// The values in a row, without its time.
+fn row(table: &Table, k: usize) -> Vec<f64> {
+    table.columns.iter().skip(1).map(|c| c.values[k]).collect()
+}
+
+fn magnitude(table: &Table, k: usize) -> f64 {
+    row(table, k).iter().map(|x| x.powi(2)).sum::<f64>().sqrt()
+}
+
+/// Two rows without any value are the same.
+fn distance(x: &[f64], y: &[f64]) -> f64 {
+    let square = |(p, q): (&f64, &f64)| if p.is_nan() && q.is_nan() { 0.0 } else { (p - q).powi(2) };
+    x.iter().zip(y).map(square).sum::<f64>().sqrt()
+}
+
+/// The values at a time, between rows along a straight line; none after the last row.
+fn row_at(table: &Table, times: &[f64], t: f64) -> Option<Vec<f64>> {
+    let k = times.partition_point(|x| *x < t);
+    let before = k.checked_sub(1);
+    match (before, k < times.len()) {
+        (None, true) => Some(row(table, k)),
+        (Some(i), true) => {
+            let u = (t - times[i]) / (times[k] - times[i]);
+            Some(row(table, i).iter().zip(row(table, k)).map(|(a, b)| a + u * (b - a)).collect())
+        }
+        (Some(i), false) if t - times[i] <= 1e-9 * t.abs() => Some(row(table, i)),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -198,10 +253,13 @@ mod tests {
     fn histories_differ_by_their_largest_distance_at_common_times() {
         let a = table(&[(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]);
         let b = table(&[(0.0, 0.0), (1.0, 1.5), (1.7, 99.0), (2.0, 2.0), (3.0, 3.25)]);
-        assert_eq!((difference(&a, &b, false), difference(&b, &a, true)), (0.5, 0.25));
+        assert_eq!((difference(&a, &b, When::Whole), difference(&b, &a, When::End)), (0.5, 0.25));
         let nan = table(&[(0.0, 0.0), (1.0, f64::NAN), (3.0, 3.0)]);
-        assert!(difference(&a, &nan, false).is_nan() && difference(&nan, &nan, false) == 0.0);
+        assert!(difference(&a, &nan, When::Whole).is_nan() && difference(&nan, &nan, When::Whole) == 0.0);
         let short = table(&[(0.0, 0.0), (1.0, 1.0)]);
-        assert!(difference(&a, &short, false).is_nan() && difference(&a, &short, true).is_nan());
+        assert!(difference(&a, &short, When::Whole).is_nan() && difference(&a, &short, When::End).is_nan());
+        assert_eq!(difference(&a, &short, When::Common), 0.0);
+        assert_eq!(difference(&a, &b, When::At(0.5)), 0.25);
+        assert!(difference(&a, &short, When::At(1.5)).is_nan());
     }
 }

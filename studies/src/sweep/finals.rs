@@ -5,7 +5,7 @@ use super::grid::Grid;
 use super::results::{Recorded, Results};
 use super::tail::Report;
 use crate::study::StudyFolder;
-use ropewalk_report::{OutputError, push_cell, push_number, write_atomic};
+use ropewalk_report::{Csv, OutputError, write_atomic};
 use std::collections::HashMap;
 
 /// Last values of runs that differ in nothing but the first parameter.
@@ -20,7 +20,7 @@ pub(super) struct Line {
 pub(super) fn finals(column: &Recorded, grid: &Grid, results: &Results, what: Report) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     let mut place: HashMap<String, usize> = HashMap::new();
-    for (k, row) in results.rows().filter(|(_, row)| row.is_complete()) {
+    for (k, row) in results.rows().filter(|(_, row)| row.status.is_complete()) {
         let Some(values) = Results::values(row, column) else { continue };
         let name = grid.label(k, 1);
         let at = *place.entry(name.clone()).or_insert_with(|| {
@@ -43,6 +43,7 @@ pub(super) fn write(
     warn: &mut dyn FnMut(&str),
 ) -> usize {
     let Some(axis) = axes.first() else { return 0 };
+    let files = folder.files();
     let mut written = 0;
     for column in results.recorded().iter().skip(1) {
         let lines = finals(column, grid, results, what);
@@ -50,8 +51,9 @@ pub(super) fn write(
             continue;
         }
         let text = table(&column.heading, axis, &lines);
-        let result: Result<(), OutputError> =
-            folder.final_file(&column.name, what.ending()).and_then(|path| write_atomic(&path, &text));
+        let result: Result<(), OutputError> = files
+            .table_file(&format!("{}-{}", column.name, what.ending()))
+            .and_then(|path| write_atomic(&path, &text));
         match result {
             Ok(()) => written += 1,
             Err(e) => warn(&e.to_string()),
@@ -61,24 +63,17 @@ pub(super) fn write(
 }
 
 fn table(heading: &str, axis: &Axis, lines: &[Line]) -> String {
-    let mut text = String::new();
-    push_cell(&mut text, &axis.heading);
-    for line in lines {
-        text.push(',');
-        let name =
-            if line.name.is_empty() { heading.to_string() } else { format!("{heading}: {}", line.name) };
-        push_cell(&mut text, &name);
-    }
-    text.push('\n');
+    let name = |line: &Line| match line.name.as_str() {
+        "" => heading.to_string(),
+        name => format!("{heading}: {name}"),
+    };
+    let mut csv = Csv::new(std::iter::once(axis.heading.clone()).chain(lines.iter().map(name)));
     for (i, cell) in axis.cells.iter().enumerate() {
-        push_cell(&mut text, cell);
+        csv.cell(cell);
         for line in lines {
-            text.push(',');
-            if let Some((_, value)) = line.values.iter().find(|(at, _)| *at == i) {
-                push_number(&mut text, *value);
-            }
+            csv.number_or_none(line.values.iter().find(|(at, _)| *at == i).map(|(_, value)| *value));
         }
-        text.push('\n');
+        csv.end();
     }
-    text
+    csv.text()
 }

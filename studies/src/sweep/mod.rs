@@ -17,13 +17,14 @@ pub use grid::Grid;
 pub use tail::{Over, Report};
 
 use crate::error::Error;
-use crate::study::{Runner, StudyFolder};
+use crate::run::Status;
+use crate::study::{Runner, StudyFolder, lock};
 use results::{Results, Row};
-use ropewalk_report::{ProgressMode, RunFolder, Stopwatch};
+use ropewalk_report::{ProgressMode, RunFolder, Stopwatch, Watch};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-/// What may be chosen about a sweep beside its grid.
+/// Options of [`sweep`].
 pub struct SweepOptions {
     /// The folder: new, empty, or that of the same sweep. Without it `runs/<scene>-sweep`, numbered.
     pub out: Option<PathBuf>,
@@ -33,6 +34,8 @@ pub struct SweepOptions {
     pub jobs: Option<usize>,
     /// How to show the progress.
     pub progress: ProgressMode,
+    /// What may stop it; by default nothing, and the process keeps its signals.
+    pub watch: Watch,
     /// Which value of a column stands for a run …
     pub report: Report,
     /// … and over which last part of it.
@@ -62,12 +65,12 @@ pub fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome, Error>
     let axes = grid.check()?;
     let folder = StudyFolder::open(options.out.clone(), options.fresh, &grid.manifest())?;
     let stopwatch = Stopwatch::start();
-    let runner = Runner::new(grid.len(), options.progress);
+    let runner = Runner::new(grid.len(), options.progress, options.watch);
     let results = Mutex::new(Results::new(&axes, grid, folder.table_file()));
     runner.for_each(grid.len(), options.jobs, |k| {
         let name = grid.name(k);
         let ran = runner.run(grid.file(k).as_ref(), name, &RunFolder::earlier(folder.run(name)));
-        let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut results = lock(&results);
         results.set(k, Row::new(&ran.summary, &ran.history, options.over, ran.earlier));
         Ok(results.save_now_and_then()?)
     })?;
@@ -79,9 +82,9 @@ pub fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome, Error>
     let tables = finals::write(&folder, grid, &axes, &results, options.report, &mut warn);
     progress.finish();
 
-    let interrupted = results.count("interrupted") > 0 || results.len() < grid.len();
-    let failed = results.count("failed") + results.count("refused");
-    let complete = results.rows().filter(|(_, row)| row.is_complete()).count();
+    let interrupted = results.count(Status::Interrupted) > 0 || results.len() < grid.len();
+    let count = |of: fn(Status) -> bool| results.rows().filter(|(_, row)| of(row.status)).count();
+    let (failed, complete) = (count(Status::is_failure), count(Status::is_complete));
     let (wall_s, reported) = (stopwatch.elapsed().wall_s, (options.report, options.over));
     let report = report::report(&results, &folder, wall_s, grid.len(), reported, [tables, pictures]);
     let runs = (grid.len(), complete);

@@ -7,7 +7,7 @@ use super::results::{Recorded, Results, Row};
 use super::tail::Report;
 use crate::run::{PLANES, last_shape, planes, view};
 use crate::study::StudyFolder;
-use ropewalk_report::{LinePlot, Mark, OutputError, Plane, RunFolder, Series, Table};
+use ropewalk_report::{LinePlot, Mark, Plane, RunFolder, Series, Table};
 use std::collections::HashMap;
 
 /// More lines than this can't be told apart.
@@ -79,16 +79,8 @@ pub(super) fn draw(
 
     plots.extend(shapes(folder, grid, &lines, with_history.len(), &titles));
 
-    let mut drawn = 0;
-    for (name, plot) in plots {
-        match folder.plot_file(&name).and_then(|path| plot.write(&path)) {
-            Ok(()) => drawn += 1,
-            // nothing to show is no fault: a run that failed at once has no history
-            Err(OutputError::EmptyPlot { .. }) => {}
-            Err(e) => warn(&e.to_string()),
-        }
-    }
-    drawn
+    let files = folder.files();
+    plots.iter().filter(|(name, plot)| files.draw(name, |path| plot.write(path), warn)).count()
 }
 
 /// The shapes in which the runs ended, one over the other.

@@ -1,13 +1,15 @@
 //! What is said on the terminal when a sweep has ended.
 
 use super::results::Results;
-use super::tail::{Over, Report, unsteady};
+use super::tail::{Over, Report, STEADY};
+use crate::run::Status;
 use crate::study::StudyFolder;
-use ropewalk_report::{in_columns, number, rough};
-use std::fmt::Write;
+use ropewalk_report::{Sheet, TERMINAL, number, rough};
 
 /// Rows that are shown.
 const MOST_ROWS: usize = 80;
+/// Columns that are named as unsteady; the others are counted.
+const MOST_NAMED: usize = 6;
 
 /// The whole report: the table, as far as there is room, and where everything is.
 pub(super) fn report(
@@ -27,7 +29,7 @@ pub(super) fn report(
         .take(MOST_ROWS)
         .map(|(k, row)| {
             let work = [
-                row.status.clone(),
+                row.status.to_string(),
                 rough(row.cpu_s),
                 row.counts.steps.to_string(),
                 row.counts.newton_iterations.to_string(),
@@ -39,45 +41,70 @@ pub(super) fn report(
             results.cells(k).iter().cloned().chain(work).chain(finals).collect()
         })
         .collect();
-    let (mut out, columns) = in_columns(&headings, &shown);
-
+    let mut sheet = Sheet::default();
+    let columns = sheet.table_within(TERMINAL, &headings, &shown);
     let left_out = results.len().saturating_sub(MOST_ROWS);
     if left_out > 0 {
-        _ = writeln!(out, "  … and {left_out} more runs in table.csv");
+        sheet.line(format!("  … and {left_out} more runs in table.csv"));
     }
     let not_shown = headings.len() - columns;
     if not_shown > 0 {
-        _ = writeln!(out, "  … and {not_shown} more records in table.csv");
+        sheet.line(format!("  … and {not_shown} more records in table.csv"));
     }
-    out.push('\n');
+    sheet.line("");
     if what == Report::Last {
-        out += &unsteady(results, over);
+        unsteady(&mut sheet, results, over);
     } else {
-        _ = writeln!(out, "  values    {} of {over}", what.ending());
+        sheet.entry("values", format!("{} of {over}", what.ending()));
     }
-    let mut line = |what: &str, text: String| _ = writeln!(out, "  {what:<9} {text}");
-    let mut words = Vec::new();
-    for status in ["finished", "stopped", "failed", "refused", "interrupted"] {
-        match results.count(status) {
-            0 => {}
-            n => words.push(format!("{n} {status}")),
-        }
-    }
-    if results.len() < runs {
-        words.push(format!("{} not begun", runs - results.len()));
-    }
+    let words = Status::ALL.map(|status| (results.count(status), status));
+    let words = words.into_iter().filter(|(n, _)| *n > 0).map(|(n, status)| format!("{n} {status}"));
+    let not_begun = (results.len() < runs).then(|| format!("{} not begun", runs - results.len()));
+    let words = words.chain(not_begun).collect::<Vec<_>>().join(", ");
     let earlier = results.rows().filter(|(_, row)| row.earlier).count();
     let note = if earlier > 0 { format!("; {earlier} of them were there already") } else { String::new() };
-    line("runs", format!("{}{note}", words.join(", ")));
+    sheet.entry("runs", format!("{words}{note}"));
     let cpu: f64 = results.rows().filter(|(_, r)| !r.earlier).map(|(_, r)| r.cpu_s).sum();
-    line("time", format!("{} s on the clock, {} s of CPU", rough(wall_s), rough(cpu)));
-    line("folder", folder.path().display().to_string());
-    line(
+    sheet.entry("time", format!("wall time {} s, CPU time {} s", rough(wall_s), rough(cpu)));
+    sheet.entry("folder", folder.path().display());
+    let values = if what == Report::Last { "last" } else { what.ending() };
+    sheet.entry(
         "results",
         format!(
-            "table.csv, runs/, {tables} tables of {} values in tables/, {pictures} pictures in plots/",
-            if what == Report::Last { "last" } else { what.ending() }
+            "table.csv, runs/, {tables} tables of {values} values in tables/, {pictures} pictures in plots/"
         ),
     );
-    out
+    sheet.to_string()
+}
+
+/// Says which last values aren't steady, a line for each column; nothing if all are.
+fn unsteady(sheet: &mut Sheet, results: &Results, over: Over) {
+    let mut all: Vec<(String, usize, usize, f64)> = Vec::new();
+    for column in results.recorded().iter().skip(1) {
+        let tails = results.rows().filter(|(_, row)| row.status.is_complete());
+        let tails: Vec<f64> =
+            tails.filter_map(|(_, row)| Some(Results::values(row, column)?.tail.unsteady)).collect();
+        let count = tails.iter().filter(|x| **x > STEADY).count();
+        if count > 0 {
+            let most = tails.iter().copied().fold(0.0, f64::max);
+            all.push((column.name.clone(), count, tails.len(), most));
+        }
+    }
+    for (name, count, of, most) in all.iter().take(MOST_NAMED) {
+        let percent = (100.0 * most).ceil();
+        sheet.entry(
+            "unsteady",
+            format!(
+                "{name} in {count} of {of} runs: it ranges by up to {percent} % of its largest over {over}"
+            ),
+        );
+    }
+    if let Some(more) = all.len().checked_sub(MOST_NAMED).filter(|n| *n > 0) {
+        sheet.entry("unsteady", format!("and {more} more records, see the tail columns of table.csv"));
+    }
+    if !all.is_empty() {
+        let help =
+            "their last values are one of many: take `--report mean`, `least` or `largest`, or run longer";
+        sheet.entry("", help);
+    }
 }

@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::grid::Grid;
-use super::tail::{Over, Report, Tail};
-use crate::run::{Counts, Summary};
-use ropewalk_report::{OutputError, Table, push_cell, push_number, write_atomic};
+use super::tail::{Over, Report, Tail, extremes};
+use crate::run::{Counts, Status, Summary};
+use ropewalk_report::{Csv, OutputError, Table, write_atomic};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -29,7 +29,7 @@ const VALUES: [(&str, Pick); 6] = [
 
 /// What came out of one run.
 pub(super) struct Row {
-    pub status: String,
+    pub status: Status,
     pub message: Option<String>,
     pub counts: Counts,
     pub cpu_s: f64,
@@ -60,18 +60,14 @@ impl Values {
 impl Row {
     pub(super) fn new(summary: &Summary, history: &Table, over: Over, earlier: bool) -> Self {
         let of = |values: &[f64], tail: Tail| {
-            let last = values.last().copied().unwrap_or(f64::NAN);
-            let fold = |pick: fn(f64, f64) -> f64| {
-                let both = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { pick(a, b) };
-                values.iter().copied().reduce(both).unwrap_or(f64::NAN)
-            };
-            Values { last, least: fold(f64::min), largest: fold(f64::max), tail }
+            let (last, (least, largest)) = (values.last().copied().unwrap_or(f64::NAN), extremes(values));
+            Values { last, least, largest, tail }
         };
         let mut message: Vec<String> = summary.message.iter().cloned().collect();
         message.extend(summary.notes.iter().cloned());
         message.extend(summary.warnings.iter().map(|w| format!("warning: {w}")));
         Self {
-            status: summary.status.clone(),
+            status: summary.status,
             message: (!message.is_empty()).then(|| message.join("; ")),
             counts: summary.counts,
             cpu_s: summary.cpu_s,
@@ -88,11 +84,6 @@ impl Row {
                 .map(|(c, tail)| of(&c.values, tail))
                 .collect(),
         }
-    }
-
-    /// Whether the run came to its end.
-    pub(super) fn is_complete(&self) -> bool {
-        matches!(self.status.as_str(), "finished" | "stopped")
     }
 }
 
@@ -155,7 +146,7 @@ impl Results {
         self.rows().count()
     }
     /// Number of runs that ended so.
-    pub(super) fn count(&self, status: &str) -> usize {
+    pub(super) fn count(&self, status: Status) -> usize {
         self.rows().filter(|(_, row)| row.status == status).count()
     }
     /// The runs that have ended, each with its number.
@@ -189,40 +180,29 @@ impl Results {
     /// The table as CSV: name, parameters, status, work, values, message.
     fn to_csv(&self) -> String {
         let recorded = self.recorded();
-        let mut text = String::from("run");
-        let fixed = ["status", "cpu [s]", "steps", "rejected", "newton iterations"];
-        let values = VALUES.map(|(what, _)| {
-            let skipped = if what == "final" { 0 } else { 1 };
-            recorded.iter().skip(skipped).map(move |c| format!("{what} {}", c.heading))
-        });
-        let headings = self.headings.iter().cloned().chain(fixed.map(String::from));
-        for heading in headings.chain(values.into_iter().flatten()).chain(["message".to_string()]) {
-            text.push(',');
-            push_cell(&mut text, &heading);
+        // least and largest time are no news
+        let shown = |what: &str| recorded.iter().skip(usize::from(what != "final"));
+        let fixed = ["status", "cpu [s]", "steps", "rejected", "newton iterations"].map(String::from);
+        let mut headings = vec!["run".to_string()];
+        headings.extend(self.headings.iter().cloned().chain(fixed));
+        for (what, _) in VALUES {
+            headings.extend(shown(what).map(|c| format!("{what} {}", c.heading)));
         }
-        text.push('\n');
+        headings.push("message".into());
+        let mut csv = Csv::new(headings);
         for (k, row) in self.rows() {
-            for cell in self.cells[k].iter().chain([&row.status]) {
-                push_cell(&mut text, cell);
-                text.push(',');
-            }
-            push_number(&mut text, row.cpu_s);
+            self.cells[k].iter().for_each(|cell| _ = csv.cell(cell));
+            csv.cell(row.status.to_string()).number(row.cpu_s);
             let c = row.counts;
-            text += &format!(",{},{},{}", c.steps, c.rejected, c.newton_iterations);
+            [c.steps, c.rejected, c.newton_iterations].iter().for_each(|n| _ = csv.cell(n.to_string()));
             for (what, of) in VALUES {
-                // least and largest time are no news
-                for column in recorded.iter().skip(usize::from(what != "final")) {
-                    text.push(',');
-                    if let Some(values) = Self::values(row, column) {
-                        push_number(&mut text, of(&values));
-                    }
+                for column in shown(what) {
+                    csv.number_or_none(Self::values(row, column).map(|values| of(&values)));
                 }
             }
-            text.push(',');
-            push_cell(&mut text, row.message.as_deref().unwrap_or_default());
-            text.push('\n');
+            csv.cell(row.message.as_deref().unwrap_or_default()).end();
         }
-        text
+        csv.text()
     }
 
     /// Writes the table, all or nothing.

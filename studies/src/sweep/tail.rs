@@ -1,16 +1,12 @@
 //! The last part of a run: whether a column is steady there, and its mean, least and largest value.
 
-use super::results::Results;
 use ropewalk_report::{Column, Table};
 use ropewalk_scene::quantity::kind;
-use std::fmt::Write;
 
 /// A last value is steady where its column ranges by no more than this share of its largest value over the last part.
-const STEADY: f64 = 0.01;
+pub(super) const STEADY: f64 = 0.01;
 /// A column that is smaller than the largest of its unit by this factor is rounding.
 const NOISE: f64 = 1e-9;
-/// Columns that are named as unsteady; the others are counted.
-const MOST_NAMED: usize = 6;
 
 /// Which value of a column stands for a run in tables of results and in pictures over a parameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
@@ -139,11 +135,8 @@ impl Over {
         let tail = |c: &Column| {
             let (t, values) =
                 (&time.values[from.min(c.values.len())..], &c.values[from.min(c.values.len())..]);
-            let fold = |pick: fn(f64, f64) -> f64| {
-                let both = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { pick(a, b) };
-                values.iter().copied().reduce(both).unwrap_or(f64::NAN)
-            };
-            let (least, largest, size) = (fold(f64::min), fold(f64::max), size(c));
+            let (least, largest) = extremes(values);
+            let size = size(c);
             let counts = time.name == "t" && size > NOISE * of_unit(&c.unit);
             let unsteady = if counts { (largest - least) / size } else { 0.0 };
             Tail { mean: mean(t, values), least, largest, unsteady }
@@ -160,6 +153,15 @@ impl Over {
     }
 }
 
+/// The least and the largest; NaN if there is none, or a NaN among them.
+pub(super) fn extremes(values: &[f64]) -> (f64, f64) {
+    let fold = |pick: fn(f64, f64) -> f64| {
+        let both = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { pick(a, b) };
+        values.iter().copied().reduce(both).unwrap_or(f64::NAN)
+    };
+    (fold(f64::min), fold(f64::max))
+}
+
 /// The mean over time, by the trapezoidal rule.
 fn mean(t: &[f64], values: &[f64]) -> f64 {
     let (Some(first), Some(last)) = (t.first(), t.last()) else { return f64::NAN };
@@ -168,40 +170,6 @@ fn mean(t: &[f64], values: &[f64]) -> f64 {
     }
     let pieces = t.windows(2).zip(values.windows(2));
     pieces.map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1])).sum::<f64>() / (last - first)
-}
-
-/// What is said of last values that aren't steady, a line for each column; nothing if all are.
-pub(super) fn unsteady(results: &Results, over: Over) -> String {
-    let mut all: Vec<(String, usize, usize, f64)> = Vec::new();
-    for column in results.recorded().iter().skip(1) {
-        let tails = results.rows().filter(|(_, row)| row.is_complete());
-        let tails: Vec<f64> =
-            tails.filter_map(|(_, row)| Some(Results::values(row, column)?.tail.unsteady)).collect();
-        let count = tails.iter().filter(|x| **x > STEADY).count();
-        if count > 0 {
-            let most = tails.iter().copied().fold(0.0, f64::max);
-            all.push((column.name.clone(), count, tails.len(), most));
-        }
-    }
-    let mut out = String::new();
-    for (name, count, of, most) in all.iter().take(MOST_NAMED) {
-        let percent = (100.0 * most).ceil();
-        _ = writeln!(
-            out,
-            "  unsteady  {name} in {count} of {of} runs: it ranges by up to {percent} % of its largest over {over}"
-        );
-    }
-    if all.len() > MOST_NAMED {
-        _ = writeln!(
-            out,
-            "  unsteady  and {} more records, see the tail columns of table.csv",
-            all.len() - MOST_NAMED
-        );
-    }
-    if !all.is_empty() {
-        out += "            their last values are one of many: take `--report mean`, `least` or `largest`, or run longer\n";
-    }
-    out
 }
 
 #[cfg(test)]

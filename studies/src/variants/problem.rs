@@ -1,7 +1,7 @@
 //! The problems that scalings of the equations are compared on.
 
 use crate::error::Error;
-use ropewalk_constraints::{ClampSpec, RevoluteSpec, SphericalSpec};
+use ropewalk_constraints::{DirectionSpec, RevoluteSpec, SphericalSpec};
 use ropewalk_core::V3;
 use ropewalk_core::integrator::{NewtonPolicy, Options, Scheme, Stepping};
 use ropewalk_elements::cable::{Integration, LongitudinalModel, TransverseModel};
@@ -177,7 +177,7 @@ fn cantilever(elements: usize) -> Scene {
     scene
         .element(CableSpec::straight("rod", [0.0; 3], [1.0, 0.0, 0.0], elements, section))
         .constraint(SphericalSpec::pin("root", "rod.start"))
-        .constraint(ClampSpec::new("clamp", "rod.start"))
+        .constraint(DirectionSpec::new("clamp", "rod.start"))
         .force(PointForceSpec::new("rod.end", [0.0, 0.0, FORCE], TimeFunction::default()));
     scene
 }

@@ -3,48 +3,50 @@
 use super::scaling::{MESHES, Row, deflection_error};
 use super::stiffness::{CANTILEVER, PENDULUM};
 use super::{Form, Problem, Variants};
-use ropewalk_report::rough;
-use std::fmt::Write as _;
+use ropewalk_report::{Csv, Sheet, rough};
 
 impl Variants {
     /// The tables as text.
     pub fn text(&self) -> String {
-        let mut out = String::new();
-        self.stiffness_table(&mut out);
+        let mut sheet = Sheet::default();
+        if !self.stiffness.is_empty() {
+            self.stiffness_table(&mut sheet);
+        }
         for problem in Problem::ALL {
-            self.scaling_table(&mut out, problem);
+            if self.rows(problem, Form::Si, false).next().is_some() {
+                self.scaling_table(&mut sheet, problem);
+            }
         }
         if !self.scaling.is_empty() {
-            out += EXPLANATION;
+            sheet.line(EXPLANATION.trim_end());
         }
-        out
+        sheet.to_string()
     }
 
-    fn stiffness_table(&self, out: &mut String) {
-        if self.stiffness.is_empty() {
-            return;
-        }
-        let wide = self.stiffness.iter().map(|s| s.label.chars().count()).max().unwrap_or(0);
-        *out += "stiffness models: µs per element; relative errors of a cantilever's deflection and of a pendulum's tip\n";
-        _ = write!(out, "  {:<wide$}{:>8}{:>9}", "", "force", "tangent");
-        CANTILEVER.iter().for_each(|n| _ = write!(out, "{:>9}", format!("n = {n}")));
-        PENDULUM.iter().for_each(|n| _ = write!(out, "{:>9}", format!("n = {n}")));
-        _ = writeln!(out, "{:>9}{:>9}{:>9}{:>9}", "locking", "energy", "asymm.", "strain");
-        for s in &self.stiffness {
-            _ = write!(out, "  {:<wide$}{:>8}{:>9}", s.label, timed(s.force_us), timed(s.tangent_us));
-            s.cantilever.iter().chain(&s.pendulum).for_each(|e| _ = write!(out, "{:>9}", short(*e)));
-            for x in [s.locking, s.energy, s.asymmetry, s.moment_strain] {
-                _ = write!(out, "{:>9}", short(x));
-            }
-            out.push('\n');
-        }
-        *out += "  locking: growth of the error of 8 elements where EA L²/EI grows from 1.6e5 to 1.6e9; energy: what its \
-                 balance misses;\n  asymm.: of the tangent; strain: under a pure moment of one radian, where a beam has \
-                 none; fails: no equilibrium was found\n";
+    fn stiffness_table(&self, sheet: &mut Sheet) {
+        sheet.line(
+            "stiffness models: µs per element; relative errors of a cantilever's deflection and of a pendulum's tip",
+        );
+        let mut headings = ["", "force", "tangent"].map(String::from).to_vec();
+        headings.extend(CANTILEVER.iter().chain(&PENDULUM).map(|n| format!("n = {n}")));
+        headings.extend(["locking", "energy", "asymm.", "strain"].map(String::from));
+        let row = |s: &super::Stiffness| {
+            let errors = s.cantilever.iter().chain(&s.pendulum);
+            let others = [s.locking, s.energy, s.asymmetry, s.moment_strain];
+            let mut row = vec![s.label.clone(), timed(s.force_us), timed(s.tangent_us)];
+            row.extend(errors.chain(&others).map(|x| short(*x)));
+            row
+        };
+        sheet.table(&headings, &self.stiffness.iter().map(row).collect::<Vec<_>>());
+        sheet.line(
+            "  locking: growth of the error of 8 elements where EA L²/EI grows from 1.6e5 to 1.6e9; energy: what its \
+             balance misses;\n  asymm.: of the tangent; strain: under a pure moment of one radian, where a beam has \
+             none; fails: no equilibrium was found",
+        );
         for f in &self.forbidden {
-            _ = writeln!(out, "  {:?}+{:?} isn't there: {}", f.longitudinal, f.transverse, f.why);
+            sheet.line(format!("  {:?}+{:?} is not available: {}", f.longitudinal, f.transverse, f.why));
         }
-        out.push('\n');
+        sheet.line("");
     }
 
     /// The rows of a problem, in one form and with one stopping test.
@@ -52,31 +54,23 @@ impl Variants {
         self.scaling.iter().filter(move |r| r.problem == problem && r.form == form && r.absolute == absolute)
     }
 
-    fn scaling_table(&self, out: &mut String, problem: Problem) {
-        if self.rows(problem, Form::Si, false).next().is_none() {
-            return;
-        }
-        _ = write!(out, "{}\n  {:<44}", problem.title(), "elements");
-        MESHES.iter().for_each(|n| _ = write!(out, "{n:>10}"));
-        out.push('\n');
-        let mut line = |label: String, rows: Vec<&Row>, cell: &dyn Fn(&Row) -> String| {
-            _ = write!(out, "  {label:<44}");
-            for n in MESHES {
-                let found = rows.iter().find(|r| r.elements == n);
-                _ = write!(out, "{:>10}", found.map_or("-".to_string(), |r| cell(r)));
-            }
-            out.push('\n');
+    fn scaling_table(&self, sheet: &mut Sheet, problem: Problem) {
+        let mut table: Vec<Vec<String>> = Vec::new();
+        let mut line = |label: String, rows: &[&Row], cell: &dyn Fn(&Row) -> String| {
+            let of = |n: usize| rows.iter().find(|r| r.elements == n).map_or("-".into(), |r| cell(r));
+            table.push(std::iter::once(label).chain(MESHES.map(of)).collect());
         };
         let of = |form, absolute| self.rows(problem, form, absolute).collect::<Vec<_>>();
+        let si = of(Form::Si, false);
         for form in [Form::Bending, Form::Axial] {
-            line(format!("T of {} [s]", form.label()), of(form, false), &|r| short(r.time_unit));
+            line(format!("T of {} [s]", form.label()), &of(form, false), &|r| short(r.time_unit));
         }
         for form in Form::ALL {
-            line(format!("condition number, {}", form.label()), of(form, false), &|r| short(r.condition));
+            line(format!("condition number, {}", form.label()), &of(form, false), &|r| short(r.condition));
         }
         for (test, absolute) in [("relative", false), ("absolute", true)] {
             for form in [Form::Si, Form::Bending, Form::Axial] {
-                line(format!("iterations per step, {test}, {}", form.label()), of(form, absolute), &|r| {
+                line(format!("iterations per step, {test}, {}", form.label()), &of(form, absolute), &|r| {
                     let star = if r.unmet > 0 { "*" } else { "" };
                     if r.failed.is_some() { "fails".into() } else { format!("{:.2}{star}", r.iterations) }
                 });
@@ -85,35 +79,39 @@ impl Variants {
         for (test, absolute) in [("relative", false), ("absolute", true)] {
             let si = of(Form::Si, absolute);
             for form in [Form::Bending, Form::Axial] {
-                line(format!("time SI / {}, {test}", form.label()), of(form, absolute), &|r| {
+                line(format!("time SI / {}, {test}", form.label()), &of(form, absolute), &|r| {
                     let other = si.iter().find(|s| s.elements == r.elements).map_or(f64::NAN, |s| s.cpu_s);
                     format!("{:.2}", other / r.cpu_s)
                 });
             }
         }
-        line("CPU time, relative, SI [s]".into(), of(Form::Si, false), &|r| short(r.cpu_s));
-        line("end apart from SI, relative, bending".into(), of(Form::Bending, false), &|r| short(r.apart));
+        line("CPU time, relative, SI [s]".into(), &si, &|r| short(r.cpu_s));
+        line("end apart from SI, relative, bending".into(), &of(Form::Bending, false), &|r| short(r.apart));
         if problem == Problem::Cantilever {
-            line("error of the mean deflection".into(), of(Form::Si, false), &|r| short(deflection_error(r)));
+            line("error of the mean deflection".into(), &si, &|r| short(deflection_error(r)));
         }
+        sheet.line(problem.title());
+        let headings = std::iter::once("elements".to_string()).chain(MESHES.map(|n| n.to_string()));
+        sheet.table(&headings.collect::<Vec<_>>(), &table);
         if self.scaling.iter().any(|r| r.problem == problem && r.unmet > 0) {
-            *out += "  *: in some steps the test was never met, since rounding leaves more than it allows\n";
+            sheet
+                .line("  *: in some steps the test was never met, since rounding leaves more than it allows");
         }
-        out.push('\n');
+        sheet.line("");
     }
 
     /// One number a row: which stiffness model, what, which mesh, how much.
     pub fn stiffness_csv(&self) -> String {
-        let mut out = String::from("models,quantity,elements,value\n");
+        let mut csv = Csv::new(["models", "quantity", "elements", "value"]);
         for s in &self.stiffness {
             let label = s.label.replace(',', ";");
-            for (quantity, meshes, errors) in
-                [("cantilever", &CANTILEVER[..], &s.cantilever), ("pendulum", &PENDULUM[..], &s.pendulum)]
-            {
-                meshes
-                    .iter()
-                    .zip(errors)
-                    .for_each(|(n, e)| _ = writeln!(out, "{label},error of the {quantity},{n},{e}"));
+            let errors =
+                [("cantilever", &CANTILEVER[..], &s.cantilever), ("pendulum", &PENDULUM[..], &s.pendulum)];
+            for (quantity, meshes, errors) in errors {
+                for (n, e) in meshes.iter().zip(errors) {
+                    csv.cell(&label).cell(format!("error of the {quantity}")).cell(n.to_string());
+                    csv.number(*e).end();
+                }
             }
             for (quantity, x) in [
                 ("force [us per element]", s.force_us),
@@ -123,39 +121,38 @@ impl Variants {
                 ("asymmetry", s.asymmetry),
                 ("strain under a pure moment", s.moment_strain),
             ] {
-                _ = writeln!(out, "{label},{quantity},,{x}");
+                csv.cell(&label).cell(quantity).cell("").number(x).end();
             }
         }
-        out
+        csv.text()
     }
 
     /// One run a row.
     pub fn scaling_csv(&self) -> String {
-        let mut out = String::from(
-            "problem,elements,form,stopping test,time unit [s],steps,rejected,iterations per step,steps unmet,cpu [s],\
-             condition number,mean height [m],apart from SI,failed\n",
-        );
+        let mut csv = Csv::new([
+            "problem",
+            "elements",
+            "form",
+            "stopping test",
+            "time unit [s]",
+            "steps",
+            "rejected",
+            "iterations per step",
+            "steps unmet",
+            "cpu [s]",
+            "condition number",
+            "mean height [m]",
+            "apart from SI",
+            "failed",
+        ]);
         for r in &self.scaling {
-            _ = writeln!(
-                out,
-                "{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
-                r.problem.name(),
-                r.elements,
-                r.form.label(),
-                if r.absolute { "absolute" } else { "relative" },
-                r.time_unit,
-                r.steps,
-                r.rejected,
-                r.iterations,
-                r.unmet,
-                r.cpu_s,
-                r.condition,
-                r.mean,
-                r.apart,
-                if r.failed.is_some() { "yes" } else { "no" }
-            );
+            csv.cell(r.problem.name()).cell(r.elements.to_string()).cell(r.form.label());
+            csv.cell(if r.absolute { "absolute" } else { "relative" }).number(r.time_unit);
+            csv.cell(r.steps.to_string()).cell(r.rejected.to_string()).number(r.iterations);
+            csv.cell(r.unmet.to_string()).number(r.cpu_s).number(r.condition).number(r.mean);
+            csv.number(r.apart).cell(if r.failed.is_some() { "yes" } else { "no" }).end();
         }
-        out
+        csv.text()
     }
 }
 

@@ -49,14 +49,14 @@ pub struct Row {
 }
 
 /// Counts iterations step by step, and adds up the end's height.
-struct Watch {
+struct EndObserver {
     end: usize,
     last: f64,
     area: f64,
     iterations: Vec<(f64, f64)>,
 }
 
-impl Observer for Watch {
+impl Observer for EndObserver {
     fn step(&mut self, _: &Model, state: &State, report: &StepReport) -> ControlFlow<()> {
         let z = state.q[self.end + 2];
         self.area += 0.5 * report.h * (z + self.last);
@@ -100,9 +100,9 @@ pub fn run(
     let mut s = Simulation::new(model, &options, problem.duration())?;
     s.keep_audit(false);
     let last = s.state.q[end + 2];
-    let mut watch = Watch { end, last, area: 0.0, iterations: Vec::new() };
+    let mut observer = EndObserver { end, last, area: 0.0, iterations: Vec::new() };
     let clock = Stopwatch::start();
-    let failed = s.advance(problem.duration(), f64::INFINITY, &mut watch).err().map(|e| e.to_string());
+    let failed = s.advance(problem.duration(), f64::INFINITY, &mut observer).err().map(|e| e.to_string());
     let cpu = clock.elapsed().cpu_s;
     let counts = s.work.counts;
     let at = [0, 1, 2].map(|i| s.state.q[end + i]);
@@ -125,11 +125,11 @@ pub fn run(
             None => condition(&s.model, &s.state, &options, problem.step(), form)?,
             Some(_) => f64::NAN,
         },
-        mean: watch.area / s.state.t.max(f64::MIN_POSITIVE),
+        mean: observer.area / s.state.t.max(f64::MIN_POSITIVE),
         apart,
         failed,
     };
-    Ok(Run { row, iterations: watch.iterations, end: at })
+    Ok(Run { row, iterations: observer.iterations, end: at })
 }
 
 /// The error of the cantilever's mean deflection against linear theory.

@@ -2,7 +2,7 @@
 
 use crate::bench::measure::VariantMeter;
 use crate::error::Error;
-use ropewalk_constraints::{ClampSpec, SphericalSpec};
+use ropewalk_constraints::{DirectionSpec, SphericalSpec};
 use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Model, Quantity, Simulation, State, V3, Width};
@@ -156,7 +156,7 @@ fn cantilever(models: CableModel, n: usize, ea: f64, load: Load) -> Option<(f64,
     scene
         .element(cable(models, n, 1.0, Section::new(1.0, ea, 1.0)))
         .constraint(SphericalSpec::pin("root", "rod.start"))
-        .constraint(ClampSpec::new("clamp", "rod.start"));
+        .constraint(DirectionSpec::new("clamp", "rod.start"));
     let marker = "rod.end".into();
     match load {
         Load::Force => scene.force(PointForceSpec::new("rod.end", [0.0, 3.0, 0.0], grows())),

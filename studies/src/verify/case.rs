@@ -4,9 +4,9 @@ use super::builders;
 use super::files::{REFERENCES, SCENES};
 use super::quantity::{Measured, Quantity};
 use crate::error::Error;
-use crate::modes::modes_showing;
-use crate::simulate::simulate_showing;
-use ropewalk_report::{Interrupt, Progress, ProgressMode, Stopwatch, Table};
+use crate::modes::modes_watched;
+use crate::simulate::{How, compute};
+use ropewalk_report::{Progress, ProgressMode, Stopwatch, Table, Watch};
 use ropewalk_scene::{Fault, Format, SceneFile};
 use serde::Deserialize;
 
@@ -57,15 +57,6 @@ pub struct LeftOut {
     pub count: usize,
     /// Why.
     pub reason: String,
-}
-
-/// How a case is followed while it runs.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Followed {
-    /// How its runs show their progress.
-    pub progress: ProgressMode,
-    /// Whether Ctrl-C stops it.
-    pub interrupt: Option<Interrupt>,
 }
 
 /// What came out of a case.
@@ -132,12 +123,12 @@ impl Case {
     }
 
     /// Runs its scenes and compares what they say with the references.
-    pub fn run(self, followed: Followed) -> Outcome {
+    pub fn run(self, progress: ProgressMode, watch: Watch) -> Outcome {
         let stopwatch = Stopwatch::start();
         let (mut measured, mut trouble, mut interrupted) = (Vec::new(), Vec::new(), false);
         for run in &self.runs {
-            let results = run.results(followed);
-            interrupted = followed.interrupt.is_some_and(Interrupt::requested);
+            let results = run.results(progress, watch);
+            interrupted = watch.is_interrupted();
             if interrupted {
                 break;
             }
@@ -171,19 +162,16 @@ impl Run {
     }
 
     /// The history of its scene, or its modes.
-    fn results(&self, followed: Followed) -> Result<Table, Error> {
+    fn results(&self, progress: ProgressMode, watch: Watch) -> Result<Table, Error> {
         let missing = || Fault::new(format!("there is no scene `{}`", self.scene));
         let (name, text) = SCENES.iter().find(|(name, _)| *name == self.scene).ok_or_else(missing)?;
         let text = self.complete(text).map_err(Fault::new)?;
         let scene = SceneFile::parse(&text, name, Format::Toml, &self.set)?.into_scene();
         if let Some(count) = self.modes {
-            return Ok(modes_showing(&scene, count, followed.interrupt)?.table());
+            return Ok(modes_watched(&scene, count, watch)?.table());
         }
-        let progress = match followed.progress {
-            ProgressMode::Quiet => None,
-            mode => Some(Progress::new(0.0, scene.run.duration, mode)),
-        };
-        Ok(simulate_showing(&scene, progress, followed.interrupt)?.table)
+        let progress = Some(Progress::new(0.0, scene.run.duration, progress));
+        Ok(compute(&scene, How { watch, progress, ..How::default() })?.complete()?.table)
     }
 }
 
@@ -209,7 +197,7 @@ mod tests {
 
     fn pendulum(change: impl Fn(&str) -> String) -> Outcome {
         let (name, text) = REFERENCES.iter().find(|(name, _)| name.starts_with("inconsistent")).unwrap();
-        Case::read(name, &change(text)).run(Followed { progress: ProgressMode::Quiet, interrupt: None })
+        Case::read(name, &change(text)).run(ProgressMode::Quiet, Watch::default())
     }
 
     #[test]

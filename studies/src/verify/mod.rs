@@ -12,7 +12,7 @@ mod page;
 mod quantity;
 mod report;
 
-pub use case::{Case, Followed, LeftOut, Outcome, case, cases};
+pub use case::{Case, LeftOut, Outcome, case, cases};
 pub use page::TITLE;
 pub use page::{page, picture};
 pub use quantity::{Measured, Quantity};

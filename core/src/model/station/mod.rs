@@ -9,6 +9,7 @@ mod pool;
 pub use pool::StationPool;
 
 use crate::algebra::lane::{Real, V3, dot};
+use crate::model::capability::{Shows, Timed};
 use crate::model::pattern::Pattern;
 use crate::model::pool::{Batch, Local, Share};
 use crate::model::state::At;
@@ -151,9 +152,9 @@ pub trait Law: Send + Sync + 'static {
     fn potential<R: Real>(&self, _t: f64, _at: &Station<R>) -> R {
         R::zero()
     }
-    /// The drag coefficient of the flow across the body there, if this is a law of drag; NaN in flow so slow that it is
-    /// of no use.
-    fn coefficient(&self, _at: &Station<f64>) -> Option<f64> {
+    /// A quantity of its own there, such as a coefficient that depends on the flow; `None` if it has none of this name. NaN
+    /// where it means nothing.
+    fn local(&self, _quantity: &str, _at: &Station<f64>) -> Option<f64> {
         None
     }
 }
@@ -250,12 +251,6 @@ impl Term for FieldTerm {
     fn is_load(&self) -> bool {
         true
     }
-    fn timed(&self) -> bool {
-        self.laws.0.iter().any(|l| l.timed())
-    }
-    fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        self.laws.0.iter().filter(|l| l.timed()).try_fold(h, |h, l| l.reach(t, h))
-    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         self.stations.add(&self.laws, at, out);
     }
@@ -265,7 +260,29 @@ impl Term for FieldTerm {
     fn energy(&self, at: &At<'_>) -> Energy {
         self.stations.energy(&self.laws, at)
     }
-    fn coefficient(&self, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
+    fn effects(&self) -> Vec<Box<dyn Term>> {
+        let one = |law: &Arc<dyn ErasedLaw>| -> Box<dyn Term> {
+            let (part, stations) = (self.part.clone(), self.stations.clone());
+            Box::new(FieldTerm { part, stations, laws: Laws(vec![law.clone()]) })
+        };
+        if self.laws.0.len() > 1 { self.laws.0.iter().map(one).collect() } else { Vec::new() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if self.laws.0.iter().any(|l| l.timed()) { Some(self) } else { None }
+    }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
+}
+
+impl Timed for FieldTerm {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.laws.0.iter().filter(|l| l.timed()).try_fold(h, |h, l| l.reach(t, h))
+    }
+}
+
+impl Shows for FieldTerm {
+    fn local(&self, quantity: &str, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
         if part != self.part {
             return None;
         }
@@ -274,7 +291,7 @@ impl Term for FieldTerm {
         self.stations.each(at, &mut |station| {
             let side = usize::from(station.s > s);
             let nearer = beside[side].is_none_or(|(there, _)| (station.s - s).abs() < (there - s).abs());
-            if let Some(c) = self.laws.0.iter().find_map(|l| l.coefficient(station)).filter(|_| nearer) {
+            if let Some(c) = self.laws.0.iter().find_map(|l| l.local(quantity, station)).filter(|_| nearer) {
                 beside[side] = Some((station.s, c));
             }
         });
@@ -282,12 +299,5 @@ impl Term for FieldTerm {
             [Some((a, low)), Some((b, high))] => Some(low + (high - low) * (s - a) / (b - a)),
             [one, other] => one.or(other).map(|(_, c)| c),
         }
-    }
-    fn effects(&self) -> Vec<Box<dyn Term>> {
-        let one = |law: &Arc<dyn ErasedLaw>| -> Box<dyn Term> {
-            let (part, stations) = (self.part.clone(), self.stations.clone());
-            Box::new(FieldTerm { part, stations, laws: Laws(vec![law.clone()]) })
-        };
-        if self.laws.0.len() > 1 { self.laws.0.iter().map(one).collect() } else { Vec::new() }
     }
 }

@@ -1,12 +1,15 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
+use super::controller::{StepController, StepLaw};
+use super::convergence::{Failure, Rate};
 use super::forces::larger;
-use super::newton::{Newton, Outcome, Rate};
-use super::options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping, fixed_step};
+use super::newton::Newton;
+use super::options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
+use super::predictor::{Past, best_order};
 use super::scales::{Scaled, Units};
 use super::scheme::Coefficients;
 use super::start::{anew, settle};
-use super::step::{Integrator, StepError, StepReport, linear};
+use super::step::{Integrator, StepError, StepReport, linear, too_strict};
 use super::workspace::{Which, Workspace};
 use crate::model::Model;
 use crate::model::node::NodeKind;
@@ -24,8 +27,6 @@ pub struct Alpha {
     warning: Option<String>,
 }
 
-/// Convergence rate of Newton's method from which on the next step gets a new matrix.
-const REFRESH: f64 = 0.1;
 /// Elements along a cable up to which Newton's tolerance doesn't depend on their number.
 const COARSE: f64 = 64.0;
 /// What the error of a body counts for, and how much more for every radian that it turns within the horizon.
@@ -124,30 +125,6 @@ impl Alpha {
         self.options.constraints == ConstraintForm::Ggl && model.multipliers() > 0
     }
 
-    /// The order of the polynomial that would have predicted the accelerations of the trial best.
-    fn best_order(&self, state: &State, h: f64, work: &Workspace) -> usize {
-        let n = state.a.len();
-        let past = Past::new(state, h);
-        let [one, two] = &state.control.a_back;
-        let a = &state.a[..n];
-        // where there is no past yet, its weight is zero
-        let one = if state.control.backs > 0 { &one[..n] } else { a };
-        let two = if state.control.backs > 1 { &two[..n] } else { a };
-        let (new, mass) = (&work.trial.a[..n], &work.norms.weights()[..n]);
-        let ([x1, y1, _], [x2, y2, z2]) = (past.continued(1), past.continued(2));
-        let mut miss = [0.0; 3];
-        for i in 0..n {
-            let constant = new[i] - a[i];
-            let linear = new[i] - (x1 * a[i] + y1 * one[i]);
-            let quadratic = new[i] - (x2 * a[i] + y2 * one[i] + z2 * two[i]);
-            miss[0] += mass[i] * constant * constant;
-            miss[1] += mass[i] * linear * linear;
-            miss[2] += mass[i] * quadratic * quadratic;
-        }
-        let backs = (state.control.backs + 1).min(2);
-        (1..=backs).fold(0, |best, k| if miss[k] < miss[best] { k } else { best })
-    }
-
     /// Estimated error of the trial, relative to the part where it is largest: `|Cq h² (a₊ - a)|`, without what the
     /// constraints and the numerical damping take away. With it by what tensions are off for it, over their tolerance.
     fn error(
@@ -165,7 +142,7 @@ impl Alpha {
             *e = factor * self.scheme.mass() * (new - old);
         }
         // what is prescribed has no error
-        model.without_driven(&state.modes, &mut e);
+        model.without_driven(&state.internal, &mut e);
         rhs.clear();
         rhs.resize(model.structure().n, 0.0);
         work.times_mass(model, &e, &mut rhs[..nv]);
@@ -201,6 +178,96 @@ impl Alpha {
         }
     }
 
+    /// Predicts and iterates a step `h`, and judges what comes of it.
+    fn attempt(
+        &self,
+        model: &Model,
+        state: &State,
+        work: &mut Workspace,
+        h: f64,
+        remedies: &Remedies,
+    ) -> Result<Attempt, StepError> {
+        let mut aux = std::mem::take(&mut work.trial.aux_old);
+        self.rescale(state, h, &mut aux);
+        work.trial.aux_old = aux;
+        self.predict(state, h, work);
+        let newton = Newton {
+            model,
+            state,
+            scheme: self.scheme,
+            h,
+            policy: if self.full(state, remedies) { NewtonPolicy::Full } else { NewtonPolicy::Modified },
+            max_iterations: self.options.max_iterations,
+            tolerance: self.newton_tolerance(model, h),
+            force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
+            stopping: self.options.stopping,
+            units: self.units,
+            linear_constraints: !model.is_mechanism(),
+            stabilised: self.stabilised(model),
+            // a step that leaps over the instant at which something sticks ends so stiff that the estimate of its error
+            // is blind: error control has to find that instant
+            leaps: !self.controlled(),
+            gripping: remedies.gripping,
+            careful: remedies.careful,
+        };
+        // factors that served badly last time are not tried again
+        if state.control.worn() {
+            work.factored = None;
+        }
+        match newton.solve(work, state.control.eta.max(0.05)) {
+            Ok(mut rate) => {
+                rate.kept_failed |= remedies.stale;
+                self.judge(model, state, work, h, rate)
+            }
+            Err(failure) => Ok(Attempt::Failed(failure)),
+        }
+    }
+
+    /// Whether the matrix is made anew at every iteration: where kept factors failed, it changes too much even within a
+    /// step.
+    fn full(&self, state: &State, remedies: &Remedies) -> bool {
+        remedies.stale || state.control.without_kept() || self.options.newton == NewtonPolicy::Full
+    }
+
+    fn controlled(&self) -> bool {
+        matches!(self.options.stepping, Stepping::Controlled { .. })
+    }
+
+    /// Where the constraints are dependent for a moment, they are solved like redundant ones from here on; `false` if they
+    /// are already, or aren't to blame.
+    fn soften(&self, model: &Model, work: &mut Workspace) -> bool {
+        let to_blame = work.softening.is_none() && model.multipliers() > 0;
+        if to_blame {
+            work.soften(model);
+        }
+        to_blame
+    }
+
+    /// Chooses what a step that didn't converge is repeated with before it is made smaller; `false` if nothing is left.
+    fn remedy(
+        &self,
+        model: &Model,
+        state: &State,
+        work: &mut Workspace,
+        failures: u32,
+        remedies: &mut Remedies,
+    ) -> bool {
+        if !self.full(state, remedies) {
+            // kept factors may be what fails, where forces turn much within a step
+            remedies.stale = true;
+        } else if model.kinked() && !self.controlled() && !remedies.gripping {
+            // the prediction may go on slipping where something is about to stop
+            remedies.gripping = true;
+        } else if failures == 0 && !remedies.careful && model.is_mechanism() {
+            // a mechanism may be about to end next to a singular position, which a smaller step needn't avoid
+            remedies.careful = true;
+        } else {
+            return false;
+        }
+        work.factored = None;
+        true
+    }
+
     /// Whether a trial that converged is to be accepted.
     fn judge(
         &self,
@@ -208,18 +275,18 @@ impl Alpha {
         state: &State,
         work: &mut Workspace,
         h: f64,
-        linear_constraints: bool,
-    ) -> Result<Verdict, StepError> {
-        let bad = |why: &str| Ok(Verdict::Bad { why: why.into() });
+        rate: Rate,
+    ) -> Result<Attempt, StepError> {
+        let bad = |why: &str| Ok(Attempt::Bad { why: why.into() });
         match self.options.stepping {
-            Stepping::Fixed { .. } if linear_constraints => Ok(Verdict::Good { error: 0.0 }),
+            Stepping::Fixed { .. } if !model.is_mechanism() => Ok(Attempt::Good { rate, error: 0.0 }),
             Stepping::Fixed { .. } if model.turn(&work.trial.d) > MOST_TURN => {
                 bad("a body turns too far in one step: it may end on another branch of its joint")
             }
             Stepping::Fixed { .. } if jumps(state, work) => {
                 bad("velocities jump: a mechanism leaves its branch, or an impact is shorter than `h`")
             }
-            Stepping::Fixed { .. } => Ok(Verdict::Good { error: 0.0 }),
+            Stepping::Fixed { .. } => Ok(Attempt::Good { rate, error: 0.0 }),
             Stepping::Controlled { tolerance } => {
                 let turn = model.turn(&work.trial.d);
                 let [local, force] =
@@ -230,16 +297,17 @@ impl Alpha {
                 // a body that is driven has no error, but a larger turn may end on another branch of its joint
                 let error = if turn > 1.0 { error + turn * turn } else { error };
                 match error {
-                    e if e <= 1.0 => Ok(Verdict::Good { error }),
+                    e if e <= 1.0 => Ok(Attempt::Good { rate, error }),
                     e if e.is_nan() => bad("the error estimate is not a number"),
-                    _ => Ok(Verdict::TooLarge { error }),
+                    _ => Ok(Attempt::TooLarge { error, iterations: rate.iterations }),
                 }
             }
         }
     }
 
+    /// Moves the state to the end of a step `h`; what the controller remembers is still that of the step before.
     fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, rate: &Rate) {
-        let order = self.best_order(state, h, work);
+        let order = best_order(state, h, work);
         let c = &mut state.control;
         c.order = order;
         c.h_before = c.h_last;
@@ -249,18 +317,9 @@ impl Alpha {
         one.extend_from_slice(&state.a);
         c.backs = (c.backs + 1).min(2);
         work.forces.keep(&mut c.forces);
-        c.h_last = h;
         c.eta = rate.eta;
         c.theta = rate.theta.unwrap_or(c.theta);
-        if rate.kept_failed {
-            // the next steps don't try to keep factors; each failure makes it twice as many
-            c.renew_next = (2 * c.renew_next).clamp(4, 64);
-            c.renew = c.renew_next;
-        } else {
-            c.renew_next = if c.renew == 0 { 0 } else { c.renew_next };
-            c.renew = c.renew.saturating_sub(1);
-        }
-        c.h_cap = if c.h_cap > 0.0 { c.h_cap * 1.1 } else { 0.0 };
+        c.note_factors(rate.kept_failed);
         let t = &mut work.trial;
         std::mem::swap(&mut state.q, &mut t.q);
         std::mem::swap(&mut state.v, &mut t.v);
@@ -273,50 +332,38 @@ impl Alpha {
     }
 }
 
-/// What a trial step that converged is worth.
-enum Verdict {
+/// What a trial step came to.
+enum Attempt {
     /// To be accepted, with this estimated error over the tolerance.
-    Good { error: f64 },
+    Good { rate: Rate, error: f64 },
     /// To be repeated with a smaller step.
-    TooLarge { error: f64 },
-    /// To be repeated like one that didn't converge.
+    TooLarge { error: f64, iterations: u32 },
+    /// It converged to something that can't be, and is to be repeated with a smaller step.
     Bad { why: String },
+    /// It didn't converge.
+    Failed(Failure),
 }
 
-/// By how much the step may grow after one with this error over the tolerance.
-fn growth(error: f64) -> f64 {
-    (SAFETY / error.max(1e-12).sqrt()).clamp(0.2, 2.5)
+/// With what a step is repeated before it is made smaller.
+#[derive(Default)]
+struct Remedies {
+    /// Without kept factors.
+    stale: bool,
+    /// From a prediction that sticks where something slips.
+    gripping: bool,
+    /// With small corrections at first.
+    careful: bool,
 }
 
-/// The times of the accelerations that are kept, before the present one.
-struct Past {
-    h: f64,
-    one: f64,
-    two: f64,
-}
-
-impl Past {
-    fn new(state: &State, h: f64) -> Self {
-        let c = &state.control;
-        // without a past any time will do: its weight isn't used
-        let one = if c.h_last > 0.0 { c.h_last } else { h };
-        Past { h, one, two: one + if c.h_before > 0.0 { c.h_before } else { h } }
-    }
-    /// Weights of the present acceleration and of those one and two steps back, to continue the polynomial of this
-    /// order by a step `h`.
-    fn continued(&self, order: usize) -> [f64; 3] {
-        let Past { h, one, two } = *self;
-        match order {
-            0 => [1.0, 0.0, 0.0],
-            1 => [1.0 + h / one, -h / one, 0.0],
-            _ => [
-                (h + one) * (h + two) / (one * two),
-                -h * (h + two) / (one * (two - one)),
-                h * (h + one) / (two * (two - one)),
-            ],
-        }
-    }
-}
+/// Its steps grow by the root of their error.
+const LAW: StepLaw = StepLaw {
+    growth: |error, _| SAFETY / error.max(1e-12).sqrt(),
+    trend: None,
+    most: [2.5; 2],
+    worthless: 1.25,
+    recovery: 1.1,
+    shares_rest: false,
+};
 
 /// Whether velocities change within the step by half of what they are, although they hardly did in the step before: no
 /// smooth motion does that. Steps with error control see it by themselves.
@@ -381,142 +428,50 @@ impl Integrator for Alpha {
             work.scaled = Some(Scaled::new(model, self.units));
             work.factored = None;
         }
-        let linear_constraints = !model.is_mechanism();
-        let controlled = matches!(self.options.stepping, Stepping::Controlled { .. });
-        let limit = h_max.min(self.limits.most);
-        let mut h = match self.options.stepping {
-            Stepping::Fixed { h } => {
-                let cap = if state.control.h_cap > 0.0 { state.control.h_cap } else { f64::INFINITY };
-                fixed_step(h, h_max).min(cap)
-            }
-            Stepping::Controlled { .. } => {
-                let wish =
-                    if state.control.h_next > 0.0 { state.control.h_next } else { state.control.h_start };
-                let cap = if state.control.h_cap > 0.0 { state.control.h_cap } else { f64::INFINITY };
-                wish.min(cap).min(limit)
-            }
-        };
-        // a step that only fills the rest of an interval says nothing about the next
-        let cut = h >= limit && state.control.h_next > limit;
-        let mut report = StepReport::default();
-        let (mut failures, mut stale, mut careful, mut gripping) = (0, false, false, false);
+        let mut steps = StepController::new(&LAW, self.options.stepping, self.limits, &state.control, h_max);
+        let mut remedies = Remedies::default();
         loop {
-            let mut aux = std::mem::take(&mut work.trial.aux_old);
-            self.rescale(state, h, &mut aux);
-            work.trial.aux_old = aux;
-            self.predict(state, h, work);
-            // where kept factors failed, the matrix changes too much even within a step
-            let full = stale || state.control.renew > 0 || self.options.newton == NewtonPolicy::Full;
-            let newton = Newton {
-                model,
-                state,
-                scheme: self.scheme,
-                h,
-                policy: if full { NewtonPolicy::Full } else { NewtonPolicy::Modified },
-                max_iterations: self.options.max_iterations,
-                tolerance: self.newton_tolerance(model, h),
-                force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
-                stopping: self.options.stopping,
-                units: self.units,
-                linear_constraints,
-                stabilised: self.stabilised(model),
-                // a step that leaps over the instant at which something sticks ends so stiff that the estimate of its error
-                // is blind: error control has to find that instant
-                leaps: !controlled,
-                gripping,
-                careful,
-            };
-            // factors that served badly last time are not tried again
-            if state.control.theta > REFRESH {
-                work.factored = None;
-            }
-            let why = match newton.solve(work, state.control.eta.max(0.05)) {
-                Outcome::Converged(mut rate) => {
-                    rate.kept_failed |= stale;
-                    let iterations = rate.iterations;
-                    report.h = h;
-                    report.iterations = iterations;
-                    match self.judge(model, state, work, h, linear_constraints)? {
-                        Verdict::Good { error } => {
-                            report.error = error;
-                            self.accept(state, work, h, &rate);
-                            if controlled {
-                                // small changes aren't worth a new factorisation
-                                let grow = growth(error);
-                                let next = if (1.0..1.25).contains(&grow) { h } else { h * grow };
-                                let said_nothing = cut && report.rejected == 0;
-                                state.control.h_next =
-                                    if said_nothing { next.max(state.control.h_next) } else { next };
-                            }
-                            return Ok(report);
-                        }
-                        Verdict::TooLarge { error } => {
-                            report.rejected += 1;
-                            work.counts.rejected += 1;
-                            h *= growth(error).min(0.9);
-                            if h < self.limits.least {
-                                return Err(StepError::NoConvergence {
-                                    t: state.t,
-                                    h,
-                                    why: "the tolerance asks for a smaller step than `h_min`".into(),
-                                    equation: work.worst_equation(model),
-                                });
-                            }
-                            continue;
-                        }
-                        Verdict::Bad { why } => why,
+            let h = steps.h;
+            let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
+                Attempt::Good { rate, error } => {
+                    self.accept(state, work, h, &rate);
+                    steps.accepted(&mut state.control, error, rate.iterations);
+                    let (iterations, rejected) = (rate.iterations, steps.rejected);
+                    return Ok(StepReport { h, iterations, rejected, error });
+                }
+                Attempt::TooLarge { error, iterations } => {
+                    work.counts.rejected += 1;
+                    if !steps.too_large(error, iterations) {
+                        return Err(too_strict(model, state.t, steps.h, work));
                     }
-                }
-                Outcome::Stale => {
-                    stale = true;
-                    work.factored = None;
                     continue;
                 }
-                // where the constraints are dependent for a moment, they are solved like redundant ones from here on
-                Outcome::Linear(_) if work.softening.is_none() && model.multipliers() > 0 => {
-                    work.soften(model);
-                    continue;
+                Attempt::Bad { why } => (why, false),
+                Attempt::Failed(Failure::Linear(source)) => {
+                    let repeat = self.soften(model, work);
+                    if !repeat && h <= self.limits.least {
+                        return Err(linear(model, state.t, source));
+                    }
+                    (source.to_string(), repeat)
                 }
-                // kept factors may be what fails, where forces turn much within a step
-                Outcome::Failed { .. } if !full => {
-                    stale = true;
-                    work.factored = None;
-                    continue;
+                Attempt::Failed(Failure::Newton(why)) => {
+                    (why, self.remedy(model, state, work, steps.failures, &mut remedies))
                 }
-                // the prediction may go on slipping where something is about to stop
-                Outcome::Failed { .. } if model.kinked() && !controlled && !gripping => {
-                    gripping = true;
-                    work.factored = None;
-                    continue;
-                }
-                // a mechanism may be about to end next to a singular position, which a smaller step needn't avoid
-                Outcome::Failed { .. } if failures == 0 && !careful && !linear_constraints => {
-                    careful = true;
-                    work.factored = None;
-                    continue;
-                }
-                Outcome::Linear(source) if h <= self.limits.least => {
-                    return Err(linear(model, state.t, source));
-                }
-                Outcome::Linear(source) => source.to_string(),
-                Outcome::Failed { why } => why,
             };
+            if repeat {
+                continue;
+            }
             let equation = work.worst_equation(model);
-            report.rejected += 1;
             work.counts.rejected += 1;
             work.factored = None;
-            failures += 1;
-            (careful, gripping) = (false, false);
-            let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
-            if smaller < self.limits.least {
+            (remedies.careful, remedies.gripping) = (false, false);
+            if !steps.failed(&mut state.control) {
                 return Err(StepError::NoConvergence { t: state.t, h, why, equation });
             }
-            state.control.h_cap = 0.7 * h;
-            h = smaller;
-            if failures == 2 && !linear_constraints && !controlled {
+            if steps.failures == 2 && model.is_mechanism() && !self.controlled() {
                 // velocities that meet the constraints only to the order of the old step would swing ever wilder
                 let cap = state.control.h_cap;
-                anew(model, state, work, self, h, true)?;
+                anew(model, state, work, self, steps.h, true)?;
                 state.control.h_cap = cap;
             }
         }

@@ -107,7 +107,8 @@ impl Forces {
         }
         for Line { part, places, .. } in &self.cables {
             for &s in places {
-                let tension = model.parts()[*part].pulls(s, &state.at()).unwrap_or(0.0);
+                let line = model.parts()[*part].line();
+                let tension = line.and_then(|line| line.pulls(s, &state.at())).unwrap_or(0.0);
                 self.present[*part] = self.present[*part].max(tension.abs());
             }
         }

@@ -1,10 +1,14 @@
 //! Time integration: schemes, Newton's method, step-size control, consistent starts.
 
 mod alpha;
+mod controller;
+mod convergence;
+mod factors;
 mod forces;
 mod newton;
 mod norm;
 mod options;
+mod predictor;
 mod radau;
 mod scales;
 mod scheme;

@@ -4,7 +4,8 @@
 //! `δv̇ = (1-αm)/(1-αf) δa` the matrix is `[(1-αm)/(1-αf) M + γ h C + β h² K, Gᵀ; G, 0]`, whose condition doesn't
 //! grow as the step shrinks (Bottasso, Bauchau & Cardona 2007), and β = 0 is no special case.
 
-use super::forces::left_of;
+use super::convergence::{Convergence, Failure, Rate};
+use super::factors::{Factors, Remedy};
 use super::options::NewtonPolicy;
 use super::scales::{Stopping, Units};
 use super::scheme::Coefficients;
@@ -15,18 +16,6 @@ use crate::model::term::{Leap, Weights};
 use crate::solve::linear::SolveError;
 use crate::solve::redundancy::Softening;
 
-/// Iterations with kept factors that are cheaper than new factors.
-const PATIENCE: i32 = 3;
-
-/// Convergence rate from which on the next steps don't try to keep factors either.
-const HOPELESS: f64 = 0.5;
-
-/// A step whose iteration still diverges after so many new matrices is repeated smaller.
-const MOST_RENEWALS: u32 = 3;
-
-/// The same where forces were approximated at kinks, which renews the matrix every time.
-const MOST_AT_KINKS: u32 = 10;
-
 /// Iterations of a careful start. Next to a singular position a prediction off by `e` asks for a correction of `e` over
 /// the distance, which may lead beyond the other branch; once the well determined directions are right, little is left.
 const CAREFUL: u32 = 3;
@@ -34,33 +23,6 @@ const CAREFUL: u32 = 3;
 /// Largest expected rest of the error that is believed without a second iteration. What is expected grows from step to
 /// step that has only one.
 const TRUST: f64 = 0.1;
-
-/// How Newton's method converged.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rate {
-    pub iterations: u32,
-    /// Expected remaining error in parts of the last correction.
-    pub eta: f64,
-    /// Ratio of the last two corrections made with the same factors; zero for new factors that weren't used twice,
-    /// `None` for kept ones.
-    pub theta: Option<f64>,
-    /// Whether kept factors had to be replaced on the way.
-    pub kept_failed: bool,
-    /// Whether the stopping test was given up, since only rounding is left.
-    pub unmet: bool,
-}
-
-/// What Newton's method of a trial came to.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Outcome {
-    Converged(Rate),
-    /// It diverged with factors of an earlier step: to be repeated with new ones.
-    Stale,
-    Failed {
-        why: String,
-    },
-    Linear(SolveError),
-}
 
 /// What an absolute stopping test says of an iteration.
 #[derive(Clone, Copy, PartialEq)]
@@ -97,6 +59,35 @@ pub(crate) struct Newton<'a> {
     pub careful: bool,
 }
 
+/// What an iteration knows of itself.
+struct Iteration {
+    convergence: Convergence,
+    factors: Factors,
+    /// Whether terms with kinks are told where an iteration comes from.
+    kinks: bool,
+    /// Whether forces were approximated at kinks: in the present matrix, and at all.
+    approximate: bool,
+    approximated: bool,
+    /// Whether positions are right, so that forces are looked at.
+    settled: bool,
+}
+
+impl Iteration {
+    fn corrected(&mut self, size: f64, force: f64) {
+        let c = &mut self.convergence;
+        c.corrected(size, force);
+        if c.since == 1 {
+            // new factors in the midst of it converge at least as well as a step that begins with them
+            (c.theta, c.eta) = (0.0, c.eta.clamp(1e-16, TRUST).powf(0.8));
+        }
+    }
+
+    fn rate(&self, iterations: u32, unmet: bool) -> Rate {
+        let (theta, eta) = (self.convergence.seen(self.factors.fresh()), self.convergence.eta);
+        Rate { iterations, eta, theta, kept_failed: self.factors.kept_failed, unmet }
+    }
+}
+
 impl Newton<'_> {
     pub fn weights(&self) -> Weights {
         let c = &self.scheme;
@@ -123,7 +114,7 @@ impl Newton<'_> {
             t.d.iter_mut().zip(&t.shift).for_each(|(d, shift)| *d += shift);
         }
         self.model.retract(&self.state.q, &t.d, &mut t.q);
-        self.model.drive(self.state.t + h, &self.state.modes, &mut t.q, &mut t.v, &mut t.a);
+        self.model.drive(self.state.t + h, &self.state.internal, &mut t.q, &mut t.v, &mut t.a);
     }
 
     /// Assembles at the trial; with `matrix` the iteration matrix too, which is then factored.
@@ -143,159 +134,163 @@ impl Newton<'_> {
         work.factor(self.model, self.weights())
     }
 
-    /// Iterates from the prediction in `work.trial.aux` and `work.trial.lambda`.
-    pub fn solve(&self, work: &mut Workspace, mut eta: f64) -> Outcome {
-        let nv = self.model.velocities();
-        let beta_h2 = self.scheme.beta.max(1.0 / 12.0) * self.h * self.h;
-        let floor = 4.0 * work.norms.rounding();
-        let stop = self.tolerance.max(floor);
-        // below this, corrections wander instead of falling
-        let noise = 30.0 * floor;
-        let (mut last, mut theta) = (0.0_f64, 0.0_f64);
-        // iterations with the present factors, and how many were made here
-        let (mut since, mut renewals, mut kept_failed) = (0, 0, false);
-        let multiplier_scale = 1.0 / (self.scheme.beta * self.h * self.h);
-        let kinks = self.leaps && self.model.kinked();
-        let (mut approximate, mut approximated) = (false, false);
-        // positions are right; and by how much forces were off before the last iteration
-        let (mut settled, mut force_before) = (false, None);
-        // what the iteration says of its matrix
-        let seen = |since: i32, before: f64, theta: f64, renewals: u32| {
-            if since > 1 && before > noise { Some(theta) } else { (renewals > 0).then_some(0.0) }
+    /// Iterates from the prediction in `work.trial.aux` and `work.trial.lambda`. `eta` is what the last step expects the
+    /// remaining error to be.
+    pub fn solve(&self, work: &mut Workspace, eta: f64) -> Result<Rate, Failure> {
+        let mut it = Iteration {
+            convergence: Convergence::new(self.tolerance, work.norms.rounding(), TRUST, eta, 0.0),
+            factors: Factors::new(self.policy),
+            kinks: self.leaps && self.model.kinked(),
+            approximate: false,
+            approximated: false,
+            settled: false,
         };
-        let mut last_before = 0.0;
-        let test_forces = self.stopping == Stopping::Relative;
         self.kinematics(work);
         work.forces.look(self.model, &work.norms, self.state);
         for k in 0..self.max_iterations {
-            let stale = work.factored != Some(self.weights());
-            // an iteration that would go on for long with its matrix gets a new one
-            let slow = !approximated && since > 1 && last > noise && last * theta.powi(PATIENCE) > stop;
-            let refresh = stale || self.policy == NewtonPolicy::Full || slow || approximated;
-            let careful = self.careful && k < CAREFUL;
-            let refresh = refresh || k == 0 && work.trial.kinked || self.careful && k <= CAREFUL;
-            if settled {
-                self.evaluate(work, false, None);
-                let force = self.force(work);
-                let stuck = last <= noise && force_before.is_some_and(|before: f64| force > 0.5 * before);
-                if (force <= 1.0 || stuck) && self.constraints_hold(work) {
-                    let theta = seen(since, last_before, theta, renewals);
-                    let unmet = !(force <= 1.0);
-                    return Outcome::Converged(Rate { iterations: k, eta, theta, kept_failed, unmet });
-                }
+            if it.settled
+                && let Some(rate) = self.forces_met(work, &it, k)
+            {
+                return Ok(rate);
             }
-            let before = std::mem::take(&mut work.trial.v_before);
-            let leap = match k {
-                _ if !kinks => None,
-                _ if !refresh => None,
-                0 if self.gripping => Some(Leap::Predicted),
-                0 => None,
-                _ => Some(Leap::From(&before)),
-            };
-            if !settled || refresh {
-                self.evaluate(work, refresh, leap);
+            let slow = !it.approximated && it.factors.slow(&it.convergence);
+            let refresh = slow || it.approximated || self.wants_matrix(work, &it, k);
+            if !it.settled || refresh {
+                self.evaluate_from(work, &it, k, refresh);
             }
-            work.trial.v_before = before;
-            let force = if test_forces { self.force(work) } else { 0.0 };
+            let force = if self.stopping == Stopping::Relative { self.force(work) } else { 0.0 };
             let test = self.absolute(work);
             if test == Some(Test::Met) && !work.system.approximate {
-                let theta = (renewals > 0).then_some(0.0);
-                return Outcome::Converged(Rate { iterations: k, eta, theta, kept_failed, unmet: false });
+                return Ok(Rate { theta: it.factors.fresh().then_some(0.0), ..it.rate(k, false) });
             }
-            if refresh && let Err(e) = self.factor(work, careful) {
-                return Outcome::Linear(e);
+            if refresh {
+                self.factor(work, self.careful && k < CAREFUL)?;
+                it.factors.renewed(&it.convergence, slow);
             }
-            // behind a kink, corrections say nothing about convergence
-            let behind = std::mem::replace(&mut approximate, work.system.approximate);
-            if kinks {
-                work.trial.v_before.copy_from_slice(&work.trial.v);
-                work.trial.kinked = if k == 0 { approximate } else { work.trial.kinked };
-                approximated |= approximate;
+            let kinked = self.note_kinks(work, &mut it, k);
+            if slow || kinked {
+                it.convergence.restart();
             }
-            kept_failed |= slow && renewals == 0 && theta > HOPELESS;
-            renewals += u32::from(refresh);
-            since = if slow || approximate || behind { 1 } else { since + 1 };
-            work.counts.newton_iterations += 1;
-            let residual = &work.system.residual;
-            if residual.iter().fold(false, |bad, r| bad | !r.is_finite()) {
-                return Outcome::Failed { why: "the residual is not finite".into() };
-            }
-            let s = self.model.structure();
-            s.order(residual, &mut work.x);
-            work.x.iter_mut().for_each(|x| *x = -*x);
-            if self.stabilised {
-                self.constraint_rates(work);
-                for (&p, rate) in s.position[nv..].iter().zip(&work.trial.g_rate) {
-                    work.x[p] = -rate / (self.scheme.gamma * self.h);
-                }
-            } else {
-                for &p in &s.position[nv..] {
-                    work.x[p] *= multiplier_scale;
-                }
-            }
-            if let Err(e) = work.solve_ordered(self.model, Which::Iteration) {
-                return Outcome::Linear(e);
-            }
-            s.add_restored(&work.x, &mut work.trial.aux, &mut work.trial.lambda);
-            let mut size = beta_h2 * work.norms.relative_ordered(&work.x);
-            if self.stabilised {
-                match self.shift(work, multiplier_scale) {
-                    Ok(shift) => size += shift,
-                    Err(e) => return Outcome::Linear(e),
-                }
-            }
-            self.kinematics(work);
-            if !size.is_finite() {
-                return Outcome::Failed { why: "the iteration left the finite numbers".into() };
-            }
-            if since > 1 {
-                theta = size / last;
-                eta = theta / (1.0 - theta).max(1e-3);
-            } else {
-                // new factors in the midst of it converge at least as well as a step that begins with them
-                theta = 0.0;
-                eta = eta.clamp(1e-16, TRUST).powf(0.8);
-            }
-            last_before = std::mem::replace(&mut last, size);
-            // a rate that wasn't seen for some steps has to be seen again before it is trusted
-            let trusted = since > 1 || eta <= TRUST;
-            let force_left = left_of(force, force_before.replace(force).filter(|_| since > 1));
-            settled =
-                test_forces && (trusted && size * eta.min(1e3) <= stop || size <= floor) && !approximate;
-            let done = match test {
-                None => settled && force_left <= 1.0 && self.constraints_hold(work),
-                Some(Test::Increment(limit)) => !approximate && self.increment(work) < limit,
-                Some(_) => false,
-            };
-            if done {
-                let theta = seen(since, last_before, theta, renewals);
-                return Outcome::Converged(Rate { iterations: k + 1, eta, theta, kept_failed, unmet: false });
-            }
-            if theta >= 1.0 && (test.is_none() || size > noise) {
-                // at the floor of rounding the iteration wanders; far from it, it diverges
-                if size <= noise && renewals > 0 {
-                    let theta = Some(1.0);
-                    return Outcome::Converged(Rate {
-                        iterations: k + 1,
-                        eta: 1.0,
-                        theta,
-                        kept_failed,
-                        unmet: !(force_left <= 1.0),
-                    });
-                }
-                match renewals {
-                    0 => return Outcome::Stale,
-                    1..=MOST_RENEWALS => {}
-                    ..MOST_AT_KINKS if approximated => {}
-                    _ => return Outcome::Failed { why: "Newton's method diverges".into() },
-                }
+            let size = self.correct(work)?;
+            it.corrected(size, force);
+            it.settled =
+                self.stopping == Stopping::Relative && it.convergence.positions_right() && !it.approximate;
+            if let Some(rate) = self.ends(work, &it, test, k + 1)? {
+                return Ok(rate);
             }
         }
-        if self.stopping != Stopping::Relative && last <= noise {
-            let (iterations, theta) = (self.max_iterations, (renewals > 0).then_some(0.0));
-            return Outcome::Converged(Rate { iterations, eta, theta, kept_failed, unmet: true });
+        if self.stopping != Stopping::Relative && it.convergence.is_noise() {
+            let rate = it.rate(self.max_iterations, true);
+            return Ok(Rate { theta: it.factors.fresh().then_some(0.0), ..rate });
         }
-        Outcome::Failed { why: format!("{} Newton iterations were not enough", self.max_iterations) }
+        Err(Failure::Newton(format!("{} Newton iterations were not enough", self.max_iterations)))
+    }
+
+    /// Where positions are right, whether forces are too before a further correction is made.
+    fn forces_met(&self, work: &mut Workspace, it: &Iteration, iterations: u32) -> Option<Rate> {
+        self.evaluate(work, false, None);
+        let force = self.force(work);
+        let met = (force <= 1.0 || it.convergence.stuck(force)) && self.constraints_hold(work);
+        met.then(|| it.rate(iterations, !(force <= 1.0)))
+    }
+
+    /// Whether the iteration ends with the correction that was just made, well or not.
+    fn ends(
+        &self,
+        work: &mut Workspace,
+        it: &Iteration,
+        test: Option<Test>,
+        iterations: u32,
+    ) -> Result<Option<Rate>, Failure> {
+        let done = match test {
+            None => it.settled && it.convergence.force_left <= 1.0 && self.constraints_hold(work),
+            Some(Test::Increment(limit)) => !it.approximate && self.increment(work) < limit,
+            Some(_) => false,
+        };
+        if done {
+            return Ok(Some(it.rate(iterations, false)));
+        }
+        let noise = it.convergence.is_noise();
+        if !it.convergence.grows() || noise && test.is_some() {
+            return Ok(None);
+        }
+        // at the floor of rounding the iteration wanders; far from it, it diverges
+        if noise && it.factors.fresh() {
+            let rate = it.rate(iterations, !(it.convergence.force_left <= 1.0));
+            return Ok(Some(Rate { eta: 1.0, theta: Some(1.0), ..rate }));
+        }
+        match it.factors.diverged(it.approximated) {
+            Remedy::GoOn => Ok(None),
+            _ => Err(Failure::newton("Newton's method diverges")),
+        }
+    }
+
+    /// Whether iteration `k` needs a new matrix even if it isn't slow.
+    fn wants_matrix(&self, work: &Workspace, it: &Iteration, k: u32) -> bool {
+        work.factored != Some(self.weights())
+            || it.factors.always
+            || k == 0 && work.trial.kinked
+            || self.careful && k <= CAREFUL
+    }
+
+    /// Assembles for iteration `k`; terms with kinks are told where a new matrix comes from.
+    fn evaluate_from(&self, work: &mut Workspace, it: &Iteration, k: u32, refresh: bool) {
+        let before = std::mem::take(&mut work.trial.v_before);
+        let leap = match k {
+            _ if !(it.kinks && refresh) => None,
+            0 if self.gripping => Some(Leap::Predicted),
+            0 => None,
+            _ => Some(Leap::From(&before)),
+        };
+        self.evaluate(work, refresh, leap);
+        work.trial.v_before = before;
+    }
+
+    /// Notes whether forces were approximated at kinks; `true` if the next correction says nothing of convergence for it.
+    fn note_kinks(&self, work: &mut Workspace, it: &mut Iteration, k: u32) -> bool {
+        let behind = std::mem::replace(&mut it.approximate, work.system.approximate);
+        if it.kinks {
+            work.trial.v_before.copy_from_slice(&work.trial.v);
+            work.trial.kinked = if k == 0 { it.approximate } else { work.trial.kinked };
+            it.approximated |= it.approximate;
+        }
+        it.approximate || behind
+    }
+
+    /// Solves for a correction and makes it. Gives its size, relative to the part that it moves most.
+    fn correct(&self, work: &mut Workspace) -> Result<f64, Failure> {
+        work.counts.newton_iterations += 1;
+        let residual = &work.system.residual;
+        if residual.iter().fold(false, |bad, r| bad | !r.is_finite()) {
+            return Err(Failure::newton("the residual is not finite"));
+        }
+        let (s, nv) = (self.model.structure(), self.model.velocities());
+        let multiplier_scale = 1.0 / (self.scheme.beta * self.h * self.h);
+        s.order(residual, &mut work.x);
+        work.x.iter_mut().for_each(|x| *x = -*x);
+        if self.stabilised {
+            self.constraint_rates(work);
+            for (&p, rate) in s.position[nv..].iter().zip(&work.trial.g_rate) {
+                work.x[p] = -rate / (self.scheme.gamma * self.h);
+            }
+        } else {
+            for &p in &s.position[nv..] {
+                work.x[p] *= multiplier_scale;
+            }
+        }
+        work.solve_ordered(self.model, Which::Iteration)?;
+        s.add_restored(&work.x, &mut work.trial.aux, &mut work.trial.lambda);
+        let beta_h2 = self.scheme.beta.max(1.0 / 12.0) * self.h * self.h;
+        let mut size = beta_h2 * work.norms.relative_ordered(&work.x);
+        if self.stabilised {
+            size += self.shift(work, multiplier_scale)?;
+        }
+        self.kinematics(work);
+        if size.is_finite() {
+            Ok(size)
+        } else {
+            Err(Failure::newton("the iteration left the finite numbers"))
+        }
     }
 
     /// What is left of the equations of motion, as they were just assembled, over its tolerance.
@@ -328,7 +323,7 @@ impl Newton<'_> {
             q: &trial.q,
             v: &trial.v,
             a: &trial.a,
-            modes: &self.state.modes,
+            internal: &self.state.internal,
             relaxed: None,
         }
     }

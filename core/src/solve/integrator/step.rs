@@ -167,3 +167,9 @@ pub(super) fn linear(model: &Model, t: f64, source: SolveError) -> StepError {
     };
     StepError::Linear { t, source, unknown }
 }
+
+/// The error of a step would have to be smaller than the smallest step makes it.
+pub(super) fn too_strict(model: &Model, t: f64, h: f64, work: &Workspace) -> StepError {
+    let why = "the tolerance asks for a smaller step than `h_min`".into();
+    StepError::NoConvergence { t, h, why, equation: work.worst_equation(model) }
+}

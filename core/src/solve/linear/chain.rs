@@ -208,17 +208,11 @@ impl<T: Scalar> Chain<T> {
         Ok(())
     }
 
-    /// Eliminates one block.
+    /// Fills the front of a block: its own rows, those of the next block in its columns, and what was carried on.
     #[inline(always)]
-    fn front<const W: usize, const FUSED: bool>(
-        &mut self,
-        s: &Step,
-        values: &[T],
-        carried: &mut Carried<T>,
-    ) -> Result<(), SolveError> {
+    fn gather<const W: usize>(&self, s: &Step, values: &[T], carried: &Carried<T>, front: &mut [[T; W]; W]) {
         let (size, ahead) = (s.size, s.size + s.next);
         let all = ahead + s.border;
-        let mut front = [[T::default(); W]; W];
         if s.first < self.first_shared {
             for i in 0..size {
                 let row = &values[s.at + i * s.stride..][..ahead];
@@ -250,6 +244,20 @@ impl<T: Scalar> Chain<T> {
                 front[place(i)][place(j)] += carried[i][j];
             }
         }
+    }
+
+    /// Eliminates one block.
+    #[inline(always)]
+    fn front<const W: usize, const FUSED: bool>(
+        &mut self,
+        s: &Step,
+        values: &[T],
+        carried: &mut Carried<T>,
+    ) -> Result<(), SolveError> {
+        let (size, ahead) = (s.size, s.size + s.next);
+        let all = ahead + s.border;
+        let mut front = [[T::default(); W]; W];
+        self.gather(s, values, carried, &mut front);
         let mut grown = [0.0; W];
         for p in 0..size {
             let pivot = front[p][p];

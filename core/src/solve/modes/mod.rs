@@ -11,9 +11,10 @@ mod pencil;
 mod quadratic;
 mod undamped;
 
+use crate::model::Model;
+use crate::model::assembly::System;
 use crate::model::motion::SteadyFrame;
 use crate::model::state::{At, State};
-use crate::model::{Model, System};
 use crate::solve::statics::{Linear, Statics, StaticsOptions};
 pub use outcome::{Critical, Mode, Modes, ModesError, OnLook};
 use outcome::{Found, Watch, direction, finish};
@@ -39,7 +40,7 @@ pub fn in_balance(
     let mut trial = state.clone();
     // the first correction finds the multipliers, the second is taken with the stiffness that comes of them
     for round in 0..2 {
-        let mut pencil = Pencil::new(model, &state.modes, statics.linearise(&trial))?;
+        let mut pencil = Pencil::new(model, &state.internal, statics.linearise(&trial))?;
         pencil.factor(0.0, 1e-9 * pencil.fastest).map_err(ModesError::Solver)?;
         let d = pencil.correction().map_err(ModesError::Solver)?;
         let (moves, multipliers) = d.split_at(model.velocities());
@@ -91,7 +92,7 @@ pub fn modes(
     rest.a.fill(0.0);
     statics.ride(&mut rest);
     refuse_moving(model, &rest, frame)?;
-    let mut pencil = Pencil::new(model, &state.modes, statics.linearise(&rest))?;
+    let mut pencil = Pencil::new(model, &state.internal, statics.linearise(&rest))?;
     let mut watch = Watch(look);
     let found = if pencil.damped || !pencil.symmetric {
         quadratic::find(&mut pencil, count, &mut watch)?
@@ -132,11 +133,11 @@ pub fn modes(
 /// The `count` modes of smallest `|λ|` of equations that are linearised already, whether a state may vibrate or not.
 pub(crate) fn slowest(
     model: &Model,
-    modes: &[f64],
+    internal: &[f64],
     linear: Linear,
     count: usize,
 ) -> Result<Vec<Mode>, ModesError> {
-    let mut pencil = Pencil::new(model, modes, linear)?;
+    let mut pencil = Pencil::new(model, internal, linear)?;
     let found = quadratic::find(&mut pencil, count, &mut Watch(&mut |_, _, _| ControlFlow::Continue(())))?;
     Ok(found.modes.into_iter().map(|raw| finish(model, &pencil, raw)).collect())
 }

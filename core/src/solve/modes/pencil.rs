@@ -27,7 +27,7 @@ pub(super) struct Pencil {
 }
 
 impl Pencil {
-    pub fn new(model: &Model, modes: &[f64], mut linear: Linear) -> Result<Self, ModesError> {
+    pub fn new(model: &Model, internal: &[f64], mut linear: Linear) -> Result<Self, ModesError> {
         let s = &linear.structure;
         // the Jacobian stands in every matrix; here it belongs to the stiffness only
         for (r, columns, at) in s.rows() {
@@ -41,7 +41,7 @@ impl Pencil {
         if all.iter().any(|a| a.iter().any(|x| !x.is_finite())) {
             return Err(ModesError::Solver(SolveError::NotFinite));
         }
-        let holding = (0..model.constraints().len()).filter(|&c| model.holds(c, modes));
+        let holding = (0..model.constraints().len()).filter(|&c| model.holds(c, internal));
         let held = holding.map(|c| model.rows_of(c).len()).sum();
         let symmetric = s.symmetric || (is_symmetric(s, &linear.stiffness) && is_symmetric(s, &linear.mass));
         // below the diagonal of symmetric matrices nothing counts

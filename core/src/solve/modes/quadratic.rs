@@ -67,7 +67,7 @@ pub(super) fn find(p: &mut Pencil, count: usize, watch: &mut Watch<'_>) -> Resul
     for _ in 0..STARTS {
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
     }
-    let (mut next_look, mut tried) = ((2 * count).min(60), None);
+    let (mut next_look, mut tried) = ((2 * count).min(60), None::<Vec<[f64; 2]>>);
     let all = loop {
         while space.turns() < next_look && !space.is_closed() {
             space.step(&mut op).map_err(ModesError::Solver)?;
@@ -81,16 +81,6 @@ pub(super) fn find(p: &mut Pencil, count: usize, watch: &mut Watch<'_>) -> Resul
         all.retain(|r| r.size() > 0.0);
         all.sort_by(|a, b| size(rate(a, sigma)).total_cmp(&size(rate(b, sigma))));
         let good = all.iter().take_while(|r| r.residual <= 1e-9 * r.size()).count();
-        let enough = |tried: Option<Vec<[f64; 2]>>| {
-            let now: Vec<[f64; 2]> = all.iter().take(count).map(|r| rate(r, sigma)).collect();
-            let same = |a: &[f64; 2], b: &[f64; 2]| {
-                (a[0] - b[0]).hypot(a[1] - b[1]) <= 1e-6 * (size(*a) + 1e-3 * sigma)
-            };
-            let stayed = tried.is_some_and(|old: Vec<[f64; 2]>| {
-                old.len() == now.len() && old.iter().zip(&now).all(|(a, b)| same(a, b))
-            });
-            (stayed, now)
-        };
         watch.look(good.min(count), count, space.turns())?;
         if closed {
             break all;
@@ -103,20 +93,40 @@ pub(super) fn find(p: &mut Pencil, count: usize, watch: &mut Watch<'_>) -> Resul
             continue;
         }
         // no law of inertia here: another start vector shows what the first ones held too little of
-        match enough(tried.take()) {
-            (true, _) => break all,
-            (false, now) => tried = Some(now),
+        let now: Vec<[f64; 2]> = all.iter().take(count).map(|r| rate(r, sigma)).collect();
+        if tried.is_some_and(|old| same(&old, &now, sigma)) {
+            break all;
         }
+        tried = Some(now);
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
         next_look = space.turns() + 2 * STARTS;
     };
-    let p = op.p;
+    let modes = collect(op.p, &all, &space, count, [sigma, weight.sqrt()])?;
+    let of = closed.then_some(modes.len());
+    Ok(Found { modes, missing: None, of })
+}
+
+/// Whether the lowest eigenvalues are those of an earlier look.
+fn same(old: &[[f64; 2]], now: &[[f64; 2]], sigma: f64) -> bool {
+    let near =
+        |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) <= 1e-6 * (size(*a) + 1e-3 * sigma);
+    old.len() == now.len() && old.iter().zip(now).all(|(a, b)| near(a, b))
+}
+
+/// The first `count` modes among the eigenvalues of the space.
+fn collect(
+    p: &mut Pencil,
+    all: &[Ritz],
+    space: &Arnoldi,
+    count: usize,
+    [sigma, scale]: [f64; 2],
+) -> Result<Vec<Raw>, ModesError> {
     let mut modes: Vec<Raw> = Vec::new();
-    for ritz in &all {
+    for ritz in all {
         if modes.len() == count {
             break;
         }
-        let mode = raw(p, rate(ritz, sigma), weight.sqrt(), space.vector(&ritz.vector))?;
+        let mode = raw(p, rate(ritz, sigma), scale, space.vector(&ritz.vector))?;
         // rounding of what has no finite rate, in a space that holds everything
         if !(mode.residual <= 1e-3) {
             continue;
@@ -135,8 +145,7 @@ pub(super) fn find(p: &mut Pencil, count: usize, watch: &mut Watch<'_>) -> Resul
             }
         }
     }
-    let of = closed.then_some(modes.len());
-    Ok(Found { modes, missing: None, of })
+    Ok(modes)
 }
 
 /// `λ = σ + 1/θ`.

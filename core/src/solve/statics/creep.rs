@@ -45,6 +45,9 @@ impl Statics<'_> {
         let mut stage = *stages.next().unwrap_or(&f64::INFINITY);
         let (mut still, mut pushes) = (false, 0);
         for _ in 0..STEPS {
+            if self.is_over() {
+                break;
+            }
             let mut next = state.clone();
             let Some((iterations, positive)) = self.creep_once(&mut next, &masses, [drag, load, stage])
             else {

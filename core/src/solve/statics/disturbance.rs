@@ -4,7 +4,7 @@
 
 use super::problem::Statics;
 use crate::model::state::State;
-use crate::solve::integrator::Scheme;
+use crate::solve::integrator::{Coefficients, Scheme};
 use crate::solve::linear::{Guard, SolveError};
 use crate::solve::times::Phase;
 
@@ -80,11 +80,8 @@ impl Statics<'_> {
         Ok(found)
     }
 
-    /// Integrates with `STEPS` steps of `h`; `time` weighs velocities against positions.
-    fn integrate(&self, h: f64, time: f64) -> Result<Disturbance, SolveError> {
-        let (n, nv) = (self.structure.n, self.model.velocities());
-        let c = Scheme::GeneralizedAlpha { rho_inf: 0.9 }.coefficients().unwrap_or_else(|_| unreachable!());
-
+    /// `(1-αm)/(1-αf) M + γ h C + β h² K`, with the constraints as they are.
+    fn iteration_matrix(&self, c: &Coefficients, h: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.structure.entries()];
         for (r, columns, at) in self.structure.rows() {
             for (i, p) in at.enumerate() {
@@ -97,20 +94,32 @@ impl Statics<'_> {
         if let Some(softening) = &self.softening {
             softening.apply(&mut values);
         }
+        values
+    }
+
+    /// Velocities of a disturbance that holds everything, and respects the constraints.
+    fn push(&self, solver: &mut Guard, values: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let s = &self.structure;
+        let v: Vec<f64> = (0..s.n).map(|p| if s.is_multiplier[p] { 0.0 } else { noise(p) }).collect();
+        let mut y = vec![0.0; s.n];
+        s.multiply(&self.mass.values, &v, &mut y);
+        zero_rows(s, &mut y);
+        solver.solve(s, values, &mut y)?;
+        zero_rows(s, &mut y);
+        Ok(y)
+    }
+
+    /// Integrates with `STEPS` steps of `h`; `time` weighs velocities against positions.
+    fn integrate(&self, h: f64, time: f64) -> Result<Disturbance, SolveError> {
+        let (n, nv) = (self.structure.n, self.model.velocities());
+        let c = Scheme::GeneralizedAlpha { rho_inf: 0.9 }.coefficients().unwrap_or_else(|_| unreachable!());
+        let values = self.iteration_matrix(&c, h);
         let mut solver = Guard::new(&self.structure)?;
         solver.factor(&self.structure, &values)?;
-
-        // a disturbance that holds everything, and respects the constraints
-        let mut v: Vec<f64> =
-            (0..n).map(|p| if self.structure.is_multiplier[p] { 0.0 } else { noise(p) }).collect();
-        let mut y = vec![0.0; n];
-        self.structure.multiply(&self.mass.values, &v, &mut y);
-        zero_rows(&self.structure, &mut y);
-        solver.solve(&self.structure, &values, &mut y)?;
-        zero_rows(&self.structure, &mut y);
-        v.copy_from_slice(&y);
+        let mut v = self.push(&mut solver, &values)?;
 
         let (mut x, mut a, mut vd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let mut y = vec![0.0; n];
         let (mut p, mut pv, mut pa, mut r) = (vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let size = |x: &[f64], v: &[f64]| {
             x.iter().zip(v).map(|(x, v)| x * x + time * time * v * v).sum::<f64>().sqrt()

@@ -4,7 +4,7 @@ use super::outcome::StaticsError;
 use super::problem::Statics;
 use crate::algebra::lane::V3;
 use crate::algebra::rotation::{cross, transposed_times};
-use crate::model::System;
+use crate::model::assembly::System;
 use crate::model::node::NodeKind;
 use crate::model::state::State;
 
@@ -22,37 +22,39 @@ impl Statics<'_> {
         self.flow.clear();
         let model = self.model;
         for part in model.parts().iter().filter(|_| self.flows) {
-            let fronts: Vec<_> = [0, 1].iter().filter_map(|&end| part.front(end)).collect();
-            let given = |v: usize| model.prescribed(v, state.t, &state.modes).map(|[_, rate, _]| rate);
-            let rates: Vec<Option<f64>> = fronts.iter().map(|f| given(f.v)).collect();
+            let boundaries: Vec<_> = [0, 1].iter().filter_map(|&end| part.boundary(end)).collect();
+            let given = |v: usize| model.prescribed(v, state.t, &state.internal).map(|[_, rate, _]| rate);
+            let rates: Vec<Option<f64>> = boundaries.iter().map(|f| given(f.v)).collect();
             let known = || rates.iter().flatten().copied();
             let fastest = known().fold(0.0, |m: f64, r| if r.abs() > m.abs() { r } else { m });
             let still = STILL * fastest.abs();
             let (name, speed) = (part.name(), fastest.abs());
             let refused = match () {
                 () if fastest == 0.0 => None,
-                () if fronts.len() == 1 => Some(format!(
+                () if boundaries.len() == 1 => Some(format!(
                     "`{name}` feeds at one end only, at {speed} m/s, so its length changes and no shape is steady: \
                      let as much run through its other end, or compute the motion in time"
                 )),
                 () if known().any(|r| (r - fastest).abs() > still) => {
                     let grows: f64 =
-                        fronts.iter().zip(&rates).filter_map(|(f, r)| Some(f.sign * (*r)?)).sum();
+                        boundaries.iter().zip(&rates).filter_map(|(f, r)| Some(f.sign * (*r)?)).sum();
                     Some(format!(
                         "the free length of `{name}` changes by {grows} m/s, so no shape is steady: let as much run \
                          out of one end as into the other, or compute the motion in time"
                     ))
                 }
-                () if [0, 1].iter().any(|&end| part.makes_elements(end)) => Some(format!(
-                    "elements of `{name}` are born and swallowed, so no mesh stands still while material runs \
+                () if part.line().is_some_and(|line| [0, 1].iter().any(|&end| line.makes_elements(end))) => {
+                    Some(format!(
+                        "elements of `{name}` are born and swallowed, so no mesh stands still while material runs \
                      through: leave out `element` of what feeds it"
-                )),
+                    ))
+                }
                 () => None,
             };
             if let Some(why) = refused {
                 return Err(StaticsError::refused(state.t, why));
             }
-            self.flow.extend(fronts.iter().map(|f| (f.v, f.q, fastest)));
+            self.flow.extend(boundaries.iter().map(|f| (f.v, f.q, fastest)));
         }
         Ok(())
     }

@@ -52,7 +52,9 @@ impl Statics<'_> {
         let mut other = before.clone();
         other.lambda.fill(0.0);
         for part in self.model.parts() {
-            part.straighten(&mut other.q);
+            if let Some(line) = part.line() {
+                line.straighten(&mut other.q);
+            }
         }
         let second = self.search(&mut other, true, true, true);
         match (first, second) {
@@ -81,6 +83,10 @@ impl Statics<'_> {
         cold: bool,
         first: StaticsError,
     ) -> Result<Found, StaticsError> {
+        if first.interrupted {
+            *state = before;
+            return Err(first);
+        }
         let mut found = Found { iterations: first.iterations, ..Found::default() };
         state.clone_from(&before);
         if self.set_free(state)
@@ -131,7 +137,7 @@ impl Statics<'_> {
                     continue;
                 }
                 // what was refused isn't found by smaller steps either
-                Err(e) if e.iterations == 0 => {
+                Err(e) if e.iterations == 0 || e.interrupted => {
                     *state = before;
                     return Err(StaticsError { on_path: true, ..e });
                 }

@@ -38,8 +38,8 @@ impl Statics<'_> {
     /// Residual and stiffness of the loads alone, as seen from the frame.
     pub(crate) fn loads(&mut self, state: &State) -> (Vec<f64>, Vec<f64>) {
         self.follow_frame(&state.q);
-        let State { t, q, modes, .. } = state;
-        let at = At { t: *t, q, v: &self.v, a: &self.a, modes, relaxed: None };
+        let State { t, q, internal, .. } = state;
+        let at = At { t: *t, q, v: &self.v, a: &self.a, internal, relaxed: None };
         let (q, v, a) = (1.0, 1.0, 1.0);
         let none = Weights::default();
         let (model, structure) = (self.model, &self.structure);

@@ -13,95 +13,25 @@ const RIGID: f64 = 1e-2;
 /// What moves in a direction, and how.
 pub(super) fn describe(model: &Model, q: &[f64], shape: &[f64]) -> String {
     let length = model.length();
-    let place = |n: &Node| -> V3<f64> { std::array::from_fn(|i| q[n.q + i]) };
-    let size_of = |n: &Node| {
-        let d = &shape[n.dofs()];
-        let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        match n.kind {
-            NodeKind::Scalars(_) => size(d) / length,
-            _ => f64::max(size(&d[..3]) / length, size(&d[3..])),
-        }
-    };
     let nodes: Vec<_> = model.nodes().iter().enumerate().collect();
-    let largest = nodes.iter().map(|(_, n)| size_of(n)).fold(0.0, f64::max);
-    let moving: Vec<_> = nodes
-        .iter()
-        .filter(|(_, n)| !matches!(n.kind, NodeKind::Scalars(_)) && size_of(n) > 1e-3 * largest)
+    let largest = nodes.iter().map(|(_, n)| size_of(n, shape, length)).fold(0.0, f64::max);
+    let moving: Vec<(usize, &Node)> = nodes
+        .into_iter()
+        .filter(|(_, n)| {
+            !matches!(n.kind, NodeKind::Scalars(_)) && size_of(n, shape, length) > 1e-3 * largest
+        })
         .collect();
-    let mut names: Vec<String> = Vec::new();
-    for (k, _) in &moving {
-        let part = model.parts().iter().find(|p| p.place_of(NodeId(*k as u32)).is_some());
-        if let Some(name) = part.map(|p| format!("`{}`", p.name())).filter(|n| !names.contains(n)) {
-            names.push(name);
-        }
-    }
-    let who = match names.as_slice() {
-        [] => "the model".to_string(),
-        [one] => one.clone(),
-        [first, .., last] if names.len() > 3 => format!("{first} to {last}"),
-        more => more.join(", "),
-    };
+    let who = names(model, &moving);
     if moving.is_empty() {
         return format!("{who} moves");
     }
-    // the rigid motion that fits best: u + ω × (x - x₀), in parts of the reference length
-    let origin = place(moving[0].1);
-    let mut rows: Vec<([f64; 6], f64)> = Vec::new();
-    for (_, n) in &moving {
-        let arm: V3<f64> = std::array::from_fn(|i| (place(n)[i] - origin[i]) / length);
-        let d = &shape[n.dofs()];
-        for i in 0..3 {
-            let mut row = [0.0; 6];
-            row[i] = 1.0;
-            for j in 0..3 {
-                let mut turn = [0.0; 3];
-                turn[j] = 1.0;
-                row[3 + j] = cross(&turn, &arm)[i];
-            }
-            rows.push((row, d[i] / length));
-        }
-        let turned: Option<[V3<f64>; 3]> = match n.kind {
-            NodeKind::Slope => {
-                let slope: V3<f64> = std::array::from_fn(|i| q[n.q + 3 + i]);
-                Some(std::array::from_fn(|j| {
-                    let mut turn = [0.0; 3];
-                    turn[j] = 1.0;
-                    cross(&turn, &slope)
-                }))
-            }
-            NodeKind::Frame => {
-                let r = frame(&q[n.coords()]);
-                Some(std::array::from_fn(|j| std::array::from_fn(|i| r[j][i])))
-            }
-            _ => None,
-        };
-        if let Some(columns) = turned {
-            for i in 0..3 {
-                let mut row = [0.0; 6];
-                for j in 0..3 {
-                    row[3 + j] = columns[j][i];
-                }
-                rows.push((row, d[3 + i]));
-            }
-        }
-    }
-    let a = DMatrix::from_fn(rows.len(), 6, |i, j| rows[i].0[j]);
-    let b = DVector::from_fn(rows.len(), |i, _| rows[i].1);
-    let fit = a.clone().svd(true, true).solve(&b, 1e-9);
-    let Ok(fit) = fit else { return format!("{who} moves") };
-    let left = (&a * &fit - &b).norm() / b.norm();
-    let (u, omega): (V3<f64>, V3<f64>) =
-        (std::array::from_fn(|i| length * fit[i]), std::array::from_fn(|i| fit[3 + i]));
-    let norm = |x: &V3<f64>| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let spoken = |x: &V3<f64>| {
-        let size = norm(x);
-        // the sign of a direction means nothing: let its largest part be positive
-        let k = (0..3).max_by(|&a, &b| x[a].abs().total_cmp(&x[b].abs())).unwrap_or(0);
-        let unit = x.map(|c| rounded(c / size * x[k].signum()));
-        format!("({}, {}, {})", unit[0], unit[1], unit[2])
+    let origin: V3<f64> = std::array::from_fn(|i| q[moving[0].1.q + i]);
+    let Some((u, omega, left)) = rigid_motion(q, shape, &moving, origin, length) else {
+        return format!("{who} moves");
     };
     if !(left < RIGID) {
-        let farthest = moving.iter().max_by(|a, b| size_of(a.1).total_cmp(&size_of(b.1)));
+        let farthest =
+            moving.iter().max_by(|a, b| size_of(a.1, shape, length).total_cmp(&size_of(b.1, shape, length)));
         let Some((k, n)) = farthest else { return format!("{who} moves") };
         let d: V3<f64> = std::array::from_fn(|i| shape[n.v + i]);
         let part = model.parts().iter().find_map(|p| {
@@ -124,6 +54,95 @@ pub(super) fn describe(model: &Model, q: &[f64], shape: &[f64]) -> String {
         through[1],
         through[2]
     )
+}
+
+/// How far a node moves, in parts of the reference length.
+fn size_of(n: &Node, shape: &[f64], length: f64) -> f64 {
+    let d = &shape[n.dofs()];
+    let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    match n.kind {
+        NodeKind::Scalars(_) => size(d) / length,
+        _ => f64::max(size(&d[..3]) / length, size(&d[3..])),
+    }
+}
+
+/// The parts that these nodes belong to.
+fn names(model: &Model, moving: &[(usize, &Node)]) -> String {
+    let mut names: Vec<String> = Vec::new();
+    for (k, _) in moving {
+        let part = model.parts().iter().find(|p| p.place_of(NodeId(*k as u32)).is_some());
+        if let Some(name) = part.map(|p| format!("`{}`", p.name())).filter(|n| !names.contains(n)) {
+            names.push(name);
+        }
+    }
+    match names.as_slice() {
+        [] => "the model".to_string(),
+        [one] => one.clone(),
+        [first, .., last] if names.len() > 3 => format!("{first} to {last}"),
+        more => more.join(", "),
+    }
+}
+
+/// The rigid motion `u + ω × (x - x₀)` that fits a direction best, and the part of the direction that it misses.
+fn rigid_motion(
+    q: &[f64],
+    shape: &[f64],
+    moving: &[(usize, &Node)],
+    origin: V3<f64>,
+    length: f64,
+) -> Option<(V3<f64>, V3<f64>, f64)> {
+    let unit = |j: usize| -> V3<f64> { std::array::from_fn(|i| if i == j { 1.0 } else { 0.0 }) };
+    // translations in parts of the reference length
+    let mut rows: Vec<([f64; 6], f64)> = Vec::new();
+    for (_, n) in moving {
+        let arm: V3<f64> = std::array::from_fn(|i| (q[n.q + i] - origin[i]) / length);
+        let d = &shape[n.dofs()];
+        for i in 0..3 {
+            let mut row = [0.0; 6];
+            row[i] = 1.0;
+            for j in 0..3 {
+                row[3 + j] = cross(&unit(j), &arm)[i];
+            }
+            rows.push((row, d[i] / length));
+        }
+        let turned: Option<[V3<f64>; 3]> = match n.kind {
+            NodeKind::Slope => {
+                let slope: V3<f64> = std::array::from_fn(|i| q[n.q + 3 + i]);
+                Some(std::array::from_fn(|j| cross(&unit(j), &slope)))
+            }
+            NodeKind::Frame => {
+                let r = frame(&q[n.coords()]);
+                Some(std::array::from_fn(|j| std::array::from_fn(|i| r[j][i])))
+            }
+            _ => None,
+        };
+        if let Some(columns) = turned {
+            for i in 0..3 {
+                let mut row = [0.0; 6];
+                for j in 0..3 {
+                    row[3 + j] = columns[j][i];
+                }
+                rows.push((row, d[3 + i]));
+            }
+        }
+    }
+    let a = DMatrix::from_fn(rows.len(), 6, |i, j| rows[i].0[j]);
+    let b = DVector::from_fn(rows.len(), |i, _| rows[i].1);
+    let fit = a.clone().svd(true, true).solve(&b, 1e-9).ok()?;
+    let left = (&a * &fit - &b).norm() / b.norm();
+    Some((std::array::from_fn(|i| length * fit[i]), std::array::from_fn(|i| fit[3 + i]), left))
+}
+
+fn norm(x: &V3<f64>) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// A direction in words; its sign means nothing, so that the largest part is positive.
+fn spoken(x: &V3<f64>) -> String {
+    let size = norm(x);
+    let k = (0..3).max_by(|&a, &b| x[a].abs().total_cmp(&x[b].abs())).unwrap_or(0);
+    let unit = x.map(|c| rounded(c / size * x[k].signum()));
+    format!("({}, {}, {})", unit[0], unit[1], unit[2])
 }
 
 fn rounded(x: f64) -> f64 {

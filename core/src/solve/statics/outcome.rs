@@ -50,12 +50,15 @@ pub struct StaticsError {
     pub residual: f64,
     /// Where.
     pub equation: String,
+    /// Whether it was stopped from outside, as [`Statics::stop_if`](super::Statics::stop_if) has it.
+    pub interrupted: bool,
 }
 
 impl StaticsError {
     /// Nothing was searched, since there is nothing to be found.
     pub(super) fn refused(t: f64, why: String) -> Self {
-        StaticsError { t, on_path: false, why, iterations: 0, residual: 0.0, equation: String::new() }
+        let (residual, equation) = (0.0, String::new());
+        StaticsError { t, on_path: false, why, iterations: 0, residual, equation, interrupted: false }
     }
 
     /// Where on the path, or when.
@@ -70,6 +73,9 @@ impl StaticsError {
     fn told(&self) -> String {
         let StaticsError { why, iterations, residual, equation, .. } = self;
         let place = self.place();
+        if self.interrupted {
+            return format!("the search for an equilibrium {place} was stopped");
+        }
         if *iterations == 0 {
             return format!("there is no equilibrium {place}: {why}");
         }

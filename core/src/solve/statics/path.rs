@@ -75,6 +75,9 @@ impl Statics<'_> {
         };
         let mut ds = FIRST.min((end - state.t).abs() / way.span);
         for _ in 0..STEPS {
+            if self.is_over() {
+                break;
+            }
             // beyond the end loads may be others
             let reach = (end - here.state.t) / here.rate;
             if reach > 0.0 && ds >= reach {
@@ -109,18 +112,7 @@ impl Statics<'_> {
                 return self.leave(state, &here.slope, &critical, way, found);
             }
             if (next.state.t - end) * way.sign >= 0.0 {
-                // the end lies between: half a step that Newton's method is sure to close
-                let part = (end - here.state.t) / (next.state.t - here.state.t);
-                let mut at_end = self.between(&here.state, &next.state, part);
-                let guess = at_end.clone();
-                at_end.t = end;
-                let reached = self.search(&mut at_end, false, false, false);
-                let apart = self.distance(&guess.q, &at_end.q);
-                if let Ok(more) = reached
-                    && self.unstable == 0
-                    && apart <= 0.5 * self.distance(&here.state.q, &next.state.q) + 1e-6
-                {
-                    found.add(&more);
+                if let Some(at_end) = self.end_between(&here, &next, end, found) {
                     *state = at_end;
                     return Ok(());
                 }
@@ -155,6 +147,23 @@ impl Statics<'_> {
         found.add(&more);
         let near = self.distance(&guess, &there.q) <= 0.1 * self.inner(&move_on, &move_on).sqrt() + 1e-6;
         (self.unstable == 0 && near).then_some(there)
+    }
+
+    /// The stable equilibrium at the end of the load, which lies between two points of the path: half a step that Newton's
+    /// method is sure to close.
+    fn end_between(&mut self, here: &Point, next: &Point, end: f64, found: &mut Found) -> Option<State> {
+        let part = (end - here.state.t) / (next.state.t - here.state.t);
+        let mut at_end = self.between(&here.state, &next.state, part);
+        let guess = at_end.q.clone();
+        at_end.t = end;
+        let more = self.search(&mut at_end, false, false, false).ok()?;
+        let near =
+            self.distance(&guess, &at_end.q) <= 0.5 * self.distance(&here.state.q, &next.state.q) + 1e-6;
+        if self.unstable != 0 || !near {
+            return None;
+        }
+        found.add(&more);
+        Some(at_end)
     }
 
     /// Whether a step of the load may have leapt from one path to another: the tangents at both ends don't explain it.
@@ -290,7 +299,7 @@ impl Statics<'_> {
             q: &state.q,
             v: &self.v,
             a: &self.a,
-            modes: &state.modes,
+            internal: &state.internal,
             relaxed: relaxed.map(|r| Relaxed { last: r.last, how: r.how }),
         };
         let mut ahead = std::mem::take(&mut self.ahead);

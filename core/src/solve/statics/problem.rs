@@ -2,9 +2,10 @@
 
 use super::options::StaticsOptions;
 use super::outcome::{Critical, Judgement, Neutral};
+use crate::model::Model;
+use crate::model::assembly::System;
 use crate::model::motion::SteadyFrame;
 use crate::model::structure::Structure;
-use crate::model::{Model, System};
 use crate::solve::linear::{Guard, SolveError};
 use crate::solve::redundancy::Softening;
 use crate::solve::times::{Clocks, Times};
@@ -28,7 +29,7 @@ pub struct Statics<'a> {
     pub(super) v: Vec<f64>,
     pub(super) a: Vec<f64>,
     /// Whether material may run through cables, and at which rate it does so at the time of the search: place of each
-    /// front's velocity and coordinate, and its rate.
+    /// boundary's velocity and coordinate, and its rate.
     pub(super) flows: bool,
     pub(super) flow: Vec<(usize, usize, f64)>,
     /// Directions that nothing holds, as forces that would, in elimination order: no correction moves along them.
@@ -42,6 +43,8 @@ pub struct Statics<'a> {
     pub(super) critical: Vec<Critical>,
     /// Longest stretch of time that was to be followed.
     pub(super) span: f64,
+    /// Whether to give up, asked at every iteration.
+    pub(super) is_over: Option<Box<dyn Fn() -> bool>>,
 }
 
 impl<'a> Statics<'a> {
@@ -93,7 +96,18 @@ impl<'a> Statics<'a> {
             judged: Judgement { potential: true, ..Judgement::default() },
             critical: Vec::new(),
             span: 0.0,
+            is_over: None,
         })
+    }
+
+    /// Gives up as soon as this says so; it is asked at every iteration. The error then
+    /// says so.
+    pub fn stop_if(&mut self, is_over: impl Fn() -> bool + 'static) {
+        self.is_over = Some(Box::new(is_over));
+    }
+
+    pub(super) fn is_over(&self) -> bool {
+        self.is_over.as_ref().is_some_and(|is_over| is_over())
     }
 
     /// Records the time of each term from now on.

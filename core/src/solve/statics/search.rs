@@ -4,6 +4,7 @@ use super::outcome::{Found, StaticsError};
 use super::problem::Statics;
 use super::tangent::Trial;
 use crate::algebra::lane::V3;
+use crate::model::Model;
 use crate::model::node::retract;
 use crate::model::state::{Relaxation, State};
 use crate::solve::times::Phase;
@@ -14,6 +15,53 @@ pub(super) const FOLD: f64 = 0.5;
 /// Corrections, in parts of their tolerance, that may be left where rounding allows no less.
 const ROUNDED: f64 = 1e3;
 
+/// Where a search stands.
+struct Iterate {
+    q: Vec<f64>,
+    lambda: Vec<f64>,
+    next: Vec<f64>,
+    how: Relaxation,
+    /// Least tension for the geometric stiffness where the tangent is no good without [N].
+    floor: f64,
+    /// The last correction, its size, and its ratio to the one before.
+    last: Option<Vec<f64>>,
+    size: Option<f64>,
+    theta: f64,
+    /// Whether tangents that aren't positive are no good.
+    careful: bool,
+}
+
+impl Iterate {
+    fn new(state: &State, cold: bool, careful: bool, load: f64) -> Self {
+        let mut how = Relaxation::check(false, load);
+        if cold {
+            how.ramp = 1.0;
+        }
+        let (q, lambda, next) = (state.q.clone(), state.lambda.clone(), state.q.clone());
+        Iterate { q, lambda, next, how, floor: 0.5 * load, last: None, size: None, theta: 1.0, careful }
+    }
+
+    /// Moves on without corrections from before.
+    fn push(&mut self, model: &Model, d: &[f64]) {
+        self.move_by(model, d);
+        (self.last, self.size, self.theta) = (None, None, 1.0);
+    }
+
+    fn move_by(&mut self, model: &Model, d: &[f64]) {
+        retract(model.nodes(), &self.q, d, &mut self.next);
+        std::mem::swap(&mut self.q, &mut self.next);
+    }
+}
+
+/// What is made of an iterate that may be the equilibrium.
+enum Verdict {
+    Found(Box<State>),
+    /// It is unstable, and left in this direction.
+    Leave(Vec<f64>),
+    /// It isn't close enough yet.
+    GoOn,
+}
+
 impl Statics<'_> {
     /// Newton's method from `state`. Unstable equilibria are left by a push if `leave` says so, else found as they are:
     /// then [`Statics::unstable`] isn't zero.
@@ -21,130 +69,132 @@ impl Statics<'_> {
         &mut self,
         state: &mut State,
         cold: bool,
-        mut careful: bool,
+        careful: bool,
         leave: bool,
     ) -> Result<Found, StaticsError> {
-        let (model, nv) = (self.model, self.model.velocities());
-        let length = model.length();
         let load = self.load(state);
         let mut found = Found::default();
-        let mut how = Relaxation::check(false, load);
-        if cold {
-            how.ramp = 1.0;
-        }
-        let mut floor = 0.5 * load;
-        let mut last: Option<Vec<f64>> = None;
-        let (mut size_before, mut theta) = (None, 1.0);
+        let mut it = Iterate::new(state, cold, careful, load);
         self.unstable = 0;
         self.neutral.clear();
         self.doubt = None;
-        let fail = |s: &Self, why: &str, found: &Found| Err(s.fail(state, why, found.iterations));
-        let mut q = state.q.clone();
-        let mut lambda = state.lambda.clone();
-        let mut next = q.clone();
         while found.iterations < self.options.max_iterations {
+            if self.is_over() {
+                return Err(self.fail(state, "it was stopped", found.iterations));
+            }
             found.iterations += 1;
-            how.smooth = last.is_some();
-            let mut trial = self.newton(state, &q, &lambda, last.as_deref(), how);
-            let far = |t: &Trial| self.position_size(&t.d) > 2.0 * length;
-            let wrong = |t: &Trial| careful && t.negative && self.options.stable;
-            let bad = trial.as_ref().map_or(true, |t| wrong(t) || far(t));
-            if bad {
-                found.floored += 1;
-                trial = self.newton(
-                    state,
-                    &q,
-                    &lambda,
-                    last.as_deref(),
-                    Relaxation { floor: Some(floor), ..how },
-                );
-                floor *= 0.8;
-            }
-            let trial = match trial {
-                Ok(t) => t,
-                Err(e) => return fail(self, &e.to_string(), &found),
+            let verdict = match self.correct(state, &mut it, &mut found) {
+                Ok(true) => self.examine(state, &it, &mut found, load, [cold, leave]),
+                Ok(false) => Ok(Verdict::GoOn),
+                Err(why) => Err(why),
             };
-            let mut d = trial.d;
-            let multipliers = d.split_off(nv);
-            let size = self.size(&d);
-            if !size.is_finite() {
-                return fail(self, "the iteration left the finite numbers", &found);
-            }
-            retract(model.nodes(), &q, &d, &mut next);
-            std::mem::swap(&mut q, &mut next);
-            for (l, m) in lambda.iter_mut().zip(&multipliers) {
-                *l += m;
-            }
-            if let Some(before) = size_before {
-                theta = if before > 0.0 { f64::min(size / before, 1.0) } else { 0.0 };
-            }
-            let ramping = how.ramp.is_finite() && self.ramp_binds(state, &q, &lambda, how);
-            how.ramp_before = how.ramp;
-            how.ramp = if ramping { how.ramp * 100.0 } else { f64::INFINITY };
-            size_before = Some(size);
-            let tolerance = self.options.tolerance;
-            let falls = !bad && found.iterations >= 2 && size * theta <= tolerance;
-            let done = size <= tolerance || falls || !bad && self.wanders(found.iterations, size, theta);
-            last = Some(d);
-            if ramping || !done {
-                continue;
-            }
-            // what is accepted is checked at the point itself
-            let mut there = state.clone();
-            (there.q, there.lambda) = (q.clone(), lambda.clone());
-            let begin = self.clocks.start();
-            let judged = if self.options.stable {
-                self.judge(&there, last.as_deref(), load, found.pushes + 1)
-            } else {
-                self.check(&there, last.as_deref(), load)
-            };
-            self.clocks.stop(Phase::Stability, begin);
-            let mut judged = match judged {
-                Ok(judged) => judged,
-                Err(e) => return fail(self, &e.to_string(), &found),
-            };
-            if let Some(what) = &judged.driven {
-                return fail(self, &format!("the load drives what nothing holds: {what}"), &found);
-            }
-            found.residual = judged.residual;
-            let mut push = None;
-            if leave && judged.unstable > 0 {
-                push = judged.way_out.take().map(|d| self.small(d));
-            } else if self.size(&judged.correction[..nv]) <= ROUNDED * tolerance {
-                self.follow_frame(&q);
-                there.v.clone_from(&self.v);
-                there.a.clone_from(&self.a);
-                there.aux.clone_from(&self.a);
-                found.flutter = judged.flutter;
-                if cold && self.options.stable && !self.structure.symmetric {
-                    match self.disturb(&there) {
-                        Ok(d) if d.unstable && d.one_way => push = Some(self.small(d.shape)),
-                        Ok(d) if d.unstable => found.flutter = found.flutter.max(d.rate),
-                        Ok(_) => {}
-                        Err(e) => return fail(self, &e.to_string(), &found),
-                    }
-                }
-                if push.is_none() {
-                    self.unstable = judged.unstable;
-                    self.neutral = std::mem::take(&mut judged.neutral);
-                    self.doubt = judged.doubt.take();
-                    self.judged = judged;
-                    *state = there;
+            match verdict {
+                Ok(Verdict::Found(there)) => {
+                    *state = *there;
                     return Ok(found);
                 }
-            }
-            if let Some(push) = push {
-                if found.pushes >= 3 {
-                    return fail(self, "only unstable equilibria were met", &found);
+                Ok(Verdict::Leave(_)) if found.pushes >= 3 => {
+                    return Err(self.fail(state, "only unstable equilibria were met", found.iterations));
                 }
-                found.pushes += 1;
-                careful = true;
-                retract(model.nodes(), &q, &push, &mut next);
-                std::mem::swap(&mut q, &mut next);
-                (last, size_before, theta) = (None, None, 1.0);
+                Ok(Verdict::Leave(push)) => {
+                    found.pushes += 1;
+                    it.careful = true;
+                    it.push(self.model, &push);
+                }
+                Ok(Verdict::GoOn) => {}
+                Err(why) => return Err(self.fail(state, &why, found.iterations)),
             }
         }
-        fail(self, "the iterations did not converge", &found)
+        Err(self.fail(state, "the iterations did not converge", found.iterations))
+    }
+
+    /// One correction; whether it may be the last. The error says why there is none.
+    fn correct(&mut self, state: &State, it: &mut Iterate, found: &mut Found) -> Result<bool, String> {
+        it.how.smooth = it.last.is_some();
+        let mut trial = self.newton(state, &it.q, &it.lambda, it.last.as_deref(), it.how);
+        let far = |t: &Trial| self.position_size(&t.d) > 2.0 * self.model.length();
+        let wrong = |t: &Trial| it.careful && t.negative && self.options.stable;
+        let bad = trial.as_ref().map_or(true, |t| wrong(t) || far(t));
+        if bad {
+            found.floored += 1;
+            let how = Relaxation { floor: Some(it.floor), ..it.how };
+            trial = self.newton(state, &it.q, &it.lambda, it.last.as_deref(), how);
+            it.floor *= 0.8;
+        }
+        let mut d = trial.map_err(|e| e.to_string())?.d;
+        let multipliers = d.split_off(self.model.velocities());
+        let size = self.size(&d);
+        if !size.is_finite() {
+            return Err("the iteration left the finite numbers".into());
+        }
+        it.move_by(self.model, &d);
+        for (l, m) in it.lambda.iter_mut().zip(&multipliers) {
+            *l += m;
+        }
+        if let Some(before) = it.size {
+            it.theta = if before > 0.0 { f64::min(size / before, 1.0) } else { 0.0 };
+        }
+        let ramping = it.how.ramp.is_finite() && self.ramp_binds(state, &it.q, &it.lambda, it.how);
+        it.how.ramp_before = it.how.ramp;
+        it.how.ramp = if ramping { it.how.ramp * 100.0 } else { f64::INFINITY };
+        it.size = Some(size);
+        let tolerance = self.options.tolerance;
+        let falls = !bad && found.iterations >= 2 && size * it.theta <= tolerance;
+        let done = size <= tolerance || falls || !bad && self.wanders(found.iterations, size, it.theta);
+        it.last = Some(d);
+        Ok(done && !ramping)
+    }
+
+    /// What is accepted is checked at the point itself: its residual, and whether it is stable.
+    fn examine(
+        &mut self,
+        state: &State,
+        it: &Iterate,
+        found: &mut Found,
+        load: f64,
+        [cold, leave]: [bool; 2],
+    ) -> Result<Verdict, String> {
+        let mut there = state.clone();
+        (there.q, there.lambda) = (it.q.clone(), it.lambda.clone());
+        let begin = self.clocks.start();
+        let judged = if self.options.stable {
+            self.judge(&there, it.last.as_deref(), load, found.pushes + 1)
+        } else {
+            self.check(&there, it.last.as_deref(), load)
+        };
+        self.clocks.stop(Phase::Stability, begin);
+        let mut judged = judged.map_err(|e| e.to_string())?;
+        if let Some(what) = &judged.driven {
+            return Err(format!("the load drives what nothing holds: {what}"));
+        }
+        found.residual = judged.residual;
+        if leave && judged.unstable > 0 {
+            let out = judged.way_out.take();
+            return Ok(out.map_or(Verdict::GoOn, |d| Verdict::Leave(self.small(d))));
+        }
+        let left = self.size(&judged.correction[..self.model.velocities()]);
+        if !(left <= ROUNDED * self.options.tolerance) {
+            return Ok(Verdict::GoOn);
+        }
+        self.follow_frame(&it.q);
+        there.v.clone_from(&self.v);
+        there.a.clone_from(&self.a);
+        there.aux.clone_from(&self.a);
+        found.flutter = judged.flutter;
+        if cold && self.options.stable && !self.structure.symmetric {
+            let d = self.disturb(&there).map_err(|e| e.to_string())?;
+            if d.unstable && d.one_way {
+                return Ok(Verdict::Leave(self.small(d.shape)));
+            }
+            if d.unstable {
+                found.flutter = found.flutter.max(d.rate);
+            }
+        }
+        self.unstable = judged.unstable;
+        self.neutral = std::mem::take(&mut judged.neutral);
+        self.doubt = judged.doubt.take();
+        self.judged = judged;
+        Ok(Verdict::Found(Box::new(there)))
     }
 
     /// Whether corrections no longer fall, since rounding of stiff forces moves what is soft: next to a critical load.
@@ -157,7 +207,8 @@ impl Statics<'_> {
         let (k, residual) = self.worst();
         let equation = self.model.unknown_name(k);
         let on_path = self.span > 0.0;
-        StaticsError { t: state.t, on_path, why: why.into(), iterations, residual, equation }
+        let interrupted = self.is_over();
+        StaticsError { t: state.t, on_path, why: why.into(), iterations, residual, equation, interrupted }
     }
 
     /// Largest position and slope of an increment, relative to the reference length.

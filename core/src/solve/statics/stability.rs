@@ -144,7 +144,7 @@ impl Statics<'_> {
     fn judge_motion(&mut self, there: &State, out: &mut Judgement) -> Result<(), SolveError> {
         let upright = self.is_upright(there);
         let linear = self.linearise(there);
-        match slowest(self.model, &there.modes, linear, SLOWEST) {
+        match slowest(self.model, &there.internal, linear, SLOWEST) {
             Ok(mut rates) => {
                 // rounding leaves motions among them that the constraints forbid
                 rates.retain(|m| self.is_allowed(&m.shape) && self.is_allowed(&m.quadrature));
@@ -267,6 +267,6 @@ impl Statics<'_> {
     /// Equations of constraints that hold.
     pub(super) fn held(&self, there: &State) -> usize {
         let all = 0..self.model.constraints().len();
-        all.filter(|&c| self.model.holds(c, &there.modes)).map(|c| self.model.rows_of(c).len()).sum()
+        all.filter(|&c| self.model.holds(c, &there.internal)).map(|c| self.model.rows_of(c).len()).sum()
     }
 }

@@ -94,7 +94,7 @@ impl Statics<'_> {
         motion: bool,
     ) {
         self.follow_frame(q);
-        let at = At { t: state.t, q, v: &self.v, a: &self.a, modes: &state.modes, relaxed };
+        let at = At { t: state.t, q, v: &self.v, a: &self.a, internal: &state.internal, relaxed };
         let one = |q, v, a| Some(Weights { q, v, a });
         self.model.assemble_in(&self.structure, &at, lambda, one(1.0, 0.0, 0.0), &mut self.system);
         let omega = self.frame.map_or([0.0; 3], |f| f.omega);
@@ -203,7 +203,7 @@ impl Statics<'_> {
             q: &state.q,
             v: &self.v,
             a: &self.a,
-            modes: &state.modes,
+            internal: &state.internal,
             relaxed: Some(Relaxed { last: None, how }),
         };
         let none = vec![0.0; self.model.multipliers()];
@@ -220,7 +220,7 @@ impl Statics<'_> {
     pub(super) fn ramp_binds(&mut self, state: &State, q: &[f64], lambda: &[f64], how: Relaxation) -> bool {
         self.follow_frame(q);
         // both by the same path through the elements, so that equal means equal to the last bit
-        let mut at = At { t: state.t, q, v: &self.v, a: &self.a, modes: &state.modes, relaxed: None };
+        let mut at = At { t: state.t, q, v: &self.v, a: &self.a, internal: &state.internal, relaxed: None };
         at.relaxed = Some(Relaxed { last: None, how: Relaxation { ramp: f64::INFINITY, ..how } });
         self.model.assemble_in(&self.structure, &at, lambda, None, &mut self.system);
         let free = self.system.residual.clone();

@@ -1,8 +1,9 @@
 use super::*;
-use crate::model::constraint::{Constraint, Joint, Relation, RowKind};
+use crate::model::constraint::{Constraint, RowKind};
 use crate::model::marker::{Jet, Marker, Place};
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::pattern::Pattern;
+use crate::model::relation::{Related, Relation};
 use crate::model::state::{At, State};
 use crate::model::term::{Assembly, Term};
 use crate::model::{Model, Start};
@@ -36,9 +37,9 @@ impl Column {
             k => Marker::node(NodeId(k as u32 - 1)),
         };
         let rod = |k: usize| -> Box<dyn Constraint> {
-            Box::new(Joint::new(format!("link {}", k + 1), Rod(l), vec![at(k), at(k + 1)]))
+            Box::new(Related::new(format!("link {}", k + 1), Rod(l), vec![at(k), at(k + 1)]))
         };
-        let start = Start { q, v: vec![0.0; 3 * n], modes: vec![] };
+        let start = Start { q, v: vec![0.0; 3 * n], internal: vec![] };
         Model::new(nodes, vec![Box::new(self)], (0..n).map(rod).collect(), vec![], start, 1.0)
     }
 }
@@ -169,7 +170,7 @@ fn the_test_column_has_the_right_derivatives() {
     let mut q = model.state().q;
     q.iter_mut().enumerate().for_each(|(i, x)| *x += 0.03 * (i as f64).sin());
     let zero = vec![0.0; q.len()];
-    let at = At { t: 0.8, q: &q, v: &zero, a: &zero, modes: &[], relaxed: None };
+    let at = At { t: 0.8, q: &q, v: &zero, a: &zero, internal: &[], relaxed: None };
     let off = crate::testing::check_tangent(&column, model.nodes(), &at, crate::algebra::lane::Width::One);
     assert!(off < 1e-6, "{off:e}");
 }
@@ -245,9 +246,9 @@ impl Truss {
         let nodes = vec![Node { kind: NodeKind::Point, q: 0, v: 0, shared: false }];
         let hold = |i: usize| -> Box<dyn Constraint> {
             let markers = vec![Marker::ground([0.0; 3]), Marker::node(NodeId(0))];
-            Box::new(Joint::new(format!("guide {i}"), Guide(i), markers))
+            Box::new(Related::new(format!("guide {i}"), Guide(i), markers))
         };
-        let start = Start { q: vec![0.0, 0.0, 0.5], v: vec![0.0; 3], modes: vec![] };
+        let start = Start { q: vec![0.0, 0.0, 0.5], v: vec![0.0; 3], internal: vec![] };
         Model::new(nodes, vec![Box::new(Truss(load))], vec![hold(0), hold(1)], vec![], start, 1.0)
     }
     fn pull(z: f64) -> f64 {

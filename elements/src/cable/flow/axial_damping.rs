@@ -3,7 +3,7 @@
 //! Material that runs along an element at `ṗ` is strained at `ε̇ = ∂ε/∂t - ṗ ε'`. The element has its strain at the points of
 //! its quadrature only, so `ε'` is that of the polynomial through them: the curve itself stretches in between by about
 //! `(κL)⁴`, which no force answers to, and `ṗ` times its derivative would be a strain rate that isn't there. Force on dofs
-//! and fronts is that of the dissipated power `∫ η EA ε̇² dx`, whose half is its potential by the rates.
+//! and boundaries is that of the dissipated power `∫ η EA ε̇² dx`, whose half is its potential by the rates.
 
 use super::embedding::{Embedding, Grid};
 use super::for_fronts;
@@ -48,7 +48,7 @@ struct Rate<R> {
     /// By the rates of the natural variables.
     gradient: Natural<R>,
     /// By the rates of the material coordinates of both nodes.
-    fronts: [R; 2],
+    boundaries: [R; 2],
 }
 
 /// The strain rates of the material at all points.
@@ -88,21 +88,21 @@ fn rates<L: Longitudinal, Q: Quadrature, R: Real>(
         along = g.il * along;
         let by_length =
             dot(&gradient[0], &longer[0]) + dot(&gradient[1], &longer[1]) + dot(&gradient[2], &longer[2]);
-        let fronts = [-(R::of(1.0 - at.xi) * along) - by_length, by_length - R::of(at.xi) * along];
+        let boundaries = [-(R::of(1.0 - at.xi) * along) - by_length, by_length - R::of(at.xi) * along];
         let passing = R::of(1.0 - at.xi).fma(g.pd[0], R::of(at.xi) * g.pd[1]);
-        out[i] = Some(Rate { value: strain.rate(&rate) - passing * along, gradient, fronts });
+        out[i] = Some(Rate { value: strain.rate(&rate) - passing * along, gradient, boundaries });
     }
     out
 }
 
 macro_rules! element {
-    ($fronts:literal, $size:literal) => {
-        impl<L: Longitudinal, Q: Quadrature> FlowAxialDamping<L, Q, $fronts> {
+    ($boundaries:literal, $size:literal) => {
+        impl<L: Longitudinal, Q: Quadrature> FlowAxialDamping<L, Q, $boundaries> {
             #[inline(always)]
             fn force<R: Real>(
                 (model, rule): (L, Q),
                 eta_ea: R,
-                by: &Embedding<$fronts, R>,
+                by: &Embedding<$boundaries, R>,
                 x: &Local<R, $size, $size>,
             ) -> [R; $size] {
                 let g = Grid::new(by, x);
@@ -112,8 +112,8 @@ macro_rules! element {
                 {
                     let force = eta_ea * g.l * R::of(at.w) * rate.value;
                     local.add_force(force, &rate.gradient);
-                    for k in 0..$fronts {
-                        let moved = by.by[k][0].fma(rate.fronts[0], by.by[k][1] * rate.fronts[1]);
+                    for k in 0..$boundaries {
+                        let moved = by.by[k][0].fma(rate.boundaries[0], by.by[k][1] * rate.boundaries[1]);
                         out[12 + k] += force * moved;
                     }
                 }
@@ -124,8 +124,8 @@ macro_rules! element {
             }
         }
 
-        impl<L: Longitudinal, Q: Quadrature> Element<$size, $size> for FlowAxialDamping<L, Q, $fronts> {
-            type Lanes<R: Real> = (R, Embedding<$fronts, R>, L, Q);
+        impl<L: Longitudinal, Q: Quadrature> Element<$size, $size> for FlowAxialDamping<L, Q, $boundaries> {
+            type Lanes<R: Real> = (R, Embedding<$boundaries, R>, L, Q);
             const WIDE: bool = false;
 
             fn label(&self) -> String {
@@ -222,7 +222,7 @@ mod tests {
     fn tangent_agrees_with_differences() {
         let q = [0.0, 0.1, 0.0, 0.9, 0.3, 0.2, 0.8, 0.3, 0.2, 1.1, -0.2, 0.1, -0.1, 1.2];
         let v = [0.1, -0.2, 0.3, 0.2, 0.1, -0.3, 0.4, 0.1, 0.2, -0.1, 0.3, 0.2, 0.7, -0.4];
-        let at = At { t: 0.0, q: &q, v: &v, a: &[0.1; 14], modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.1; 14], internal: &[], relaxed: None };
         let by = Embedding { fixed: [0.05, -0.1], by: [[0.8, 0.3], [0.2, 0.7]] };
         assert!(check_tangent(&pool(by), &nodes(), &at, Width::One) < 1e-7);
     }
@@ -240,7 +240,7 @@ mod tests {
         let q = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, end[0], end[1], 0.0, cos, sin, 0.0, 0.0, l];
         let mut v = [0.0; 14];
         (v[12], v[13]) = (5.0, 5.0);
-        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 14], modes: &[], relaxed: None };
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 14], internal: &[], relaxed: None };
         let by = Embedding { fixed: [0.0; 2], by: [[1.0, 0.0], [0.0, 1.0]] };
         let power = ropewalk_core::Term::power(&pool(by), &at).dissipated;
         assert!(power < 1e-24, "{power:e}");

@@ -90,9 +90,9 @@ impl Snapshot {
         Ok(both)
     }
 
-    /// Takes node `k` out of the mesh, between two elements; `front` is the end of the new element, 0 or 1, whose node
-    /// follows a front and gets a slope and a rate of slope anew.
-    pub fn merge(&mut self, k: usize, front: usize, model: CableModel) -> Result<Vec<f64>, String> {
+    /// Takes node `k` out of the mesh, between two elements; `boundary` is the end of the new element, 0 or 1, whose node
+    /// follows a boundary and gets a slope and a rate of slope anew.
+    pub fn merge(&mut self, k: usize, boundary: usize, model: CableModel) -> Result<Vec<f64>, String> {
         let (p, l) = ([self.p[k - 1], self.p[k], self.p[k + 1]], self.p[k + 1] - self.p[k - 1]);
         let pieces = [k - 1, k];
         // slopes and velocity slopes of what there was, at points of both pieces
@@ -116,8 +116,8 @@ impl Snapshot {
             list.remove(k);
         }
         let (a, b) = (k - 1, k);
-        // the nearest slope at the front: least squares of r', of which it makes φ
-        let own = if front == 0 { 1 } else { 3 };
+        // the nearest slope at the boundary: least squares of r', of which it makes φ
+        let own = if boundary == 0 { 1 } else { 3 };
         let fit = |mut nodes: [V3<f64>; 4], pick: fn(&Was) -> V3<f64>| {
             nodes[own] = [0.0; 3];
             let (mut sum, mut square) = ([0.0; 3], 0.0);
@@ -131,7 +131,7 @@ impl Snapshot {
             }
             sum.map(|x| x / square)
         };
-        let node = if front == 0 { a } else { b };
+        let node = if boundary == 0 { a } else { b };
         self.s[node] = fit([self.r[a], self.s[a], self.r[b], self.s[b]], |s| s.slope);
         let nu = [old[0][0], old[0][1], old[1][2], old[1][3]];
         let slope = fit(nu, |s| s.rate);
@@ -139,7 +139,7 @@ impl Snapshot {
             let il = 1.0 / l;
             let e: [V3<f64>; 4] = [self.r[a], self.s[a], self.r[b], self.s[b]];
             let q = natural(&std::array::from_fn(|i| e[i / 3][i % 3]), il);
-            second(if front == 0 { &[-4.0, -2.0] } else { &[2.0, 4.0] }, il, &q)
+            second(if boundary == 0 { &[-4.0, -2.0] } else { &[2.0, 4.0] }, il, &q)
         };
         self.sd[node] = std::array::from_fn(|c| slope[c] + self.pd[node] * bend[c]);
         self.stress.remove(k);
@@ -172,10 +172,10 @@ impl Snapshot {
         Ok(strain.iter().zip(stress).map(|(e, n)| e - n).collect())
     }
 
-    /// How far a line has come, to be remembered by the nodes that follow its fronts.
+    /// How far a line has come, to be remembered by the nodes that follow its boundaries.
     pub fn rates(&self, line: &Line) -> [f64; 2] {
         let mut rates = [0.0; 2];
-        for (end, _) in &line.fronts {
+        for (end, _) in &line.boundaries {
             rates[*end] = self.pd[if *end == 0 { 0 } else { self.pd.len() - 1 }];
         }
         rates

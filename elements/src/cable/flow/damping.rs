@@ -79,9 +79,9 @@ fn state<R: Real>(e: &[V3<R>; 4], ed: &[V3<R>; 4]) -> Local<R, 12, 12> {
 }
 
 macro_rules! element {
-    ($fronts:literal, $size:literal) => {
-        impl<D: Material> Element<$size, $size> for FlowDamping<D, $fronts> {
-            type Lanes<R: Real> = (D::Lanes<R>, Embedding<$fronts, R>);
+    ($boundaries:literal, $size:literal) => {
+        impl<D: Material> Element<$size, $size> for FlowDamping<D, $boundaries> {
+            type Lanes<R: Real> = (D::Lanes<R>, Embedding<$boundaries, R>);
             const WIDE: bool = false;
 
             fn label(&self) -> String {
@@ -110,7 +110,7 @@ macro_rules! element {
                 for i in 0..12 {
                     out.r[i] += own.r[i];
                 }
-                let mut d_f = [f; $fronts];
+                let mut d_f = [f; $boundaries];
                 if TANGENT {
                     // the velocity of the material depends on the dofs as well: v = ė - P e
                     let mut by_v = Share::<R, 12>::zero();
@@ -128,7 +128,7 @@ macro_rules! element {
                         }
                     }
                     let (e, ed) = (nodal_dual(&nodal(&x.q)), nodal_dual(&nodal(&x.v)));
-                    for k in 0..$fronts {
+                    for k in 0..$boundaries {
                         let g = g.towards(by, k, w);
                         let v = Transport::new(&g, &e, &ed, &ed).v;
                         let mut own = Share::<Dual<R>, 12>::zero();
@@ -138,7 +138,7 @@ macro_rules! element {
                         }
                     }
                 }
-                close::<R, $fronts, $size, TANGENT>(by, &g, &x.q, &f, &d_f, w, out);
+                close::<R, $boundaries, $size, TANGENT>(by, &g, &x.q, &f, &d_f, w, out);
             }
             #[inline(always)]
             fn power<R: Real>((p, by): &Self::Lanes<R>, x: &Local<R, $size, $size>) -> Power<R> {

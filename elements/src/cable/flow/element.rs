@@ -15,9 +15,9 @@ use ropewalk_core::{Batch, Dual, Element, Energy, Local, Power, Real, Share, V3,
 
 /// A cable element like [`Cable`](crate::cable::Cable) whose ends may stand anywhere on the material and move along it.
 ///
-/// Its unknowns are the twelve dofs of its nodes and the `F` fronts of its line. Inertia is `M(l) A` with the material
+/// Its unknowns are the twelve dofs of its nodes and the `F` boundaries of its line. Inertia is `M(l) A` with the material
 /// acceleration `A` at the nodes; elastic force the derivative of `U(e, l)` by the dofs and, with the open ends left to
-/// [`FlowEnd`](super::FlowEnd), by the fronts.
+/// [`FlowEnd`](super::FlowEnd), by the boundaries.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowCable<L, T, Q, const F: usize> {
     /// What it is made of; its length is that of its embedding.
@@ -74,7 +74,7 @@ fn lift<R: Real>(p: &CableParams<R>) -> CableParams<Dual<R>> {
     CableParams { l: c(p.l), ea: c(p.ea), ei: c(p.ei), rho_a: c(p.rho_a) }
 }
 
-/// Inertia: residual, tangent, and the rows and columns of the fronts.
+/// Inertia: residual, tangent, and the rows and columns of the boundaries.
 #[inline(always)]
 fn add_inertia<M, R: Real, const F: usize, const N: usize, const TANGENT: bool>(
     p: &FlowLanes<M, F, R>,
@@ -135,7 +135,7 @@ pub(super) fn nodal_dual<R: Real>(e: &[V3<R>; 4]) -> [V3<Dual<R>>; 4] {
     out
 }
 
-/// Elastic force: residual, tangent, and the rows and columns of the fronts.
+/// Elastic force: residual, tangent, and the rows and columns of the boundaries.
 #[inline(always)]
 fn add_elastic<
     L: Longitudinal,
@@ -220,10 +220,12 @@ fn add_elastic<
 }
 
 macro_rules! element {
-    ($fronts:literal, $size:literal) => {
-        impl<L: Longitudinal, T: Transverse, Q: Rule> Element<$size, $size> for FlowCable<L, T, Q, $fronts> {
-            type Lanes<R: Real> = FlowLanes<Models<L, T, Q>, $fronts, R>;
-            const WIDE: bool = $fronts == 1 && Models::<L, T, Q>::KNOWN;
+    ($boundaries:literal, $size:literal) => {
+        impl<L: Longitudinal, T: Transverse, Q: Rule> Element<$size, $size>
+            for FlowCable<L, T, Q, $boundaries>
+        {
+            type Lanes<R: Real> = FlowLanes<Models<L, T, Q>, $boundaries, R>;
+            const WIDE: bool = $boundaries == 1 && Models::<L, T, Q>::KNOWN;
 
             fn label(&self) -> String {
                 let Models { longitudinal, transverse, rule } = self.models;
@@ -253,8 +255,8 @@ macro_rules! element {
                 out: &mut Share<R, $size>,
             ) {
                 let g = Grid::new(&p.by, x);
-                add_inertia::<_, R, $fronts, $size, TANGENT>(p, &g, x, w, out);
-                add_elastic::<L, T, Q, R, $fronts, $size, TANGENT>(p, &g, x, w, out);
+                add_inertia::<_, R, $boundaries, $size, TANGENT>(p, &g, x, w, out);
+                add_elastic::<L, T, Q, R, $boundaries, $size, TANGENT>(p, &g, x, w, out);
             }
             #[inline(always)]
             fn energy<R: Real>(p: &Self::Lanes<R>, x: &Local<R, $size, $size>) -> Energy<R> {

@@ -1,14 +1,14 @@
-//! How the nodes of an element follow the fronts of their line.
+//! How the nodes of an element follow the boundaries of their line.
 
 use ropewalk_core::{Dual, Local, Real, Weights};
 
-/// Where the two nodes of an element stand on the material: `p_i = fixed_i + Σ_k by_ki π_k`, linear in the `F` fronts
+/// Where the two nodes of an element stand on the material: `p_i = fixed_i + Σ_k by_ki π_k`, linear in the `F` boundaries
 /// of the line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Embedding<const F: usize, R = f64> {
-    /// What doesn't move with any front [m].
+    /// What doesn't move with any boundary [m].
     pub fixed: [R; 2],
-    /// Share of each front, first the one at the start if that flows.
+    /// Share of each boundary, first the one at the start if that flows.
     pub by: [[R; 2]; F],
 }
 
@@ -49,7 +49,7 @@ pub struct Grid<R> {
 }
 
 impl<R: Real> Grid<R> {
-    /// At the fronts of a local state, which stand behind the twelve dofs.
+    /// At the boundaries of a local state, which stand behind the twelve dofs.
     #[inline(always)]
     pub fn new<const F: usize, const N: usize>(e: &Embedding<F, R>, x: &Local<R, N, N>) -> Self {
         let (mut p, mut pd, mut pdd) = (e.fixed, [R::zero(); 2], [R::zero(); 2]);
@@ -64,7 +64,7 @@ impl<R: Real> Grid<R> {
         Grid { l, il: R::of(1.0) / l, p: p[0], ld: pd[1] - pd[0], pd, pdd }
     }
 
-    /// The same as it changes with front `k` in the direction that the tangent is weighted by: the front itself by
+    /// The same as it changes with boundary `k` in the direction that the tangent is weighted by: the boundary itself by
     /// `w.q`, its rate by `w.v`, its acceleration by `w.a`.
     #[inline(always)]
     pub fn towards<const F: usize>(&self, e: &Embedding<F, R>, k: usize, w: &Weights) -> Grid<Dual<R>> {

@@ -36,7 +36,7 @@ impl Quadrature for AtEnd {
 }
 
 /// An open end of a line: material that passes it takes its strain energy `W` per length along, so `+W` acts on the
-/// front at the start, `-W` on that at the end. What is left then on the front is `T |r'|`.
+/// boundary at the start, `-W` on that at the end. What is left then on the boundary is `T |r'|`.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowEnd<L, T, const F: usize> {
     /// What the cable is made of.
@@ -45,8 +45,8 @@ pub struct FlowEnd<L, T, const F: usize> {
     pub by: Embedding<F>,
     /// Which end of the line it is: 0 its start, 1 its end.
     pub end: usize,
-    /// The front there, among those of the line.
-    pub front: usize,
+    /// The boundary there, among those of the line.
+    pub boundary: usize,
     /// Axial strain.
     pub longitudinal: L,
     /// Curvature.
@@ -60,10 +60,10 @@ impl<L: Longitudinal, T: Transverse, const F: usize> FlowEnd<L, T, F> {
         models: Models<L, T, Q>,
         by: Embedding<F>,
         end: usize,
-        front: usize,
+        boundary: usize,
     ) -> Self {
         let Models { longitudinal, transverse, .. } = models;
-        FlowEnd { params, by, end, front, longitudinal, transverse }
+        FlowEnd { params, by, end, boundary, longitudinal, transverse }
     }
 }
 
@@ -87,8 +87,8 @@ fn density<L: Longitudinal, T: Transverse, R: Real>(
 }
 
 macro_rules! element {
-    ($fronts:literal, $size:literal) => {
-        impl<L: Longitudinal, T: Transverse> Element<$size, $size> for FlowEnd<L, T, $fronts> {
+    ($boundaries:literal, $size:literal) => {
+        impl<L: Longitudinal, T: Transverse> Element<$size, $size> for FlowEnd<L, T, $boundaries> {
             /// One at each end of a line.
             type Lanes<R: Real> = Self;
             const WIDE: bool = false;
@@ -111,7 +111,7 @@ macro_rules! element {
                 out: &mut Share<R, $size>,
             ) {
                 let by = p.by.spread::<R>();
-                let (g, row) = (Grid::new(&by, x), 12 + p.front);
+                let (g, row) = (Grid::new(&by, x), 12 + p.boundary);
                 let sign = R::of(if p.end == 0 { 1.0 } else { -1.0 });
                 let (ea, ei) = (R::of(p.params.ea), R::of(p.params.ei));
                 let mut e = [R::zero(); 12];
@@ -142,7 +142,7 @@ macro_rules! element {
                     out.k[row][j] += s * derivative(j);
                 }
                 let by_l = derivative(12);
-                for m in 0..$fronts {
+                for m in 0..$boundaries {
                     out.k[row][12 + m] += s * by_l * (by.by[m][1] - by.by[m][0]);
                 }
             }

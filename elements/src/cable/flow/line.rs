@@ -1,22 +1,22 @@
-//! A cable whose ends feed, as a whole: its fronts, and how its nodes follow them.
+//! A cable whose ends feed, as a whole: its boundaries, and how its nodes follow them.
 
 use super::embedding::Embedding;
-use ropewalk_core::{Front, SpanFlow};
+use ropewalk_core::{MovingBoundary, SpanFlow};
 
-/// How one node follows the fronts of its line: `p = fixed + Σ by_k π_k`.
+/// How one node follows the boundaries of its line: `p = fixed + Σ by_k π_k`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Follows {
     /// What doesn't move [m].
     pub fixed: f64,
-    /// Share of each front.
+    /// Share of each boundary.
     pub by: [f64; 2],
 }
 
 /// The material coordinates of a cable whose ends feed.
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// Its fronts, with the end of the cable at which each is: 0 the start, 1 the end.
-    pub fronts: Vec<(usize, Front)>,
+    /// Its boundaries, with the end of the cable at which each is: 0 the start, 1 the end.
+    pub boundaries: Vec<(usize, MovingBoundary)>,
     /// Its nodes.
     pub nodes: Vec<Follows>,
     /// Whether elements are born and swallowed at the ends, the rest staying on its material.
@@ -32,8 +32,13 @@ pub struct Line {
 
 impl Line {
     /// A line with these material coordinates at the nodes. Where an end has a zone, only its own node moves with its
-    /// front, and the elements that ride with it; else all nodes share the movement evenly.
-    pub fn new(mesh: &[f64], fronts: Vec<(usize, Front)>, zone: [bool; 2], rides: [usize; 2]) -> Self {
+    /// boundary, and the elements that ride with it; else all nodes share the movement evenly.
+    pub fn new(
+        mesh: &[f64],
+        boundaries: Vec<(usize, MovingBoundary)>,
+        zone: [bool; 2],
+        rides: [usize; 2],
+    ) -> Self {
         let (first, last) = (mesh[0], mesh[mesh.len() - 1]);
         let end = mesh.len() - 1;
         let nodes = (0..mesh.len())
@@ -41,7 +46,7 @@ impl Line {
                 let share = (mesh[i] - first) / (last - first);
                 let mut node = Follows { fixed: 0.0, by: [0.0; 2] };
                 let mut moved = 0.0;
-                for (k, (at, front)) in fronts.iter().enumerate() {
+                for (k, (at, boundary)) in boundaries.iter().enumerate() {
                     let own = if *at == 0 { 0 } else { end };
                     node.by[k] = match zone[*at] {
                         true if i.abs_diff(own) <= rides[*at] => 1.0,
@@ -54,21 +59,21 @@ impl Line {
                         node.by[k] = 0.0;
                     }
                     moved += node.by[k] * if *at == 0 { first } else { last };
-                    debug_assert!(front.sign == if *at == 0 { -1.0 } else { 1.0 });
+                    debug_assert!(boundary.sign == if *at == 0 { -1.0 } else { 1.0 });
                 }
-                // what is a front's alone follows it to the last bit
-                let alone = (i == 0 || i == end) && node.by[..fronts.len()].contains(&1.0);
+                // what is a boundary's alone follows it to the last bit
+                let alone = (i == 0 || i == end) && node.by[..boundaries.len()].contains(&1.0);
                 node.fixed = if alone { 0.0 } else { mesh[i] - moved };
                 node
             })
             .collect();
         let middle = mesh.windows(2).map(|w| (0.5 * (w[0] + w[1]) - first) / (last - first)).collect();
-        Line { fronts, nodes, zone, rides, middle, unstrained: [false; 2] }
+        Line { boundaries, nodes, zone, rides, middle, unstrained: [false; 2] }
     }
 
-    fn sum(&self, k: usize, fixed: f64, x: impl Fn(&Front) -> f64) -> f64 {
+    fn sum(&self, k: usize, fixed: f64, x: impl Fn(&MovingBoundary) -> f64) -> f64 {
         let by = &self.nodes[k].by;
-        self.fronts.iter().zip(by).fold(fixed, |p, ((_, f), by)| p + by * x(f))
+        self.boundaries.iter().zip(by).fold(fixed, |p, ((_, f), by)| p + by * x(f))
     }
     /// Material coordinate of a node [m].
     pub fn p(&self, k: usize, q: &[f64]) -> f64 {
@@ -82,17 +87,17 @@ impl Line {
     pub fn grows(&self, end: usize) -> usize {
         if end == 0 { self.rides[0] } else { self.nodes.len() - 2 - self.rides[1] }
     }
-    /// The open end at the element behind node `k`: the end of the line, and the number of the front there.
+    /// The open end at the element behind node `k`: the end of the line, and the number of the boundary there.
     pub fn opens(&self, k: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let last = self.nodes.len() - 2;
-        let ends = self.fronts.iter().enumerate().map(|(front, &(end, _))| (end, front));
+        let ends = self.boundaries.iter().enumerate().map(|(boundary, &(end, _))| (end, boundary));
         ends.filter(move |&(end, _)| k == if end == 0 { 0 } else { last } && !self.unstrained[end])
     }
     /// Whether material flows through the element behind node `k`.
     pub fn flows(&self, k: usize) -> bool {
-        [k, k + 1].iter().any(|&i| self.nodes[i].by[..self.fronts.len()].iter().any(|&b| b != 0.0))
+        [k, k + 1].iter().any(|&i| self.nodes[i].by[..self.boundaries.len()].iter().any(|&b| b != 0.0))
     }
-    /// Embedding of the element behind node `k`; `F` is the number of fronts.
+    /// Embedding of the element behind node `k`; `F` is the number of boundaries.
     pub fn embedding<const F: usize>(&self, k: usize) -> Embedding<F> {
         let (a, b) = (&self.nodes[k], &self.nodes[k + 1]);
         Embedding { fixed: [a.fixed, b.fixed], by: std::array::from_fn(|f| [a.by[f], b.by[f]]) }
@@ -101,20 +106,20 @@ impl Line {
     pub fn span(&self, k: usize) -> SpanFlow {
         let (a, b) = (&self.nodes[k], &self.nodes[k + 1]);
         let mut flow = SpanFlow {
-            fronts: [(0, 0); 2],
-            count: self.fronts.len(),
+            boundaries: [(0, 0); 2],
+            count: self.boundaries.len(),
             fixed: [a.fixed, b.fixed],
             by: std::array::from_fn(|f| [a.by[f], b.by[f]]),
         };
-        for (place, (_, front)) in flow.fronts.iter_mut().zip(&self.fronts) {
-            *place = (front.q, front.v);
+        for (place, (_, boundary)) in flow.boundaries.iter_mut().zip(&self.boundaries) {
+            *place = (boundary.q, boundary.v);
         }
         flow
     }
-    /// By how much the feeding of each front makes material run along the element behind node `k`.
+    /// By how much the feeding of each boundary makes material run along the element behind node `k`.
     pub fn slip<const F: usize>(&self, k: usize) -> [f64; F] {
         let share = self.middle[k];
-        std::array::from_fn(|f| match (F, self.fronts[f].0) {
+        std::array::from_fn(|f| match (F, self.boundaries[f].0) {
             (1, _) => 1.0,
             (_, 0) => 1.0 - share,
             _ => share,

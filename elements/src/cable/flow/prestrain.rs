@@ -13,11 +13,11 @@ pub(crate) struct Fading {
     label: String,
     strain: Prestrain,
     ea: f64,
-    /// Places of the twelve dofs and of the fronts.
+    /// Places of the twelve dofs and of the boundaries.
     q: Vec<usize>,
     v: Vec<usize>,
     by: Embedding<2>,
-    /// An open end and the front there: 0 or 1, and its number.
+    /// An open end and the boundary there: 0 or 1, and its number.
     end: Option<(usize, usize)>,
     models: ChosenModels,
 }
@@ -75,7 +75,7 @@ impl Fading {
         self.q.iter().map(|&i| at.q[i]).collect()
     }
 
-    /// Sign with which the energy at the open end acts on its front.
+    /// Sign with which the energy at the open end acts on its boundary.
     fn sign(&self) -> f64 {
         if matches!(self.end, Some((0, _))) { 1.0 } else { -1.0 }
     }
@@ -97,7 +97,7 @@ impl Term for Fading {
             return;
         }
         let (x, n, w) = (self.state(at), self.q.len(), out.weights().q);
-        let row = self.end.map(|(_, front)| 12 + front);
+        let row = self.end.map(|(_, boundary)| 12 + boundary);
         let mut k = vec![0.0; n * n];
         for i in 0..n {
             let once = |j: usize, d: f64| {
@@ -139,7 +139,7 @@ impl Term for Fading {
         let x: Vec<Dual<f64>> = self.state(at).into_iter().map(Dual::constant).collect();
         let (energy, there) = self.energies(&x, Dual::new(left, rate));
         let carried = match self.end {
-            Some((_, front)) => -self.sign() * there.re * at.v[self.v[12 + front]],
+            Some((_, boundary)) => -self.sign() * there.re * at.v[self.v[12 + boundary]],
             None => 0.0,
         };
         Power { supplied: energy.eps, carried, ..Power::default() }

@@ -33,13 +33,13 @@ pub(crate) struct Piece<'a> {
     pub line: &'a Line,
     /// The node before the element.
     pub k: usize,
-    /// The element's own nodes; those of the fronts follow.
+    /// The element's own nodes; those of the boundaries follow.
     pub on: [NodeId; 2],
 }
 
 impl Piece<'_> {
     fn nodes(&self) -> Vec<NodeId> {
-        self.on.iter().copied().chain(self.line.fronts.iter().map(|(_, f)| f.node)).collect()
+        self.on.iter().copied().chain(self.line.boundaries.iter().map(|(_, f)| f.node)).collect()
     }
 }
 
@@ -51,16 +51,16 @@ struct Push<'a, 'b> {
 }
 
 macro_rules! push {
-    ($self:ident, $fronts:literal, $models:ident) => {{
+    ($self:ident, $boundaries:literal, $models:ident) => {{
         let (line, k) = ($self.piece.line, $self.piece.k);
-        let (nodes, by, s) = ($self.piece.nodes(), line.embedding::<$fronts>(k), $self.section);
+        let (nodes, by, s) = ($self.piece.nodes(), line.embedding::<$boundaries>(k), $self.section);
         let Models { longitudinal, rule, .. } = $models;
         $self.b.element(FlowCable::new($self.params, $models, by), &nodes)?;
-        for (end, front) in line.opens(k) {
-            $self.b.element(FlowEnd::new($self.params, $models, by, end, front), &nodes)?;
+        for (end, boundary) in line.opens(k) {
+            $self.b.element(FlowEnd::new($self.params, $models, by, end, boundary), &nodes)?;
         }
-        if s.axial_damping > 0.0 {
-            let eta_ea = s.axial_damping * s.ea;
+        if s.axial_retardation_time > 0.0 {
+            let eta_ea = s.axial_retardation_time * s.ea;
             // what bends in a layer that the element hardly resolves stretches between the points of its rule; elements that
             // are born and swallowed keep the other form, which is continuous over that
             let bends = s.ei > 0.0 && $models.points().len() > 1 && line.zone == [false; 2];
@@ -71,8 +71,8 @@ macro_rules! push {
                 $self.b.element(FlowDamping { damping, by }, &nodes)?;
             }
         }
-        if s.bending_damping > 0.0 && s.ei > 0.0 {
-            let damping = BendingDamping::new($self.params.l, s.bending_damping * s.ei, rule.bending());
+        if s.bending_retardation_time > 0.0 && s.ei > 0.0 {
+            let damping = BendingDamping::new($self.params.l, s.bending_retardation_time * s.ei, rule.bending());
             $self.b.element(FlowDamping { damping, by }, &nodes)?;
         }
         Ok(())
@@ -82,7 +82,7 @@ macro_rules! push {
 impl WithModels for Push<'_, '_> {
     type Output = Result<(), BuildError>;
     fn go<L: Longitudinal, T: Transverse, Q: Rule>(self, models: Models<L, T, Q>) -> Self::Output {
-        if self.piece.line.fronts.len() == 1 { push!(self, 1, models) } else { push!(self, 2, models) }
+        if self.piece.line.boundaries.len() == 1 { push!(self, 1, models) } else { push!(self, 2, models) }
     }
 }
 
@@ -109,7 +109,7 @@ pub(crate) fn fading(
     let (line, k) = (piece.line, piece.k);
     let nodes: Vec<Node> = piece.nodes().iter().map(|n| b.nodes()[n.0 as usize]).collect();
     let mut by = Embedding { fixed: [line.nodes[k].fixed, line.nodes[k + 1].fixed], by: [[0.0; 2]; 2] };
-    for f in 0..line.fronts.len() {
+    for f in 0..line.boundaries.len() {
         by.by[f] = [line.nodes[k].by[f], line.nodes[k + 1].by[f]];
     }
     let place = Place {
@@ -133,11 +133,11 @@ pub(crate) fn stations(
     of_material: bool,
 ) -> Result<Arc<dyn Stations>, BuildError> {
     macro_rules! stations {
-        ($fronts:literal, $size:literal) => {{
-            let mut pool = StationPool::<FlowStations<$fronts>, $size, $size, 4>::new();
+        ($boundaries:literal, $size:literal) => {{
+            let mut pool = StationPool::<FlowStations<$boundaries>, $size, $size, 4>::new();
             for k in 0..nodes.len() - 1 {
                 let (by, slip) = (line.embedding(k), line.slip(k));
-                let slip = if of_material { [0.0; $fronts] } else { slip };
+                let slip = if of_material { [0.0; $boundaries] } else { slip };
                 let (diameter, area) = (section.diameter, section.displaced_area());
                 let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
                 if !pool.push(all, FlowStations { by, slip, diameter, area }, &piece.nodes()) {
@@ -147,7 +147,7 @@ pub(crate) fn stations(
             Ok(Arc::new(pool))
         }};
     }
-    if line.fronts.len() == 1 { stations!(1, 13) } else { stations!(2, 14) }
+    if line.boundaries.len() == 1 { stations!(1, 13) } else { stations!(2, 14) }
 }
 
 /// Weight or buoyancy of a cable of which some elements only are at rest on their material.
@@ -188,8 +188,8 @@ impl Term for Weight {
 /// The weight of the elements of a line through which material flows, `load` being a force per length [N/m].
 pub(crate) fn weight(all: &[Node], line: &Line, nodes: &[NodeId], load: V3<f64>) -> Option<Box<dyn Term>> {
     macro_rules! weight {
-        ($fronts:literal, $size:literal) => {{
-            let mut pool = Pool::<FlowWeight<$fronts>, $size, $size>::new();
+        ($boundaries:literal, $size:literal) => {{
+            let mut pool = Pool::<FlowWeight<$boundaries>, $size, $size>::new();
             for k in (0..nodes.len() - 1).filter(|&k| line.flows(k)) {
                 let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
                 if !pool.push(all, FlowWeight { load, by: line.embedding(k) }, &piece.nodes()) {
@@ -199,5 +199,5 @@ pub(crate) fn weight(all: &[Node], line: &Line, nodes: &[NodeId], load: V3<f64>)
             Some(Box::new(pool))
         }};
     }
-    if line.fronts.len() == 1 { weight!(1, 13) } else { weight!(2, 14) }
+    if line.boundaries.len() == 1 { weight!(1, 13) } else { weight!(2, 14) }
 }

@@ -1,14 +1,14 @@
-//! How a force on the material of an element acts on the fronts of its line.
+//! How a force on the material of an element acts on the boundaries of its line.
 
 use super::embedding::{Embedding, Grid};
 use super::transport::{Bends, nodal};
 use ropewalk_core::{Real, Share, V3, Weights};
 
-/// Adds what a force on the material does to the fronts, and with `TANGENT` the rows and columns of the fronts.
+/// Adds what a force on the material does to the boundaries, and with `TANGENT` the rows and columns of the boundaries.
 ///
 /// `f` is the consistent nodal vector of the force as it stands in the residual; `share.k` must hold its derivative by
-/// the twelve dofs and nothing else; `d_f` is its derivative in the direction of each front
-/// ([`Grid::towards`]). When front and dofs move, the material at a node moves by `δr - r' δp`, and its slope by
+/// the twelve dofs and nothing else; `d_f` is its derivative in the direction of each boundary
+/// ([`Grid::towards`]). When boundary and dofs move, the material at a node moves by `δr - r' δp`, and its slope by
 /// `δr' - r'' δp`, hence `Q_p = -(r'·F + r''·F')` at each node, whatever the force.
 #[inline(always)]
 pub fn close<R: Real, const F: usize, const N: usize, const TANGENT: bool>(
@@ -21,7 +21,7 @@ pub fn close<R: Real, const F: usize, const N: usize, const TANGENT: bool>(
     share: &mut Share<R, N>,
 ) {
     let (b, e) = (Bends::new(g.il), nodal(q));
-    // slope and second derivative at each node: what the material is displaced by, per front
+    // slope and second derivative at each node: what the material is displaced by, per boundary
     let mut slide = [[R::zero(); 3]; 4];
     for i in 0..2 {
         for c in 0..3 {

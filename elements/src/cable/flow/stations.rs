@@ -18,7 +18,7 @@ use ropewalk_core::{Batch, Dual, Gives, Load, Local, Real, Share, Station, Stati
 pub struct FlowStations<const F: usize, R = f64> {
     /// Embedding of the element.
     pub by: Embedding<F, R>,
-    /// By how much each front's feeding makes the material run along the curve here.
+    /// By how much each boundary's feeding makes the material run along the curve here.
     pub slip: [R; F],
     /// Hydrodynamic diameter [m].
     pub diameter: R,
@@ -85,15 +85,15 @@ fn add_times<R: Real>(m: &[V3<R>; 3], x: &V3<Dual<R>>, out: &mut V3<R>) {
 }
 
 macro_rules! stations {
-    ($fronts:literal, $size:literal) => {
-        impl StationElement<$size, $size, 4> for FlowStations<$fronts> {
+    ($boundaries:literal, $size:literal) => {
+        impl StationElement<$size, $size, 4> for FlowStations<$boundaries> {
             const COUPLES: bool = true;
-            type Lanes<R: Real> = FlowStations<$fronts, R>;
+            type Lanes<R: Real> = FlowStations<$boundaries, R>;
 
             #[inline(always)]
-            fn lanes<R: Real>(b: &Batch<'_, Self>) -> FlowStations<$fronts, R> {
-                let mut slip = [R::zero(); $fronts];
-                for k in 0..$fronts {
+            fn lanes<R: Real>(b: &Batch<'_, Self>) -> FlowStations<$boundaries, R> {
+                let mut slip = [R::zero(); $boundaries];
+                for k in 0..$boundaries {
                     slip[k] = b.get(|e| e.slip[k]);
                 }
                 FlowStations {
@@ -106,7 +106,7 @@ macro_rules! stations {
 
             #[inline(always)]
             fn station<R: Real>(
-                p: &FlowStations<$fronts, R>,
+                p: &FlowStations<$boundaries, R>,
                 x: &Local<R, $size, $size>,
                 k: usize,
             ) -> Station<R> {
@@ -130,7 +130,7 @@ macro_rules! stations {
 
             #[inline(always)]
             fn spread<R: Real, const TANGENT: bool>(
-                p: &FlowStations<$fronts, R>,
+                p: &FlowStations<$boundaries, R>,
                 x: &Local<R, $size, $size>,
                 loads: &[Load<R>; 4],
                 gives: Gives,
@@ -142,7 +142,7 @@ macro_rules! stations {
                 let (e, ed, edd) = (nodal(&x.q), nodal(&x.v), nodal(&x.a));
                 let t = Transport::new(&g, &e, &ed, &edd);
                 let mut f = [[R::zero(); 3]; 4];
-                let mut d_f = [f; $fronts];
+                let mut d_f = [f; $boundaries];
                 let (p4, h4) = Transport::matrices(&g);
                 let (wq, wv, wa) = (R::of(w.q), R::of(w.v), R::of(w.a));
                 for (at, load) in Gauss4::POINTS.iter().zip(loads) {
@@ -208,7 +208,7 @@ macro_rules! stations {
                 }
                 if TANGENT {
                     let (e, ed, edd) = (nodal_dual(&e), nodal_dual(&ed), nodal_dual(&edd));
-                    for k in 0..$fronts {
+                    for k in 0..$boundaries {
                         let g = g.towards(&p.by, k, w);
                         let c = Dual::new(c, wv * p.slip[k]);
                         let t = Transport::new(&g, &e, &ed, &edd);
@@ -247,7 +247,7 @@ macro_rules! stations {
                         }
                     }
                 }
-                close::<R, $fronts, $size, TANGENT>(&p.by, &g, &x.q, &f, &d_f, w, out);
+                close::<R, $boundaries, $size, TANGENT>(&p.by, &g, &x.q, &f, &d_f, w, out);
             }
         }
     };

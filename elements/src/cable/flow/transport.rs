@@ -88,7 +88,7 @@ impl<R: Real> Transport<R> {
         Transport { bend, v, a }
     }
 
-    /// `P` and `H` of `v = ė - P e` and `a = ë - 2 P ė + H e`, for prescribed fronts.
+    /// `P` and `H` of `v = ė - P e` and `a = ë - 2 P ė + H e`, for prescribed boundaries.
     #[inline(always)]
     pub(super) fn matrices(g: &Grid<R>) -> ([Row<R>; 4], [Row<R>; 4]) {
         let b = Bends::new(g.il);

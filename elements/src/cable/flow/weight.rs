@@ -24,9 +24,9 @@ fn shares<R: Real>(l: R) -> ([R; 4], [R; 4]) {
 }
 
 macro_rules! element {
-    ($fronts:literal, $size:literal) => {
-        impl Element<$size, $size> for FlowWeight<$fronts> {
-            type Lanes<R: Real> = (V3<R>, Embedding<$fronts, R>);
+    ($boundaries:literal, $size:literal) => {
+        impl Element<$size, $size> for FlowWeight<$boundaries> {
+            type Lanes<R: Real> = (V3<R>, Embedding<$boundaries, R>);
 
             fn label(&self) -> String {
                 "weight of a flowing cable".into()
@@ -56,8 +56,8 @@ macro_rules! element {
                         out.r[3 * i + c] += f[i][c];
                     }
                 }
-                let mut d_f = [f_l; $fronts];
-                for k in 0..$fronts {
+                let mut d_f = [f_l; $boundaries];
+                for k in 0..$boundaries {
                     let grows = R::of(w.q) * (by.by[k][1] - by.by[k][0]);
                     for i in 0..4 {
                         for c in 0..3 {
@@ -65,7 +65,7 @@ macro_rules! element {
                         }
                     }
                 }
-                close::<R, $fronts, $size, TANGENT>(by, &g, &x.q, &f, &d_f, w, out);
+                close::<R, $boundaries, $size, TANGENT>(by, &g, &x.q, &f, &d_f, w, out);
             }
             #[inline(always)]
             fn energy<R: Real>((load, by): &Self::Lanes<R>, x: &Local<R, $size, $size>) -> Energy<R> {

@@ -126,11 +126,7 @@ impl<'a> MapAccess<'a> for Tagged<'a> {
     }
 
     fn next_value_seed<S: DeserializeSeed<'a>>(&mut self, seed: S) -> Result<S::Value, Problem> {
-        let value = Node { form: Form::Plain, skip: Some(TYPE), field: None, ..self.node }.enter(seed, None);
-        if let (Err(_), Some((_, tag))) = (&value, self.tag) {
-            self.node.trace.explain(tag.as_str().unwrap_or_default());
-        }
-        value
+        Node { form: Form::Plain, skip: Some(TYPE), field: None, ..self.node }.enter(seed, None)
     }
 }
 

@@ -12,7 +12,6 @@ mod access;
 mod problem;
 
 use super::fault::Fault;
-use super::moved;
 use super::source::{Sources, Span};
 use super::value::{Key, Kind, Table, Value};
 use access::{Entries, Items, Tagged, Variant};
@@ -93,15 +92,6 @@ impl Trace {
     fn note_key(&self, problem: Problem, key: &Key) {
         let mut found = self.0.borrow_mut();
         found.get_or_insert_with(|| Found { problem, span: key.span, about_key: true, ..Found::default() });
-    }
-
-    /// Says where an unknown field of this type went, if older scenes had it.
-    fn explain(&self, kind: &str) {
-        if let Some(found) = self.0.borrow_mut().as_mut()
-            && let Some(hint) = found.problem.field.as_deref().and_then(|field| moved::hint(kind, field))
-        {
-            found.problem.help = Some(hint.into());
-        }
     }
 
     /// Something was read after all: what failed inside was only tried.

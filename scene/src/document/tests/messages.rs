@@ -294,3 +294,20 @@ fn buffered_structs_still_give_a_place() {
         assert_eq!(fault.path, path, "{fault}");
     }
 }
+
+#[test]
+fn a_name_of_version_0_1_has_its_place_and_the_command() {
+    let text = "[[constraints]]\ntype = \"winch\"\nname = \"w\"\npace = \"run\"\n";
+    let mut document = Document::parse(text, "old.toml", Format::Toml, &[]).unwrap();
+    let fault = document.take_list::<Box<dyn Part>>("constraints").unwrap_err();
+    assert_eq!(
+        fault.to_string(),
+        "\
+`pace` is called `reference_speed` since version 0.2
+ --> old.toml:4:1 (constraints[0])
+  |
+4 | pace = \"run\"
+  | ^^^^
+  = help: `ropewalk migrate old.toml` rewrites the scene"
+    );
+}

@@ -3,6 +3,7 @@
 mod documents;
 mod hostile;
 mod messages;
+mod migrate;
 mod parameters;
 
 use super::{Document, Fault, Format, Span};

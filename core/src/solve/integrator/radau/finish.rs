@@ -58,7 +58,7 @@ impl Stages {
         let (q, v, a) = (&q[2], &mut v[2], &mut a[2]);
         // as a function: a closure would hold on to the first velocities
         fn place<'a>(state: &'a State, h: f64, [q, v, a]: [&'a [f64]; 3]) -> At<'a> {
-            At { t: state.t + h, q, v, a, modes: &state.modes, relaxed: None }
+            At { t: state.t + h, q, v, a, internal: &state.internal, relaxed: None }
         }
         *has_mass = false;
         work.assemble_mass(model, &place(state, h, [q, v, rest]), free, 0.0, true)?;

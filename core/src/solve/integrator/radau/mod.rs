@@ -10,15 +10,17 @@ mod newton;
 pub(super) mod stages;
 mod tableau;
 
+use super::controller::{StepController, StepLaw};
+use super::convergence::{Failure, Rate};
 use super::forces::larger;
-use super::options::{Limits, Options, Stepping, fixed_step};
-use super::step::{Integrator, StepError, StepReport, linear};
+use super::options::{Limits, Options, Stepping};
+use super::step::{Integrator, StepError, StepReport, linear, too_strict};
 use super::workspace::Workspace;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::solve::integrator::workspace::Which;
 use crate::solve::linear::SolveError;
-use newton::{Converged, Failure, Newton};
+use newton::Newton;
 use stages::Stages;
 use tableau::GAMMA;
 
@@ -29,9 +31,6 @@ pub struct Radau {
     horizon: f64,
 }
 
-/// Growth per step of the cap on the step size after a failure of Newton's method: where it limits the steps for
-/// long, faster growth fails more often and gains nothing.
-const RECOVERY: f64 = 1.03;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.9;
 /// Most iterations of a step: more are dearer than a smaller step.
@@ -43,6 +42,27 @@ const VELOCITY: f64 = 0.1;
 const ITERATION: f64 = 0.003;
 /// The tolerance whose iteration error fixed steps are given.
 const FIXED: f64 = 1e-7;
+
+/// Its steps grow by the fourth root of their error, less after many iterations.
+const LAW: StepLaw = StepLaw {
+    growth,
+    trend: Some(trend),
+    most: [5.0, 1.0],
+    worthless: 1.2,
+    // where the cap limits the steps for long, faster growth fails more often and gains nothing
+    recovery: 1.03,
+    shares_rest: true,
+};
+
+fn growth(error: f64, iterations: u32) -> f64 {
+    let most = 2.0 * f64::from(MOST_ITERATIONS);
+    SAFETY * (most + 1.0) / (most + f64::from(iterations)) * error.max(1e-10).powf(-0.25)
+}
+
+/// As the error grew in the last step, it will grow in the next (Gustafsson 1994).
+fn trend(error: f64, before: f64, [h, h_before]: [f64; 2]) -> f64 {
+    SAFETY * h / h_before * (before.max(1e-2) / error.max(1e-10).powi(2)).powf(0.25)
+}
 
 impl Radau {
     /// Checks the options. `duration` is the length of the run, over which errors add up unless the options say
@@ -56,44 +76,6 @@ impl Radau {
         Ok(Radau { options: options.clone(), limits, horizon })
     }
 
-    /// Size of the first try, and the size that the controller would like.
-    fn first(&self, state: &State, h_max: f64) -> (f64, f64) {
-        let c = &state.control;
-        let cap = if c.h_cap > 0.0 { c.h_cap } else { f64::INFINITY };
-        match self.options.stepping {
-            Stepping::Fixed { h } => {
-                let h = h.min(cap);
-                (fixed_step(h, h_max), h)
-            }
-            Stepping::Controlled { .. } => {
-                let wish = if c.h_next > 0.0 { c.h_next } else { state.control.h_start };
-                let wish = wish.min(cap).min(self.limits.most);
-                let rest = if h_max < 2.0 * wish { 0.5 * h_max } else { wish };
-                (if h_max <= wish { h_max } else { rest }, wish)
-            }
-        }
-    }
-
-    /// By which factor the step may change after an error and so many iterations.
-    fn growth(&self, error: f64, iterations: u32) -> f64 {
-        let most = 2.0 * f64::from(MOST_ITERATIONS);
-        SAFETY * (most + 1.0) / (most + f64::from(iterations)) * error.max(1e-10).powf(-0.25)
-    }
-
-    /// Size of the step after an accepted one.
-    fn next(&self, state: &State, h: f64, error: f64, iterations: u32, rejected: bool) -> f64 {
-        let c = &state.control;
-        let mut growth = self.growth(error, iterations);
-        if c.error > 0.0 {
-            // as the error grew in the last step, it will grow in the next (Gustafsson 1994)
-            let trend = (c.error.max(1e-2) / error.max(1e-10).powi(2)).powf(0.25);
-            growth = growth.min(SAFETY * h / c.h_last * trend);
-        }
-        let growth = growth.clamp(0.2, if rejected { 1.0 } else { 5.0 });
-        // small changes aren't worth a new factorisation
-        if (1.0..1.2).contains(&growth) { h } else { h * growth }
-    }
-
     /// Stages, error and end of a step, left in `s`; the end only of a step that is good enough.
     fn attempt(
         &self,
@@ -102,7 +84,7 @@ impl Radau {
         work: &mut Workspace,
         s: &mut Stages,
         h: f64,
-    ) -> Result<(Converged, f64), Failure> {
+    ) -> Result<(Rate, f64), Failure> {
         let tolerance = match self.options.stepping {
             Stepping::Fixed { .. } => FIXED,
             Stepping::Controlled { tolerance } => tolerance.min(1e-3),
@@ -130,7 +112,7 @@ impl Radau {
                 error += turn.powi(4);
             }
             if !error.is_finite() {
-                return Err(Failure::Newton("the error estimate is not finite".into()));
+                return Err(Failure::newton("the error estimate is not finite"));
             }
         }
         if error <= 1.0 {
@@ -147,54 +129,37 @@ impl Radau {
         s: &mut Stages,
         h_max: f64,
     ) -> Result<StepReport, StepError> {
-        let (mut h, wish) = self.first(state, h_max);
-        // a step that only fills the rest of an interval says nothing about the next
-        let cut = h < wish;
-        let mut report = StepReport::default();
-        let mut failures = 0;
+        let mut steps = StepController::new(&LAW, self.options.stepping, self.limits, &state.control, h_max);
         loop {
-            let failure = match self.attempt(model, state, work, s, h) {
-                Ok((done, error)) if error <= 1.0 => {
-                    (report.h, report.iterations, report.error) = (h, done.iterations, error);
-                    let next = self.next(state, h, error, done.iterations, report.rejected > 0);
+            let h = steps.h;
+            match self.attempt(model, state, work, s, h) {
+                Ok((rate, error)) if error <= 1.0 => {
                     s.accept(model, state, h);
-                    work.forces.keep(&mut state.control.forces);
                     let c = &mut state.control;
-                    c.h_next = if cut && report.rejected == 0 { next.max(wish) } else { next };
-                    (c.h_last, c.eta, c.theta, c.error) = (h, done.eta, done.theta, error);
-                    c.h_cap = if c.h_cap > 0.0 { c.h_cap * RECOVERY } else { 0.0 };
+                    work.forces.keep(&mut c.forces);
+                    steps.accepted(c, error, rate.iterations);
+                    (c.eta, c.theta) = (rate.eta, rate.theta.unwrap_or(c.theta));
                     work.counts.steps += 1;
-                    return Ok(report);
+                    let (iterations, rejected) = (rate.iterations, steps.rejected);
+                    return Ok(StepReport { h, iterations, rejected, error });
                 }
-                Ok((done, error)) => {
-                    report.rejected += 1;
+                Ok((rate, error)) => {
                     work.counts.rejected += 1;
-                    h *= self.growth(error, done.iterations).clamp(0.2, 0.9);
-                    if h < self.limits.least {
-                        return Err(StepError::NoConvergence {
-                            t: state.t,
-                            h,
-                            why: "the tolerance asks for a smaller step than `h_min`".into(),
-                            equation: work.worst_equation(model),
+                    if !steps.too_large(error, rate.iterations) {
+                        return Err(too_strict(model, state.t, steps.h, work));
+                    }
+                }
+                Err(failure) => {
+                    let equation = work.worst_equation(model);
+                    work.counts.rejected += 1;
+                    if !steps.failed(&mut state.control) {
+                        return Err(match failure {
+                            Failure::Newton(why) => StepError::NoConvergence { t: state.t, h, why, equation },
+                            Failure::Linear(source) => linear(model, state.t, source),
                         });
                     }
-                    continue;
                 }
-                Err(failure) => failure,
-            };
-            let equation = work.worst_equation(model);
-            report.rejected += 1;
-            work.counts.rejected += 1;
-            failures += 1;
-            let smaller = h * if failures == 1 { 0.7 } else { 0.5 };
-            if smaller < self.limits.least {
-                return Err(match failure {
-                    Failure::Newton(why) => StepError::NoConvergence { t: state.t, h, why, equation },
-                    Failure::Linear(source) => linear(model, state.t, source),
-                });
             }
-            state.control.h_cap = 0.7 * h;
-            h = smaller;
         }
     }
 }

@@ -9,32 +9,12 @@ use super::stages::Stages;
 use super::tableau::{ALPHA, GAMMA, T, T_INVERSE};
 use crate::model::Model;
 use crate::model::state::State;
-use crate::solve::integrator::forces::{larger, left_of};
+use crate::solve::integrator::convergence::{Convergence, Failure, Rate};
+use crate::solve::integrator::factors::{Factors, Remedy};
+use crate::solve::integrator::forces::larger;
 use crate::solve::integrator::options::NewtonPolicy;
 use crate::solve::integrator::workspace::{Which, Workspace};
-use crate::solve::linear::SolveError;
 use faer::c64;
-
-/// How the iteration ended well.
-pub(super) struct Converged {
-    pub iterations: u32,
-    /// What is left of the error after an iteration, in parts of the last change.
-    pub eta: f64,
-    /// Ratio of the last two changes.
-    pub theta: f64,
-}
-
-/// Why it didn't.
-pub(super) enum Failure {
-    Newton(String),
-    Linear(SolveError),
-}
-
-impl From<SolveError> for Failure {
-    fn from(e: SolveError) -> Self {
-        Failure::Linear(e)
-    }
-}
 
 pub(super) struct Newton<'a> {
     pub model: &'a Model,
@@ -51,71 +31,67 @@ pub(super) struct Newton<'a> {
 }
 
 impl Newton<'_> {
-    pub fn solve(&self, work: &mut Workspace, s: &mut Stages) -> Result<Converged, Failure> {
-        let floor = 4.0 * work.norms.rounding();
-        let stop = self.tolerance.max(floor);
+    pub fn solve(&self, work: &mut Workspace, s: &mut Stages) -> Result<Rate, Failure> {
         let control = &self.state.control;
-        let mut eta = if control.h_last > 0.0 { control.eta.max(1e-3).powf(0.8) } else { 1.0 };
-        let mut theta = control.theta;
-        s.predict(self.state, self.h, self.model.redundancy().is_some());
-        s.kinematics(self.model, self.state, self.h);
-        let full = self.policy == NewtonPolicy::Full;
-        let mut fresh = full || !s.factored_for(self.h) || theta > 0.1;
-        if fresh {
+        let eta = if control.h_last > 0.0 { control.eta.max(1e-3).powf(0.8) } else { 1.0 };
+        let mut convergence =
+            Convergence::new(self.tolerance, work.norms.rounding(), f64::INFINITY, eta, control.theta);
+        let mut factors = Factors::new(self.policy);
+        self.predict(s);
+        if factors.always || !s.factored_for(self.h) || control.worn() {
             s.differentiate(self.model, work, self.state, self.h)?;
+            factors.renewed(&convergence, false);
         }
-        // changes since the matrix was last evaluated
-        let (mut k, mut last, mut force_last) = (0, 0.0, 0.0);
         work.forces.look(self.model, &work.norms, self.state);
         for iterations in 1..=self.max_iterations {
-            if full && iterations > 1 {
+            if factors.always && iterations > 1 {
                 s.differentiate(self.model, work, self.state, self.h)?;
             }
             let (size, force) = self.iterate(work, s)?;
             if !size.is_finite() {
-                return Err(Failure::Newton("the iteration left the finite numbers".into()));
+                return Err(Failure::newton("the iteration left the finite numbers"));
             }
-            if k > 0 {
-                theta = size / last;
-                eta = theta / (1.0 - theta).max(1e-3);
+            let c = &mut convergence;
+            c.corrected(size, force);
+            let rate = |eta, theta| Rate {
+                iterations,
+                eta,
+                theta: Some(theta),
+                kept_failed: factors.kept_failed,
+                unmet: false,
+            };
+            let forces_right = c.force_left <= 1.0 || size <= c.floor && c.since > 1;
+            if c.positions_right() && forces_right && self.constraints_hold(work, s) {
+                return Ok(rate(c.eta, c.theta));
             }
-            let force_left = left_of(force, (k > 0).then_some(force_last));
-            (k, last, force_last) = (k + 1, size, force);
-            let forces_right = force_left <= 1.0 || size <= floor && k > 1;
-            if (size * eta.min(1e3) <= stop || size <= floor)
-                && forces_right
-                && self.constraints_hold(work, s)
-            {
-                return Ok(Converged { iterations, eta, theta });
-            }
-            if k == 1 {
+            if c.since == 1 {
                 continue;
             }
-            if theta >= 1.0 && size <= 30.0 * floor && fresh {
+            if c.grows() && c.is_noise() && factors.fresh() {
                 // at the floor of rounding the iteration wanders
-                return Ok(Converged { iterations, eta: 1.0, theta: 0.0 });
+                return Ok(rate(1.0, 0.0));
             }
-            let left = (self.max_iterations - iterations) as i32;
-            let hopeless = theta >= 2.0
-                || (theta > 0.9 && k > 4)
-                || (theta < 1.0 && size * theta.powi(left) / (1.0 - theta) > stop);
-            if hopeless && fresh {
-                return Err(Failure::Newton(if theta >= 1.0 {
-                    "Newton's method diverges".into()
-                } else {
-                    "Newton's method converges too slowly".into()
-                }));
-            }
-            if hopeless || (theta > 0.5 && !fresh) {
-                if theta >= 1.0 {
-                    s.predict(self.state, self.h, self.model.redundancy().is_some());
-                    s.kinematics(self.model, self.state, self.h);
+            match factors.judge(c, self.max_iterations - iterations) {
+                Remedy::GoOn => {}
+                Remedy::GiveUp if c.grows() => return Err(Failure::newton("Newton's method diverges")),
+                Remedy::GiveUp => return Err(Failure::newton("Newton's method converges too slowly")),
+                Remedy::Renew => {
+                    if c.grows() {
+                        self.predict(s);
+                    }
+                    s.differentiate(self.model, work, self.state, self.h)?;
+                    factors.renewed(c, false);
+                    c.restart();
+                    c.eta = 1.0;
                 }
-                s.differentiate(self.model, work, self.state, self.h)?;
-                (fresh, k, eta) = (true, 0, 1.0);
             }
         }
         Err(Failure::Newton(format!("{} Newton iterations were not enough", self.max_iterations)))
+    }
+
+    fn predict(&self, s: &mut Stages) {
+        s.predict(self.state, self.h, self.model.redundancy().is_some());
+        s.kinematics(self.model, self.state, self.h);
     }
 
     /// One iteration; gives the size of the change of positions, relative to the part that it moves most, and what was left
@@ -131,7 +107,7 @@ impl Newton<'_> {
             s.residual[i].copy_from_slice(&work.system.residual);
         }
         if s.residual.iter().flatten().any(|r| !r.is_finite()) {
-            return Err(Failure::Newton("the residual is not finite".into()));
+            return Err(Failure::newton("the residual is not finite"));
         }
         let mut force = 0.0;
         for i in 0..3 {

@@ -106,7 +106,7 @@ impl Stages {
             q: &self.q[i],
             v: &self.v[i],
             a: &self.a[i],
-            modes: &state.modes,
+            internal: &state.internal,
             relaxed: None,
         }
     }
@@ -179,8 +179,8 @@ impl Stages {
         self.factored = 0.0;
         let s = model.structure();
         let none = Weights::default();
-        let (t, modes) = (state.t + C[1] * h, &state.modes);
-        let at = At { t, q: &self.q[1], v: &self.v[1], a: &self.a[1], modes, relaxed: None };
+        let (t, internal) = (state.t + C[1] * h, &state.internal);
+        let at = At { t, q: &self.q[1], v: &self.v[1], a: &self.a[1], internal, relaxed: None };
         for (values, weights, wanted) in [
             (&mut self.stiffness, Weights { q: 1.0, ..none }, true),
             (&mut self.damping, Weights { v: 1.0, ..none }, true),

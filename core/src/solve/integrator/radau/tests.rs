@@ -48,7 +48,7 @@ fn tumble(h: f64) -> Vec<f64> {
     let start = Start {
         q: vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
         v: vec![1.0, 0.0, 0.0, 0.5, 0.7, 3.0],
-        modes: vec![],
+        internal: vec![],
     };
     let model = Model::new(nodes, vec![Box::new(Body)], vec![], vec![], start, 1.0);
     let options = Options {

@@ -1,0 +1,310 @@
+//! Assembly: residual, iteration matrix and constraint equations of a model, from its terms and constraints.
+
+use crate::model::Model;
+use crate::model::constraint::MOST_ROWS;
+use crate::model::node::{NodeKind, retract};
+use crate::model::state::At;
+use crate::model::structure::Structure;
+use crate::model::term::{Assembly, Leap, Weights};
+use std::time::{Duration, Instant};
+
+/// Calls and the time that they took.
+pub type Spent = (u64, Duration);
+
+/// Residual and iteration matrix of a model, with the scratch to assemble them.
+#[derive(Debug, Default)]
+pub struct System {
+    /// Residual: the equations of motion, then those of the constraints.
+    pub residual: Vec<f64>,
+    /// Values of the matrix, where [`Structure::rows`] says.
+    pub values: Vec<f64>,
+    jacobian: Vec<f64>,
+    hessian: Vec<f64>,
+    /// For what elements scatter.
+    scratch: Vec<f64>,
+    /// Whether a term was only approximated.
+    pub(crate) approximate: bool,
+    /// Calls and time of each term, then of the constraints; only filled where profiling was asked for.
+    pub profile: Option<Vec<Spent>>,
+}
+
+impl Model {
+    /// Moves every node: `out = q ⊕ d`.
+    pub fn retract(&self, q: &[f64], d: &[f64], out: &mut [f64]) {
+        if self.flat {
+            for ((out, q), d) in out.iter_mut().zip(q).zip(d) {
+                *out = q + d;
+            }
+        } else {
+            retract(&self.nodes, q, d, out);
+        }
+    }
+
+    /// Sets the coordinates that motions prescribe, with their velocities and accelerations at time `t`.
+    pub(crate) fn drive(&self, t: f64, internal: &[f64], q: &mut [f64], v: &mut [f64], a: &mut [f64]) {
+        for &(c, at_q, at_v) in &self.driven {
+            if self.holds(c, internal) {
+                [q[at_q], v[at_v], a[at_v]] = self.constraints[c].prescribed(t);
+            }
+        }
+    }
+
+    /// Coordinate, velocity and acceleration that are prescribed at time `t` where the velocity has this place.
+    pub(crate) fn prescribed(&self, at: usize, t: f64, internal: &[f64]) -> Option<[f64; 3]> {
+        let own = self.driven.iter().find(|&&(c, _, v)| v == at && self.holds(c, internal));
+        own.map(|&(c, ..)| self.constraints[c].prescribed(t))
+    }
+
+    /// Leaves out what a vector of velocities has of prescribed coordinates.
+    pub(crate) fn without_driven(&self, internal: &[f64], x: &mut [f64]) {
+        for &(c, _, at) in &self.driven {
+            if self.holds(c, internal) {
+                x[at] = 0.0;
+            }
+        }
+    }
+
+    /// The largest rotation of a body among these increments [rad].
+    pub fn turn(&self, d: &[f64]) -> f64 {
+        let bodies = self.nodes.iter().filter(|n| !self.flat && n.kind == NodeKind::Frame);
+        bodies.map(|n| d[n.v + 3..n.v + 6].iter().map(|x| x * x).sum::<f64>()).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Evaluates the residual `[r + Gᵀλ; g]` into `sys` and, with weights, the iteration matrix
+    /// `[w.q (∂r/∂q + ∂(Gᵀλ)/∂q) + w.v ∂r/∂v + w.a ∂r/∂v̇, Gᵀ; G, 0]`.
+    pub fn assemble(&self, at: &At<'_>, lambda: &[f64], weights: Option<Weights>, sys: &mut System) {
+        self.assemble_in(&self.structure, at, lambda, weights, sys);
+    }
+
+    /// As [`Model::assemble`], for an iteration that comes from these velocities.
+    pub(crate) fn assemble_from(
+        &self,
+        leap: Option<Leap<'_>>,
+        at: &At<'_>,
+        lambda: &[f64],
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
+        self.assemble_all(&self.structure, leap, at, lambda, weights, sys);
+    }
+
+    /// The structure with both triangles stored, for analyses whose matrix is unsymmetric though no term is.
+    pub fn unsymmetric_structure(&self) -> Structure {
+        Structure::new(&self.nodes, &self.touched, &self.pattern, false)
+    }
+
+    /// As [`Model::assemble`], into a matrix of another structure of this model.
+    pub fn assemble_in(
+        &self,
+        structure: &Structure,
+        at: &At<'_>,
+        lambda: &[f64],
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
+        self.assemble_all(structure, None, at, lambda, weights, sys);
+    }
+
+    /// Residual and tangent of the loads alone, without constraints.
+    pub(crate) fn assemble_loads(
+        &self,
+        structure: &Structure,
+        at: &At<'_>,
+        weights: Weights,
+        sys: &mut System,
+    ) {
+        self.clear(structure, true, sys);
+        for k in (0..self.terms.len()).filter(|&k| self.terms[k].is_load()) {
+            self.add_term(structure, k, None, at, Some(weights), sys);
+        }
+    }
+
+    fn clear(&self, structure: &Structure, tangent: bool, sys: &mut System) {
+        sys.approximate = false;
+        sys.residual.resize(self.structure.n, 0.0);
+        sys.residual.fill(0.0);
+        if tangent {
+            sys.values.resize(structure.entries(), 0.0);
+            sys.values.fill(0.0);
+        }
+    }
+
+    fn add_term(
+        &self,
+        structure: &Structure,
+        k: usize,
+        leap: Option<Leap<'_>>,
+        at: &At<'_>,
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
+        let mut out = Assembly {
+            residual: &mut sys.residual[..self.velocities],
+            values: weights.map(|_| sys.values.as_mut_slice()),
+            weights: weights.unwrap_or_default(),
+            width: self.width,
+            structure,
+            clique: self.cliques[k].start,
+            scratch: &mut sys.scratch,
+            leap,
+            approximate: &mut sys.approximate,
+        };
+        self.terms[k].add(at, &mut out);
+    }
+
+    fn assemble_all(
+        &self,
+        structure: &Structure,
+        leap: Option<Leap<'_>>,
+        at: &At<'_>,
+        lambda: &[f64],
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
+        self.clear(structure, weights.is_some(), sys);
+        if let Some(p) = &mut sys.profile {
+            p.resize(self.terms.len() + 1, (0, Duration::ZERO));
+        }
+        for k in 0..self.terms.len() {
+            let begin = sys.profile.as_ref().map(|_| Instant::now());
+            self.add_term(structure, k, leap, at, weights, sys);
+            if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
+                p[k].0 += 1;
+                p[k].1 += begin.elapsed();
+            }
+        }
+        let begin = sys.profile.as_ref().map(|_| Instant::now());
+        for c in 0..self.constraints.len() {
+            self.add_constraint(structure, c, at, lambda, weights, sys);
+        }
+        if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
+            p[self.terms.len()].0 += 1;
+            p[self.terms.len()].1 += begin.elapsed();
+        }
+    }
+
+    fn add_constraint(
+        &self,
+        structure: &Structure,
+        c: usize,
+        at: &At<'_>,
+        lambda: &[f64],
+        weights: Option<Weights>,
+        sys: &mut System,
+    ) {
+        let (constraint, rows) = (&self.constraints[c], self.rows_of(c));
+        let m = rows.len();
+        let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+        let multipliers = &lambda[rows.clone()];
+        if !self.holds(c, at.internal) {
+            // what is left are equations for its multipliers, which are zero since it let go
+            for row in rows {
+                let p = structure.position[self.velocities + row];
+                if weights.is_some() {
+                    sys.values[structure.slot(p, p)] += 1.0;
+                }
+            }
+            return;
+        }
+        sys.jacobian.resize(n * m, 0.0);
+        let (motion, relation) = sys.residual.split_at_mut(self.velocities);
+        constraint.jacobian(&self.nodes, at, &mut relation[rows], &mut sys.jacobian);
+        for (row, &l) in sys.jacobian.chunks_exact(n).zip(multipliers) {
+            let mut row = row;
+            for &k in constraint.nodes() {
+                let dofs = self.node(k).dofs();
+                let (own, rest) = row.split_at(dofs.len());
+                motion[dofs].iter_mut().zip(own).for_each(|(f, g)| *f += l * g);
+                row = rest;
+            }
+        }
+        let Some(w) = weights else { return };
+        let curved = !constraint.linear() && w.q != 0.0;
+        if curved {
+            sys.hessian.resize(n * n, 0.0);
+            constraint.geometric(&self.nodes, at, multipliers, &mut sys.hessian);
+            sys.hessian[..n * n].iter_mut().for_each(|h| *h *= w.q);
+        }
+        let hessian = curved.then_some(&sys.hessian[..]);
+        let clique = self.cliques[self.terms.len() + c].start;
+        structure.add_constraint(clique, [n, m], hessian, &sys.jacobian, &mut sys.values);
+    }
+
+    /// Adds `ρ GᵀG` to an assembled matrix and `ρ Gᵀg` to its residual. For each row `ρ = scale / |G row|²`.
+    pub(crate) fn add_brace(&self, structure: &Structure, scale: f64, sys: &mut System) {
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            let rows = self.rows_of(c);
+            let (m, dofs): (usize, Vec<usize>) =
+                (rows.len(), constraint.nodes().iter().flat_map(|&k| self.node(k).dofs()).collect());
+            let n = dofs.len();
+            // the Jacobian stands in the matrix already
+            let place = |i: usize| structure.position[i];
+            let row_of = |k: usize| place(self.velocities + rows.start + k / n);
+            let jac: Vec<f64> =
+                (0..m * n).map(|k| sys.values[structure.slot(row_of(k), place(dofs[k % n]))]).collect();
+            for (r, row) in rows.clone().enumerate() {
+                let g = &jac[r * n..(r + 1) * n];
+                let square: f64 = g.iter().map(|x| x * x).sum();
+                if square == 0.0 {
+                    continue;
+                }
+                let rho = scale / square;
+                let value = sys.residual[self.velocities + row];
+                for i in 0..n {
+                    sys.residual[dofs[i]] += rho * g[i] * value;
+                    for j in 0..if structure.symmetric { i + 1 } else { n } {
+                        sys.values[structure.slot(place(dofs[i]), place(dofs[j]))] += rho * g[i] * g[j];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Values of the constraints alone.
+    pub fn violations(&self, at: &At<'_>, sys: &mut System, g: &mut [f64]) {
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            if !self.holds(c, at.internal) {
+                g[self.rows_of(c)].fill(0.0);
+                continue;
+            }
+            let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+            sys.jacobian.resize(n * constraint.rows().len(), 0.0);
+            constraint.jacobian(&self.nodes, at, &mut g[self.rows_of(c)], &mut sys.jacobian);
+        }
+    }
+
+    /// Rates of the constraints, `G v + ∂g/∂t`.
+    pub fn constraint_rates(&self, at: &At<'_>, sys: &mut System, rate: &mut [f64]) {
+        let (mut g, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            let rows = self.rows_of(c);
+            if !self.holds(c, at.internal) {
+                rate[rows].fill(0.0);
+                continue;
+            }
+            let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+            sys.jacobian.resize(n * rows.len(), 0.0);
+            constraint.jacobian(&self.nodes, at, &mut g[..rows.len()], &mut sys.jacobian);
+            constraint.rates(&self.nodes, at, &mut rate[rows.clone()], &mut bias[..rows.len()]);
+            let dofs = constraint.nodes().iter().flat_map(|&k| self.node(k).dofs());
+            for (j, dof) in dofs.enumerate() {
+                for (r, rate) in rate[rows.clone()].iter_mut().enumerate() {
+                    *rate += sys.jacobian[r * n + j] * at.v[dof];
+                }
+            }
+        }
+    }
+
+    /// `∂g/∂t` and the bias of the acceleration equations, for all rows.
+    pub fn rates(&self, at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            let rows = self.rows_of(c);
+            if self.holds(c, at.internal) {
+                constraint.rates(&self.nodes, at, &mut rate[rows.clone()], &mut bias[rows]);
+            } else {
+                rate[rows.clone()].fill(0.0);
+                bias[rows].fill(0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! What some terms can do besides adding forces. A term that can says so once ([`Term::timed`](crate::Term::timed) and the
+//! like); of all others nothing is asked, and they cost nothing.
+
+use crate::model::column::Column;
+use crate::model::state::At;
+
+/// Depends on time otherwise than through the state.
+pub trait Timed {
+    /// How much of a step `h` from `t` may be taken that leaps over nothing of what time does to it [s], as the functions
+    /// of [`reach`](crate::model::reach) tell for rises, periods and knots. `None` if it doesn't know: error control then
+    /// looks at its force at the quarter points of every step, between which a short pulse may hide.
+    fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
+        None
+    }
+    /// When its force jumps next after `t` [s]; infinite if it never does. Error control ends a step just before and
+    /// starts anew there.
+    fn jump(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// Has something ahead in the state that a long step could miss.
+pub trait Foresees {
+    /// The longest step from here that is sure not to leap over what it has ahead, such as a shape that a point flies
+    /// towards [s]. Error control takes no longer one; fixed steps are left alone.
+    fn horizon(&self, at: &At<'_>) -> f64;
+    /// What has gone where it can't have gone in a step between two states, such as through a wall; nothing if all is
+    /// well. The step is then repeated smaller, and if that doesn't help the run ends with these words.
+    fn passes(&self, _before: &At<'_>, _after: &At<'_>) -> Option<String> {
+        None
+    }
+}
+
+/// Remembers something in [`State::internal`](crate::State::internal), such as where dry friction took hold.
+pub trait Remembers {
+    /// Brings what it remembers up to date at a state that was accepted: `memory` is all of the internal variables, as they
+    /// were at the start of the step, and `at` has none.
+    fn remember(&self, at: &At<'_>, memory: &mut [f64]);
+}
+
+/// Shows more of itself than forces and energy.
+pub trait Shows {
+    /// What a record of type `force` shows of it; names are put behind that of the record.
+    fn columns(&self) -> Vec<Column> {
+        Vec::new()
+    }
+    /// Appends the values of [`Shows::columns`].
+    fn observe(&self, _at: &At<'_>, _out: &mut Vec<f64>) {}
+    /// A quantity of its own at an arc length of the material of a part [m]; `None` if it has none of this name, or doesn't
+    /// act there.
+    fn local(&self, _quantity: &str, _part: &str, _s: f64, _at: &At<'_>) -> Option<f64> {
+        None
+    }
+    /// What one should know of it at the end of a run, in a sentence: such as that a mesh is too coarse for it.
+    fn remark(&self, _at: &At<'_>) -> Option<String> {
+        None
+    }
+}

@@ -1,0 +1,196 @@
+//! Where the two markers of a joint are, and how the vectors between them and of their axes change.
+
+use crate::algebra::lane::V3;
+use crate::algebra::rotation::{IDENTITY, M3, cross, product, skew, times, transposed_times};
+use crate::model::joint::equation::Arrow;
+use crate::model::node::NodeKind;
+use crate::model::state::At;
+
+/// More unknowns than two nodes have.
+pub(super) const MOST: usize = 12;
+
+/// Where one marker is.
+pub(super) struct End {
+    pub kind: Option<NodeKind>,
+    /// Its node's first unknown among those of the joint.
+    pub start: usize,
+    /// First velocity of its node.
+    pub v: usize,
+    /// Position in space, and on the body.
+    pub x: V3<f64>,
+    pub point: V3<f64>,
+    /// Axes of the marker: on the body, or in space.
+    pub axes: M3,
+    pub r: M3,
+}
+
+/// A vector now: its value, its change with time at rest, its first and second change along the motion.
+pub(super) struct Flow {
+    pub value: V3<f64>,
+    pub by_t: V3<f64>,
+    pub first: V3<f64>,
+    pub second: V3<f64>,
+}
+
+impl End {
+    pub fn is_body(&self) -> bool {
+        self.kind == Some(NodeKind::Frame)
+    }
+    /// An axis, on the body or in space, and its change with time.
+    fn axis(&self, arrow: &Arrow, t: f64) -> [V3<f64>; 3] {
+        match arrow {
+            Arrow::Turned { angle, .. } => {
+                let m = angle.at(t);
+                let ((sin, cos), [e, f, _]) = (m.x[0].sin_cos(), self.axes);
+                let (rate, change) = (m.v[0], m.a[0]);
+                let mix = |a: f64, b: f64| -> V3<f64> { std::array::from_fn(|i| a * e[i] + b * f[i]) };
+                [
+                    mix(-sin, cos),
+                    mix(-rate * cos, -rate * sin),
+                    mix(rate * rate * sin - change * cos, -rate * rate * cos - change * sin),
+                ]
+            }
+            Arrow::Axis { axis, .. } => [self.axes[*axis], [0.0; 3], [0.0; 3]],
+            Arrow::Between => [[0.0; 3]; 3],
+        }
+    }
+    fn in_space(&self, u: &V3<f64>) -> V3<f64> {
+        if self.is_body() { times(&self.r, u) } else { *u }
+    }
+    /// Adds the change of `p·x` by the unknowns.
+    fn add_point(&self, p: &V3<f64>, sign: f64, row: &mut [f64]) {
+        if self.kind.is_none() {
+            return;
+        }
+        (0..3).for_each(|i| row[self.start + i] += sign * p[i]);
+        if self.is_body() {
+            self.add_turn(&self.point, p, sign, row);
+        }
+    }
+    /// Adds the change of `p·R u` by the rotation.
+    fn add_turn(&self, u: &V3<f64>, p: &V3<f64>, sign: f64, row: &mut [f64]) {
+        let turn = cross(u, &transposed_times(&self.r, p));
+        (0..3).for_each(|i| row[self.start + 3 + i] += sign * turn[i]);
+    }
+    /// Adds the change of what [`End::add_turn`] adds, by the rotation.
+    pub fn add_turn_twice(&self, u: &V3<f64>, p: &V3<f64>, scale: f64, n: usize, h: &mut [f64]) {
+        let k = product(&skew(u), &skew(&transposed_times(&self.r, p)));
+        for i in 0..3 {
+            for j in 0..3 {
+                h[(self.start + 3 + i) * n + self.start + 3 + j] += scale * k[i][j];
+            }
+        }
+    }
+    /// Velocity, or second change along the motion, of a vector of the body that changes with time.
+    fn turning(&self, at: &At<'_>, [u, du, ddu]: &[V3<f64>; 3]) -> [V3<f64>; 2] {
+        let omega = [at.v[self.v + 3], at.v[self.v + 4], at.v[self.v + 5]];
+        let once = cross(&omega, u);
+        let (twice, with) = (cross(&omega, &once), cross(&omega, du));
+        [
+            times(&self.r, &std::array::from_fn(|i| once[i] + du[i])),
+            times(&self.r, &std::array::from_fn(|i| twice[i] + 2.0 * with[i] + ddu[i])),
+        ]
+    }
+}
+
+pub(super) fn value(arrow: &Arrow, ends: &[End; 2], t: f64) -> V3<f64> {
+    match arrow {
+        Arrow::Between => std::array::from_fn(|i| ends[1].x[i] - ends[0].x[i]),
+        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => ends[*of].in_space(&ends[*of].axis(arrow, t)[0]),
+    }
+}
+
+/// Adds the change of `p·arrow` by the unknowns.
+pub(super) fn add(arrow: &Arrow, ends: &[End; 2], t: f64, p: &V3<f64>, row: &mut [f64]) {
+    match arrow {
+        Arrow::Between => {
+            ends[0].add_point(p, -1.0, row);
+            ends[1].add_point(p, 1.0, row);
+        }
+        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => {
+            let end = &ends[*of];
+            match end.kind {
+                Some(NodeKind::Frame) => end.add_turn(&end.axis(arrow, t)[0], p, 1.0, row),
+                Some(NodeKind::Slope) => (0..3).for_each(|i| row[end.start + 3 + i] += p[i]),
+                Some(NodeKind::Scalars(_)) => (0..3).for_each(|i| row[end.start + i] += p[i]),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Adds the change of what [`add`] adds while `p` stays.
+pub(super) fn add_twice(
+    arrow: &Arrow,
+    ends: &[End; 2],
+    t: f64,
+    p: &V3<f64>,
+    scale: f64,
+    n: usize,
+    h: &mut [f64],
+) {
+    match arrow {
+        Arrow::Between => {
+            for (end, sign) in ends.iter().zip([-scale, scale]) {
+                if end.is_body() && end.point != [0.0; 3] {
+                    end.add_turn_twice(&end.point, p, sign, n, h);
+                }
+            }
+        }
+        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => {
+            let end = &ends[*of];
+            if end.is_body() {
+                end.add_turn_twice(&end.axis(arrow, t)[0], p, scale, n, h);
+            }
+        }
+    }
+}
+
+/// Derivatives of a vector by all unknowns: row by component.
+pub(super) fn derivatives(arrow: &Arrow, ends: &[End; 2], t: f64) -> [[f64; MOST]; 3] {
+    let mut j = [[0.0; MOST]; 3];
+    for (i, row) in j.iter_mut().enumerate() {
+        add(arrow, ends, t, &IDENTITY[i], row);
+    }
+    j
+}
+
+pub(super) fn flow(arrow: &Arrow, ends: &[End; 2], at: &At<'_>) -> Flow {
+    let value = value(arrow, ends, at.t);
+    let none = [0.0; 3];
+    match arrow {
+        Arrow::Between => {
+            let mut f = Flow { value, by_t: none, first: none, second: none };
+            for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
+                if end.kind.is_none() {
+                    continue;
+                }
+                (0..3).for_each(|i| f.first[i] += sign * at.v[end.v + i]);
+                if end.is_body() {
+                    let [first, second] = end.turning(at, &[end.point, none, none]);
+                    for i in 0..3 {
+                        f.first[i] += sign * first[i];
+                        f.second[i] += sign * second[i];
+                    }
+                }
+            }
+            f
+        }
+        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => {
+            let end = &ends[*of];
+            let axis = end.axis(arrow, at.t);
+            match end.kind {
+                Some(NodeKind::Frame) => {
+                    let [first, second] = end.turning(at, &axis);
+                    Flow { value, by_t: times(&end.r, &axis[1]), first, second }
+                }
+                Some(kind) => {
+                    let v = end.v + if kind == NodeKind::Slope { 3 } else { 0 };
+                    let first = [at.v[v], at.v[v + 1], at.v[v + 2]];
+                    Flow { value, by_t: none, first, second: none }
+                }
+                None => Flow { value, by_t: axis[1], first: axis[1], second: axis[2] },
+            }
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The equations of joints.
+
+use crate::algebra::lane::V3;
+use crate::algebra::rotation::IDENTITY;
+use crate::model::constraint::RowKind;
+use crate::model::motion::Motion;
+use std::sync::Arc;
+
+/// A vector that an equation is made of.
+#[derive(Clone, Debug)]
+pub enum Arrow {
+    /// From the first marker's point to the second's [m].
+    Between,
+    /// An axis of one of the markers; of a cable's marker its slope, whichever axis is named.
+    Axis {
+        /// Which marker, 0 or 1.
+        of: usize,
+        /// Which of its axes.
+        axis: usize,
+    },
+    /// The second axis of a marker, turned about the third by the angle `φ(t)` that is the motion's first component.
+    Turned {
+        /// Which marker, 0 or 1.
+        of: usize,
+        /// The angle [rad].
+        angle: Arc<dyn Motion>,
+    },
+}
+
+/// One equation between two markers.
+#[derive(Clone, Debug)]
+pub enum Equation {
+    /// `d·(D - X(t)) = 0`: a coordinate in space.
+    Along {
+        /// Unit vector `d` in space.
+        direction: V3<f64>,
+        /// Displacement `X(t)`; `None` if there is none.
+        motion: Option<Arc<dyn Motion>>,
+    },
+    /// `a·b - c - X(t) = 0`
+    Dot {
+        /// One vector.
+        a: Arrow,
+        /// The other.
+        b: Arrow,
+        /// The number `c`.
+        value: f64,
+        /// Its change with time, the motion's first component; `None` if there is none.
+        motion: Option<Arc<dyn Motion>>,
+    },
+    /// `|D| - L = 0`
+    Distance {
+        /// The distance `L` [m].
+        length: f64,
+    },
+}
+
+impl Equation {
+    /// The three coordinates of the second marker are those of the first.
+    pub fn coincide() -> Vec<Equation> {
+        (0..3).map(|i| Equation::coordinate(IDENTITY[i], None)).collect()
+    }
+    /// A coordinate in space.
+    pub fn coordinate(direction: V3<f64>, motion: Option<Arc<dyn Motion>>) -> Equation {
+        Equation::Along { direction, motion }
+    }
+    /// An axis of the first marker is normal to one of the second.
+    pub fn normal(axis: usize, other: usize) -> Equation {
+        let (a, b) = (Arrow::Axis { of: 0, axis }, Arrow::Axis { of: 1, axis: other });
+        Equation::Dot { a, b, value: 0.0, motion: None }
+    }
+    /// The second marker stays in the plane through the first that is normal to this axis of it.
+    pub fn in_plane(axis: usize) -> Equation {
+        Equation::Dot { a: Arrow::Axis { of: 0, axis }, b: Arrow::Between, value: 0.0, motion: None }
+    }
+
+    /// Whether these are the three of [`Equation::coincide`].
+    pub(super) fn coincide_only(equations: &[Equation]) -> bool {
+        let axis = |i: usize, e: &Equation| matches!(e, Equation::Along { direction, motion: None } if *direction == IDENTITY[i]);
+        equations.len() == 3 && equations.iter().enumerate().all(|(i, e)| axis(i, e))
+    }
+    pub(super) fn kind(&self) -> RowKind {
+        match self {
+            Equation::Dot { a, b, .. } if !matches!(a, Arrow::Between) && !matches!(b, Arrow::Between) => {
+                RowKind::Direction
+            }
+            _ => RowKind::Position,
+        }
+    }
+    pub(super) fn motion(&self) -> Vec<&Arc<dyn Motion>> {
+        let angle = |arrow: &'_ Arrow| matches!(arrow, Arrow::Turned { .. });
+        match self {
+            Equation::Along { motion, .. } => motion.iter().collect(),
+            Equation::Dot { a, b, motion, .. } => {
+                let turned = [a, b].into_iter().filter(|x| angle(x)).filter_map(|x| match x {
+                    Arrow::Turned { angle, .. } => Some(angle),
+                    _ => None,
+                });
+                motion.iter().chain(turned).collect()
+            }
+            Equation::Distance { .. } => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Lines: parts that are made of elements along a curve, and what only those are asked.
+
+use crate::algebra::lane::V3;
+use crate::model::feed::MovingBoundary;
+use crate::model::node::NodeId;
+use crate::model::remesh::{Change, Mesh};
+use crate::model::state::At;
+
+/// What can be observed along a part, besides the motion of its markers.
+///
+/// ```
+/// use ropewalk_core::Quantity;
+/// assert_eq!(Quantity::Moment.unit(), "N m");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Quantity {
+    /// Axial force [N].
+    Tension,
+    /// Axial strain [1].
+    Strain,
+    /// Curvature [1/m].
+    Curvature,
+    /// Bending moment [N m].
+    Moment,
+}
+
+impl Quantity {
+    /// Its SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Quantity::Tension => "N",
+            Quantity::Strain => "1",
+            Quantity::Curvature => "1/m",
+            Quantity::Moment => "N m",
+        }
+    }
+}
+
+/// An element of a slender part and what it is made of.
+///
+/// ```
+/// use ropewalk_core::Slender;
+/// let rope = Slender { element: 0.5, mass: 0.4, ea: 1e5, ei: 0.1 };
+/// // sound passes an element in a millisecond, bending in a quarter of a second
+/// assert!((rope.axial_time() - 1e-3).abs() < 1e-9 && (rope.bending_time() - 0.5).abs() < 1e-9);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slender {
+    /// Its length [m].
+    pub element: f64,
+    /// Its mass per length, of the water that it is flooded with too [kg/m].
+    pub mass: f64,
+    /// Its axial stiffness [N].
+    pub ea: f64,
+    /// Its bending stiffness [N m²].
+    pub ei: f64,
+}
+
+impl Slender {
+    /// Time in which bending runs along the element, `l² √(ρA/EI)` [s]; infinite without bending stiffness.
+    pub fn bending_time(&self) -> f64 {
+        self.element.powi(2) * (self.mass / self.ei).sqrt()
+    }
+
+    /// Time in which sound runs along it, `l √(ρA/EA)` [s].
+    pub fn axial_time(&self) -> f64 {
+        self.element * (self.mass / self.ea).sqrt()
+    }
+}
+
+/// What a part can do besides that is made of elements along a curve, such as a cable. Places are unstretched arc lengths
+/// `s` from its start as it is now; an end is 0 for the start, 1 for the end.
+pub trait Line: Send + Sync {
+    /// What its elements are like on average.
+    fn slender(&self) -> Slender;
+    /// Its material points where nodes are, by unstretched arc length.
+    fn mesh(&self) -> &[f64];
+    /// Unstretched arc length of each node from the start as it is now [m]: of a line that feeds, other than its mesh.
+    fn mesh_now(&self, _at: &At<'_>) -> Vec<f64> {
+        self.mesh().to_vec()
+    }
+    /// Unstretched length now [m]: what has been fed out included.
+    fn length_now(&self, at: &At<'_>) -> f64;
+    /// Something along it.
+    fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64>;
+    /// Size of the axial force [N], by which Newton's method judges residuals: as [`Quantity::Tension`], or what is cheaper
+    /// and of its order.
+    fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {
+        self.observe(Quantity::Tension, s, at)
+    }
+    /// Lays its nodes evenly along the straight line between its ends, as the start of another search for equilibrium.
+    fn straighten(&self, _q: &mut [f64]) {}
+    /// The node, three numbers, that tells which way the section at a node looks; `None` where it doesn't know.
+    fn director(&self, _node: NodeId) -> Option<NodeId> {
+        None
+    }
+    /// Interpolates the numbers of those nodes, or their rates, at a point of the mesh.
+    fn looks(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<V3<f64>> {
+        None
+    }
+    /// Interpolates coordinates (or velocities) `x` of its nodes at a point of the mesh: position and slope.
+    fn slope(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {
+        None
+    }
+    /// The boundary at an end that feeds.
+    fn boundary(&self, _end: usize) -> Option<MovingBoundary> {
+        None
+    }
+    /// Whether elements are born and swallowed at an end, instead of growing and shrinking together.
+    fn makes_elements(&self, _end: usize) -> bool {
+        false
+    }
+    /// Sets velocities `v` such that an end feeds at this rate of its material coordinate [m/s] while the material keeps
+    /// the velocity that it has.
+    fn start_feeding(&self, _end: usize, _rate: f64, _q: &[f64], _v: &mut [f64]) {}
+    /// Length of the element at an end that others are born of [m].
+    fn end_element(&self, _end: usize, _at: &At<'_>) -> Option<f64> {
+        None
+    }
+    /// Length of the elements between that one and the end, which keep their lengths [m].
+    fn riding(&self, _end: usize) -> f64 {
+        0.0
+    }
+    /// Its mesh after a change, with the state that it goes on from; nothing where the mesh of its spec does.
+    ///
+    /// # Errors
+    /// The change can't be made.
+    fn remesh(&self, _change: Change, _at: &At<'_>) -> Result<Option<Mesh>, String> {
+        Ok(None)
+    }
+}

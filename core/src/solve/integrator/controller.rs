@@ -1,0 +1,121 @@
+//! The size of steps: from the error of the last one, from failures of Newton's method, and from where a step must end.
+
+use super::options::{Limits, Stepping, fixed_step};
+use crate::model::state::Control;
+
+/// Factor by which a step may change, from its error, that of the step before, and the sizes of both.
+pub(super) type Trend = fn(f64, f64, [f64; 2]) -> f64;
+
+/// What a scheme's step sizes follow.
+pub(super) struct StepLaw {
+    /// Factor by which a step may change after an error over its tolerance and so many iterations.
+    pub growth: fn(f64, u32) -> f64,
+    /// The same if the error goes on growing as it did.
+    pub trend: Option<Trend>,
+    /// Largest factor after a step, and after one with rejected tries.
+    pub most: [f64; 2],
+    /// Factors from one up to this leave the step as it is: they aren't worth a new factorisation.
+    pub worthless: f64,
+    /// Growth per step of the cap that a failure of Newton's method sets.
+    pub recovery: f64,
+    /// Whether the last two steps of an interval share its rest; otherwise the last is cut.
+    pub shares_rest: bool,
+}
+
+/// Smallest and, after a rejection, largest factor by which an error changes a step.
+const REJECTED: [f64; 2] = [0.2, 0.9];
+/// By how much a step shrinks after the first failure of Newton's method, and after each further one.
+const FAILED: [f64; 2] = [0.7, 0.5];
+/// The cap on the next steps after a failure, in parts of the step that failed.
+const CAP: f64 = 0.7;
+
+/// The step-size controller of one step: its present size, and what was rejected before.
+pub(super) struct StepController<'a> {
+    law: &'a StepLaw,
+    least: f64,
+    controlled: bool,
+    /// Size of the present try [s].
+    pub h: f64,
+    /// Size that the next step may have at least [s], where this one is cut and says nothing about it.
+    kept: Option<f64>,
+    /// Tries that were rejected.
+    pub rejected: u32,
+    /// Tries that failed otherwise than by their error.
+    pub failures: u32,
+}
+
+impl<'a> StepController<'a> {
+    /// The first try of a step of at most `h_max` [s].
+    pub fn new(law: &'a StepLaw, stepping: Stepping, limits: Limits, control: &Control, h_max: f64) -> Self {
+        let cap = if control.h_cap > 0.0 { control.h_cap } else { f64::INFINITY };
+        let (h, kept) = match stepping {
+            Stepping::Fixed { h } if law.shares_rest => (fixed_step(h.min(cap), h_max), None),
+            Stepping::Fixed { h } => (fixed_step(h, h_max).min(cap), None),
+            Stepping::Controlled { .. } => {
+                let next = if control.h_next > 0.0 { control.h_next } else { control.h_start };
+                if law.shares_rest {
+                    let wish = next.min(cap).min(limits.most);
+                    let rest = if h_max < 2.0 * wish { 0.5 * h_max } else { wish };
+                    let h = if h_max <= wish { h_max } else { rest };
+                    (h, (h < wish).then_some(wish))
+                } else {
+                    let limit = h_max.min(limits.most);
+                    let h = next.min(cap).min(limit);
+                    (h, (h >= limit && control.h_next > limit).then_some(control.h_next))
+                }
+            }
+        };
+        let controlled = matches!(stepping, Stepping::Controlled { .. });
+        StepController { law, least: limits.least, controlled, h, kept, rejected: 0, failures: 0 }
+    }
+
+    /// A smaller step after one whose error was too large; `false` if none is left.
+    #[must_use]
+    pub fn too_large(&mut self, error: f64, iterations: u32) -> bool {
+        self.rejected += 1;
+        self.h *= (self.law.growth)(error, iterations).clamp(REJECTED[0], REJECTED[1]);
+        !(self.h < self.least)
+    }
+
+    /// A smaller step after one that failed, which also caps the next steps; `false` if none is left.
+    #[must_use]
+    pub fn failed(&mut self, control: &mut Control) -> bool {
+        self.rejected += 1;
+        self.failures += 1;
+        let smaller = self.h * if self.failures == 1 { FAILED[0] } else { FAILED[1] };
+        if smaller < self.least {
+            return false;
+        }
+        control.h_cap = CAP * self.h;
+        self.h = smaller;
+        true
+    }
+
+    /// Notes an accepted step, and the size of the next.
+    pub fn accepted(&self, control: &mut Control, error: f64, iterations: u32) {
+        if self.controlled {
+            let next = self.next(control, error, iterations);
+            control.h_next = match self.kept {
+                Some(kept) if self.rejected == 0 => next.max(kept),
+                _ => next,
+            };
+        }
+        if self.law.trend.is_some() {
+            control.error = error;
+        }
+        control.h_cap = if control.h_cap > 0.0 { control.h_cap * self.law.recovery } else { 0.0 };
+        control.h_last = self.h;
+    }
+
+    fn next(&self, control: &Control, error: f64, iterations: u32) -> f64 {
+        let (law, h) = (self.law, self.h);
+        let mut growth = (law.growth)(error, iterations);
+        if let Some(trend) = law.trend
+            && control.error > 0.0
+        {
+            growth = growth.min(trend(error, control.error, [h, control.h_last]));
+        }
+        let growth = growth.clamp(REJECTED[0], law.most[usize::from(self.rejected > 0)]);
+        if (1.0..law.worthless).contains(&growth) { h } else { h * growth }
+    }
+}

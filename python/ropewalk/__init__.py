@@ -1,0 +1,43 @@
+"""Flexible multibody dynamics: cables, hoses and tethers, bodies, joints and water in one system of equations.
+
+>>> import ropewalk as rw
+>>> run = rw.run("pendulum", duration="0.5 s")
+>>> run["cable.end.z"].shape == run.t.shape
+True
+
+A scene is a bundled one (`rw.list()`), a path, a dict, or built: see `Scene`. Numbers are in SI units, a text such as
+"2 kn" brings its own; z is up.
+"""
+
+from ._errors import OutputError, RopewalkError, SceneError, SolverError
+from ._native import Stop, __version__
+from ._run import Run, load, run
+from ._scene import AnyScene, Part, Scene
+from ._simulation import Simulation
+from ._sweep import Sweep, sweep
+from ._tools import Checked, Modes, check, describe, list, modes, schemas
+
+__all__ = [
+    "AnyScene",
+    "Checked",
+    "Modes",
+    "OutputError",
+    "Part",
+    "RopewalkError",
+    "Run",
+    "Scene",
+    "SceneError",
+    "Simulation",
+    "SolverError",
+    "Stop",
+    "Sweep",
+    "__version__",
+    "check",
+    "describe",
+    "list",
+    "load",
+    "modes",
+    "run",
+    "schemas",
+    "sweep",
+]

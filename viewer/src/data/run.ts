@@ -1,0 +1,112 @@
+// A run as the page holds it: what report/src/page wrote, with its arrays unpacked.
+
+export type V3 = [number, number, number];
+
+export interface Run {
+  title: string;
+  subtitle: string;
+  status: string;
+  scene: string;
+  summary: Entry[];
+  warnings: string[];
+  notes: string[];
+  events: Event[];
+  settings: Entry[];
+  energy: Entry[];
+  /** Time or load factor. */
+  axis: { name: string; unit: string };
+  /** The first column is the axis. */
+  history: Column[];
+  panels: Panel[];
+  field: Field;
+  /** What was left out, in words. */
+  thinned: string[];
+}
+
+export interface Entry {
+  name: string;
+  value: string;
+}
+
+export interface Event {
+  t: number;
+  text: string;
+}
+
+export interface Column {
+  name: string;
+  unit: string;
+  values: Float64Array;
+}
+
+/** Columns of one unit that are drawn together, by number. */
+export interface Panel {
+  title: string;
+  unit: string;
+  columns: number[];
+}
+
+export interface Field {
+  /** What positions are counted from [m]. */
+  origin: V3;
+  times: Float64Array;
+  lines: Line[];
+  bodies: Body[];
+  shapes: Shape[];
+  water: number | null;
+  bed: number | null;
+}
+
+export interface Line {
+  name: string;
+  kind: string;
+  place: string;
+  /** [m] */
+  diameter: number;
+  /** Number of points of each snapshot. */
+  counts: number[];
+  /** Points of all snapshots before each. */
+  starts: number[];
+  /** Arc lengths [m]: of one snapshot if they are the same for all. */
+  s: Float32Array;
+  /** Three for each point [m]. */
+  x: Float32Array;
+  quantities: Quantity[];
+}
+
+export interface Quantity {
+  name: string;
+  unit: string;
+  /** One for each point. */
+  values: Float32Array;
+}
+
+export interface Body {
+  name: string;
+  kind: string;
+  place: string;
+  shapes: Shape[];
+  /** Three for each snapshot [m]. */
+  x: Float32Array;
+  /** Four for each snapshot, the real part first. */
+  q: Float32Array;
+}
+
+/** Null lengths have no end. */
+export type Solid =
+  | { type: "plane" }
+  | { type: "ball"; radius: number }
+  | { type: "cylinder" | "tube"; radius: number; half: number | null }
+  | { type: "box"; half: V3 }
+  | { type: "mesh"; points: Float32Array; triangles: Uint32Array };
+
+export interface Shape {
+  name: string;
+  solid: Solid;
+  pose: { position: V3; orientation: [number, number, number, number] };
+}
+
+/** Number of the first arc length of a snapshot. */
+export function firstS(line: Line, k: number): number {
+  return line.s.length === line.x.length / 3 ? line.starts[k]! : 0;
+}

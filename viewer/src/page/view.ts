@@ -1,0 +1,182 @@
+// The picture of the motion with its choices: frame, point to follow, trail, colours, thickness.
+
+import { short } from "../data/text.ts";
+import type { Run } from "../data/run.ts";
+import { DARK, gradient, LIGHT } from "../space/colour.ts";
+import { Flat } from "../space/flat.ts";
+import type { Frame } from "../space/frame.ts";
+import { gestures } from "../space/gestures.ts";
+import type { Picture } from "../space/picture.ts";
+import { Stage } from "../space/stage.ts";
+import { Webgl } from "../space/webgl.ts";
+import { $, choices } from "./dom.ts";
+import { Labels } from "./labels.ts";
+import { Quality } from "./quality.ts";
+import { dark } from "./theme.ts";
+
+export class View {
+  readonly stage: Stage;
+  readonly picture: Picture;
+  readonly quality = new Quality();
+  private labels: Labels;
+  private box = $("space");
+  private size: [number, number] = [0, 0];
+  private ratio = 0;
+  private waiting = false;
+  private moving = false;
+
+  constructor(run: Run) {
+    this.stage = new Stage(run.field);
+    this.stage.dark = dark();
+    this.picture = this.start();
+    this.box.prepend(this.picture.canvas);
+    this.labels = new Labels($("labels"), this.stage);
+    gestures(this.box, this.stage.orbit, {
+      moved: () => this.soon(),
+      fit: () => this.fit("now"),
+      view: (name) => this.turn(name),
+    });
+    this.choices();
+    this.resize();
+    this.fit(this.stage.followed ? "now" : "all");
+  }
+
+  private start(): Picture {
+    try {
+      if (location.hash === "#flat") throw new Error("asked for");
+      return new Webgl(this.stage);
+    } catch {
+      $("flat").hidden = false;
+      return new Flat(this.stage);
+    }
+  }
+
+  private choices(): void {
+    const { stage } = this;
+    const names = stage.points.map((p) => p.name);
+    const frames: [string, Frame][] = [["ground", { point: null, turns: false }]];
+    for (const point of stage.points) {
+      frames.push([point.name, { point, turns: false }]);
+      if (point.heading) frames.push([`${point.name}, turning`, { point, turns: true }]);
+    }
+    const number = (e: Event) => Number((e.target as HTMLSelectElement).value);
+    choices($("frame"), frames.map(([name]) => name), 0);
+    $("frame").onchange = (e) => {
+      stage.view(frames[number(e)]![1]);
+      this.fit(stage.frame.point || stage.followed ? "now" : "all");
+    };
+    choices($("follow"), ["nothing", ...names], stage.followed ? stage.points.indexOf(stage.followed) + 1 : 0);
+    $("follow").onchange = (e) => {
+      stage.follow(stage.points[number(e) - 1] ?? null);
+      this.fit(stage.followed ? "now" : "all");
+    };
+    choices($("trail"), ["none", ...names], stage.trailed ? stage.points.indexOf(stage.trailed) + 1 : 0);
+    $("trail").onchange = (e) => {
+      stage.retrail(stage.points[number(e) - 1] ?? null);
+      this.soon();
+    };
+    choices($("colour"), [...stage.scales.map((s) => s.name), "one colour"], 0);
+    $("colour").onchange = (e) => {
+      stage.scale = stage.scales[number(e)] ?? null;
+      this.legend();
+      this.soon();
+    };
+    const thick = $<HTMLInputElement>("thick");
+    const factor = () => {
+      const raw = 10 ** Number(thick.value);
+      return raw < 10 ? Math.round(10 * raw) / 10 : Math.round(raw);
+    };
+    const say = () => {
+      $("thick-value").textContent = `${short(stage.exaggeration, 3)}×`;
+      thick.setAttribute("aria-valuetext", `${short(stage.exaggeration, 3)} times`);
+    };
+    thick.value = String(Math.log10(stage.exaggeration));
+    thick.oninput = () => {
+      stage.exaggeration = factor();
+      say();
+      this.soon();
+    };
+    say();
+    $<HTMLInputElement>("names").onchange = (e) => {
+      stage.names = (e.target as HTMLInputElement).checked;
+      this.soon();
+    };
+    for (const button of document.querySelectorAll<HTMLButtonElement>("[data-view]")) button.onclick = () => this.turn(button.dataset.view!);
+    $("fit").onclick = () => this.fit("now");
+    $("fit-all").onclick = () => this.fit("all");
+    this.legend();
+    $("choose-colour").hidden = stage.scales.length === 0;
+    $("choose-thick").hidden = stage.lines.length === 0;
+  }
+
+  private legend(): void {
+    const { scale } = this.stage;
+    $("legend").hidden = !scale;
+    if (!scale) return;
+    const { name, unit, low, high, beyond } = scale;
+    const middle = (low + high) / 2;
+    $("legend-name").textContent = `${name} [${unit || "-"}]`;
+    $("legend-bar").style.background = gradient(this.stage.dark ? DARK : LIGHT);
+    $("legend-ticks").replaceChildren(...[short(low, 3), short(middle, 3), `${beyond ? "≥ " : ""}${short(high, 3)}`].map((text) => {
+      const tick = document.createElement("span");
+      tick.textContent = text;
+      return tick;
+    }));
+  }
+
+  private turn(name: string): void {
+    this.stage.turn(name);
+    this.fit(this.stage.followed || this.stage.frame.point ? "now" : "all");
+  }
+
+  fit(what: "now" | "all"): void {
+    this.stage.fit(what, this.size[0] / (this.size[1] || 1));
+    this.soon();
+  }
+
+  /** Everything at a time; `seconds` since the frame before while it plays. */
+  to(t: number, seconds: number): void {
+    this.moving = seconds > 0;
+    if (this.moving) this.quality.took(seconds);
+    this.stage.to(t);
+    this.draw();
+  }
+
+  /** Draws once before the next frame, however often it is asked. */
+  soon(): void {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.draw();
+    });
+  }
+
+  private draw(): void {
+    const [width, height] = this.size;
+    if (width < 1 || height < 1) return;
+    const ratio = this.quality.ratio(this.moving);
+    if (ratio !== this.ratio) this.picture.resize(width, height, (this.ratio = ratio));
+    this.picture.draw(this.stage);
+    this.labels.draw(width, height);
+  }
+
+  resize(): void {
+    const size: [number, number] = [this.box.clientWidth, this.box.clientHeight];
+    if (size[0] === this.size[0] && size[1] === this.size[1]) return;
+    this.size = size;
+    this.ratio = 0;
+    this.draw();
+  }
+
+  recolour(): void {
+    this.stage.dark = dark();
+    this.legend();
+    this.stage.to(this.time());
+    this.picture.recolour(this.stage);
+    this.draw();
+  }
+
+  /** The time that the picture shows; set by who owns the clock. */
+  time: () => number = () => 0;
+}

@@ -1,0 +1,63 @@
+// What all plots have in common.
+
+import uPlot from "uplot";
+import { short } from "../data/text.ts";
+import { styled } from "../space/picture.ts";
+
+export const HEIGHT = 190;
+
+/** Colours that differ in lightness as well as in hue. */
+export function seriesColour(i: number): string {
+  return styled(`--c${i % 7}`);
+}
+
+export function axisStyle(): Pick<uPlot.Axis, "stroke" | "grid" | "ticks" | "font"> {
+  return {
+    stroke: () => styled("--muted"),
+    grid: { stroke: () => styled("--line"), width: 1 },
+    ticks: { stroke: () => styled("--line"), width: 1, size: 4 },
+    font: "11px system-ui, sans-serif",
+  };
+}
+
+/** Axes that say little: numbers below and at the left. */
+export function axes(label: string): uPlot.Axis[] {
+  const values = (_: uPlot, splits: number[]) => splits.map((x) => (x === null ? "" : short(x)));
+  return [
+    { ...axisStyle(), values, size: 24, gap: 3, label, labelSize: 15, labelGap: 2, labelFont: "11px system-ui, sans-serif" },
+    { ...axisStyle(), values, size: 58, gap: 3 },
+  ];
+}
+
+/** A line that is put at a place over a plot without drawing the plot anew. */
+export class Cursor {
+  private element = document.createElement("div");
+  private place = NaN;
+
+  constructor(private plot: uPlot) {
+    this.element.className = "now";
+    plot.over.append(this.element);
+  }
+
+  to(x: number): void {
+    this.place = x;
+    const left = this.plot.valToPos(x, "x");
+    const seen = left >= -1 && left <= this.plot.over.clientWidth + 1;
+    this.element.style.display = seen ? "block" : "none";
+    if (seen) this.element.style.transform = `translateX(${left.toFixed(1)}px)`;
+  }
+
+  /** After the plot was zoomed or made larger. */
+  again(): void {
+    if (!Number.isNaN(this.place)) this.to(this.place);
+  }
+}
+
+/** A click that isn't the end of a drag. */
+export function clicked(plot: uPlot, act: (x: number) => void): void {
+  let from = NaN;
+  plot.over.addEventListener("pointerdown", (e) => (from = e.clientX));
+  plot.over.addEventListener("click", (e) => {
+    if (Math.abs(e.clientX - from) < 4) act(plot.posToVal(e.offsetX, "x"));
+  });
+}

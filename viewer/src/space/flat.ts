@@ -1,0 +1,144 @@
+// The stage drawn by lines in a plane canvas, where there is no WebGL.
+
+import { turned } from "../data/motion.ts";
+import type { Shape, V3 } from "../data/run.ts";
+import { edges } from "./edges.ts";
+import { seen } from "./frame.ts";
+import { ANGLE, project } from "./orbit.ts";
+import { styled, type Picture } from "./picture.ts";
+import type { Stage } from "./stage.ts";
+
+type Put = (x: V3) => V3;
+
+export class Flat implements Picture {
+  readonly kind = "flat";
+  readonly canvas = document.createElement("canvas");
+  private pen: CanvasRenderingContext2D;
+  private ratio = 1;
+  private colours: Record<string, string> = {};
+  private shapes = new Map<Shape, V3[][]>();
+
+  constructor(stage: Stage) {
+    // drawn by the processor: where there is no WebGL, there is rarely a good graphics card
+    const pen = this.canvas.getContext("2d", { willReadFrequently: true });
+    if (!pen) throw new Error("no canvas");
+    this.pen = pen;
+    this.recolour(stage);
+  }
+
+  resize(width: number, height: number, ratio: number): void {
+    this.ratio = ratio;
+    Object.assign(this.canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
+    Object.assign(this.canvas.style, { width: `${width}px`, height: `${height}px` });
+  }
+
+  recolour(_stage: Stage): void {
+    for (const name of ["space", "sea", "bed", "grid", "trail", "body", "solid", "point"]) this.colours[name] = styled(`--${name}`);
+  }
+
+  draw(stage: Stage): void {
+    const { pen } = this;
+    const { width, height } = this.canvas;
+    pen.fillStyle = this.colours.space!;
+    pen.fillRect(0, 0, width, height);
+    const aspect = width / height;
+    /** From the frame to pixels and depth. */
+    const shown: Put = (x) => {
+      const [right, up, depth] = project(stage.orbit, x, aspect);
+      return [width * (0.5 + right), height * (0.5 - up), depth];
+    };
+    const ground: Put = (x) => shown(seen(stage.stand, x));
+    pen.lineWidth = this.ratio;
+    this.levels(stage, ground);
+    for (const shape of stage.field.shapes) this.solid(shape, stage.size, ground, this.colours.solid!);
+    stage.field.bodies.forEach((body, i) => {
+      const { x, q } = stage.poses[i]!;
+      const put: Put = (p) => ground(turned(q, p).map((v, j) => v + x[j]!) as V3);
+      for (const shape of body.shapes) this.solid(shape, stage.size, put, this.colours.body!);
+      if (body.shapes.length === 0) this.dot(ground(x), this.colours.point!);
+    });
+    this.trail(stage, shown);
+    this.lines(stage, ground, height);
+  }
+
+  private solid(shape: Shape, reach: number, put: Put, colour: string): void {
+    let lines = this.shapes.get(shape);
+    if (!lines) this.shapes.set(shape, (lines = edges(shape.solid, reach)));
+    this.pen.strokeStyle = colour;
+    const { position, orientation } = shape.pose;
+    for (const line of lines) this.path(line.map((x) => put(turned(orientation, x).map((v, i) => v + position[i]!) as V3)));
+  }
+
+  /** A polyline, broken where it goes behind the eye. */
+  private path(points: V3[]): void {
+    this.pen.beginPath();
+    let drawing = false;
+    for (const [x, y, depth] of points) {
+      if (!(depth > 0)) drawing = false;
+      else if (drawing) this.pen.lineTo(x, y);
+      else {
+        this.pen.moveTo(x, y);
+        drawing = true;
+      }
+    }
+    this.pen.stroke();
+  }
+
+  private dot([x, y, depth]: V3, colour: string): void {
+    if (!(depth > 0)) return;
+    this.pen.fillStyle = colour;
+    this.pen.beginPath();
+    this.pen.arc(x, y, 5 * this.ratio, 0, 2 * Math.PI);
+    this.pen.fill();
+  }
+
+  private levels({ field, whole: [low, high], size }: Stage, put: Put): void {
+    const [x, y] = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
+    const half = 0.8 * size;
+    const level = (z: number, name: string, alpha: number) => {
+      const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([i, j]) => put([x + half * i!, y + half * j!, z]));
+      this.pen.globalAlpha = alpha;
+      this.pen.fillStyle = this.colours[name]!;
+      if (corners.every((c) => c[2] > 0)) {
+        this.pen.beginPath();
+        for (const c of corners) this.pen.lineTo(c[0], c[1]);
+        this.pen.fill();
+      }
+      this.pen.strokeStyle = this.colours.grid!;
+      this.pen.globalAlpha = 0.5;
+      for (let i = -6; i <= 6; i++) {
+        const u = (half * i) / 6;
+        this.path([put([x + u, y - half, z]), put([x + u, y + half, z])]);
+        this.path([put([x - half, y + u, z]), put([x + half, y + u, z])]);
+      }
+      this.pen.globalAlpha = 1;
+    };
+    if (field.bed !== null) level(field.bed - field.origin[2], "bed", 0.25);
+    if (field.water !== null) level(field.water - field.origin[2], "sea", 0.12);
+  }
+
+  private trail(stage: Stage, put: Put): void {
+    this.pen.strokeStyle = this.colours.trail!;
+    const all: V3[] = [];
+    for (let k = 0; k < stage.reached; k++) all.push(put(Array.from(stage.trail.subarray(3 * k, 3 * k + 3)) as V3));
+    if (all.length > 1) this.path(all);
+  }
+
+  private lines(stage: Stage, put: Put, height: number): void {
+    this.pen.lineCap = "round";
+    for (const { line, x, colour, count } of stage.lines) {
+      const at = Array.from({ length: count }, (_, i) => put([x[3 * i]!, x[3 * i + 1]!, x[3 * i + 2]!]));
+      for (let i = 0; i + 1 < count; i++) {
+        const [a, b] = [at[i]!, at[i + 1]!];
+        if (!(a[2] > 0 && b[2] > 0)) continue;
+        const thick = (height * line.diameter * stage.exaggeration) / (2 * Math.tan(ANGLE / 2) * a[2]);
+        this.pen.lineWidth = Math.max(2 * this.ratio, thick);
+        this.pen.strokeStyle = `rgb(${[0, 1, 2].map((j) => Math.round(255 * colour[3 * i + j]!)).join(" ")})`;
+        this.pen.beginPath();
+        this.pen.moveTo(a[0], a[1]);
+        this.pen.lineTo(b[0], b[1]);
+        this.pen.stroke();
+      }
+    }
+  }
+}
