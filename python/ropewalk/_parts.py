@@ -47,49 +47,50 @@ class Parts:
         strain: Number | None = None,
         curvature: Number | None = None,
     ) -> Part:
-        """A cable, hose or tether: stretches and bends however far it likes. It doesn't twist, unless it is laid bent
-        and free of stress.
+        """A cable, hose or tether with large displacements, stretch and bending. It has no torsion, unless its stress-
+        free shape is curved.
 
         It is a chain of ANCF elements with 6 coordinates per node. Markers: `name.start`, `name.end`, `name@12.5m`.
 
-        name: Name by which the rest of the scene refers to it.
-        section: What it is made of.
-            mass: Mass of the structure per unstretched length [kg/m]; what gravity pulls at. Required.
+        name: Name; the rest of the scene refers to the part by it.
+        section: Cross-section.
+            mass: Structural mass per unstretched length [kg/m]; gravity acts on it. Required.
             ea: Axial stiffness EA [N]. Required.
-            ei: Bending stiffness EI [N m²]. Of a limp cable (0) the first and last element have a little, a hundredth
-                of their weight times the square of their length, so that free ends have a direction. Default 0.0.
-            gj: Torsional stiffness GJ [N m²] of a cable that is bent when free of stress; left out, EI. Others don't
-                know twist.
-            flooded: Mass of water inside that moves along but has no weight in water [kg/m]. Default 0.0.
+            ei: Bending stiffness EI [N m²]. With 0, the first and last element keep 1 % of their weight times their
+                length squared, so that free ends have a direction. Default 0.0.
+            gj: Torsional stiffness GJ [N m²] of a cable with a curved stress-free shape. Default: EI. Other cables
+                have no torsion.
+            flooded: Mass of the water inside [kg/m]. It moves with the part and has no weight in water. Default 0.0.
             diameter: Hydrodynamic diameter, for drag and added mass [m]. Default 0.0.
-            displaced: Displaced volume per length, for buoyancy [m²]; left out, that of the full diameter.
-            axial_damping: Kelvin–Voigt damping of stretching: stress grows by this time times the rate of strain [s].
+            displaced: Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
+            axial_retardation_time: Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ
+                ε̇)`. Default 0.0.
+            bending_retardation_time: Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`.
                 Default 0.0.
-            bending_damping: Kelvin–Voigt damping of bending [s]. Default 0.0.
-        points: Points along which it is laid, from start to end [m]: straight lines between them. Where they meet at
-            an angle, give a `radius`: a cable that is laid round a sharp corner would be strained there.
-        radius: Bend radius at the corners of `points` [m]. The arcs cut the corners, and get elements of their own.
-        curve: Points of a smooth curve along which it is laid [m], instead of `points`: a cubic spline through them.
-        start_direction: Direction of `curve` at its start; left out, it is as curved there as its first points say.
-        end_direction: Direction of `curve` at its end, towards which it goes on; left out, it is as curved there as
-            its last points say.
-        length: Unstretched length [m]; left out, that of the path. A different length is spread evenly over the path.
-        tension: Tension with which it is laid [N], instead of `length`: the path is longer than the cable by the
-            strain `tension / ea`.
-        elements: Number of elements of equal length. Give it, or `mesh`.
+        points: Points of the path along which it is laid, from start to end [m], joined by straight lines. At
+            corners, give a `radius`: a sharp corner would strain the cable.
+        radius: Bend radius at the corners of `points` [m]. The arcs have elements of their own.
+        curve: Points of a smooth path [m], instead of `points`: a cubic spline passes through them.
+        start_direction: Direction of `curve` at its start. Default: follows from the first points.
+        end_direction: Direction of `curve` at its end. Default: follows from the last points.
+        length: Unstretched length [m]. Default: the length of the path. Another length is strained uniformly to fit
+            the path.
+        tension: Initial tension [N], instead of `length`: the path is longer than the cable by the strain `tension /
+            ea`.
+        elements: Number of elements of equal length. Give `elements` or `mesh`.
         mesh: Elements of different lengths instead of `elements`: `{ elements = 24, last = "1 mm" }` grades them
             towards the end, `first` towards the start, both towards both; or a list with the length of each, from
-            start to end [m]. Where the cable's direction is held, elements should be shorter than its bending layer
-            `√(EI/T)`. A graded end stays graded while a winch feeds there.
+            start to end [m]. Where the direction is held, elements should be shorter than the bending layer
+            `√(EI/T)`. A graded end stays graded while a winch pays out there.
         longitudinal: Longitudinal stiffness model: L1, L1n, L2, L3 or L4. Default L4.
         transverse: Transverse stiffness model: T1, T2 or T3; T2 and T3 go with L3 and L4 only. Default T3.
         integration: Quadrature of the pointwise models. Default locking-free.
-        velocity: Velocity of the whole cable at the start [m/s]. Default [0.0, 0.0, 0.0].
-        stress_free: The shape in which it is free of stress. Default straight.
-        strain: Strain at which it is free of stress, on top of `stress_free` [1]. Default 0.0.
-        curvature: Curvature at which it is free of stress, on top of `stress_free` [1/m]. A scalar without direction,
-            of a cable that turns about its axis as it likes: it curls to any side. One with a direction is laid bent,
-            `stress_free = "as-laid"`. Default 0.0.
+        velocity: Initial velocity of the whole cable [m/s]. Default [0.0, 0.0, 0.0].
+        stress_free: Stress-free shape. Default straight.
+        strain: Stress-free strain, added to that of `stress_free` [1]. Default 0.0.
+        curvature: Stress-free curvature, added to that of `stress_free` [1/m]. It has no direction: a cable without
+            torsion can curl to any side. For a curvature with a direction, lay the cable curved and set `stress_free
+            = "as-laid"`. Default 0.0.
         """
         return self._add("elements", "cable", {
             "name": name,
@@ -116,7 +117,7 @@ class Parts:
         self,
         *,
         name: str,
-        at: Union[Sequence[Number], str],
+        marker: Union[Sequence[Number], str],
         mass: Number,
         volume: Number | None = None,
         added_mass: Number | None = None,
@@ -125,20 +126,20 @@ class Parts:
     ) -> Part:
         """A compact body: a sinker, a buoy, the load at the end of a hose.
 
-        On a marker of a cable it is part of that node; at a named point of a body or a link it moves and turns with
-        it; with a position it is a point of its own. Marker: `name`.
+        On a cable it belongs to the node; at a point of a body or link it moves and turns with the body; with a
+        position it is a free point. Marker: `name`.
 
-        name: Name by which the rest of the scene refers to it.
-        at: Marker of an earlier element that it sits on, such as `"hose.end"`, or the point where it starts [m].
+        name: Name; the rest of the scene refers to the part by it.
+        marker: Marker of an earlier element that carries it, such as `"hose.end"`, or its initial position [m].
         mass: Mass [kg].
         volume: Displaced volume, for buoyancy [m³]. Default 0.0.
         added_mass: Added mass in water, the same in all directions [kg]. Default 0.0.
         drag_area: Drag coefficient times area [m²]. Default 0.0.
-        velocity: Velocity at the start, of a point of its own [m/s]. Default [0.0, 0.0, 0.0].
+        velocity: Initial velocity, of a free point only [m/s]. Default [0.0, 0.0, 0.0].
         """
         return self._add("elements", "point_mass", {
             "name": name,
-            "at": at,
+            "marker": marker,
             "mass": mass,
             "volume": volume,
             "added_mass": added_mass,
@@ -167,30 +168,30 @@ class Parts:
     ) -> Part:
         """A rigid body with full inertia.
 
-        Everything on it is given in its own frame, whose origin stands at `position`. Markers: `name` (that origin),
+        All its data are in the body's own frame, whose origin starts at `position`. Markers: `name` (that origin),
         `name.com` (the centre of mass), and the `points` that the scene names.
 
-        name: Name by which the rest of the scene refers to it.
-        position: Where the origin of its frame starts [m].
-        angles: Orientation at the start as Bryant angles 1-2-3: turns about its x axis, its new y axis, its new z
-            axis [rad]. Default [0.0, 0.0, 0.0].
-        velocity: Velocity of the origin at the start [m/s]. Default [0.0, 0.0, 0.0].
-        angular_velocity: Angular velocity at the start, in space [rad/s]. Default [0.0, 0.0, 0.0].
-        mass: Mass [kg]; left out, that of the `shape` with its `density`.
+        name: Name; the rest of the scene refers to the part by it.
+        position: Initial position of the origin of its frame [m].
+        angles: Initial orientation as Bryant angles 1-2-3: turns about its x axis, its new y axis, its new z axis
+            [rad]. Default [0.0, 0.0, 0.0].
+        velocity: Initial velocity of the origin [m/s]. Default [0.0, 0.0, 0.0].
+        angular_velocity: Initial angular velocity, in space [rad/s]. Default [0.0, 0.0, 0.0].
+        mass: Mass [kg]. Default: from `shape` and `density`.
         density: Density of the `shape` [kg/m³].
-        shape: Homogeneous shape, from which the moments of inertia follow.
+        shape: Homogeneous shape; the moments of inertia follow from it.
         inertia: Moments of inertia `Jxx`, `Jyy`, `Jzz` about the centre of mass [kg m²], instead of a shape.
-        products: Products of inertia `Jxy`, `Jxz`, `Jyz`: the other entries of the inertia matrix [kg m²]. Default
-            [0.0, 0.0, 0.0].
+        products: Products of inertia `Jxy`, `Jxz`, `Jyz`: the off-diagonal entries of the inertia matrix [kg m²].
+            Default [0.0, 0.0, 0.0].
         centre: Centre of mass [m]. Default [0.0, 0.0, 0.0].
         volume: Displaced volume, for buoyancy [m³]. Default 0.0.
-        centre_of_volume: Centre of the displaced volume [m]; left out, the centre of mass. Where the water has a
-            `level`, the volume of a body with a hull lies along the hull.
-        hull: Cylinder along which drag and added mass act; left out, they don't.
+        centre_of_volume: Centre of buoyancy [m]. Default: the centre of mass. If the water has a `level`, the volume
+            of a body with a hull is distributed along the hull.
+        hull: Cylinder for drag and added mass. Default: none, and neither acts.
             from: One end of its axis [m]. Required.
             to: The other end [m]. Required.
             diameter: Diameter [m]. Required.
-        points: Points by which the rest of the scene can hold it, each with its name [m].
+        points: Named points of the body [m]; each is a marker.
         """
         return self._add("elements", "rigid_body", {
             "name": name,
@@ -223,35 +224,34 @@ class Parts:
         stress_free: Literal['as-laid', 'straight'] | None = None,
         velocity: Sequence[Number] | None = None,
     ) -> Part:
-        """A chain of rigid links with spherical joints, all of one length: a hose, a tether, a chain.
+        """A chain of rigid links of equal length with spherical joints: a hose, a tether, a chain.
 
-        It lies at rest along its path, the ends of all links on it. Markers: `name.start`, `name.end`, `name@12.5m`
-        (a point of a link), `name.link3` (the centre of the third). The joint between the third and the fourth link
-        is the constraint `name/3`, so its reaction is the tension there.
+        It starts at rest with the ends of all links on its path. Markers: `name.start`, `name.end`, `name@12.5m` (a
+        point of a link), `name.link3` (the centre of the third). The joint between the third and the fourth link is
+        the constraint `name/3`, so its reaction is the tension there.
 
-        name: Name by which the rest of the scene refers to it.
+        name: Name; the rest of the scene refers to the part by it.
         links: Number of links.
-        section: What it is made of.
-            mass: Mass of the structure per length [kg/m]; what gravity pulls at. Required.
-            flooded: Mass of water inside that moves along but has no weight in water [kg/m]. Default 0.0.
+        section: Cross-section.
+            mass: Structural mass per length [kg/m]; gravity acts on it. Required.
+            flooded: Mass of the water inside [kg/m]. It moves with the part and has no weight in water. Default 0.0.
             diameter: Hydrodynamic diameter, for drag and added mass [m]; without one, neither acts. Default 0.0.
-            displaced: Displaced volume per length, for buoyancy [m²]; left out, that of the full diameter.
-            gyration: Radius of gyration about a link's axis [m]; left out, that of a solid cylinder, 0.354 times the
+            displaced: Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
+            gyration: Radius of gyration about a link's axis [m]. Default: that of a solid cylinder, 0.354 times the
                 diameter.
             ei: Bending stiffness EI, as springs EI/l at the joints [N m²]. Default 0.0.
             joint_damping: Damping of the joints about every axis [N m s/rad]. Default 0.0.
-        length: Length of the chain [m]; left out, such that it fills its path. Shorter, it ends on the path where it
-            ends.
-        points: Points along which it is laid, from start to end [m]: straight lines between them.
-        curve: Points of a smooth curve along which it is laid [m], instead of `points`.
-        spool: The spool on which it goes on after the last of the points.
+        length: Length of the chain [m]. Default: the chain fills its path. A shorter chain ends on the path.
+        points: Points of the path along which it is laid, from start to end [m], joined by straight lines.
+        curve: Points of a smooth path [m], instead of `points`.
+        spool: Spool that carries the rest of the chain, after the last of the points.
             centre: A point on the axis [m]. Required.
-            axis: Direction of the axis, in which turn follows turn, right-handed about it. Required.
+            axis: Direction of the axis. The turns follow it, right-handed about it. Required.
             pitch: Distance from turn to turn along the axis [m]; negative for turns that are left-handed about it.
                 Required.
-            turns: Number of turns; left out, as many as the `length` of the chain takes.
-        stress_free: The shape in which its joints are free of bending moment. Default straight.
-        velocity: Velocity of the whole chain at the start [m/s]. Default [0.0, 0.0, 0.0].
+            turns: Number of turns. Default: as many as the `length` of the chain needs.
+        stress_free: Shape in which its joints have no bending moment. Default straight.
+        velocity: Initial velocity of the whole chain [m/s]. Default [0.0, 0.0, 0.0].
         """
         return self._add("elements", "rigid_chain", {
             "name": name,
@@ -269,19 +269,19 @@ class Parts:
         self,
         *,
         name: str,
-        of: str,
+        constraint: str,
         force: Number,
     ) -> Part:
-        """Breaks a connection for good once its force reaches a limit: a shear pin, a weak link. The moment is located
+        """Breaks a constraint permanently once its force reaches a limit: a shear pin, a weak link. The event is located
         in time and reported.
 
-        name: Name, by which the event is reported.
-        of: Name of the constraint, which stands above.
-        force: Magnitude of its force at which it breaks [N].
+        name: Name; the report of the event uses it.
+        constraint: Name of the constraint that breaks. It must come earlier in the scene.
+        force: Magnitude of the force at which the constraint breaks [N].
         """
         return self._add("constraints", "break", {
             "name": name,
-            "of": of,
+            "constraint": constraint,
             "force": force,
         })
 
@@ -293,13 +293,17 @@ class Parts:
         to: Union[Sequence[Number], str] | None = None,
         direction: Sequence[Number] | None = None,
     ) -> Part:
-        """Holds the direction of a cable at a marker, in space or on a rigid body; its stretch stays free. With
-        `spherical` a built-in end. A cable that is bent when free of stress can't twist there either.
+        """Holds position and direction: a built-in end.
 
-        name: Name, by which records ask for its reaction.
-        marker: The marker on a cable.
-        to: The rigid body that holds the direction; left out, it is held in space.
-        direction: The direction in space at the start; left out, that which the cable has there.
+        On a cable it holds the point and the tangent; the stretch stays free, as the tension there needs. A cable
+        with a curved stress-free shape can't twist there either. On a rigid body or a link it holds all six degrees
+        of freedom, as `weld` does. To hold the direction only, use `direction`; to hold the position only,
+        `spherical`.
+
+        name: Name; records refer to the reaction by it.
+        marker: The marker that is held, on a cable or a rigid body.
+        to: What holds it: a marker on a rigid body or a point in space. Default: the point where the marker starts.
+        direction: Direction of the cable at the start, in space. Default: the direction in which the cable is laid.
         """
         return self._add("constraints", "clamp", {
             "name": name,
@@ -316,12 +320,13 @@ class Parts:
         direction: Sequence[Number],
         motion: str | None = None,
     ) -> Part:
-        """Holds or drives one coordinate of a marker, along a direction, and leaves the other two free.
+        """Holds or drives one coordinate of a marker along a direction. The other two are free.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker.
-        direction: The direction of the coordinate.
-        motion: Name of a motion, of which the part along the direction is followed; left out, the coordinate stays.
+        direction: Direction of the coordinate, in space.
+        motion: Name of a motion; its component along the direction drives the coordinate. Default: the coordinate is
+            held.
         """
         return self._add("constraints", "coordinate", {
             "name": name,
@@ -338,18 +343,43 @@ class Parts:
         axis: Sequence[Number],
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """Lets a body slide along an axis of another part, or of space, and turn about it.
+        """Lets a body slide along an axis of another part or of space, and turn about it.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is held.
-        axis: The axis in space at the start; it turns with the parts.
-        to: What holds it: another marker or a point in space; left out, the point where the marker starts.
+        axis: Direction of the axis in space at the start. The axis turns with the parts.
+        to: The other marker, or a point in space. Default: the point where `marker` starts.
         """
         return self._add("constraints", "cylindrical", {
             "name": name,
             "marker": marker,
             "axis": axis,
             "to": to,
+        })
+
+    def direction(
+        self,
+        *,
+        name: str,
+        marker: Union[Sequence[Number], str],
+        to: Union[Sequence[Number], str] | None = None,
+        direction: Sequence[Number] | None = None,
+    ) -> Part:
+        """Holds the direction of a cable at a marker, in space or on a rigid body. Position and stretch stay free.
+
+        Use it for a guide that a cable slides through, or beside a constraint that drives the position. To hold the
+        position as well, use `clamp`. A cable with a curved stress-free shape can't twist there either.
+
+        name: Name; records of the reaction refer to it.
+        marker: The marker on the cable.
+        to: The rigid body that holds the direction. Default: space.
+        direction: The direction in space at the start. Default: the direction in which the cable is laid.
+        """
+        return self._add("constraints", "direction", {
+            "name": name,
+            "marker": marker,
+            "to": to,
+            "direction": direction,
         })
 
     def distance(
@@ -360,12 +390,12 @@ class Parts:
         to: Union[Sequence[Number], str],
         length: Number | None = None,
     ) -> Part:
-        """Keeps two points at a constant distance: a rod without mass.
+        """Keeps two points at a constant distance: a massless rod.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: One marker.
         to: The other marker, or a point in space.
-        length: Distance [m]; left out, that at the start.
+        length: Distance [m]. Default: the initial distance.
         """
         return self._add("constraints", "distance", {
             "name": name,
@@ -381,9 +411,9 @@ class Parts:
         marker: Union[Sequence[Number], str],
         motion: str,
     ) -> Part:
-        """Makes a marker follow a prescribed motion from where it starts.
+        """Moves a marker along a prescribed motion, starting at its initial position.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is driven.
         motion: Name of the motion.
         """
@@ -407,39 +437,38 @@ class Parts:
         motion: str | None = None,
         tension: Number | None = None,
         per_speed2: Number | None = None,
-        pace: str | None = None,
+        reference_speed: str | None = None,
         damping: Number | None = None,
         shortest: Number | None = None,
-        element: Number | None = None,
-        release: Number | None = None,
+        element_length: Number | None = None,
+        fade: Number | None = None,
     ) -> Part:
-        """An eyelet that an end of a cable runs through: a fixed or moving point, and what draws the cable there.
+        """An eyelet through which an end of a cable runs: a fixed or moving point, and what draws the cable there.
 
-        It is a `spherical` or `driving` constraint and a `winch` in one. The point stays where the end starts, or
-        goes with `to`, or along `path`. Give one of `speed`, `motion` and `tension`: what isn't given is a result.
-        The constraint of the point has the name of the eyelet, by which records ask for its reaction; what draws is
-        called `name.feed`.
+        It combines a `spherical` or `driving` constraint with a `winch`. The point stays where the end starts, moves
+        with `to`, or along `path`. Give one of `speed`, `motion` and `tension`; the others are results. The
+        constraint of the point has the name of the eyelet; the winch is called `name.feed`.
 
-        name: Name, by which records and events refer to it.
+        name: Name; records and events refer to it.
         marker: The end of the cable: `fibre.start` or `fibre.end`.
-        to: What the eyelet is on: a marker of a part or a point in space; left out, the point where the end starts.
-        path: Name of a motion along which the eyelet moves from where the end starts, instead of `to`.
-        speed: Speed at which cable comes in through the eyelet after the ramp [m/s]; negative draws it out of the
-            free cable.
+        to: The marker that carries the eyelet, or a point in space. Default: the point where the end starts.
+        path: Name of a motion of the eyelet, starting where the end starts, instead of `to`.
+        speed: Speed at which cable enters through the eyelet after the ramp [m/s]; negative draws it out of the free
+            cable.
         start: Time at which the speed begins to rise [s]. Default 0.0.
-        ramp: Time in which the speed rises, and falls at the stop [s]. Default 1.0.
-        stop: Time at which the speed begins to fall again [s]; left out, it goes on.
-        motion: Name of a motion whose x component is the length that has come in, instead of `speed`.
+        ramp: Time in which the speed rises, and falls again at the stop [s]. Default 1.0.
+        stop: Time at which the speed begins to fall again [s]. Default: never.
+        motion: Name of a motion whose x component is the length that has entered, instead of `speed`.
         tension: Tension with which the cable is drawn [N], instead of a speed.
-        per_speed2: Tension by the square of the speed, besides `tension` [kg/m]. Default 0.0.
-        pace: Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs
-            here, which then drives itself.
-        damping: Resistance per speed, besides `tension` [N s/m]. Default 0.0.
-        shortest: Shortest length of the free cable [m], where the run ends; left out, as for `winch`.
-        element: Length of elements [m] that are born and swallowed at the eyelet; left out, all elements grow and
-            shrink together.
-        release: Time in which the strain fades that keeps the tension from jumping when an element is born or
-            swallowed [s]. Default 0.1.
+        per_speed2: Tension per speed squared, added to `tension` [kg/m]. Default 0.0.
+        reference_speed: Name of a motion whose speed along x `per_speed2` refers to. Default: the speed of the cable
+            here, which can be unstable.
+        damping: Linear damping, added to `tension` [N s/m]. Default 0.0.
+        shortest: Shortest length of the free cable [m]; the run ends there. Default: as for `winch`.
+        element_length: Length of the elements that are added and removed at the eyelet [m]. Default: all elements
+            grow and shrink together.
+        fade: Fade time [s] of the strain that keeps the tension continuous when an element is added or removed.
+            Default 0.1.
         """
         return self._add("constraints", "eyelet", {
             "name": name,
@@ -453,11 +482,11 @@ class Parts:
             "motion": motion,
             "tension": tension,
             "per_speed2": per_speed2,
-            "pace": pace,
+            "reference_speed": reference_speed,
             "damping": damping,
             "shortest": shortest,
-            "element": element,
-            "release": release,
+            "element_length": element_length,
+            "fade": fade,
         })
 
     def lift_off(
@@ -467,49 +496,49 @@ class Parts:
         marker: Union[Sequence[Number], str],
         package: Mapping[str, Any],
         tangent: Boolean | None = None,
-        peel: Number | None = None,
-        slip: Number | None = None,
+        adhesion_energy: Number | None = None,
+        slip_speed: Number | None = None,
     ) -> Part:
-        """Lets an end of a cable lift off from a package: the lift-off point runs round the package as cable is peeled.
+        """The lift-off point of a cable from a package. It runs round the package as the cable unwinds.
 
-        A `winch` at the same end says what peels it: `speed` or `motion`, or `tension` for what the package holds it
-        back with. Or `peel` says, without a winch, at which energy it comes off a package to which it sticks. Where
-        the cable goes to is told by an eyelet at the other end: a `spherical` constraint and a winch of its own.
-        Reports what happens on the way: a tension below what keeps the cable taut, contact with the package, too much
+        A `winch` at the same end drives the unwinding: by `speed` or `motion`, or by the `tension` at the package.
+        Or, without a winch, the cable sticks to the package with `adhesion_energy`. The other end needs an `eyelet`.
+        Events are reported on the way: a tension too low to keep the cable taut, contact with the package, too much
         bending.
 
-        name: Name, by which records ask for its reaction.
-        marker: The end of the cable that is wound: `fibre.end` or `fibre.start`.
+        name: Name; records of the reaction refer to it.
+        marker: The wound end of the cable: `fibre.end` or `fibre.start`.
         package: The package.
-            radius: Radius of the layer that unwinds first, to the middle of the cable [m]. Required.
-            length: Length along the axis that is wound, the same for all layers [m]. Required.
-            diameter: Diameter of the cable: the radius changes by it from layer to layer [m]. Required.
-            origin: Where its axis begins: the centre of one end [m]. Default [0.0, 0.0, 0.0].
-            axis: Direction of its axis, from that end to the other. Default [0.0, 0.0, 1.0].
-            reference: Direction from the axis in which the first lift-off point lies; left out, that of x, or of y if
-                the axis is along x.
-            side: Whether the cable lifts off inside or outside. Default inner.
-            pitch: Way along the axis per turn [m]; left out, the diameter of the cable: turn beside turn.
-            layers: How many layers there are. Default 1.
-            hand: Which way the lift-off point runs round the axis. Default right.
-            traverse: Which way along the axis the first layer unwinds. Default forward.
-            first: Where along the axis, from its origin, the first lift-off point lies [m]; left out, at the end of
-                the package where a full first layer begins.
-            bend_limit: Smallest radius to which the cable may be bent [m]; left out, any.
-        tangent: Whether the cable is tangent to the wound layer where it lifts off; needs bending stiffness. Default
-            False.
-        peel: Energy per length that it takes to peel the cable off [J/m], instead of a winch at this end. The cable
-            then lifts off at a curvature with `EI (κ - κ_w)²/2 = peel`, `κ_w` being that of the wound cable, or if it
-            isn't `tangent`, at an angle `D` with `T (1 - cos D) = peel`.
-        slip: Speed below which a cable that sticks creeps [m/s], with `peel`. Default 0.001.
+            radius: Radius of the first layer to unwind, to the middle of the cable [m]. Required.
+            length: Wound length along the axis, the same for all layers [m]. Required.
+            diameter: Diameter of the cable [m]; the radius changes by it from layer to layer. Required.
+            origin: Origin of its axis: the centre of one end [m]. Default [0.0, 0.0, 0.0].
+            axis: Direction of its axis, from the origin to the other end. Default [0.0, 0.0, 1.0].
+            reference: Direction from the axis to the first lift-off point. Default: x, or y if the axis is along x.
+            side: Side of the package from which the cable lifts off. Default inner.
+            pitch: Distance along the axis per turn [m]. Default: the diameter of the cable, turns side by side.
+            layers: Number of layers. Default 1.
+            hand: Sense in which the lift-off point runs round the axis. Default right.
+            traverse: Direction along the axis in which the first layer unwinds. Default forward.
+            first: Position of the first lift-off point along the axis, from its origin [m]. Default: the end where a
+                full first layer begins.
+            min_bend_radius: Minimum bend radius of the cable [m]; below it the run reports an event. Default: no
+                limit.
+        tangent: Whether the cable is tangent to the wound layer at the lift-off point. Needs bending stiffness.
+            Default False.
+        adhesion_energy: Adhesion energy `Γ` per length [J/m], instead of a winch at this end. A `tangent` cable lifts
+            off where `EI (κ - κ_w)²/2 = Γ`, with the curvature `κ_w` of the wound cable; another one at the angle `D`
+            with `T (1 - cos D) = Γ`.
+        slip_speed: Slip speed [m/s]: below it the adhesion creeps instead of sticking. Goes with `adhesion_energy`.
+            Default 0.001.
         """
         return self._add("constraints", "lift_off", {
             "name": name,
             "marker": marker,
             "package": package,
             "tangent": tangent,
-            "peel": peel,
-            "slip": slip,
+            "adhesion_energy": adhesion_energy,
+            "slip_speed": slip_speed,
         })
 
     def perpendicular(
@@ -521,14 +550,14 @@ class Parts:
         axis_to: Sequence[Number] | None = None,
         axis: Sequence[Number] | None = None,
     ) -> Part:
-        """Keeps an axis of one part at right angles to an axis of another, or of space.
+        """Keeps an axis of one part at right angles to an axis of another part or of space.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is held.
-        to: What holds it: another marker or a point in space; left out, the point where the marker starts.
-        axis_to: The axis of `to` in space at the start; it turns with it. Left out on a cable, which has only its own
-            direction.
-        axis: The axis of `marker` in space at the start; it turns with it. Left out on a cable.
+        to: The other marker, or a point in space. Default: the point where `marker` starts.
+        axis_to: Axis of `to` in space at the start; it turns with `to`. Leave it out on a cable: there the axis is
+            the tangent.
+        axis: Axis of `marker` in space at the start; it turns with `marker`. Leave it out on a cable.
         """
         return self._add("constraints", "perpendicular", {
             "name": name,
@@ -546,12 +575,12 @@ class Parts:
         axis: Sequence[Number],
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """Keeps a point on a straight line through another part, or through space.
+        """Keeps a point on a straight line that is fixed to another part or in space.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is held.
-        axis: The direction of the line in space at the start; it turns with `to`.
-        to: What holds it: another marker or a point in space; left out, the point where the marker starts.
+        axis: Direction of the line in space at the start. The line turns with `to`.
+        to: The other marker, or a point in space. Default: the point where `marker` starts.
         """
         return self._add("constraints", "point_on_line", {
             "name": name,
@@ -568,12 +597,12 @@ class Parts:
         axis: Sequence[Number],
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """Keeps a point in a plane of another part, or of space.
+        """Keeps a point in a plane that is fixed to another part or in space.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is held.
-        axis: The normal of the plane in space at the start; it turns with `to`.
-        to: What holds it: another marker or a point in space; left out, the point where the marker starts.
+        axis: Normal of the plane in space at the start. The plane turns with `to`.
+        to: The other marker, or a point in space. Default: the point where `marker` starts.
         """
         return self._add("constraints", "point_on_plane", {
             "name": name,
@@ -590,12 +619,12 @@ class Parts:
         axis: Sequence[Number],
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """Lets a body slide along an axis of another part, or of space, without turning.
+        """Lets a body slide along an axis of another part or of space. It can't turn.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is held.
-        axis: The axis in space at the start; it turns with the parts.
-        to: What holds it: another marker or a point in space; left out, the point where the marker starts.
+        axis: Direction of the axis in space at the start. The axis turns with the parts.
+        to: The other marker, or a point in space. Default: the point where `marker` starts.
         """
         return self._add("constraints", "prismatic", {
             "name": name,
@@ -612,13 +641,13 @@ class Parts:
         axis: Sequence[Number],
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """A hinge: holds two points together and leaves only the rotation about an axis. The end of a cable swings in
-        the plane normal to it.
+        """A hinge: holds two points together; only the rotation about an axis is free. The end of a cable swings in the
+        plane normal to the axis.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is held.
-        axis: The axis in space at the start; it turns with the parts.
-        to: What holds it: another marker or a point in space; left out, the point where the marker starts.
+        axis: Direction of the axis in space at the start. The axis turns with the parts.
+        to: The other marker, or a point in space. Default: the point where `marker` starts.
         """
         return self._add("constraints", "revolute", {
             "name": name,
@@ -636,14 +665,13 @@ class Parts:
         motion: str,
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """Drives an angle: the rotation of a part against another, about a common axis. Put it beside a `revolute`
-        joint.
+        """Drives the angle between two parts about a common axis. Use it together with a `revolute` joint.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is driven, on a rigid body or a cable.
-        axis: The axis in space at the start.
+        axis: Direction of the axis in space at the start.
         motion: Name of the motion, whose x component is the angle [rad].
-        to: The marker that it is driven against, on a rigid body; left out, space.
+        to: The other marker, on a rigid body. Default: space.
         """
         return self._add("constraints", "rotation", {
             "name": name,
@@ -662,13 +690,13 @@ class Parts:
         motion: str,
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """Drives a length: the place of a marker along an axis of another.
+        """Drives the displacement of a marker along an axis of another.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is driven.
-        axis: The axis in space at the start; it turns with `to`.
+        axis: Direction of the axis in space at the start. The axis turns with `to`.
         motion: Name of the motion, whose x component is the displacement along the axis.
-        to: The marker that it is driven against; left out, the point where it starts.
+        to: The other marker. Default: the point where `marker` starts.
         """
         return self._add("constraints", "slide", {
             "name": name,
@@ -685,11 +713,11 @@ class Parts:
         marker: Union[Sequence[Number], str],
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """Holds two points together: of two parts, or of a part and space. Leaves every rotation free.
+        """Holds two points together, of two parts or of a part and space. All rotations are free.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is held.
-        to: What holds it: another marker or a point in space; left out, the point where the marker starts.
+        to: The other marker, or a point in space. Default: the point where `marker` starts.
         """
         return self._add("constraints", "spherical", {
             "name": name,
@@ -706,14 +734,15 @@ class Parts:
         axis_to: Sequence[Number] | None = None,
         axis: Sequence[Number] | None = None,
     ) -> Part:
-        """A universal joint: holds two points together, and an axis of one part at right angles to an axis of the other.
+        """A universal joint: holds two points together, and keeps an axis of one part at right angles to an axis of the
+        other.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is held.
-        to: What holds it: another marker or a point in space; left out, the point where the marker starts.
-        axis_to: The axis of `to` in space at the start; it turns with it. Left out on a cable, which has only its own
-            direction.
-        axis: The axis of `marker` in space at the start; it turns with it. Left out on a cable.
+        to: The other marker, or a point in space. Default: the point where `marker` starts.
+        axis_to: Axis of `to` in space at the start; it turns with `to`. Leave it out on a cable: there the axis is
+            the tangent.
+        axis: Axis of `marker` in space at the start; it turns with `marker`. Leave it out on a cable.
         """
         return self._add("constraints", "universal", {
             "name": name,
@@ -730,12 +759,12 @@ class Parts:
         marker: Union[Sequence[Number], str],
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """Joins two parts rigidly, as they stand at the start. The direction of a cable's end is held; its stretch stays
+        """Joins two parts rigidly, as they stand at the start. Of a cable, point and tangent are held; the stretch stays
         free.
 
-        name: Name, by which records ask for its reaction.
+        name: Name; records of the reaction refer to it.
         marker: The marker that is held.
-        to: What holds it: another marker or a point in space; left out, the point where the marker starts.
+        to: The other marker, or a point in space. Default: the point where `marker` starts.
         """
         return self._add("constraints", "weld", {
             "name": name,
@@ -752,57 +781,55 @@ class Parts:
         start: Number | None = None,
         ramp: Number | None = None,
         stop: Number | None = None,
-        total: Number | None = None,
+        payout: Number | None = None,
         final_length: Number | None = None,
         motion: str | None = None,
         tension: Number | None = None,
         brake: Number | None = None,
-        slip: Number | None = None,
+        slip_speed: Number | None = None,
         damping: Number | None = None,
         per_speed2: Number | None = None,
-        pace: str | None = None,
+        reference_speed: str | None = None,
         inertia: Number | None = None,
         pile: Boolean | None = None,
-        stock: Number | None = None,
+        stored_length: Number | None = None,
         shortest: Number | None = None,
-        element: Number | None = None,
-        release: Number | None = None,
+        element_length: Number | None = None,
+        fade: Number | None = None,
     ) -> Part:
-        """Feeds out and reels in cable at one of its ends: the cable's length changes, with the right mass, momentum and
-        drag.
+        """Pays out or reels in cable at one end. Mass, momentum and drag follow the changing length.
 
-        Where that end is in space is told by another constraint, such as `spherical` or `driving`. Prescribe the
-        speed by `speed` or by `motion`; or leave the end free and give what holds it back: `tension`, `brake`,
-        `damping`, `inertia`. A winch whose `speed` is 0 is no winch: the cable is as it would be without.
+        Position that end with another constraint, such as `spherical` or `driving`. Prescribe the payout rate with
+        `speed` or `motion`, or leave it free and give the resistance: `tension`, `brake`, `damping`, `inertia`. With
+        `speed = 0` the winch has no effect.
 
-        name: Name, by which records and events refer to it.
+        name: Name; records and events refer to it.
         marker: The end of the cable: `hose.start` or `hose.end`.
-        speed: Speed at which it feeds out after the ramp [m/s]; negative reels in. Where `final_length` says which of
-            the two it is, it may be positive for both.
-        start: Time at which it starts [s]. Default 0.0.
-        ramp: Time in which the speed rises, and falls at the stop [s]. Default 1.0.
-        stop: Time at which it begins to slow down again [s]; left out, it goes on.
-        total: Length that it feeds out in all before it stops [m], with the sign of the speed, instead of `stop`.
-        final_length: Length of the cable at which it stops [m], instead of `stop` and `total`.
-        motion: Name of a motion whose x component is the length fed out, instead of `speed`.
-        tension: Tension that holds the end back where the speed isn't prescribed [N].
-        brake: Dry friction of a brake [N]. Default 0.0.
-        slip: Speed below which the brake creeps instead of sticking [m/s]. Default 0.001.
-        damping: Resistance per speed [N s/m]. Default 0.0.
-        per_speed2: Tension by the square of the speed, besides `tension` [kg/m]: what is measured at an eyelet often
-            goes by it. Default 0.0.
-        pace: Name of a motion along x whose speed `per_speed2` goes by; left out, the speed at which the cable runs
-            here. A tension that draws, and grows with the speed to which it draws, drives itself: then name the
-            motion that is meant.
-        inertia: Inertia of the drum over the square of its radius [kg]. Default 0.0.
-        pile: Whether cable is picked up from a pile at rest, and not from a drum that turns with it. Default False.
-        stock: Length on the spool at the start [m]: once it is fed out, the run ends. Left out, there is always more.
-        shortest: Shortest length that the cable is reeled in to [m], where the run ends; left out, a twentieth of its
-            length at the start, or two elements.
-        element: Length of elements [m] that are born and swallowed at this end; left out, all elements of the cable
-            grow and shrink together, which is smoother and does for a change of length up to ten times or so.
-        release: Time in which the strain fades that keeps the tension from jumping when an element is born or
-            swallowed [s]. Default 0.1.
+        speed: Payout rate after the ramp [m/s]; negative reels in. With `final_length` the sign may be left positive.
+        start: Start time [s]. Default 0.0.
+        ramp: Time in which the speed rises, and falls again at the stop [s]. Default 1.0.
+        stop: Time at which the speed begins to fall again [s]. Default: never.
+        payout: Length paid out when it stops [m], with the sign of the speed, instead of `stop`.
+        final_length: Length of the cable when it stops [m], instead of `stop` and `payout`.
+        motion: Name of a motion whose x component is the payout length, instead of `speed`.
+        tension: Constant tension of the winch [N], if the speed isn't prescribed.
+        brake: Dry friction of the brake [N]. Default 0.0.
+        slip_speed: Slip speed of the brake [m/s]: below it the brake creeps instead of sticking. Default 0.001.
+        damping: Linear damping: tension per payout rate [N s/m]. Default 0.0.
+        per_speed2: Tension per speed squared, added to `tension` [kg/m]. Measurements at eyelets often follow this
+            law. Default 0.0.
+        reference_speed: Name of a motion whose speed along x `per_speed2` refers to. Default: the payout rate here. A
+            tension that draws the cable and grows with its speed is unstable: then name a motion.
+        inertia: Moment of inertia of the drum over its radius squared [kg]. Default 0.0.
+        pile: Whether the cable comes from a pile at rest instead of a turning drum. Default False.
+        stored_length: Length stored on the spool at the start [m]. The run ends when it is paid out. Default:
+            unlimited.
+        shortest: Shortest length of the cable [m]; the run ends there. Default: 5 % of the initial length, at least
+            two elements.
+        element_length: Length of the elements that are added and removed at this end [m]. Default: all elements grow
+            and shrink together. Smoother; suits length changes up to about tenfold.
+        fade: Fade time [s] of the strain that keeps the tension continuous when an element is added or removed.
+            Default 0.1.
         """
         return self._add("constraints", "winch", {
             "name": name,
@@ -811,21 +838,21 @@ class Parts:
             "start": start,
             "ramp": ramp,
             "stop": stop,
-            "total": total,
+            "payout": payout,
             "final_length": final_length,
             "motion": motion,
             "tension": tension,
             "brake": brake,
-            "slip": slip,
+            "slip_speed": slip_speed,
             "damping": damping,
             "per_speed2": per_speed2,
-            "pace": pace,
+            "reference_speed": reference_speed,
             "inertia": inertia,
             "pile": pile,
-            "stock": stock,
+            "stored_length": stored_length,
             "shortest": shortest,
-            "element": element,
-            "release": release,
+            "element_length": element_length,
+            "fade": fade,
         })
 
     def added_mass(
@@ -836,17 +863,17 @@ class Parts:
         tail: Number | None = None,
         on: Sequence[str] | None = None,
     ) -> Part:
-        """Water that a cable or a hull pushes aside: its inertia, and what it does in flow along the body.
+        """Added mass of cables and hulls: inertia of the water, and its forces in flow along the body.
 
-        It has the kinetic energy of the water, so a hull at an angle to the flow is turned (Munk's moment), and flow
-        along a cable acts like compression and can make it flutter. `theory = "morison"` leaves inertia alone, for
-        comparison with codes that have only that.
+        It follows from the kinetic energy of the water: a hull at an angle to the flow has Munk's moment, and flow
+        along a cable acts like compression and can cause flutter. `theory = "morison"` keeps the inertia only, for
+        comparison with codes that have no more.
 
-        ca: Coefficient: mass over that of the water in a circle of the hydrodynamic diameter. Default 1.0.
-        theory: `energy` or `morison`; left out, `energy`.
-        tail: Share of its momentum that the water gives back at the free ends of cables: 0 for ends that are cut off,
-            about 0.8 for ends that taper, 1 for a perfect tail. Default 0.0.
-        on: Parts that it acts on; left out, all.
+        ca: Coefficient: added mass over the mass of water in a cylinder of the hydrodynamic diameter. Default 1.0.
+        theory: `energy` or `morison`. Default: `energy`.
+        tail: Fraction of its momentum that the water returns at free ends of cables: 0 for cut ends, about 0.8 for
+            tapered ends, 1 for an ideal tail. Default 0.0.
+        on: Parts it acts on. Default: all.
         """
         return self._add("forces", "added_mass", {
             "ca": ca,
@@ -860,11 +887,11 @@ class Parts:
         *,
         on: Sequence[str] | None = None,
     ) -> Part:
-        """Buoyancy of the displaced volume: of all of it, or, where the water has a `level`, of what is under water.
+        """Buoyancy of the displaced volume; if the water has a `level`, of the volume under water.
 
-        Cables, hulls and chains are cylinders there, other bodies and point masses balls.
+        At the surface, cables, hulls and chains are cylinders; other bodies and point masses are spheres.
 
-        on: Parts that it lifts; left out, all.
+        on: Parts it acts on. Default: all.
         """
         return self._add("forces", "buoyancy", {
             "on": on,
@@ -883,16 +910,15 @@ class Parts:
         rotational_stiffness: Sequence[Number] | None = None,
         rotational_damping: Sequence[Number] | None = None,
     ) -> Part:
-        """A spring and damper in all directions between two rigid bodies, or one and space: a rubber mount, a soft
-        joint. Without force as the bodies stand at the start; rotations count up to half a turn.
+        """A spring and damper in all six directions between two rigid bodies, or a body and space: a rubber mount, a
+        soft joint. There is no force in the initial position. Rotations up to half a turn are valid.
 
         name: Name.
         marker: The marker that is held.
-        to: What holds it, whose axes the numbers belong to: a marker on a rigid body, or a point in space; left out,
-            the point where the marker starts.
-        axis_x: Direction in space at the start of the first of these axes; left out, with `axis_y`, the axes of
-            space.
-        axis_y: Direction in space at the start of the second, at right angles to the first.
+        to: The other marker, on a rigid body, or a point in space; its axes are those of the stiffnesses. Default:
+            the point where `marker` starts.
+        axis_x: Direction of the first axis in space at the start. Default, with `axis_y`: the axes of space.
+        axis_y: Direction of the second axis in space at the start, at right angles to the first.
         stiffness: Stiffness along each axis [N/m]. Default [0.0, 0.0, 0.0].
         damping: Damping along each axis [N s/m]. Default [0.0, 0.0, 0.0].
         rotational_stiffness: Stiffness about each axis [N m/rad]. Default [0.0, 0.0, 0.0].
@@ -916,7 +942,7 @@ class Parts:
         name: str,
         shape: Mapping[str, Any],
         on: Sequence[str] | None = None,
-        at: Sequence[Union[Sequence[Number], str]] | None = None,
+        points: Sequence[Union[Sequence[Number], str]] | None = None,
         marker: Union[Sequence[Number], str] | None = None,
         radius: Number | None = None,
         stiffness: Number | None = None,
@@ -927,36 +953,38 @@ class Parts:
         friction: Union[Mapping[str, Any], Number] | None = None,
         overlap: Literal['allow', 'refuse'] | None = None,
     ) -> Part:
-        """Contact of cables and bodies with a shape on the ground or on a rigid body, which feels the opposite force.
+        """Contact of cables and bodies with a shape, on the ground or on a rigid body. The body of the shape feels the
+        opposite force.
 
-        Cables, links and bodies with a hull touch all along, wherever the shape is nearer than their radius, point
-        masses and single points of bodies by a ball of the `radius` given. A record of type `force` shows the force.
+        Cables, links and bodies with a hull are in contact anywhere along their length where the shape is nearer than
+        their radius. Point masses and single points are spheres of the given `radius`. A record of type `force` shows
+        the force.
 
         name: Name.
         shape: The shape.
-        on: What touches it: cables, bodies with a hull, point masses; left out and without `at`, all of them that are
-            not the shape's own body.
-        at: Single points that touch it, such as corners of bodies, as balls of the `radius`.
-        marker: Where the shape is: a point in space, or a marker on a rigid body that it is part of; left out, the
+        on: Parts in contact with the shape: cables, bodies with a hull, point masses. Default, without `points`: all
+            except the shape's own body.
+        points: Single points in contact, such as corners of bodies: markers, each a sphere of the `radius`.
+        marker: Position of the shape: a point in space, or a marker on the rigid body that carries it. Default: the
             origin. Default [0.0, 0.0, 0.0].
-        radius: Radius of what touches [m]; left out, half of the diameter of the cable or hull.
-        stiffness: Stiffness of a ball that stands for a whole point mass or point [N/m]; with an exponent `p` other
-            than 1, that at a depth of 1 m. Default 0.0.
-        stiffness_per_length: Stiffness per length of cables and hulls [N/m²]; with an exponent other than 1, that at
-            a depth of 1 m. Default 0.0.
-        end_stiffness: Stiffness of the tips of cables and hulls, in addition [N/m]; with an exponent other than 1,
-            that at a depth of 1 m. Left out, that of a length as long as they are thick; 0 without.
+        radius: Contact radius of the parts [m]. Default: half of the diameter of the cable or hull.
+        stiffness: Contact stiffness of a point mass or point [N/m]; with an exponent `p` other than 1, at a depth of
+            1 m. Default 0.0.
+        stiffness_per_length: Contact stiffness per length of cables and hulls [N/m²]; with an exponent other than 1,
+            at a depth of 1 m. Default 0.0.
+        end_stiffness: Additional contact stiffness of the tips of cables and hulls [N/m]; with an exponent other than
+            1, at a depth of 1 m. Default: that of a piece as long as its diameter.
         exponent: Exponent `p` of the elastic force `k d^p`. Default 1.0.
-        damping: What it loses along the normal. Default none.
-        friction: Dry friction: a coefficient, or `{ mu, across, elastic_slip }`. Equilibria are found without it:
-            those with it are many.
-        overlap: What is done about points that start deep in the shape. Default refuse.
+        damping: Damping law along the normal. Default none.
+        friction: Dry friction: a coefficient, or `{ mu, across, elastic_slip }`. Equilibria are computed without it,
+            since with friction they are not unique.
+        overlap: What to do with points that start deep in the shape. Default refuse.
         """
         return self._add("forces", "contact", {
             "name": name,
             "shape": shape,
             "on": on,
-            "at": at,
+            "points": points,
             "marker": marker,
             "radius": radius,
             "stiffness": stiffness,
@@ -980,19 +1008,18 @@ class Parts:
         blend: Number | None = None,
         on: Sequence[str] | None = None,
     ) -> Part:
-        """Drag of the water, and of the air if the scene has some, on cables and hulls, across and along, each by its
-        own law.
+        """Drag of water (and air, if the scene has it) on cables and hulls, with one law across and one along.
 
         normal: Law across the cable. Default constant.
         tangential: Law along the cable. Default constant.
         cn: Coefficient across, for the constant law, on the diameter. Default 1.2.
         ct: Coefficient along, for the constant law, on the circumference. Default 0.01.
-        end: Form drag of each free end of cables, hulls and chains in flow along it: coefficient on the area of its
-            face. Left out, none; both ends of a long blunt cylinder have about 0.8 together. Default 0.0.
-        stretched: Whether drag is per stretched length instead of unstretched. Default False.
-        blend: Relative width in Reynolds number over which the branches of Choo and Casarella are blended; left out,
-            they jump as published.
-        on: Cables that it acts on; left out, all.
+        end: Form drag of each free end of cables, hulls and chains: coefficient on the area of the end face. Both
+            ends of a long blunt cylinder have about 0.8 together. Default 0.0.
+        stretched: Whether drag acts per stretched length instead of unstretched length. Default False.
+        blend: Relative width in Reynolds number over which the branches of Choo and Casarella are blended. Default:
+            they jump, as published.
+        on: Cables it acts on. Default: all.
         """
         return self._add("forces", "drag", {
             "normal": normal,
@@ -1010,9 +1037,9 @@ class Parts:
         *,
         on: Sequence[str] | None = None,
     ) -> Part:
-        """Weight: the scene's `gravity` pulls at the structural mass of every part.
+        """Weight: the scene's `gravity` acts on the structural mass of every part.
 
-        on: Parts that it pulls at; left out, all.
+        on: Parts it acts on. Default: all.
         """
         return self._add("forces", "gravity", {
             "on": on,
@@ -1022,9 +1049,9 @@ class Parts:
         self,
         *,
         name: str,
-        of: Sequence[str],
+        on: Sequence[str],
         stiffness: Number,
-        hold: Number,
+        force: Number,
         to: Union[Sequence[Number], str] | None = None,
         damping: Number | None = None,
         direction: Sequence[Number] | None = None,
@@ -1032,30 +1059,31 @@ class Parts:
         floor: Mapping[str, Any] | None = None,
         stop: Boolean | None = None,
     ) -> Part:
-        """Holds points where they start by a spring and damper each, until the pull on one reaches a limit: then it lets
-        go for good. Each release is located in time and reported.
+        """Holds points at their initial positions, each by a spring and damper, until the force on one reaches a limit:
+        that point is then released permanently. Each release is located in time and reported.
 
-        A hose on its spool, a cable tied up with tape, a load that is dropped. Records: `released` counts.
+        Use it for a hose on its spool, a cable tied with tape, a load that is dropped. The record `released` counts
+        the releases.
 
-        name: Name, by which releases are reported.
-        of: What is held: parts, of which every node or link is held, and single markers.
+        name: Name; the reports of releases use it.
+        on: What it holds: parts (every node or link of them) and single markers.
         stiffness: Stiffness of a seat [N/m].
-        hold: Force of a seat at which it lets go [N].
-        to: Where the seats are: on this rigid body, as it stands at the start; left out, fixed in space.
+        force: Force of a seat at which the point is released [N].
+        to: Marker on the rigid body that carries the seats. Default: fixed in space.
         damping: Damping of a seat [N s/m]. Default 0.0.
-        direction: Direction in space: only the pull in it counts; left out, the magnitude of the force.
-        fade: Time in which the force fades after the release [s]. Default 0.001.
-        floor: A plane, fixed in space, behind which released points are pushed back.
+        direction: Direction in space; only the component along it counts. Default: the magnitude of the force.
+        fade: Fade time of the force after a release [s]. Default 0.001.
+        floor: A plane fixed in space that pushes released points back.
             point: A point of the plane [m]. Required.
             normal: Its normal, on the side where points may be. Required.
-            stiffness: Force by depth [N/m]. Required.
-        stop: Whether the run ends once the last one has let go. Default False.
+            stiffness: Contact stiffness [N/m]. Required.
+        stop: Whether the run ends when the last point is released. Default False.
         """
         return self._add("forces", "latch", {
             "name": name,
-            "of": of,
+            "on": on,
             "stiffness": stiffness,
-            "hold": hold,
+            "force": force,
             "to": to,
             "damping": damping,
             "direction": direction,
@@ -1072,12 +1100,12 @@ class Parts:
         time: Union[Literal['constant'], Mapping[str, Any]] | None = None,
         on: Sequence[str] | None = None,
     ) -> Part:
-        """A force per length in a constant direction.
+        """A distributed force in a constant direction.
 
         force: Force per length [N/m].
-        stretched: Whether it is per stretched length instead of unstretched. Default False.
-        time: Factor that changes with time. Default constant.
-        on: Cables that it acts on; left out, all.
+        stretched: Whether it acts per stretched length instead of unstretched length. Default False.
+        time: Factor as a function of time. Default constant.
+        on: Cables it acts on. Default: all.
         """
         return self._add("forces", "line_load", {
             "force": force,
@@ -1097,11 +1125,11 @@ class Parts:
     ) -> Part:
         """A force at a marker: in a constant direction, in the axes of a rigid body, or along a cable.
 
-        marker: Where it acts.
+        marker: The marker on which it acts.
         force: Force in space [N]. Default [0.0, 0.0, 0.0].
-        local: Whether `force` is in the axes of the rigid body that it acts on, and turns with it. Default False.
-        follower: Instead: force along the cable at the marker, towards its end [N]. It turns with the cable.
-        time: Factor that changes with time. Default constant.
+        local: Whether `force` is given in the axes of the rigid body and turns with it. Default False.
+        follower: Follower force along the cable, towards its end [N], instead of `force`. It turns with the cable.
+        time: Factor as a function of time. Default constant.
         """
         return self._add("forces", "point_force", {
             "marker": marker,
@@ -1119,13 +1147,13 @@ class Parts:
         local: Boolean | None = None,
         time: Union[Literal['constant'], Mapping[str, Any]] | None = None,
     ) -> Part:
-        """A moment on a rigid body or at a marker on a cable, with an axis fixed in space or, on a body, in its axes.
-        Its part along a cable is lost: a cable doesn't know twist.
+        """A moment on a rigid body or a cable, in space or in the axes of the body. A component along a cable has no
+        effect: cables have no torsion.
 
-        marker: Where it acts.
+        marker: The marker on which it acts.
         moment: Moment [N m].
-        local: Whether it is in the axes of the rigid body that it acts on, and turns with it. Default False.
-        time: Factor that changes with time. Default constant.
+        local: Whether `moment` is given in the axes of the rigid body and turns with it. Default False.
+        time: Factor as a function of time. Default constant.
         """
         return self._add("forces", "point_moment", {
             "marker": marker,
@@ -1145,16 +1173,16 @@ class Parts:
         damping: Number | None = None,
         angle: Number | None = None,
     ) -> Part:
-        """A torsion spring and damper about an axis, beside a `revolute` joint; angles count up to half a turn from the
-        one without moment.
+        """A torsion spring and damper about an axis, used with a `revolute` joint. Angles up to half a turn from the
+        stress-free angle are valid.
 
         name: Name.
-        marker: The marker on the body that is turned.
-        axis: The axis in space at the start.
-        to: The body that it is turned against; left out, space.
+        marker: The marker, on a rigid body.
+        axis: Direction of the axis in space at the start.
+        to: The other marker, on a rigid body. Default: space.
         stiffness: Stiffness [N m/rad]. Default 0.0.
         damping: Damping [N m s/rad]. Default 0.0.
-        angle: Angle without moment, from where the bodies stand at the start [rad]. Default 0.0.
+        angle: Angle without moment, from the initial position [rad]. Default 0.0.
         """
         return self._add("forces", "rotational_spring", {
             "name": name,
@@ -1184,8 +1212,8 @@ class Parts:
         to: The other end: a marker or a point in space.
         stiffness: Stiffness [N/m].
         damping: Damping [N s/m]. Default 0.0.
-        length: Length without force [m]; left out, that at the start.
-        tension_only: Whether it pulls only. Default False.
+        length: Length without force [m]. Default: the initial length.
+        tension_only: Whether it can only pull. Default False.
         """
         return self._add("forces", "spring", {
             "name": name,
@@ -1208,14 +1236,14 @@ class Parts:
         start: Number | None = None,
         ramp: Number | None = None,
     ) -> Part:
-        """Rests, then runs on a circle from the first moment; the speed rises smoothly.
+        """At rest, then on a circle from the first moment; the speed rises smoothly.
 
-        name: Name, by which constraints refer to it.
+        name: Name; constraints refer to it.
         speed: Speed after the ramp [m/s].
         radius: Radius of the circle [m].
         heading: Direction of travel at the start, horizontal. Default [1.0, 0.0, 0.0].
-        towards: Which way it turns. Default port.
-        start: Time at which it starts [s]. Default 0.0.
+        towards: Side to which it turns. Default port.
+        start: Start time [s]. Default 0.0.
         ramp: Time in which the speed rises [s]. Default 5.0.
         """
         return self._add("motions", "circle", {
@@ -1238,15 +1266,15 @@ class Parts:
         start: Number | None = None,
         ramp: Number | None = None,
     ) -> Part:
-        """Goes to and fro.
+        """Oscillates harmonically.
 
-        name: Name, by which constraints refer to it.
+        name: Name; constraints refer to it.
         amplitude: Amplitude [m].
         frequency: Frequency [Hz].
         phase: Phase [rad]. Default 0.0.
-        start: Time at which it starts [s]. Default 0.0.
-        ramp: Time in which the amplitude rises [s]; 0 for what swings from the first moment on and starts with that
-            velocity. Default 5.0.
+        start: Start time [s]. Default 0.0.
+        ramp: Time in which the amplitude rises [s]; with 0 it oscillates from the first moment on and starts with
+            that velocity. Default 5.0.
         """
         return self._add("motions", "harmonic", {
             "name": name,
@@ -1262,9 +1290,9 @@ class Parts:
         *,
         name: str,
     ) -> Part:
-        """Stays where it is.
+        """At rest.
 
-        name: Name, by which constraints refer to it.
+        name: Name; constraints refer to it.
         """
         return self._add("motions", "rest", {
             "name": name,
@@ -1280,19 +1308,19 @@ class Parts:
         v: Sequence[Number] | None = None,
         join: Literal['cubic', 'linear', 'monotone'] | None = None,
     ) -> Part:
-        """Runs straight ahead with the speeds of a table, in the scene or in a CSV file: a measured launch, the course
-        of a winch.
+        """Straight ahead with the speeds of a table, in the scene or in a CSV file: a measured launch, the speed of a
+        winch.
 
-        The speed goes straight from row to row, so that the way is the area under the table: 1 m from 0 to 1 m/s in 2
-        s. The acceleration jumps at the rows, where steps end; `join = "monotone"` rounds the speed off.
+        The speed is piecewise linear, so the distance is the area under the table: 1 m from 0 to 1 m/s in 2 s. The
+        acceleration jumps at the rows, and steps end there; `join = "monotone"` smooths the speed.
 
-        name: Name, by which constraints refer to it.
+        name: Name; constraints refer to it.
         direction: Direction of travel. Default [1.0, 0.0, 0.0].
         file: A CSV file, its path as seen from the scene file. Its first line names the columns, `t` and `v`, with
             their units in brackets (`t [s],v [kn]`) or without in s and m/s; other columns are left alone.
         t: Times [s], ascending, instead of a file; the run must not go beyond the last.
         v: Speeds at these times [m/s].
-        join: How the speeds are joined. Default linear.
+        join: Interpolation of the speeds. Default linear.
         """
         return self._add("motions", "speed_table", {
             "name": name,
@@ -1312,14 +1340,14 @@ class Parts:
         ramp: Number | None = None,
         rise: Literal['cycloidal', 'quintic'] | None = None,
     ) -> Part:
-        """An angle for the constraint `rotation`: rests, then turns at a steady rate, which rises smoothly.
+        """An angle for the constraint `rotation`: at rest, then at a constant rate, which rises smoothly.
 
-        name: Name, by which constraints refer to it.
+        name: Name; constraints refer to it.
         rate: Rate after the ramp [rad/s].
-        start: Time at which it starts [s]. Default 0.0.
-        ramp: Time in which the rate rises [s]; 0 for what turns from the first moment on and starts with that
+        start: Start time [s]. Default 0.0.
+        ramp: Time in which the rate rises [s]; with 0 it turns from the first moment on and starts with that
             velocity. Default 1.0.
-        rise: How it rises meanwhile. Default quintic.
+        rise: Shape of the rise. Default quintic.
         """
         return self._add("motions", "spin", {
             "name": name,
@@ -1338,12 +1366,12 @@ class Parts:
         start: Number | None = None,
         ramp: Number | None = None,
     ) -> Part:
-        """Rests, then runs straight ahead; the speed rises smoothly.
+        """At rest, then straight ahead; the speed rises smoothly.
 
-        name: Name, by which constraints refer to it.
+        name: Name; constraints refer to it.
         speed: Speed after the ramp [m/s].
         direction: Direction of travel. Default [1.0, 0.0, 0.0].
-        start: Time at which it starts [s]. Default 0.0.
+        start: Start time [s]. Default 0.0.
         ramp: Time in which the speed rises [s]. Default 5.0.
         """
         return self._add("motions", "straight", {
@@ -1358,16 +1386,17 @@ class Parts:
         self,
         *,
         name: str,
-        of: Sequence[str],
+        motions: Sequence[str],
     ) -> Part:
-        """Adds motions up: displacements, velocities and accelerations. The parts may be of any type, a sum as well.
+        """The sum of motions: displacements, velocities and accelerations add. The motions may be of any type, also
+        sums.
 
-        name: Name, by which constraints refer to it.
-        of: Names of the motions that it is the sum of: `of = ["surge", "heave"]`.
+        name: Name; constraints refer to it.
+        motions: Names of the motions to add: `motions = ["surge", "heave"]`.
         """
         return self._add("motions", "sum", {
             "name": name,
-            "of": of,
+            "motions": motions,
         })
 
     def swing(
@@ -1380,15 +1409,15 @@ class Parts:
         start: Number | None = None,
         ramp: Number | None = None,
     ) -> Part:
-        """An angle for the constraint `rotation` that goes to and fro, faded in smoothly.
+        """An oscillating angle for the constraint `rotation`; the amplitude rises smoothly.
 
-        name: Name, by which constraints refer to it.
+        name: Name; constraints refer to it.
         amplitude: Amplitude [rad].
         frequency: Frequency [Hz].
         phase: Phase [rad]. Default 0.0.
-        start: Time at which it starts [s]. Default 0.0.
-        ramp: Time in which the amplitude rises [s]; 0 for what swings from the first moment on and starts with that
-            velocity. Default 5.0.
+        start: Start time [s]. Default 0.0.
+        ramp: Time in which the amplitude rises [s]; with 0 it oscillates from the first moment on and starts with
+            that velocity. Default 5.0.
         """
         return self._add("motions", "swing", {
             "name": name,
@@ -1415,23 +1444,22 @@ class Parts:
         """Follows a table of displacements, in the scene or in a CSV file, or a table of angles for the constraint
         `rotation`.
 
-        Between the rows it never overshoots. Its acceleration jumps there, unless `join = "cubic"`, which is the
-        better choice for records of smooth motions with many rows, such as the heave of a ship. A table of speeds is
-        a `speed_table`.
+        Between rows it never overshoots. The acceleration jumps at the rows, unless `join = "cubic"`: choose that for
+        smooth records with many rows, such as the heave of a ship. For a table of speeds use `speed_table`.
 
-        name: Name, by which constraints refer to it.
+        name: Name; constraints refer to it.
         file: A CSV file, its path as seen from the scene file. Its first line names the columns, `t` and any of `x`,
             `y`, `z`, or `angle`, with their units in brackets (`t [s],z [cm]`, `t [s],angle [deg]`) or without in s,
             m and rad; other columns are left alone.
         t: Times [s], ascending, instead of a file; the run must not go beyond the last.
-        x: Displacements along x at these times [m]; left out, none.
+        x: Displacements along x at these times [m]. Default: none.
         y: Displacements along y [m].
         z: Displacements along z [m].
         angle: Angles at these times, instead of displacements, for the constraint `rotation` [rad]. Degrees are
             written with their unit: `"90 deg"`.
-        join: How the rows are joined. By straight lines only where all lie on one: the velocity would jump. Default
-            monotone.
-        ends: What it does at its ends. Default natural.
+        join: Interpolation between the rows. `linear` is accepted only if all rows lie on one line, since the
+            velocity would jump. Default monotone.
+        ends: Condition at its ends. Default natural.
         """
         return self._add("motions", "table", {
             "name": name,
@@ -1458,16 +1486,16 @@ class Parts:
         turn_start: Number | None = None,
         turn_ramp: Number | None = None,
     ) -> Part:
-        """Runs straight and then turns: speed and, later, yaw rate rise smoothly.
+        """Straight ahead, then a turn: the speed and, later, the yaw rate rise smoothly.
 
-        name: Name, by which constraints refer to it.
+        name: Name; constraints refer to it.
         speed: Speed after the ramp [m/s].
         radius: Radius of the final circle [m].
         heading: Direction of travel at the start, horizontal. Default [1.0, 0.0, 0.0].
-        towards: Which way it turns. Default port.
-        start: Time at which it starts to run [s]. Default 0.0.
+        towards: Side to which it turns. Default port.
+        start: Start time [s]. Default 0.0.
         ramp: Time in which the speed rises [s]. Default 5.0.
-        turn_start: Time at which it starts to turn [s]; left out, when it starts to run.
+        turn_start: Time at which the turn starts [s]. Default: `start`.
         turn_ramp: Time in which the yaw rate rises from 0 to speed over radius [s]. Default 5.0.
         """
         return self._add("motions", "turn", {
@@ -1491,12 +1519,12 @@ class Parts:
     ) -> Part:
         """Acceleration of a point: columns `hose.end.ax`, `.ay` and `.az` in m/s².
 
-        It is the one that fits positions and velocities by the equations of motion, less noisy than the integrator's
-        own.
+        It satisfies the equations of motion at the given positions and velocities, and is less noisy than the
+        integrator's own.
 
-        of: The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
-        name: Name in results; left out, that of the point and `.acceleration`.
-        title: Title of its pictures; left out, what it is.
+        of: The point: a marker like `hose.end`, or an arc length like `hose@12.5m`.
+        name: Name in results. Default: that of the point and `.acceleration`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "acceleration", {
             "of": of,
@@ -1516,11 +1544,11 @@ class Parts:
         """Tension, strain, curvature or bending moment of a cable at one place: column `hose.end.tension`.
 
         of: The cable.
-        what: What is recorded: tension [N], strain, curvature [1/m] or moment [N m].
+        what: Recorded quantity: tension [N], strain, curvature [1/m] or moment [N m].
         at: Where: `start`, `end`, an unstretched arc length from the start as it is now [m], or a share of the length
             like `50 %`.
-        name: Name in results; left out, cable, place and quantity.
-        title: Title of its pictures; left out, what it is.
+        name: Name in results. Default: cable, place and quantity.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "along", {
             "of": of,
@@ -1542,14 +1570,13 @@ class Parts:
     ) -> Part:
         """Angular velocity of a rigid body: columns `crank.wx`, `.wy` and `.wz` in rad/s.
 
-        of: The body, or any point on it, such as `hose.link3`.
-        to: The body that it is relative to; left out, space. The relative angular velocity of a joint's two bodies is
-            the speed of the joint.
-        frame: The axes that it is given in: of `space`, of the `body`, or of the body `to` which it is relative.
-            Default space.
-        axes: The components that are recorded; left out, all three. Default ['x', 'y', 'z'].
-        name: Name in results; left out, that of the body and `.angular_velocity`.
-        title: Title of its pictures; left out, what it is.
+        of: The body, or a marker on it, such as `hose.link3`.
+        to: The other body. Default: space. The relative angular velocity of a joint's two bodies is the speed of the
+            joint.
+        frame: Axes of the components: of `space`, of the `body`, or of the other body, `to`. Default space.
+        axes: Recorded components. Default: all three. Default ['x', 'y', 'z'].
+        name: Name in results. Default: that of the body and `.angular_velocity`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "angular_velocity", {
             "of": of,
@@ -1575,10 +1602,10 @@ class Parts:
         empty where hardly any water flows across, at Reynolds numbers below 1.
 
         of: The cable.
-        at: Where: as for `along`; left out, at a quarter, half and three quarters of the length. Default ['25 %', '50
+        at: Where: as for `along`. Default: at a quarter, half and three quarters of the length. Default ['25 %', '50
             %', '75 %'].
-        name: Name in results; left out, that of the cable and `.cn`.
-        title: Title of its pictures; left out, what it is.
+        name: Name in results. Default: that of the cable and `.cn`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "drag_coefficient", {
             "of": of,
@@ -1595,14 +1622,14 @@ class Parts:
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """A driving constraint against the motion that it imposes: columns `ship.imposed_x` and `ship.actual_x` in m,
-        the same of velocities, `ship.imposed_vx` and `ship.actual_vx` in m/s, and `ship.difference`, the distance
-        between where the marker is and where it should be, in m.
+        """A driving constraint compared with its motion: columns `ship.imposed_x` and `ship.actual_x` in m, the same of
+        velocities, `ship.imposed_vx` and `ship.actual_vx` in m/s, and `ship.difference`, the distance between where
+        the marker is and where it should be, in m.
 
         of: Name of the driving constraint.
-        axes: The axes of space that are recorded; left out, all three. Default ['x', 'y', 'z'].
-        name: Name in results; left out, that of the constraint and `.check`.
-        title: Title of its pictures; left out, what it is.
+        axes: Recorded axes of space. Default: all three. Default ['x', 'y', 'z'].
+        name: Name in results. Default: that of the constraint and `.check`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "driving_check", {
             "of": of,
@@ -1619,33 +1646,13 @@ class Parts:
     ) -> Part:
         """Balance of energy: columns `energy.kinetic`, `.potential`, `.supplied`, `.dissipated` and `.imbalance` in J.
 
-        Work is counted from the start of the run. The imbalance is what the integration gained (positive) or, by its
-        numerical damping, lost (negative).
+        Work is counted from the start of the run. The imbalance is the energy gained by the integration (positive) or
+        lost by its numerical damping (negative).
 
-        name: Name in results; left out, `energy`.
-        title: Title of its pictures; left out, what it is.
+        name: Name in results. Default: `energy`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "energy", {
-            "name": name,
-            "title": title,
-        })
-
-    def feeding(
-        self,
-        *,
-        of: str,
-        name: str | None = None,
-        title: str | None = None,
-    ) -> Part:
-        """Feeding at an end of a cable: columns `hose.start.fed`, the length fed out in m, `.speed` in m/s, and where
-        the speed is prescribed `.pull`, what the winch pulls with in N.
-
-        of: The end of the cable: `hose.start` or `hose.end`.
-        name: Name in results; left out, that of the end.
-        title: Title of its pictures; left out, what it is.
-        """
-        return self._add("records", "feeding", {
-            "of": of,
             "name": name,
             "title": title,
         })
@@ -1656,12 +1663,12 @@ class Parts:
         of: str,
         name: str | None = None,
     ) -> Part:
-        """What a force has to show. Of a contact: columns `drum.fx`, `.fy` and `.fz`, the force of the shape on all that
+        """Output of a force. Of a contact: columns `drum.fx`, `.fy` and `.fz`, the force of the shape on all that
         touches it in N, `.normal`, the sum of what presses in N, `.depth`, the deepest point in m, and `.points`, how
         many touch. Of a spring: `mooring.tension` in N.
 
         of: Name of the force.
-        name: Name in results; left out, that of the force.
+        name: Name in results. Default: that of the force.
         """
         return self._add("records", "force", {
             "of": of,
@@ -1675,11 +1682,11 @@ class Parts:
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """Unstretched length of a cable, with what winches have fed out and reeled in: column `hose.length` in m.
+        """Unstretched length of a cable, including the payout of winches: column `hose.length` in m.
 
         of: The cable.
-        name: Name in results; left out, that of the cable and `.length`.
-        title: Title of its pictures; left out, what it is.
+        name: Name in results. Default: that of the cable and `.length`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "length", {
             "of": of,
@@ -1696,10 +1703,10 @@ class Parts:
         """Momentum of the whole scene: columns `momentum.px`, `.py`, `.pz` in kg m/s, `.lx`, `.ly`, `.lz`, the angular
         momentum about the origin, in kg m²/s, and `.x`, `.y`, `.z`, the centre of mass, in m.
 
-        Water that is carried along as added mass counts.
+        Added mass is included.
 
-        name: Name in results; left out, `momentum`.
-        title: Title of its pictures; left out, what it is.
+        name: Name in results. Default: `momentum`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "momentum", {
             "name": name,
@@ -1717,14 +1724,34 @@ class Parts:
         """Orientation of a rigid body as Bryant angles 1-2-3, turns about its x axis, its new y axis, its new z axis:
         columns `crank.phi1`, `.phi2` and `.phi3` in rad. The first and the third jump from π to -π.
 
-        of: The body, or any point on it.
-        degrees: Whether angles are in degrees. Default False.
-        name: Name in results; left out, that of the body and `.orientation`.
-        title: Title of its pictures; left out, what it is.
+        of: The body, or a marker on it.
+        degrees: Whether the angles are in degrees. Default False.
+        name: Name in results. Default: that of the body and `.orientation`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "orientation", {
             "of": of,
             "degrees": degrees,
+            "name": name,
+            "title": title,
+        })
+
+    def payout(
+        self,
+        *,
+        of: str,
+        name: str | None = None,
+        title: str | None = None,
+    ) -> Part:
+        """Payout at an end of a cable: columns `hose.start.payout`, the length paid out in m, `.payout_rate` in m/s,
+        and, where the speed is prescribed, `.pull`, the force of the winch in N.
+
+        of: The end of the cable: `hose.start` or `hose.end`.
+        name: Name in results. Default: that of the end.
+        title: Title of its plots. Default: the quantity.
+        """
+        return self._add("records", "payout", {
+            "of": of,
             "name": name,
             "title": title,
         })
@@ -1739,10 +1766,10 @@ class Parts:
     ) -> Part:
         """Position of a point: columns `hose.end.x`, `.y` and `.z` in m, or some of them.
 
-        of: The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
-        axes: The axes of space that are recorded; left out, all three. Default ['x', 'y', 'z'].
-        name: Name in results; left out, that of the point.
-        title: Title of its pictures; left out, what it is.
+        of: The point: a marker like `hose.end`, or an arc length like `hose@12.5m`.
+        axes: Recorded axes of space. Default: all three. Default ['x', 'y', 'z'].
+        name: Name in results. Default: that of the point.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "position", {
             "of": of,
@@ -1766,9 +1793,9 @@ class Parts:
         A rope that hangs from its anchor is pulled upwards, so `fz` is its weight.
 
         of: Name of the constraint.
-        what: Only some of it: `force`, `magnitude` or `moment`. Default all.
-        name: Name in results; left out, that of the constraint and `.reaction`.
-        title: Title of its pictures; left out, what it is.
+        what: What is recorded: `all`, `force`, `magnitude` or `moment`. Default all.
+        name: Name in results. Default: that of the constraint and `.reaction`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "reaction", {
             "of": of,
@@ -1784,11 +1811,12 @@ class Parts:
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """How many latches of a `latch`, or whether a connection that can `break`, have let go: column `reel.released`.
+        """Number of released points of a `latch`, or whether a constraint with a `break` is broken: column
+        `reel.released`.
 
         of: Name of the latch or break.
-        name: Name in results; left out, that of the latch and `.released`.
-        title: Title of its pictures; left out, what it is.
+        name: Name in results. Default: that of the latch and `.released`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "released", {
             "of": of,
@@ -1805,9 +1833,9 @@ class Parts:
     ) -> Part:
         """Velocity of a point: columns `hose.end.vx`, `.vy` and `.vz` in m/s.
 
-        of: The point: a named place like `hose.end`, or any arc length like `hose@12.5m`.
-        name: Name in results; left out, that of the point and `.velocity`.
-        title: Title of its pictures; left out, what it is.
+        of: The point: a marker like `hose.end`, or an arc length like `hose@12.5m`.
+        name: Name in results. Default: that of the point and `.velocity`.
+        title: Title of its plots. Default: the quantity.
         """
         return self._add("records", "velocity", {
             "of": of,
@@ -1823,7 +1851,7 @@ class Parts:
         package: Mapping[str, Any],
         motion: str,
         rule: Mapping[str, Any],
-        bending: Number | None = None,
+        ei: Number | None = None,
         eyelet: Sequence[Number] | None = None,
         guided: Boolean | None = None,
         tangent: Boolean | None = None,
@@ -1831,63 +1859,63 @@ class Parts:
         drag: Mapping[str, Any] | None = None,
         added_mass: Number | None = None,
         weight: Boolean | None = None,
-        segments: Integer | None = None,
-        step: Number | None = None,
-        damping: Number | None = None,
+        elements: Integer | None = None,
+        h: Number | None = None,
+        numerical_damping: Number | None = None,
         titles: Mapping[str, Any] | None = None,
     ) -> Part:
-        """A cable that is drawn from a package through an eyelet, by finite differences: an inextensible cable,
-        Newmark's method and a tension that comes from the constraint. It shares no equation with the elements of type
+        """A cable that is drawn from a package through an eyelet, by finite differences: inextensible, with Newmark's
+        method, and with the tension as a Lagrange multiplier. It shares no equation with the elements of type
         `cable`.
 
-        name: Name, with which the columns of the history begin.
+        name: Name; the columns of the history begin with it.
         mass: Mass per length [kg/m].
-        package: The package that it is wound on, with its diameter and the radius to which it may be bent.
-            radius: Radius of the layer that unwinds first, to the middle of the cable [m]. Required.
-            length: Length along the axis that is wound, the same for all layers [m]. Required.
-            diameter: Diameter of the cable: the radius changes by it from layer to layer [m]. Required.
-            origin: Where its axis begins: the centre of one end [m]. Default [0.0, 0.0, 0.0].
-            axis: Direction of its axis, from that end to the other. Default [0.0, 0.0, 1.0].
-            reference: Direction from the axis in which the first lift-off point lies; left out, that of x, or of y if
-                the axis is along x.
-            side: Whether the cable lifts off inside or outside. Default inner.
-            pitch: Way along the axis per turn [m]; left out, the diameter of the cable: turn beside turn.
-            layers: How many layers there are. Default 1.
-            hand: Which way the lift-off point runs round the axis. Default right.
-            traverse: Which way along the axis the first layer unwinds. Default forward.
-            first: Where along the axis, from its origin, the first lift-off point lies [m]; left out, at the end of
-                the package where a full first layer begins.
-            bend_limit: Smallest radius to which the cable may be bent [m]; left out, any.
-        motion: Motion that draws the cable: its way along x is the length drawn through the eyelet.
-        rule: What finds the lift-off point.
-        bending: Bending stiffness [N m^2]; left out, the cable is flexible. Default 0.0.
+        package: The package, with the diameter of the cable and its minimum bend radius.
+            radius: Radius of the first layer to unwind, to the middle of the cable [m]. Required.
+            length: Wound length along the axis, the same for all layers [m]. Required.
+            diameter: Diameter of the cable [m]; the radius changes by it from layer to layer. Required.
+            origin: Origin of its axis: the centre of one end [m]. Default [0.0, 0.0, 0.0].
+            axis: Direction of its axis, from the origin to the other end. Default [0.0, 0.0, 1.0].
+            reference: Direction from the axis to the first lift-off point. Default: x, or y if the axis is along x.
+            side: Side of the package from which the cable lifts off. Default inner.
+            pitch: Distance along the axis per turn [m]. Default: the diameter of the cable, turns side by side.
+            layers: Number of layers. Default 1.
+            hand: Sense in which the lift-off point runs round the axis. Default right.
+            traverse: Direction along the axis in which the first layer unwinds. Default forward.
+            first: Position of the first lift-off point along the axis, from its origin [m]. Default: the end where a
+                full first layer begins.
+            min_bend_radius: Minimum bend radius of the cable [m]; below it the run reports an event. Default: no
+                limit.
+        motion: Name of the motion that draws the cable: its x component is the length drawn through the eyelet.
+        rule: Condition that determines the lift-off point.
+        ei: Bending stiffness [N m²]. Default: 0. Default 0.0.
         eyelet: Position of the eyelet [m]. Default [0.0, 0.0, 0.0].
-        guided: Whether the eyelet holds the cable along the axis of the package; needs bending stiffness to matter.
+        guided: Whether the eyelet holds the direction along the axis of the package. Has an effect only with bending
+            stiffness. Default False.
+        tangent: Whether the cable is tangent to the wound layer at the lift-off point. Needs bending stiffness.
             Default False.
-        tangent: Whether the cable is tangent to the wound layer where it lifts off; needs bending stiffness. Default
-            False.
-        points: Shape at the start, at rest: points from the eyelet to the lift-off point [m]. Left out, the steady
-            balloon of the speed and the tension at the start; without speed and weight, a straight line.
-        drag: Drag of the water; left out, none.
+        points: Initial shape, at rest: points from the eyelet to the lift-off point [m]. Default: the steady balloon
+            of the initial speed and tension; without speed and weight, a straight line.
+        drag: Drag of the water. Default: none.
             normal: Law across the cable. Default constant.
             tangential: Law along the cable. Default constant.
             cn: Coefficient across, for the constant law, on the diameter. Default 1.2.
             ct: Coefficient along, for the constant law, on the circumference. Default 0.01.
-            end: Form drag of each free end of cables, hulls and chains in flow along it: coefficient on the area of
-                its face. Left out, none; both ends of a long blunt cylinder have about 0.8 together. Default 0.0.
-            stretched: Whether drag is per stretched length instead of unstretched. Default False.
-            blend: Relative width in Reynolds number over which the branches of Choo and Casarella are blended; left
-                out, they jump as published.
-            on: Cables that it acts on; left out, all.
-        added_mass: Coefficient of the water that the cable carries along across its axis; left out, 0. Default 0.0.
-        weight: Whether the scene's gravity pulls at it, less the buoyancy of its volume. Default False.
-        segments: Into how many segments the free cable is divided. Default 40.
-        step: Time step [s]; `auto` or left out, 0.2 ms, or with bending stiffness and a given tension what the
-            segments allow: two of them over the speed of waves. A longer one ends the run there with an error, since
-            the lift-off point would tremble.
-        damping: Numerical damping of Newmark's method; left out, 0.05 with bending stiffness and 0 without.
+            end: Form drag of each free end of cables, hulls and chains: coefficient on the area of the end face. Both
+                ends of a long blunt cylinder have about 0.8 together. Default 0.0.
+            stretched: Whether drag acts per stretched length instead of unstretched length. Default False.
+            blend: Relative width in Reynolds number over which the branches of Choo and Casarella are blended.
+                Default: they jump, as published.
+            on: Cables it acts on. Default: all.
+        added_mass: Added-mass coefficient across the axis. Default 0.0.
+        weight: Whether weight and buoyancy act. Default False.
+        elements: Number of segments of the free cable. Default 40.
+        h: Time step [s], or `auto`. Default: `auto`, which is 0.2 ms, or with bending stiffness and a given tension
+            two segments over the wave speed. A longer step ends the run with an error, since the lift-off point would
+            oscillate.
+        numerical_damping: Numerical damping of Newmark's method. Default: 0.05 with bending stiffness, 0 without.
         titles: Titles of its pictures, by what they show: `tension`, `length`, `speed`, `lift`, `radius`, `centre`,
-            `acceleration`, `drag`, `curvature`; left out, what it is.
+            `acceleration`, `drag`, `curvature`. Default: the quantity.
         """
         return self._add("processes", "unwound_cable", {
             "name": name,
@@ -1895,7 +1923,7 @@ class Parts:
             "package": package,
             "motion": motion,
             "rule": rule,
-            "bending": bending,
+            "ei": ei,
             "eyelet": eyelet,
             "guided": guided,
             "tangent": tangent,
@@ -1903,9 +1931,9 @@ class Parts:
             "drag": drag,
             "added_mass": added_mass,
             "weight": weight,
-            "segments": segments,
-            "step": step,
-            "damping": damping,
+            "elements": elements,
+            "h": h,
+            "numerical_damping": numerical_damping,
             "titles": titles,
         })
 
@@ -1918,14 +1946,13 @@ class Parts:
         current: Sequence[Number] | None = None,
         profile: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
-        """The water around a scene. Drag, buoyancy and added mass need it; nothing else looks at it.
+        """The water around a scene. Drag, buoyancy and added mass need it.
 
         density: Density [kg/m³]. Default 1025.0.
         viscosity: Dynamic viscosity [Pa s]. Default 0.00108.
-        level: Height of its surface, which is at rest [m]; left out, there is water everywhere.
-        current: Velocity of the water, the same everywhere [m/s]. Default [0.0, 0.0, 0.0].
-        profile: Velocity of the water by height, instead of `current`: piecewise linear between the levels, constant
-            beyond.
+        level: Height of its surface, which is flat [m]. Default: water everywhere.
+        current: Uniform velocity of the water [m/s]. Default [0.0, 0.0, 0.0].
+        profile: Current profile over height, instead of `current`: piecewise linear, constant beyond the ends.
         """
         self._set("water", {
             "density": density,
@@ -1943,7 +1970,7 @@ class Parts:
         wind: Sequence[Number] | None = None,
         profile: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
-        """The air above the water, or around a scene without water: only drag looks at it. Left out, there is nothing.
+        """The air above the water, or around a scene without water: only drag looks at it. Default: vacuum.
 
         density: Density [kg/m³]. Default 1.225.
         viscosity: Dynamic viscosity [Pa s]. Default 1.79e-05.
@@ -1971,22 +1998,22 @@ class Parts:
         shape_titles: Mapping[str, Any] | None = None,
         tables: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
-        """What is run and how long.
+        """Analysis, duration and output.
 
-        analysis: What is computed. Default dynamics.
-        duration: Length of the run [s]; in statics the end of the load factor. Default 1.0.
-        output: Interval of the history [s]; 0 takes a thousandth of the duration. Default 0.0.
-        frame: In statics: the frame that the equilibrium is relative to, such as that of a ship that tows steadily.
-            What is held fixed then moves with the frame.
+        analysis: Type of analysis. Default dynamics.
+        duration: Duration of the run [s]; in statics the final load factor. Default 1.0.
+        output: Output interval of the history [s]; 0 means a thousandth of the duration. Default 0.0.
+        frame: In statics: the moving frame in which the equilibrium is found, such as that of a ship towing steadily.
+            Fixed points move with the frame.
             velocity: Velocity of the centre [m/s]. Default [0.0, 0.0, 0.0].
             omega: Angular velocity [rad/s]. Default [0.0, 0.0, 0.0].
             centre: A point on the axis of rotation [m]: in space, or of a motion's frame relative to where the motion
                 starts. Default [0.0, 0.0, 0.0].
         from_equilibrium: Start a dynamic run from the equilibrium at t = 0 instead of the configuration as laid.
             Default False.
-        audit: Keep account of energy and work at every step. Default True.
-        snapshots: Number of snapshots in the pictures of shapes. Default 9.
-        shape_titles: Titles of the pictures of shapes; left out, that of the scene.
+        audit: Whether energy and work are balanced at every step. Default True.
+        snapshots: Number of snapshots in the plots of shapes. Default 9.
+        shape_titles: Titles of the plots of shapes. Default: the title of the scene.
             side: From the side: x and z.
             top: From above: x and y.
             end: From the end: y and z.

@@ -85,7 +85,7 @@ def test_events_stop_it():
     scene = rw.Scene(title="run out")
     line = scene.cable(name="line", points=[[0, 0, 0], [0, 0, -4]], elements=4, section=dict(mass=1, ea=1e4, ei=0.1))
     scene.spherical(name="hook", marker=line.start)
-    scene.winch(name="winch", marker=line.start, speed="0.5 m/s", stock="1 m")
+    scene.winch(name="winch", marker=line.start, speed="0.5 m/s", stored_length="1 m")
     scene.gravity()
     scene.length(of=line)
     scene.set_run(duration="20 s")

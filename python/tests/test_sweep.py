@@ -98,7 +98,7 @@ def test_files_of_a_scene_are_found(tmp_path):
         """
 parameters = { mass = 1 }
 run = { duration = "1 s" }
-elements = [{ type = "point_mass", name = "a", at = [0, 0, 0], mass = "$mass" }]
+elements = [{ type = "point_mass", name = "a", marker = [0, 0, 0], mass = "$mass" }]
 motions = [{ type = "speed_table", name = "m", file = "speeds.csv" }]
 constraints = [{ type = "driving", name = "d", marker = "a", motion = "m" }]
 records = [{ type = "position", of = "a" }]
