@@ -1,5 +1,4 @@
 //! What the tests of the elements share: reference data, single evaluations and differences.
-#![allow(dead_code)]
 
 use ropewalk_core::{Batch, Element, Local, Real, Share, Weights};
 use serde_json::Value;

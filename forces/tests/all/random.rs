@@ -1,5 +1,4 @@
 //! Repeatable random numbers.
-#![allow(dead_code)]
 
 /// A linear congruential generator.
 pub struct Random(pub u64);
