@@ -322,6 +322,24 @@ fn describe_explains_scenes_types_and_sections() {
 }
 
 #[test]
+fn migrate_rewrites_old_names_and_leaves_the_rest() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let old = SWING.replace("ei = 1 }", "ei = 1, bending_damping = 0.01 } # kept");
+    fs::write(at("old.toml"), &old).unwrap();
+    run(folder.path(), &["check", "old.toml"])
+        .refused(&["bending_retardation_time", "ropewalk migrate old.toml"]);
+    assert_eq!(run(folder.path(), &["migrate", "old.toml", "--check"]).code, Some(1));
+    assert_eq!(fs::read_to_string(at("old.toml")).unwrap(), old);
+    done(run(folder.path(), &["migrate", "old.toml", "--backup"]));
+    let new = old.replace("bending_damping", "bending_retardation_time");
+    assert_eq!(fs::read_to_string(at("old.toml")).unwrap(), new);
+    assert_eq!(fs::read_to_string(at("old.toml.bak")).unwrap(), old);
+    done(run(folder.path(), &["check", "old.toml"]));
+    assert_eq!(run(folder.path(), &["migrate", "old.toml", "--check"]).code, Some(0));
+}
+
+#[test]
 fn check_builds_without_running() {
     let folder = folder();
     let check = done(run(folder.path(), &["check", "swing.toml", "--set", "n=7"]));
