@@ -357,7 +357,7 @@ impl Scene {
         }
         self.run.check().map_err(whole)?;
         self.statics.check().map_err(whole)?;
-        self.solver.check().map_err(|e| whole(BuildError::new(e)))?;
+        self.solver.check().map_err(|e| whole(e.of("solver")))?;
         let changes = b.changes();
         let model = b.finish().map_err(whole)?;
         let recipe = changes.then(|| {

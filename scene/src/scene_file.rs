@@ -3,7 +3,7 @@
 use crate::document::{Document, Fault, Format, did_you_mean, quoted, read_text};
 use crate::scene::{GRAVITY, Scene, SceneError};
 use crate::spec::SpecKind;
-use ropewalk_core::{Model, Record, V3};
+use ropewalk_core::{BuildError, Model, Record, V3};
 use ropewalk_quantity as quantity;
 use serde::Deserialize;
 use std::path::{Path, PathBuf, is_separator};
@@ -174,7 +174,7 @@ impl SceneFile {
     /// The first thing that is wrong, with its place in the file.
     pub fn build(&self) -> Result<Model, Fault> {
         // asked here as well, since these messages have a section to point at
-        self.scene.solver.check().map_err(|message| self.at_solver(message))?;
+        self.scene.solver.check().map_err(|e| self.at_solver(&e))?;
         self.scene.build().map_err(|e| self.fault(&e))
     }
 
@@ -202,12 +202,10 @@ impl SceneFile {
         self.located(&path, &e.error.message)
     }
 
-    /// A fault of the solver's options; the option is the first word in backticks.
-    pub fn at_solver(&self, message: impl Into<String>) -> Fault {
-        let message = message.into();
-        let word = message.split('`').nth(1).unwrap_or_default();
-        let path = self.inside("solver", word).unwrap_or_else(|| "solver".into());
-        self.located(&path, &message)
+    /// A fault of the solver's options, with its place in the file.
+    pub fn at_solver(&self, e: &BuildError) -> Fault {
+        let path = e.field.as_ref().and_then(|field| self.inside("solver", field));
+        self.located(path.as_deref().unwrap_or("solver"), &e.message)
     }
 
     /// A fault at what stands under this path, or of the whole scene if nothing does.

@@ -12,6 +12,7 @@ mod watch;
 
 pub use checkpoint::{Checkpoint, Unfit};
 
+use crate::error::BuildError;
 use crate::model::Model;
 use crate::model::event::{Action, Event};
 use crate::model::line::Quantity;
@@ -230,7 +231,7 @@ impl Simulation {
                 "samples every {interval:e} s of {:e} s never end: take a longer interval",
                 end - start
             );
-            return Err(StepError::Scheme(message));
+            return Err(BuildError::new(message).into());
         }
         let sample_time = |k: u64| start + interval * k as f64;
         // times that differ by less than this are the same: no step of the size of rounding. To call them so mustn't move

@@ -2,6 +2,7 @@
 
 use super::scales::{Scales, Stopping};
 use super::scheme::Scheme;
+use crate::error::{BuildError, not_negative, positive};
 use crate::model::Model;
 
 /// How the step size is chosen.
@@ -179,17 +180,18 @@ impl Options {
     }
 
     /// Refuses steps so short that the run would surely take longer than a year.
-    pub(super) fn check_work(&self, model: &Model, duration: f64) -> Result<(), String> {
+    pub(super) fn check_work(&self, model: &Model, duration: f64) -> Result<(), BuildError> {
         let (name, h) = match self.stepping {
             Stepping::Fixed { h } => ("h", h),
             Stepping::Controlled { .. } => ("h_max", self.limits(duration).most),
         };
         let (steps, least) = (duration / h, YEAR / (LEAST_WORK * model.velocities().max(1) as f64));
         if steps > least {
-            return Err(format!(
+            let message = format!(
                 "`{name}` = {h:e} s makes {steps:.0e} steps of a run of {duration} s: more than a year of computing. \
                  Take a larger one"
-            ));
+            );
+            return Err(BuildError::at(name, message));
         }
         Ok(())
     }
@@ -208,44 +210,46 @@ impl Options {
         if self.horizon > 0.0 { self.horizon } else { duration.max(f64::MIN_POSITIVE) }
     }
 
-    /// What is wrong with the numbers, if anything.
-    pub fn check(&self) -> Result<(), String> {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that is wrong, with the field that holds it.
+    pub fn check(&self) -> Result<(), BuildError> {
         let estimate = match self.scheme {
             Scheme::RadauIia5 => true,
             _ => self.scheme.coefficients()?.error_constant().abs() >= 1e-6,
         };
-        let positive = |name: &str, x: f64| {
-            if x > 0.0 && x.is_finite() { Ok(()) } else { Err(format!("`{name}` must be positive, not {x}")) }
-        };
         for (name, h) in [("h_max", self.h_max), ("h_min", self.h_min), ("h_start", self.h_start)] {
-            h.map_or(Ok(()), |h| positive(name, h))?;
+            h.map_or(Ok(()), |h| positive(name, h).map(drop))?;
         }
         positive("newton_tolerance", self.newton_tolerance)?;
         if let (Some(least), Some(most)) = (self.h_min, self.h_max)
             && least > most
         {
-            return Err(format!("`h_min` = {least} s must not be above `h_max` = {most} s"));
+            let message = format!("`h_min` = {least} s must not be above `h_max` = {most} s");
+            return Err(BuildError::at("h_min", message));
         }
         positive("force_tolerance", self.force_tolerance)?;
-        if !(self.horizon >= 0.0 && self.horizon.is_finite()) {
-            return Err(format!("`horizon` must not be negative, but is {}", self.horizon));
-        }
+        not_negative("horizon", self.horizon)?;
         if self.max_iterations < 2 {
-            return Err("`max_iterations` must be at least 2".into());
+            return Err(BuildError::at("max_iterations", "`max_iterations` must be at least 2"));
         }
         self.stopping.check()?;
         if self.scheme == Scheme::RadauIia5 && (self.stopping != Stopping::Relative || self.scales.is_some())
         {
-            return Err(
-                "Radau IIA has neither `scales` nor an `absolute` stopping test: take another scheme".into(),
-            );
+            let message =
+                "Radau IIA has neither `scales` nor an `absolute` stopping test: take another scheme";
+            return Err(BuildError::at("scheme", message));
         }
         match self.stepping {
-            Stepping::Fixed { h } => positive("h", h),
+            Stepping::Fixed { h } => positive("h", h).map(drop),
             Stepping::Controlled { tolerance } => {
                 positive("tolerance", tolerance)?;
                 if !estimate {
-                    return Err("this scheme has no error estimate: choose a fixed step".into());
+                    return Err(BuildError::at(
+                        "scheme",
+                        "this scheme has no error estimate: choose a fixed step",
+                    ));
                 }
                 Ok(())
             }
