@@ -61,6 +61,21 @@ impl SceneText {
         Ok(Self { name, text, label: path.display().to_string(), format, folder })
     }
 
+    /// Files that the scene names with these parameters: each as it is written there, and where it is.
+    ///
+    /// # Errors
+    /// The text can't be read.
+    pub fn files(&self, overrides: &[String]) -> Result<Vec<(String, PathBuf)>, Fault> {
+        let document = Document::parse(&self.text, &self.label, self.format, overrides)?;
+        let folder = self.folder.clone().unwrap_or_default();
+        Ok(document.files().into_iter().map(|name| (name.to_string(), folder.join(name))).collect())
+    }
+
+    /// How it is written.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
     /// The scene with these parameters, each `name=value`.
     pub fn with(&self, overrides: &[String]) -> Result<SceneFile, Fault> {
         self.edited(overrides, &[])

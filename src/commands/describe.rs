@@ -93,7 +93,7 @@ fn of_part(part: &Value) -> String {
         Some(name) => format!("{name} ({kind})"),
         None => kind.to_string(),
     };
-    for key in ["of", "what", "at", "on", "between", "motion"] {
+    for key in ["of", "marker", "to", "on", "between", "motion"] {
         if let Some(value) = get(key) {
             line += &format!(", {key} {value}");
         }

@@ -9,9 +9,11 @@ pub mod bench;
 pub mod certificate;
 pub mod cost;
 pub mod effects;
+pub mod fmu;
 mod error;
 pub mod modes;
 pub mod run;
+mod session;
 pub mod simulate;
 pub mod study;
 pub mod sweep;
@@ -19,3 +21,4 @@ pub mod variants;
 pub mod verify;
 
 pub use error::Error;
+pub use session::{Session, Snapshot};

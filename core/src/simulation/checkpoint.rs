@@ -26,7 +26,7 @@ pub struct Checkpoint {
     pub counts: Counts,
     /// What the start had to be corrected by.
     pub correction: Correction,
-    /// Meshes that have changed: what [`Scene::build_on`](crate::Scene::build_on) makes the model of.
+    /// Meshes that have changed, from which the model is built again.
     pub meshes: Plan,
     /// Names of the constraints and numbers of unknowns of the model, by which another one is told.
     model: Vec<(String, usize)>,

@@ -7,7 +7,7 @@ use crate::error::{BuildError, positive};
 use crate::model::Model;
 use crate::model::node::NodeKind;
 
-/// What makes the equations of motion dimensionless.
+/// Scales that make the equations of motion dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
@@ -31,17 +31,17 @@ pub enum Scales {
     },
 }
 
-/// When Newton's method stops.
+/// Stopping test of Newton's method.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub enum Stopping {
-    /// Where positions are right to a fraction of what a step may be wrong by. No unit and no scale changes it.
+    /// Positions have converged to a fraction of the error that a step may have. Independent of units and scales.
     #[default]
     Relative,
-    /// Where Euclidean norms fall below numbers that know nothing of the model, in SI units or, with
-    /// [`Options::scales`](super::Options::scales), in those. Kept for comparisons with codes that stop like that: what
-    /// rounding leaves may be larger than such a number, and then every step takes `max_iterations`.
+    /// Euclidean norms are below fixed numbers, in SI units or in those of [`Options::scales`](super::Options::scales).
+    /// For comparisons with codes that stop like this. If rounding leaves more than such a number, every step takes
+    /// `max_iterations`.
     Absolute {
         /// Largest norm of the residual of all equations, constraints included.
         #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
