@@ -151,6 +151,8 @@ impl SceneFile {
             forces: parts(d, SpecKind::Force)?,
             motions: parts(d, SpecKind::Motion)?,
             records: parts(d, SpecKind::Record)?,
+            inputs: d.take_list(SpecKind::Input.list())?.into_iter().map(|(input, _)| input).collect(),
+            controllers: parts(d, SpecKind::Controller)?,
             processes: parts(d, SpecKind::Process)?,
         };
         document.finish()?;

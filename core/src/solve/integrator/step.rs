@@ -97,6 +97,19 @@ pub enum StepError {
         /// Why not.
         why: String,
     },
+    /// A controller wants what is no number.
+    #[error(
+        "at t = {t:.6} s the controller `{controller}` sets `{input}` to what is no number: look for a division by zero or \
+         the root of a negative number in it"
+    )]
+    Control {
+        /// Time [s].
+        t: f64,
+        /// The controller.
+        controller: String,
+        /// Its input.
+        input: String,
+    },
     /// The start is not on the constraints and is too far away to be corrected without asking.
     #[error("{0}")]
     Inconsistent(String),
