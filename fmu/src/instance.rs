@@ -48,7 +48,10 @@ impl Instance {
         let Resources { text, set } = Resources::read(resources).map_err(|e| e.to_string())?;
         let interface = Interface::new(&text, &set).map_err(|e| e.to_string())?;
         if interface.token() != token {
-            return Err(format!("the description belongs to another scene: its token is {token}, not {}", interface.token()));
+            return Err(format!(
+                "the description belongs to another scene: its token is {token}, not {}",
+                interface.token()
+            ));
         }
         Ok(Instance {
             text,
@@ -102,7 +105,9 @@ impl Instance {
         let session = self.session()?;
         let here = session.t() + start;
         if !(size >= 0.0 && (from - here).abs() <= 1e-9 * (1.0 + here.abs())) {
-            return Err(format!("a step of {size} s from t = {from} s was asked for, but the FMU is at t = {here} s"));
+            return Err(format!(
+                "a step of {size} s from t = {from} s was asked for, but the FMU is at t = {here} s"
+            ));
         }
         session.advance(from + size - start).map_err(|e| e.to_string())?;
         Ok(session.stopped_by().is_some())
@@ -199,7 +204,8 @@ impl Saved {
     }
 
     pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, Failure> {
-        let packed: Packed = postcard::from_bytes(bytes).map_err(|e| format!("this is no state of the FMU: {e}"))?;
+        let packed: Packed =
+            postcard::from_bytes(bytes).map_err(|e| format!("this is no state of the FMU: {e}"))?;
         let (snapshot, parameters, inputs, start) = packed;
         Ok(Saved { snapshot, parameters, inputs, start })
     }

@@ -135,7 +135,12 @@ unsafe extern "C" fn fmi3FreeInstance(at: *mut Component) {
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SetDebugLogging(at: *mut Component, on: bool, _count: usize, _of: *const *const c_char) -> Status {
+unsafe extern "C" fn fmi3SetDebugLogging(
+    at: *mut Component,
+    on: bool,
+    _count: usize,
+    _of: *const *const c_char,
+) -> Status {
     // SAFETY: an instance of ours.
     let Some(component) = (unsafe { at.as_mut() }) else { return ERROR };
     component.logging = on;
@@ -240,7 +245,9 @@ unsafe extern "C" fn fmi3SetFloat64(
     // SAFETY: an instance of ours, and arrays of the importer.
     unsafe {
         let (references, values) = (array(references, count), array(values, values_count));
-        with(at, |instance| references.iter().zip(values).try_for_each(|(r, value)| instance.set_number(*r, *value)))
+        with(at, |instance| {
+            references.iter().zip(values).try_for_each(|(r, value)| instance.set_number(*r, *value))
+        })
     }
 }
 
@@ -325,7 +332,11 @@ unsafe extern "C" fn fmi3FreeFMUState(_at: *mut Component, state: *mut *mut Save
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SerializedFMUStateSize(at: *mut Component, state: *const Saved, size: *mut usize) -> Status {
+unsafe extern "C" fn fmi3SerializedFMUStateSize(
+    at: *mut Component,
+    state: *const Saved,
+    size: *mut usize,
+) -> Status {
     // SAFETY: an instance and a state of ours, and a place for the size.
     unsafe {
         with(at, |_| {
@@ -337,12 +348,18 @@ unsafe extern "C" fn fmi3SerializedFMUStateSize(at: *mut Component, state: *cons
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SerializeFMUState(at: *mut Component, state: *const Saved, to: *mut u8, size: usize) -> Status {
+unsafe extern "C" fn fmi3SerializeFMUState(
+    at: *mut Component,
+    state: *const Saved,
+    to: *mut u8,
+    size: usize,
+) -> Status {
     // SAFETY: an instance and a state of ours, and an array for its bytes.
     unsafe {
         with(at, |_| {
             let bytes = state.as_ref().ok_or("there is no state")?.bytes()?;
-            let to = array_mut(to, size).get_mut(..bytes.len()).ok_or("there is not enough room for the state")?;
+            let to =
+                array_mut(to, size).get_mut(..bytes.len()).ok_or("there is not enough room for the state")?;
             to.copy_from_slice(&bytes);
             Ok(())
         })

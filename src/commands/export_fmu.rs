@@ -61,8 +61,10 @@ fn library(given: Option<&Path>) -> Result<PathBuf, Fault> {
         Some(path) if path.is_file() => Ok(path),
         found => {
             let place = found.map_or(name, |path| path.display().to_string());
-            let fault = Fault::new(format!("the shared library of the FMU is missing: there is no `{place}`"));
-            Err(fault.with_help("build it by `cargo build --release -p ropewalk-fmu`, or name it by `--library`"))
+            let fault =
+                Fault::new(format!("the shared library of the FMU is missing: there is no `{place}`"));
+            Err(fault
+                .with_help("build it by `cargo build --release -p ropewalk-fmu`, or name it by `--library`"))
         }
     }
 }
@@ -76,7 +78,10 @@ fn pack(out: &Path, interface: &Interface, resources: &Resources, library: &Path
         zip.start_file(format!("resources/{name}"), options)?;
         zip.write_all(&content)?;
     }
-    zip.start_file(format!("binaries/{}/{LIBRARY}{DLL_SUFFIX}", platform()), options.unix_permissions(0o755))?;
+    zip.start_file(
+        format!("binaries/{}/{LIBRARY}{DLL_SUFFIX}", platform()),
+        options.unix_permissions(0o755),
+    )?;
     zip.write_all(&fs::read(library)?)?;
     zip.finish()?;
     Ok(())

@@ -249,7 +249,7 @@ impl Simulation {
                  before leads back",
                 self.state.t
             );
-            return Err(StepError::Scheme(message));
+            return Err(BuildError::new(message).into());
         }
         self.depart(end);
         let sample_time = |k: u64| start + interval * k as f64;

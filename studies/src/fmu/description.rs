@@ -25,12 +25,16 @@ impl Interface {
              canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"/>"
         );
         out += "<UnitDefinitions>\n";
-        let units: BTreeSet<&str> = self.variables.iter().map(|v| v.unit.as_str()).filter(|u| !u.is_empty()).collect();
+        let units: BTreeSet<&str> =
+            self.variables.iter().map(|v| v.unit.as_str()).filter(|u| !u.is_empty()).collect();
         for unit in units {
             let _ = writeln!(out, "<Unit name=\"{}\"/>", escaped(unit));
         }
         out += "</UnitDefinitions>\n";
-        let _ = writeln!(out, "<DefaultExperiment startTime=\"0\" stopTime=\"{duration}\" stepSize=\"{output}\"/>");
+        let _ = writeln!(
+            out,
+            "<DefaultExperiment startTime=\"0\" stopTime=\"{duration}\" stepSize=\"{output}\"/>"
+        );
         out += "<ModelVariables>\n";
         self.variables.iter().for_each(|v| variable(&mut out, v));
         out += "</ModelVariables>\n<ModelStructure>\n";
@@ -45,7 +49,9 @@ impl Interface {
 }
 
 fn variable(out: &mut String, v: &Variable) {
-    let about = |name: &str, text: &str| if text.is_empty() { String::new() } else { format!(" {name}=\"{}\"", escaped(text)) };
+    let about = |name: &str, text: &str| {
+        if text.is_empty() { String::new() } else { format!(" {name}=\"{}\"", escaped(text)) }
+    };
     let common = format!(
         "name=\"{}\" valueReference=\"{}\"{}{}",
         escaped(&v.name),
@@ -54,7 +60,9 @@ fn variable(out: &mut String, v: &Variable) {
         about("unit", &v.unit)
     );
     let _ = match &v.kind {
-        Kind::Time => writeln!(out, "<Float64 {common} causality=\"independent\" variability=\"continuous\"/>"),
+        Kind::Time => {
+            writeln!(out, "<Float64 {common} causality=\"independent\" variability=\"continuous\"/>")
+        }
         Kind::Parameter { start } => {
             let start = escaped(start);
             writeln!(
@@ -63,7 +71,8 @@ fn variable(out: &mut String, v: &Variable) {
             )
         }
         Kind::Input { start, range } => {
-            let limit = |name: &str, x: f64| if x.is_finite() { format!(" {name}=\"{x}\"") } else { String::new() };
+            let limit =
+                |name: &str, x: f64| if x.is_finite() { format!(" {name}=\"{x}\"") } else { String::new() };
             let (min, max) = (limit("min", range[0]), limit("max", range[1]));
             writeln!(
                 out,

@@ -75,10 +75,16 @@ impl Interface {
     /// The scene is wrong, or is no run in time.
     pub fn new(text: &SceneText, set: &[String]) -> Result<Self, Error> {
         let file = text.with(set)?;
-        let mut variables = vec![(Kind::Time, "time".to_string(), "time of the co-simulation".to_string(), "s".to_string())];
+        let mut variables =
+            vec![(Kind::Time, "time".to_string(), "time of the co-simulation".to_string(), "s".to_string())];
         for p in file.document().parameters() {
             let start = p.value.to_text();
-            variables.push((Kind::Parameter { start }, p.name.clone(), p.description.clone().unwrap_or_default(), String::new()));
+            variables.push((
+                Kind::Parameter { start },
+                p.name.clone(),
+                p.description.clone().unwrap_or_default(),
+                String::new(),
+            ));
         }
         let (name, title) = (file.name().to_string(), file.title().to_string());
         let experiment = [file.scene().run.duration, file.scene().run.output];
@@ -90,7 +96,13 @@ impl Interface {
         for column in session.columns() {
             variables.push((Kind::Output, column.name.clone(), String::new(), column.unit.clone()));
         }
-        let variable = |(reference, (kind, name, description, unit))| Variable { reference, name, description, unit, kind };
+        let variable = |(reference, (kind, name, description, unit))| Variable {
+            reference,
+            name,
+            description,
+            unit,
+            kind,
+        };
         let variables: Vec<Variable> = (0..).zip(variables).map(variable).collect();
         let mut names: Vec<&str> = variables.iter().map(|v| v.name.as_str()).collect();
         names.sort_unstable();
@@ -145,12 +157,17 @@ impl Resources {
         let scene = format!("scene.{}", self.text.format().extension());
         let mut all = vec![(scene, self.text.text.clone().into_bytes()), (SET.to_string(), set.into_bytes())];
         for (name, path) in self.text.files(&self.set)? {
-            let inside = Path::new(&name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+            let inside =
+                Path::new(&name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
             if !inside {
-                let fault = Fault::new(format!("`{name}` can't go into the FMU: it is not below the scene's folder"));
-                return Err(fault.with_help("put it beside the scene, and name it by a relative path").into());
+                let fault =
+                    Fault::new(format!("`{name}` can't go into the FMU: it is not below the scene's folder"));
+                return Err(fault
+                    .with_help("put it beside the scene, and name it by a relative path")
+                    .into());
             }
-            let content = fs::read(&path).map_err(|e| Fault::new(format!("can't read `{}`: {e}", path.display())))?;
+            let content =
+                fs::read(&path).map_err(|e| Fault::new(format!("can't read `{}`: {e}", path.display())))?;
             all.push((name, content));
         }
         Ok(all)
