@@ -85,12 +85,12 @@ impl Instance {
             set.retain(|s| s.split_once('=').is_none_or(|(key, _)| key.trim() != name));
             set.push(format!("{name}={value}"));
         }
-        let file = self.text.with(&set).map_err(|e| e.to_string())?;
-        let mut session = Session::start(file, Watch::default()).map_err(|e| e.to_string())?;
-        for (reference, value) in &self.inputs {
-            let name = &self.interface.variable(*reference).ok_or("an unknown input was set")?.name;
-            session.set_input(name, *value).map_err(|e| e.to_string())?;
-        }
+        // what inputs are set to before the start they are from the start on
+        let inputs = self.interface.variables().iter().filter(|v| matches!(v.kind, Kind::Input { .. }));
+        let first = inputs.enumerate().filter_map(|(k, v)| Some((k, self.inputs.get(&v.reference)?)));
+        let edits: Vec<_> = first.map(|(k, x)| (format!("inputs[{k}].default"), format!("{x:?}"))).collect();
+        let file = self.text.edited(&set, &edits).map_err(|e| e.to_string())?;
+        let session = Session::start(file, Watch::default()).map_err(|e| e.to_string())?;
         (self.session, self.start, self.told) = (Some(session), start, 0);
         Ok(())
     }

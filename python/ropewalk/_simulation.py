@@ -108,6 +108,17 @@ class Simulation:
             raise KeyError(f"there is no record {name!r}: there are {', '.join(self._index)}")
         return np.frombuffer(self._native.values())[group]
 
+    @property
+    def inputs(self) -> Mapping[str, float]:
+        """The inputs of the scene and their present values."""
+        return {name: value for name, _, value, _, _ in self._native.inputs()}
+
+    def set_input(self, name: str, value: float) -> Simulation:
+        """Sets an input of the scene from here on, in the unit that the scene gives it: one that holds jumps now, one that
+        is joined by lines reaches the value at the end of the next advance."""
+        self._native.set_input(name, float(value))
+        return self
+
     def state(self) -> State:
         """The complete state. Whatever it is restored to goes on as this simulation does, to the last bit."""
         return State(self._native.t, self._native.state())

@@ -5,122 +5,41 @@ use crate::watch::{LOOK, watched};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyByteArray, PyBytes};
-use ropewalk::core::integrator::StepReport;
-use ropewalk::core::{Checkpoint, End, Model, Observer, Record, Sample, Unfit};
 use ropewalk::scene::Fault;
-use ropewalk::{Error, SceneFile, State};
+use ropewalk::{Error, Session, Snapshot};
 use std::ops::ControlFlow;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 /// A run in time that is moved from outside.
 #[pyclass(module = "ropewalk._native", frozen)]
-pub struct Simulation(Mutex<Inner>);
+pub struct Simulation(Mutex<Session>);
 
-struct Inner {
-    file: SceneFile,
-    simulation: ropewalk::Simulation,
-    records: Vec<Box<dyn Record>>,
-    /// The model that the records are bound to.
-    bound: Option<Arc<Model>>,
-    /// The records at the present instant, once they were asked for.
-    row: Option<Vec<f64>>,
-    stopped_by: Option<String>,
-    warnings: Vec<String>,
-}
-
-/// Looks at every step, and stops for signals or after one step; takes no samples.
-struct Steps<'a> {
-    once: bool,
-    looked: Instant,
-    raised: Option<PyErr>,
-    warnings: &'a mut Vec<String>,
-}
-
-impl Observer for Steps<'_> {
-    fn step(&mut self, _: &Model, _: &State, _: &StepReport) -> ControlFlow<()> {
-        if self.looked.elapsed() >= LOOK {
-            self.looked = Instant::now();
-            self.raised = Python::attach(|py| py.check_signals()).err();
+/// Moves on to `end`, or by one step; the exception of a signal that came meanwhile.
+fn advance(session: &mut Session, end: f64, once: bool) -> Result<Option<PyErr>, Error> {
+    let (mut looked, mut raised) = (Instant::now(), None);
+    session.advance_while(end, &mut || {
+        if looked.elapsed() >= LOOK {
+            looked = Instant::now();
+            raised = Python::attach(|py| py.check_signals()).err();
         }
-        if self.once || self.raised.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-    fn warn(&mut self, text: &str) {
-        self.warnings.push(text.into());
-    }
-}
-
-/// Evaluates the records.
-struct Look<'a> {
-    records: &'a [Box<dyn Record>],
-    row: Vec<f64>,
-}
-
-impl Observer for Look<'_> {
-    fn needs_forces(&self) -> bool {
-        self.records.iter().any(|r| r.needs_forces())
-    }
-    fn sample(&mut self, s: &Sample<'_>) -> ControlFlow<()> {
-        self.row.clear();
-        self.records.iter().for_each(|r| r.sample(s, &mut self.row));
-        ControlFlow::Continue(())
-    }
-}
-
-impl Inner {
-    /// The records, which are bound to a model: another one if the mesh has changed.
-    fn bind(&mut self) -> Result<(), Error> {
-        let model = &self.simulation.model;
-        if !self.bound.as_ref().is_some_and(|bound| Arc::ptr_eq(bound, model)) {
-            self.records = self.file.records(model)?;
-            self.bound = Some(model.clone());
-        }
-        Ok(())
-    }
-
-    /// Moves on to `end`, or by one step; the exception of a signal that came meanwhile.
-    fn advance(&mut self, end: f64, once: bool) -> Result<Option<PyErr>, Error> {
-        let span = end - self.simulation.state.t;
-        if self.stopped_by.is_some() || !(span > 0.0) {
-            return Ok(None);
-        }
-        self.row = None;
-        let mut steps = Steps { once, looked: Instant::now(), raised: None, warnings: &mut self.warnings };
-        let done = self.simulation.advance(end, span, &mut steps);
-        let raised = steps.raised.take();
-        if let End::Stopped { by } = done?
-            && raised.is_none()
-            && !(once && by == "interrupt")
-        {
-            self.stopped_by = Some(by);
-        }
-        Ok(raised)
-    }
-
-    /// The records at the present instant.
-    fn look(&mut self) -> Result<&[f64], Error> {
-        if self.row.is_none() {
-            self.bind()?;
-            let mut look = Look { records: &self.records, row: Vec::new() };
-            // an advance that goes nowhere takes one sample
-            self.simulation.advance(self.simulation.state.t, 1.0, &mut look)?;
-            self.row = Some(look.row);
-        }
-        Ok(self.row.as_deref().unwrap_or_default())
-    }
+        if once || raised.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    Ok(raised)
 }
 
 impl Simulation {
-    fn forward(
+    /// Does something that takes its time, while Python's interpreter is free for others.
+    fn detached<T: Send>(
         &self,
         py: Python<'_>,
-        go: impl FnOnce(&mut Inner) -> Result<Option<PyErr>, Error> + Send,
-    ) -> PyResult<()> {
-        let done = py.detach(|| go(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner)));
-        done.map_err(|e| raise(py, &e))?.map_or(Ok(()), Err)
+        act: impl FnOnce(&mut Session) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        let done = py.detach(|| act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner)));
+        done.map_err(|e| raise(py, &e))
     }
 
-    fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Inner> {
+    fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Session> {
         // whoever holds it may wait for the interpreter
         self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
@@ -130,115 +49,95 @@ impl Simulation {
 impl Simulation {
     #[new]
     fn new(py: Python<'_>, source: &Source, set: Vec<String>) -> PyResult<Self> {
-        let (made, exception) = watched(py, None, |watch| {
-            let file = source.open(&set)?;
-            let (simulation, warnings) =
-                ropewalk::start(file.scene(), watch).map_err(|e| e.in_file(&file))?;
-            let (records, bound, row, stopped_by) = (Vec::new(), None, None, None);
-            let mut inner = Inner { file, simulation, records, bound, row, stopped_by, warnings };
-            inner.bind()?;
-            Ok(inner)
-        })?;
+        let (made, exception) = watched(py, None, |watch| Session::start(source.open(&set)?, watch))?;
         exception.map_or(Ok(()), Err)?;
         Ok(Simulation(Mutex::new(made.map_err(|e| raise(py, &e))?)))
     }
 
     /// Moves on by `dt`, at most to the end of the run.
     fn advance_by(&self, py: Python<'_>, dt: f64) -> PyResult<()> {
-        self.forward(py, |inner| {
-            let end = (inner.simulation.state.t + dt).min(inner.file.scene().run.duration);
-            inner.advance(end, false)
-        })
+        let raised = self.detached(py, |session| {
+            let end = (session.t() + dt).min(session.duration());
+            advance(session, end, false)
+        })?;
+        raised.map_or(Ok(()), Err)
     }
 
     /// Moves on to the time `t`, or by one step of the solver towards it.
     fn advance_to(&self, py: Python<'_>, t: f64, once: bool) -> PyResult<()> {
-        self.forward(py, |inner| inner.advance(t, once))
+        self.detached(py, |session| advance(session, t, once))?.map_or(Ok(()), Err)
     }
 
     #[getter]
     fn t(&self, py: Python<'_>) -> f64 {
-        self.lock(py).simulation.state.t
+        self.lock(py).t()
     }
     #[getter]
     fn duration(&self, py: Python<'_>) -> f64 {
-        self.lock(py).file.scene().run.duration
+        self.lock(py).duration()
     }
     #[getter]
     fn stopped_by(&self, py: Python<'_>) -> Option<String> {
-        self.lock(py).stopped_by.clone()
+        self.lock(py).stopped_by().map(String::from)
     }
     #[getter]
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
-        self.lock(py).warnings.clone()
+        self.lock(py).warnings().to_vec()
     }
     #[getter]
     fn title(&self, py: Python<'_>) -> String {
-        self.lock(py).file.title().to_string()
+        self.lock(py).file().title().to_string()
     }
     /// Steps of the solver so far, and those that were repeated with a smaller one.
     #[getter]
     fn steps(&self, py: Python<'_>) -> (u64, u64) {
-        let counts = self.lock(py).simulation.work.counts;
+        let counts = self.lock(py).simulation().work.counts;
         (counts.steps, counts.rejected)
     }
     /// Names and units of the columns.
     fn columns(&self, py: Python<'_>) -> Vec<(String, String)> {
-        let inner = self.lock(py);
-        let all = inner.records.iter().flat_map(|r| r.columns());
-        all.map(|c| (c.name, if c.unit == "1" { String::new() } else { c.unit })).collect()
+        self.lock(py).columns().iter().map(|c| (c.name.clone(), c.unit.clone())).collect()
     }
     /// The records at the present instant.
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyByteArray>> {
-        let row = py.detach(|| {
-            let mut inner = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            inner.look().map(<[f64]>::to_vec)
-        });
-        Ok(crate::bytes(py, [row.map_err(|e| raise(py, &e))?.as_slice()]))
+        let row = self.detached(py, |session| session.values().map(<[f64]>::to_vec))?;
+        Ok(crate::bytes(py, [row.as_slice()]))
     }
     /// One column of them.
     fn value(&self, py: Python<'_>, k: usize) -> PyResult<f64> {
-        let value = self.lock(py).look().map(|row| row.get(k).copied().unwrap_or(f64::NAN));
+        let value = self.lock(py).values().map(|row| row.get(k).copied().unwrap_or(f64::NAN));
         value.map_err(|e| raise(py, &e))
+    }
+
+    /// Name, unit, present value, least and greatest value of each input.
+    fn inputs(&self, py: Python<'_>) -> Vec<(String, String, f64, f64, f64)> {
+        let session = self.lock(py);
+        let describe = |i: &std::sync::Arc<ropewalk::core::Input>| {
+            let [least, most] = i.limits();
+            (i.name().to_string(), i.unit().to_string(), i.value(session.t()), least, most)
+        };
+        session.simulation().inputs().iter().map(describe).collect()
+    }
+    /// Sets an input from here on.
+    fn set_input(&self, py: Python<'_>, name: &str, value: f64) -> PyResult<()> {
+        self.lock(py).set_input(name, value).map_err(|e| raise(py, &e))
     }
 
     /// The complete state, to be restored to the last bit. Kept factors are dropped, as restoring does.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let made = py.detach(|| -> Result<Vec<u8>, Error> {
-            let mut inner = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            let checkpoint = inner.simulation.checkpoint()?;
-            let all = (checkpoint, inner.stopped_by.clone());
-            postcard::to_stdvec(&all)
-                .map_err(|e| Fault::new(format!("the state can't be written: {e}")).into())
-        });
-        Ok(PyBytes::new(py, &made.map_err(|e| raise(py, &e))?))
+        let made = self.detached(py, |session| {
+            let unwritten = |e: postcard::Error| Fault::new(format!("the state can't be written: {e}"));
+            Ok(postcard::to_stdvec(&session.snapshot()?).map_err(unwritten)?)
+        })?;
+        Ok(PyBytes::new(py, &made))
     }
 
     /// Goes back, or on, to a state.
     fn restore(&self, py: Python<'_>, state: &[u8]) -> PyResult<()> {
-        let done = py.detach(|| -> Result<(), Error> {
-            let unreadable =
-                |e: postcard::Error| Fault::new(format!("this is no state of a simulation: {e}"));
-            let (checkpoint, stopped_by): (Checkpoint, Option<String>) =
-                postcard::from_bytes(state).map_err(unreadable)?;
-            let mut inner = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            let scene = inner.file.scene();
-            let mut model = inner.file.build()?;
-            if !checkpoint.meshes.is_empty() {
-                model = scene.build_on(&checkpoint.meshes)?;
-            }
-            let restored =
-                ropewalk::Simulation::restore(model, &scene.solver, scene.run.duration, checkpoint);
-            inner.simulation = restored.map_err(|e| match e {
-                Unfit::Step(e) => Error::from(e),
-                e => Fault::new(e.to_string()).into(),
-            })?;
-            let audit = inner.file.scene().run.audit;
-            inner.simulation.keep_audit(audit);
-            inner.stopped_by = stopped_by;
-            inner.row = None;
-            inner.bind()
-        });
-        done.map_err(|e| raise(py, &e))
+        self.detached(py, |session| {
+            let unreadable = |e: postcard::Error| Fault::new(format!("this is no state of a simulation: {e}"));
+            let snapshot: Snapshot = postcard::from_bytes(state).map_err(unreadable)?;
+            session.restore(snapshot)
+        })
     }
 }
