@@ -15,6 +15,7 @@
 //! }
 //! ```
 
+pub use crate::commands::shared::SharedSweep;
 use crate::commands::{self, Exit};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
@@ -41,13 +42,13 @@ use std::process::ExitCode;
         (143 SIGTERM, 129 SIGHUP, which end a run as Ctrl-C does).",
     disable_help_subcommand = true
 )]
-struct Cli {
+pub(crate) struct Cli {
     #[command(subcommand)]
-    command: Command,
+    pub(crate) command: Command,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+pub(crate) enum Command {
     /// Run a scene; history, summary and pictures go into a folder of their own
     #[command(after_help = "Examples:\n  \
         ropewalk run scene.toml\n  \
