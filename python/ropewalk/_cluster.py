@@ -71,7 +71,7 @@ def _submit(
         try:
             ahead = max(AHEAD * sum(client.nthreads().values()), AHEAD)
             first = [future for _ in range(min(ahead, len(left))) if (future := submit()) is not None]
-            completed = as_completed(first)
+            completed = as_completed(first, loop=client.loop)
             for future in completed:
                 if future.status in ("cancelled", "lost"):
                     return list(left.values())
