@@ -1,6 +1,7 @@
 """Sweeps on a cluster of processes, of which things break in the middle: what comes out is the same to the last bit."""
 
 import contextlib
+import csv
 import json
 import os
 import signal
@@ -168,7 +169,7 @@ def test_the_command_of_the_wheel_computes_on_a_cluster(cluster, tmp_path):
         assert said == "" and process.returncode == 0, said
 
     def table(name: str):
-        lines = [line.split(",") for line in (tmp_path / name / "table.csv").read_text().splitlines()]
+        lines = list(csv.reader((tmp_path / name / "table.csv").read_text().splitlines()))
         clock = lines[0].index("cpu [s]")
         return [[cell for k, cell in enumerate(line) if k != clock] for line in lines]
 

@@ -21,7 +21,7 @@ def test_the_readme_runs(tmp_path, monkeypatch):
         lines = [line for line in block.splitlines() if ".plot(" not in line]
         exec("\n".join(lines), names)
     assert names["sim"].done and len(names["rows"]) == 3
-    assert not names["certificate"].sensitive and len(names["some"]) == 8 and names["reach"].calls == 1
+    assert not names["certificate"].sensitive and len(names["some"]) == 4 and names["reach"].calls == 1
     assert names["rows"]["weight.x"][0] < names["rows"]["weight.x"][2]
 
 
