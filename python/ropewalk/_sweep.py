@@ -135,7 +135,8 @@ class Job:
             path = Path(scene)
             self.json = path.suffix.lower() == ".json"
             self.files = str(path.absolute().parent) if path.suffix else None
-        self.measured = [_meaning(measure), self.files_in(self.text)]
+        what = [_native.__version__, self.text, _meaning(measure), self.files_in(self.text)]
+        self.key = hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
     def files_in(self, text: str) -> dict[str, str]:
         """Files that a text names, with what is in them: the scene is another one if they change."""
@@ -156,7 +157,7 @@ class Job:
     def path(self, parameters: Mapping[str, Any]) -> Path:
         """Where the row of a combination is: the same scene, version and parameters have the same."""
         given = plain(self.fixed | dict(parameters))
-        what = [_native.__version__, self.text, given, self.measured, self.files_in(json.dumps(given))]
+        what = [self.key, given, self.files_in(json.dumps(given))]
         key = hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
         return self.folder / f"{key[:24]}.json"
 
@@ -164,9 +165,7 @@ class Job:
         """The row of a combination that is complete."""
         try:
             row = json.loads(self.path(parameters).read_text(encoding="utf-8"))
-        except FileNotFoundError:
-            return None
-        except ValueError:
+        except (FileNotFoundError, ValueError):
             return None
         return row if row.get("status") in COMPLETE else None
 
@@ -315,7 +314,8 @@ def sweep(
     except OSError as e:
         raise OutputError(f"can't create {folder / 'rows'}: {e}") from None
     job = Job(scene, fixed, folder / "rows", measure)
-    left = [parameters for parameters in grid if job.row(parameters) is None]
+    rows = [job.row(parameters) for parameters in grid]
+    left = [parameters for parameters, row in zip(grid, rows) if row is None]
     if left:
         # what is wrong with the scene or a name is said once, before anything runs
         check(job.source(), **(fixed | left[0]))  # type: ignore[arg-type]
@@ -323,8 +323,8 @@ def sweep(
         _in_threads(job, left, jobs or _cores())
     else:
         _cluster.each(client, job.run_all, left, job.write_all, batch=batch, retries=retries)
-    rows = [json.loads(job.path(p).read_text(encoding="utf-8")) for p in grid]
-    return Sweep(rows, folder)
+    there = [row or json.loads(job.path(p).read_text(encoding="utf-8")) for p, row in zip(grid, rows)]
+    return Sweep(there, folder)
 
 
 def _cores() -> int:

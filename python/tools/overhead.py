@@ -41,22 +41,22 @@ def main() -> None:
     scene = short()
     heights: list[Any] = [f"{1 + 1e-3 * k} m" for k in range(runs)]
     few = heights[: min(500, runs)]
-    start = time.perf_counter()
+    start, cpu = time.perf_counter(), time.process_time()
     for height in few:
         rw.run(scene, height=height)
-    alone = (time.perf_counter() - start) / len(few)
-    print(f"a run alone {1e3 * alone:.2f} ms")
+    wall, alone = ((clock - begun) / len(few) for clock, begun in ((time.perf_counter(), start), (time.process_time(), cpu)))
+    print(f"a run alone {1e3 * wall:.2f} ms, of CPU {1e3 * alone:.2f} ms")
     for jobs in (1, os.cpu_count() or 1):
         with tempfile.TemporaryDirectory() as folder:
-            start = time.perf_counter()
+            start, cpu = time.perf_counter(), time.process_time()
             rows = rw.sweep(scene, {"height": heights}, out=folder, jobs=jobs)
-            each = (time.perf_counter() - start) / runs
+            each, spent = (time.perf_counter() - start) / runs, (time.process_time() - cpu) / runs
             assert len(rows) == runs and not rows.failed
             start = time.perf_counter()
             rw.sweep(scene, {"height": heights}, out=folder)
             again = time.perf_counter() - start
-        print(f"{runs} runs, {jobs} at a time: {1e3 * each:.2f} ms each, and {1e3 * (each * jobs - alone):+.2f} ms of a")
-        print(f"  thread's time beside the run; the same call again {again:.1f} s")
+        print(f"{runs} runs, {jobs} at a time: {1e3 * each:.2f} ms each, of CPU {1e3 * spent:.2f} ms, {1e3 * (spent - alone):.2f} ms")
+        print(f"  of them beside the run; the same call again {again:.1f} s")
     if "--cluster" in sys.argv:
         from distributed import Client, LocalCluster
 

@@ -128,7 +128,7 @@ impl Planned {
             format!("sbatch --array=1-{parts} --cpus-per-task={jobs} job.sh, where job.sh ends with"),
         );
         sheet.entry("", format!("{command} --part $SLURM_ARRAY_TASK_ID/{parts} --jobs {jobs}"));
-        sheet.entry("in the end", format!("{command}"));
+        sheet.entry("in the end", command);
         sheet.entry("", "computes what is missing and writes the table");
         sheet.to_string()
     }
