@@ -58,18 +58,20 @@ def main() -> None:
         print(f"{runs} runs, {jobs} at a time: {1e3 * each:.2f} ms each, of CPU {1e3 * spent:.2f} ms, {1e3 * (spent - alone):.2f} ms")
         print(f"  of them beside the run; the same call again {again:.1f} s")
     if "--cluster" in sys.argv:
-        from distributed import Client, LocalCluster
+        from distributed import Client
+        from distributed.deploy.subprocess import SubprocessCluster
 
-        with tempfile.TemporaryDirectory() as folder, LocalCluster(
-            n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=None, processes=True
-        ) as cluster, Client(cluster) as client:
+        workers = os.cpu_count() or 1
+        options = {"n_workers": workers, "worker_kwargs": {"nthreads": 1}}
+        with tempfile.TemporaryDirectory() as folder, SubprocessCluster(**options) as cluster, Client(cluster) as client:
             before = client.run_on_scheduler(memory)
-            start = time.perf_counter()
-            rw.sweep(scene, {"height": heights}, out=folder, client=client)
-            each = (time.perf_counter() - start) / runs
-            after = client.run_on_scheduler(memory)
-            print(f"{runs} runs on a cluster: {1e3 * each:.2f} ms each; its scheduler, which shares this process, has")
-            print(f"  {after:.0f} MB after {before:.0f} MB")
+            for batch in (1, 20):
+                start = time.perf_counter()
+                rw.sweep(scene, {"height": heights}, out=Path(folder) / str(batch), client=client, batch=batch)
+                each = (time.perf_counter() - start) / runs
+                after = client.run_on_scheduler(memory)
+                print(f"{runs} runs on a cluster, {batch} at a time: {1e3 * each:.2f} ms each; its scheduler has")
+                print(f"  {after:.0f} MB after {before:.0f} MB")
     if "--command" in sys.argv:
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "falls.json").write_text(json.dumps(scene.to_dict()))
