@@ -15,13 +15,14 @@
 //! }
 //! ```
 
+pub use crate::commands::shared::SharedSweep;
 use crate::commands::{self, Exit};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use ropewalk_models::Bundled;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::run::Every;
-use ropewalk_studies::sweep::{Over, Report};
+use ropewalk_studies::sweep::{Over, Part, Report};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -41,13 +42,13 @@ use std::process::ExitCode;
         (143 SIGTERM, 129 SIGHUP, which end a run as Ctrl-C does).",
     disable_help_subcommand = true
 )]
-struct Cli {
+pub(crate) struct Cli {
     #[command(subcommand)]
-    command: Command,
+    pub(crate) command: Command,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+pub(crate) enum Command {
     /// Run a scene; history, summary and pictures go into a folder of their own
     #[command(after_help = "Examples:\n  \
         ropewalk run scene.toml\n  \
@@ -84,7 +85,11 @@ enum Command {
         A range is FROM:TO:STEP and includes its ends. The folder holds sweep.json (scenes and parameters), table.csv\n\
         (a row for each run), plots/*.svg (over all runs) and runs/NAME (what `ropewalk run` leaves behind).\n\
         Last values that aren't steady are named: `--report mean` takes the mean over the last tenth of each run instead.\n\
-        The same command again computes only what is missing, failed or was interrupted.")]
+        The same command again computes only what is missing, failed or was interrupted.\n\n\
+        With --samples 200 values are drawn from ranges: --vary 'speed=5..25 kn' --vary n=4..64:1 (whole numbers); --latin\n\
+        spreads them evenly. The same seed draws the same values everywhere.\n\
+        Beyond one machine: --plan lists the runs and prints what a batch array has to call, --part 3/40 computes a share\n\
+        into the folder, which all machines have to see, and the command without both collects them into the same table.")]
     Sweep(SweepArgs),
     /// Make the figures and tables of a paper, a report or a thesis, each by its number
     #[command(after_help = "Examples:\n  \
@@ -199,9 +204,19 @@ pub(crate) struct SweepArgs {
     /// Bundled scenes, or .toml or .json files
     #[arg(value_name = "SCENE", required = true)]
     pub(crate) scenes: Vec<String>,
-    /// Vary a parameter over values separated by commas, or over a range FROM:TO:STEP; may be given several times
+    /// Vary a parameter over values separated by commas, over FROM:TO:STEP, or with --samples over FROM..TO; may be given
+    /// several times
     #[arg(long, value_name = "NAME=V1,V2,...")]
     pub(crate) vary: Vec<String>,
+    /// Draw so many values from each range FROM..TO; these parameters change together
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    pub(crate) samples: Option<usize>,
+    /// Draw others: the same seed gives the same values on every machine
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "samples")]
+    pub(crate) seed: u64,
+    /// Draw a Latin hypercube: as many equal parts of each range as there are samples, one value from each
+    #[arg(long, requires = "samples")]
+    pub(crate) latin: bool,
     /// Set a parameter in all runs; may be given several times
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(crate) overrides: Vec<String>,
@@ -214,6 +229,15 @@ pub(crate) struct SweepArgs {
     /// Runs at the same time [default: as many as there are cores]
     #[arg(long, short, value_name = "N", value_parser = at_least_one)]
     pub(crate) jobs: Option<usize>,
+    /// Compute nothing: check the sweep, list its runs in plan.csv, and say how to compute it in parts
+    #[arg(long, conflicts_with = "part")]
+    pub(crate) plan: bool,
+    /// Compute one of N equal parts, on whichever machine sees the folder; the command without this collects them
+    #[arg(long, value_name = "K/N", conflicts_with = "fresh")]
+    pub(crate) part: Option<Part>,
+    /// Compute on the workers of a Dask scheduler, such as tcp://node1:8786; done by the command of the Python package
+    #[arg(long, value_name = "ADDRESS", conflicts_with_all = ["plan", "part"])]
+    pub(crate) dask: Option<String>,
     /// Value that stands for a run in the report, in tables/ and in pictures over a parameter
     #[arg(long, default_value = "last", value_parser = tail_value())]
     pub(crate) report: Report,
@@ -271,7 +295,7 @@ pub fn exit_from(
     let done = match cli.command {
         Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
-        Command::Sweep(args) => commands::sweep::sweep(args, bundled),
+        Command::Sweep(args) => commands::sweep::sweep(&args, bundled),
         Command::Atlas(args) => commands::atlas::atlas(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
         Command::Cost(args) => commands::cost::cost(args, bundled),

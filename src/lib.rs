@@ -48,8 +48,8 @@ pub use ropewalk_core::{BuildError, Model, Simulation, State};
 pub use ropewalk_models::bundled;
 pub use ropewalk_report::Watch;
 pub use ropewalk_scene::{Air, Builder, Bundled, MarkerRef, Run, Scene, SceneError, SceneFile, Water};
-pub use ropewalk_studies::certificate::{Cause, Certificate, Change};
-pub use ropewalk_studies::cost::{CostAdvice, CostOptions, CostOutcome, cost};
+pub use ropewalk_studies::certificate::{Cause, Certificate, Change, certify_scene};
+pub use ropewalk_studies::cost::{CostAdvice, CostOptions, CostOutcome, cost, cost_of};
 pub use ropewalk_studies::effects::{
     Advice, EffectTrial, EffectWork, EffectsOptions, EffectsOutcome, Ledger, Verdict, effects, write_effects,
 };

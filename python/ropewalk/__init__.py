@@ -10,17 +10,25 @@ A scene is a bundled one (`rw.list()`), a path, a dict, or built: see `Scene`. N
 """
 
 from ._errors import OutputError, RopewalkError, SceneError, SolverError
+from ._linearise import Linearised, linearise
 from ._native import Stop, __version__
+from ._objective import Objective, objective
 from ._run import Run, load, run
 from ._scene import AnyScene, Part, Scene
 from ._simulation import Simulation
+from ._studies import Certificate, Cost, Effects, certify, cost, effects
 from ._sweep import Sweep, sweep
 from ._tools import Checked, Modes, check, describe, list, modes, schemas
 
 __all__ = [
     "AnyScene",
+    "Certificate",
     "Checked",
+    "Cost",
+    "Effects",
+    "Linearised",
     "Modes",
+    "Objective",
     "OutputError",
     "Part",
     "RopewalkError",
@@ -32,11 +40,16 @@ __all__ = [
     "Stop",
     "Sweep",
     "__version__",
+    "certify",
     "check",
+    "cost",
     "describe",
+    "effects",
+    "linearise",
     "list",
     "load",
     "modes",
+    "objective",
     "run",
     "schemas",
     "sweep",

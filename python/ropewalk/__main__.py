@@ -7,9 +7,14 @@ from . import _native
 
 
 def main() -> int:
+    arguments = sys.argv[1:]
+    if arguments[:1] == ["sweep"] and any(word.split("=")[0] == "--dask" for word in arguments):
+        from ._cluster import command
+
+        return command(arguments)
     # Python's own handler would only be asked when the command has ended
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return _native.main("ropewalk", *sys.argv[1:])
+    return _native.main("ropewalk", *arguments)
 
 
 if __name__ == "__main__":

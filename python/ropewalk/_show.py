@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 COLOURS = ("#2a6fbb", "#c8553d", "#3a8c5f", "#8457a6")
 WIDTH, HEIGHT, EDGE = 300, 120, 4
 MOST_POINTS, MOST_PICTURES = 400, 6
+# a notebook keeps all that it shows
+LARGEST_PAGE = 20_000_000
 
 
 def by_unit(run: Run) -> dict[str, list[str]]:
@@ -39,7 +41,12 @@ def svg(t: Array, curves: list[Array]) -> str:
 
 
 def html(run: Run) -> str:
-    """The summary and small pictures, as a notebook shows them."""
+    """The page of the run if its folder has one, or else the summary and small pictures, as a notebook shows them."""
+    page = None if run.folder is None else run.folder / "report.html"
+    if page is not None and page.is_file() and page.stat().st_size <= LARGEST_PAGE:
+        text = escape(page.read_text(encoding="utf-8"), quote=True)
+        frame = 'sandbox="allow-scripts" style="width:100%;height:640px;border:0"'
+        return f'<iframe {frame} srcdoc="{text}"></iframe>'
     message = run.summary.get("message")
     about = f"{escape(run.status)}{': ' + escape(message) if message else ''}, {len(run.t)} rows"
     warnings = "".join(f"<li>{escape(w)}</li>" for w in run.warnings)
@@ -60,12 +67,17 @@ def html(run: Run) -> str:
     )
 
 
-def plot(run: Run, names: tuple[str, ...], ax: Any, options: dict[str, Any]) -> Any:
-    """Columns over time, by matplotlib."""
+def pyplot() -> Any:
+    """Matplotlib, or what to do without."""
     try:
         import matplotlib.pyplot as plt
     except ImportError:
         raise ImportError("pictures need matplotlib: pip install matplotlib") from None
+    return plt
+
+
+def plot(run: Run, names: tuple[str, ...], ax: Any, options: dict[str, Any]) -> Any:
+    """Columns over time, by matplotlib."""
     groups: dict[str, list[str]] = {}
     for name in names:
         columns = [name] if name in run.units else [c for c in run if c.startswith(f"{name}.")]
@@ -75,7 +87,7 @@ def plot(run: Run, names: tuple[str, ...], ax: Any, options: dict[str, Any]) -> 
             groups.setdefault(run.units[column], []).append(column)
     groups = groups or by_unit(run)
     if ax is None:
-        _, ax = plt.subplots(len(groups), sharex=True, squeeze=False, layout="constrained")
+        _, ax = pyplot().subplots(len(groups), sharex=True, squeeze=False, layout="constrained")
     axes = np.atleast_1d(ax).ravel()
     if len(axes) < len(groups):
         raise ValueError(f"the columns have {len(groups)} units, but there are {len(axes)} axes to draw on")

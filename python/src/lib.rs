@@ -3,8 +3,10 @@
 //! Arrays go over as bytes, texts as JSON. Python's interpreter is free for other threads while anything computes, and no
 //! signal handler is installed: Ctrl-C stays Python's.
 
+mod linearise;
 mod scene;
 mod simulation;
+mod studies;
 mod watch;
 
 use pyo3::prelude::*;
@@ -169,10 +171,16 @@ fn _native(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Source>()?;
     m.add_class::<Stop>()?;
     m.add_class::<simulation::Simulation>()?;
+    m.add_class::<studies::SharedSweep>()?;
     m.add_function(wrap_pyfunction!(run, m)?)?;
     m.add_function(wrap_pyfunction!(read_history, m)?)?;
     m.add_function(wrap_pyfunction!(check, m)?)?;
     m.add_function(wrap_pyfunction!(modes, m)?)?;
+    m.add_function(wrap_pyfunction!(linearise::linearise, m)?)?;
+    m.add_function(wrap_pyfunction!(studies::cost, m)?)?;
+    m.add_function(wrap_pyfunction!(studies::effects, m)?)?;
+    m.add_function(wrap_pyfunction!(studies::certify, m)?)?;
+    m.add_function(wrap_pyfunction!(studies::samples, m)?)?;
     m.add_function(wrap_pyfunction!(bundled, m)?)?;
     m.add_function(wrap_pyfunction!(describe, m)?)?;
     m.add_function(wrap_pyfunction!(schemas, m)?)?;

@@ -39,6 +39,10 @@ impl Source {
 }
 
 impl Source {
+    /// The text itself.
+    pub fn scene_text(&self) -> &SceneText {
+        &self.0
+    }
     /// The scene with these parameters, each `name=value`.
     pub fn open(&self, set: &[String]) -> Result<SceneFile, Fault> {
         self.0.with(set)

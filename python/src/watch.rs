@@ -5,7 +5,7 @@ use ropewalk::{Error, Watch};
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::thread::{self, ScopedJoinHandle};
+use std::thread::{self, Thread};
 use std::time::Duration;
 
 /// How often Python is asked whether it has caught a signal.
@@ -67,19 +67,18 @@ pub fn watched<T: Send>(
         return Ok((py.detach(|| work(Watch::flag(flag))), None));
     }
     let flag = Flag::take();
-    let mut raised = None;
+    let (mut raised, over) = (None, AtomicBool::new(false));
     let done = py.detach(|| {
         thread::scope(|scope| {
             let watch = Watch::flag(flag.0);
-            let this = thread::current();
+            let ended = Ended { is: &over, waiting: thread::current() };
             let work = move || {
-                let done = work(watch);
-                this.unpark();
-                done
+                let _ended = ended;
+                work(watch)
             };
             let worker =
                 thread::Builder::new().name("ropewalk".into()).stack_size(STACK).spawn_scoped(scope, work)?;
-            wait(&worker, flag.0, &mut raised);
+            wait(&over, flag.0, &mut raised);
             Ok::<_, std::io::Error>(worker.join().unwrap_or_else(|panic| resume_unwind(panic)))
         })
     })?;
@@ -89,8 +88,22 @@ pub fn watched<T: Send>(
     }
 }
 
-fn wait<T>(worker: &ScopedJoinHandle<'_, T>, flag: &AtomicBool, raised: &mut Option<PyErr>) {
-    while !worker.is_finished() {
+/// Tells who waits that the work is over, also if it panics. A thread itself has not finished when it says so, and who
+/// asked it would wait once more.
+struct Ended<'a> {
+    is: &'a AtomicBool,
+    waiting: Thread,
+}
+
+impl Drop for Ended<'_> {
+    fn drop(&mut self) {
+        self.is.store(true, Ordering::Release);
+        self.waiting.unpark();
+    }
+}
+
+fn wait(over: &AtomicBool, flag: &AtomicBool, raised: &mut Option<PyErr>) {
+    while !over.load(Ordering::Acquire) {
         thread::park_timeout(LOOK);
         // of several signals the first one counts, the others have nothing left to stop
         if let Err(e) = Python::attach(|py| py.check_signals()) {

@@ -15,12 +15,13 @@ PYTHON = Path(__file__).parents[1]
 def test_the_readme_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", (PYTHON / "README.md").read_text(encoding="utf-8"), re.DOTALL)
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     names: dict = {}
     for block in blocks:
         lines = [line for line in block.splitlines() if ".plot(" not in line]
         exec("\n".join(lines), names)
     assert names["sim"].done and len(names["rows"]) == 3
+    assert not names["certificate"].sensitive and len(names["some"]) == 4 and names["reach"].calls == 1
     assert names["rows"]["weight.x"][0] < names["rows"]["weight.x"][2]
 
 
@@ -32,7 +33,7 @@ def test_the_example_runs(tmp_path):
     assert len(deep) == 4 and deep == sorted(deep, reverse=True)
 
 
-@pytest.mark.parametrize("name", ["ropewalk", "ropewalk._scene", "ropewalk._simulation"])
+@pytest.mark.parametrize("name", ["ropewalk", "ropewalk._objective", "ropewalk._scene", "ropewalk._simulation"])
 def test_docstrings_run(name):
     module = importlib.import_module(name)
     import ropewalk

@@ -132,22 +132,36 @@ def test_a_sweep_that_was_killed_goes_on(tmp_path):
     )
 
 
-def test_a_cluster_computes_the_same_with_a_worker_killed(tmp_path):
-    distributed = pytest.importorskip("distributed")
-    vary = {"speed": [f"{5 + k} kn" for k in range(30)], "elements": [4, 6]}
-    rows = tmp_path / "a" / "rows"
+def test_samples_are_those_of_the_command_line(tmp_path):
+    vary = {"speed": "5..25 kn", "drag": ["choo-casarella", "constant"], "elements": "4..8:1"}
+    rows = rw.sweep("hose-turn", vary, out=tmp_path / "a", samples=3, seed=2, latin=True, **FIXED)
+    command = [sys.executable, "-m", "ropewalk", "sweep", "hose-turn", "--vary", "speed=5..25 kn", "--vary"]
+    command += ["drag=choo-casarella,constant", "--vary", "elements=4..8:1", "--samples", "3", "--seed", "2", "--latin"]
+    subprocess.run([*command, "--set", "duration=1s", "--plan", "--quiet", "--out", "b"], cwd=tmp_path, check=True)
+    lines = [line.split(",") for line in (tmp_path / "b" / "plan.csv").read_text().splitlines()]
+    assert lines[0][2:] == ["speed [kn]", "drag", "elements"]
+    assert [[f"{float(s)!r} kn", d, int(n)] for *_, s, d, n in lines[1:]] == [
+        [f"{float(r['speed'].split()[0])!r} kn", r["drag"], r["elements"]] for r in rows
+    ]
+    assert not rows.failed and len(rows) == 6
+    for wrong, match in (({"speed": "5..25 kn"}, "samples=100"), ({"speed": "25..5 kn"}, "ends before")):
+        with pytest.raises(rw.SceneError, match=match):
+            rw.sweep("hose-turn", wrong, out=tmp_path)
+    with pytest.raises(rw.SceneError, match="no range"):
+        rw.sweep("hose-turn", {"speed": [5]}, samples=3, out=tmp_path)
 
-    def kill(pid):
-        deadline = time.monotonic() + 20
-        while len(list(rows.glob("*.json"))) < 5 and time.monotonic() < deadline:
-            time.sleep(0.002)
-        os.kill(pid, signal.SIGKILL)
 
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
-        with distributed.Client(cluster) as client:
-            pid = next(iter(client.run(os.getpid).values()))
-            killer = threading.Thread(target=kill, args=(pid,))
-            killer.start()
-            there = rw.sweep("hose-turn", vary, out=tmp_path / "a", client=client, batch=2, **FIXED)
-            killer.join()
-    assert len(there) == 60 and same(there, rw.sweep("hose-turn", vary, out=tmp_path / "b", **FIXED))
+def test_rows_as_parquet(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    rows = rw.sweep("hose-turn", {"speed": ["5 kn", 7], "elements": [4, -1]}, out=tmp_path, **FIXED)
+    path = rows.to_parquet()
+    assert path == tmp_path / "table.parquet" and not list(tmp_path.glob(".*"))
+    there = pandas.read_parquet(path)
+    assert list(there.columns) == rows.columns and there["status"].tolist() == rows["status"].tolist()
+    assert there["speed"].tolist() == ["5 kn", "5 kn", "7", "7"] and there["elements"].tolist() == [4, -1, 4, -1]
+    # to the last bit, and nothing where there is nothing
+    assert np.array_equal(there["hose.end.z"].to_numpy(), rows["hose.end.z"], equal_nan=True)
+    assert there["hose.end.z"].isna().tolist() == [False, True, False, True]
+    with pytest.raises(rw.OutputError):
+        rows.to_parquet(tmp_path / "no" / "folder")

@@ -45,7 +45,7 @@ pub enum OutputError {
     },
 
     /// Another process computes in the folder.
-    #[error("another {kind} is at work in {}: wait for its end, or give another folder with --out", path.display())]
+    #[error("another {kind} is at work in {}: wait for its end, or take another folder", path.display())]
     Busy {
         /// What the folder is for, such as "sweep".
         kind: &'static str,

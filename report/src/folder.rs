@@ -1,11 +1,13 @@
 //! The folder of a run: where results go, so that no run ever overwrites another.
 
 use std::fs;
+use std::hash::{BuildHasher, RandomState};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process;
+use std::sync::LazyLock;
 
-use super::OutputError;
+use super::{FolderLock, OutputError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -52,7 +54,8 @@ impl RunFolder {
     pub fn at(path: PathBuf) -> Result<Self, OutputError> {
         fs::create_dir_all(&path).map_err(|error| cannot_create(&path, error))?;
         let mut entries = fs::read_dir(&path).map_err(OutputError::io("read folder", &path))?;
-        if entries.next().is_some() {
+        // a lock may be one's own, or that of one that was killed
+        if entries.any(|e| e.is_ok_and(|e| !FolderLock::is_named(&e.file_name()))) {
             return Err(OutputError::FolderInUse { path });
         }
         Self { path }.tried()
@@ -246,9 +249,11 @@ pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Outp
     write_atomic(path, &text)
 }
 
-/// Hidden, and different for each process that may write the same file.
+/// Hidden, and different for each process that may write the same file, on this machine or another.
 fn temporary_name(name: &str) -> String {
-    format!(".{name}.{}.tmp", process::id())
+    // keys of hash maps are random
+    static OWN: LazyLock<u64> = LazyLock::new(|| RandomState::new().hash_one(process::id()));
+    format!(".{name}.{:016x}.tmp", *OWN)
 }
 
 /// A path through or onto a file fails with various kinds of error; say it in one way.

@@ -1,6 +1,6 @@
 //! What a run leaves behind, and what it shows while it computes.
 //!
-//! - [`RunFolder`]: the folder of a run; nothing in it is ever overwritten by a later run.
+//! - [`RunFolder`]: the folder of a run; nothing in it is ever overwritten by a later run. [`FolderLock`]: one at a time.
 //! - [`Table`], [`TableWriter`]: time histories, as CSV; [`Csv`]: other tables; [`Sheet`]: reports for the terminal.
 //! - [`LinePlot`], [`Panels`], [`BarPlot`], [`ShapePlot`]: SVG pictures that need no fonts and no display.
 //! - [`Page`]: all of a run as one page for the browser, with its motion in space.
@@ -12,6 +12,7 @@ mod error;
 mod field;
 mod folder;
 mod interrupt;
+mod lock;
 mod number;
 mod page;
 pub mod plot;
@@ -26,6 +27,7 @@ pub use error::OutputError;
 pub use field::{BodyRecord, FieldRecord, LineRecord, LineSnapshot, Mesh, Pose, Quantity, Shape, Solid};
 pub use folder::{RUNS, RunFolder, cannot_create, plain, write_atomic, write_durable, write_json};
 pub use interrupt::Interrupt;
+pub use lock::FolderLock;
 pub use number::{number, rough};
 pub use page::{Entry, Event, Page, Panel};
 pub use plot::{Bar, BarPlot, LinePlot, Mark, Panels, Plane, Series, ShapePlot, Snapshot};

@@ -23,8 +23,8 @@ pub use builder::{Builder, Numbered};
 pub use controllers::{Bound, Channels};
 pub use current::Current;
 pub use document::{
-    Document, Fault, Format, Key, Kind, Migrated, Parameter, Place, Rewrite, Span, Table, Value, Varied,
-    did_you_mean, migrate, quoted, read_text,
+    Document, Fault, Format, Key, Kind, Migrated, Parameter, Place, Rewrite, Sampling, Span, Table, Value,
+    Varied, did_you_mean, migrate, quoted, read_text,
 };
 pub use inputs::{InputSpec, Inputs};
 pub use marker::{MarkerRef, split_marker};

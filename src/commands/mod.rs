@@ -13,6 +13,7 @@ pub(crate) mod modes;
 pub(crate) mod resume;
 pub(crate) mod run;
 mod schema;
+pub(crate) mod shared;
 pub(crate) mod sweep;
 pub(crate) mod variants;
 pub(crate) mod verify;

@@ -6,7 +6,7 @@ use ropewalk_models::Bundled;
 use ropewalk_report::{Interrupt, SweepProgress, Watch, rough};
 use ropewalk_scene::{Fault, SceneFile, SceneText};
 pub use ropewalk_studies::Error;
-pub use ropewalk_studies::certificate::{Certificate, certify, choose};
+pub use ropewalk_studies::certificate::{Certificate, certify, choose, sized};
 use ropewalk_studies::run::{Every, Outcome, RunOptions, Status, run as run_scene};
 use ropewalk_studies::study::{Axes, Runs, Target};
 use std::path::PathBuf;
@@ -125,7 +125,7 @@ impl RunArgs {
         let runs = self.runs(axes, of.as_ref().and_then(|of| of.t));
         let records = match of {
             Some(of) => vec![of],
-            None => sized(Target::all(axes.file())?, &outcome),
+            None => sized(Target::all(axes.file())?, &outcome.history),
         };
         let certificate = certify(&runs, &axes.base, &records, None, Watch::signals(warn));
         runs.progress.finish();
@@ -153,18 +153,6 @@ impl RunArgs {
         outcome.folder.write_summary(&outcome.summary)?;
         Ok(exit)
     }
-}
-
-/// The records that have a size, and columns that belong to none of them.
-fn sized(all: Vec<Target>, outcome: &Outcome) -> Vec<Target> {
-    let mut kept: Vec<Target> = Vec::new();
-    for target in all {
-        let inside = kept.iter().any(|k| k.columns.contains(&target.columns.start));
-        if !inside && target.size_in(&outcome.history).is_ok() {
-            kept.push(target);
-        }
-    }
-    kept
 }
 
 /// Says how a run ended.

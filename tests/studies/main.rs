@@ -8,4 +8,5 @@ mod program;
 mod atlas;
 mod cost;
 mod effects;
+mod parts;
 mod sweep;

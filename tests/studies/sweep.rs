@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
 /// A weight on a short cable; a hand may lead it away until the cable's rod can't follow.
-const SWING: &str = r#"
+pub const SWING: &str = r#"
 title = "A swing"
 
 [parameters]
@@ -72,13 +72,13 @@ type = "reaction"
 of = "hook"
 "#;
 
-fn text(path: impl AsRef<Path>) -> String {
+pub fn text(path: impl AsRef<Path>) -> String {
     let path = path.as_ref();
     fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
 /// A folder with the scene in it.
-fn folder() -> tempfile::TempDir {
+pub fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("swing.toml"), SWING).unwrap();
     folder
@@ -92,13 +92,13 @@ fn sweep(folder: &Path, arguments: &str) -> Said {
 }
 
 #[track_caller]
-fn done(said: Said) -> String {
+pub fn done(said: Said) -> String {
     assert_eq!(said.code, Some(0), "{}", said.stderr);
     said.stdout
 }
 
 /// A table: each row as heading and cell.
-fn table(path: impl AsRef<Path>) -> Vec<HashMap<String, String>> {
+pub fn table(path: impl AsRef<Path>) -> Vec<HashMap<String, String>> {
     let text = text(path);
     assert!(text.ends_with('\n'));
     let mut lines = text.lines().map(cells);
@@ -111,7 +111,7 @@ fn table(path: impl AsRef<Path>) -> Vec<HashMap<String, String>> {
 }
 
 /// The cells of a line of CSV.
-fn cells(line: &str) -> Vec<String> {
+pub fn cells(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
     let mut quoted = false;
     for c in line.chars() {
@@ -198,7 +198,7 @@ fn times(out: &Path) -> HashMap<PathBuf, SystemTime> {
 }
 
 /// The table without what a clock says.
-fn timeless(path: impl AsRef<Path>) -> Vec<Vec<String>> {
+pub fn timeless(path: impl AsRef<Path>) -> Vec<Vec<String>> {
     let rows = text(path);
     let cpu = cells(rows.lines().next().unwrap()).iter().position(|h| h == "cpu [s]").unwrap();
     let without = |line| {

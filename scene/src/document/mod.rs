@@ -32,6 +32,7 @@ mod migrate;
 mod moved;
 mod parameters;
 mod read;
+mod sample;
 mod source;
 #[cfg(test)]
 mod tests;
@@ -46,6 +47,7 @@ pub use migrate::{Migrated, Rewrite, migrate};
 pub use parameters::Parameter;
 pub use read::read_text;
 pub use read::{Document, Format};
+pub use sample::Sampling;
 pub use source::{Place, Span};
 pub use value::{Key, Kind, Table, Value};
 pub use vary::Varied;

@@ -1,6 +1,7 @@
 //! The values that a sweep gives to a parameter: `speed=5kn,15kn,25kn`, `start=40:120:40`.
 
 use super::fault::{Fault, quoted};
+use super::sample::is_range;
 use super::source::{Sources, Span};
 use ropewalk_quantity::Written;
 use std::collections::HashSet;
@@ -39,6 +40,13 @@ impl Varied {
                 return Err(fault(text, format!("{what} for {}", quoted(&varied.name)), part)
                     .with_help(format!("separate values by commas, as in `{}=1,2,3`", varied.name)));
             }
+            if is_range(value) {
+                let message = format!("{} is a range to draw from, which takes `--samples`", quoted(value));
+                let fault = fault(text, message, part);
+                return Err(
+                    fault.with_help("add `--samples 100`; all values at equal distances are `from:to:step`")
+                );
+            }
             match range(value)
                 .map_err(|(message, help)| fault(text, message, part.clone()).with_help(help))?
             {
@@ -75,7 +83,7 @@ impl Varied {
 }
 
 /// A fault at a place in the text of the option.
-fn fault(text: &str, message: impl Into<String>, at: Range<usize>) -> Fault {
+pub(super) fn fault(text: &str, message: impl Into<String>, at: Range<usize>) -> Fault {
     let mut sources = Sources::default();
     let source = sources.add("--vary", text);
     Fault::at(message, Span::new(source, at), &sources)

@@ -14,9 +14,11 @@ pub use accuracy::{Chosen, choose};
 pub use statement::{Cause, Certificate, Change};
 
 use crate::error::Error;
+use crate::simulate::simulate_with;
 use crate::study::{Axes, Runs, Settings, Target, words};
 use compare::{Refined, change, moved};
-use ropewalk_report::Watch;
+use ropewalk_report::{ProgressMode, SweepProgress, Table, Watch};
+use ropewalk_scene::{Fault, SceneText};
 
 /// How many times as many elements the finer mesh has.
 const FINER: f64 = 3.0;
@@ -24,6 +26,52 @@ const FINER: f64 = 3.0;
 const FAR: f64 = 10.0;
 /// What a fixed step is held to, which promises nothing.
 const OF_FIXED: f64 = 1e-3;
+
+/// Certifies a scene in memory, for the record `of`, `NAME` or `NAME@TIME`, or else for all that have a size; none if it
+/// was stopped.
+///
+/// # Errors
+/// The scene or the record is wrong, the scene doesn't run to its end, or there is nothing in it to refine.
+pub fn certify_scene(
+    text: &SceneText,
+    set: &[String],
+    of: Option<&str>,
+    watch: Watch,
+) -> Result<Option<Certificate>, Error> {
+    let axes = Axes::new(text, set)?;
+    let records = match of {
+        Some(of) => vec![Target::parse(of, axes.file())?],
+        None => {
+            let history = simulate_with(axes.file().scene(), watch).map_err(|e| e.in_file(axes.file()))?;
+            if watch.is_interrupted() {
+                return Ok(None);
+            }
+            sized(Target::all(axes.file())?, &history.table)
+        }
+    };
+    if axes.is_empty() {
+        let message =
+            "there is nothing to refine: the scene has neither elements nor time steps of the solver";
+        return Err(Fault::new(message).into());
+    }
+    let until = of.and_then(|_| records.first()?.t);
+    let runs = Runs::in_memory(&axes, until, SweepProgress::new(0, ProgressMode::Quiet));
+    let certificate = certify(&runs, &axes.base, &records, None, watch);
+    runs.progress.finish();
+    certificate
+}
+
+/// The records that have a size, and columns that belong to none of them.
+pub fn sized(all: Vec<Target>, history: &Table) -> Vec<Target> {
+    let mut kept: Vec<Target> = Vec::new();
+    for target in all {
+        let inside = kept.iter().any(|k| k.columns.contains(&target.columns.start));
+        if !inside && target.size_in(history).is_ok() {
+            kept.push(target);
+        }
+    }
+    kept
+}
 
 /// Certifies settings of a scene for these records; none if it was stopped.
 ///

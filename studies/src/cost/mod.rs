@@ -119,8 +119,15 @@ fn check(axes: &Axes<'_>, target: &Target) -> Result<(), Error> {
 /// # Errors
 /// The scene, the record or the folder is wrong, or the scene doesn't run at all.
 pub fn cost(scene: &str, bundled: &[Bundled], options: &CostOptions) -> Result<CostOutcome, Error> {
-    let text = SceneText::open(scene, bundled)?;
-    let axes = Axes::new(&text, &options.set)?;
+    cost_of(&SceneText::open(scene, bundled)?, options)
+}
+
+/// The same for the text of a scene.
+///
+/// # Errors
+/// As [`cost`].
+pub fn cost_of(text: &SceneText, options: &CostOptions) -> Result<CostOutcome, Error> {
+    let axes = Axes::new(text, &options.set)?;
     let target = Target::parse(&options.of, axes.file())?;
     if axes.is_empty() {
         let message = "there is nothing to vary: the scene has neither elements nor time steps of the solver";

@@ -2,9 +2,11 @@
 
 use super::work::EffectWork;
 use crate::run::{Counts, ProfileEntry};
+use serde::Serialize;
 
 /// What became of a run with an effect more or less.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// It ran.
     Ran {
@@ -28,7 +30,7 @@ impl Verdict {
 }
 
 /// An effect that was tried.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectTrial {
     /// Its name, such as `drag` or `bending of hose`.
     pub name: String,
@@ -39,7 +41,7 @@ pub struct EffectTrial {
 }
 
 /// All effects that change the record by less than the accuracy, left out together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Advice {
     /// The effects.
     pub names: Vec<String>,
@@ -48,7 +50,7 @@ pub struct Advice {
 }
 
 /// The ledger of effects of a scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Ledger {
     /// The record that was watched, as it was asked for.
     pub record: String,

@@ -7,7 +7,7 @@ use ropewalk_scene::Analysis;
 use std::ops::ControlFlow;
 
 /// The work and the forces of an effect in a run.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct EffectWork {
     /// The term that it belongs to.
     pub term: String,

@@ -112,7 +112,7 @@ pub fn write_modes(
     }
     let modal = found?;
     modal.warnings.iter().for_each(|w| warn(w));
-    let folder = folder.keep(file, &manifest)?;
+    let (folder, _lock) = folder.keep(file, &manifest)?;
     modal.table().write(&folder.table_file("modes")?)?;
     let pictures = pictures::draw(&folder, &modal, warn);
     let report = report::report(file, &modal, &folder, pictures, stopwatch.elapsed());

@@ -25,7 +25,10 @@ pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, St
 
 use crate::error::Error;
 use checkpoint::Saver;
-use ropewalk_report::{Elapsed, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch};
+use prepare::locked;
+use ropewalk_report::{
+    Elapsed, FolderLock, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch,
+};
 use ropewalk_scene::{Fault, SceneFile};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -91,7 +94,7 @@ pub(crate) fn run_showing(
         Err(e) if e.is_input() => return Err(e.in_file(file)),
         other => other,
     };
-    let folder = folder.keep(file, &manifest)?;
+    let (folder, lock) = folder.keep(file, &manifest)?;
     recorder.writer = Some(TableWriter::create(&folder.history_file(), &recorder.table)?);
     recorder.progress = Some(progress(scene.run.duration));
     let before = Elapsed::default();
@@ -111,7 +114,16 @@ pub(crate) fn run_showing(
         }
     }
     (recorder.warnings, recorder.watch) = (warnings, options.watch);
-    let job = Job { file, folder, recorder, stopwatch, before, is_resumed: false, notes: manifest.notes };
+    let job = Job {
+        file,
+        folder,
+        recorder,
+        stopwatch,
+        before,
+        is_resumed: false,
+        notes: manifest.notes,
+        _lock: lock,
+    };
     Ok(job.complete(started, options.profile))
 }
 
@@ -119,9 +131,10 @@ pub(crate) fn run_showing(
 /// again. Checkpoints go on as before unless the options say otherwise.
 ///
 /// # Errors
-/// There is no checkpoint, or it belongs to another scene or another version of the program.
+/// There is no checkpoint, or it belongs to another scene or another version of the program; another run is at work there.
 pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcome, Error> {
     let folder = RunFolder::earlier(options.out.clone().unwrap_or_default());
+    let lock = folder.path().is_dir().then(|| locked(folder.path())).transpose()?;
     let saved = checkpoint::read(&folder)?;
     let path = folder.scene_file();
     let file = SceneFile::open(&path.display().to_string(), &[], &[])?.named(&saved.name);
@@ -143,7 +156,7 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     recorder.warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
     recorder.watch = options.watch;
     let notes = manifest::notes(file.scene(), &simulation.model);
-    let job = Job { file: &file, folder, recorder, stopwatch, before, is_resumed: true, notes };
+    let job = Job { file: &file, folder, recorder, stopwatch, before, is_resumed: true, notes, _lock: lock };
     Ok(job.complete(Ok(started), options.profile))
 }
 
@@ -158,6 +171,8 @@ struct Job<'a> {
     is_resumed: bool,
     /// What its constraints have to say.
     notes: Vec<String>,
+    /// Kept until everything is written.
+    _lock: Option<FolderLock>,
 }
 
 impl Job<'_> {

@@ -1,9 +1,10 @@
 //! The folder of a study of many runs: where its runs are, and how the same study is known again.
 
-use ropewalk_report::{OutputError, RUNS, RunFolder, cannot_create, write_json};
+use super::share::sweep_up;
+use ropewalk_report::{FolderLock, OutputError, RUNS, RunFolder, cannot_create, write_json};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fs::{self, File, TryLockError};
+use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -36,11 +37,13 @@ pub fn shortened(text: &str) -> String {
 ///   tables/*.csv               last values by the first parameter
 ///   runs/speed=5kn,start=40/   a run, as `ropewalk run` leaves it
 /// ```
+///
+/// Parts of a study share it: each run of theirs comes into `runs/` whole.
 pub struct StudyFolder {
     path: PathBuf,
     kind: &'static str,
     /// Locked as long as the study is at work, and by the system unlocked however it ends.
-    _lock: File,
+    _lock: FolderLock,
 }
 
 /// What is found where a study shall go.
@@ -66,7 +69,41 @@ impl StudyFolder {
         fresh: bool,
         manifest: &S,
     ) -> Result<Self, OutputError> {
-        let path = match out {
+        let path = Self::find(out, fresh, manifest)?;
+        fs::create_dir_all(&path).map_err(|e| cannot_create(&path, e))?;
+        let Some(lock) = FolderLock::alone(&path)? else {
+            return Err(OutputError::Busy { kind: S::KIND, path });
+        };
+        let folder = Self { path, kind: S::KIND, _lock: lock };
+        if fresh {
+            folder.clear()?;
+        }
+        // who has it alone may do away with what parts that were killed have left
+        sweep_up(&folder.run(""));
+        write_json(&folder.manifest_file(), manifest)?;
+        Ok(folder)
+    }
+
+    /// The same for one of several that work at the study at the same time, on this machine or others.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open); others that are at work together are none.
+    pub(crate) fn join<S: Study>(out: Option<PathBuf>, manifest: &S) -> Result<Self, OutputError> {
+        let path = Self::find(out, false, manifest)?;
+        fs::create_dir_all(&path).map_err(|e| cannot_create(&path, e))?;
+        let Some(lock) = FolderLock::together(&path)? else {
+            return Err(OutputError::Busy { kind: S::KIND, path });
+        };
+        let folder = Self { path, kind: S::KIND, _lock: lock };
+        if !matches!(look(&folder.path, manifest), Found::Same) {
+            write_json(&folder.manifest_file(), manifest)?;
+        }
+        Ok(folder)
+    }
+
+    /// Where the study goes.
+    fn find<S: Study>(out: Option<PathBuf>, fresh: bool, manifest: &S) -> Result<PathBuf, OutputError> {
+        Ok(match out {
             Some(path) => match look(&path, manifest) {
                 Found::Files => return Err(OutputError::FolderInUse { path }),
                 Found::Other(difference) if !fresh => {
@@ -85,21 +122,7 @@ impl StudyFolder {
                     numbered.filter(|p| matches!(look(p, manifest), Found::Nothing | Found::Same));
                 fitting.next().unwrap_or_default()
             }
-        };
-        fs::create_dir_all(&path).map_err(|e| cannot_create(&path, e))?;
-        let lock = path.join(".lock");
-        let file = File::options().create(true).append(true).open(&lock);
-        let file = file.map_err(OutputError::io("write into", &path))?;
-        // where files can't be locked, two at a time are the user's own affair
-        if let Err(TryLockError::WouldBlock) = file.try_lock() {
-            return Err(OutputError::Busy { kind: S::KIND, path });
-        }
-        let folder = Self { path, kind: S::KIND, _lock: file };
-        if fresh {
-            folder.clear()?;
-        }
-        write_json(&folder.manifest_file(), manifest)?;
-        Ok(folder)
+        })
     }
 
     /// The folder itself.
@@ -132,7 +155,7 @@ impl StudyFolder {
             let path = self.path.join(folder);
             gone(path.clone(), fs::remove_dir_all(&path))?;
         }
-        let files = ["table.csv", "advice.json", "index.html"].map(|name| self.path.join(name));
+        let files = ["table.csv", "plan.csv", "advice.json", "index.html"].map(|name| self.path.join(name));
         for path in files.into_iter().chain([self.manifest_file()]) {
             gone(path.clone(), fs::remove_file(&path))?;
         }
@@ -148,7 +171,7 @@ fn look<S: Study>(path: &Path, manifest: &S) -> Found {
         };
     }
     // a lock is all that a study leaves that was killed at once
-    let is_lock = |e: std::io::Result<fs::DirEntry>| e.is_ok_and(|e| e.file_name() == ".lock");
+    let is_lock = |e: std::io::Result<fs::DirEntry>| e.is_ok_and(|e| FolderLock::is_named(&e.file_name()));
     match fs::read_dir(path) {
         Ok(mut entries) => {
             if entries.all(is_lock) {

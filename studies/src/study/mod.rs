@@ -5,12 +5,13 @@ mod axes;
 mod folder;
 mod runner;
 mod runs;
+mod share;
 mod target;
 
 pub use axes::Axes;
 pub(crate) use axes::{Settings, words};
 pub(crate) use folder::{Study, StudyFolder, shortened};
-pub(crate) use runner::{Runner, lock, on_all_cores};
+pub(crate) use runner::{Runner, complete, lock, on_all_cores};
 pub(crate) use runs::Run;
 pub use runs::Runs;
 pub use target::Target;

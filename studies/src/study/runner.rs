@@ -1,6 +1,7 @@
 //! The runs of a study, on all cores, each into a folder of its own: what an earlier call has computed is not computed
 //! again.
 
+use super::share::{beside, publish};
 use crate::error::{Error, caught};
 use crate::run::{RunOptions, Status, Summary, run_showing};
 use rayon::iter::{ParallelBridge, ParallelIterator};
@@ -8,6 +9,7 @@ use ropewalk_report::{ProgressMode, RunFolder, SweepProgress, Table, Watch};
 use ropewalk_scene::{Fault, SceneFile};
 use std::collections::HashSet;
 use std::fs;
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Stack of a thread that runs scenes: as large as that of the main thread usually is.
@@ -37,6 +39,8 @@ pub(crate) struct Runner {
     /// Where the progress is shown and what goes wrong is said.
     pub progress: SweepProgress,
     watch: Watch,
+    /// Whether other processes may compute the same runs.
+    shared: bool,
     /// Warnings that have been said: most of them hold for all runs.
     said: Mutex<HashSet<String>>,
 }
@@ -63,7 +67,12 @@ impl Runner {
     /// Begins to show the progress of so many runs.
     pub(crate) fn new(runs: usize, mode: ProgressMode, watch: Watch) -> Self {
         let progress = SweepProgress::new(runs, mode);
-        Runner { progress, watch, said: Mutex::default() }
+        Runner { progress, watch, shared: false, said: Mutex::default() }
+    }
+
+    /// The same for one of several processes that compute runs into the same folders.
+    pub(crate) fn shared(runs: usize, mode: ProgressMode, watch: Watch) -> Self {
+        Runner { shared: true, ..Runner::new(runs, mode, watch) }
     }
 
     /// Does this for every run, `jobs` at a time or as many as there are cores.
@@ -101,15 +110,32 @@ impl Runner {
         ran
     }
 
-    /// Runs a scene into its folder; what a failed or interrupted run left there is deleted before.
+    /// Runs a scene into its folder; what a failed or interrupted run left there is deleted before, or if other processes
+    /// may be at the same run, replaced when this one is done.
     fn compute(&self, file: &SceneFile, name: &str, folder: &RunFolder) -> Ran {
-        if let Err(e) = fs::remove_dir_all(folder.path())
-            && e.kind() != std::io::ErrorKind::NotFound
-        {
-            return Ran::refused(format!("can't delete {}: {e}", folder.path().display()));
+        if !self.shared {
+            return match fs::remove_dir_all(folder.path()) {
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                    Ran::refused(format!("can't delete {}: {e}", folder.path().display()))
+                }
+                _ => self.compute_in(file, name, folder.path()),
+            };
         }
+        let own = beside(folder.path());
+        let ran = self.compute_in(file, name, &own);
+        if !own.exists() {
+            return ran;
+        }
+        match publish(&own, folder.path(), |path| complete(&RunFolder::earlier(path.into()), file)) {
+            Ok(earlier) => earlier.unwrap_or(ran),
+            Err(e) => Ran::refused(format!("can't write {}: {e}", folder.path().display())),
+        }
+    }
+
+    /// Runs a scene into a new folder.
+    fn compute_in(&self, file: &SceneFile, name: &str, path: &Path) -> Ran {
         let options = RunOptions {
-            out: Some(folder.path().to_path_buf()),
+            out: Some(path.to_path_buf()),
             progress: ProgressMode::Quiet,
             watch: self.watch,
             ..RunOptions::default()
@@ -129,7 +155,7 @@ impl Runner {
 }
 
 /// What is in the folder of a run that is complete, and that is of this very scene and version.
-fn complete(folder: &RunFolder, file: &SceneFile) -> Option<Ran> {
+pub(crate) fn complete(folder: &RunFolder, file: &SceneFile) -> Option<Ran> {
     let manifest: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(folder.manifest_file()).ok()?).ok()?;
     let same = manifest["ropewalk"] == env!("CARGO_PKG_VERSION")

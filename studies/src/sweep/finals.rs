@@ -22,12 +22,13 @@ pub(super) fn finals(column: &Recorded, grid: &Grid, results: &Results, what: Re
     let mut place: HashMap<String, usize> = HashMap::new();
     for (k, row) in results.rows().filter(|(_, row)| row.status.is_complete()) {
         let Some(values) = Results::values(row, column) else { continue };
-        let name = grid.label(k, 1);
+        let name = grid.line(k);
         let at = *place.entry(name.clone()).or_insert_with(|| {
             lines.push(Line { name, values: Vec::new() });
             lines.len() - 1
         });
-        lines[at].values.push((grid.choice(k).1[0], values.reported(what)));
+        let value = grid.choice(k).1.get(grid.main()).copied().unwrap_or(0);
+        lines[at].values.push((value, values.reported(what)));
     }
     lines
 }
@@ -42,7 +43,7 @@ pub(super) fn write(
     what: Report,
     warn: &mut dyn FnMut(&str),
 ) -> usize {
-    let Some(axis) = axes.first() else { return 0 };
+    let Some(axis) = axes.get(grid.main()) else { return 0 };
     let files = folder.files();
     let mut written = 0;
     for column in results.recorded().iter().skip(1) {
@@ -68,11 +69,10 @@ fn table(heading: &str, axis: &Axis, lines: &[Line]) -> String {
         name => format!("{heading}: {name}"),
     };
     let mut csv = Csv::new(std::iter::once(axis.heading.clone()).chain(lines.iter().map(name)));
+    let lines: Vec<HashMap<usize, f64>> = lines.iter().map(|l| l.values.iter().copied().collect()).collect();
     for (i, cell) in axis.cells.iter().enumerate() {
         csv.cell(cell);
-        for line in lines {
-            csv.number_or_none(line.values.iter().find(|(at, _)| *at == i).map(|(_, value)| *value));
-        }
+        lines.iter().for_each(|line| _ = csv.number_or_none(line.get(&i).copied()));
         csv.end();
     }
     csv.text()

@@ -15,8 +15,23 @@ pub(super) struct SweepManifest {
     pub set: Vec<String>,
     /// Parameters that vary, the last one fastest.
     pub vary: Vec<VariedCopy>,
+    /// How some of them were drawn; these change together, faster than the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<Samples>,
     /// The scenes, as they were.
     pub scenes: Vec<SceneCopy>,
+}
+
+/// Values that were drawn from ranges.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Samples {
+    /// Number of samples.
+    pub count: usize,
+    pub seed: u64,
+    /// Whether they are a Latin hypercube.
+    pub latin: bool,
+    /// Names of the parameters.
+    pub of: Vec<String>,
 }
 
 /// A parameter that varies.
@@ -47,6 +62,14 @@ impl Study for SweepManifest {
             Some(format!("of {}", names(there)))
         } else if self.scenes != there.scenes {
             Some(format!("of {} before the scene was changed", names(there)))
+        } else if self.samples != there.samples {
+            Some(match &there.samples {
+                Some(s) => {
+                    let kind = if s.latin { " of a Latin hypercube" } else { "" };
+                    format!("of {} samples{kind} of {} with the seed {}", s.count, s.of.join(" and "), s.seed)
+                }
+                None => "without samples".into(),
+            })
         } else if self.vary != there.vary {
             Some(format!("of {}", shortened(&varied(there))))
         } else if self.set != there.set {

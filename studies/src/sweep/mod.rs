@@ -1,12 +1,13 @@
 //! A sweep: scenes run with all combinations of some parameters, on all cores, each run into a folder of its own.
 //!
 //! The folders of the runs are what counts: the table and the pictures are made from them, and a sweep that is called
-//! again computes only what is missing there.
+//! again computes only what is missing there. Several processes may share the runs ([`plan`], [`share`]).
 
 mod axis;
 mod finals;
 mod grid;
 mod manifest;
+mod parts;
 mod pictures;
 mod report;
 mod results;
@@ -14,6 +15,7 @@ mod tail;
 
 pub(crate) use axis::Axis;
 pub use grid::Grid;
+pub use parts::{Part, Planned, Shared, plan, share};
 pub use tail::{Over, Report};
 
 use crate::error::Error;
@@ -25,6 +27,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 /// Options of [`sweep`].
+#[derive(Clone, Debug)]
 pub struct SweepOptions {
     /// The folder: new, empty, or that of the same sweep. Without it `runs/<scene>-sweep`, numbered.
     pub out: Option<PathBuf>,

@@ -48,7 +48,7 @@ pub(super) fn draw(
                 continue;
             };
             let points = table.columns[0].values.iter().copied().zip(column.values.iter().copied()).collect();
-            let line = Series::new(grid.label(*k, 0), thinned(points));
+            let line = Series::new(grid.label(*k), thinned(points));
             histories.entry(&c.heading).or_default().push(line);
         }
     }
@@ -64,7 +64,7 @@ pub(super) fn draw(
         plots.push((c.name.clone(), plot));
     }
 
-    for (c, axis) in records.iter().flat_map(|c| Some((c, axes.first()?))) {
+    for (c, axis) in records.iter().flat_map(|c| Some((c, axes.get(grid.main())?))) {
         let all = final_series(c, grid, axis, results, what);
         let series = chosen(&all);
         let plot = LinePlot {
@@ -100,7 +100,7 @@ fn shapes(
     let plot = |plane: Plane| {
         let (name, from) = view(plane);
         let of = |(k, line): &(usize, Vec<_>)| {
-            Series::new(grid.label(*k, 0), line.iter().map(|x| plane.project(*x)).collect())
+            Series::new(grid.label(*k), line.iter().map(|x| plane.project(*x)).collect())
         };
         let (x_label, y_label) = plane.labels();
         let plot = LinePlot {
@@ -160,10 +160,11 @@ impl Titles {
 
 /// Reported values over the first parameter; runs that differ in nothing else are a line.
 fn final_series(column: &Recorded, grid: &Grid, axis: &Axis, results: &Results, what: Report) -> Vec<Series> {
+    let mark = if grid.is_scattered() { Mark::Dots } else { Mark::LineAndDots };
     let lines = finals(column, grid, results, what).into_iter().map(|line| {
         let mut points: Vec<_> = line.values.iter().map(|&(i, value)| (axis.numbers[i], value)).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Series::new(line.name, points).with_mark(Mark::LineAndDots)
+        Series::new(line.name, points).with_mark(mark)
     });
     lines.collect()
 }

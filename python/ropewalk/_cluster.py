@@ -1,0 +1,171 @@
+"""Work on the workers of a Dask cluster: so much at a time that the scheduler's memory stays small, and again if the
+scheduler was lost."""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import time
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
+
+from . import _native
+from ._errors import RopewalkError
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+AHEAD = 4
+"""Batches for each thread of the cluster that the scheduler knows at the same time."""
+
+
+def each(
+    client: Any,
+    work: Callable[[Sequence[T]], R],
+    items: Sequence[T],
+    done: Callable[[R], None],
+    *,
+    batch: int,
+    retries: int,
+    patience: float = 60.0,
+) -> None:
+    """Calls `work` with all items, `batch` at a time, on the workers of a `distributed.Client`, and `done` here with each
+    result.
+
+    What a worker had begun when it was lost is done by another one. If the scheduler is lost, it may come back with
+    workers within `patience` seconds, `retries` times: what had no result by then is begun anew.
+    """
+    batches = [items[k : k + batch] for k in range(0, len(items), batch)]
+    for attempt in range(retries + 1):
+        batches = _submit(client, work, batches, done, retries)
+        if not batches:
+            return
+        if attempt < retries:
+            _wait_for_workers(client, patience)
+    raise RopewalkError("the scheduler was lost too often: the same call, with a new client, goes on")
+
+
+def _submit(
+    client: Any, work: Callable[[Sequence[T]], R], batches: Sequence[Sequence[T]], done: Callable[[R], None], retries: int
+) -> list[Sequence[T]]:
+    """Those that have no result because the scheduler was lost."""
+    from concurrent.futures import CancelledError
+
+    from distributed import as_completed
+    from distributed.comm.core import CommClosedError
+
+    # asyncio's is another one
+    lost_errors = (CancelledError, asyncio.CancelledError, CommClosedError, ConnectionError, TimeoutError)
+    left = dict(enumerate(batches))
+    waiting = iter(list(left.items()))
+    going: dict[Any, int] = {}
+
+    def submit() -> Any:
+        for k, some in waiting:
+            future = client.submit(work, some, retries=retries, pure=False)
+            going[future] = k
+            return future
+        return None
+
+    try:
+        try:
+            ahead = max(AHEAD * sum(client.nthreads().values()), AHEAD)
+            first = [future for _ in range(min(ahead, len(left))) if (future := submit()) is not None]
+            completed = as_completed(first, loop=client.loop)
+            for future in completed:
+                if future.status in ("cancelled", "lost"):
+                    return list(left.values())
+                done(future.result())
+                del left[going.pop(future)]
+                # the scheduler forgets it, so that its memory stays as it is
+                future.release()
+                more = submit()
+                if more is not None:
+                    completed.add(more)
+        except lost_errors:
+            pass
+        return list(left.values())
+    except BaseException:
+        try:
+            client.cancel(list(going), force=True)
+        except Exception:  # a cluster that is gone has nothing to cancel
+            pass
+        raise
+
+
+def _wait_for_workers(client: Any, patience: float) -> None:
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        try:
+            if client.status == "running" and client.nthreads():
+                return
+            if client.status in ("closed", "closing"):
+                break
+        except Exception:  # not yet
+            pass
+        time.sleep(0.1)
+    raise RopewalkError(f"no scheduler with workers for {patience:g} s: the same call, with a new client, goes on")
+
+
+@functools.lru_cache(maxsize=4)
+def _shared(words: tuple[str, ...]) -> _native.SharedSweep:
+    return _native.SharedSweep(list(words))
+
+
+def share(words: tuple[str, ...], runs: Sequence[int]) -> tuple[int, int]:
+    """Computes runs of a sweep of the command line, on a worker: how many are complete, and how many failed."""
+    try:
+        return _shared(words).compute(list(runs), _native.Stop())
+    except SystemExit:
+        raise RopewalkError(f"this worker can't read the sweep: {' '.join(words)}") from None
+
+
+def command(arguments: list[str]) -> int:
+    """`ropewalk sweep … --dask ADDRESS`: the runs on the workers, what is missing after that and the table here."""
+    import sys
+
+    try:
+        from distributed import Client
+    except ImportError:
+        print("error: --dask needs Dask\n  = help: pip install distributed", file=sys.stderr)
+        return 2
+    sweep = _native.SharedSweep(arguments)
+    quiet = "--quiet" in arguments or "-q" in arguments
+    try:
+        folder, runs, missing, words = sweep.plan()
+        if missing:
+            there, told = runs - len(missing), time.monotonic()
+
+            def done(result: tuple[int, int]) -> None:
+                nonlocal there, told
+                there += result[0]
+                if not quiet and time.monotonic() > told + 5.0:
+                    told = time.monotonic()
+                    print(f"{there} of {runs} runs are complete", file=sys.stderr)
+
+            client: Any
+            with Client(sweep.address, set_as_default=False) as client:
+                threads = sum(client.nthreads().values()) or 1
+                batch = max(1, min(50, len(missing) // (8 * threads)))
+                work = functools.partial(share, tuple(words))
+                each(client, work, missing, done, batch=batch, retries=3)
+    except KeyboardInterrupt:
+        print("stopped by Ctrl-C: the same command computes what is missing", file=sys.stderr)
+        return 130
+    except RopewalkError as e:
+        print(f"error: {e}", file=sys.stderr)
+        return 2
+    except OSError as e:
+        print(f"error: the cluster at {sweep.address} can't be reached: {e}", file=sys.stderr)
+        return 2
+    return _native.main("ropewalk", *without_dask(arguments))
+
+
+def without_dask(arguments: list[str]) -> list[str]:
+    """Arguments without `--dask ADDRESS`, and without `--fresh`, which has been done."""
+    rest, skip = [], False
+    for word in arguments:
+        if not skip and word != "--dask" and not word.startswith("--dask=") and word != "--fresh":
+            rest.append(word)
+        skip = not skip and word == "--dask"
+    return rest
