@@ -425,7 +425,8 @@ impl<'a> Reader<'a> {
         let mut best = None;
         for (k, c) in rest.char_indices() {
             let next = k + c.len_utf8();
-            if !(c.is_alphanumeric() || matches!(c, ' ' | '/' | '^' | '%' | '°' | '·' | '-' | '²' | '³'))
+            if !(c.is_alphanumeric()
+                || matches!(c, ' ' | '/' | '^' | '%' | '°' | '·' | '-' | '²' | '³' | '(' | ')'))
             {
                 break;
             }
@@ -435,7 +436,7 @@ impl<'a> Reader<'a> {
             // `3 N - 2` and `3 / 2` are no units
             let begins = part.trim_start().starts_with(|c: char| c.is_alphabetic() || matches!(c, '%' | '°'));
             let tight = !part.contains(" /") && !part.contains("/ ") && !part.contains(" -");
-            let ends = c.is_alphanumeric() || matches!(c, '%' | '°' | '²' | '³');
+            let ends = c.is_alphanumeric() || matches!(c, '%' | '°' | '²' | '³' | ')');
             if word_ends
                 && begins
                 && tight
@@ -503,6 +504,9 @@ mod tests {
             ("10 m / 4 s", 2.5),
             ("2 N m^2", 2.0),
             ("50 %", 0.5),
+            ("0.4 N/(m s) * 2 + 1", 1.8),
+            ("(1 + 2 m) * 3", 9.0),
+            ("2 * (3 s)", 6.0),
             ("{rope@50 %.tension} + rope.end.x", 4.0),
             ("max(1, min(5, 3)) + clamp(7, 0, 2)", 5.0),
             ("sin(90 deg) + cos(0) + sqrt(16 m^2) / 1 m", 6.0),
@@ -530,6 +534,7 @@ mod tests {
             ("$a / 2 s", "m/s"),
             ("$a^3 / (1 s)^3", "m^3 s^-3"),
             ("1 / (2 s)", "Hz"),
+            ("2 N/(m s) * $a", "kg m s^-3"),
             ("$a / 1 m", ""),
         ] {
             assert_eq!(unit(text).as_deref(), Ok(expected), "{text}");
