@@ -579,8 +579,6 @@ fn current_that_is_an_input_drags_as_one_that_is_given() {
             mass = "20 kg"
             volume = "0.02 m^3"
             drag_area = "0.1 m^2"
-            [[forces]]
-            type = "drag"
             "#
         )
     };

@@ -251,7 +251,6 @@ fn speeds_that_are_inputs_drive_the_constraints() {
             name = "u"
             unit = "m/s"
             join = "linear"
-            default = 2
             [[motions]]
             type = "input"
             name = "haul"
