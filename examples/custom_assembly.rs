@@ -16,7 +16,7 @@ pub(crate) fn main() -> Result<(), Error> {
     // mass [kg/m], EA [N], EI [N m²]; what isn't said is zero, such as water inside
     let rope = Section { diameter: 0.02, axial_retardation_time: 0.01, ..Section::new(0.5, 2e5, 0.5) };
     let mut scene = Scene::new();
-    scene.water = Some(Water { current: [0.3, 0.0, 0.0], ..Water::default() });
+    scene.water = Some(Water { current: [0.3, 0.0, 0.0].map(Into::into), ..Water::default() });
     scene
         // laid straight, but 5 % longer than the way between its ends
         .element(CableSpec::straight("line", [0.0; 3], [12.0, 0.0, 0.0], 16, rope.clone()).unstretched(12.6))

@@ -110,6 +110,14 @@ pub(crate) enum Command {
         equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
         The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
     Modes(commands::modes::ModesArgs),
+    /// Mass, damping, stiffness and gyroscopic matrices about a state, what inputs do and what records see, as sparse files
+    #[command(after_help = "Examples:\n  \
+        ropewalk linearise scene.toml           about its equilibrium\n  \
+        ropewalk linearise scene.toml --at start\n  \
+        ropewalk linearise scene.toml --at '20 s' --out linearised\n\n\
+        The folder holds scene.toml, manifest.json, a Matrix Market file for each matrix (`scipy.io.mmread` reads them), and\n\
+        linearised.json with the equations and the names of unknowns, constraints, inputs and outputs.")]
+    Linearise(commands::linearise::LineariseArgs),
     /// What accuracy costs: the cheapest mesh, models, scheme and step for errors of a record from 1 % to 1e-6
     #[command(after_help = "Examples:\n  \
         ropewalk cost cantilever --of beam.end          over the whole load path\n  \
@@ -146,9 +154,9 @@ pub(crate) enum Command {
     #[command(after_help = "Examples:\n  \
         ropewalk describe scene.toml            title, parameters, parts\n  \
         ropewalk describe cable                 fields with units and defaults\n  \
-        ropewalk describe solver                also: water, run, statics")]
+        ropewalk describe solver                also: water, run, statics, inputs")]
     Describe {
-        /// A scene, a type, or one of: water, run, solver, statics
+        /// A scene, a type, or one of: water, run, solver, statics, inputs
         #[arg(value_name = "SCENE|TYPE")]
         what: String,
     },
@@ -298,6 +306,7 @@ pub fn exit_from(
         Command::Sweep(args) => commands::sweep::sweep(&args, bundled),
         Command::Atlas(args) => commands::atlas::atlas(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
+        Command::Linearise(args) => commands::linearise::linearise(&args, bundled),
         Command::Cost(args) => commands::cost::cost(args, bundled),
         Command::Effects(args) => commands::effects::effects(&args, bundled),
         Command::Verify(args) => commands::verify::verify(&args),

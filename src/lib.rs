@@ -53,6 +53,9 @@ pub use ropewalk_studies::cost::{CostAdvice, CostOptions, CostOutcome, cost, cos
 pub use ropewalk_studies::effects::{
     Advice, EffectTrial, EffectWork, EffectsOptions, EffectsOutcome, Ledger, Verdict, effects, write_effects,
 };
+pub use ropewalk_studies::linearise::{
+    About, LineariseOptions, LineariseOutcome, linearise, write_linearised,
+};
 pub use ropewalk_studies::modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use ropewalk_studies::run::{Every, Manifest, Outcome, RunOptions, Status, Summary, resume, run};
 pub use ropewalk_studies::simulate::{History, read, simulate, simulate_with, start};

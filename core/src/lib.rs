@@ -50,5 +50,6 @@ pub use simulation::layers::Layers;
 pub use simulation::record::{Record, Sample};
 pub use simulation::{Checkpoint, End, Observer, Simulation, Unfit};
 pub use solve::linear::{Chain, Dense as DenseSolver, Fronts, Guard, LinearSolver, Lu, SolveError};
+pub use solve::linearise::{LineariseError, Linearised, Sparse, linearise};
 pub use solve::redundancy::find_redundancy;
 pub use solve::{integrator, modes, statics};

@@ -1,9 +1,9 @@
 //! Current: the velocity of the water, as a function of height.
 
 use ropewalk_core::error::{finite, need};
-use ropewalk_core::{BuildError, Real, V3};
+use ropewalk_core::{BuildError, Real, Signal, V3};
 
-/// Velocity of the water [m/s] at height `z` [m, up]; it does not change with time.
+/// Velocity of the water [m/s] at height `z` [m, up]; it does not change within a step.
 ///
 /// Use it for: still water, a tow seen from the ship, a tidal or boundary-layer profile.
 ///
@@ -20,6 +20,8 @@ pub enum Current {
     Still,
     /// The same velocity everywhere [m/s].
     Uniform(V3<f64>),
+    /// The same velocity everywhere, of inputs that hold: it changes between steps alone [m/s].
+    Driven(Box<[Signal; 3]>),
     /// `velocity + gradient (z - z0)`, without limit.
     Linear {
         /// Height where the water has `velocity` [m].
@@ -56,6 +58,7 @@ impl Current {
         match self {
             Current::Still => Ok(()),
             Current::Uniform(u) => finite("current", u),
+            Current::Driven(_) => Ok(()),
             Current::Linear { z0, velocity, gradient } => {
                 finite("height of the current", &[*z0])?;
                 finite("current", velocity)?;
@@ -76,7 +79,7 @@ impl Current {
 
     /// Whether it is the same at all heights, so that loads don't depend on position.
     pub fn is_uniform(&self) -> bool {
-        matches!(self, Current::Still | Current::Uniform(_))
+        matches!(self, Current::Still | Current::Uniform(_) | Current::Driven(_))
     }
 
     /// Velocity `u` and its derivative `du/dz` at height `z`.
@@ -86,6 +89,7 @@ impl Current {
         match self {
             Current::Still => (nought, nought),
             Current::Uniform(u) => ([R::of(u[0]), R::of(u[1]), R::of(u[2])], nought),
+            Current::Driven(u) => (now(u).map(R::of), nought),
             Current::Linear { z0, velocity, gradient } => {
                 let dz = z - R::of(*z0);
                 let (mut u, mut du) = (nought, nought);
@@ -115,6 +119,14 @@ impl Current {
             }
         }
     }
+}
+
+/// What inputs that hold are set to.
+fn now(u: &[Signal; 3]) -> V3<f64> {
+    u.each_ref().map(|u| match u {
+        Signal::Constant(x) => *x,
+        Signal::Input(input) => input.latest(),
+    })
 }
 
 #[cfg(test)]

@@ -317,7 +317,8 @@ impl Scene {
         self.run.check().map_err(whole)?;
         let motions =
             build_all(&self.motions, &Inputs::default()).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
-        let (gravity, water) = (self.gravity, self.water.clone());
+        let (gravity, mut water) = (self.gravity, self.water.clone());
+        water.as_mut().map_or(Ok(()), |water| water.bind(&Inputs::default())).map_err(whole)?;
         let around = Surroundings { gravity, water, motions, duration: self.run.duration };
         spec.build(&around).map(Some).map_err(of(SpecKind::Process, 0))
     }
@@ -348,11 +349,14 @@ impl Scene {
             SceneError { spec: named.map(|k| (SpecKind::Constraint, k)), error }
         };
         self.check_world().map_err(whole)?;
-        b.set_world(self.gravity, self.water.clone(), self.air.clone());
+        let inputs = Inputs::build(&self.inputs).map_err(|(k, e)| of(SpecKind::Input, k)(e))?;
+        let (mut water, mut air) = (self.water.clone(), self.air.clone());
+        water.as_mut().map_or(Ok(()), |water| water.bind(&inputs)).map_err(whole)?;
+        air.as_mut().map_or(Ok(()), |air| air.bind(&inputs)).map_err(whole)?;
+        b.set_world(self.gravity, water, air);
         for (part, mesh) in plan {
             b.remesh(part, mesh.clone());
         }
-        let inputs = Inputs::build(&self.inputs).map_err(|(k, e)| of(SpecKind::Input, k)(e))?;
         b.set_motions(build_all(&self.motions, &inputs).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?);
         b.set_inputs(inputs);
         for e in &self.elements {

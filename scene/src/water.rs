@@ -1,8 +1,10 @@
 //! What surrounds a scene: water, with a surface or without end, and the air above it.
 
 use crate::current::Current;
+use crate::inputs::Inputs;
 use ropewalk_core::error::{finite, not_negative, positive};
-use ropewalk_core::{BuildError, Real};
+use ropewalk_core::{BuildError, Hold, Real, Signal};
+use ropewalk_quantity::{Setting, kind};
 use serde::{Deserialize, Serialize};
 
 /// The water around a scene. Drag, buoyancy and added mass need it.
@@ -24,11 +26,15 @@ pub struct Water {
     /// Height of its surface, which is flat [m]. Default: water everywhere.
     #[serde(deserialize_with = "ropewalk_quantity::optional::length")]
     pub level: Option<f64>,
-    /// Uniform velocity of the water [m/s].
-    #[serde(deserialize_with = "ropewalk_quantity::vec3::speed")]
-    pub current: [f64; 3],
+    /// Uniform velocity of the water [m/s]; inputs that it reads need `join = "hold"`.
+    #[serde(deserialize_with = "ropewalk_quantity::setting::vec3::speed")]
+    pub current: [Setting; 3],
     /// Current profile over height, instead of `current`: piecewise linear, constant beyond the ends.
     pub profile: Vec<Level>,
+    /// What `current` reads, in a model that is being built.
+    #[serde(skip)]
+    #[doc(hidden)]
+    pub bound: Option<[Signal; 3]>,
 }
 
 /// Velocity of the water, or the air, at one height.
@@ -45,24 +51,40 @@ pub struct Level {
 
 impl Default for Water {
     fn default() -> Self {
-        Water { density: 1025.0, viscosity: 1.08e-3, level: None, current: [0.0; 3], profile: Vec::new() }
+        Water {
+            density: 1025.0,
+            viscosity: 1.08e-3,
+            level: None,
+            current: [0.0; 3].map(Setting::from),
+            profile: Vec::new(),
+            bound: None,
+        }
     }
 }
 
 impl Water {
+    /// Binds the current to the inputs of a scene.
+    pub(crate) fn bind(&mut self, inputs: &Inputs) -> Result<(), BuildError> {
+        self.bound = bound("current", &self.current, inputs).map_err(|e| e.of("water.current"))?;
+        Ok(())
+    }
     /// Its velocity as a function of height.
     ///
     /// # Errors
     /// Both `current` and `profile` are given, or the levels don't ascend.
     pub fn current(&self) -> Result<Current, BuildError> {
-        velocity(&self.current, &self.profile, "[water] has both `current` and `profile`: give one of them")
+        velocity(
+            (&self.current, &self.bound),
+            &self.profile,
+            "[water] has both `current` and `profile`: give one of them",
+        )
     }
     /// What is wrong with the numbers, if anything.
     pub fn check(&self) -> Result<(), BuildError> {
         positive("density", self.density).map_err(|e| e.of("water.density"))?;
         not_negative("viscosity", self.viscosity).map_err(|e| e.of("water.viscosity"))?;
         finite("level", self.level.as_slice()).map_err(|e| e.of("water.level"))?;
-        finite("current", &self.current).map_err(|e| e.of("water.current"))?;
+        finite("current", &numbers(&self.current)).map_err(|e| e.of("water.current"))?;
         self.current().map(drop).map_err(|e| e.of("water.profile"))
     }
 }
@@ -77,33 +99,52 @@ pub struct Air {
     /// Dynamic viscosity [Pa s].
     #[serde(deserialize_with = "ropewalk_quantity::viscosity")]
     pub viscosity: f64,
-    /// Velocity of the air, the same everywhere [m/s].
-    #[serde(deserialize_with = "ropewalk_quantity::vec3::speed")]
-    pub wind: [f64; 3],
+    /// Velocity of the air, the same everywhere [m/s]; inputs that it reads need `join = "hold"`.
+    #[serde(deserialize_with = "ropewalk_quantity::setting::vec3::speed")]
+    pub wind: [Setting; 3],
     /// Velocity of the air by height, instead of `wind`: piecewise linear between the levels, constant beyond.
     pub profile: Vec<Level>,
+    /// What `wind` reads, in a model that is being built.
+    #[serde(skip)]
+    #[doc(hidden)]
+    pub bound: Option<[Signal; 3]>,
 }
 
 impl Default for Air {
     /// At 15 °C and sea level, of the international standard atmosphere (ISO 2533).
     fn default() -> Self {
-        Air { density: 1.225, viscosity: 1.79e-5, wind: [0.0; 3], profile: Vec::new() }
+        Air {
+            density: 1.225,
+            viscosity: 1.79e-5,
+            wind: [0.0; 3].map(Setting::from),
+            profile: Vec::new(),
+            bound: None,
+        }
     }
 }
 
 impl Air {
+    /// Binds the wind to the inputs of a scene.
+    pub(crate) fn bind(&mut self, inputs: &Inputs) -> Result<(), BuildError> {
+        self.bound = bound("wind", &self.wind, inputs).map_err(|e| e.of("air.wind"))?;
+        Ok(())
+    }
     /// Its velocity as a function of height.
     ///
     /// # Errors
     /// Both `wind` and `profile` are given, or the levels don't ascend.
     pub fn wind(&self) -> Result<Current, BuildError> {
-        velocity(&self.wind, &self.profile, "[air] has both `wind` and `profile`: give one of them")
+        velocity(
+            (&self.wind, &self.bound),
+            &self.profile,
+            "[air] has both `wind` and `profile`: give one of them",
+        )
     }
     /// What is wrong with the numbers, if anything; or with air where there is water everywhere.
     pub fn check(&self, water: Option<&Water>) -> Result<(), BuildError> {
         positive("density", self.density).map_err(|e| e.of("air.density"))?;
         not_negative("viscosity", self.viscosity).map_err(|e| e.of("air.viscosity"))?;
-        finite("wind", &self.wind).map_err(|e| e.of("air.wind"))?;
+        finite("wind", &numbers(&self.wind)).map_err(|e| e.of("air.wind"))?;
         self.wind().map(drop).map_err(|e| e.of("air.profile"))?;
         if water.is_some_and(|w| w.level.is_none()) {
             let message =
@@ -114,12 +155,47 @@ impl Air {
     }
 }
 
-fn velocity(uniform: &[f64; 3], profile: &[Level], both: &str) -> Result<Current, BuildError> {
+fn numbers(velocity: &[Setting; 3]) -> [f64; 3] {
+    velocity.each_ref().map(|u| u.number().unwrap_or(0.0))
+}
+
+/// What a velocity reads; nothing if it is constant.
+fn bound(field: &str, u: &[Setting; 3], inputs: &Inputs) -> Result<Option<[Signal; 3]>, BuildError> {
+    if u.iter().all(|u| u.number().is_some()) {
+        return Ok(None);
+    }
+    let mut all = [0.0; 3].map(Signal::from);
+    for (to, u) in all.iter_mut().zip(u) {
+        *to = inputs.signal(field, u, &kind::SPEED)?;
+        if let Signal::Input(input) = to
+            && input.join() != Hold::Hold
+        {
+            let message = format!(
+                "water and air change between steps: give the input `{}` `join = \"hold\"`",
+                input.name()
+            );
+            return Err(BuildError::at(field, message));
+        }
+    }
+    Ok(Some(all))
+}
+
+fn velocity(
+    (settings, bound): (&[Setting; 3], &Option<[Signal; 3]>),
+    profile: &[Level],
+    both: &str,
+) -> Result<Current, BuildError> {
+    let driven = settings.iter().any(|u| u.number().is_none());
+    let uniform = &numbers(settings);
+    if profile.is_empty() && driven {
+        // before a model is built there is nothing to read
+        return Ok(bound.clone().map_or(Current::Still, |signals| Current::Driven(Box::new(signals))));
+    }
     if profile.is_empty() {
         let still = *uniform == [0.0; 3];
         return Ok(if still { Current::Still } else { Current::Uniform(*uniform) });
     }
-    if *uniform != [0.0; 3] {
+    if driven || *uniform != [0.0; 3] {
         return Err(BuildError::new(both));
     }
     let (z, velocity) = profile.iter().map(|l| (l.z, l.velocity)).unzip();

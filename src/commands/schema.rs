@@ -85,6 +85,9 @@ impl<'a> Words<'a> {
     fn kind(&self, field: &'a Value, doc: &str) -> String {
         let s = self.resolved(field);
         let unit = unit_of(doc);
+        if let Some(number) = or_input(s) {
+            return format!("{}, or an input", self.kind(number, doc));
+        }
         let names: Vec<String> =
             variants(s).into_iter().flat_map(names).map(|n| format!("\"{n}\"")).collect();
         if !names.is_empty() {
@@ -137,6 +140,13 @@ fn type_of(schema: &Value) -> &str {
     }
 }
 
+/// The number of what may be an input instead.
+fn or_input(schema: &Value) -> Option<&Value> {
+    let any = schema.get("anyOf")?.as_array()?;
+    let input = any.iter().any(|one| one.pointer("/properties/input").is_some());
+    any.iter().find(|one| type_of(one) == "number").filter(|_| input)
+}
+
 /// What an option holds.
 fn optional(schema: &Value) -> Option<&Value> {
     let any = schema.get("anyOf")?.as_array()?;
@@ -149,6 +159,9 @@ fn optional(schema: &Value) -> Option<&Value> {
 
 /// The variants of an enum.
 fn variants(schema: &Value) -> Vec<&Value> {
+    if or_input(schema).is_some() {
+        return Vec::new();
+    }
     let list = schema.get("oneOf").or_else(|| schema.get("anyOf")).and_then(Value::as_array);
     match list {
         Some(list) => list.iter().filter(|v| !names(v).is_empty()).collect(),

@@ -1,6 +1,6 @@
 //! What can go wrong between a scene and its results.
 
-use ropewalk_core::BuildError;
+use ropewalk_core::{BuildError, LineariseError};
 use ropewalk_core::integrator::StepError;
 use ropewalk_core::modes::ModesError;
 use ropewalk_core::statics::StaticsError;
@@ -32,6 +32,9 @@ pub enum Error {
     /// The vibration modes could not be found.
     #[error("{0}")]
     Modes(#[from] ModesError),
+    /// The equations could not be linearised.
+    #[error("{0}")]
+    Linearise(#[from] LineariseError),
     /// Ctrl-C was pressed, or the system asked for the end, before there was anything to keep.
     #[error("stopped by {}", Interrupt::cause())]
     Interrupted,
@@ -53,7 +56,7 @@ impl Error {
         match self {
             Error::File(_) | Error::Scene(_) | Error::Output(_) => true,
             Error::Step(e) => Error::is_input_step(e),
-            Error::Statics(_) | Error::Process(_) | Error::Interrupted => false,
+            Error::Statics(_) | Error::Process(_) | Error::Linearise(_) | Error::Interrupted => false,
             Error::Modes(e) => matches!(
                 e,
                 ModesError::Massless { .. } | ModesError::Moving { .. } | ModesError::Held | ModesError::None

@@ -2,7 +2,7 @@
 //!
 //! [`run`] runs a scene into a folder, [`simulate`] into memory. On these stand [`sweep`] (parameters varied), [`cost`]
 //! (what accuracy costs in time), [`effects`] (what each effect of a scene changes), [`certificate`] (how far results can
-//! be trusted), [`modes`], [`variants`], [`verify`], [`bench`] and [`atlas`].
+//! be trusted), [`modes`], [`linearise`], [`variants`], [`verify`], [`bench`] and [`atlas`].
 
 pub mod atlas;
 pub mod bench;
@@ -11,6 +11,7 @@ pub mod cost;
 pub mod effects;
 mod error;
 pub mod fmu;
+pub mod linearise;
 pub mod modes;
 pub mod run;
 mod session;

@@ -246,7 +246,7 @@ fn everything() -> Scene {
         ..RigidBodySpec::new("drum", [-0.5, 0.2, 0.1], 3.0, [0.5, 0.6, 0.7])
     };
     let mut scene = Scene::new();
-    scene.water = Some(Water { current: [0.4, 0.1, 0.0], ..Water::default() });
+    scene.water = Some(Water { current: [0.4, 0.1, 0.0].map(Into::into), ..Water::default() });
     scene
         .element(hull.with_point("nose", [0.3, 0.0, 0.0]).with_point("tail", [-0.3, 0.0, 0.0]))
         .element(drum.with_point("rim", [0.1, 0.2, -0.1]))

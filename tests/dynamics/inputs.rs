@@ -21,7 +21,7 @@ fn pulled(join: &str, solver: &str) -> Scene {
         [[elements]]
         type = "point_mass"
         name = "ball"
-        position = [0, 0, 0]
+        marker = [0, 0, 0]
         mass = "2 kg"
         [[forces]]
         type = "point_force"
@@ -62,8 +62,8 @@ const FORCES: [f64; 4] = [6.0, -14.0, 0.0, 9.0];
 #[test]
 fn mass_follows_forces_that_are_held_or_joined() {
     for (join, solver) in [
-        ("hold", "tolerance = 1e-9"),
-        ("linear", "tolerance = 1e-9"),
+        ("hold", "stepping = { type = \"controlled\", tolerance = 1e-9 }"),
+        ("linear", "stepping = { type = \"controlled\", tolerance = 1e-9 }"),
         ("hold", "stepping = { type = \"fixed\", h = 0.01 }"),
         ("linear", "stepping = { type = \"fixed\", h = 0.01 }"),
     ] {
@@ -180,7 +180,6 @@ fn winch(element: &str) -> Scene {
         points = [[0, 0, 0], [0, 0, "-10 m"]]
         elements = 10
         section = {{ mass = "1 kg/m", ea = "20 kN", ei = "1 N m^2" }}
-        damping = {{ kelvin_voigt = {{ retardation_time = "20 ms" }} }}
         [[constraints]]
         type = "spherical"
         name = "hook"
@@ -226,7 +225,7 @@ fn what_changes_a_spring_does_work() {
             [run]
             duration = "6 s"
             [solver]
-            tolerance = 1e-7
+            stepping = {{ type = "controlled", tolerance = 1e-7 }}
             [[inputs]]
             name = "stiffness"
             unit = "N/m"
@@ -242,7 +241,7 @@ fn what_changes_a_spring_does_work() {
             [[elements]]
             type = "point_mass"
             name = "ball"
-            position = ["1.5 m", 0, 0]
+            marker = ["1.5 m", 0, 0]
             mass = "2 kg"
             [[forces]]
             type = "spring"
@@ -276,7 +275,7 @@ fn positioned(every: &str, more: &str) -> Scene {
         duration = "20 s"
         output = "1 s"
         [solver]
-        tolerance = 1e-9
+        stepping = {{ type = "controlled", tolerance = 1e-9 }}
         [[inputs]]
         name = "thrust"
         unit = "N"
@@ -296,7 +295,7 @@ fn positioned(every: &str, more: &str) -> Scene {
         [[elements]]
         type = "point_mass"
         name = "ball"
-        position = [0, 0, 0]
+        marker = [0, 0, 0]
         mass = "2 kg"
         [[forces]]
         type = "point_force"
@@ -426,7 +425,7 @@ fn controller_without_a_value_ends_the_run_with_its_name() {
         [[elements]]
         type = "point_mass"
         name = "ball"
-        position = [0, 0, 0]
+        marker = [0, 0, 0]
         mass = 1
         [[forces]]
         type = "point_force"
@@ -513,4 +512,86 @@ fn fixed_steps_end_at_the_instants_of_controllers() {
     let mut exact = started(&positioned("0.25 s", ""));
     exact.advance(20.0, 1.0, &mut ()).expect("run");
     assert!((s.state.q[0] - exact.state.q[0]).abs() < 1e-6, "{} {}", s.state.q[0], exact.state.q[0]);
+}
+
+/// The values of a column after a time, of a scene run as a whole.
+fn column(text: &str, set: &[&str], name: &str, after: f64) -> Vec<f64> {
+    let set: Vec<String> = set.iter().map(|s| (*s).to_string()).collect();
+    let file = SceneFile::parse(text, "example", Format::Toml, &set).unwrap_or_else(|e| panic!("{e}"));
+    let history = ropewalk::simulate(file.scene()).unwrap_or_else(|e| panic!("{e}"));
+    let values = history.column(name).unwrap_or_else(|| panic!("no column {name}"));
+    history.times().iter().zip(values).filter(|(t, _)| **t >= after).map(|(_, x)| *x).collect()
+}
+
+#[test]
+fn constant_tension_winch_holds_its_tension() {
+    let text = include_str!("../../examples/control/constant-tension.toml");
+    let held = column(text, &[], "rope.start.tension", 15.0);
+    let off = held.iter().map(|x| (x / 20e3 - 1.0).abs()).fold(0.0, f64::max);
+    // the loop integrates twice: (5 s + 5) / s² with the 10 kN/m of the rope, by which 10 kN of heave at 0.1 Hz become 0.68 kN
+    println!("tension within {off:.4} of what it is to be");
+    assert!(off < 0.05 && off > 0.02, "{off}");
+}
+
+#[test]
+fn heave_compensation_keeps_the_load_in_its_place() {
+    let text = include_str!("../../examples/control/heave-compensation.toml");
+    let z = column(text, &[], "load.z", 15.0);
+    let range =
+        z.iter().copied().fold(f64::NEG_INFINITY, f64::max) - z.iter().copied().fold(f64::INFINITY, f64::min);
+    println!("the load moves by {range:.4} m while the ship heaves by 3 m");
+    assert!(range < 0.05 * 3.0, "{range}");
+}
+
+#[test]
+fn dynamic_positioning_holds_place_and_heading() {
+    let text = include_str!("../../examples/control/dynamic-positioning.toml");
+    for (name, goal) in [("vessel.x", 10.0), ("vessel.y", 0.0), ("vessel.phi3", 0.0)] {
+        let off = column(text, &[], name, 500.0).iter().map(|x| (x - goal).abs()).fold(0.0, f64::max);
+        println!("{name}: off by {off:.4}");
+        assert!(off < 0.1, "{name}: {off}");
+    }
+    // the thrusters carry the wind, and its moment
+    let last = |name| column(text, &[], name, 599.0).last().copied().unwrap_or(f64::NAN);
+    assert!((last("sway") + 30e3).abs() < 600.0, "{}", last("sway"));
+    assert!((last("yaw") + 600e3).abs() < 12e3, "{}", last("yaw"));
+}
+
+#[test]
+fn current_that_is_an_input_drags_as_one_that_is_given() {
+    let text = |current: &str| {
+        format!(
+            r#"
+            [run]
+            duration = "4 s"
+            [solver]
+            stepping = {{ type = "controlled", tolerance = 1e-8 }}
+            [[inputs]]
+            name = "tide"
+            unit = "m/s"
+            join = "hold"
+            [water]
+            current = [{current}, 0, 0]
+            [[elements]]
+            type = "point_mass"
+            name = "buoy"
+            marker = [0, 0, 0]
+            mass = "20 kg"
+            volume = "0.02 m^3"
+            drag_area = "0.1 m^2"
+            "#
+        )
+    };
+    let mut driven = started(&scene(&text("{ input = \"tide\" }")));
+    driven.advance(1.0, 1.0, &mut ()).expect("run");
+    assert_eq!(driven.state.v[0], 0.0);
+    driven.set_input("tide", 0.8).expect("set");
+    driven.advance(3.0, 1.0, &mut ()).expect("run");
+    let mut given = started(&scene(&text("0.8")));
+    given.advance(2.0, 1.0, &mut ()).expect("run");
+    let off = (driven.state.q[0] - given.state.q[0]).abs();
+    println!("{} m, off by {off:e}", given.state.q[0]);
+    assert!(given.state.q[0] > 0.2 && off < 1e-6, "{off:e}");
+    let linear = text("{ input = \"tide\" }").replace("\"hold\"", "\"linear\"");
+    assert!(refused(&linear).contains("`join = \"hold\"`"), "{}", refused(&linear));
 }

@@ -19,6 +19,7 @@ mod energy;
 mod inputs;
 mod invariance;
 mod joints;
+mod linearise;
 mod motions;
 mod pendulums;
 mod radau;

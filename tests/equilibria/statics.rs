@@ -187,7 +187,7 @@ fn a_cable_that_stands_on_its_end_is_no_equilibrium() {
     for current in [0.0, -0.3] {
         let section = Section { diameter: 0.02, ..Section::new(0.6, 1e5, 1.0) };
         let mut scene = Scene::new();
-        scene.water = Some(Water { current: [0.0, 0.0, current], ..Water::default() });
+        scene.water = Some(Water { current: [0.0, 0.0, current].map(Into::into), ..Water::default() });
         scene
             .element(CableSpec::straight("cable", [0.0; 3], [0.0, 0.0, 10.0], 12, section))
             .constraint(SphericalSpec::pin("pin", "cable.start"))

@@ -43,7 +43,7 @@ fn streaming(speed: f64, angle: f64, elements: usize) -> Scene {
     let end = [-30.0 * angle.cos(), 0.0, -30.0 * angle.sin()];
     let section = Section { axial_retardation_time: 0.01, ..hose(1e6, 2.0) };
     let mut scene = towed([0.0; 3], end, elements, section, DragLaw::Constant);
-    scene.water.as_mut().expect("water").current = [-speed, 0.0, 0.0];
+    scene.water.as_mut().expect("water").current = [-speed, 0.0, 0.0].map(Into::into);
     scene
         .constraint(SphericalSpec::new("ship", "hose.start", [0.0; 3]))
         .record(PositionSpec::new("hose.end"))

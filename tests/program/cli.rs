@@ -289,9 +289,38 @@ fn list_shows_scenes_and_types() {
 }
 
 #[test]
+fn linearise_leaves_matrices_and_their_names() {
+    let folder = folder();
+    let said = done(run(folder.path(), &["linearise", "swing.toml", "--at", "0.1 s", "--out", "linear"]));
+    assert!(said.contains("about the state at t = 0.1 s") && said.contains("stiffness.mtx"), "{said}");
+    let read = |name: &str| fs::read_to_string(folder.path().join("linear").join(name)).expect(name);
+    let names: Value = serde_json::from_str(&read("linearised.json")).expect("JSON");
+    let unknowns = names["unknowns"].as_array().expect("names").len();
+    // five nodes of position and slope
+    assert_eq!((unknowns, names["constraints"].as_array().expect("names").len()), (30, 3));
+    for file in ["mass", "damping", "gyroscopic", "stiffness", "kinematic"] {
+        let text = read(&format!("{file}.mtx"));
+        let mut lines = text.lines().skip_while(|l| l.starts_with('%'));
+        let size: Vec<usize> =
+            lines.next().expect("size").split(' ').map(|n| n.parse().expect("a number")).collect();
+        assert_eq!((&size[..2], size[2]), (&[unknowns, unknowns][..], lines.count()), "{file}");
+    }
+    assert!(read("null_space.mtx").lines().nth(2).is_some_and(|l| l == "30 27"));
+    for (at, expected) in [("never", "expected `equilibrium`"), ("1 h", "between 0 and 0.3 s")] {
+        let refused = run(folder.path(), &["linearise", "swing.toml", "--at", at]);
+        assert_eq!(refused.code, Some(2), "{at}");
+        assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+    }
+}
+
+#[test]
 fn describe_explains_scenes_types_and_sections() {
     let folder = folder();
     let describe = |what: &str| done(run(folder.path(), &["describe", what]));
+    let inputs = describe("inputs");
+    assert!(inputs.starts_with("[[inputs]]") && inputs.contains("Name, by which"), "{inputs}");
+    let winch = describe("winch");
+    assert!(winch.contains("speed: number in m/s, or text with a unit, or an input"), "{winch}");
     let scene = describe("swing.toml");
     for line in ["A swing", "Half a second of it.", "mass = 2 kg/m", "number of elements", "rope (cable)"] {
         assert!(scene.contains(line), "no {line} in\n{scene}");

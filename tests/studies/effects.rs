@@ -526,7 +526,7 @@ fn what_is_wrong_with_a_ledger_is_said_in_one_message() {
 #[test]
 fn drag_and_water_of_a_ledger_are_those_of_the_scene() {
     let mut scene = recorded();
-    scene.water = Some(Water { current: [0.5, 0.0, 0.0], ..Water::default() });
+    scene.water = Some(Water { current: [0.5, 0.0, 0.0].map(Into::into), ..Water::default() });
     scene.forces.retain(|f| f.typetag_name() != "drag");
     scene.force(DragSpec { cn: 1.5, ..DragSpec::default() });
     let found = ledger(&scene, "cable.end@0.4");

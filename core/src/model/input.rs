@@ -176,6 +176,12 @@ impl Input {
         self.at(t).value
     }
 
+    /// What it is set to at last: its value now, if it holds.
+    pub fn latest(&self) -> f64 {
+        let course = self.course.read().unwrap_or_else(PoisonError::into_inner);
+        course.now.value + course.now.slope * (course.now.end - course.now.start)
+    }
+
     /// How much of a step `h` from `t` leads over no kink [s].
     pub fn reach(&self, t: f64, h: f64) -> f64 {
         let course = self.course.read().unwrap_or_else(PoisonError::into_inner);
@@ -240,6 +246,12 @@ impl Input {
 }
 
 impl Course {
+    /// The same with another value from time `t` on, and the integral that it has there.
+    pub(crate) fn moved(&self, t: f64, by: f64) -> Self {
+        let here = if t < self.now.start { self.before.at(t) } else { self.now.at(t) };
+        let now = Piece { start: t, end: t, value: here.value + by, slope: 0.0, integral: here.integral };
+        Course { before: self.now, now, target: None }
+    }
     fn turn(&mut self, next: Piece) {
         // what is set twice at an instant was never what it was set to first
         if next.start > self.now.start {

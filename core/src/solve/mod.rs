@@ -2,6 +2,7 @@
 
 pub mod integrator;
 pub mod linear;
+pub mod linearise;
 pub mod modes;
 pub mod redundancy;
 pub mod statics;

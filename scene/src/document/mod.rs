@@ -3,7 +3,7 @@
 //! A scene file goes through these stations, one module each:
 //!
 //! 1. `toml` or `json` parses the text into a tree of [`Value`]s that know where they were written ([`Span`]);
-//! 2. `parameters` replaces every `"$name"` by the parameter's value;
+//! 2. `parameters` replaces every `"$name"` by the parameter's value, `formula` calculates with them;
 //! 3. `deserialize` hands parts of the tree to serde, and turns whatever goes wrong into a [`Fault`];
 //! 4. `write` makes TOML of the tree again.
 //!
@@ -27,6 +27,7 @@
 
 mod deserialize;
 mod fault;
+mod formula;
 mod json;
 mod migrate;
 mod moved;

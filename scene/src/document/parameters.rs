@@ -10,7 +10,7 @@
 //! ```
 //!
 //! A text that is `$` and a name stands for the parameter's value, whatever that is: a number, a list, a table. `$$` at
-//! the beginning of a text is a literal dollar sign. There is no arithmetic.
+//! the beginning of a text is a literal dollar sign. Formulas calculate with units: `"-$load"`, `"2 * $length / 3"`.
 //!
 //! A table with `choose` stands for one of its other values, that under the name that `choose` has; for a
 //! quantity in any unit, and for a number without unit in SI:
@@ -20,6 +20,7 @@
 //! ```
 
 use super::fault::{Fault, did_you_mean, expected, quoted};
+use super::formula;
 use super::source::{Sources, Span};
 use super::toml;
 use super::value::{DEEPEST, Key, Kind, Table, Value};
@@ -267,13 +268,32 @@ impl Resolver<'_> {
                 text.remove(0);
                 Ok(())
             }
-            Kind::String(text) if text.starts_with('$') => {
-                let name = text[1..].to_string();
-                *value = self.used(&name, value.span)?;
+            Kind::String(text) if text.contains('$') => {
+                if let Some(found) = self.replaced(text, value.span)? {
+                    *value = found;
+                }
                 Ok(())
             }
             _ => Ok(()),
         }
+    }
+
+    /// What stands in place of a text that holds a dollar sign; nothing if it is just a text.
+    fn replaced(&mut self, text: &str, span: Span) -> Result<Option<Value>, Fault> {
+        let name = text.strip_prefix('$').filter(|name| is_name(name));
+        if let Some(name) = name.filter(|name| self.index.contains_key(*name)) {
+            return self.used(name, span).map(Some);
+        }
+        let found = formula::of(text, &|name| self.index.contains_key(name));
+        let found =
+            found.filter(|f| name.is_none() || formula::parameters(f).all(|n| self.index.contains_key(n)));
+        let Some(found) = found else {
+            return text.strip_prefix('$').map(|name| self.used(name, span)).transpose();
+        };
+        let values = formula::parameters(&found).map(|name| self.used(name, span));
+        let values = values.collect::<Result<Vec<_>, _>>()?;
+        let kind = formula::value(text, &found, &values).map_err(|message| self.fault(message, span))?;
+        Ok(Some(Value::new(kind, span)))
     }
 
     /// The value of a table with `choose`.
@@ -309,11 +329,16 @@ impl Resolver<'_> {
                 Kind::Table(table) => values.extend(table.0.into_iter().map(|(_, value)| value)),
                 Kind::Array(list) => values.extend(list),
                 Kind::String(text) => {
-                    let i = text.strip_prefix('$').and_then(|name| self.index.get(name).copied());
-                    let definition = i.map(|i| &mut self.definitions[i]).filter(|d| !d.passed_over);
-                    if let Some(definition) = definition {
-                        definition.passed_over = true;
-                        values.extend(definition.written.clone());
+                    let own = text.strip_prefix('$').filter(|name| self.index.contains_key(*name));
+                    let found = formula::of(&text, &|name| self.index.contains_key(name));
+                    let names = found.iter().flat_map(formula::parameters);
+                    for name in own.into_iter().chain(names.filter(|_| own.is_none())) {
+                        let i = self.index.get(name).copied();
+                        let definition = i.map(|i| &mut self.definitions[i]).filter(|d| !d.passed_over);
+                        if let Some(definition) = definition {
+                            definition.passed_over = true;
+                            values.extend(definition.written.clone());
+                        }
                     }
                 }
                 _ => {}
@@ -324,7 +349,8 @@ impl Resolver<'_> {
     fn used(&mut self, name: &str, span: Span) -> Result<Value, Fault> {
         if !is_name(name) {
             return Err(self.fault(format!("{} is no name of a parameter", quoted(&format!("${name}"))), span).with_help(
-                "`$name` stands for a whole value and can't be part of a text; a literal `$` at the beginning is `$$`",
+                "`$name` stands for a value, also in a formula such as `2 * $name`, and can't be part of another text; a \
+                 literal `$` at the beginning is `$$`",
             ));
         }
         let Some(&i) = self.index.get(name) else {

@@ -67,7 +67,7 @@ pub(super) fn edited(scene: &Scene, edits: &[Edit]) -> Result<Scene, String> {
             Edit::DropConstraint(k) => constraints.push(*k),
             Edit::StillWater => {
                 if let Some(water) = &mut new.water {
-                    water.current = [0.0; 3];
+                    water.current = [0.0; 3].map(Into::into);
                     water.profile.clear();
                 }
             }
@@ -186,7 +186,7 @@ pub(super) fn present(scene: &Scene) -> Vec<Candidate> {
             push(format!("breaking {}", c.name()), Edit::DropConstraint(k));
         }
     }
-    if scene.water.as_ref().is_some_and(|w| w.current != [0.0; 3] || !w.profile.is_empty()) {
+    if scene.water.as_ref().is_some_and(|w| !w.current.iter().all(|u| u.is(0.0)) || !w.profile.is_empty()) {
         push("current".into(), Edit::StillWater);
     }
     if scene.water.as_ref().is_some_and(|w| w.level.is_some()) {
@@ -231,7 +231,7 @@ pub(super) fn absent(scene: &Scene) -> (Vec<Candidate>, Vec<Hint>) {
 
     absent_of_elements(scene, &mut all, &mut hints);
     let mut hint = |name: &str, text: String| hints.push((name.to_string(), text));
-    if scene.water.as_ref().is_some_and(|w| w.current == [0.0; 3] && w.profile.is_empty()) {
+    if scene.water.as_ref().is_some_and(|w| w.current.iter().all(|u| u.is(0.0)) && w.profile.is_empty()) {
         hint("current", "`current = [\"0.5 m/s\", 0, 0]` in [water]".into());
     }
     if scene.water.as_ref().is_some_and(|w| w.level.is_none()) {

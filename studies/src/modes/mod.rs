@@ -139,15 +139,8 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
         );
         return Err(Fault::new(message).into());
     }
-    let mut state = model.state();
-    state.v.fill(0.0);
-    state.t = time;
     let mut warnings = Vec::new();
-    let search = if core::in_balance(&model, &mut state, &scene.statics, run.frame)? {
-        None
-    } else {
-        Some(equilibrium(scene, &model, &mut state, time, options.watch)?)
-    };
+    let (state, search) = balance(scene, &model, time, options.watch)?;
     let found = core::modes(&model, &state, &scene.statics, run.frame, options.count, look)?;
     if let Some(of) = found.of.filter(|of| *of < options.count) {
         let plural = if of == 1 { "one mode" } else { &format!("{of} modes") };
@@ -181,6 +174,23 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
         warnings.push(format!("the equations of a mode are met only to {bad:.0e} of its size"));
     }
     Ok(Modal { model, state, search, modes, unstable, critical, warnings })
+}
+
+/// The equilibrium at a time, as laid if that is one, and else as it was found.
+pub(crate) fn balance(
+    scene: &Scene,
+    model: &Model,
+    time: f64,
+    watch: Watch,
+) -> Result<(State, Option<Found>), Error> {
+    let mut state = model.state();
+    state.v.fill(0.0);
+    state.t = time;
+    if core::in_balance(model, &mut state, &scene.statics, scene.run.frame)? {
+        return Ok((state, None));
+    }
+    let found = equilibrium(scene, model, &mut state, time, watch)?;
+    Ok((state, Some(found)))
 }
 
 /// The equilibrium at a time: of statics scenes along the load path.
