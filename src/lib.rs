@@ -40,7 +40,7 @@ pub use ropewalk_studies::effects::{
     Advice, EffectTrial, EffectWork, EffectsOptions, EffectsOutcome, Ledger, Verdict, effects, write_effects,
 };
 pub use ropewalk_studies::modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
-pub use ropewalk_studies::run::{Every, Manifest, Outcome, RunOptions, Status, Summary, resume, run};
+pub use ropewalk_studies::run::{Every, Leaves, Manifest, Outcome, RunOptions, Status, Summary, resume, run};
 pub use ropewalk_studies::simulate::{History, read, simulate, simulate_with, start};
 pub use ropewalk_studies::{Error, bench, variants, verify};
 

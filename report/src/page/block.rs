@@ -205,6 +205,7 @@ pub(super) mod tests {
             s: (0..n).map(|k| k as f64 * 0.5).collect(),
             position: (0..n).map(|k| [500_000.25 + k as f64, t, -0.5]).collect(),
             values: vec![(0..n).map(|k| t * k as f64).collect()],
+            ..LineSnapshot::default()
         };
         let line = |name: &str, counts: [usize; 3]| LineRecord {
             quantities: vec![Quantity::new("tension", "N")],

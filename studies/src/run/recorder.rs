@@ -1,6 +1,7 @@
 //! The observer of a run: it evaluates the records, writes the history, shows the progress and keeps shapes.
 
 use super::checkpoint::{Saved, Saver};
+use super::kept::Kept;
 use super::shapes::{Line, Shape};
 use super::summary::{Ending, Happened, Summary};
 use super::surfacing::Surfacing;
@@ -46,9 +47,7 @@ pub struct Recorder<'a> {
     /// Positions of all nodes at some hundred rows, if they are wanted.
     pub track: Option<Vec<Vec<V3<f64>>>>,
     /// Lines of all parts at several times.
-    pub shapes: Vec<Shape>,
-    /// When shapes are still to be kept, last first.
-    pub(super) due: Vec<f64>,
+    pub kept: Kept,
     /// Whether to look for what leaves water without a surface.
     surfacing: Option<Surfacing>,
     /// Why it stopped the run.
@@ -102,10 +101,6 @@ impl<'a> Recorder<'a> {
             let columns = first..table.columns.len();
             figures.push(Figure { name, title, columns });
         }
-        let n = scene.run.snapshots;
-        let last = n.saturating_sub(1).max(1);
-        let due =
-            (0..n).rev().map(|k| scene.run.duration * if n == 1 { 1.0 } else { k as f64 / last as f64 });
         Recorder {
             scene,
             needs_forces: records.iter().any(|r| r.needs_forces()),
@@ -119,8 +114,7 @@ impl<'a> Recorder<'a> {
             watch: Watch::default(),
             spent: None,
             track: None,
-            shapes: Vec::new(),
-            due: due.collect(),
+            kept: Kept::new(&scene.run),
             surfacing: Surfacing::of(scene),
             stop: None,
             events: Vec::new(),
@@ -138,8 +132,11 @@ impl<'a> Recorder<'a> {
             return Err("the checkpoint belongs to other records".into());
         }
         self.table = saved.table.clone().into_owned();
-        self.shapes = saved.shapes.clone().into_owned();
-        self.due = saved.due.clone().into_owned();
+        self.kept.shapes = saved.shapes.clone().into_owned();
+        self.kept.due = saved.due.clone().into_owned();
+        if self.kept.has_field() {
+            self.kept.field_due = saved.field_due.clone().into_owned();
+        }
         self.events = saved.events.clone().into_owned();
         self.remeshed = saved.remeshed.clone().into_owned();
         Ok(())
@@ -150,6 +147,7 @@ impl<'a> Recorder<'a> {
         let address = std::ptr::from_ref(model) as usize;
         if self.bound.is_some_and(|bound| bound != address) {
             self.records = self.scene.records(model)?;
+            self.kept.follow(model);
         }
         if self.bound != Some(address) {
             match &mut self.layers {
@@ -180,7 +178,9 @@ impl<'a> Recorder<'a> {
                 layers.look(s.model, &s.at);
             }
         }
-        self.keep(s.at.t, || Shape::of(s.model, &s.at))
+        self.keep()?;
+        self.kept.sample(s.model, &s.at);
+        Ok(())
     }
 
     /// Takes a row of a process, which made a step of `h` since the last.
@@ -193,33 +193,28 @@ impl<'a> Recorder<'a> {
         self.row.push(t);
         process.sample(&mut self.row);
         let name = self.scene.processes.first().map_or("", |p| p.name());
-        let kept = self.keep(t, || Shape { t, lines: vec![Line::of_process(name, process)] });
-        self.go_on(kept)?;
+        let row = self.keep();
+        self.kept.look(t, |_| {
+            let lines = vec![Line::of_process(name, process)];
+            Shape { t, is_drawn: true, lines, bodies: Vec::new() }
+        });
+        self.go_on(row)?;
         self.look_for_end()
     }
 
-    /// Keeps the row, and the shape if one is due.
-    fn keep(&mut self, t: f64, shape: impl FnOnce() -> Shape) -> Result<(), Error> {
+    /// Keeps the row.
+    fn keep(&mut self) -> Result<(), Error> {
         self.table.push_row(&self.row)?;
         if let Some(writer) = &mut self.writer {
             writer.push(&self.row)?;
-        }
-        // an instant that is off by rounding is the right one
-        let now = t + 1e-9 * self.scene.run.duration;
-        if self.due.last().is_some_and(|due| *due <= now) {
-            while self.due.last().is_some_and(|due| *due <= now) {
-                self.due.pop();
-            }
-            self.shapes.push(shape());
         }
         Ok(())
     }
 
     /// Keeps the shape in which the run ended, unless it is there already.
     pub(crate) fn last_shape(&mut self, model: &Model, state: &State) {
-        let missing = self.shapes.last().is_some_and(|last| last.t < state.t);
-        if missing && !self.due.is_empty() && self.scene.processes.is_empty() {
-            self.shapes.push(Shape::of(model, &state.at()));
+        if self.scene.processes.is_empty() {
+            self.kept.last(model, state);
         }
     }
 

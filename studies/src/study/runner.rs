@@ -2,7 +2,7 @@
 //! again.
 
 use crate::error::{Error, caught};
-use crate::run::{RunOptions, Status, Summary, run_showing};
+use crate::run::{Leaves, RunOptions, Status, Summary, run_showing};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use ropewalk_report::{ProgressMode, RunFolder, SweepProgress, Table, Watch};
 use ropewalk_scene::{Fault, SceneFile};
@@ -112,6 +112,8 @@ impl Runner {
             out: Some(folder.path().to_path_buf()),
             progress: ProgressMode::Quiet,
             watch: self.watch,
+            // many runs are looked at together, by what the study makes of them
+            leaves: Leaves { report: false, ..Leaves::default() },
             ..RunOptions::default()
         };
         let progress = |t_end: f64| self.progress.begin(name, t_end);
