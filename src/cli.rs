@@ -55,7 +55,8 @@ enum Command {
         ropewalk run runs/scene/scene.toml      again, from what a run left behind\n  \
         ropewalk run scene.toml --certify       how far it can be trusted\n  \
         ropewalk run scene.toml --accuracy 1e-3 --of hose.end\n\n\
-        The folder holds scene.toml (as it was run), manifest.json, history.csv, summary.json and plots/*.svg.\n\
+        The folder holds scene.toml (as it was run), manifest.json, history.csv, summary.json, report.html (all of it as a\n\
+        page with the motion in 3D), field.npy and plots/*.svg.\n\
         Ctrl-C, SIGTERM and SIGHUP end the run in good order; what was computed is kept.")]
     Run(commands::run::RunArgs),
     /// Go on with a run that was interrupted or killed, from its last checkpoint
@@ -76,6 +77,13 @@ enum Command {
         #[arg(long, short)]
         quiet: bool,
     },
+    /// Show a run in the browser, or two side by side
+    #[command(after_help = "Examples:\n  \
+        ropewalk view runs/scene                its report.html, made anew if it isn't there\n  \
+        ropewalk view runs/scene runs/scene-2   both motions, histories over each other, summaries side by side\n  \
+        ropewalk view runs/scene --serve        while the run goes on: the page follows it\n\n\
+        The page is one file that needs no network. It is opened if this is a terminal; its place is printed.")]
+    View(commands::view::ViewArgs),
     /// Run a scene with all combinations of parameters, on all cores; what is there already is not computed again
     #[command(after_help = "Examples:\n  \
         ropewalk sweep hose-turn --vary speed=5kn,15kn,25kn --vary start=40,80,120\n  \
@@ -263,6 +271,7 @@ pub fn exit_from(
     let done = match cli.command {
         Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
+        Command::View(args) => commands::view::view(&args),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Atlas(args) => commands::atlas::atlas(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),

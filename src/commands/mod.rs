@@ -12,9 +12,11 @@ pub(crate) mod modes;
 pub(crate) mod resume;
 pub(crate) mod run;
 mod schema;
+mod serve;
 pub(crate) mod sweep;
 pub(crate) mod variants;
 pub(crate) mod verify;
+pub(crate) mod view;
 
 use ropewalk_report::{Interrupt, ProgressMode};
 use std::fmt::Display;

@@ -83,6 +83,7 @@ pub(super) fn deflated(page: &Page, thinned: &[String]) -> Vec<u8> {
         "events": page.events,
         "settings": page.settings,
         "energy": page.energy,
+        "sections": page.sections,
         "axis": {"name": axis.0, "unit": axis.1},
         "history": history,
         "panels": panel::drawn(columns, &page.panels),

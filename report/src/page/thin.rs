@@ -84,6 +84,7 @@ impl Page {
             notes: self.notes.clone(),
             events: self.events.clone(),
             settings: self.settings.clone(),
+            sections: self.sections.clone(),
             energy: self.energy.clone(),
             panels: self.panels.clone(),
             budget: self.budget,

@@ -1,5 +1,6 @@
 //! A run: a scene, computed into a folder of its own.
 
+mod beside;
 mod checkpoint;
 mod kept;
 mod leave;
@@ -15,7 +16,9 @@ mod start;
 mod summary;
 mod surfacing;
 mod tables;
+mod view;
 
+pub use beside::compare;
 pub use checkpoint::Every;
 pub use leave::Leaves;
 pub use manifest::Manifest;
@@ -26,6 +29,7 @@ use recorder::Warnings;
 pub(crate) use shapes::{Shape, last as last_shape, read as read_shapes};
 pub(crate) use start::Started;
 pub(crate) use summary::Ending;
+pub use view::{page_of, report_of};
 pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, Status, Summary};
 
 use crate::error::Error;

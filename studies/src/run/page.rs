@@ -1,9 +1,10 @@
 //! The page of a run, `report.html`: what its folder says, put together for the browser.
 
 use super::recorder::Figure;
-use super::report::{critical, finals};
-use super::summary::{Status, Summary};
-use ropewalk_report::{Entry, Event, FieldRecord, Page, Panel, Table, number, rough};
+use super::report::{by_name, critical, finals};
+use super::summary::{ProfileEntry, Status, Summary};
+use ropewalk_core::integrator::Options;
+use ropewalk_report::{Entry, Event, FieldRecord, Page, Panel, Section, Table, number, rough};
 use ropewalk_scene::{Analysis, SceneFile};
 use serde_json::Value;
 
@@ -27,7 +28,8 @@ pub(crate) fn page(
         subtitle: format!("{} · Ropewalk {}", file.name(), env!("CARGO_PKG_VERSION")),
         status: summary.status.to_string(),
         scene: file.document().to_toml(),
-        summary: entries(file, summary, &history, figures),
+        summary: entries(file, summary, &history),
+        sections: vec![last_values(&history, figures), profile(summary)],
         warnings: failed.into_iter().chain(summary.warnings.iter().cloned()).collect(),
         notes: notes.collect(),
         events: events(summary),
@@ -40,8 +42,24 @@ pub(crate) fn page(
     }
 }
 
-/// How the run ended, how much work it was, and the last values.
-fn entries(file: &SceneFile, summary: &Summary, history: &Table, figures: &[Figure]) -> Vec<Entry> {
+/// The last values of all records.
+fn last_values(history: &Table, figures: &[Figure]) -> Section {
+    let finals = figures.iter().flat_map(|f| finals(&history.columns[f.columns.clone()]));
+    let entries = finals.map(|(name, value)| Entry::new(name, value)).collect();
+    Section { title: "Last values".into(), entries }
+}
+
+/// Where the time went, if that was measured.
+fn profile(summary: &Summary) -> Section {
+    let mut profile: Vec<_> = summary.profile.iter().flatten().collect();
+    profile.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
+    let value = |e: &ProfileEntry| format!("{:.1} %, {} s", 100.0 * e.share, rough(e.seconds));
+    let entries = profile.into_iter().map(|e| Entry::new(&e.label, value(e))).collect();
+    Section { title: "Profile".into(), entries }
+}
+
+/// How the run ended, and how much work it was.
+fn entries(file: &SceneFile, summary: &Summary, history: &Table) -> Vec<Entry> {
     let statics = file.scene().run.analysis == Analysis::Statics;
     let c = &summary.counts;
     let t = history.columns.first().and_then(|c| c.values.last()).copied();
@@ -64,18 +82,23 @@ fn entries(file: &SceneFile, summary: &Summary, history: &Table, figures: &[Figu
     for load in &summary.critical {
         add("critical", critical(load));
     }
-    for (name, value) in figures.iter().flat_map(|f| finals(&history.columns[f.columns.clone()])) {
-        add(&format!("last {name}"), value);
-    }
-    for entry in summary.profile.iter().flatten() {
-        add(&entry.label, format!("{:.1} %, {} s", 100.0 * entry.share, rough(entry.seconds)));
-    }
     all
 }
 
+/// Of events of one name more than these are told by the first and the last.
+const MOST_ALIKE: usize = 12;
+
 /// What happened: events, and critical loads of a load path.
 fn events(summary: &Summary) -> Vec<Event> {
-    let happened = summary.events.iter().map(|e| Event { t: e.t, text: e.name.clone() });
+    let happened = by_name(&summary.events).into_iter().flat_map(|(name, times)| {
+        let event = |t: f64, which: &str| Event { t, text: format!("{name}{which}") };
+        match times.as_slice() {
+            [first, .., last] if times.len() > MOST_ALIKE => {
+                vec![event(*first, &format!(", the first of {}", times.len())), event(*last, ", the last of them")]
+            }
+            all => all.iter().map(|t| event(*t, "")).collect(),
+        }
+    });
     let loads = summary.critical.iter().map(|c| Event { t: c.load_factor, text: format!("{}: {}", c.kind, c.what) });
     let mut all: Vec<Event> = happened.chain(loads).collect();
     all.sort_by(|a, b| a.t.total_cmp(&b.t));
@@ -99,8 +122,13 @@ fn settings(file: &SceneFile) -> Vec<Entry> {
         all.push(Entry::new("method", process.typetag_name().replace('_', " ")));
         return all;
     }
-    let solver = serde_json::to_value(&scene.solver).unwrap_or_default();
-    for (name, value) in solver.as_object().into_iter().flatten().filter(|(_, value)| !value.is_null()) {
+    let options = |options: &Options| serde_json::to_value(options).unwrap_or_default();
+    let (solver, usual) = (options(&scene.solver), options(&Options::default()));
+    // what is as usual isn't worth a line, but for scheme and steps
+    let told = |name: &str, value: &Value| {
+        matches!(name, "scheme" | "stepping") || (!value.is_null() && usual.get(name) != Some(value))
+    };
+    for (name, value) in solver.as_object().into_iter().flatten().filter(|(name, value)| told(name, value)) {
         all.push(Entry::new(name.replace('_', " "), words(value)));
     }
     all

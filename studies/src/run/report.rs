@@ -114,7 +114,7 @@ pub(super) fn finals(columns: &[Column]) -> Vec<(String, String)> {
 }
 
 /// The times of each kind of event, in the order in which they came first.
-fn by_name(events: &[Happened]) -> Vec<(&str, Vec<f64>)> {
+pub(super) fn by_name(events: &[Happened]) -> Vec<(&str, Vec<f64>)> {
     let mut all: Vec<(&str, Vec<f64>)> = Vec::new();
     for e in events {
         match all.iter_mut().find(|(name, _)| *name == e.name) {
