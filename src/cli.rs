@@ -84,6 +84,13 @@ enum Command {
         ropewalk view runs/scene --serve        while the run goes on: the page follows it\n\n\
         The page is one file that needs no network. It is opened if this is a terminal; its place is printed.")]
     View(commands::view::ViewArgs),
+    /// Draw columns of a history, or of the table of a sweep, as a figure of one's own
+    #[command(after_help = "Examples:\n  \
+        ropewalk plot runs/hose-turn hose.end\n  \
+        ropewalk plot runs/hose-turn hose.end.z --against hose.end.x --style paper -o path.svg\n  \
+        ropewalk plot runs/hose-turn-sweep height.z --against speed\n\n\
+        There is a plot for each unit. In a sweep runs that differ in other parameters are curves of their own.")]
+    Plot(commands::plot::PlotArgs),
     /// Run a scene with all combinations of parameters, on all cores; what is there already is not computed again
     #[command(after_help = "Examples:\n  \
         ropewalk sweep hose-turn --vary speed=5kn,15kn,25kn --vary start=40,80,120\n  \
@@ -271,6 +278,7 @@ pub fn exit_from(
     let done = match cli.command {
         Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
+        Command::Plot(args) => commands::plot::plot(&args),
         Command::View(args) => commands::view::view(&args),
         Command::Sweep(args) => commands::sweep::sweep(args, bundled),
         Command::Atlas(args) => commands::atlas::atlas(args, bundled),

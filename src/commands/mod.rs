@@ -9,6 +9,7 @@ pub(crate) mod effects;
 pub(crate) mod list;
 pub(crate) mod migrate;
 pub(crate) mod modes;
+pub(crate) mod plot;
 pub(crate) mod resume;
 pub(crate) mod run;
 mod schema;

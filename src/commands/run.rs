@@ -38,6 +38,9 @@ pub(crate) struct RunArgs {
     /// Wall time that the search of `--accuracy` may take
     #[arg(long, value_name = "TIME", default_value = "10 min", value_parser = super::cost::time)]
     budget: Duration,
+    /// Show the course of a record while it runs, such as hose.end.z
+    #[arg(long, value_name = "RECORD")]
+    watch: Option<String>,
     /// Leave report.html and field.npy out
     #[arg(long)]
     no_report: bool,
@@ -86,7 +89,7 @@ impl RunArgs {
         let (out, checkpoint) = (self.out.clone(), self.checkpoint);
         let (progress, watch) = (progress(self.quiet), Watch::signals(warn));
         let leaves = Leaves { report: !self.no_report, plots: !self.no_plots, vtk: self.vtk };
-        let options = RunOptions { out, profile: self.profile, progress, checkpoint, watch, leaves };
+        let options = RunOptions { out, profile: self.profile, progress, checkpoint, watch, leaves, follow: self.watch.clone() };
         run_scene(file, &options, &mut warn)
     }
 

@@ -10,6 +10,7 @@ pub mod certificate;
 pub mod cost;
 pub mod effects;
 mod error;
+pub mod figure;
 pub mod modes;
 pub mod run;
 pub mod simulate;

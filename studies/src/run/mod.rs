@@ -54,6 +54,8 @@ pub struct RunOptions {
     pub watch: Watch,
     /// Which files it leaves behind for the eye: by default a page for the browser and pictures.
     pub leaves: Leaves,
+    /// A column of the history whose course the progress shows, such as `hose.end.z`.
+    pub follow: Option<String>,
 }
 
 /// How a run ended and where its results are.
@@ -98,6 +100,9 @@ pub(crate) fn run_showing(
     if let Err(message) = tables::check(scene, &recorder.table) {
         return Err(file.document().fault_at("run.tables", message).into());
     }
+    if let Some(name) = &options.follow {
+        recorder.follow(name)?;
+    }
     let folder = NewFolder::create(options.out.clone(), file.name())?;
     let stopwatch = Stopwatch::start();
     let started = match Started::new(scene, model, options.watch) {
@@ -106,7 +111,7 @@ pub(crate) fn run_showing(
     };
     let folder = folder.keep(file, &manifest)?;
     recorder.writer = Some(TableWriter::create(&folder.history_file(), &recorder.table)?);
-    recorder.progress = Some(progress(scene.run.duration));
+    recorder.show(progress(scene.run.duration));
     let before = Elapsed::default();
     if let Ok(started) = &started {
         if options.leaves.field() {
@@ -159,7 +164,10 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     // what it says is of rows that are computed again
     let _ = std::fs::remove_file(folder.summary_file());
     let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
-    recorder.progress = Some(Progress::new(t, end, options.progress));
+    if let Some(name) = &options.follow {
+        recorder.follow(name)?;
+    }
+    recorder.show(Progress::new(t, end, options.progress));
     recorder.warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
     recorder.watch = options.watch;
     let notes = manifest::notes(file.scene(), &simulation.model);

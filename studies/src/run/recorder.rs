@@ -10,7 +10,7 @@ use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{At, Checkpoint, Layers, Model, NodeKind, Observer, Record, Remeshed, Sample, State, V3};
 use ropewalk_report as output;
 use ropewalk_report::{Progress, Table, TableWriter, Watch};
-use ropewalk_scene::{Analysis, Channel, Process, Scene};
+use ropewalk_scene::{Analysis, Channel, Fault, Process, Scene, did_you_mean};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -40,6 +40,8 @@ pub struct Recorder<'a> {
     pub writer: Option<TableWriter>,
     /// Where the progress is shown.
     pub progress: Option<Progress>,
+    /// The column whose course it shows, if one is asked for.
+    followed: Option<usize>,
     /// What may stop the run.
     pub watch: Watch,
     /// How often samples were taken and how long that took, if it is to be measured.
@@ -111,6 +113,7 @@ impl<'a> Recorder<'a> {
             figures,
             writer: None,
             progress: None,
+            followed: None,
             watch: Watch::default(),
             spent: None,
             track: None,
@@ -123,6 +126,29 @@ impl<'a> Recorder<'a> {
             warnings: Warnings::default(),
             layers: None,
         }
+    }
+
+    /// Lets the progress show the course of a column; says which there are if there is none of this name.
+    pub(super) fn follow(&mut self, name: &str) -> Result<(), Fault> {
+        let names: Vec<&str> = self.table.columns.iter().skip(1).map(|c| c.name.as_str()).collect();
+        let Some(k) = names.iter().position(|own| *own == name) else {
+            let fault = Fault::new(format!("there is no record `{name}` whose course could be shown"));
+            let fault = fault.with_note(format!("there are {}", names.join(", ")));
+            return Err(match did_you_mean(name, &names) {
+                Some(guess) => fault.with_help(guess),
+                None => fault,
+            });
+        };
+        self.followed = Some(k + 1);
+        Ok(())
+    }
+
+    /// Begins to show the progress.
+    pub(super) fn show(&mut self, mut progress: Progress) {
+        if let Some(column) = self.followed.map(|k| &self.table.columns[k]) {
+            progress.follow(&column.name, &column.unit);
+        }
+        self.progress = Some(progress);
     }
 
     /// Takes up what was recorded until a checkpoint; says which column differs if the records are others.
@@ -207,6 +233,9 @@ impl<'a> Recorder<'a> {
         self.table.push_row(&self.row)?;
         if let Some(writer) = &mut self.writer {
             writer.push(&self.row)?;
+        }
+        if let (Some(k), Some(progress)) = (self.followed, &mut self.progress) {
+            progress.value(self.row[0], self.row[k]);
         }
         Ok(())
     }
