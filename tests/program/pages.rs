@@ -58,6 +58,9 @@ fn a_run_leaves_a_page_and_a_field_record_that_agree_with_its_tables() {
             assert!((ship.poses[k].position[i] - start).abs() < 1e-9, "the ship is where the hose begins");
         }
         assert_eq!(snapshot.values[0][0], column("hose.start.tension", row));
+        let middle = snapshot.s.iter().position(|s| *s == 15.0).unwrap();
+        assert_eq!(snapshot.values[0][middle], column("hose.middle.tension", row));
+        assert_eq!(snapshot.values[1][middle], column("hose.middle.curvature", row));
         let v = snapshot.velocity[3];
         let speed = v.iter().map(|x| x * x).sum::<f64>().sqrt();
         assert_eq!(snapshot.values[3][3], speed);

@@ -6,7 +6,7 @@ use ropewalk_report::{Column, Csv, OutputError, Pose, RunFolder, cells, write_at
 use ropewalk_scene::Process;
 use serde::{Deserialize, Serialize};
 
-/// What is measured along lines, where they know it.
+/// What is measured along lines, where they know it, in the order of [`ropewalk_core::Line::measure`].
 pub(super) const MEASURED: [(Quantity, &str); 3] = [
     (Quantity::Tension, "tension"),
     (Quantity::Curvature, "curvature"),
@@ -64,12 +64,13 @@ impl Line {
         if measure && s.len() == line.x.len() {
             let v = |s: &f64| part.point(*s, at).map_or([f64::NAN; 3], |(_, v)| v);
             line.v = s.iter().map(v).collect();
-            if let Some(slender) = part.slender() {
+            if let Some(known) = part.line() {
+                for s in &s {
+                    line.values.iter_mut().zip(known.measure(*s, at)).for_each(|(all, x)| all.push(x));
+                }
                 // a cable without bending stiffness has no moment to tell of
-                let known = MEASURED.iter().filter(|(what, _)| *what != Quantity::Moment || slender.ei > 0.0);
-                for (k, (what, _)) in known.enumerate() {
-                    line.values[k] =
-                        s.iter().map(|s| part.observe(*what, *s, at).unwrap_or(f64::NAN)).collect();
+                if !(known.slender().ei > 0.0) {
+                    line.values[2].fill(f64::NAN);
                 }
             }
         }
