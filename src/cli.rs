@@ -96,7 +96,7 @@ enum Command {
         ropewalk sweep hose-turn --vary speed=5kn,15kn,25kn --vary start=40,80,120\n  \
         ropewalk sweep hose-turn hose-straight --vary speed=5:25:10kn --set drag=choo-casarella\n  \
         ropewalk sweep scene.toml --vary law=constant,choo-casarella --vary 'end=[\"1 m\",0,0],[\"2 m\",0,0]'\n\n\
-        A range is FROM:TO:STEP and includes its ends. The folder holds sweep.json (scenes and parameters), table.csv\n\
+        A range is FROM:TO:STEP and includes its ends. The folder holds sweep.json (scenes and parameters), index.html, table.csv\n\
         (a row for each run), plots/*.svg (over all runs) and runs/NAME (what `ropewalk run` leaves behind).\n\
         Last values that aren't steady are named: `--report mean` takes the mean over the last tenth of each run instead.\n\
         The same command again computes only what is missing, failed or was interrupted.")]
@@ -118,7 +118,7 @@ enum Command {
         A scene in balance as it is laid vibrates about that; else the equilibrium is searched: of a run in time the one\n\
         at its start, of a statics scene the end of its load path, relative to its frame if it names one. Unstable\n\
         equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
-        The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
+        The folder holds scene.toml, manifest.json, tables/modes.csv, plots/mode-NN.svg and report.html, where they swing.")]
     Modes(commands::modes::ModesArgs),
     /// What accuracy costs: the cheapest mesh, models, scheme and step for errors of a record from 1 % to 1e-6
     #[command(after_help = "Examples:\n  \

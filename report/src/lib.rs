@@ -28,7 +28,7 @@ pub use folder::{RUNS, RunFolder, cannot_create, plain, write_atomic, write_dura
 pub(crate) use folder::write_atomic_bytes;
 pub use interrupt::Interrupt;
 pub use number::{number, rough};
-pub use page::{Entry, Event, Page, Panel, Section};
+pub use page::{Entry, Event, Page, Panel, Section, escaped};
 pub use plot::{Bar, BarPlot, LinePlot, Mark, Panels, Plane, Series, ShapePlot, Snapshot};
 pub use progress::{Progress, ProgressMode, SweepProgress, new_bar};
 pub use sheet::{Sheet, TERMINAL};

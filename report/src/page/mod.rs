@@ -177,7 +177,7 @@ impl Page {
 }
 
 /// Text that HTML shows as it is.
-fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
         match c {

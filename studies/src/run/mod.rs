@@ -26,6 +26,7 @@ pub(crate) use pictures::{PLANES, planes, view};
 pub(crate) use prepare::{NewFolder, prepare};
 pub(crate) use recorder::Recorder;
 use recorder::Warnings;
+pub(crate) use scenery::Scenery;
 pub(crate) use shapes::{Shape, last as last_shape, read as read_shapes};
 pub(crate) use start::Started;
 pub(crate) use summary::Ending;

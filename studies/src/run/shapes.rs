@@ -86,7 +86,7 @@ impl Line {
 
 impl Shape {
     /// All parts of a model that have a line; with a scenery, what is measured along them too, and all bodies.
-    pub(super) fn of(model: &Model, at: &At<'_>, scenery: Option<&Scenery>) -> Self {
+    pub(crate) fn of(model: &Model, at: &At<'_>, scenery: Option<&Scenery>) -> Self {
         let line = |part: &std::sync::Arc<dyn Part>| Line::of_part(part.as_ref(), at, scenery.is_some());
         let lines = model.parts().iter().map(line).filter(|line| !line.x.is_empty()).collect();
         let bodies = scenery.map_or_else(Vec::new, |scenery| scenery.poses(model, at));
