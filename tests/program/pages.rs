@@ -225,7 +225,7 @@ fn files_for_paraview_hold_what_the_csv_holds() {
         same("curvature [1/m]", 10);
         compared += 1;
     }
-    assert_eq!((files.len(), compared), (11, 9));
+    assert_eq!((files.len(), compared), (11, 11));
 }
 
 #[test]
