@@ -187,6 +187,14 @@ enum Command {
         ropewalk migrate scene.toml --out new.toml\n\n\
         Comments, order and layout stay as they are. A scene that uses the names of this version is not touched.")]
     Migrate(commands::migrate::MigrateArgs),
+    /// Write a scene as an FMU, for co-simulation with other programs (FMI 3.0)
+    #[command(after_help = "Examples:\n  \
+        cargo build --release -p ropewalk-fmu   the shared library that goes into the file\n  \
+        ropewalk export-fmu crane.toml\n  \
+        ropewalk export-fmu crane.toml --set length='30 m' --out crane-30.fmu\n\n\
+        Parameters of the scene are parameters of the FMU (texts, as `--set` takes them), its inputs are inputs, the\n\
+        columns of its records are outputs.")]
+    ExportFmu(commands::export_fmu::ExportArgs),
 }
 
 /// A scene and its parameters.
@@ -292,6 +300,7 @@ pub fn exit_from(
         Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
         Command::Migrate(args) => commands::migrate::run(&args),
+        Command::ExportFmu(args) => commands::export_fmu::run(&args, bundled),
     };
     match done {
         Ok(exit) => exit.code(),

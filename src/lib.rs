@@ -10,7 +10,21 @@
 //! # Ok::<(), ropewalk::Error>(())
 //! ```
 //!
-//! The same with more control: [`Scene::build`] makes a [`Model`], and a [`Simulation`] moves it.
+//! A [`Session`] is moved from outside, step by step, with its records by name:
+//!
+//! ```
+//! let file = ropewalk::SceneFile::open("pendulum", &["duration=0.2 s".into()], ropewalk::bundled())?;
+//! let mut session = ropewalk::Session::start(file, ropewalk::Watch::default())?;
+//! session.advance(0.1)?;
+//! let (here, z) = (session.snapshot()?, session.value("cable.end.z")?);
+//! session.advance(0.2)?;
+//! assert!(session.value("cable.end.z")? < z);
+//! session.restore(here)?;
+//! assert_eq!((session.t(), session.value("cable.end.z")?), (0.1, z));
+//! # Ok::<(), ropewalk::Error>(())
+//! ```
+//!
+//! With still more control [`Scene::build`] makes a [`Model`], and a [`Simulation`] moves it.
 //!
 //! The parts are crates of their own, and naming them here is what makes their types known to scene files: [`core`]
 //! (model, solvers, integrators), [`scene`] (the language of scenes), [`elements`], [`constraints`], [`forces`],
@@ -42,7 +56,7 @@ pub use ropewalk_studies::effects::{
 pub use ropewalk_studies::modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
 pub use ropewalk_studies::run::{Every, Leaves, Manifest, Outcome, RunOptions, Status, Summary, resume, run};
 pub use ropewalk_studies::simulate::{History, read, simulate, simulate_with, start};
-pub use ropewalk_studies::{Error, bench, variants, verify};
+pub use ropewalk_studies::{Error, Session, Snapshot, bench, variants, verify};
 
 /// The programs of the README and of CONTRIBUTING must compile and run.
 #[cfg(doctest)]

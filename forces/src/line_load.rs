@@ -1,9 +1,10 @@
 //! A load spread evenly along a body.
 
 use crate::drag::PerLength;
-use crate::time::TimeFunction;
+use crate::time::{TimeFunction, apart};
 use ropewalk_core::error::finite;
 use ropewalk_core::{BuildError, Gives, Law, Load, Real, Station, V3, dot, scaled};
+use ropewalk_scene::quantity::{Setting, kind};
 use ropewalk_scene::{Builder, ForceSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -78,8 +79,8 @@ impl Law for LineLoad {
 #[serde(deny_unknown_fields)]
 pub struct LineLoadSpec {
     /// Force per length [N/m].
-    #[serde(deserialize_with = "quantity::vec3::force_per_length")]
-    pub force: V3<f64>,
+    #[serde(deserialize_with = "quantity::setting::vec3::force_per_length")]
+    pub force: [Setting; 3],
     /// Whether it acts per stretched length instead of unstretched length.
     #[serde(default)]
     pub stretched: bool,
@@ -95,8 +96,10 @@ register_spec!(Force, "line_load", LineLoadSpec);
 #[typetag::serde(name = "line_load")]
 impl ForceSpec for LineLoadSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        finite("force", &self.force)?;
         let per = if self.stretched { PerLength::Stretched } else { PerLength::Unstretched };
-        b.load(&self.on, LineLoad::new(self.force, per, self.time.clone())?)
+        for (force, time) in apart(b, "force", &self.force, &kind::FORCE_PER_LENGTH, &self.time)? {
+            b.load(&self.on, LineLoad::new(force, per, time)?)?;
+        }
+        Ok(())
     }
 }

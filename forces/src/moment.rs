@@ -1,13 +1,14 @@
 //! Moments at a point.
 
 use crate::point::{body, orientation, slope_node};
-use crate::time::TimeFunction;
+use crate::time::{TimeFunction, apart};
 use ropewalk_core::error::finite;
 use ropewalk_core::held::{cross, three};
 use ropewalk_core::rotation::{matrix, skew, transposed_times};
 use ropewalk_core::{
     Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, Timed, V3, dot,
 };
+use ropewalk_scene::quantity::{Setting, kind};
 use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -161,8 +162,8 @@ pub struct PointMomentSpec {
     /// The marker on which it acts.
     pub marker: MarkerRef,
     /// Moment [N m].
-    #[serde(deserialize_with = "quantity::vec3::moment")]
-    pub moment: V3<f64>,
+    #[serde(deserialize_with = "quantity::setting::vec3::moment")]
+    pub moment: [Setting; 3],
     /// Whether `moment` is given in the axes of the rigid body and turns with it.
     #[serde(default)]
     pub local: bool,
@@ -184,8 +185,10 @@ impl ForceSpec for PointMomentSpec {
         };
         let label = format!("moment at {}", self.marker);
         let make = if self.local { PointMoment::on_body } else { PointMoment::new };
-        let term = make(label, b.nodes(), node, self.moment, self.time.clone())?;
-        b.term(Box::new(term));
+        for (moment, time) in apart(b, "moment", &self.moment, &kind::MOMENT, &self.time)? {
+            let term = make(label.clone(), b.nodes(), node, moment, time)?;
+            b.term(Box::new(term));
+        }
         Ok(())
     }
 }

@@ -1,12 +1,13 @@
 //! Forces at a point.
 
-use crate::time::TimeFunction;
+use crate::time::{TimeFunction, apart};
 use ropewalk_core::error::{finite, need};
 use ropewalk_core::held::{Held, Pull, cross, delta, dofs, find, pull, three};
 use ropewalk_core::rotation::{matrix, product, skew, times};
 use ropewalk_core::{
     Assembly, At, BuildError, Marker, Node, NodeId, NodeKind, Pattern, Power, Term, Timed, V3, dot,
 };
+use ropewalk_scene::quantity::{Setting, kind};
 use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -212,14 +213,14 @@ pub struct PointForceSpec {
     /// The marker on which it acts.
     pub marker: MarkerRef,
     /// Force in space [N].
-    #[serde(default, deserialize_with = "quantity::vec3::force")]
-    pub force: V3<f64>,
+    #[serde(default, deserialize_with = "quantity::setting::vec3::force")]
+    pub force: [Setting; 3],
     /// Whether `force` is given in the axes of the rigid body and turns with it.
     #[serde(default)]
     pub local: bool,
     /// Follower force along the cable, towards its end [N], instead of `force`. It turns with the cable.
-    #[serde(default, deserialize_with = "quantity::optional::force")]
-    pub follower: Option<f64>,
+    #[serde(default, deserialize_with = "quantity::setting::optional::force")]
+    pub follower: Option<Setting>,
     /// Factor as a function of time.
     #[serde(default)]
     pub time: TimeFunction,
@@ -229,7 +230,13 @@ register_spec!(Force, "point_force", PointForceSpec);
 impl PointForceSpec {
     /// A force in space.
     pub fn new(marker: impl Into<MarkerRef>, force: V3<f64>, time: TimeFunction) -> Self {
-        PointForceSpec { marker: marker.into(), force, local: false, follower: None, time }
+        PointForceSpec {
+            marker: marker.into(),
+            force: force.map(Setting::from),
+            local: false,
+            follower: None,
+            time,
+        }
     }
 }
 
@@ -241,20 +248,26 @@ impl ForceSpec for PointForceSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let marker = b.marker("marker", &self.marker)?;
         let label = format!("force at {}", self.marker);
-        let term = match (self.follower, marker.on()) {
-            (None, _) if self.local => {
-                PointForce::on_body(label, b.nodes(), &marker, self.force, self.time.clone())?
+        let none = self.force.iter().all(|f| f.is(0.0));
+        let Some(follower) = &self.follower else {
+            let make = if self.local { PointForce::on_body } else { PointForce::dead };
+            for (force, time) in apart(b, "force", &self.force, &kind::FORCE, &self.time)? {
+                let term = make(label.clone(), b.nodes(), &marker, force, time)?;
+                b.term(Box::new(term));
             }
-            (None, _) => PointForce::dead(label, b.nodes(), &marker, self.force, self.time.clone())?,
-            (Some(_), _) if self.force != [0.0; 3] => {
-                return Err(BuildError::at("follower", "give `force` or `follower`, not both"));
-            }
-            (Some(f), Some(node)) => PointForce::follower(label, b.nodes(), node, f, self.time.clone())?,
-            (Some(_), None) => {
-                return Err(BuildError::at("marker", "a follower force needs a marker on a cable"));
-            }
+            return Ok(());
         };
-        b.term(Box::new(term));
+        if !none {
+            return Err(BuildError::at("follower", "give `force` or `follower`, not both"));
+        }
+        let Some(node) = marker.on() else {
+            return Err(BuildError::at("marker", "a follower force needs a marker on a cable"));
+        };
+        let along = [follower.clone(), 0.0.into(), 0.0.into()];
+        for ([along, ..], time) in apart(b, "follower", &along, &kind::FORCE, &self.time)? {
+            let term = PointForce::follower(label.clone(), b.nodes(), node, along, time)?;
+            b.term(Box::new(term));
+        }
         Ok(())
     }
 }

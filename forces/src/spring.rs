@@ -3,8 +3,10 @@
 use ropewalk_core::error::{need, not_negative};
 use ropewalk_core::held::{Held, Pull as Pair, delta, dofs, pull};
 use ropewalk_core::{
-    Assembly, At, BuildError, Column, Energy, Marker, Node, Pattern, Power, Shows, Term, V3, dot,
+    Assembly, At, BuildError, Column, Energy, Marker, Node, Pattern, Power, Shows, Signal, Term, Timed, V3,
+    dot,
 };
+use ropewalk_scene::quantity::{Setting, kind};
 use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,11 +20,11 @@ pub struct Spring {
     /// A name, such as `mooring`.
     pub label: String,
     /// Stiffness `k` [N/m].
-    pub stiffness: f64,
+    pub stiffness: Signal,
     /// Damping `c` [N s/m].
-    pub damping: f64,
+    pub damping: Signal,
     /// Rest length `l0` [m].
-    pub rest_length: f64,
+    pub rest_length: Signal,
     /// Whether it only pulls.
     pub tension_only: bool,
     ends: [Held; 2],
@@ -51,23 +53,41 @@ impl Spring {
         label: impl Into<String>,
         nodes: &[Node],
         between: [Marker; 2],
-        stiffness: f64,
-        rest_length: f64,
+        stiffness: impl Into<Signal>,
+        rest_length: impl Into<Signal>,
     ) -> Result<Self, BuildError> {
-        let label = label.into();
-        not_negative(&format!("{label}: stiffness"), stiffness)?;
-        not_negative(&format!("{label}: rest length"), rest_length)?;
+        let (label, stiffness, rest_length) = (label.into(), stiffness.into(), rest_length.into());
+        not_negative(&format!("{label}: stiffness"), stiffness.at(0.0))?;
+        not_negative(&format!("{label}: rest length"), rest_length.at(0.0))?;
         let [a, b] = &between;
         need(a.on() != b.on(), || {
             format!("{label}: its ends must be on two different nodes, or one on the ground")
         })?;
         let ends = [Held::new(nodes, a, &label)?, Held::new(nodes, b, &label)?];
-        Ok(Spring { label, stiffness, damping: 0.0, rest_length, tension_only: false, ends })
+        Ok(Spring { label, stiffness, damping: 0.0.into(), rest_length, tension_only: false, ends })
     }
 
     /// The force now [N], positive if it pulls.
     pub fn force(&self, at: &At<'_>) -> f64 {
         self.pull(at).force
+    }
+
+    fn signals(&self) -> [&Signal; 3] {
+        [&self.stiffness, &self.damping, &self.rest_length]
+    }
+
+    /// Power of whoever changes stiffness and rest length: the rate of the strain energy at a fixed length [W].
+    fn supplied(&self, t: f64, p: &Pull) -> f64 {
+        let rate = |s: &Signal| match s {
+            Signal::Constant(_) => 0.0,
+            Signal::Input(input) => input.at(t).rate,
+        };
+        let stretch = p.length - self.rest_length.at(t);
+        if self.tension_only && stretch <= 0.0 {
+            return 0.0;
+        }
+        0.5 * rate(&self.stiffness) * stretch * stretch
+            - self.stiffness.at(t) * stretch * rate(&self.rest_length)
     }
 
     fn pull(&self, at: &At<'_>) -> Pull {
@@ -78,9 +98,11 @@ impl Spring {
         // without length there is no direction, and no force
         let e = if length > 0.0 { d.map(|d| d / length) } else { [0.0; 3] };
         let rate = dot(&e, &w);
-        let elastic = self.stiffness * (length - self.rest_length);
-        let force = elastic + self.damping * rate;
-        if self.tension_only && (length <= self.rest_length || force <= 0.0) {
+        let (stiffness, damping) = (self.stiffness.at(at.t), self.damping.at(at.t));
+        let rest_length = self.rest_length.at(at.t);
+        let elastic = stiffness * (length - rest_length);
+        let force = elastic + damping * rate;
+        if self.tension_only && (length <= rest_length || force <= 0.0) {
             return Pull { e, w, length, rate, force: 0.0, elastic: elastic.max(0.0), taut: false };
         }
         Pull { e, w, length, rate, force, elastic, taut: true }
@@ -95,25 +117,27 @@ impl Term for Spring {
         p.clique(dofs(&self.ends));
     }
     fn symmetric(&self) -> bool {
-        self.damping == 0.0 && !self.ends.iter().any(|e| matches!(e, Held::Beside { .. }))
+        matches!(self.damping, Signal::Constant(0.0))
+            && !self.ends.iter().any(|e| matches!(e, Held::Beside { .. }))
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let p = self.pull(at);
         let mut both = Pair { f: p.e.map(|e| -p.force * e), ..Pair::default() };
         if out.wants_tangent() && p.taut {
             // F/l, which has a limit where both go to zero together
-            let turn = match (p.length > 0.0, self.rest_length == 0.0) {
+            let (stiffness, damping) = (self.stiffness.at(at.t), self.damping.at(at.t));
+            let turn = match (p.length > 0.0, self.rest_length.at(at.t) == 0.0) {
                 (true, _) => p.force / p.length,
-                (false, true) => self.stiffness,
+                (false, true) => stiffness,
                 (false, false) => 0.0,
             };
             let inverse = if p.length > 0.0 { 1.0 / p.length } else { 0.0 };
             for i in 0..3 {
                 for j in 0..3 {
                     let ee = p.e[i] * p.e[j];
-                    let sway = self.damping * p.e[i] * (p.w[j] - p.rate * p.e[j]) * inverse;
-                    both.by_x[i][j] = -(self.stiffness * ee + turn * (delta(i, j) - ee) + sway);
-                    both.by_v[i][j] = -self.damping * ee;
+                    let sway = damping * p.e[i] * (p.w[j] - p.rate * p.e[j]) * inverse;
+                    both.by_x[i][j] = -(stiffness * ee + turn * (delta(i, j) - ee) + sway);
+                    both.by_v[i][j] = -damping * ee;
                 }
             }
         }
@@ -121,17 +145,30 @@ impl Term for Spring {
     }
     fn energy(&self, at: &At<'_>) -> Energy {
         let p = self.pull(at);
-        let stretch = p.length - self.rest_length;
+        let stretch = p.length - self.rest_length.at(at.t);
         let slack = self.tension_only && stretch <= 0.0;
-        let potential = if slack { 0.0 } else { 0.5 * self.stiffness * stretch * stretch };
+        let potential = if slack { 0.0 } else { 0.5 * self.stiffness.at(at.t) * stretch * stretch };
         Energy { potential, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
         let p = self.pull(at);
-        Power { dissipated: (p.force - p.elastic) * p.rate, ..Power::default() }
+        Power {
+            dissipated: (p.force - p.elastic) * p.rate,
+            supplied: self.supplied(at.t, &p),
+            ..Power::default()
+        }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if self.signals().iter().all(|s| s.is_constant()) { None } else { Some(self) }
     }
     fn shows(&self) -> Option<&dyn Shows> {
         Some(self)
+    }
+}
+
+impl Timed for Spring {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(self.signals().iter().fold(h, |h, s| s.reach(t, h)))
     }
 }
 
@@ -141,6 +178,14 @@ impl Shows for Spring {
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
         out.push(self.force(at));
+    }
+}
+
+/// The least value that a signal can have.
+fn least(signal: &Signal) -> f64 {
+    match signal {
+        Signal::Constant(x) => *x,
+        Signal::Input(input) => input.limits()[0],
     }
 }
 
@@ -155,14 +200,14 @@ pub struct SpringSpec {
     /// The other end: a marker or a point in space.
     pub to: MarkerRef,
     /// Stiffness [N/m].
-    #[serde(deserialize_with = "quantity::spring_stiffness")]
-    pub stiffness: f64,
+    #[serde(deserialize_with = "quantity::setting::spring_stiffness")]
+    pub stiffness: Setting,
     /// Damping [N s/m].
-    #[serde(default, deserialize_with = "quantity::damping")]
-    pub damping: f64,
+    #[serde(default, deserialize_with = "quantity::setting::damping")]
+    pub damping: Setting,
     /// Length without force [m]. Default: the initial length.
-    #[serde(default, deserialize_with = "quantity::optional::length")]
-    pub length: Option<f64>,
+    #[serde(default, deserialize_with = "quantity::setting::optional::length")]
+    pub length: Option<Setting>,
     /// Whether it can only pull.
     #[serde(default)]
     pub tension_only: bool,
@@ -175,14 +220,20 @@ impl ForceSpec for SpringSpec {
         vec![&self.marker, &self.to]
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        not_negative("stiffness", self.stiffness)?;
-        not_negative("damping", self.damping)?;
+        let stiffness = b.signal("stiffness", &self.stiffness, &kind::SPRING_STIFFNESS)?;
+        let damping = b.signal("damping", &self.damping, &kind::DAMPING)?;
+        not_negative("stiffness", least(&stiffness))?;
+        not_negative("damping", least(&damping))?;
         let ends = [b.marker("marker", &self.marker)?, b.marker("to", &self.to)?];
         let [a, c] = [b.place(&ends[0]).x, b.place(&ends[1]).x];
         let start = (0..3).map(|i| (c[i] - a[i]).powi(2)).sum::<f64>().sqrt();
-        let length = not_negative("length", self.length.unwrap_or(start))?;
-        let mut spring = Spring::new(&self.name, b.nodes(), ends, self.stiffness, length)?;
-        spring.damping = self.damping;
+        let length = match &self.length {
+            Some(length) => b.signal("length", length, &kind::LENGTH)?,
+            None => Signal::Constant(start),
+        };
+        not_negative("length", least(&length))?;
+        let mut spring = Spring::new(&self.name, b.nodes(), ends, stiffness, length)?;
+        spring.damping = damping;
         spring.tension_only = self.tension_only;
         b.term(Box::new(spring));
         Ok(())

@@ -2,8 +2,9 @@
 
 use ropewalk_core::error::{finite, need};
 use ropewalk_core::reach::Knots;
-use ropewalk_core::{BuildError, EndSlope, Interpolation, Join, reach};
-use ropewalk_scene::quantity;
+use ropewalk_core::{BuildError, EndSlope, Interpolation, Join, Signal, V3, reach};
+use ropewalk_scene::quantity::{self, Kind, Setting, kind};
+use ropewalk_scene::{Builder, Inputs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -57,6 +58,19 @@ pub enum TimeFunction {
         #[serde(deserialize_with = "quantity::angle")]
         phase: f64,
     },
+    /// What an input without unit is set to while the run goes on: its name.
+    Input(TimeInput),
+}
+
+/// An input that a load reads.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct TimeInput {
+    /// Its name.
+    pub name: String,
+    /// What it is set to, once the load has been built.
+    #[serde(skip)]
+    signal: Option<Signal>,
 }
 
 /// Values of a load at given times.
@@ -112,6 +126,25 @@ impl TimeFunction {
         TimeFunction::Table(TimeTable::new(t, value, Join::Linear))
     }
 
+    /// What an input of this name is set to; a load binds it to the scene's.
+    pub fn input(name: &str) -> Self {
+        TimeFunction::Input(TimeInput { name: name.into(), signal: None })
+    }
+
+    /// What a signal is set to, in place of a factor.
+    pub fn of(signal: Signal) -> Self {
+        TimeFunction::Input(TimeInput { name: String::new(), signal: Some(signal) })
+    }
+
+    /// The same, bound to the inputs of a scene.
+    ///
+    /// # Errors
+    /// There is no such input, or it has a unit.
+    pub fn bound(&self, inputs: &Inputs) -> Result<Self, BuildError> {
+        let TimeFunction::Input(TimeInput { name, .. }) = self else { return Ok(self.clone()) };
+        Ok(Self::of(inputs.signal("time", &Setting::Input(name.clone()), &kind::NUMBER)?))
+    }
+
     /// Whether its numbers make sense; loads that are given a function ask for this.
     ///
     /// # Errors
@@ -136,6 +169,10 @@ impl TimeFunction {
             TimeFunction::Harmonic { mean, amplitude, frequency, phase } => {
                 finite("harmonic of a load", &[*mean, *amplitude, *frequency, *phase])
             }
+            TimeFunction::Input(TimeInput { signal: Some(_), .. }) => Ok(()),
+            TimeFunction::Input(TimeInput { name, .. }) => Err(BuildError::new(format!(
+                "this load can't be set by the input `{name}`: give it a table instead"
+            ))),
         }
     }
 
@@ -154,6 +191,7 @@ impl TimeFunction {
                 reach::knots(&[*t0, *peak, *t1], |k| [[0.0, 1.0, 0.0][k], 0.0, 0.0], 1.0, t, h)
             }
             TimeFunction::Harmonic { frequency, .. } => reach::period(1.0 / frequency, h),
+            TimeFunction::Input(input) => input.signal.as_ref().map_or(h, |s| s.reach(t, h)),
         }
     }
 
@@ -173,8 +211,38 @@ impl TimeFunction {
             TimeFunction::Harmonic { mean, amplitude, frequency, phase } => {
                 mean + amplitude * (TAU * frequency * t + phase).sin()
             }
+            TimeFunction::Input(input) => input.signal.as_ref().map_or(f64::NAN, |s| s.at(t)),
         }
     }
+}
+
+/// Takes a vector apart that may read inputs: loads that together make it, each a vector times a function of time.
+///
+/// # Errors
+/// There is no such input, or it is of another kind; inputs beside a function of time.
+pub(crate) fn apart(
+    b: &Builder,
+    field: &str,
+    vector: &[Setting; 3],
+    kind: &Kind,
+    time: &TimeFunction,
+) -> Result<Vec<(V3<f64>, TimeFunction)>, BuildError> {
+    let given: V3<f64> = std::array::from_fn(|i| vector[i].number().unwrap_or(0.0));
+    let read: Vec<usize> = (0..3).filter(|&i| vector[i].number().is_none()).collect();
+    let mut all = Vec::new();
+    if read.is_empty() || given != [0.0; 3] {
+        all.push((given, time.bound(b.inputs())?));
+    }
+    if !read.is_empty() && time.changes() {
+        let message =
+            format!("`{field}` reads inputs, and so has no factor: leave out `time`, or give numbers");
+        return Err(BuildError::at("time", message));
+    }
+    for i in read {
+        let axis = std::array::from_fn(|j| if j == i { 1.0 } else { 0.0 });
+        all.push((axis, TimeFunction::of(b.signal(field, &vector[i], kind)?)));
+    }
+    Ok(all)
 }
 
 #[cfg(test)]

@@ -18,15 +18,21 @@
 //! assert_eq!((tow.speed, tow.depth, tow.from), (10.0, None, [0.0, 0.2, 1.5]));
 //! ```
 //!
-//! Four families take the same names: the functions of this module read an `f64`, those of [`optional`] an
+//! Five families take the same names: the functions of this module read an `f64`, those of [`optional`] an
 //! `Option<f64>` (add `#[serde(default)]` so that the field may be left out), those of [`vec3`] a `[f64; 3]` and those
-//! of [`list`] a `Vec<f64>`, whose entries each are a number or a string; [`points`] reads a list of points. Not-a-number and infinities are refused.
+//! of [`list`] a `Vec<f64>`, whose entries each are a number or a string; those of [`setting`] read a [`Setting`], which may
+//! be an input instead; [`points`] reads a list of points. Not-a-number and infinities are refused.
 //! Writing stays plain: the `f64` in SI.
 
+mod expression;
+mod given;
 mod schema;
 mod unit;
 mod written;
 
+pub use expression::{Expression, ExpressionError};
+pub use given::{Formula, Setting};
+use given::{MaybeSet, Set, ThreeSets};
 pub use schema::{TextsWithUnits, unit_of};
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, SeqAccess, Visitor};
 use std::fmt;
@@ -93,7 +99,8 @@ impl Kind {
         self.finite(unit.to_si(x))
     }
 
-    fn fits(&self, d: Dimension) -> bool {
+    /// Whether a dimension is one of this kind.
+    pub fn fits(&self, d: Dimension) -> bool {
         let angle = if self.strict_angle { d.angle } else { self.dimension.angle };
         self.dimension == Dimension { angle, ..d }
     }
@@ -270,6 +277,24 @@ macro_rules! kinds {
         pub mod list {
             use super::{Deserializer, Many, One, kind};
             kinds!(@functions Vec<f64>, Many, "Reads a list with entries that each are ", |d, k| d.deserialize_seq(Many(One(k))); $($upper $lower $name $unit $example;)*);
+        }
+
+        /// The same kinds for fields of type [`Setting`]: a number, or the input that it is read from.
+        pub mod setting {
+            use super::{DeserializeSeed, Deserializer, Set, Setting, kind};
+            kinds!(@functions Setting, Set, "Reads, from the scene or from an input, ", |d, k| Set(k).deserialize(d); $($upper $lower $name $unit $example;)*);
+
+            /// The same for fields of type `Option<Setting>`; pair with `#[serde(default)]`.
+            pub mod optional {
+                use super::super::{Deserializer, MaybeSet, Set, Setting, kind};
+                kinds!(@functions Option<Setting>, MaybeSet, "If there, reads, from the scene or from an input, ", |d, k| d.deserialize_option(MaybeSet(Set(k))); $($upper $lower $name $unit $example;)*);
+            }
+
+            /// The same for fields of type `[Setting; 3]`.
+            pub mod vec3 {
+                use super::super::{Deserializer, Set, Setting, ThreeSets, kind};
+                kinds!(@functions [Setting; 3], ThreeSets, "Reads three entries, from the scene or from an input, each ", |d, k| d.deserialize_tuple(3, ThreeSets(Set(k))); $($upper $lower $name $unit $example;)*);
+            }
         }
     };
     (@functions $out:ty, $visitor:ident, $does:literal, |$d:ident, $k:ident| $read:expr; $($upper:ident $lower:ident $name:literal $unit:literal $example:literal;)*) => {

@@ -25,7 +25,54 @@ impl Dimension {
         Self { mass, length, time, angle }
     }
 
-    fn times(self, o: Self, power: i16) -> Self {
+    /// Reads a unit such as `N/m`; a plain number has none, or `1`.
+    ///
+    /// ```
+    /// use ropewalk_quantity::Dimension;
+    /// assert_eq!(Dimension::of("kg m/s^2"), Dimension::of("N"));
+    /// assert_eq!(Dimension::of("").unwrap().unit(), "");
+    /// assert!(Dimension::of("parsec").is_err());
+    /// ```
+    ///
+    /// # Errors
+    /// It is no unit; what is wrong with it.
+    pub fn of(unit: &str) -> Result<Self, String> {
+        let unit = unit.trim();
+        if unit.is_empty() { Ok(Self::default()) } else { parse(unit).map(|u| u.dimension) }
+    }
+
+    /// Whether a unit is one of SI, in which a number means itself.
+    pub fn is_coherent(unit: &str) -> bool {
+        unit.trim().is_empty() || parse(unit).is_ok_and(|u| u.to_si(1.0) == 1.0)
+    }
+
+    /// Its SI unit; empty of a plain number.
+    pub fn unit(&self) -> String {
+        let named = super::ALL.iter().find(|k| k.dimension == *self);
+        if let Some(kind) = named {
+            return kind.unit.into();
+        }
+        let all = [("kg", self.mass), ("m", self.length), ("s", self.time), ("rad", self.angle)];
+        let powers = all.iter().filter(|(_, power)| *power != 0).map(|(name, power)| match power {
+            1 => (*name).to_string(),
+            power => format!("{name}^{power}"),
+        });
+        powers.collect::<Vec<_>>().join(" ")
+    }
+
+    /// That of a quantity divided by one of another dimension.
+    #[must_use]
+    pub fn over(self, other: Self) -> Self {
+        self.times(other, -1)
+    }
+
+    pub(super) fn root(self) -> Option<Self> {
+        let all = [self.mass, self.length, self.time, self.angle];
+        let even = all.iter().all(|power| power % 2 == 0);
+        even.then(|| Self::new(self.mass / 2, self.length / 2, self.time / 2, self.angle / 2))
+    }
+
+    pub(super) fn times(self, o: Self, power: i16) -> Self {
         Self {
             mass: self.mass + power * o.mass,
             length: self.length + power * o.length,

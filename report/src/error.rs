@@ -107,13 +107,6 @@ pub enum OutputError {
         message: String,
     },
 
-    /// The drawing library failed.
-    #[error("a plot could not be drawn: {message}")]
-    Draw {
-        /// The library's own words.
-        message: String,
-    },
-
     /// A value could not be written as JSON, or JSON could not be read.
     #[error("{}: {message}", path.display())]
     Json {

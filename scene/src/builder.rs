@@ -1,5 +1,6 @@
 //! The builder: turns specs into a model and owns the names.
 
+use crate::inputs::Inputs;
 use crate::marker::{MarkerRef, split_marker};
 use crate::motions::{Motions, no_motion};
 use crate::scene::GRAVITY;
@@ -7,9 +8,10 @@ use crate::water::{Air, Water};
 use ropewalk_core::error::finite;
 use ropewalk_core::{
     At, BuildError, Constraint, Element, Event, Feed, FieldTerm, Law, Laws, Marker, Mesh, Model, Motion,
-    MovingBoundary, Node, NodeId, NodeKind, Part, Place, Pool, Spot, Start, Stations, Switches, Term, V3,
-    find_redundancy,
+    MovingBoundary, Node, NodeId, NodeKind, Part, Place, Pool, Signal, Spot, Start, Stations, Switches, Term,
+    V3, find_redundancy,
 };
+use ropewalk_quantity::{Kind, Setting};
 use std::any::{Any, TypeId};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
@@ -55,6 +57,7 @@ pub struct Builder {
     /// What acts on the stations of a part, or on those that follow its material.
     laws: BTreeMap<(usize, bool), Laws>,
     motions: Motions,
+    inputs: Inputs,
     /// Places at which a cable needs a node, by part.
     pins: HashMap<String, Vec<Spot>>,
     /// Meshes that replace those of the specs, by part.
@@ -463,6 +466,23 @@ impl Builder {
         self.motions = motions;
     }
 
+    pub(crate) fn set_inputs(&mut self, inputs: Inputs) {
+        self.inputs = inputs;
+    }
+
+    /// The inputs of the scene.
+    pub fn inputs(&self) -> &Inputs {
+        &self.inputs
+    }
+
+    /// What a `field` of a spec reads, a number or an input of this kind.
+    ///
+    /// # Errors
+    /// There is no such input, or it has another unit.
+    pub fn signal(&self, field: &str, setting: &Setting, kind: &Kind) -> Result<Signal, BuildError> {
+        self.inputs.signal(field, setting, kind)
+    }
+
     /// The motion of this name.
     pub fn motion(&self, name: &str) -> Result<Arc<dyn Motion>, BuildError> {
         let there = self.motions.keys().map(String::as_str);
@@ -503,7 +523,8 @@ impl Builder {
             }
         }
         let model = Model::new(self.nodes, terms, self.constraints, self.parts, self.start, length)
-            .with_switches(self.switches);
+            .with_switches(self.switches)
+            .with_inputs(self.inputs.all().to_vec());
         let redundancy = find_redundancy(&model)?;
         Ok(model.with_redundancy(redundancy))
     }

@@ -5,9 +5,11 @@
 //! carry [units](quantity), places are [markers](MarkerRef), gravity, water and air belong to the scene as a whole.
 
 mod builder;
+pub mod controllers;
 mod current;
 pub mod document;
 pub mod file;
+mod inputs;
 mod marker;
 mod motions;
 mod process;
@@ -18,18 +20,21 @@ pub mod spec;
 mod water;
 
 pub use builder::{Builder, Numbered};
+pub use controllers::{Bound, Channels};
 pub use current::Current;
 pub use document::{
     Document, Fault, Format, Key, Kind, Migrated, Parameter, Place, Rewrite, Span, Table, Value, Varied,
     did_you_mean, migrate, quoted, read_text,
 };
+pub use inputs::{InputSpec, Inputs};
 pub use marker::{MarkerRef, split_marker};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};
 pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use scene_file::{Bundled, SceneFile, SceneText};
 pub use spec::{
-    ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SECTIONS, SpecInfo, SpecKind, registered,
+    ConstraintSpec, ControllerSpec, ElementSpec, ForceSpec, LISTS, MotionSpec, RecordSpec, SECTIONS,
+    SpecInfo, SpecKind, registered,
 };
 pub use water::{Air, Level, Water, ball_below};
 

@@ -1,5 +1,6 @@
 //! The motions of a scene, some of which are made of others.
 
+use crate::inputs::Inputs;
 use crate::spec::MotionSpec;
 use ropewalk_core::{BuildError, Motion};
 use std::collections::BTreeMap;
@@ -17,7 +18,10 @@ pub(crate) fn no_motion<'a>(name: &str, there: impl Iterator<Item = &'a str>) ->
 }
 
 /// Makes the motions of a scene, what is made of others after these; an error tells the number of its spec.
-pub(crate) fn build_all(specs: &[Arc<dyn MotionSpec>]) -> Result<Motions, (usize, BuildError)> {
+pub(crate) fn build_all(
+    specs: &[Arc<dyn MotionSpec>],
+    inputs: &Inputs,
+) -> Result<Motions, (usize, BuildError)> {
     let mut number = BTreeMap::new();
     for (k, spec) in specs.iter().enumerate() {
         if number.insert(spec.name(), k).is_some() {
@@ -40,7 +44,7 @@ pub(crate) fn build_all(specs: &[Arc<dyn MotionSpec>]) -> Result<Motions, (usize
         for (k, spec) in specs.iter().enumerate().filter(|(k, _)| made[*k].is_none()).collect::<Vec<_>>() {
             let parts: Option<Vec<_>> = of[k].iter().map(|j| made[*j].clone()).collect();
             let Some(parts) = parts else { continue };
-            made[k] = Some(spec.build(&parts).map_err(|e| (k, e))?);
+            made[k] = Some(spec.build_with(&parts, inputs).map_err(|e| (k, e))?);
             more = true;
         }
         let Some(stuck) = made.iter().position(Option::is_none) else { break };

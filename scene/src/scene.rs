@@ -1,9 +1,11 @@
 //! A scene: what the user wrote, as specs and options. Scene files and Rust code make the same thing.
 
 use crate::builder::Builder;
+use crate::controllers;
+use crate::inputs::{InputSpec, Inputs};
 use crate::motions::build_all;
 use crate::process::{Process, ProcessSpec, Surroundings};
-use crate::spec::{ConstraintSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
+use crate::spec::{ConstraintSpec, ControllerSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
 use crate::water::{Air, Water};
 use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::StaticsOptions;
@@ -183,6 +185,10 @@ pub struct Scene {
     pub forces: Vec<Arc<dyn ForceSpec>>,
     /// Prescribed motions, by name.
     pub motions: Vec<Arc<dyn MotionSpec>>,
+    /// Channels that are set while a run goes on.
+    pub inputs: Vec<InputSpec>,
+    /// What sets them by what records show.
+    pub controllers: Vec<Arc<dyn ControllerSpec>>,
     /// Outputs.
     pub records: Vec<Arc<dyn RecordSpec>>,
     /// A problem with equations of its own; then it is the only one, and there are no elements.
@@ -207,6 +213,8 @@ impl Default for Scene {
             constraints: Vec::new(),
             forces: Vec::new(),
             motions: Vec::new(),
+            inputs: Vec::new(),
+            controllers: Vec::new(),
             records: Vec::new(),
             processes: Vec::new(),
             run: Run::default(),
@@ -258,6 +266,16 @@ impl Scene {
         self.motions.push(Arc::new(spec));
         self
     }
+    /// Adds an input.
+    pub fn input(&mut self, spec: InputSpec) -> &mut Self {
+        self.inputs.push(spec);
+        self
+    }
+    /// Adds a controller.
+    pub fn controller(&mut self, spec: impl ControllerSpec + 'static) -> &mut Self {
+        self.controllers.push(Arc::new(spec));
+        self
+    }
     /// Adds a record.
     pub fn record(&mut self, spec: impl RecordSpec + 'static) -> &mut Self {
         self.records.push(Arc::new(spec));
@@ -285,14 +303,16 @@ impl Scene {
         let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
         let whole = |error: BuildError| SceneError { spec: None, error };
         let Some(spec) = self.processes.first() else { return Ok(None) };
-        let message = "a process is a problem of its own: a scene holds one, and no elements, constraints, forces or \
-                       records beside it";
+        let message = "a process is a problem of its own: a scene holds one, and no elements, constraints, forces, \
+                       records, inputs or controllers beside it";
         let others = [
             (SpecKind::Process, self.processes.len() - 1, 1),
             (SpecKind::Element, self.elements.len(), 0),
             (SpecKind::Constraint, self.constraints.len(), 0),
             (SpecKind::Force, self.forces.len(), 0),
             (SpecKind::Record, self.records.len(), 0),
+            (SpecKind::Input, self.inputs.len(), 0),
+            (SpecKind::Controller, self.controllers.len(), 0),
         ];
         if let Some((kind, _, k)) = others.into_iter().find(|(_, count, _)| *count > 0) {
             return Err(of(kind, k)(BuildError::new(message)));
@@ -303,7 +323,8 @@ impl Scene {
         }
         self.check_world().map_err(whole)?;
         self.run.check().map_err(whole)?;
-        let motions = build_all(&self.motions).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
+        let motions =
+            build_all(&self.motions, &Inputs::default()).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
         let (gravity, water) = (self.gravity, self.water.clone());
         let around = Surroundings { gravity, water, motions, duration: self.run.duration };
         spec.build(&around).map(Some).map_err(of(SpecKind::Process, 0))
@@ -339,7 +360,9 @@ impl Scene {
         for (part, mesh) in plan {
             b.remesh(part, mesh.clone());
         }
-        b.set_motions(build_all(&self.motions).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?);
+        let inputs = Inputs::build(&self.inputs).map_err(|(k, e)| of(SpecKind::Input, k)(e))?;
+        b.set_motions(build_all(&self.motions, &inputs).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?);
+        b.set_inputs(inputs);
         for e in &self.elements {
             b.pin(&e.markers());
         }
@@ -365,7 +388,7 @@ impl Scene {
         }
         self.run.check().map_err(whole)?;
         self.statics.check().map_err(whole)?;
-        self.solver.check().map_err(|e| whole(BuildError::new(e)))?;
+        self.solver.check().map_err(|e| whole(e.of("solver")))?;
         let changes = b.changes();
         let model = b.finish().map_err(whole)?;
         let recipe = changes.then(|| {
@@ -391,7 +414,12 @@ impl Scene {
                 return Err(whole(BuildError::at(name, message)));
             }
         }
-        Ok(model)
+        if self.controllers.is_empty() {
+            return Ok(model);
+        }
+        let records = self.records(&model)?;
+        let controls = controllers::build_all(&self.controllers, &model, records);
+        Ok(model.with_controls(controls.map_err(|(k, e)| of(SpecKind::Controller, k)(e))?))
     }
 
     /// The records of the scene for its model, each with a name of its own.

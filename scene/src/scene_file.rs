@@ -3,7 +3,7 @@
 use crate::document::{Document, Fault, Format, did_you_mean, quoted, read_text};
 use crate::scene::{GRAVITY, Scene, SceneError};
 use crate::spec::SpecKind;
-use ropewalk_core::{Model, Record, V3};
+use ropewalk_core::{BuildError, Model, Record, V3};
 use ropewalk_quantity as quantity;
 use serde::Deserialize;
 use std::path::{Path, PathBuf, is_separator};
@@ -59,6 +59,21 @@ impl SceneText {
         let (text, format) = read_text(path)?;
         let folder = path.parent().map(Path::to_path_buf);
         Ok(Self { name, text, label: path.display().to_string(), format, folder })
+    }
+
+    /// Files that the scene names with these parameters: each as it is written there, and where it is.
+    ///
+    /// # Errors
+    /// The text can't be read.
+    pub fn files(&self, overrides: &[String]) -> Result<Vec<(String, PathBuf)>, Fault> {
+        let document = Document::parse(&self.text, &self.label, self.format, overrides)?;
+        let folder = self.folder.clone().unwrap_or_default();
+        Ok(document.files().into_iter().map(|name| (name.to_string(), folder.join(name))).collect())
+    }
+
+    /// How it is written.
+    pub fn format(&self) -> Format {
+        self.format
     }
 
     /// The scene with these parameters, each `name=value`.
@@ -136,6 +151,8 @@ impl SceneFile {
             forces: parts(d, SpecKind::Force)?,
             motions: parts(d, SpecKind::Motion)?,
             records: parts(d, SpecKind::Record)?,
+            inputs: d.take_list(SpecKind::Input.list())?.into_iter().map(|(input, _)| input).collect(),
+            controllers: parts(d, SpecKind::Controller)?,
             processes: parts(d, SpecKind::Process)?,
         };
         document.finish()?;
@@ -174,7 +191,7 @@ impl SceneFile {
     /// The first thing that is wrong, with its place in the file.
     pub fn build(&self) -> Result<Model, Fault> {
         // asked here as well, since these messages have a section to point at
-        self.scene.solver.check().map_err(|message| self.at_solver(message))?;
+        self.scene.solver.check().map_err(|e| self.at_solver(&e))?;
         self.scene.build().map_err(|e| self.fault(&e))
     }
 
@@ -202,12 +219,10 @@ impl SceneFile {
         self.located(&path, &e.error.message)
     }
 
-    /// A fault of the solver's options; the option is the first word in backticks.
-    pub fn at_solver(&self, message: impl Into<String>) -> Fault {
-        let message = message.into();
-        let word = message.split('`').nth(1).unwrap_or_default();
-        let path = self.inside("solver", word).unwrap_or_else(|| "solver".into());
-        self.located(&path, &message)
+    /// A fault of the solver's options, with its place in the file.
+    pub fn at_solver(&self, e: &BuildError) -> Fault {
+        let path = e.field.as_ref().and_then(|field| self.inside("solver", field));
+        self.located(path.as_deref().unwrap_or("solver"), &e.message)
     }
 
     /// A fault at what stands under this path, or of the whole scene if nothing does.

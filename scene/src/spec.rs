@@ -5,12 +5,14 @@
 //! [`register_spec!`](crate::register_spec), so that `list` and `describe` can show it.
 
 use crate::builder::Builder;
+use crate::controllers::Channels;
+use crate::inputs::{InputSpec, Inputs};
 use crate::marker::MarkerRef;
 use crate::scene::Run;
 use crate::water::{Air, Water};
 use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::StaticsOptions;
-use ropewalk_core::{BuildError, Feed, Motion, Record};
+use ropewalk_core::{BuildError, Controller, Feed, Motion, Record};
 use ropewalk_quantity::TextsWithUnits;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -69,6 +71,19 @@ pub trait MotionSpec: Debug + Send + Sync {
     }
     /// Makes the motion; `of` are those that it is made of, in their order.
     fn build(&self, of: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError>;
+    /// The same for one that reads inputs.
+    fn build_with(&self, of: &[Arc<dyn Motion>], _: &Inputs) -> Result<Arc<dyn Motion>, BuildError> {
+        self.build(of)
+    }
+}
+
+/// What sets an input of a scene by what its records show.
+#[typetag::serde]
+pub trait ControllerSpec: Debug + Send + Sync {
+    /// The input that it sets.
+    fn input(&self) -> &str;
+    /// Makes the controller for a finished model.
+    fn build(&self, channels: &Channels<'_>) -> Result<Arc<dyn Controller>, BuildError>;
 }
 
 /// An output of a scene.
@@ -91,6 +106,10 @@ pub enum SpecKind {
     Motion,
     /// [`RecordSpec`].
     Record,
+    /// [`InputSpec`], of which there is one type.
+    Input,
+    /// [`ControllerSpec`].
+    Controller,
     /// [`ProcessSpec`](crate::process::ProcessSpec).
     Process,
 }
@@ -104,6 +123,8 @@ impl SpecKind {
             SpecKind::Force => "forces",
             SpecKind::Motion => "motions",
             SpecKind::Record => "records",
+            SpecKind::Input => "inputs",
+            SpecKind::Controller => "controllers",
             SpecKind::Process => "processes",
         }
     }
@@ -132,6 +153,9 @@ pub const SECTIONS: [(&str, MakeSchema); 5] = [
     ("solver", TextsWithUnits::schema_for::<Options>),
     ("statics", TextsWithUnits::schema_for::<StaticsOptions>),
 ];
+
+/// Lists of a scene file whose entries are all of one type.
+pub const LISTS: [(&str, MakeSchema); 1] = [("inputs", TextsWithUnits::schema_for::<InputSpec>)];
 
 /// All registered types, by kind and name.
 pub fn registered() -> Vec<&'static SpecInfo> {

@@ -3,8 +3,8 @@
 use super::{Exit, first_line, say, schema, wrapped};
 use ropewalk_models::Bundled;
 use ropewalk_scene::{
-    Document, Fault, Format, Kind, Parameter, SECTIONS, SceneFile, SpecInfo, Value, did_you_mean, quoted,
-    registered,
+    Document, Fault, Format, Kind, LISTS, Parameter, SECTIONS, SceneFile, SpecInfo, Value, did_you_mean,
+    quoted, registered,
 };
 pub use ropewalk_studies::Error;
 use std::path::{Path, is_separator};
@@ -30,6 +30,10 @@ pub(crate) fn explain(what: &str, bundled: &[Bundled]) -> Result<(String, Option
     }
     if !is_path && let Some((name, schema)) = SECTIONS.iter().find(|(name, _)| *name == what) {
         let text = format!("[{name}]\n\n{}", schema::explain(&schema()));
+        return Ok((text.trim_end().to_string(), None));
+    }
+    if !is_path && let Some((name, schema)) = LISTS.iter().find(|(name, _)| *name == what) {
+        let text = format!("[[{name}]]\n\n{}", schema::explain(&schema()));
         return Ok((text.trim_end().to_string(), None));
     }
     if !is_path && !Path::new(what).exists() {
@@ -62,7 +66,9 @@ fn scene(document: &Document, name: &str) -> (String, Option<Fault>) {
             out.push('\n');
         }
     }
-    for list in ["elements", "constraints", "forces", "motions", "records", "processes"] {
+    for list in
+        ["elements", "constraints", "forces", "motions", "inputs", "controllers", "records", "processes"]
+    {
         let Some(Kind::Array(parts)) = document.get(list).map(|v| &v.kind) else { continue };
         if !parts.is_empty() {
             out += &format!("\n{list}\n");
@@ -90,10 +96,12 @@ fn of_part(part: &Value) -> String {
     let get = |key: &str| table.get(key).map(shown);
     let kind = table.get("type").and_then(Value::as_str).unwrap_or("?");
     let mut line = match table.get("name").and_then(Value::as_str) {
+        // entries of a list that holds one type have a name and no type
+        Some(name) if table.get("type").is_none() => name.to_string(),
         Some(name) => format!("{name} ({kind})"),
         None => kind.to_string(),
     };
-    for key in ["of", "what", "at", "on", "between", "motion"] {
+    for key in ["of", "marker", "to", "on", "between", "motion", "input", "unit"] {
         if let Some(value) = get(key) {
             line += &format!(", {key} {value}");
         }
@@ -121,7 +129,7 @@ fn shown(value: &Value) -> String {
 fn unknown(what: &str, bundled: &[Bundled]) -> Fault {
     let mut names: Vec<&str> = bundled.iter().map(|b| b.name).collect();
     names.extend(registered().iter().map(|s| s.name));
-    names.extend(SECTIONS.iter().map(|s| s.0));
+    names.extend(SECTIONS.iter().chain(&LISTS).map(|s| s.0));
     let fault = Fault::new(format!("there is no scene, type or section {}", quoted(what)));
     match did_you_mean(what, &names) {
         Some(guess) => fault.with_help(guess),

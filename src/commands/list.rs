@@ -6,12 +6,13 @@ use ropewalk_scene::{Document, Format, SpecKind, registered};
 pub use ropewalk_studies::Error;
 
 /// The kinds of types, in the order of a scene file.
-const KINDS: [SpecKind; 6] = [
+const KINDS: [SpecKind; 7] = [
     SpecKind::Element,
     SpecKind::Constraint,
     SpecKind::Force,
     SpecKind::Motion,
     SpecKind::Record,
+    SpecKind::Controller,
     SpecKind::Process,
 ];
 

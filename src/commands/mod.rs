@@ -6,6 +6,7 @@ pub(crate) mod check;
 pub(crate) mod cost;
 pub(crate) mod describe;
 pub(crate) mod effects;
+pub(crate) mod export_fmu;
 pub(crate) mod list;
 pub(crate) mod migrate;
 pub(crate) mod modes;

@@ -1,5 +1,6 @@
 //! What can go wrong between a scene and its results.
 
+use ropewalk_core::BuildError;
 use ropewalk_core::integrator::StepError;
 use ropewalk_core::modes::ModesError;
 use ropewalk_core::statics::StaticsError;
@@ -63,14 +64,17 @@ impl Error {
 
 impl Error {
     fn is_input_step(e: &StepError) -> bool {
-        matches!(e, StepError::Scheme(_) | StepError::Inconsistent(_))
+        matches!(e, StepError::Options(_) | StepError::Inconsistent(_))
     }
 
     /// With the place in the file that is to blame, where it is known.
     #[must_use]
     pub fn in_file(self, file: &SceneFile) -> Self {
         match self {
-            Error::Step(e) if Error::is_input_step(&e) => Error::File(file.at_solver(e.to_string())),
+            Error::Step(StepError::Options(e)) => Error::File(file.at_solver(&e)),
+            Error::Step(e) if Error::is_input_step(&e) => {
+                Error::File(file.at_solver(&BuildError::new(e.to_string())))
+            }
             Error::Scene(e) => Error::File(file.fault(&e)),
             e => e,
         }

@@ -11,8 +11,10 @@ pub mod cost;
 pub mod effects;
 mod error;
 pub mod figure;
+pub mod fmu;
 pub mod modes;
 pub mod run;
+mod session;
 pub mod simulate;
 pub mod study;
 pub mod sweep;
@@ -20,3 +22,4 @@ pub mod variants;
 pub mod verify;
 
 pub use error::Error;
+pub use session::{Session, Snapshot};

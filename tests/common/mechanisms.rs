@@ -537,15 +537,15 @@ pub fn squeezer(order: &[usize; 7], redundant: bool) -> Scene {
             name: "spring".into(),
             marker: "k3.spring".into(),
             to: [0.014, 0.072, 0.0].into(),
-            stiffness: 4530.0,
-            damping: 0.0,
-            length: Some(0.07785),
+            stiffness: 4530.0.into(),
+            damping: 0.0.into(),
+            length: Some(0.07785.into()),
             tension_only: false,
         })
         .force(PointMomentSpec {
             marker: "k1".into(),
             local: false,
-            moment: [0.0, 0.0, 0.033],
+            moment: [0.0, 0.0, 0.033].map(Into::into),
             time: TimeFunction::Constant,
         });
     scene

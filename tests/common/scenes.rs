@@ -182,9 +182,9 @@ pub fn everything() -> Scene {
             name: "spring".into(),
             marker: "cable@1.0".into(),
             to: [1.0, 0.5, 0.0].into(),
-            stiffness: 50.0,
-            damping: 2.0,
-            length: Some(0.3),
+            stiffness: 50.0.into(),
+            damping: 2.0.into(),
+            length: Some(0.3.into()),
             tension_only: false,
         });
     scene

@@ -273,9 +273,9 @@ fn everything() -> Scene {
             name: "spring".into(),
             marker: "drum.rim".into(),
             to: "hull.tail".into(),
-            stiffness: 200.0,
-            damping: 5.0,
-            length: Some(0.1),
+            stiffness: 200.0.into(),
+            damping: 5.0.into(),
+            length: Some(0.1.into()),
             tension_only: false,
         });
     scene

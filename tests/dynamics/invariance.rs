@@ -81,7 +81,7 @@ fn flying_cable_does_not_care_how_it_stands() {
             .force(PointMomentSpec {
                 marker: "rod.start".into(),
                 local: false,
-                moment: stand.vector([0.0, 0.0, -80.0]),
+                moment: stand.vector([0.0, 0.0, -80.0]).map(Into::into),
                 time: pull(),
             });
         let mut s = start(&scene, &tight(5e-3), 2.0);

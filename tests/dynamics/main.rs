@@ -16,6 +16,7 @@ mod contradictions;
 mod corners;
 mod curved;
 mod energy;
+mod inputs;
 mod invariance;
 mod joints;
 mod motions;

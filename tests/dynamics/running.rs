@@ -188,9 +188,9 @@ fn motion_does_not_depend_on_the_frame() {
                 name: "spring".into(),
                 marker: "cable.end".into(),
                 to: to.into(),
-                stiffness: 5.0,
-                damping: 1.0,
-                length: Some(0.3),
+                stiffness: 5.0.into(),
+                damping: 1.0.into(),
+                length: Some(0.3.into()),
                 tension_only: false,
             });
         let mut s = Simulation::new(scene.build().expect("model"), &fixed(1e-3), 0.5).expect("start");

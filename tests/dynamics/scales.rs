@@ -115,12 +115,12 @@ fn scales_and_absolute_tests_refuse_what_makes_no_sense() {
     let radau = Options { scheme: Scheme::RadauIia5, ..scaled(Scales::Axial) };
     for (scene, options, holds) in [
         (&ball, absolute(None, None), "needs a `residual`"),
-        (&ball, absolute(Some(-1.0), None), "must be positive, not -1"),
-        (&ball, absolute(None, Some(f64::NAN)), "must be positive, not NaN"),
+        (&ball, absolute(Some(-1.0), None), "`residual` must be positive, but is -1"),
+        (&ball, absolute(None, Some(f64::NAN)), "`increment` must be positive, but is NaN"),
         (&ball, scaled(Scales::Bending), "the scene has none"),
         (&limp, scaled(Scales::Bending), "need a cable with bending stiffness"),
-        (&limp, scaled(given(0.0, 1.0)), "`length` of the scales must be positive, not 0"),
-        (&limp, scaled(given(1.0, f64::INFINITY)), "`time` of the scales must be positive, not inf"),
+        (&limp, scaled(given(0.0, 1.0)), "`length` must be positive, but is 0"),
+        (&limp, scaled(given(1.0, f64::INFINITY)), "`time` must be positive, but is inf"),
         (&limp, radau, "take another scheme"),
     ] {
         let model = scene.build().expect("model");

@@ -49,9 +49,9 @@ fn steady_rotation_splits_the_frequency_of_a_mass_on_springs() {
             name: format!("spring-{k}"),
             marker: "mass".into(),
             to: at.into(),
-            stiffness,
-            damping: 0.0,
-            length: Some(1.0),
+            stiffness: f64::into(stiffness),
+            damping: 0.0.into(),
+            length: Some(1.0.into()),
             tension_only: false,
         });
     }
@@ -100,9 +100,9 @@ fn damped_oscillator_has_its_ratio_and_creeps_beyond_the_critical_one() {
             name: "spring".into(),
             marker: "mass".into(),
             to: [0.0; 3].into(),
-            stiffness,
-            damping: 2.0 * ratio * (stiffness * mass).sqrt(),
-            length: Some(1.0),
+            stiffness: f64::into(stiffness),
+            damping: (2.0 * ratio * (stiffness * mass).sqrt()).into(),
+            length: Some(1.0.into()),
             tension_only: false,
         });
         let found = find_all(&scene);
@@ -450,7 +450,7 @@ fn follower_forces_flutter_and_never_buckle() {
     for (load, flutters) in [(10.0, false), (19.5, false), (20.6, true)] {
         let mut scene = column(0.0, true, [false, false]);
         scene.force(PointForceSpec {
-            follower: Some(-load),
+            follower: Some((-load).into()),
             ..PointForceSpec::new("column.end", [0.0; 3], TimeFunction::default())
         });
         let found = modal(&scene, 8);

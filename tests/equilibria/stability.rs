@@ -134,7 +134,7 @@ fn meshes_converge_with_the_fourth_power_however_stiff_the_cable() {
         scene.force(PointMomentSpec {
             marker: "beam.end".into(),
             local: false,
-            moment: [0.0, 0.0, TAU],
+            moment: [0.0, 0.0, TAU].map(Into::into),
             time: linear(),
         });
         size(tip(&scene))
@@ -376,9 +376,9 @@ fn a_motion_run_backwards_comes_home() {
             name: "spring".into(),
             marker: "cable.start".into(),
             to: [0.0, 0.3, 0.0].into(),
-            stiffness: 20.0,
-            damping: 0.0,
-            length: Some(0.1),
+            stiffness: 20.0.into(),
+            damping: 0.0.into(),
+            length: Some(0.1.into()),
             tension_only: false,
         })
         .set_gravity([0.0, -9.81, 0.0])
@@ -411,9 +411,9 @@ fn a_spring_of_any_stiffness_leaves_the_slow_motion_alone() {
             name: name.into(),
             marker: marker.into(),
             to,
-            stiffness,
-            damping: 0.0,
-            length: Some(1.0),
+            stiffness: f64::into(stiffness),
+            damping: 0.0.into(),
+            length: Some(1.0.into()),
             tension_only: false,
         };
         let mut scene = Scene::new();

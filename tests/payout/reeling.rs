@@ -250,7 +250,7 @@ fn what_cannot_be_reeled_is_refused() {
         (e.error.field.unwrap_or_default(), e.error.message)
     };
     let cases: [(Change<'_>, &str, &str); 16] = [
-        (&|w| w.tension = Some(5.0), "tension", "the speed of this winch is prescribed"),
+        (&|w| w.tension = Some(5.0.into()), "tension", "the speed of this winch is prescribed"),
         (&|w| w.ramp = 0.0, "ramp", "jump of velocity"),
         (&|w| w.payout = Some(5.0), "payout", "their signs must be the same"),
         (&|w| w.payout = Some(0.0), "payout", "never pays out 0 m"),
@@ -263,10 +263,10 @@ fn what_cannot_be_reeled_is_refused() {
         (&|w| w.final_length = Some(-1.0), "final_length", "must be positive"),
         (&|w| w.final_length = Some(1.0), "final_length", "the run ends at 1.5 m"),
         (&|w| w.stop = Some(0.5), "stop", "before its speed has risen"),
-        (&|w| (w.speed, w.tension, w.payout) = (None, Some(5.0), Some(1.0)), "payout", "has none"),
+        (&|w| (w.speed, w.tension, w.payout) = (None, Some(5.0.into()), Some(1.0)), "payout", "has none"),
         (&|w| (w.speed, w.motion, w.stop) = (None, Some("haul".into()), Some(9.0)), "stop", "has none"),
         // of a winch that isn't one, too
-        (&|w| (w.speed, w.ramp) = (Some(0.0), 0.0), "ramp", "jump of velocity"),
+        (&|w| (w.speed, w.ramp) = (Some(0.0.into()), 0.0), "ramp", "jump of velocity"),
     ];
     for (change, field, message) in cases {
         let got = with(change);

@@ -10,7 +10,7 @@ fn open(overrides: &[&str]) -> SceneFile {
 
 #[test]
 fn the_bundled_scene_unwinds() {
-    let file = open(&["speed=15 kn", "duration=0.2 s", "segments=20"]);
+    let file = open(&["speed=15 kn", "duration=0.2 s", "elements=20"]);
     let history = simulate(file.scene()).unwrap();
     assert!(history.stopped_by.is_none());
     let last = |name: &str| history.last(name).unwrap();
@@ -120,18 +120,18 @@ fn a_coarse_stiff_cable_keeps_the_tension_of_its_eyelet() {
 
 #[test]
 fn steps_of_the_finite_differences_follow_their_mesh() {
-    let set = ["rigidity=tangent", "duration=0.12 s", "segments=120"];
+    let set = ["rigidity=tangent", "duration=0.12 s", "elements=120"];
     let h = history("unwinding-paper", "15 kn", "forward", &set);
     let tension = h.column("cable.tension.lift").expect("tension");
     // it doesn't tremble from row to row, and is that of a coarser mesh but for the error of both
     let late = &tension[tension.len() - 6..];
     assert!(late.windows(2).all(|w| (w[1] - w[0]).abs() < 0.02), "{late:?}");
     assert!(h.counts.steps > 1500 && h.counts.rejected < 20, "{:?}", h.counts);
-    let coarse = history("unwinding-paper", "15 kn", "forward", &[&set[..2], &["segments=60"]].concat());
+    let coarse = history("unwinding-paper", "15 kn", "forward", &[&set[..2], &["elements=60"]].concat());
     let difference = coarse.last("cable.tension.lift").expect("tension") - late[5];
     assert!((0.0..0.03).contains(&difference), "{difference}");
 
-    let long = open(&["speed=15 kn", "rigidity=tangent", "segments=160", "step=0.2 ms", "duration=0.1 s"]);
+    let long = open(&["speed=15 kn", "rigidity=tangent", "elements=160", "h=0.2 ms", "duration=0.1 s"]);
     let refused = simulate(long.scene()).err().expect("too long a step").to_string();
     assert!(
         refused.contains("too long for 160 segments") && refused.contains("leave the step out"),
@@ -164,7 +164,7 @@ fn contact_with_an_outer_package_is_reported_where_it_is() {
 
 #[test]
 fn a_package_that_runs_empty_ends_the_run() {
-    let file = open(&["layers=1", "length=2 mm", "segments=12", "duration=2 s", "step=1 ms"]);
+    let file = open(&["layers=1", "length=2 mm", "elements=12", "duration=2 s", "h=1 ms"]);
     let history = simulate(file.scene()).unwrap();
     assert!(history.stopped_by.unwrap().contains("empty"));
     assert!(history.table.rows() > 100);

@@ -645,14 +645,14 @@ fn an_eyelet_is_a_point_and_a_winch_in_one() {
                 s.constraint(EyeletSpec {
                     path: Some("course".into()),
                     per_speed2: 0.5,
-                    damping: 2.0,
+                    damping: 2.0.into(),
                     ..EyeletSpec::tension("eyelet", "rope.start", 20.0)
                 });
             },
             &|s| {
                 let winch = WinchSpec::tension("", "rope.start", 20.0);
                 s.constraint(DrivingSpec::new("eyelet", "rope.start", "course"))
-                    .constraint(feed(WinchSpec { per_speed2: 0.5, damping: 2.0, ..winch }));
+                    .constraint(feed(WinchSpec { per_speed2: 0.5, damping: 2.0.into(), ..winch }));
             },
         ),
         (
@@ -714,8 +714,12 @@ fn what_no_eyelet_can_do_is_refused() {
     let cases: [(EyeletSpec, &str, &str); 14] = [
         (EyeletSpec { speed: None, ..speed() }, "name", "needs one of"),
         (EyeletSpec { motion: Some("course".into()), ..speed() }, "motion", "not both"),
-        (EyeletSpec { tension: Some(5.0), ..speed() }, "tension", "the tension at this eyelet is a result"),
-        (EyeletSpec { damping: 5.0, ..speed() }, "damping", "goes with `tension`"),
+        (
+            EyeletSpec { tension: Some(5.0.into()), ..speed() },
+            "tension",
+            "the tension at this eyelet is a result",
+        ),
+        (EyeletSpec { damping: 5.0.into(), ..speed() }, "damping", "goes with `tension`"),
         (EyeletSpec { per_speed2: 5.0, ..speed() }, "per_speed2", "goes with `tension`"),
         (
             EyeletSpec { to: Some([0.0; 3].into()), path: Some("course".into()), ..speed() },

@@ -7,6 +7,7 @@
 mod circle;
 mod csv;
 mod harmonic;
+mod input;
 mod plane;
 mod rest;
 mod rows;
@@ -22,6 +23,7 @@ mod turn;
 
 pub use circle::Circle;
 pub use harmonic::Harmonic;
+pub use input::{InputMotionSpec, SpeedInput};
 pub use plane::Side;
 pub use rest::Rest;
 pub use smooth::Shape;

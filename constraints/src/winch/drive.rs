@@ -1,10 +1,11 @@
 //! What drives a winch: its speed, a motion, or whatever pulls against what holds it back.
 
 use super::WinchSpec;
-use crate::motion::Straight;
+use crate::motion::{SpeedInput, Straight};
 use ropewalk_core::error::positive;
-use ropewalk_core::{BuildError, Motion, Moving};
+use ropewalk_core::{BuildError, Motion, Moving, Signal};
 use ropewalk_scene::Builder;
+use ropewalk_scene::quantity::{Setting, kind};
 use std::sync::Arc;
 
 /// What moves cable through an end.
@@ -90,8 +91,9 @@ impl WinchSpec {
     /// # Errors
     /// Nothing does, or too much; a course that can't be run.
     pub(super) fn drive(&self, b: &Builder, whole: f64) -> Result<Drive, BuildError> {
-        let free = self.tension.is_some() || self.brake != 0.0 || self.damping != 0.0 || self.inertia != 0.0;
-        match (self.speed, &self.motion) {
+        let free =
+            self.tension.is_some() || !self.brake.is(0.0) || !self.damping.is(0.0) || self.inertia != 0.0;
+        match (&self.speed, &self.motion) {
             (Some(_), Some(_)) => Err(BuildError::at("motion", "give `speed` or `motion`, not both")),
             (Some(_), None) | (None, Some(_)) if free || self.pile => Err(BuildError::at(
                 if self.tension.is_some() { "tension" } else { "brake" },
@@ -99,7 +101,32 @@ impl WinchSpec {
                  `damping`, `inertia` and `pile`, or the speed. A cable that also runs at its other end can have the \
                  tension here and the speed there, as in the scene `unwinding`",
             )),
-            (Some(speed), None) => {
+            (Some(Setting::Input(_)), None) => {
+                let ends = [
+                    ("stop", self.stop.is_some()),
+                    ("payout", self.payout.is_some()),
+                    ("final_length", self.final_length.is_some()),
+                ];
+                if let Some((field, _)) = ends.iter().find(|(_, given)| *given) {
+                    let message = format!(
+                        "`{field}` says when a given speed ends; this one is what its input is set to"
+                    );
+                    return Err(BuildError::at(*field, message));
+                }
+                if self.start != 0.0 {
+                    let message =
+                        "a speed that is read from an input has no start: leave the input at 0 until then";
+                    return Err(BuildError::at("start", message));
+                }
+                let speed = self.speed.as_ref().unwrap_or(&Setting::Number(0.0));
+                match b.signal("speed", speed, &kind::SPEED)? {
+                    Signal::Input(input) => {
+                        Ok(Drive::Motion(Arc::new(SpeedInput::new([1.0, 0.0, 0.0], input)?)))
+                    }
+                    Signal::Constant(_) => Err(BuildError::at("speed", "it has no input")),
+                }
+            }
+            (&Some(Setting::Number(speed)), None) => {
                 let ahead = [1.0, 0.0, 0.0];
                 // says what is wrong with speed, start and ramp first
                 Straight::new(ahead, speed, self.start, self.ramp)?;

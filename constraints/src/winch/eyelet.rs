@@ -5,6 +5,7 @@ use crate::driving::driving;
 use crate::pair::pair;
 use crate::spherical::spherical;
 use ropewalk_core::{BuildError, Feed, Model};
+use ropewalk_scene::quantity::Setting;
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -37,10 +38,10 @@ pub struct EyeletSpec {
     /// Speed at which cable enters through the eyelet after the ramp [m/s]; negative draws it out of the free cable.
     #[serde(
         default,
-        deserialize_with = "quantity::optional::speed",
+        deserialize_with = "quantity::setting::optional::speed",
         skip_serializing_if = "Option::is_none"
     )]
-    pub speed: Option<f64>,
+    pub speed: Option<Setting>,
     /// Time at which the speed begins to rise [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
@@ -56,10 +57,10 @@ pub struct EyeletSpec {
     /// Tension with which the cable is drawn [N], instead of a speed.
     #[serde(
         default,
-        deserialize_with = "quantity::optional::force",
+        deserialize_with = "quantity::setting::optional::force",
         skip_serializing_if = "Option::is_none"
     )]
-    pub tension: Option<f64>,
+    pub tension: Option<Setting>,
     /// Tension per speed squared, added to `tension` [kg/m].
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub per_speed2: f64,
@@ -68,8 +69,8 @@ pub struct EyeletSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference_speed: Option<String>,
     /// Linear damping, added to `tension` [N s/m].
-    #[serde(default, deserialize_with = "quantity::damping")]
-    pub damping: f64,
+    #[serde(default, deserialize_with = "quantity::setting::damping")]
+    pub damping: Setting,
     /// Shortest length of the free cable [m]; the run ends there. Default: as for `winch`.
     #[serde(
         default,
@@ -94,7 +95,7 @@ register_spec!(Constraint, "eyelet", EyeletSpec);
 impl EyeletSpec {
     /// An eyelet through which cable comes in at a speed [m/s]; a negative one draws it out.
     pub fn speed(name: &str, marker: impl Into<MarkerRef>, speed: f64) -> Self {
-        EyeletSpec { speed: Some(speed), ..Self::new(name, marker) }
+        EyeletSpec { speed: Some(speed.into()), ..Self::new(name, marker) }
     }
     /// An eyelet through which cable comes by a motion.
     pub fn motion(name: &str, marker: impl Into<MarkerRef>, motion: &str) -> Self {
@@ -102,7 +103,7 @@ impl EyeletSpec {
     }
     /// An eyelet at which the cable has a tension [N].
     pub fn tension(name: &str, marker: impl Into<MarkerRef>, tension: f64) -> Self {
-        EyeletSpec { tension: Some(tension), ..Self::new(name, marker) }
+        EyeletSpec { tension: Some(tension.into()), ..Self::new(name, marker) }
     }
     fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
         EyeletSpec {
@@ -118,7 +119,7 @@ impl EyeletSpec {
             tension: None,
             per_speed2: 0.0,
             reference_speed: None,
-            damping: 0.0,
+            damping: 0.0.into(),
             shortest: None,
             element_length: None,
             fade: fade(),
@@ -128,15 +129,15 @@ impl EyeletSpec {
     /// The winch that draws.
     fn winch(&self) -> WinchSpec {
         WinchSpec {
-            speed: self.speed,
+            speed: self.speed.clone(),
             start: self.start,
             ramp: self.ramp,
             stop: self.stop,
             motion: self.motion.clone(),
-            tension: self.tension,
+            tension: self.tension.clone(),
             per_speed2: self.per_speed2,
             reference_speed: self.reference_speed.clone(),
-            damping: self.damping,
+            damping: self.damping.clone(),
             shortest: self.shortest,
             element_length: self.element_length,
             fade: self.fade,
@@ -147,7 +148,7 @@ impl EyeletSpec {
     fn check(&self) -> Result<(), BuildError> {
         let given = [("speed", self.speed.is_some()), ("motion", self.motion.is_some())];
         let given: Vec<_> = given.iter().filter(|(_, is)| *is).map(|(field, _)| *field).collect();
-        match (given.as_slice(), self.tension) {
+        match (given.as_slice(), &self.tension) {
             ([], None) => {
                 Err(BuildError::at("name", "an eyelet needs one of `speed`, `motion` and `tension`"))
             }
@@ -159,8 +160,8 @@ impl EyeletSpec {
                      `lift_off` at the other end, both can be given: the tension here, the speed by a `winch` there"
                 ),
             )),
-            ([first], None) if self.per_speed2 != 0.0 || self.damping != 0.0 => Err(BuildError::at(
-                if self.damping != 0.0 { "damping" } else { "per_speed2" },
+            ([first], None) if self.per_speed2 != 0.0 || !self.damping.is(0.0) => Err(BuildError::at(
+                if !self.damping.is(0.0) { "damping" } else { "per_speed2" },
                 format!("it goes with `tension`; with `{first}` the tension is a result"),
             )),
             _ if self.to.is_some() && self.path.is_some() => Err(BuildError::at(

@@ -1,7 +1,7 @@
 //! Feeding under a force: tension, brake, the inertia of a drum.
 
 use ropewalk_core::{
-    Assembly, At, Column, Energy, Motion, MovingBoundary, Pattern, Power, Shows, Term, Timed,
+    Assembly, At, Column, Energy, Motion, MovingBoundary, Pattern, Power, Shows, Signal, Term, Timed,
 };
 use std::sync::Arc;
 
@@ -18,13 +18,13 @@ pub struct Pull {
     /// The end that feeds.
     pub boundary: MovingBoundary,
     /// Constant part [N].
-    pub tension: f64,
+    pub tension: Signal,
     /// Friction of the brake [N].
-    pub brake: f64,
+    pub brake: Signal,
     /// Speed below which the brake creeps [m/s].
     pub slip_speed: f64,
     /// Linear damping: tension per payout rate [N s/m].
-    pub damping: f64,
+    pub damping: Signal,
     /// Tension by the square of the speed, whichever way it feeds [kg/m].
     pub per_speed2: f64,
     /// The motion along x whose speed that is, if it isn't the speed at which this end feeds.
@@ -36,21 +36,23 @@ pub struct Pull {
 }
 
 impl Pull {
+    fn signals(&self) -> [&Signal; 3] {
+        [&self.tension, &self.brake, &self.damping]
+    }
     /// The part of the tension that is given from outside.
     fn given(&self, t: f64, u: f64) -> f64 {
         let reference = self.reference.as_ref().map_or(u, |motion| motion.at(t).v[0]);
-        self.tension + self.per_speed2 * reference * reference
+        self.tension.at(t) + self.per_speed2 * reference * reference
     }
     /// The pull, and its derivative by the speed of feeding.
     fn pull(&self, t: f64, u: f64) -> (f64, f64) {
+        let (brake, damping) = (self.brake.at(t), self.damping.at(t));
         let root = (u * u + self.slip_speed * self.slip_speed).sqrt();
         let pile = if self.pile && u > 0.0 { self.boundary.rho_a } else { 0.0 };
         let rho = pile + if self.reference.is_none() { self.per_speed2 } else { 0.0 };
         (
-            self.given(t, u) + self.brake * u / root + self.damping * u + pile * u * u,
-            self.brake * self.slip_speed * self.slip_speed / (root * root * root)
-                + self.damping
-                + 2.0 * rho * u,
+            self.given(t, u) + brake * u / root + damping * u + pile * u * u,
+            brake * self.slip_speed * self.slip_speed / (root * root * root) + damping + 2.0 * rho * u,
         )
     }
     fn slope(&self, at: &At<'_>) -> [f64; 3] {
@@ -90,7 +92,8 @@ impl Term for Pull {
         Power { supplied: -given, dissipated: self.pull(at.t, u).0 * u * stretch - given, ..Power::default() }
     }
     fn timed(&self) -> Option<&dyn Timed> {
-        if self.reference.is_some() { Some(self) } else { None }
+        let driven = self.signals().iter().any(|s| !s.is_constant());
+        if driven || self.reference.is_some() { Some(self) } else { None }
     }
     fn shows(&self) -> Option<&dyn Shows> {
         Some(self)
@@ -99,6 +102,7 @@ impl Term for Pull {
 
 impl Timed for Pull {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        let h = self.signals().iter().fold(h, |h, s| s.reach(t, h));
         self.reference.as_ref().map_or(Some(h), |motion| motion.reach(t, h))
     }
 }
@@ -143,10 +147,10 @@ mod tests {
             let pull = Pull {
                 name: "drum".into(),
                 boundary,
-                tension: 4.0,
-                brake: 3.0,
+                tension: 4.0.into(),
+                brake: 3.0.into(),
                 slip_speed: 0.5,
-                damping: 0.7,
+                damping: 0.7.into(),
                 per_speed2: 0.4,
                 reference,
                 inertia: 2.0,

@@ -3,7 +3,8 @@
 use super::drive::Drive;
 use super::{Feeding, Limit, Pull, Side, Zone};
 use ropewalk_core::error::{finite, not_negative, positive};
-use ropewalk_core::{BuildError, Feed, Model, Motion};
+use ropewalk_core::{BuildError, Feed, Model, Motion, Signal};
+use ropewalk_scene::quantity::{Setting, kind};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec, split_marker};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -34,13 +35,14 @@ pub struct WinchSpec {
     pub name: String,
     /// The end of the cable: `hose.start` or `hose.end`.
     pub marker: MarkerRef,
-    /// Payout rate after the ramp [m/s]; negative reels in. With `final_length` the sign may be left positive.
+    /// Payout rate after the ramp [m/s]; negative reels in. With `final_length` the sign may be left positive. Of an input:
+    /// the rate itself, without ramp, so the input needs `join = "linear"`.
     #[serde(
         default,
-        deserialize_with = "quantity::optional::speed",
+        deserialize_with = "quantity::setting::optional::speed",
         skip_serializing_if = "Option::is_none"
     )]
-    pub speed: Option<f64>,
+    pub speed: Option<Setting>,
     /// Start time [s].
     #[serde(default, deserialize_with = "quantity::time")]
     pub start: f64,
@@ -70,19 +72,19 @@ pub struct WinchSpec {
     /// Constant tension of the winch [N], if the speed isn't prescribed.
     #[serde(
         default,
-        deserialize_with = "quantity::optional::force",
+        deserialize_with = "quantity::setting::optional::force",
         skip_serializing_if = "Option::is_none"
     )]
-    pub tension: Option<f64>,
+    pub tension: Option<Setting>,
     /// Dry friction of the brake [N].
-    #[serde(default, deserialize_with = "quantity::force")]
-    pub brake: f64,
+    #[serde(default, deserialize_with = "quantity::setting::force")]
+    pub brake: Setting,
     /// Slip speed of the brake [m/s]: below it the brake creeps instead of sticking.
     #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
     pub slip_speed: f64,
     /// Linear damping: tension per payout rate [N s/m].
-    #[serde(default, deserialize_with = "quantity::damping")]
-    pub damping: f64,
+    #[serde(default, deserialize_with = "quantity::setting::damping")]
+    pub damping: Setting,
     /// Tension per speed squared, added to `tension` [kg/m]. Measurements at eyelets often follow this law.
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub per_speed2: f64,
@@ -121,6 +123,19 @@ pub struct WinchSpec {
 }
 register_spec!(Constraint, "winch", WinchSpec);
 
+/// What resists can't push: an input needs `min = 0` or above.
+fn resisting(field: &str, signal: Signal) -> Result<Signal, BuildError> {
+    match &signal {
+        Signal::Constant(x) => not_negative(field, *x).map(|_| signal),
+        Signal::Input(input) if !(input.limits()[0] >= 0.0) => {
+            let message =
+                format!("`{field}` must not be negative: give the input `{}` a `min` of 0", input.name());
+            Err(BuildError::at(field, message))
+        }
+        Signal::Input(_) => Ok(signal),
+    }
+}
+
 fn is_infinite(x: &f64) -> bool {
     x.is_infinite()
 }
@@ -128,7 +143,7 @@ fn is_infinite(x: &f64) -> bool {
 impl WinchSpec {
     /// A winch that feeds out at a speed [m/s]; a negative one reels in.
     pub fn speed(name: &str, marker: impl Into<MarkerRef>, speed: f64) -> Self {
-        WinchSpec { speed: Some(speed), ..Self::new(name, marker) }
+        WinchSpec { speed: Some(speed.into()), ..Self::new(name, marker) }
     }
     /// A winch that feeds by a motion.
     pub fn motion(name: &str, marker: impl Into<MarkerRef>, motion: &str) -> Self {
@@ -136,7 +151,7 @@ impl WinchSpec {
     }
     /// A winch that gives way to any tension above this one [N].
     pub fn tension(name: &str, marker: impl Into<MarkerRef>, tension: f64) -> Self {
-        WinchSpec { tension: Some(tension), ..Self::new(name, marker) }
+        WinchSpec { tension: Some(tension.into()), ..Self::new(name, marker) }
     }
     pub(super) fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
         WinchSpec {
@@ -150,9 +165,9 @@ impl WinchSpec {
             final_length: None,
             motion: None,
             tension: None,
-            brake: 0.0,
+            brake: 0.0.into(),
             slip_speed: slip_speed(),
-            damping: 0.0,
+            damping: 0.0.into(),
             per_speed2: 0.0,
             reference_speed: None,
             inertia: 0.0,
@@ -178,7 +193,7 @@ impl WinchSpec {
 
     /// Whether it never feeds.
     fn idle(&self) -> bool {
-        self.speed == Some(0.0) && self.motion.is_none()
+        self.speed.as_ref().is_some_and(|v| v.is(0.0)) && self.motion.is_none()
     }
 }
 
@@ -194,7 +209,9 @@ impl ConstraintSpec for WinchSpec {
         (!self.idle()).then_some((&self.marker, Feed { element: self.element_length, unstrained: false }))
     }
     fn notes(&self, model: &Model) -> Vec<String> {
-        let (Some(speed), MarkerRef::Name(marker)) = (self.speed.filter(|v| *v != 0.0), &self.marker) else {
+        let (Some(speed), MarkerRef::Name(marker)) =
+            (self.speed.as_ref().and_then(Setting::number).filter(|v| *v != 0.0), &self.marker)
+        else {
             return Vec::new();
         };
         let part = split_marker(marker).ok().and_then(|(name, _)| model.part(name));
@@ -216,9 +233,10 @@ impl ConstraintSpec for WinchSpec {
         )]
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        for (name, x) in [("brake", self.brake), ("damping", self.damping), ("inertia", self.inertia)] {
-            not_negative(name, x)?;
-        }
+        let signal = |field, x: &Setting, kind| b.signal(field, x, kind);
+        let brake = resisting("brake", signal("brake", &self.brake, &kind::FORCE)?)?;
+        let damping = resisting("damping", signal("damping", &self.damping, &kind::DAMPING)?)?;
+        not_negative("inertia", self.inertia)?;
         positive("slip_speed", self.slip_speed)?;
         let part = b.feeding_part(&self.marker)?;
         let whole = part.length();
@@ -238,16 +256,20 @@ impl ConstraintSpec for WinchSpec {
                 b.constraint(Feeding::new(&self.name, boundary, motion))?;
             }
             Drive::Held => {
-                let tension = self.tension.unwrap_or(0.0);
-                finite("tension", &[tension])?;
+                let tension = b.signal(
+                    "tension",
+                    self.tension.as_ref().unwrap_or(&Setting::Number(0.0)),
+                    &kind::FORCE,
+                )?;
+                finite("tension", &[tension.at(0.0)])?;
                 let reference_speed = self.reference_speed(b)?;
                 b.term(Box::new(Pull {
                     name: self.name.clone(),
                     boundary,
                     tension,
-                    brake: self.brake,
+                    brake,
                     slip_speed: self.slip_speed,
-                    damping: self.damping,
+                    damping,
                     per_speed2: self.per_speed2,
                     reference: reference_speed,
                     inertia: self.inertia,

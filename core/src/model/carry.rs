@@ -14,7 +14,11 @@ impl Model {
         let none =
             || BuildError::new("this model can't be built anew: its mesh doesn't change while it runs");
         let recipe = self.recipe.as_ref().ok_or_else(none)?;
-        Ok(recipe(plan)?.with_width(self.width))
+        let model = recipe(plan)?.with_width(self.width);
+        for (new, old) in model.inputs.iter().zip(&self.inputs) {
+            new.follow(old.course());
+        }
+        Ok(model)
     }
 
     /// A state of another model of the same scene brought over to this one: each part interpolates its own. The

@@ -6,10 +6,12 @@ pub mod capability;
 mod carry;
 pub mod column;
 pub mod constraint;
+pub mod controller;
 pub mod dead;
 pub mod event;
 pub mod feed;
 pub mod held;
+pub mod input;
 pub mod joint;
 pub mod line;
 pub mod marker;
@@ -34,7 +36,9 @@ use crate::algebra::lane::Width;
 use crate::error::BuildError;
 use crate::model::capability::{Foresees, Timed};
 use crate::model::constraint::{Constraint, RowKind};
+use crate::model::controller::Controller;
 use crate::model::event::Event;
+use crate::model::input::Input;
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::order::Rows;
 use crate::model::part::Part;
@@ -57,6 +61,10 @@ pub struct Model {
     pub(crate) start: Start,
     /// What can happen during a run, and which constraints end by it.
     pub(crate) switches: Switches,
+    /// What is set from outside.
+    inputs: Vec<Arc<Input>>,
+    /// What sets inputs by what it sees.
+    controls: Vec<Arc<dyn Controller>>,
     /// Constraints that say what others have said.
     pub(crate) redundancy: Option<Redundancy>,
     /// How it is built, if its mesh changes while it runs.
@@ -178,6 +186,8 @@ impl Model {
             parts,
             start,
             switches: Switches::default(),
+            inputs: Vec::new(),
+            controls: Vec::new(),
             redundancy: None,
             recipe: None,
             plan: Plan::new(),
@@ -216,6 +226,20 @@ impl Model {
         self
     }
 
+    /// Adds what is set from outside.
+    #[must_use]
+    pub fn with_inputs(mut self, inputs: Vec<Arc<Input>>) -> Self {
+        self.inputs = inputs;
+        self
+    }
+
+    /// Adds what sets inputs by what it sees.
+    #[must_use]
+    pub fn with_controls(mut self, controls: Vec<Arc<dyn Controller>>) -> Self {
+        self.controls = controls;
+        self
+    }
+
     /// Adds what is known of constraints that say what others have said.
     #[must_use]
     pub fn with_redundancy(mut self, redundancy: Option<Redundancy>) -> Self {
@@ -230,6 +254,18 @@ impl Model {
         self
     }
 
+    /// The inputs, in the order of the scene.
+    pub fn inputs(&self) -> &[Arc<Input>] {
+        &self.inputs
+    }
+    /// The input of this name.
+    pub fn input(&self, name: &str) -> Option<&Arc<Input>> {
+        self.inputs.iter().find(|i| i.name() == name)
+    }
+    /// What sets inputs by what it sees.
+    pub fn controls(&self) -> &[Arc<dyn Controller>] {
+        &self.controls
+    }
     /// The events that the scene brings along.
     pub fn events(&self) -> &[Arc<dyn Event>] {
         &self.switches.events

@@ -1,8 +1,10 @@
 //! Checkpoints: all that a simulation needs to go on as if nothing had happened.
 
 use super::Simulation;
+use super::inputs::Controlling;
 use super::memory::Memory;
 use crate::model::Model;
+use crate::model::input::Course;
 use crate::model::remesh::Plan;
 use crate::model::state::State;
 use crate::simulation::audit::Audit;
@@ -26,7 +28,7 @@ pub struct Checkpoint {
     pub counts: Counts,
     /// What the start had to be corrected by.
     pub correction: Correction,
-    /// Meshes that have changed: what [`Scene::build_on`](crate::Scene::build_on) makes the model of.
+    /// Meshes that have changed, from which the model is built again.
     pub meshes: Plan,
     /// Names of the constraints and numbers of unknowns of the model, by which another one is told.
     model: Vec<(String, usize)>,
@@ -40,6 +42,9 @@ pub struct Checkpoint {
     softened: bool,
     sampled: (f64, u64),
     memory: Memory,
+    inputs: Vec<Course>,
+    jumped: bool,
+    controlling: Vec<Controlling>,
 }
 
 /// Why a checkpoint can't be gone on from with a model.
@@ -62,6 +67,8 @@ fn traits(model: &Model) -> Vec<(String, usize)> {
     ];
     all.extend(model.terms().iter().map(|t| (t.label(), 1)));
     all.extend(model.constraints().iter().map(|c| (c.name().to_string(), c.rows().len())));
+    all.extend(model.inputs().iter().map(|i| (i.name().to_string(), 1)));
+    all.extend(model.controls().iter().map(|c| (c.name().to_string(), c.memory())));
     all
 }
 
@@ -92,6 +99,9 @@ impl Simulation {
             softened: self.work.softening.is_some(),
             sampled: self.sampled,
             memory: self.memory.clone(),
+            inputs: self.model.inputs().iter().map(|i| i.course()).collect(),
+            jumped: self.jumped,
+            controlling: self.controlling.clone(),
         })
     }
 
@@ -113,6 +123,10 @@ impl Simulation {
         }
         if mine.len() != c.model.len() || c.events.len() != model.events().len() {
             return Err(Unfit::Other("it has other terms, constraints or events".into()));
+        }
+        model.check(&c.state).map_err(Unfit::Other)?;
+        for (input, course) in model.inputs().iter().zip(c.inputs) {
+            input.follow(course);
         }
         let mut integrator = options.integrator(&model, duration)?;
         integrator.set_horizon(c.memory.horizon());
@@ -142,6 +156,8 @@ impl Simulation {
             aside: None,
             sampled: c.sampled,
             memory: c.memory,
+            jumped: c.jumped,
+            controlling: c.controlling,
         })
     }
 }

@@ -5,13 +5,16 @@ pub mod audit;
 mod checkpoint;
 mod dense;
 mod forces;
+mod inputs;
 pub mod layers;
 mod memory;
 pub mod record;
+mod stepping;
 mod watch;
 
 pub use checkpoint::{Checkpoint, Unfit};
 
+use crate::error::BuildError;
 use crate::model::Model;
 use crate::model::event::{Action, Event};
 use crate::model::line::Quantity;
@@ -25,6 +28,7 @@ use crate::solve::integrator::{
     Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, prepare, restart,
 };
 use crate::solve::times::Phase;
+use inputs::Controlling;
 use memory::Memory;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -131,6 +135,10 @@ pub struct Simulation {
     sampled: (f64, u64),
     /// Over which time errors add up.
     memory: Memory,
+    /// Whether an input has jumped since the last step.
+    jumped: bool,
+    /// What each controller remembers.
+    controlling: Vec<Controlling>,
 }
 
 impl Simulation {
@@ -163,6 +171,7 @@ impl Simulation {
         let memory = Memory::new(integrator.horizon());
         let events =
             model.events().iter().map(|e| (e.clone(), at_start(e.as_ref(), &model, &state))).collect();
+        let controlling = inputs::at_start(&model);
         Ok(Simulation {
             model: Arc::new(model),
             state,
@@ -181,6 +190,8 @@ impl Simulation {
             aside: None,
             sampled: (0.0, 0),
             memory,
+            jumped: false,
+            controlling,
         })
     }
 
@@ -207,7 +218,7 @@ impl Simulation {
         interval: f64,
         observer: &mut dyn Observer,
     ) -> Result<End, StepError> {
-        self.model.check(&self.state).map_err(StepError::Foreign)?;
+        self.check_state()?;
         self.sampled = (self.state.t, 0);
         if self.sample(observer, None)?.is_break() {
             return Ok(End::Stopped { by: "observer".into() });
@@ -222,7 +233,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn go_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
-        self.model.check(&self.state).map_err(StepError::Foreign)?;
+        self.check_state()?;
         let (start, mut next) = self.sampled;
         let samples = (end - start) / interval;
         if !(interval > 0.0 && samples <= MOST_SAMPLES) {
@@ -230,8 +241,17 @@ impl Simulation {
                 "samples every {interval:e} s of {:e} s never end: take a longer interval",
                 end - start
             );
-            return Err(StepError::Scheme(message));
+            return Err(BuildError::new(message).into());
         }
+        if end < self.state.t {
+            let message = format!(
+                "a run goes on in time: it is at t = {} s and can't be advanced to {end} s. A state or a checkpoint from \
+                 before leads back",
+                self.state.t
+            );
+            return Err(BuildError::new(message).into());
+        }
+        self.depart(end);
         let sample_time = |k: u64| start + interval * k as f64;
         // times that differ by less than this are the same: no step of the size of rounding. To call them so mustn't move
         // what is driven
@@ -241,10 +261,13 @@ impl Simulation {
         };
         let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * short + 4.0 * f64::EPSILON * b.abs();
         while self.state.t < end && !same(self.state.t, end) {
-            let mut left = end - self.state.t;
+            self.control(same)?;
+            self.take_jumps()?;
+            let target = end.min(self.next_control());
+            let mut left = target - self.state.t;
             if let Stepping::Controlled { .. } = self.integrator.options().stepping {
                 self.leap()?;
-                left = self.limit(end - self.state.t);
+                left = self.limit(target - self.state.t);
             }
             self.previous.clone_from(&self.state);
             let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left);
@@ -255,8 +278,8 @@ impl Simulation {
                 continue;
             }
             self.count_cut(report.h, left);
-            if same(self.state.t, end) {
-                self.state.t = end;
+            if same(self.state.t, target) {
+                self.state.t = target;
             }
             let fired = self.locate(observer);
             self.account();

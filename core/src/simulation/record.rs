@@ -18,7 +18,7 @@ pub struct Sample<'a> {
 }
 
 /// An output: what it is called, and its value at an instant.
-pub trait Record: Send {
+pub trait Record: Send + Sync {
     /// What it is, in a few words for people.
     fn title(&self) -> String;
     /// Its name in the summary, such as `hose.end`.

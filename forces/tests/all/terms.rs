@@ -59,7 +59,7 @@ fn springs() -> Vec<Spring> {
             [(0.0, 1.0, false), (7.0, 1.0, false), (7.0, 0.1, true), (7.0, 0.0, false)]
         {
             let mut s = Spring::new("spring", &nodes, pair, 100.0, rest_length).unwrap();
-            (s.damping, s.tension_only) = (damping, tension_only);
+            (s.damping, s.tension_only) = (damping.into(), tension_only);
             all.push(s);
         }
     }
@@ -187,7 +187,7 @@ fn rope_goes_slack_and_never_pushes() {
     let nodes = nodes();
     let ground = Marker::ground([0.0; 3]);
     let mut rope = Spring::new("rope", &nodes, [ground, Marker::node(POINT)], 100.0, 1.0).unwrap();
-    (rope.damping, rope.tension_only) = (10.0, true);
+    (rope.damping, rope.tension_only) = (10.0.into(), true);
     let mut s = Numbers::new(1);
     let mut force = |length: f64, rate: f64| {
         s.q[..3].copy_from_slice(&[length, 0.0, 0.0]);

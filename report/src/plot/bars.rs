@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::axis::Axis;
-use super::canvas::{Align, draw, fitted, text_width, wrapped};
-use super::colour;
+use super::canvas::{Align, Pen, draw, fitted, text_width, wrapped};
+use super::colour::{self, Colour};
 use crate::{OutputError, write_atomic};
 
 const TITLE_SIZE: f64 = 15.0;
@@ -84,36 +84,36 @@ impl BarPlot {
         let top = MARGIN + (title.len() + usize::from(legend) + usize::from(marked)) as f64 * 20.0 + 6.0;
         let bottom = top + self.bars.len() as f64 * ROW;
         let x = |value: f64| axis.place(value).map(|p| left + p.clamp(0.0, 1.0) * WIDTH);
-        draw(width, bottom + 48.0, |c| {
+        Ok(draw(width, bottom + 48.0, |c| {
             for (i, line) in title.iter().enumerate() {
-                c.text(line, (MARGIN, MARGIN + 8.0 + 20.0 * i as f64), TITLE_SIZE, Align::Left, true)?;
+                c.text(line, (MARGIN, MARGIN + 8.0 + 20.0 * i as f64), TITLE_SIZE, Align::Left, true);
             }
             let mut pen = MARGIN;
             for (g, name) in self.groups.iter().enumerate().filter(|_| legend) {
                 let y = MARGIN + 8.0 + 20.0 * title.len() as f64;
-                c.rectangle((pen, y - 6.0), (pen + 12.0, y + 6.0), self.colour(g))?;
-                c.text(name, (pen + 18.0, y), TEXT_SIZE, Align::Left, false)?;
+                c.rectangle((pen, y - 6.0), (pen + 12.0, y + 6.0), self.colour(g));
+                c.text(name, (pen + 18.0, y), TEXT_SIZE, Align::Left, false);
                 pen += 18.0 + text_width(name, TEXT_SIZE) + 18.0;
             }
             for tick in &axis.ticks(5).major {
                 let at = left + tick.at * WIDTH;
-                c.line([(at, top), (at, bottom)], 0.8, colour::GRID)?;
-                c.text(&tick.label, (at, bottom + 12.0), TEXT_SIZE, Align::Centre, false)?;
+                c.line([(at, top), (at, bottom)], Pen::solid(0.8, colour::GRID));
+                c.text(&tick.label, (at, bottom + 12.0), TEXT_SIZE, Align::Centre, false);
             }
             if let Some((value, name)) = &self.mark
                 && let Some(at) = x(*value)
             {
-                c.line([(at, top - 3.0), (at, bottom)], 1.5, colour::AXIS)?;
-                c.text(name, (at, top - 11.0), TEXT_SIZE, Align::Centre, false)?;
+                c.line([(at, top - 3.0), (at, bottom)], Pen::solid(1.5, colour::AXIS));
+                c.text(name, (at, top - 11.0), TEXT_SIZE, Align::Centre, false);
             }
-            c.text(&self.axis, (0.5 * (left + right), bottom + 32.0), TEXT_SIZE, Align::Centre, false)?;
+            c.text(&self.axis, (0.5 * (left + right), bottom + 32.0), TEXT_SIZE, Align::Centre, false);
             for (i, bar) in self.bars.iter().enumerate() {
                 let y = top + (i as f64 + 0.5) * ROW;
                 let label = fitted(&bar.label, TEXT_SIZE, MOST_NAME);
-                c.text(&label, (left - 8.0, y), TEXT_SIZE, Align::Right, false)?;
+                c.text(&label, (left - 8.0, y), TEXT_SIZE, Align::Right, false);
                 let end = x(bar.value).filter(|_| bar.value > 0.0).unwrap_or(left);
                 if end > left {
-                    c.rectangle((left, y - 0.5 * BAR), (end, y + 0.5 * BAR), self.colour(bar.group))?;
+                    c.rectangle((left, y - 0.5 * BAR), (end, y + 0.5 * BAR), self.colour(bar.group));
                 }
                 let note = fitted(&bar.note, TEXT_SIZE, MOST_NAME);
                 if let Some(at) = self.mark.as_ref().and_then(|m| x(m.0))
@@ -121,16 +121,15 @@ impl BarPlot {
                 {
                     // the line of the mark doesn't run through words
                     let wide = text_width(&note, TEXT_SIZE);
-                    c.rectangle((end + 3.0, y - 8.0), (end + 9.0 + wide, y + 8.0), colour::PAPER)?;
+                    c.rectangle((end + 3.0, y - 8.0), (end + 9.0 + wide, y + 8.0), colour::PAPER);
                 }
-                c.text(&note, (end + 6.0, y), TEXT_SIZE, Align::Left, false)?;
+                c.text(&note, (end + 6.0, y), TEXT_SIZE, Align::Left, false);
             }
-            c.line([(left, top), (left, bottom), (right, bottom)], 1.0, colour::AXIS)?;
-            Ok(())
-        })
+            c.line([(left, top), (left, bottom), (right, bottom)], Pen::solid(1.0, colour::AXIS));
+        }))
     }
 
-    fn colour(&self, group: usize) -> plotters::style::RGBColor {
+    fn colour(&self, group: usize) -> Colour {
         colour::of_series(group, self.groups.len().max(1))
     }
 

@@ -1,20 +1,17 @@
-//! A sheet of paper in pixels, over the SVG backend of `plotters`.
+//! A sheet of paper in pixels, written as SVG.
 
-use plotters::prelude::{DrawingBackend, SVGBackend};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{
-    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle,
-};
+use std::fmt::Write as _;
 
-use super::colour;
-use crate::OutputError;
+use svg::node::Node;
+use svg::node::element::{Circle, Polyline, Rectangle, Text};
 
-/// The backend counts in whole units: a pixel is divided, or curves would look like stairs.
-const FINE: f64 = 10.0;
-/// The backend divides font sizes by this.
-const FONT_FACTOR: f64 = 1.24;
+use super::colour::{self, Colour};
+use super::thin::Pixel;
+
 /// What a reader's machine has of these; drawing itself needs no font.
 const FONT: &str = "Helvetica, Arial, DejaVu Sans, sans-serif";
+/// From the middle of a line of text down to its baseline.
+const BASELINE: &str = "0.35em";
 
 /// Where a text stands from its anchor; it is centred vertically on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,93 +23,102 @@ pub(super) enum Align {
     Upwards,
 }
 
-pub(super) struct Canvas<'a> {
-    backend: SVGBackend<'a>,
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pen {
+    pub(super) width: f64,
+    pub(super) colour: Colour,
+    /// Lengths of dashes and gaps, one after the other; none for a solid line.
+    pub(super) dashes: &'static [f64],
+}
+
+impl Pen {
+    pub(super) fn solid(width: f64, colour: Colour) -> Self {
+        Pen { width, colour, dashes: &[] }
+    }
+}
+
+pub(super) struct Canvas {
+    document: svg::Document,
     /// Where the upper left corner of what is drawn comes to lie.
-    pub(super) origin: (f64, f64),
+    pub(super) origin: Pixel,
 }
 
 /// Draws on a white sheet of `width` by `height` pixels and returns the SVG text.
-pub(super) fn draw(
-    width: f64,
-    height: f64,
-    paint: impl FnOnce(&mut Canvas<'_>) -> Result<(), OutputError>,
-) -> Result<String, OutputError> {
+pub(super) fn draw(width: f64, height: f64, paint: impl FnOnce(&mut Canvas)) -> String {
     let (width, height) = (width.ceil(), height.ceil());
-    let mut text = String::new();
-    let size = ((width * FINE) as u32, (height * FINE) as u32);
-    let mut canvas = Canvas { backend: SVGBackend::with_string(&mut text, size), origin: (0.0, 0.0) };
-    canvas.rectangle((0.0, 0.0), (width, height), colour::PAPER)?;
-    paint(&mut canvas)?;
-    canvas.backend.present().map_err(failed)?;
-    drop(canvas);
-    // The backend knows neither sizes other than its own units nor round joins.
-    let body = text.split_once("viewBox").map_or("", |(_, body)| body);
-    Ok(format!(
-        "<svg width=\"{width}\" height=\"{height}\" stroke-linejoin=\"round\" \
-         stroke-linecap=\"round\" viewBox{body}"
-    ))
+    let document = svg::Document::new()
+        .set("width", width)
+        .set("height", height)
+        .set("viewBox", (0, 0, width, height))
+        .set("font-family", FONT)
+        .set("stroke-linejoin", "round")
+        .set("stroke-linecap", "round");
+    let mut canvas = Canvas { document, origin: (0.0, 0.0) };
+    canvas.rectangle((0.0, 0.0), (width, height), colour::PAPER);
+    paint(&mut canvas);
+    canvas.document.to_string()
 }
 
-impl Canvas<'_> {
-    fn moved(&self, (x, y): (f64, f64)) -> (f64, f64) {
+impl Canvas {
+    fn moved(&self, (x, y): Pixel) -> Pixel {
         (x + self.origin.0, y + self.origin.1)
     }
 
-    pub(super) fn line(
-        &mut self,
-        points: impl IntoIterator<Item = (f64, f64)>,
-        width: f64,
-        colour: RGBColor,
-    ) -> Result<(), OutputError> {
-        let style = ShapeStyle {
-            color: colour.to_rgba(),
-            filled: false,
-            stroke_width: (width * FINE).round() as u32,
-        };
-        let (x, y) = self.origin;
-        let path = points.into_iter().map(|p| fine((p.0 + x, p.1 + y)));
-        self.backend.draw_path(path, &style).map_err(failed)
+    pub(super) fn line(&mut self, points: impl IntoIterator<Item = Pixel>, pen: Pen) {
+        let mut path = String::new();
+        for point in points {
+            let (x, y) = self.moved(point);
+            let gap = if path.is_empty() { "" } else { " " };
+            let _ = write!(path, "{gap}{},{}", fine(x), fine(y));
+        }
+        let mut line = Polyline::new()
+            .set("points", path)
+            .set("fill", "none")
+            .set("stroke", pen.colour.to_string())
+            .set("stroke-width", pen.width);
+        if !pen.dashes.is_empty() {
+            // round ends would fill the gaps
+            line = line.set("stroke-dasharray", pen.dashes.to_vec()).set("stroke-linecap", "butt");
+        }
+        self.document.append(line);
     }
 
-    pub(super) fn dot(&mut self, at: (f64, f64), radius: f64, colour: RGBColor) -> Result<(), OutputError> {
-        let radius = (radius * FINE).round() as u32;
-        let at = self.moved(at);
-        self.backend.draw_circle(fine(at), radius, &colour.filled(), true).map_err(failed)
+    pub(super) fn dot(&mut self, at: Pixel, radius: f64, colour: Colour) {
+        let (x, y) = self.moved(at);
+        let dot = Circle::new().set("cx", fine(x)).set("cy", fine(y)).set("r", radius);
+        self.document.append(dot.set("fill", colour.to_string()));
     }
 
-    pub(super) fn rectangle(
-        &mut self,
-        top_left: (f64, f64),
-        bottom_right: (f64, f64),
-        colour: RGBColor,
-    ) -> Result<(), OutputError> {
-        let (top_left, bottom_right) = (self.moved(top_left), self.moved(bottom_right));
-        self.backend.draw_rect(fine(top_left), fine(bottom_right), &colour.filled(), true).map_err(failed)
+    pub(super) fn rectangle(&mut self, top_left: Pixel, bottom_right: Pixel, colour: Colour) {
+        let ((x, y), (right, bottom)) = (self.moved(top_left), self.moved(bottom_right));
+        let place = Rectangle::new().set("x", fine(x)).set("y", fine(y));
+        let size = place.set("width", fine(right - x)).set("height", fine(bottom - y));
+        self.document.append(size.set("fill", colour.to_string()));
     }
 
-    pub(super) fn text(
-        &mut self,
-        text: &str,
-        at: (f64, f64),
-        size: f64,
-        align: Align,
-        bold: bool,
-    ) -> Result<(), OutputError> {
-        let style = if bold { FontStyle::Bold } else { FontStyle::Normal };
-        let font = FontDesc::new(FontFamily::Name(FONT), size * FINE * FONT_FACTOR, style);
-        let (h_pos, transform) = match align {
-            Align::Left => (HPos::Left, FontTransform::None),
-            Align::Centre => (HPos::Center, FontTransform::None),
-            Align::Right => (HPos::Right, FontTransform::None),
-            Align::Upwards => (HPos::Center, FontTransform::Rotate270),
-        };
-        let style = TextStyle::from(font.transform(transform))
-            .color(&colour::TEXT)
-            .pos(Pos::new(h_pos, VPos::Center));
+    pub(super) fn text(&mut self, text: &str, at: Pixel, size: f64, align: Align, bold: bool) {
+        let (x, y) = self.moved(at);
+        let (x, y) = (fine(x), fine(y));
         let text: String = text.chars().filter(|c| !c.is_control()).collect();
-        let at = self.moved(at);
-        self.backend.draw_text(&text, &style, fine(at)).map_err(failed)
+        let mut node = Text::new(text)
+            .set("x", x)
+            .set("y", y)
+            .set("dy", BASELINE)
+            .set("font-size", size)
+            .set("fill", colour::TEXT.to_string());
+        match align {
+            Align::Left => {}
+            Align::Centre | Align::Upwards => node = node.set("text-anchor", "middle"),
+            Align::Right => node = node.set("text-anchor", "end"),
+        }
+        if align == Align::Upwards {
+            node = node.set("transform", format!("rotate(-90 {x} {y})"));
+        }
+        if bold {
+            node = node.set("font-weight", "bold");
+        }
+        self.document.append(node);
     }
 }
 
@@ -166,12 +172,9 @@ pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-fn fine((x, y): (f64, f64)) -> (i32, i32) {
-    ((x * FINE).round() as i32, (y * FINE).round() as i32)
-}
-
-fn failed(error: impl std::fmt::Display) -> OutputError {
-    OutputError::Draw { message: error.to_string() }
+/// A tenth of a pixel is as fine as a curve can be seen.
+fn fine(x: f64) -> f64 {
+    (x * 10.0).round() / 10.0
 }
 
 #[cfg(test)]
@@ -180,14 +183,23 @@ mod tests {
 
     #[test]
     fn the_sheet_has_the_size_in_pixels_and_escapes_text() {
-        let svg =
-            draw(100.0, 50.0, |c| c.text("a < b & \"c\"\u{7}", (50.0, 25.0), 12.0, Align::Centre, true))
-                .unwrap();
-        assert!(svg.starts_with("<svg width=\"100\" height=\"50\" "));
-        assert!(svg.contains("viewBox=\"0 0 1000 500\" xmlns="));
-        assert!(svg.contains("a &lt; b &amp; &quot;c&quot;\n"));
-        assert!(svg.contains("font-size=\"1") && svg.contains("font-weight=\"bold\""));
-        assert!(svg.trim_end().ends_with("</svg>"));
+        let say = |c: &mut Canvas| c.text("a < b & \"c\"\u{7}", (50.0, 25.04), 12.0, Align::Centre, true);
+        let svg = draw(100.0, 49.5, say);
+        assert!(svg.contains("width=\"100\"") && svg.contains("viewBox=\"0 0 100 50\""), "{svg}");
+        assert!(svg.contains("a &lt; b &amp; \"c\"\n") && svg.contains("y=\"25\""), "{svg}");
+        assert!(svg.contains("font-size=\"12\"") && svg.contains("font-weight=\"bold\""), "{svg}");
+        assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{svg}");
+    }
+
+    #[test]
+    fn dashes_are_a_pattern_of_the_line() {
+        let pen = Pen { dashes: &[9.0, 4.0], ..Pen::solid(1.8, colour::TEXT) };
+        let svg = draw(100.0, 50.0, |c| c.line([(0.0, 1.0), (99.99, 1.0)], pen));
+        for part in
+            ["points=\"0,1 100,1\"", "stroke-dasharray=\"9 4\"", "stroke=\"#222222\"", "stroke-width=\"1.8\""]
+        {
+            assert!(svg.contains(part), "no {part} in {svg}");
+        }
     }
 
     #[test]

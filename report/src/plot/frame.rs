@@ -1,13 +1,10 @@
 //! What surrounds the data of a plot: title, legend, axes, grid, colour bar; and where they go.
 
-use plotters::style::RGBColor;
-
 use super::axis::{Axis, Ticks};
-use super::canvas::{Align, Canvas, draw, fitted, text_width, wrapped};
+use super::canvas::{Align, Canvas, Pen, draw, fitted, text_width, wrapped};
+use super::colour::{self, Colour};
 use super::line::Mark;
 use super::thin::Pixel;
-use super::{clip, colour};
-use crate::OutputError;
 
 pub(super) const TITLE_SIZE: f64 = 15.0;
 /// Titles of panels, below that of the picture.
@@ -31,10 +28,10 @@ const BAR_GAP: f64 = 18.0;
 #[derive(PartialEq)]
 pub(super) struct Entry {
     pub(super) label: String,
-    pub(super) colour: RGBColor,
+    pub(super) colour: Colour,
     pub(super) mark: Mark,
-    /// Number of the pattern of dashes, 0 for a solid line.
-    pub(super) dashes: usize,
+    /// Lengths of dashes and gaps; none for a solid line.
+    pub(super) dashes: &'static [f64],
 }
 
 /// A scale of colours at the right-hand side.
@@ -138,27 +135,20 @@ impl<'p> Sheet<'p> {
     }
 
     /// Draws the frame, and the data by `paint`.
-    pub(super) fn put(
-        &self,
-        canvas: &mut Canvas<'_>,
-        paint: impl FnOnce(&mut Canvas<'_>, &Area) -> Result<(), OutputError>,
-    ) -> Result<(), OutputError> {
+    pub(super) fn put(&self, canvas: &mut Canvas, paint: impl FnOnce(&mut Canvas, &Area)) {
         let Self { frame, layout } = self;
-        layout.draw_grid(canvas)?;
-        paint(canvas, &layout.area)?;
-        layout.draw_axes(canvas)?;
-        frame.draw_labels(canvas, layout)?;
-        frame.draw_legend(canvas, layout)?;
-        frame.draw_bar(canvas, layout)
+        layout.draw_grid(canvas);
+        paint(canvas, &layout.area);
+        layout.draw_axes(canvas);
+        frame.draw_labels(canvas, layout);
+        frame.draw_legend(canvas, layout);
+        frame.draw_bar(canvas, layout);
     }
 }
 
 impl Frame<'_> {
     /// Draws the frame, and the data by `paint`, and returns the SVG text.
-    pub(super) fn draw(
-        self,
-        paint: impl FnOnce(&mut Canvas<'_>, &Area) -> Result<(), OutputError>,
-    ) -> Result<String, OutputError> {
+    pub(super) fn draw(self, paint: impl FnOnce(&mut Canvas, &Area)) -> String {
         let sheet = Sheet::new(self);
         draw(sheet.size().0, sheet.size().1, |canvas| sheet.put(canvas, paint))
     }
@@ -221,58 +211,55 @@ impl Frame<'_> {
         }
     }
 
-    fn draw_labels(&self, canvas: &mut Canvas<'_>, layout: &Layout) -> Result<(), OutputError> {
+    fn draw_labels(&self, canvas: &mut Canvas, layout: &Layout) {
         let area = &layout.area;
         for (i, line) in layout.title.iter().enumerate() {
             let at = (area.left, MARGIN + 8.0 + i as f64 * (ROW + 1.0));
-            canvas.text(line, at, self.title_size(), Align::Left, true)?;
+            canvas.text(line, at, self.title_size(), Align::Left, true);
         }
         let below = area.bottom() + TICK_LENGTH + ROW + 0.6 * ROW;
         let mut room = layout.size.0 - 2.0 * MARGIN;
         let middle = area.left + 0.5 * area.width;
         if let Some(factor) = &layout.x_ticks.factor {
             let at = (area.right(), below);
-            canvas.text(factor, at, TICK_SIZE, Align::Right, false)?;
+            canvas.text(factor, at, TICK_SIZE, Align::Right, false);
             room = area.width - 2.0 * text_width(factor, TICK_SIZE) - MARGIN;
         }
         room = room.min(2.0 * (layout.size.0 - middle - 4.0));
         let label = fitted(self.x_label, LABEL_SIZE, room);
-        canvas.text(&label, (middle, below), LABEL_SIZE, Align::Centre, false)?;
+        canvas.text(&label, (middle, below), LABEL_SIZE, Align::Centre, false);
 
         let middle = area.top + 0.5 * area.height;
         let room = 2.0 * (middle - 4.0).min(layout.size.1 - middle - 4.0);
         let label = fitted(self.y_label, LABEL_SIZE, room);
         let at = (MARGIN + 0.4 * ROW, middle);
-        canvas.text(&label, at, LABEL_SIZE, Align::Upwards, false)?;
+        canvas.text(&label, at, LABEL_SIZE, Align::Upwards, false);
         if let Some(factor) = &layout.y_ticks.factor {
             let at = (area.left, area.top - 10.0);
-            canvas.text(factor, at, TICK_SIZE, Align::Left, false)?;
+            canvas.text(factor, at, TICK_SIZE, Align::Left, false);
         }
-        Ok(())
     }
 
-    fn draw_legend(&self, canvas: &mut Canvas<'_>, layout: &Layout) -> Result<(), OutputError> {
+    fn draw_legend(&self, canvas: &mut Canvas, layout: &Layout) {
         for (entry, (x, y)) in self.legend.iter().zip(&layout.legend) {
             let width = if entry.mark == Mark::Guide { 1.0 } else { 2.0 };
             if entry.mark != Mark::Dots {
-                for dash in clip::dashes(&[(*x, *y), (x + SWATCH, *y)], entry.dashes) {
-                    canvas.line(dash, width, entry.colour)?;
-                }
+                let pen = Pen { width, colour: entry.colour, dashes: entry.dashes };
+                canvas.line([(*x, *y), (x + SWATCH, *y)], pen);
             }
             if matches!(entry.mark, Mark::Dots | Mark::LineAndDots) {
-                canvas.dot((x + 0.5 * SWATCH, *y), 3.0, entry.colour)?;
+                canvas.dot((x + 0.5 * SWATCH, *y), 3.0, entry.colour);
             }
             let room = layout.size.0 - x - SWATCH - 6.0 - MARGIN;
             let label = fitted(&entry.label, TICK_SIZE, room);
-            canvas.text(&label, (x + SWATCH + 6.0, *y), TICK_SIZE, Align::Left, false)?;
+            canvas.text(&label, (x + SWATCH + 6.0, *y), TICK_SIZE, Align::Left, false);
         }
-        Ok(())
     }
 
-    fn draw_bar(&self, canvas: &mut Canvas<'_>, layout: &Layout) -> Result<(), OutputError> {
+    fn draw_bar(&self, canvas: &mut Canvas, layout: &Layout) {
         const SHADES: u32 = 64;
         let Some(bar) = &self.bar else {
-            return Ok(());
+            return;
         };
         let area = &layout.area;
         let left = area.right() + BAR_GAP;
@@ -284,59 +271,57 @@ impl Frame<'_> {
                 (left, area.top),
                 (right, area.down(low)),
                 colour::ramp(low + 0.5 / f64::from(SHADES)),
-            )?;
+            );
         }
         for tick in &layout.bar_ticks.major {
             let y = area.down(tick.at);
-            canvas.line([(right, y), (right + TICK_LENGTH, y)], 1.0, colour::AXIS)?;
+            canvas.line([(right, y), (right + TICK_LENGTH, y)], Pen::solid(1.0, colour::AXIS));
             let at = (right + 8.0, y);
-            canvas.text(&tick.label, at, TICK_SIZE, Align::Left, false)?;
+            canvas.text(&tick.label, at, TICK_SIZE, Align::Left, false);
         }
         let label = match &layout.bar_ticks.factor {
             Some(factor) => format!("{factor} {}", bar.label),
             None => bar.label.clone(),
         };
         let at = (layout.size.0 - MARGIN, area.top - 14.0);
-        canvas.text(&label, at, TICK_SIZE, Align::Right, false)
+        canvas.text(&label, at, TICK_SIZE, Align::Right, false);
     }
 }
 
 impl Layout {
-    fn draw_grid(&self, canvas: &mut Canvas<'_>) -> Result<(), OutputError> {
+    fn draw_grid(&self, canvas: &mut Canvas) {
         let a = &self.area;
         let across = |x: f64| [(a.across(x), a.top), (a.across(x), a.bottom())];
         let down = |y: f64| [(a.left, a.down(y)), (a.right(), a.down(y))];
         for x in &self.x_ticks.minor {
-            canvas.line(across(*x), 0.8, colour::FINE_GRID)?;
+            canvas.line(across(*x), Pen::solid(0.8, colour::FINE_GRID));
         }
         for y in &self.y_ticks.minor {
-            canvas.line(down(*y), 0.8, colour::FINE_GRID)?;
+            canvas.line(down(*y), Pen::solid(0.8, colour::FINE_GRID));
         }
         for tick in &self.x_ticks.major {
-            canvas.line(across(tick.at), 0.8, colour::GRID)?;
+            canvas.line(across(tick.at), Pen::solid(0.8, colour::GRID));
         }
         for tick in &self.y_ticks.major {
-            canvas.line(down(tick.at), 0.8, colour::GRID)?;
+            canvas.line(down(tick.at), Pen::solid(0.8, colour::GRID));
         }
-        Ok(())
     }
 
-    fn draw_axes(&self, canvas: &mut Canvas<'_>) -> Result<(), OutputError> {
+    fn draw_axes(&self, canvas: &mut Canvas) {
         let a = &self.area;
         let corner = [(a.left, a.top), (a.left, a.bottom()), (a.right(), a.bottom())];
-        canvas.line(corner, 1.0, colour::AXIS)?;
+        canvas.line(corner, Pen::solid(1.0, colour::AXIS));
         for tick in &self.x_ticks.major {
             let (x, y) = (a.across(tick.at), a.bottom() + TICK_LENGTH);
-            canvas.line([(x, a.bottom()), (x, y)], 1.0, colour::AXIS)?;
+            canvas.line([(x, a.bottom()), (x, y)], Pen::solid(1.0, colour::AXIS));
             let at = (x, y + 0.5 * ROW);
-            canvas.text(&tick.label, at, TICK_SIZE, Align::Centre, false)?;
+            canvas.text(&tick.label, at, TICK_SIZE, Align::Centre, false);
         }
         for tick in &self.y_ticks.major {
             let (x, y) = (a.left - TICK_LENGTH, a.down(tick.at));
-            canvas.line([(x, y), (a.left, y)], 1.0, colour::AXIS)?;
-            canvas.text(&tick.label, (x - 4.0, y), TICK_SIZE, Align::Right, false)?;
+            canvas.line([(x, y), (a.left, y)], Pen::solid(1.0, colour::AXIS));
+            canvas.text(&tick.label, (x - 4.0, y), TICK_SIZE, Align::Right, false);
         }
-        Ok(())
     }
 }
 

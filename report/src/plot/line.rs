@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use plotters::style::RGBColor;
-
 use super::axis::Axis;
-use super::canvas::Canvas;
+use super::canvas::{Canvas, Pen};
+use super::colour::Colour;
 use super::frame::{AREA, Area, Entry, Frame};
 use super::shape::draw_directions;
 use super::{clip, colour, thin};
@@ -18,6 +17,17 @@ const DOT_BUDGET: usize = 1_500;
 const LINE_WIDTH: f64 = 1.6;
 const GUIDE_WIDTH: f64 = 1.0;
 const DOT_RADIUS: f64 = 3.0;
+/// Dashes and gaps of the curves of a plot, in pixels, one after the other; the first curve is solid.
+const PATTERNS: [&[f64]; 8] = [
+    &[],
+    &[9.0, 4.0],
+    &[2.5, 3.5],
+    &[11.0, 3.5, 2.5, 3.5],
+    &[16.0, 5.0],
+    &[5.0, 3.0],
+    &[11.0, 3.5, 2.5, 3.5, 2.5, 3.5],
+    &[1.5, 6.0],
+];
 
 /// How the points of a series are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -119,7 +129,7 @@ impl LinePlot {
     /// [`OutputError::EmptyPlot`] without a finite point; [`OutputError::LogAxis`] without a
     /// positive value on a logarithmic axis.
     pub fn svg(&self) -> Result<String, OutputError> {
-        self.frame()?.draw(|canvas, area| self.paint(canvas, area))
+        Ok(self.frame()?.draw(|canvas, area| self.paint(canvas, area)))
     }
 
     /// All but the data.
@@ -140,11 +150,11 @@ impl LinePlot {
     }
 
     /// The data.
-    pub(super) fn paint(&self, canvas: &mut Canvas<'_>, area: &Area) -> Result<(), OutputError> {
+    pub(super) fn paint(&self, canvas: &mut Canvas, area: &Area) {
         for (index, series) in self.series.iter().enumerate() {
-            self.draw_series(canvas, area, index, series)?;
+            self.draw_series(canvas, area, index, series);
         }
-        draw_directions(canvas, area, &self.directions)
+        draw_directions(canvas, area, &self.directions);
     }
 
     fn axes(&self) -> Result<(Axis, Axis), OutputError> {
@@ -186,16 +196,16 @@ impl LinePlot {
     }
 
     /// Colour and dashes of a curve. Guides have neither, and don't count.
-    fn look(&self, index: usize) -> (RGBColor, usize) {
+    fn look(&self, index: usize) -> (Colour, &'static [f64]) {
         let curves = |series: &[Series]| series.iter().filter(|s| s.mark != Mark::Guide).count();
         let (place, count) = (curves(&self.series[..index]), curves(&self.series));
         match self.series[index].mark {
-            Mark::Guide => (colour::AXIS, 0),
-            _ if self.ordered => (colour::ramp(place as f64 / (count.max(2) - 1) as f64), 0),
+            Mark::Guide => (colour::AXIS, PATTERNS[0]),
+            _ if self.ordered => (colour::ramp(place as f64 / (count.max(2) - 1) as f64), PATTERNS[0]),
             _ => {
                 let each = self.together.max(1);
                 let colour = colour::of_series(place / each, count.div_ceil(each));
-                (colour, if self.dashed { place } else { 0 })
+                (colour, PATTERNS[if self.dashed { place % PATTERNS.len() } else { 0 }])
             }
         }
     }
@@ -212,13 +222,7 @@ impl LinePlot {
         self.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty()).map(entry).collect()
     }
 
-    fn draw_series(
-        &self,
-        canvas: &mut Canvas<'_>,
-        area: &Area,
-        index: usize,
-        series: &Series,
-    ) -> Result<(), OutputError> {
+    fn draw_series(&self, canvas: &mut Canvas, area: &Area, index: usize, series: &Series) {
         let count = self.series.len();
         let (colour, dashes) = self.look(index);
         let width = if series.mark == Mark::Guide { GUIDE_WIDTH } else { LINE_WIDTH };
@@ -233,16 +237,12 @@ impl LinePlot {
                 for part in parts {
                     match part[..] {
                         [only] => lonely.push(Some(only)),
-                        _ => {
-                            for dash in clip::dashes(&part, dashes) {
-                                canvas.line(dash, width, colour)?;
-                            }
-                        }
+                        _ => canvas.line(part, Pen { width, colour, dashes }),
                     }
                 }
             }
             for dot in thin::dots(&lonely, DOT_BUDGET / count) {
-                canvas.dot(dot, 0.8 * DOT_RADIUS, colour)?;
+                canvas.dot(dot, 0.8 * DOT_RADIUS, colour);
             }
         }
         if matches!(series.mark, Mark::Dots | Mark::LineAndDots) {
@@ -250,10 +250,9 @@ impl LinePlot {
             let inside = |p: &Option<thin::Pixel>| p.is_some_and(|p| (top..=bottom).contains(&p.1));
             let shown: Vec<_> = pixels.into_iter().filter(inside).collect();
             for dot in thin::dots(&shown, DOT_BUDGET / count) {
-                canvas.dot(dot, DOT_RADIUS, colour)?;
+                canvas.dot(dot, DOT_RADIUS, colour);
             }
         }
-        Ok(())
     }
 }
 

@@ -77,10 +77,10 @@ impl Panels {
         let top = if title.is_empty() { 0.0 } else { 0.5 * MARGIN + title.len() as f64 * (ROW + 1.0) };
         let height = top + heights.iter().sum::<f64>() + GAP * (rows - 1) as f64;
 
-        draw(width, height, |canvas| {
+        Ok(draw(width, height, |canvas| {
             for (i, line) in title.iter().enumerate() {
                 let at = (MARGIN, MARGIN + 8.0 + i as f64 * (ROW + 1.0));
-                canvas.text(line, at, TITLE_SIZE, Align::Left, true)?;
+                canvas.text(line, at, TITLE_SIZE, Align::Left, true);
             }
             let mut y = top;
             for (i, height) in heights.iter().enumerate() {
@@ -88,14 +88,13 @@ impl Panels {
                 for (j, sheet) in of_row(i).enumerate() {
                     canvas.origin = (x + lefts[j] - sheet.left(), y + height - sheet.size().1);
                     let plot = &self.panels[i * columns + j];
-                    sheet.put(canvas, |canvas, area| plot.paint(canvas, area))?;
+                    sheet.put(canvas, |canvas, area| plot.paint(canvas, area));
                     x += widths[j] + GAP;
                 }
                 y += height + GAP;
             }
             canvas.origin = (0.0, 0.0);
-            Ok(())
-        })
+        }))
     }
 
     /// The frames of all panels.

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::axis::Axis;
-use super::canvas::{Align, Canvas};
+use super::canvas::{Align, Canvas, Pen};
+use super::colour::{self, Colour};
 use super::frame::{AREA, Area, Bar, Entry, Frame};
 use super::line::Mark;
-use super::{colour, thin};
+use super::thin;
 use crate::{OutputError, write_atomic};
 
 /// Points of all snapshots together, as in a line plot.
@@ -166,13 +167,13 @@ impl ShapePlot {
             area: AREA,
             heads_page: true,
         };
-        frame.draw(|canvas, area| {
+        Ok(frame.draw(|canvas, area| {
             for snapshot in &shown {
                 let colour = colour::ramp(age(snapshot, &shown));
-                draw_snapshot(canvas, area, snapshot, BUDGET / shown.len(), colour)?;
+                draw_snapshot(canvas, area, snapshot, BUDGET / shown.len(), colour);
             }
-            draw_directions(canvas, area, &self.directions)
-        })
+            draw_directions(canvas, area, &self.directions);
+        }))
     }
 
     fn shown(&self) -> Vec<&Snapshot> {
@@ -185,38 +186,26 @@ impl ShapePlot {
     }
 }
 
-fn draw_snapshot(
-    canvas: &mut Canvas<'_>,
-    area: &Area,
-    snapshot: &Snapshot,
-    budget: usize,
-    colour: plotters::style::RGBColor,
-) -> Result<(), OutputError> {
+fn draw_snapshot(canvas: &mut Canvas, area: &Area, snapshot: &Snapshot, budget: usize, colour: Colour) {
     let pixels: Vec<_> = snapshot.points.iter().map(|p| area.pixel(*p)).collect();
     for run in thin::runs(&pixels, budget) {
         match run[..] {
-            [only] => canvas.dot(only, 2.5, colour)?,
-            _ => canvas.line(run, LINE_WIDTH, colour)?,
+            [only] => canvas.dot(only, 2.5, colour),
+            _ => canvas.line(run, Pen::solid(LINE_WIDTH, colour)),
         }
     }
-    Ok(())
 }
 
 /// A cross of axes in the lower left corner.
-pub(super) fn draw_directions(
-    canvas: &mut Canvas<'_>,
-    area: &Area,
-    directions: &[(f64, f64)],
-) -> Result<(), OutputError> {
+pub(super) fn draw_directions(canvas: &mut Canvas, area: &Area, directions: &[(f64, f64)]) {
     const LENGTH: f64 = 30.0;
     let (x0, y0) = area.corner(50.0);
     for ((x, y), name) in directions.iter().zip(["x", "y", "z"]) {
         let end = (x0 + LENGTH * x, y0 - LENGTH * y);
-        canvas.line([(x0, y0), end], 1.0, colour::TEXT)?;
+        canvas.line([(x0, y0), end], Pen::solid(1.0, colour::TEXT));
         let beyond = |from: f64, to: f64| from + 1.35 * (to - from);
-        canvas.text(name, (beyond(x0, end.0), beyond(y0, end.1)), 12.0, Align::Centre, false)?;
+        canvas.text(name, (beyond(x0, end.0), beyond(y0, end.1)), 12.0, Align::Centre, false);
     }
-    Ok(())
 }
 
 fn span(shown: &[&Snapshot]) -> (f64, f64) {
@@ -239,7 +228,7 @@ fn legend(shown: &[&Snapshot], names: &[String], t_label: &str) -> Vec<Entry> {
             label: name.clone(),
             colour: colour::ramp(age(snapshot, shown)),
             mark: Mark::Line,
-            dashes: 0,
+            dashes: &[],
         };
         return shown.iter().zip(names).map(entry).collect();
     }
@@ -260,7 +249,7 @@ fn legend(shown: &[&Snapshot], names: &[String], t_label: &str) -> Vec<Entry> {
             },
             colour: colour::ramp(age(snapshot, shown)),
             mark: Mark::Line,
-            dashes: 0,
+            dashes: &[],
         }
     };
     shown.iter().map(entry).collect()

@@ -22,6 +22,16 @@ pub enum Format {
     Json,
 }
 
+impl Format {
+    /// How the names of such files end, without the dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::Toml => "toml",
+            Format::Json => "json",
+        }
+    }
+}
+
 /// A scene file that has been read and whose parameters are replaced by their values.
 ///
 /// Parts are taken by name; in the end [`finish`](Self::finish) refuses what nobody took.
@@ -85,6 +95,13 @@ impl Document {
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.table().get(name).filter(|value| value.kind != Kind::Null)
+    }
+
+    /// Paths of files that the scene names, under the key `file`.
+    pub fn files(&self) -> Vec<&str> {
+        let mut found = Vec::new();
+        files(&self.root, &mut found);
+        found
     }
 
     /// Makes the paths of files that the scene names, under the key `file`, start from this folder.
@@ -238,6 +255,21 @@ impl Document {
     #[must_use]
     pub fn to_toml(&self) -> String {
         write::document(self.table())
+    }
+}
+
+fn files<'a>(value: &'a Value, found: &mut Vec<&'a str>) {
+    match &value.kind {
+        Kind::Table(table) => {
+            for (key, value) in &table.0 {
+                match &value.kind {
+                    Kind::String(path) if key.name == "file" => found.push(path),
+                    _ => files(value, found),
+                }
+            }
+        }
+        Kind::Array(list) => list.iter().for_each(|value| files(value, found)),
+        _ => {}
     }
 }
 

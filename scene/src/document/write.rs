@@ -10,6 +10,28 @@ pub(super) fn document(root: &Table) -> String {
     out
 }
 
+impl Value {
+    /// The value as `--set` takes it: as TOML, but a string without quotes.
+    ///
+    /// ```
+    /// use ropewalk_scene::{Document, Format};
+    /// let text = "[parameters]\nspeed = '15 kn'\nend = [1, 2.5]\n[run]\nduration = '$speed'\noutput = '$end'";
+    /// let document = Document::parse(text, "scene.toml", Format::Toml, &[])?;
+    /// let values: Vec<String> = document.parameters().iter().map(|p| p.value.to_text()).collect();
+    /// assert_eq!(values, ["15 kn", "[1, 2.5]"]);
+    /// # Ok::<(), ropewalk_scene::Fault>(())
+    /// ```
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let mut out = String::new();
+        match &self.kind {
+            Kind::String(s) => out += s,
+            _ => inline(&mut out, self, 0),
+        }
+        out
+    }
+}
+
 /// Whether a key needs no quotes.
 pub(super) fn is_bare(name: &str) -> bool {
     !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')

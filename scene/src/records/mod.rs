@@ -1,5 +1,5 @@
 //! The records that come with Ropewalk: motion of a point and turning of a body, tension and the like along a cable, its length,
-//! reaction of a constraint and how well it follows its motion, force of a contact or spring, what has let go, momentum
+//! reaction of a constraint and how well it follows its motion, force of a contact or spring, what has let go, inputs, momentum
 //! and balance of energy.
 //!
 //! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
@@ -8,6 +8,7 @@ mod along;
 mod driving;
 mod energy;
 mod force;
+mod input;
 mod length;
 mod momentum;
 mod motion;
@@ -21,6 +22,7 @@ pub use along::AlongSpec;
 pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
 pub use force::ForceRecordSpec;
+pub use input::InputRecordSpec;
 pub use length::LengthSpec;
 pub use momentum::MomentumSpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};

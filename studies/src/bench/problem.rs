@@ -174,7 +174,7 @@ impl FullIteration {
     /// # Errors
     /// Not enough memory for the structure of its equations.
     pub fn at(model: Model, state: State) -> Result<Self, Error> {
-        let c = Options::default().scheme.coefficients().map_err(StepError::Scheme)?;
+        let c = Options::default().scheme.coefficients().map_err(StepError::Options)?;
         let weights = Weights { q: c.beta * STEP * STEP, v: c.gamma * STEP, a: c.mass() };
         let work = Workspace::new(&model).map_err(unsolved)?;
         Ok(FullIteration { model, work, state, weights, x: Vec::new() })

@@ -20,14 +20,16 @@ impl Surfacing {
 
     /// What to say of parts that have risen since the last sample.
     pub(crate) fn look(&mut self, model: &Model, at: &At<'_>) -> Vec<String> {
+        // what lies at z = 0 to within rounding neither begins below nor rises
+        let slight = 1e-3 * model.length();
         if self.below.is_empty() {
-            self.below = model.parts().iter().map(|part| top(part.as_ref(), at) < 0.0).collect();
+            self.below = model.parts().iter().map(|part| top(part.as_ref(), at) < -slight).collect();
             return Vec::new();
         }
         let mut said = Vec::new();
         for (part, below) in model.parts().iter().zip(&mut self.below) {
             let z = if *below { top(part.as_ref(), at) } else { 0.0 };
-            if z > 1e-3 * part.length() {
+            if z > slight {
                 *below = false;
                 said.push(format!(
                     "`{}` rises above z = 0, where it is {z:.3} m high at t = {:.4} s, but this water has no surface: it is \

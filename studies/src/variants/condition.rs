@@ -51,9 +51,9 @@ impl Form {
 /// # Errors
 /// Scales that the model doesn't have; not enough memory.
 pub fn condition(model: &Model, state: &State, options: &Options, h: f64, form: Form) -> Result<f64, Error> {
-    let c = options.scheme.coefficients().map_err(StepError::Scheme)?;
+    let c = options.scheme.coefficients().map_err(StepError::Options)?;
     let weights = Weights { q: c.beta * h * h, v: c.gamma * h, a: c.mass() };
-    let units = form.scales().map_or(Ok(Units::SI), |s| Units::of(s, model)).map_err(StepError::Scheme)?;
+    let units = form.scales().map_or(Ok(Units::SI), |s| Units::of(s, model)).map_err(StepError::Options)?;
     let (s, nv) = (model.structure(), model.velocities());
     let mut work = Workspace::new(model).map_err(|source| StepError::Linear {
         t: 0.0,

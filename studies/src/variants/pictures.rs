@@ -5,22 +5,6 @@ use super::stiffness::CANTILEVER;
 use super::{Form, Problem, Variants};
 use ropewalk_report::{LinePlot, Mark, Series};
 
-/// Numbers of the figures in the thesis whose cases these are, for each problem: time over elements, position,
-/// acceleration.
-fn figures(problem: Problem) -> [&'static str; 3] {
-    match problem {
-        Problem::Cantilever => ["Figure L.2", "Figure L.3", ""],
-        Problem::Revolute => ["", "Figure L.7", "Figure L.8"],
-        Problem::Spherical => ["Figure L.10", "Figure L.11", "Figure L.12"],
-        Problem::Straight => ["Figure 4.5", "Figure 4.7", "Figure 4.8"],
-        Problem::Turn => ["Figure 4.6", "Figure 4.9", "Figure 4.10"],
-    }
-}
-
-fn titled(figure: &str, title: String) -> String {
-    if figure.is_empty() { title } else { format!("{figure}: {title}") }
-}
-
 impl Variants {
     /// Pictures that need no histories, each with the name of its file.
     pub fn pictures(&self) -> Vec<(String, LinePlot)> {
@@ -84,10 +68,7 @@ impl Variants {
     }
 
     fn times(&self, problem: Problem) -> LinePlot {
-        let title = titled(
-            figures(problem)[0],
-            format!("time, dimensional and non-dimensional: {}", problem.title()),
-        );
+        let title = format!("Time, dimensional and non-dimensional: {}", problem.title());
         self.over_elements(problem, title, "CPU time [s]", &|r| r.cpu_s, &COMPARED)
     }
 
@@ -108,7 +89,7 @@ impl Variants {
     }
 
     fn deflections(&self) -> LinePlot {
-        let title = "Figure L.4: mean deflection of the cantilever by number of elements".to_string();
+        let title = "Mean deflection of the cantilever by number of elements".to_string();
         self.over_elements(
             Problem::Cantilever,
             title,
@@ -128,11 +109,10 @@ const COMPARED: [(Form, bool); 6] = [
     (Form::Axial, true),
 ];
 
-/// Newton's iterations over the steps of a run, of each form: figure L.6 for the pendulum on a revolute joint.
+/// Newton's iterations over the steps of a run, of each form.
 pub fn iterations(problem: Problem, all: &[(Form, Vec<(f64, f64)>)]) -> LinePlot {
-    let figure = if problem == Problem::Revolute { "Figure L.6" } else { "" };
     LinePlot {
-        title: titled(figure, format!("Newton's iterations with an absolute test: {}", problem.title())),
+        title: format!("Newton's iterations with an absolute test: {}", problem.title()),
         x_label: "t [s]".into(),
         y_label: "iterations".into(),
         series: all.iter().map(|(form, points)| Series::new(form.label(), points.clone())).collect(),
@@ -142,30 +122,21 @@ pub fn iterations(problem: Problem, all: &[(Form, Vec<(f64, f64)>)]) -> LinePlot
 
 /// Histories of the end: its height, its acceleration, and what the joint bears, where it is recorded.
 pub fn histories(h: &Histories) -> Vec<(String, LinePlot)> {
-    let [_, position, acceleration] = figures(h.problem);
     let cable = h.problem.cable();
     let mut all = vec![
+        ("position", "Height of the end", "z [m]", format!("{cable}.end.z")),
         (
-            format!("{}-position", h.problem.name()),
-            position,
-            "height of the end",
-            "z [m]",
-            format!("{cable}.end.z"),
-        ),
-        (
-            format!("{}-acceleration", h.problem.name()),
-            acceleration,
-            "vertical acceleration of the end",
+            "acceleration",
+            "Vertical acceleration of the end",
             "acceleration [m/s²]",
             format!("{cable}.end.az"),
         ),
     ];
     if h.problem == Problem::Spherical {
-        let name = "spherical-reaction".to_string();
-        all.push((name, "Figure L.12", "reaction of the joint", "force [N]", "joint.magnitude".to_string()));
+        all.push(("reaction", "Reaction of the joint", "force [N]", "joint.magnitude".to_string()));
     }
-    let plot = |figure: &str, what: &str, label: &str, column: &str| LinePlot {
-        title: titled(figure, format!("{what}, {DRAWN} elements: {}", h.problem.title())),
+    let plot = |what: &str, label: &str, column: &str| LinePlot {
+        title: format!("{what}, {DRAWN} elements: {}", h.problem.title()),
         x_label: "t [s]".into(),
         y_label: label.into(),
         series: h
@@ -175,7 +146,6 @@ pub fn histories(h: &Histories) -> Vec<(String, LinePlot)> {
             .collect(),
         ..LinePlot::default()
     };
-    all.into_iter()
-        .map(|(name, figure, what, label, column)| (name, plot(figure, what, label, &column)))
-        .collect()
+    let named = |name: &str| format!("{}-{name}", h.problem.name());
+    all.into_iter().map(|(name, what, label, column)| (named(name), plot(what, label, &column))).collect()
 }

@@ -160,9 +160,12 @@ fn cantilever(models: CableModel, n: usize, ea: f64, load: Load) -> Option<(f64,
     let marker = "rod.end".into();
     match load {
         Load::Force => scene.force(PointForceSpec::new("rod.end", [0.0, 3.0, 0.0], grows())),
-        Load::Moment => {
-            scene.force(PointMomentSpec { marker, local: false, moment: [0.0, 0.0, 1.0], time: grows() })
-        }
+        Load::Moment => scene.force(PointMomentSpec {
+            marker,
+            local: false,
+            moment: [0.0, 0.0, 1.0].map(Into::into),
+            time: grows(),
+        }),
     };
     let model = scene.build().ok()?;
     // what fails is told by NaN; whether the plane shape is stable out of its plane is another question

@@ -11,6 +11,7 @@ use super::scheme::Coefficients;
 use super::start::{anew, settle};
 use super::step::{Integrator, StepError, StepReport, linear, too_strict};
 use super::workspace::{Which, Workspace};
+use crate::error::BuildError;
 use crate::model::Model;
 use crate::model::node::NodeKind;
 use crate::model::state::State;
@@ -43,23 +44,23 @@ impl Alpha {
     /// Checks the options against the model. `duration` is the length of the run, over which errors add up unless
     /// the options say otherwise.
     pub fn new(options: &Options, model: &Model, duration: f64) -> Result<Self, StepError> {
-        options.check().map_err(StepError::Scheme)?;
-        let scheme = options.scheme.coefficients().map_err(StepError::Scheme)?;
+        options.check()?;
+        let scheme = options.scheme.coefficients()?;
         let mut warning = None;
         if model.multipliers() > 0
-            && let Some(why) = options.scheme.unstable_with_constraints().map_err(StepError::Scheme)?
+            && let Some(why) = options.scheme.unstable_with_constraints()?
         {
             if !options.allow_unstable || scheme.beta == 0.0 {
-                return Err(StepError::Scheme(format!(
+                let message = format!(
                     "this scheme is unstable with constraints: {why}. Take generalized-alpha with rho_inf below 1, \
                      HHT with a negative alpha{}",
                     if scheme.beta == 0.0 { "" } else { ", or set `allow_unstable = true`" }
-                )));
+                );
+                return Err(BuildError::at("scheme", message).into());
             }
             warning = Some(format!("unstable scheme allowed: {why}"));
         }
-        let units = options.scales.map_or(Ok(Units::SI), |scales| Units::of(scales, model));
-        let units = units.map_err(StepError::Scheme)?;
+        let units = options.scales.map_or(Ok(Units::SI), |scales| Units::of(scales, model))?;
         let horizon = options.horizon_in(duration);
         let limits = options.limits(duration);
         Ok(Alpha { options: options.clone(), limits, scheme, horizon, units, warning })

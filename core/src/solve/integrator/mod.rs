@@ -36,7 +36,8 @@ impl Options {
     /// # Errors
     /// The options are wrong, or the scheme doesn't suit the model.
     pub fn integrator(&self, model: &Model, duration: f64) -> Result<Box<dyn Integrator>, StepError> {
-        self.check().and_then(|()| self.check_work(model, duration)).map_err(StepError::Scheme)?;
+        self.check()?;
+        self.check_work(model, duration)?;
         Ok(match self.scheme {
             Scheme::RadauIia5 => Box::new(Radau::new(self, duration)?),
             _ => Box::new(Alpha::new(self, model, duration)?),

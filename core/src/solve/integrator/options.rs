@@ -1,7 +1,8 @@
-//! What a user may choose about time integration.
+//! Options of time integration.
 
 use super::scales::{Scales, Stopping};
 use super::scheme::Scheme;
+use crate::error::{BuildError, not_negative, positive};
 use crate::model::Model;
 
 /// How the step size is chosen.
@@ -9,24 +10,24 @@ use crate::model::Model;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub enum Stepping {
-    /// Always the same step.
+    /// Constant step size.
     Fixed {
         /// Step size [s].
         #[cfg_attr(feature = "serde", serde(deserialize_with = "ropewalk_quantity::time"))]
         h: f64,
     },
-    /// As large as the tolerance allows.
+    /// Step size from an estimate of the error.
     Controlled {
-        /// Error of positions at the end of the horizon, relative to the reference length (the longest cable).
+        /// Error of positions that the run may accumulate, relative to the length of each part.
         tolerance: f64,
     },
 }
 
-/// What fixed steps leave of the equations of motion, relative to the forces at work: no error of time hides it.
+/// Residual that fixed steps leave in the equations of motion, relative to the forces at work: far below the error of time.
 const FIXED_FORCE: f64 = 1e-5;
 /// A year [s].
 const YEAR: f64 = 3.2e7;
-/// What a step takes at the very least for each unknown, on any machine [s].
+/// Least time of a step for each unknown, on any machine [s].
 const LEAST_WORK: f64 = 1e-7;
 
 /// Bounds of the step size [s].
@@ -42,7 +43,7 @@ pub struct Limits {
     pub guess: f64,
 }
 
-/// By how much of itself a fixed step grows to end where it has to, rather than leave a rest behind.
+/// Share by which a fixed step grows to end on time rather than leave a tiny last step.
 const STRETCH: f64 = 1e-3;
 
 /// The fixed step `h` where at most `h_max` is left.
@@ -50,28 +51,28 @@ pub(super) fn fixed_step(h: f64, h_max: f64) -> f64 {
     if h_max <= (1.0 + STRETCH) * h { h_max } else { h }
 }
 
-/// When the iteration matrix is computed anew.
+/// When Newton's method computes a new iteration matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum NewtonPolicy {
-    /// Kept as long as the iteration converges quickly.
+    /// When the iteration converges slowly.
     #[default]
     Modified,
     /// At every iteration.
     Full,
 }
 
-/// In which form constraints are met.
+/// Form of the constraint equations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum ConstraintForm {
-    /// Positions meet them exactly, velocities to the order of the scheme ("index 3").
+    /// Satisfied by positions exactly, by velocities to the order of the scheme ("index 3").
     #[default]
     Positions,
-    /// Positions and velocities both meet them exactly: the stabilised form of Gear, Gupta & Leimkuhler (1985). For long
-    /// runs; it costs a second solution per iteration.
+    /// Satisfied by positions and velocities exactly: the stabilised form of Gear, Gupta & Leimkuhler (1985), for long
+    /// runs. Costs a second linear solution per iteration.
     Ggl,
 }
 
@@ -87,19 +88,19 @@ pub enum ConstraintForm {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Options {
-    /// The scheme.
+    /// Time integration scheme.
     pub scheme: Scheme,
-    /// How the step size is chosen.
+    /// Constant steps or error control.
     pub stepping: Stepping,
-    /// When the iteration matrix is computed anew.
+    /// When Newton's method computes a new iteration matrix.
     pub newton: NewtonPolicy,
-    /// In which form constraints are met; Radau IIA meets both positions and velocities in any case.
+    /// Form of the constraint equations. Radau IIA always satisfies positions and velocities.
     pub constraints: ConstraintForm,
-    /// Error of tensions and reactions, relative to the largest in their part.
+    /// Error of tensions and reactions, relative to the largest in the same part.
     pub force_tolerance: f64,
-    /// Accept a scheme that is unstable on constrained systems, with a warning.
+    /// Accept a scheme that is unstable for constrained systems, with a warning.
     pub allow_unstable: bool,
-    /// Largest step [s]; if not given, a twentieth of the run.
+    /// Largest step [s]. Default: a twentieth of the run.
     #[cfg_attr(
         feature = "serde",
         serde(
@@ -108,7 +109,7 @@ pub struct Options {
         )
     )]
     pub h_max: Option<f64>,
-    /// Smallest step before the run gives up [s]; if not given, 1e-12 of the run.
+    /// Smallest step [s]; a run that needs a smaller one ends with an error. Default: 1e-12 of the run.
     #[cfg_attr(
         feature = "serde",
         serde(
@@ -117,7 +118,7 @@ pub struct Options {
         )
     )]
     pub h_min: Option<f64>,
-    /// First step of error control [s]; if not given, it follows from the motion at the start.
+    /// First step of error control [s]. Default: from the motion at the start.
     #[cfg_attr(
         feature = "serde",
         serde(
@@ -126,22 +127,22 @@ pub struct Options {
         )
     )]
     pub h_start: Option<f64>,
-    /// Time over which errors add up [s]; 0 takes the length of the run, but for time in which steps err by next to nothing.
+    /// Time over which step errors accumulate [s]. 0 means the whole run, without the time in which errors are negligible.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "ropewalk_quantity::time"))]
     pub horizon: f64,
-    /// Move an inconsistent start onto the constraints however far away it is.
+    /// Project an inconsistent start onto the constraints, however far away it is.
     pub project: bool,
-    /// Filter the accelerations of the start by the stiffness, as fine meshes need, and let the scheme's own begin ahead
-    /// of them, as its order needs; only a textbook comparison of the bare scheme wants them raw.
+    /// Filter the initial accelerations by the stiffness, which fine meshes need, and start the scheme's own acceleration
+    /// variable ahead of them, which its order needs. `false` is for textbook comparisons of the bare scheme.
     pub filter_start: bool,
-    /// Most Newton iterations of a step before it is repeated smaller; Radau IIA takes at most 10.
+    /// Most Newton iterations of a step before it is repeated with a smaller size. Radau IIA takes at most 10.
     pub max_iterations: u32,
-    /// Newton tolerance as a fraction of the default; smaller is tighter.
+    /// Newton tolerance as a multiple of the default: smaller is stricter.
     pub newton_tolerance: f64,
-    /// When Newton's method stops.
+    /// Stopping test of Newton's method.
     pub stopping: Stopping,
-    /// Makes the equations dimensionless before they are solved. With the `relative` stopping test that changes nothing
-    /// but rounding.
+    /// Scales that make the equations dimensionless before they are solved. With the `relative` stopping test they change
+    /// nothing but rounding.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub scales: Option<Scales>,
 }
@@ -179,17 +180,18 @@ impl Options {
     }
 
     /// Refuses steps so short that the run would surely take longer than a year.
-    pub(super) fn check_work(&self, model: &Model, duration: f64) -> Result<(), String> {
+    pub(super) fn check_work(&self, model: &Model, duration: f64) -> Result<(), BuildError> {
         let (name, h) = match self.stepping {
             Stepping::Fixed { h } => ("h", h),
             Stepping::Controlled { .. } => ("h_max", self.limits(duration).most),
         };
         let (steps, least) = (duration / h, YEAR / (LEAST_WORK * model.velocities().max(1) as f64));
         if steps > least {
-            return Err(format!(
+            let message = format!(
                 "`{name}` = {h:e} s makes {steps:.0e} steps of a run of {duration} s: more than a year of computing. \
                  Take a larger one"
-            ));
+            );
+            return Err(BuildError::at(name, message));
         }
         Ok(())
     }
@@ -208,44 +210,46 @@ impl Options {
         if self.horizon > 0.0 { self.horizon } else { duration.max(f64::MIN_POSITIVE) }
     }
 
-    /// What is wrong with the numbers, if anything.
-    pub fn check(&self) -> Result<(), String> {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that is wrong, with the field that holds it.
+    pub fn check(&self) -> Result<(), BuildError> {
         let estimate = match self.scheme {
             Scheme::RadauIia5 => true,
             _ => self.scheme.coefficients()?.error_constant().abs() >= 1e-6,
         };
-        let positive = |name: &str, x: f64| {
-            if x > 0.0 && x.is_finite() { Ok(()) } else { Err(format!("`{name}` must be positive, not {x}")) }
-        };
         for (name, h) in [("h_max", self.h_max), ("h_min", self.h_min), ("h_start", self.h_start)] {
-            h.map_or(Ok(()), |h| positive(name, h))?;
+            h.map_or(Ok(()), |h| positive(name, h).map(drop))?;
         }
         positive("newton_tolerance", self.newton_tolerance)?;
         if let (Some(least), Some(most)) = (self.h_min, self.h_max)
             && least > most
         {
-            return Err(format!("`h_min` = {least} s must not be above `h_max` = {most} s"));
+            let message = format!("`h_min` = {least} s must not be above `h_max` = {most} s");
+            return Err(BuildError::at("h_min", message));
         }
         positive("force_tolerance", self.force_tolerance)?;
-        if !(self.horizon >= 0.0 && self.horizon.is_finite()) {
-            return Err(format!("`horizon` must not be negative, but is {}", self.horizon));
-        }
+        not_negative("horizon", self.horizon)?;
         if self.max_iterations < 2 {
-            return Err("`max_iterations` must be at least 2".into());
+            return Err(BuildError::at("max_iterations", "`max_iterations` must be at least 2"));
         }
         self.stopping.check()?;
         if self.scheme == Scheme::RadauIia5 && (self.stopping != Stopping::Relative || self.scales.is_some())
         {
-            return Err(
-                "Radau IIA has neither `scales` nor an `absolute` stopping test: take another scheme".into(),
-            );
+            let message =
+                "Radau IIA has neither `scales` nor an `absolute` stopping test: take another scheme";
+            return Err(BuildError::at("scheme", message));
         }
         match self.stepping {
-            Stepping::Fixed { h } => positive("h", h),
+            Stepping::Fixed { h } => positive("h", h).map(drop),
             Stepping::Controlled { tolerance } => {
                 positive("tolerance", tolerance)?;
                 if !estimate {
-                    return Err("this scheme has no error estimate: choose a fixed step".into());
+                    return Err(BuildError::at(
+                        "scheme",
+                        "this scheme has no error estimate: choose a fixed step",
+                    ));
                 }
                 Ok(())
             }

@@ -3,10 +3,11 @@
 //! Newton's method doesn't notice a scaling of its unknowns and equations; only rounding and absolute stopping tests do.
 //! So the model stays in SI units, and what its equations are divided by enters where they are solved and judged.
 
+use crate::error::{BuildError, positive};
 use crate::model::Model;
 use crate::model::node::NodeKind;
 
-/// What makes the equations of motion dimensionless.
+/// Scales that make the equations of motion dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
@@ -30,17 +31,17 @@ pub enum Scales {
     },
 }
 
-/// When Newton's method stops.
+/// Stopping test of Newton's method.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub enum Stopping {
-    /// Where positions are right to a fraction of what a step may be wrong by. No unit and no scale changes it.
+    /// Positions have converged to a fraction of the error that a step may have. Independent of units and scales.
     #[default]
     Relative,
-    /// Where Euclidean norms fall below numbers that know nothing of the model, in SI units or, with
-    /// [`Options::scales`](super::Options::scales), in those. Kept for comparisons with codes that stop like that: what
-    /// rounding leaves may be larger than such a number, and then every step takes `max_iterations`.
+    /// Euclidean norms are below fixed numbers, in SI units or in those of [`Options::scales`](super::Options::scales).
+    /// For comparisons with codes that stop like this. If rounding leaves more than such a number, every step takes
+    /// `max_iterations`.
     Absolute {
         /// Largest norm of the residual of all equations, constraints included.
         #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
@@ -52,15 +53,15 @@ pub enum Stopping {
 }
 
 impl Stopping {
-    pub(super) fn check(&self) -> Result<(), String> {
+    pub(super) fn check(&self) -> Result<(), BuildError> {
         let Stopping::Absolute { residual, increment } = self else { return Ok(()) };
         if residual.is_none() && increment.is_none() {
-            return Err("`absolute` needs a `residual`, an `increment`, or both".into());
+            return Err(BuildError::at("absolute", "`absolute` needs a `residual`, an `increment`, or both"));
         }
-        match [*residual, *increment].into_iter().flatten().find(|x| !(*x > 0.0 && x.is_finite())) {
-            Some(x) => Err(format!("an absolute stopping test must be positive, not {x}")),
-            None => Ok(()),
+        for (name, x) in [("residual", residual), ("increment", increment)] {
+            x.map_or(Ok(()), |x| positive(name, x).map(drop))?;
         }
+        Ok(())
     }
 }
 
@@ -83,15 +84,17 @@ impl Units {
     ///
     /// # Errors
     /// Numbers that aren't positive; a preset where no cable bends.
-    pub fn of(scales: Scales, model: &Model) -> Result<Self, String> {
+    pub fn of(scales: Scales, model: &Model) -> Result<Self, BuildError> {
+        let fault = |message: String| BuildError::at("scales", message);
         let cable = |time: fn(&crate::Slender) -> f64, what: &str| {
             let slender = model.parts().iter().find_map(|p| p.slender());
-            let slender = slender.ok_or("these `scales` are those of a cable, but the scene has none")?;
+            let slender = slender
+                .ok_or_else(|| fault("these `scales` are those of a cable, but the scene has none".into()))?;
             let (length, time) = (slender.element, time(&slender));
             if !(time > 0.0 && time.is_finite()) {
-                return Err(format!(
+                return Err(fault(format!(
                     "these `scales` need a cable with {what}; give length, time and force instead"
-                ));
+                )));
             }
             Ok(Units { length, time, force: slender.mass * (length / time).powi(2) })
         };
@@ -100,9 +103,7 @@ impl Units {
             Scales::Axial => cable(crate::Slender::axial_time, "axial stiffness"),
             Scales::Given { length, time, force } => {
                 for (name, x) in [("length", length), ("time", time), ("force", force)] {
-                    if !(x > 0.0 && x.is_finite()) {
-                        return Err(format!("`{name}` of the scales must be positive, not {x}"));
-                    }
+                    positive(name, x)?;
                 }
                 Ok(Units { length, time, force })
             }

@@ -1,5 +1,7 @@
 //! The schemes: the Newmark, HHT-α and generalized-α family as one parametrised scheme, and Radau IIA.
 
+use crate::error::{BuildError, not_negative};
+
 /// A scheme, by its customary name.
 ///
 /// All but Radau IIA are of one family:
@@ -93,12 +95,13 @@ impl Coefficients {
 
 impl Scheme {
     /// Its numbers in the family of Newmark, or what is wrong with its parameter.
-    pub fn coefficients(&self) -> Result<Coefficients, String> {
+    pub fn coefficients(&self) -> Result<Coefficients, BuildError> {
         let newmark = |beta, gamma| Coefficients { alpha_m: 0.0, alpha_f: 0.0, beta, gamma };
         Ok(match *self {
             Scheme::GeneralizedAlpha { rho_inf } => {
                 if !(0.0..=1.0).contains(&rho_inf) {
-                    return Err(format!("`rho_inf` must be between 0 and 1, not {rho_inf}"));
+                    let message = format!("`rho_inf` must be between 0 and 1, not {rho_inf}");
+                    return Err(BuildError::at("rho_inf", message));
                 }
                 let (alpha_m, alpha_f) = ((2.0 * rho_inf - 1.0) / (rho_inf + 1.0), rho_inf / (rho_inf + 1.0));
                 let gamma = 0.5 + alpha_f - alpha_m;
@@ -106,7 +109,8 @@ impl Scheme {
             }
             Scheme::Hht { alpha } => {
                 if !(-1.0 / 3.0 - 1e-12..=0.0).contains(&alpha) {
-                    return Err(format!("`alpha` must be between -1/3 and 0, not {alpha}"));
+                    let message = format!("`alpha` must be between -1/3 and 0, not {alpha}");
+                    return Err(BuildError::at("alpha", message));
                 }
                 Coefficients {
                     alpha_m: 0.0,
@@ -117,9 +121,7 @@ impl Scheme {
             }
             Scheme::AverageAcceleration => newmark(0.25, 0.5),
             Scheme::DampedAverageAcceleration { a } => {
-                if !(a >= 0.0 && a.is_finite()) {
-                    return Err(format!("`a` must not be negative, but is {a}"));
-                }
+                not_negative("a", a)?;
                 newmark((1.0 + a).powi(2) / 4.0, 0.5 + a)
             }
             Scheme::LinearAcceleration => newmark(1.0 / 6.0, 0.5),
@@ -128,13 +130,15 @@ impl Scheme {
             Scheme::PurelyExplicit => newmark(0.0, 0.0),
             Scheme::Newmark { beta, gamma } => {
                 if !((0.0..=1.0).contains(&beta) && (0.0..=1.0).contains(&gamma)) {
-                    return Err(format!(
-                        "`beta` and `gamma` must be between 0 and 1, not {beta} and {gamma}"
-                    ));
+                    let message =
+                        format!("`beta` and `gamma` must be between 0 and 1, not {beta} and {gamma}");
+                    return Err(BuildError::at("beta", message));
                 }
                 newmark(beta, gamma)
             }
-            Scheme::RadauIia5 => return Err("Radau IIA is not of the family of Newmark".into()),
+            Scheme::RadauIia5 => {
+                return Err(BuildError::at("scheme", "Radau IIA is not of the family of Newmark"));
+            }
         })
     }
 
@@ -145,9 +149,9 @@ impl Scheme {
     /// use ropewalk_core::integrator::Scheme;
     /// // what is too fast to be followed dies out
     /// assert!(Scheme::default().radius_at_infinity()? < 1.0);
-    /// # Ok::<(), String>(())
+    /// # Ok::<(), ropewalk_core::BuildError>(())
     /// ```
-    pub fn radius_at_infinity(&self) -> Result<f64, String> {
+    pub fn radius_at_infinity(&self) -> Result<f64, BuildError> {
         if *self == Scheme::RadauIia5 {
             return Ok(0.0);
         }
@@ -164,7 +168,7 @@ impl Scheme {
     }
 
     /// Why constraints at position level make this member unstable, or `None` if they don't.
-    pub fn unstable_with_constraints(&self) -> Result<Option<String>, String> {
+    pub fn unstable_with_constraints(&self) -> Result<Option<String>, BuildError> {
         let radius = self.radius_at_infinity()?;
         Ok(if radius == f64::INFINITY {
             Some(

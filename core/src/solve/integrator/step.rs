@@ -2,6 +2,7 @@
 
 use super::options::{Limits, Options};
 use super::workspace::Workspace;
+use crate::error::BuildError;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::solve::linear::SolveError;
@@ -96,12 +97,25 @@ pub enum StepError {
         /// Why not.
         why: String,
     },
+    /// A controller wants what is no number.
+    #[error(
+        "at t = {t:.6} s the controller `{controller}` sets `{input}` to what is no number: look for a division by zero or \
+         the root of a negative number in it"
+    )]
+    Control {
+        /// Time [s].
+        t: f64,
+        /// The controller.
+        controller: String,
+        /// Its input.
+        input: String,
+    },
     /// The start is not on the constraints and is too far away to be corrected without asking.
     #[error("{0}")]
     Inconsistent(String),
-    /// The scheme is refused, or its parameters are wrong.
-    #[error("{0}")]
-    Scheme(String),
+    /// An option is wrong, or the scheme doesn't suit the model.
+    #[error(transparent)]
+    Options(#[from] BuildError),
     /// The state is that of another model.
     #[error("the state belongs to another model: {0}")]
     Foreign(String),

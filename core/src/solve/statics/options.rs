@@ -1,8 +1,8 @@
-//! How equilibria are searched for.
+//! Options of the search for equilibria.
 
 use crate::error::{BuildError, positive};
 
-/// How equilibria are found.
+/// Options of the search for equilibria.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -11,9 +11,9 @@ pub struct StaticsOptions {
     pub steps: usize,
     /// Most Newton iterations per equilibrium.
     pub max_iterations: u32,
-    /// Refuse equilibria that are unstable or folded, and look for the true one.
+    /// Reject unstable or folded equilibria and search for a stable one.
     pub stable: bool,
-    /// Tolerance of positions, relative to the reference length.
+    /// Tolerance of positions, relative to the length of the longest cable (without cables: the size of the scene).
     pub tolerance: f64,
 }
 
@@ -24,7 +24,10 @@ impl Default for StaticsOptions {
 }
 
 impl StaticsOptions {
-    /// What is wrong with the numbers, if anything.
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that is wrong, with its field.
     pub fn check(&self) -> Result<(), BuildError> {
         let refused = |name: &str, message: String| Err(BuildError::at(format!("statics.{name}"), message));
         if self.steps == 0 || self.steps > 1_000_000 {

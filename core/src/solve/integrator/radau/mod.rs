@@ -71,7 +71,7 @@ impl Radau {
     /// # Errors
     /// The options are wrong.
     pub fn new(options: &Options, duration: f64) -> Result<Self, StepError> {
-        options.check().map_err(StepError::Scheme)?;
+        options.check()?;
         let (limits, horizon) = (options.limits(duration), options.horizon_in(duration));
         Ok(Radau { options: options.clone(), limits, horizon })
     }
