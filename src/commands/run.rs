@@ -89,7 +89,15 @@ impl RunArgs {
         let (out, checkpoint) = (self.out.clone(), self.checkpoint);
         let (progress, watch) = (progress(self.quiet), Watch::signals(warn));
         let leaves = Leaves { report: !self.no_report, plots: !self.no_plots, vtk: self.vtk };
-        let options = RunOptions { out, profile: self.profile, progress, checkpoint, watch, leaves, follow: self.watch.clone() };
+        let options = RunOptions {
+            out,
+            profile: self.profile,
+            progress,
+            checkpoint,
+            watch,
+            leaves,
+            follow: self.watch.clone(),
+        };
         run_scene(file, &options, &mut warn)
     }
 

@@ -59,7 +59,10 @@ fn answer(mut stream: TcpStream, folders: &[PathBuf], address: &str) -> io::Resu
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(Duration::from_secs(30)))?;
     let (mut request, mut chunk, since) = (Vec::new(), [0; 1024], Instant::now());
-    while !request.windows(4).any(|w| w == b"\r\n\r\n") && request.len() < 16_384 && since.elapsed() < PATIENCE {
+    while !request.windows(4).any(|w| w == b"\r\n\r\n")
+        && request.len() < 16_384
+        && since.elapsed() < PATIENCE
+    {
         match stream.read(&mut chunk)? {
             0 => break,
             n => request.extend(&chunk[..n]),
@@ -67,7 +70,9 @@ fn answer(mut stream: TcpStream, folders: &[PathBuf], address: &str) -> io::Resu
     }
     let request = String::from_utf8_lossy(&request);
     // a page of elsewhere that has its name resolved to this machine doesn't know the address
-    let host = request.lines().find_map(|line| line.split_once(": ").filter(|(k, _)| k.eq_ignore_ascii_case("host")));
+    let host = request
+        .lines()
+        .find_map(|line| line.split_once(": ").filter(|(k, _)| k.eq_ignore_ascii_case("host")));
     let known = |host: &str| host == address || host == address.replace("127.0.0.1", "localhost");
     let (status, refresh, body) = if !host.is_some_and(|(_, host)| known(host.trim())) {
         ("403 Forbidden", false, "this server is for the address that it told".to_string())

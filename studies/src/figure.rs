@@ -21,7 +21,12 @@ pub enum Style {
 ///
 /// # Errors
 /// There is no such table or column, or nothing to draw.
-pub fn figure(source: &Path, records: &[String], against: Option<&str>, style: Style) -> Result<Panels, Error> {
+pub fn figure(
+    source: &Path,
+    records: &[String],
+    against: Option<&str>,
+    style: Style,
+) -> Result<Panels, Error> {
     let sheet = Sheet::open(source)?;
     let x = match against {
         Some(name) => *sheet.find(name)?.first().unwrap_or(&0),
@@ -234,7 +239,8 @@ mod tests {
         let plot = &path.panels[0];
         assert!(plot.equal_axes && plot.dashed && path.title.is_empty());
         assert_eq!((plot.x_label.as_str(), plot.series[0].points[1]), ("end.x [m]", (2.0, 3.0)));
-        let fault = figure(folder.path(), &strings(&["end.y"]), None, Style::Screen).err().unwrap().to_string();
+        let fault =
+            figure(folder.path(), &strings(&["end.y"]), None, Style::Screen).err().unwrap().to_string();
         assert!(fault.contains("no column `end.y`") && fault.contains("end.tension"), "{fault}");
         let out = folder.path().join("fig.pdf");
         let fault = write_figure(&path, &out).err().unwrap().to_string();

@@ -495,7 +495,14 @@ fn stopped_by(signal: &str, name: &str, code: i32) {
     );
     let t: f64 = rows.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
     assert!(t > 0.0 && t < 10000.0);
-    for file in ["scene.toml", "manifest.json", "plots/rope.end.svg", "plots/shape_side.svg", "report.html", "field.npy"] {
+    for file in [
+        "scene.toml",
+        "manifest.json",
+        "plots/rope.end.svg",
+        "plots/shape_side.svg",
+        "report.html",
+        "field.npy",
+    ] {
         assert!(folder.path().join("out").join(file).exists(), "{file}");
     }
 }

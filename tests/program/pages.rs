@@ -47,7 +47,10 @@ fn a_run_leaves_a_page_and_a_field_record_that_agree_with_its_tables() {
     assert_eq!((field.times[0], *field.times.last().unwrap()), (0.0, 60.0));
     let hose = &field.lines[0];
     let names: Vec<&str> = hose.quantities.iter().map(|q| q.name.as_str()).collect();
-    assert_eq!((hose.name.as_str(), names), ("hose", vec!["tension", "curvature", "bending moment", "speed"]));
+    assert_eq!(
+        (hose.name.as_str(), names),
+        ("hose", vec!["tension", "curvature", "bending moment", "speed"])
+    );
     let ship = field.bodies.iter().find(|b| b.name == "ship").unwrap();
     let column = |name: &str, k: usize| history.column(name).unwrap().values[k];
     for (k, t) in field.times.iter().enumerate() {
@@ -121,7 +124,10 @@ fn a_run_that_is_stopped_has_a_page() {
     let watch = Watch::default().until(Some(Instant::now()));
     let options = RunOptions { out: Some(out.clone()), watch, ..RunOptions::default() };
     let outcome = ropewalk::run(&file, &options, &mut |_| {}).unwrap();
-    assert_eq!((outcome.summary.status, outcome.page.unwrap().status.as_str()), (Status::Interrupted, "interrupted"));
+    assert_eq!(
+        (outcome.summary.status, outcome.page.unwrap().status.as_str()),
+        (Status::Interrupted, "interrupted")
+    );
     assert!(out.join("report.html").exists() && out.join("field.npy").exists());
 }
 
@@ -145,7 +151,11 @@ fn a_view_of_nothing_ends_with_one_message() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("empty")).unwrap();
     fs::write(folder.path().join("file"), "").unwrap();
-    for (name, words) in [("empty", "holds neither history.csv nor field.npy"), ("none", "doesn't exist"), ("file", "is a file")] {
+    for (name, words) in [
+        ("empty", "holds neither history.csv nor field.npy"),
+        ("none", "doesn't exist"),
+        ("file", "is a file"),
+    ] {
         run(folder.path(), &["view", name]).refused(&[name, words, "ropewalk run"]);
         run(folder.path(), &["view", "--serve", "0", name]).refused(&[name, words]);
     }
@@ -157,7 +167,10 @@ fn a_view_of_nothing_ends_with_one_message() {
 fn two_runs_stand_side_by_side() {
     let folder = tempfile::tempdir().unwrap();
     pendulum(folder.path(), &["--out", "a"]);
-    done(run(folder.path(), &["run", "pendulum", "--set", "duration=0.15 s", "--set", "elements=6", "--out", "b"]));
+    done(run(
+        folder.path(),
+        &["run", "pendulum", "--set", "duration=0.15 s", "--set", "elements=6", "--out", "b"],
+    ));
     let told = done(run(folder.path(), &["view", "a", "b"]));
     assert_eq!(told.trim(), Path::new("a").join("compare-b.html").display().to_string());
     let [a, b] = ["a", "b"].map(|name| folder.path().join(name));
@@ -199,7 +212,9 @@ fn files_for_paraview_hold_what_the_csv_holds() {
         .lines()
         .filter(|line| line.contains("<DataSet"))
         .map(|line| {
-            let of = |key: &str| line.split(&format!("{key}=\"")).nth(1).unwrap().split('"').next().unwrap().to_string();
+            let of = |key: &str| {
+                line.split(&format!("{key}=\"")).nth(1).unwrap().split('"').next().unwrap().to_string()
+            };
             (of("timestep").parse().unwrap(), of("file"))
         })
         .collect();
@@ -246,7 +261,8 @@ fn the_page_of_a_run_is_served_to_this_machine_alone() {
     pendulum(folder.path(), &["--no-report", "--out", "out"]);
     // as of a run that still goes on
     fs::remove_file(folder.path().join("out/summary.json")).unwrap();
-    let mut child = program(folder.path(), &["view", "out", "--serve"]).stdout(Stdio::piped()).spawn().unwrap();
+    let mut child =
+        program(folder.path(), &["view", "out", "--serve"]).stdout(Stdio::piped()).spawn().unwrap();
     let mut line = String::new();
     BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
     let address = line.split("//").nth(1).unwrap().split('/').next().unwrap().to_string();
@@ -266,4 +282,46 @@ fn the_page_of_a_run_is_served_to_this_machine_alone() {
     assert!(ask("/scene.toml", &address).starts_with("HTTP/1.1 404"));
     child.kill().unwrap();
     child.wait().unwrap();
+}
+
+#[test]
+fn modes_and_sweeps_have_pages_too() {
+    let folder = tempfile::tempdir().unwrap();
+    done(run(folder.path(), &["modes", "pendulum", "--set", "elements=8", "--count", "3", "--out", "modes"]));
+    let page = fs::read_to_string(folder.path().join("modes/report.html")).unwrap();
+    assert!(page.contains("vibration modes</title>"));
+    let sweep = [&["sweep"], &SHORT[..3], &["--vary", "elements=4,6", "--out", "sweep", "--quiet"]].concat();
+    done(run(folder.path(), &sweep));
+    let index = fs::read_to_string(folder.path().join("sweep/index.html")).unwrap();
+    for words in ["runs/elements%3D4/", ">finished</td>", "plots/", "cable.end.x [m]"] {
+        assert!(index.contains(words), "no {words} in\n{index}");
+    }
+    assert!(!folder.path().join("sweep/runs/elements=4/report.html").exists());
+    let told = done(run(folder.path(), &["view", "sweep"]));
+    assert_eq!(told.trim(), Path::new("sweep").join("index.html").display().to_string());
+    run(folder.path(), &["view", "sweep", "modes"]).refused(&["sweep", "many runs"]);
+    // and a page for one of its runs, asked for
+    done(run(folder.path(), &["view", "sweep/runs/elements=4"]));
+    assert!(folder.path().join("sweep/runs/elements=4/report.html").exists());
+}
+
+#[test]
+fn figures_of_ones_own_are_drawn_from_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    pendulum(folder.path(), &["--no-report", "--out", "out", "--watch", "cable.end.z"]);
+    done(run(
+        folder.path(),
+        &["plot", "out", "cable.end.z", "--against", "cable.end.x", "--style", "paper", "-o", "path.svg"],
+    ));
+    let svg = fs::read_to_string(folder.path().join("path.svg")).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("cable.end.x [m]"));
+    let told = done(run(folder.path(), &["plot", "out", "cable.end"]));
+    assert_eq!(told.trim(), "cable.end.svg");
+    run(folder.path(), &["plot", "out", "cable.ende"]).refused(&["no column `cable.ende`", "cable.end.x"]);
+    run(folder.path(), &["plot", "out", "cable.end", "-o", "a.pdf"]).refused(&[".svg", "rsvg-convert"]);
+    run(folder.path(), &["plot", "nowhere", "x"]).refused(&["nowhere", "doesn't exist"]);
+    let wrong =
+        run(folder.path(), &[&["run"], &SHORT[..], &["--watch", "cable.end.w", "--out", "b"]].concat());
+    wrong.refused(&["cable.end.w", "did you mean"]);
+    assert!(!folder.path().join("b").exists());
 }

@@ -17,7 +17,8 @@ pub(super) fn page(file: &SceneFile, modal: &Modal) -> Page {
     let mut history = modal.table();
     history.columns.retain(|c| !c.name.starts_with("share.") && c.name != "rigid");
     let modes = modal.modes.iter().enumerate();
-    let events = modes.map(|(k, mode)| Event { t: (k + 1) as f64, text: pictures::title(k + 1, mode) }).collect();
+    let events =
+        modes.map(|(k, mode)| Event { t: (k + 1) as f64, text: pictures::title(k + 1, mode) }).collect();
     let names = ["frequency", "damping ratio", "growth"];
     let panels = names.map(|name| Panel { title: name.into(), columns: vec![name.into()] });
     let mut summary = vec![Entry::new("modes", modal.modes.len().to_string())];
@@ -74,9 +75,11 @@ fn displace(line: &mut LineRecord, rest: &LineRecord) {
     let Some(rest) = rest.snapshots.first() else { return };
     let mut largest = 0.0_f64;
     for snapshot in &mut line.snapshots {
-        let away = snapshot.position.iter().zip(&rest.position).map(|(x, home)| {
-            (0..3).map(|i| (x[i] - home[i]).powi(2)).sum::<f64>().sqrt()
-        });
+        let away = snapshot
+            .position
+            .iter()
+            .zip(&rest.position)
+            .map(|(x, home)| (0..3).map(|i| (x[i] - home[i]).powi(2)).sum::<f64>().sqrt());
         let away: Vec<f64> = away.collect();
         largest = away.iter().fold(largest, |m, x| m.max(*x));
         snapshot.values = vec![away];

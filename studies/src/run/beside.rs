@@ -24,7 +24,10 @@ pub fn compare(folders: [&Path; 2]) -> Result<Page, Error> {
     if let [Some(x), Some(y)] = &axes
         && x != y
     {
-        let message = format!("the history of {} goes over {x}, that of {} over {y}: they can't be laid over each other", labels[0], labels[1]);
+        let message = format!(
+            "the history of {} goes over {x}, that of {} over {y}: they can't be laid over each other",
+            labels[0], labels[1]
+        );
         return Err(ropewalk_scene::Fault::new(message).into());
     }
     let panels = panels(&a, &b, &labels);
@@ -263,8 +266,12 @@ mod tests {
 
     #[test]
     fn entries_that_differ_stand_side_by_side() {
-        let [a, b] = [vec![Entry::new("x", "1"), Entry::new("y", "2")], vec![Entry::new("x", "1"), Entry::new("z", "3")]];
-        let told: Vec<String> = entries_beside(&a, &b).into_iter().map(|e| format!("{} {}", e.name, e.value)).collect();
+        let [a, b] = [
+            vec![Entry::new("x", "1"), Entry::new("y", "2")],
+            vec![Entry::new("x", "1"), Entry::new("z", "3")],
+        ];
+        let told: Vec<String> =
+            entries_beside(&a, &b).into_iter().map(|e| format!("{} {}", e.name, e.value)).collect();
         assert_eq!(told, ["x 1", "y 2  |  –", "z –  |  3"]);
     }
 }

@@ -3,13 +3,26 @@
 use super::scenery::Scenery;
 use super::shapes::Shape;
 use ropewalk_core::{At, Model, State};
-use ropewalk_report::FieldRecord;
+use ropewalk_report::{FieldRecord, RunFolder};
 use ropewalk_scene::Run;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// Most rows of `field.npy`: about 60 MB.
 const MOST_POINTS: usize = 500_000;
+/// The field record is written at most this often while the run goes on …
+const PERIOD: Duration = Duration::from_secs(5);
+/// … and takes at most this part of the time.
+const SHARE: u32 = 50;
 /// Fewer snapshots of a field record would show no motion.
 const LEAST: usize = 61;
+
+/// Where a field record is written, when that was done last, and how long it took.
+struct Live {
+    files: [PathBuf; 2],
+    last: Instant,
+    cost: Duration,
+}
 
 /// Shapes, and when others are to follow.
 pub(crate) struct Kept {
@@ -22,6 +35,8 @@ pub(crate) struct Kept {
     /// What there is to be seen, if a field record is wanted.
     pub scenery: Option<Scenery>,
     duration: f64,
+    /// Where the field record is written while the run goes on.
+    live: Option<Live>,
     /// What was asked for, and what there is of it, if that is less.
     pub thinned: Option<String>,
 }
@@ -31,7 +46,7 @@ impl Kept {
     pub fn new(run: &Run) -> Self {
         let due = evenly(run.snapshots, run.duration);
         let (shapes, field_due) = (Vec::new(), Vec::new());
-        Kept { shapes, due, field_due, scenery: None, duration: run.duration, thinned: None }
+        Kept { shapes, due, field_due, scenery: None, duration: run.duration, live: None, thinned: None }
     }
 
     /// Keeps shapes for a field record too, and measures along lines.
@@ -49,6 +64,25 @@ impl Kept {
         }
         self.field_due = evenly(count, run.duration);
         self.scenery = Some(scenery);
+    }
+
+    /// Writes the field record into this folder now and then, so that a run that still goes on can be seen.
+    pub fn live_in(&mut self, folder: &RunFolder) {
+        let files = [folder.field_file(), folder.bodies_file()];
+        self.live =
+            self.scenery.is_some().then(|| Live { files, last: Instant::now(), cost: Duration::ZERO });
+    }
+
+    /// Writes it if that is long ago. What goes wrong is said when it is written for good.
+    fn write_now_and_then(&mut self) {
+        if !self.live.as_ref().is_some_and(|live| live.last.elapsed() >= PERIOD.max(SHARE * live.cost)) {
+            return;
+        }
+        let (start, field) = (Instant::now(), self.field());
+        if let (Some(field), Some(live)) = (field, &mut self.live) {
+            let _ = field.write_npy(&live.files[0], &live.files[1]);
+            (live.last, live.cost) = (Instant::now(), start.elapsed());
+        }
     }
 
     /// Looks at another model of the same scene: what it consists of is counted anew.
@@ -88,6 +122,7 @@ impl Kept {
 
     fn push(&mut self, shape: Shape) {
         self.shapes.push(shape);
+        self.write_now_and_then();
     }
 
     /// The field record, if one is kept.

@@ -33,7 +33,12 @@ impl Leaves {
 }
 
 /// Writes the field record; says what can't be written.
-pub(super) fn write_field(folder: &RunFolder, leaves: Leaves, field: &FieldRecord, warn: &mut dyn FnMut(&str)) {
+pub(super) fn write_field(
+    folder: &RunFolder,
+    leaves: Leaves,
+    field: &FieldRecord,
+    warn: &mut dyn FnMut(&str),
+) {
     let npy = || field.write_npy(&folder.field_file(), &folder.bodies_file());
     let for_vtk = || if leaves.vtk { vtk::write(field, folder.path(), "vtk") } else { Ok(()) };
     for written in [npy(), for_vtk()] {

@@ -117,6 +117,7 @@ pub(crate) fn run_showing(
     if let Ok(started) = &started {
         if options.leaves.field() {
             recorder.kept.want_field(&scene.run, started.scenery(file));
+            recorder.kept.live_in(&folder);
         }
         started.warnings(scene).iter().for_each(|w| warnings.say(w));
         match (started, options.checkpoint) {
@@ -154,6 +155,7 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let mut recorder = Recorder::new(file.scene(), file.records(&simulation.model)?);
     if options.leaves.field() {
         recorder.kept.want_field(&file.scene().run, started.scenery(&file));
+        recorder.kept.live_in(&folder);
     }
     recorder.take_up(&saved).map_err(Fault::new)?;
     let before = Elapsed { cpu_s: saved.cpu_s, wall_s: saved.wall_s };

@@ -94,12 +94,16 @@ fn events(summary: &Summary) -> Vec<Event> {
         let event = |t: f64, which: &str| Event { t, text: format!("{name}{which}") };
         match times.as_slice() {
             [first, .., last] if times.len() > MOST_ALIKE => {
-                vec![event(*first, &format!(", the first of {}", times.len())), event(*last, ", the last of them")]
+                vec![
+                    event(*first, &format!(", the first of {}", times.len())),
+                    event(*last, ", the last of them"),
+                ]
             }
             all => all.iter().map(|t| event(*t, "")).collect(),
         }
     });
-    let loads = summary.critical.iter().map(|c| Event { t: c.load_factor, text: format!("{}: {}", c.kind, c.what) });
+    let loads =
+        summary.critical.iter().map(|c| Event { t: c.load_factor, text: format!("{}: {}", c.kind, c.what) });
     let mut all: Vec<Event> = happened.chain(loads).collect();
     all.sort_by(|a, b| a.t.total_cmp(&b.t));
     all

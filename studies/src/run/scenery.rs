@@ -224,7 +224,12 @@ impl Scenery {
                 body.shapes.clone_from(&own.shapes);
             }
         }
-        FieldRecord { shapes: self.still.shapes.clone(), water: self.still.water, bed: self.still.bed, ..read }
+        FieldRecord {
+            shapes: self.still.shapes.clone(),
+            water: self.still.water,
+            bed: self.still.bed,
+            ..read
+        }
     }
 }
 
@@ -268,7 +273,8 @@ fn snapshot(quantities: &[output::Quantity], line: Option<&Line>) -> LineSnapsho
 /// What has no orientation keeps the one before, or else has the first that comes.
 fn settle(poses: &mut [Pose]) {
     let known = |pose: &Pose| pose.orientation.iter().all(|x| x.is_finite());
-    let mut last = poses.iter().find(|pose| known(pose)).map_or(Pose::default().orientation, |p| p.orientation);
+    let mut last =
+        poses.iter().find(|pose| known(pose)).map_or(Pose::default().orientation, |p| p.orientation);
     for pose in poses {
         match known(pose) {
             true => last = pose.orientation,

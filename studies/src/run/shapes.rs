@@ -107,8 +107,15 @@ impl Shape {
 }
 
 /// Headings of the columns behind part and place.
-const MORE: [&str; 7] =
-    ["vx [m/s]", "vy [m/s]", "vz [m/s]", "speed [m/s]", "tension [N]", "curvature [1/m]", "bending moment [N m]"];
+const MORE: [&str; 7] = [
+    "vx [m/s]",
+    "vy [m/s]",
+    "vz [m/s]",
+    "speed [m/s]",
+    "tension [N]",
+    "curvature [1/m]",
+    "bending moment [N m]",
+];
 
 /// Writes those that are drawn: a row for each point, with the part that it is on, and what is measured there. `first` is
 /// the first column of the history.
@@ -162,12 +169,9 @@ pub fn read(folder: &RunFolder) -> Result<Vec<Shape>, OutputError> {
                 line.s.push(s);
                 line.x.push([x, y, z]);
             }
-            None => lines.push(Line {
-                part: part.clone(),
-                s: vec![s],
-                x: vec![[x, y, z]],
-                ..Line::default()
-            }),
+            None => {
+                lines.push(Line { part: part.clone(), s: vec![s], x: vec![[x, y, z]], ..Line::default() })
+            }
         }
     }
     Ok(shapes)

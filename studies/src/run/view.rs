@@ -9,13 +9,19 @@ use ropewalk_report::{FieldRecord, Page, RunFolder, Table};
 use ropewalk_scene::{Fault, SceneFile};
 use std::path::{Path, PathBuf};
 
-/// The page of the run in a folder: the one that is there, or if there is none, one made of what else is there.
+/// The page of the run in a folder: the one that is there, or if there is none, one made of what else is there. Of a sweep
+/// or an atlas its `index.html`.
 ///
 /// # Errors
 /// The folder doesn't exist or holds no run; a file in it that can't be read.
 pub fn report_of(folder: &Path) -> Result<PathBuf, Error> {
     let run = RunFolder::earlier(folder.to_path_buf());
     let path = run.report_file();
+    // a study of many runs has a page of its own
+    let index = folder.join("index.html");
+    if !path.is_file() && !run.history_file().is_file() && index.is_file() {
+        return Ok(index);
+    }
     if !path.is_file() {
         page_of(folder)?.write(&path)?;
     }
@@ -84,7 +90,8 @@ impl Held {
             }));
         }
         // a scene of another version may not be understood any more: then there are numbers without shapes
-        let file = there(run.scene_file()).and_then(|path| SceneFile::open(&path.display().to_string(), &[], &[]).ok());
+        let file = there(run.scene_file())
+            .and_then(|path| SceneFile::open(&path.display().to_string(), &[], &[]).ok());
         let name = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
         let name = name.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let file = file.map(|file| file.named(&name));
@@ -99,15 +106,23 @@ impl Held {
                 if let (Ok(records), Some(history)) = (file.records(model), &history) {
                     let recorder = Recorder::new(file.scene(), records);
                     // those of another version may have other columns
-                    let same = recorder.table.columns.iter().map(|c| &c.name).eq(history.columns.iter().map(|c| &c.name));
+                    let same = recorder
+                        .table
+                        .columns
+                        .iter()
+                        .map(|c| &c.name)
+                        .eq(history.columns.iter().map(|c| &c.name));
                     drawn = if same { recorder.figures } else { Vec::new() };
                 }
             }
             None => missing.push("scene.toml, or one that this version can build"),
         }
         let summary = there(run.summary_file()).map(|_| run.read_summary()).transpose()?;
-        let checks =
-            [("history.csv", history.is_some()), ("field.npy", has_field), ("summary.json", summary.is_some())];
+        let checks = [
+            ("history.csv", history.is_some()),
+            ("field.npy", has_field),
+            ("summary.json", summary.is_some()),
+        ];
         missing.extend(checks.iter().filter(|(_, is)| !is).map(|(name, _)| *name));
         let (history, summary) = (history.unwrap_or_default(), summary.unwrap_or_default());
         Ok(Held { name, file, summary, history, figures: drawn, field, missing })

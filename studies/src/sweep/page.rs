@@ -37,7 +37,8 @@ pub(super) fn write(
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
     );
-    let value = if what == Report::Last { "the last value".into() } else { format!("{} of {over}", what.ending()) };
+    let value =
+        if what == Report::Last { "the last value".into() } else { format!("{} of {over}", what.ending()) };
     out += &format!(
         "<p>{} runs; of each record {value}. <a href=\"table.csv\">table.csv</a> has all of it; \
          <code>ropewalk view runs/NAME</code> shows a run in motion.</p>\n",
