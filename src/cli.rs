@@ -56,7 +56,8 @@ pub(crate) enum Command {
         ropewalk run runs/scene/scene.toml      again, from what a run left behind\n  \
         ropewalk run scene.toml --certify       how far it can be trusted\n  \
         ropewalk run scene.toml --accuracy 1e-3 --of hose.end\n\n\
-        The folder holds scene.toml (as it was run), manifest.json, history.csv, summary.json and plots/*.svg.\n\
+        The folder holds scene.toml (as it was run), manifest.json, history.csv, summary.json, report.html (all of it as a\n\
+        page with the motion in 3D), field.npy and plots/*.svg.\n\
         Ctrl-C, SIGTERM and SIGHUP end the run in good order; what was computed is kept.")]
     Run(commands::run::RunArgs),
     /// Go on with a run that was interrupted or killed, from its last checkpoint
@@ -77,12 +78,26 @@ pub(crate) enum Command {
         #[arg(long, short)]
         quiet: bool,
     },
+    /// Show a run in the browser, or two side by side
+    #[command(after_help = "Examples:\n  \
+        ropewalk view runs/scene                its report.html, made anew if it isn't there\n  \
+        ropewalk view runs/scene runs/scene-2   both motions, histories over each other, summaries side by side\n  \
+        ropewalk view runs/scene --serve        while the run goes on: the page follows it\n\n\
+        The page is one file that needs no network. It is opened if this is a terminal; its place is printed.")]
+    View(commands::view::ViewArgs),
+    /// Draw columns of a history, or of the table of a sweep, as a figure of one's own
+    #[command(after_help = "Examples:\n  \
+        ropewalk plot runs/hose-turn hose.end\n  \
+        ropewalk plot runs/hose-turn hose.end.z --against hose.end.x --style paper -o path.svg\n  \
+        ropewalk plot runs/hose-turn-sweep height.z --against speed\n\n\
+        There is a plot for each unit. In a sweep runs that differ in other parameters are curves of their own.")]
+    Plot(commands::plot::PlotArgs),
     /// Run a scene with all combinations of parameters, on all cores; what is there already is not computed again
     #[command(after_help = "Examples:\n  \
         ropewalk sweep hose-turn --vary speed=5kn,15kn,25kn --vary start=40,80,120\n  \
         ropewalk sweep hose-turn hose-straight --vary speed=5:25:10kn --set drag=choo-casarella\n  \
         ropewalk sweep scene.toml --vary law=constant,choo-casarella --vary 'end=[\"1 m\",0,0],[\"2 m\",0,0]'\n\n\
-        A range is FROM:TO:STEP and includes its ends. The folder holds sweep.json (scenes and parameters), table.csv\n\
+        A range is FROM:TO:STEP and includes its ends. The folder holds sweep.json (scenes and parameters), index.html, table.csv\n\
         (a row for each run), plots/*.svg (over all runs) and runs/NAME (what `ropewalk run` leaves behind).\n\
         Last values that aren't steady are named: `--report mean` takes the mean over the last tenth of each run instead.\n\
         The same command again computes only what is missing, failed or was interrupted.\n\n\
@@ -108,7 +123,7 @@ pub(crate) enum Command {
         A scene in balance as it is laid vibrates about that; else the equilibrium is searched: of a run in time the one\n\
         at its start, of a statics scene the end of its load path, relative to its frame if it names one. Unstable\n\
         equilibria are left for stable ones unless the scene says `stable = false` in [statics].\n\
-        The folder holds scene.toml, manifest.json, tables/modes.csv and plots/mode-NN.svg.")]
+        The folder holds scene.toml, manifest.json, tables/modes.csv, plots/mode-NN.svg and report.html, where they swing.")]
     Modes(commands::modes::ModesArgs),
     /// Mass, damping, stiffness and gyroscopic matrices about a state, what inputs do and what records see, as sparse files
     #[command(after_help = "Examples:\n  \
@@ -303,6 +318,8 @@ pub fn exit_from(
     let done = match cli.command {
         Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
+        Command::Plot(args) => commands::plot::plot(&args),
+        Command::View(args) => commands::view::view(&args),
         Command::Sweep(args) => commands::sweep::sweep(&args, bundled),
         Command::Atlas(args) => commands::atlas::atlas(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),

@@ -57,7 +57,7 @@ pub use ropewalk_studies::linearise::{
     About, LineariseOptions, LineariseOutcome, linearise, write_linearised,
 };
 pub use ropewalk_studies::modes::{Modal, ModesOptions, ModesOutcome, modes, write_modes};
-pub use ropewalk_studies::run::{Every, Manifest, Outcome, RunOptions, Status, Summary, resume, run};
+pub use ropewalk_studies::run::{Every, Leaves, Manifest, Outcome, RunOptions, Status, Summary, resume, run};
 pub use ropewalk_studies::simulate::{History, read, simulate, simulate_with, start};
 pub use ropewalk_studies::{Error, Session, Snapshot, bench, variants, verify};
 

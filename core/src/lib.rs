@@ -39,6 +39,7 @@ pub use model::pool::{Batch, Element, Local, Pool, Share};
 pub use model::redundancy::Redundancy;
 pub use model::relation::{Related, Relation, lift};
 pub use model::remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
+pub use model::solid::{Attitude, Solid, Surface};
 pub use model::span::{ContactSpan, SpanFlow, SpanLine};
 pub use model::state::{At, Control, Relaxation, Relaxed, State};
 pub use model::station::{FieldTerm, Gives, Law, Laws, Load, Station, StationElement, StationPool, Stations};

@@ -3,8 +3,8 @@
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::held::{Held, MOST};
 use ropewalk_core::{
-    Assembly, At, BuildError, ContactPoint, DeadEntry, DeadLoad, DeadPull, Energy, Marker, Node, NodeId,
-    NodeKind, Part, Pattern, Per, Power, Spot, Term, V3, dot,
+    Assembly, At, Attitude, BuildError, ContactPoint, DeadEntry, DeadLoad, DeadPull, Energy, Marker, Node,
+    NodeId, NodeKind, Part, Pattern, Per, Power, Solid, Spot, Surface, Term, V3, dot,
 };
 use ropewalk_scene::{Builder, Current, ElementSpec, MarkerRef, ball_below, quantity, register_spec};
 use schemars::JsonSchema;
@@ -351,6 +351,19 @@ impl Part for Body {
     }
     fn point(&self, _: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         Some((self.held.x(at), self.held.velocity(at)))
+    }
+    fn attitude(&self, at: &At<'_>) -> Option<Attitude> {
+        Some(Attitude { x: self.held.x(at), turn: [1.0, 0.0, 0.0, 0.0] })
+    }
+    /// The ball that displaces its volume, or has its drag area.
+    fn solids(&self) -> Vec<Solid> {
+        let radius = self.spec.radius(0.0);
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Vec::new();
+        }
+        let (surface, seat) =
+            (Surface::Ball { radius }, Attitude { x: [0.0; 3], turn: [1.0, 0.0, 0.0, 0.0] });
+        vec![Solid { name: self.spec.name.clone(), surface, carrier: None, seat }]
     }
     fn length(&self) -> f64 {
         0.0

@@ -1995,6 +1995,7 @@ class Parts:
         from_equilibrium: Boolean | None = None,
         audit: Boolean | None = None,
         snapshots: Integer | None = None,
+        field_snapshots: Integer | None = None,
         shape_titles: Mapping[str, Any] | None = None,
         tables: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
@@ -2013,6 +2014,8 @@ class Parts:
             Default False.
         audit: Whether energy and work are balanced at every step. Default True.
         snapshots: Number of snapshots in the plots of shapes. Default 9.
+        field_snapshots: Number of snapshots in the field record of a single run: `field.npy`, and the motion in
+            `report.html`. Rows of the history that come next are taken, so that there are at most as many. Default 361.
         shape_titles: Titles of the plots of shapes. Default: the title of the scene.
             side: From the side: x and z.
             top: From above: x and y.
@@ -2029,6 +2032,7 @@ class Parts:
             "from_equilibrium": from_equilibrium,
             "audit": audit,
             "snapshots": snapshots,
+            "field_snapshots": field_snapshots,
             "shape_titles": shape_titles,
             "tables": tables,
         })

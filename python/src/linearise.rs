@@ -57,10 +57,13 @@ pub fn linearise<'py>(
         ("Yu", &l.feedthrough),
     ];
     let matrices = all.map(|(name, m)| {
-        let (data, rows, pointers) = (bytes(py, [m.val()]), integers(py, m.row_idx()), integers(py, m.col_ptr()));
+        let (data, rows, pointers) =
+            (bytes(py, [m.val()]), integers(py, m.row_idx()), integers(py, m.col_ptr()));
         (name, m.nrows(), m.ncols(), data, rows, pointers)
     });
-    let named = |columns: &[ropewalk::core::Column]| columns.iter().map(|c| [c.name.clone(), c.unit.clone()]).collect::<Vec<_>>();
+    let named = |columns: &[ropewalk::core::Column]| {
+        columns.iter().map(|c| [c.name.clone(), c.unit.clone()]).collect::<Vec<_>>()
+    };
     let about = json!({
         "t": l.t, "unknowns": l.unknowns, "constraints": l.constraints,
         "inputs": named(&l.inputs), "outputs": named(&l.outputs),

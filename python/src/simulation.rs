@@ -135,7 +135,8 @@ impl Simulation {
     /// Goes back, or on, to a state.
     fn restore(&self, py: Python<'_>, state: &[u8]) -> PyResult<()> {
         self.detached(py, |session| {
-            let unreadable = |e: postcard::Error| Fault::new(format!("this is no state of a simulation: {e}"));
+            let unreadable =
+                |e: postcard::Error| Fault::new(format!("this is no state of a simulation: {e}"));
             let snapshot: Snapshot = postcard::from_bytes(state).map_err(unreadable)?;
             session.restore(snapshot)
         })

@@ -53,6 +53,7 @@ fn along(t: f64) -> LineSnapshot {
             s.iter().map(curvature).collect(),
             s.iter().map(speed).collect(),
         ],
+        velocity: Vec::new(),
         s,
     }
 }

@@ -98,6 +98,15 @@ pub enum OutputError {
         message: String,
     },
 
+    /// A file isn't the array that it should be.
+    #[error("{}: {message}", path.display())]
+    Npy {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+    },
+
     /// A value could not be written as JSON, or JSON could not be read.
     #[error("{}: {message}", path.display())]
     Json {

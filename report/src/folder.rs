@@ -22,7 +22,10 @@ pub const RUNS: &str = "runs";
 ///   manifest.json   what was built from it
 ///   history.csv     time histories, written while the run goes on
 ///   shapes.csv      lines of all parts at several times
+///   field.npy       lines of all parts at many times
+///   bodies.npy      where bodies are at those times
 ///   summary.json    how the run ended
+///   report.html     all of it as a page for the browser
 ///   plots/*.svg     pictures
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -111,6 +114,21 @@ impl RunFolder {
     /// `shapes.csv`: the lines of all parts at the times of the snapshots.
     pub fn shapes_file(&self) -> PathBuf {
         self.path.join("shapes.csv")
+    }
+
+    /// `field.npy`: the lines of all parts at the times of the field record.
+    pub fn field_file(&self) -> PathBuf {
+        self.path.join("field.npy")
+    }
+
+    /// `bodies.npy`: where bodies are at these times.
+    pub fn bodies_file(&self) -> PathBuf {
+        self.path.join("bodies.npy")
+    }
+
+    /// `report.html`: all of the run as a page.
+    pub fn report_file(&self) -> PathBuf {
+        self.path.join("report.html")
     }
 
     /// `summary.json`: how the run ended.
@@ -208,9 +226,14 @@ impl RunFolder {
 /// # Errors
 /// A file that can't be written; whatever was at `path` is then untouched.
 pub fn write_atomic(path: &Path, text: &str) -> Result<(), OutputError> {
+    write_atomic_bytes(path, text.as_bytes())
+}
+
+/// As [`write_atomic`], for what is no text.
+pub(crate) fn write_atomic_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let temporary = path.with_file_name(temporary_name(&name));
-    fs::write(&temporary, text).and_then(|()| fs::rename(&temporary, path)).map_err(|error| {
+    fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path)).map_err(|error| {
         // Best effort: the write error is what the user must hear of.
         let _ = fs::remove_file(&temporary);
         OutputError::io("write", path)(error)

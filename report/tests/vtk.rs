@@ -100,6 +100,7 @@ fn record() -> FieldRecord {
                 s: (0..*n).map(|k| k as f64).collect(),
                 position: (0..*n).map(|k| [0.1 * k as f64, 1.0 / 3.0, -2.0]).collect(),
                 values: vec![(0..*n).map(|k| 100.0 + k as f64).collect()],
+                ..LineSnapshot::default()
             })
             .collect(),
         ..LineRecord::new(name, "cable", 0.1)

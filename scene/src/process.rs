@@ -3,7 +3,7 @@
 use crate::motions::no_motion;
 use crate::water::Water;
 use ropewalk_core::integrator::Counts;
-use ropewalk_core::{BuildError, Column, Motion, V3};
+use ropewalk_core::{BuildError, Column, Motion, Solid, V3};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -70,6 +70,14 @@ pub trait Process: Send {
     fn sample(&self, row: &mut Vec<f64>);
     /// What it looks like: points along a line [m].
     fn line(&self) -> Vec<V3<f64>>;
+    /// Tensions at the points of that line [N], one for each; empty if it doesn't tell.
+    fn tensions(&self) -> Vec<f64> {
+        Vec::new()
+    }
+    /// What there is to be seen beside it, such as a package.
+    fn solids(&self) -> Vec<Solid> {
+        Vec::new()
+    }
     /// How much work it was.
     fn counts(&self) -> Counts;
     /// What one should know although it goes on.

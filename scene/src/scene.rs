@@ -53,6 +53,9 @@ pub struct Run {
     pub audit: bool,
     /// Number of snapshots in the plots of shapes.
     pub snapshots: usize,
+    /// Number of snapshots in the field record of a single run: `field.npy`, and the motion in `report.html`. Rows of the
+    /// history that come next are taken, so that there are at most as many.
+    pub field_snapshots: usize,
     /// Titles of the plots of shapes. Default: the title of the scene.
     pub shape_titles: ShapeTitles,
     /// Tables of a few columns of the history, each a CSV file of its own.
@@ -103,6 +106,7 @@ impl Default for Run {
             from_equilibrium: false,
             audit: true,
             snapshots: 9,
+            field_snapshots: 361,
             shape_titles: ShapeTitles::default(),
             tables: Vec::new(),
         }
@@ -138,6 +142,10 @@ impl Run {
         if self.snapshots > 10_000 {
             let message = format!("`snapshots` must be at most 10000, not {}", self.snapshots);
             return Err(BuildError::at("run.snapshots", message));
+        }
+        if self.field_snapshots > 100_000 {
+            let message = format!("`field_snapshots` must be at most 100000, not {}", self.field_snapshots);
+            return Err(BuildError::at("run.field_snapshots", message));
         }
         for table in &self.tables {
             ropewalk_core::error::not_negative("every", table.every).map_err(|e| e.of("run.tables"))?;

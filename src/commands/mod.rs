@@ -11,13 +11,16 @@ pub(crate) mod linearise;
 pub(crate) mod list;
 pub(crate) mod migrate;
 pub(crate) mod modes;
+pub(crate) mod plot;
 pub(crate) mod resume;
 pub(crate) mod run;
 mod schema;
+mod serve;
 pub(crate) mod shared;
 pub(crate) mod sweep;
 pub(crate) mod variants;
 pub(crate) mod verify;
+pub(crate) mod view;
 
 use ropewalk_report::{Interrupt, ProgressMode};
 use std::fmt::Display;

@@ -9,6 +9,6 @@ use std::path::PathBuf;
 
 pub(crate) fn resume(folder: PathBuf, checkpoint: Option<Every>, quiet: bool) -> Result<Exit, Error> {
     let (progress, watch) = (progress(quiet), Watch::signals(warn));
-    let options = RunOptions { out: Some(folder), profile: false, progress, checkpoint, watch };
+    let options = RunOptions { out: Some(folder), progress, checkpoint, watch, ..RunOptions::default() };
     Ok(tell(&resume_run(&options, &mut warn)?, quiet))
 }

@@ -7,7 +7,7 @@ use ropewalk_report::{Interrupt, SweepProgress, Watch, rough};
 use ropewalk_scene::{Fault, SceneFile, SceneText};
 pub use ropewalk_studies::Error;
 pub use ropewalk_studies::certificate::{Certificate, certify, choose, sized};
-use ropewalk_studies::run::{Every, Outcome, RunOptions, Status, run as run_scene};
+use ropewalk_studies::run::{Every, Leaves, Outcome, RunOptions, Status, run as run_scene};
 use ropewalk_studies::study::{Axes, Runs, Target};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -38,6 +38,18 @@ pub(crate) struct RunArgs {
     /// Wall time that the search of `--accuracy` may take
     #[arg(long, value_name = "TIME", default_value = "10 min", value_parser = super::cost::time)]
     budget: Duration,
+    /// Show the course of a record while it runs, such as hose.end.z
+    #[arg(long, value_name = "RECORD")]
+    watch: Option<String>,
+    /// Leave report.html and field.npy out
+    #[arg(long)]
+    no_report: bool,
+    /// Leave plots/*.svg out
+    #[arg(long)]
+    no_plots: bool,
+    /// Write vtk.pvd and vtk/*.vtp, for ParaView
+    #[arg(long)]
+    vtk: bool,
     /// Say nothing but errors and warnings
     #[arg(long, short)]
     quiet: bool,
@@ -76,7 +88,16 @@ impl RunArgs {
     fn go(&self, file: &SceneFile) -> Result<Outcome, Error> {
         let (out, checkpoint) = (self.out.clone(), self.checkpoint);
         let (progress, watch) = (progress(self.quiet), Watch::signals(warn));
-        let options = RunOptions { out, profile: self.profile, progress, checkpoint, watch };
+        let leaves = Leaves { report: !self.no_report, plots: !self.no_plots, vtk: self.vtk };
+        let options = RunOptions {
+            out,
+            profile: self.profile,
+            progress,
+            checkpoint,
+            watch,
+            leaves,
+            follow: self.watch.clone(),
+        };
         run_scene(file, &options, &mut warn)
     }
 
@@ -144,14 +165,11 @@ impl RunArgs {
 
     /// Keeps the certificate with the results and says how all ended.
     fn keep(&self, mut outcome: Outcome, certificate: Certificate) -> Result<Exit, Error> {
-        outcome.report += &certificate.text();
         if certificate.sensitive && self.quiet {
             warn("the run is sensitive: see the certificate in summary.json");
         }
-        outcome.summary.certificate = Some(certificate);
-        let exit = tell(&outcome, self.quiet);
-        outcome.folder.write_summary(&outcome.summary)?;
-        Ok(exit)
+        outcome.certified(certificate)?;
+        Ok(tell(&outcome, self.quiet))
     }
 }
 

@@ -1,9 +1,9 @@
 //! What can go wrong between a scene and its results.
 
-use ropewalk_core::{BuildError, LineariseError};
 use ropewalk_core::integrator::StepError;
 use ropewalk_core::modes::ModesError;
 use ropewalk_core::statics::StaticsError;
+use ropewalk_core::{BuildError, LineariseError};
 use ropewalk_report::{Interrupt, OutputError};
 use ropewalk_scene::{Fault, SceneError, SceneFile};
 use std::fmt;

@@ -10,6 +10,7 @@ pub mod certificate;
 pub mod cost;
 pub mod effects;
 mod error;
+pub mod figure;
 pub mod fmu;
 pub mod linearise;
 pub mod modes;

@@ -234,6 +234,8 @@ fn a_resumed_run_tells_of_all_changes_of_the_mesh() {
         let text = |run: &str| fs::read_to_string(here.join(run).join(file)).unwrap();
         assert_eq!(text("whole"), text("killed"), "{file}");
     }
+    let field = |run: &str| fs::read(here.join(run).join("field.npy")).unwrap();
+    assert!(field("whole") == field("killed"), "the field record goes on as well");
     let changes: Vec<f64> = fs::read_to_string(here.join("killed/tables/remeshing.csv"))
         .unwrap()
         .lines()

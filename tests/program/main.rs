@@ -8,6 +8,7 @@ mod checkpoint;
 mod cli;
 mod examples;
 mod migrate;
+mod pages;
 mod plugin;
 mod stopping;
 mod verification;

@@ -3,7 +3,7 @@
 use super::{Hand, PackageSpec, Side, Traverse};
 use crate::check::unit;
 use crate::motion::smooth::{step, step_second};
-use ropewalk_core::{BuildError, V3, dot};
+use ropewalk_core::{Attitude, BuildError, Solid, Surface, V3, dot};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A point of the wound cable, with derivatives by the arc length that has been peeled.
@@ -128,6 +128,18 @@ impl Package {
     /// Length of cable that it holds, from the first lift-off point on [m].
     pub fn wound(&self) -> f64 {
         self.wound
+    }
+    /// What it looks like: the first layer that is unwound, from the side that lies bare.
+    pub fn solid(&self, name: &str) -> Solid {
+        let (spec, [z, x, y]) = (&self.spec, self.frame);
+        let (radius, half) = (spec.radius, 0.5 * spec.length);
+        let surface = match spec.side {
+            Side::Inner => Surface::Tube { radius, half },
+            Side::Outer => Surface::Cylinder { radius, half },
+        };
+        let middle = std::array::from_fn(|i| spec.origin[i] + half * z[i]);
+        let seat = Attitude::new(middle, &[x, y, z]);
+        Solid { name: name.into(), surface, carrier: None, seat }
     }
     /// Unit vector along its axis.
     pub fn axis(&self) -> V3<f64> {

@@ -5,7 +5,7 @@ use crate::package::{Lay, Package, PackageSpec};
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::{
-    At, BuildError, Constraint, Feed, Marker, MovingBoundary, Node, NodeId, RowKind, V3, dot,
+    At, BuildError, Constraint, Feed, Marker, MovingBoundary, Node, NodeId, RowKind, Solid, V3, dot,
 };
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
@@ -129,6 +129,9 @@ impl Constraint for LiftOff {
                 jac[7 * (3 + r) + 6] = sign * dot(&by_sigma[r], &slope);
             }
         }
+    }
+    fn solids(&self) -> Vec<Solid> {
+        vec![self.package.solid(&self.name)]
     }
     fn geometric(&self, _: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
         let (sigma, sign) = (self.boundary.fed(at), self.boundary.sign);

@@ -2,6 +2,7 @@
 //! like); of all others nothing is asked, and they cost nothing.
 
 use crate::model::column::Column;
+use crate::model::solid::Solid;
 use crate::model::state::At;
 
 /// Depends on time otherwise than through the state.
@@ -50,6 +51,10 @@ pub trait Shows {
     /// act there.
     fn local(&self, _quantity: &str, _part: &str, _s: f64, _at: &At<'_>) -> Option<f64> {
         None
+    }
+    /// What there is to be seen of it, such as a shape that others touch.
+    fn solids(&self) -> Vec<Solid> {
+        Vec::new()
     }
     /// What one should know of it at the end of a run, in a sentence: such as that a mesh is too coarse for it.
     fn remark(&self, _at: &At<'_>) -> Option<String> {

@@ -3,6 +3,7 @@
 use crate::model::marker::Marker;
 use crate::model::motion::Motion;
 use crate::model::node::{Node, NodeId};
+use crate::model::solid::Solid;
 use crate::model::state::At;
 
 /// What an equation measures; decides its tolerance.
@@ -58,6 +59,10 @@ pub trait Constraint: Send + Sync {
     /// That coordinate, its velocity and its acceleration at time `t`.
     fn prescribed(&self, _t: f64) -> [f64; 3] {
         [f64::NAN; 3]
+    }
+    /// What there is to be seen of it, such as a package that cable lifts off from.
+    fn solids(&self) -> Vec<Solid> {
+        Vec::new()
     }
     /// First and last time for which it is defined.
     fn range(&self) -> (f64, f64) {

@@ -25,6 +25,7 @@ pub mod reach;
 pub mod redundancy;
 pub mod relation;
 pub mod remesh;
+pub mod solid;
 pub mod span;
 pub mod state;
 pub mod station;

@@ -6,6 +6,7 @@ use crate::model::held::Held;
 use crate::model::line::{Line, Quantity, Slender};
 use crate::model::marker::Marker;
 use crate::model::node::{Node, NodeId};
+use crate::model::solid::{Attitude, Solid};
 use crate::model::span::ContactSpan;
 use crate::model::state::At;
 use crate::model::station::Stations;
@@ -100,6 +101,14 @@ pub trait Part: Send + Sync {
     }
     /// Unstretched arc lengths of these points [m], one for each; empty if it has no length to go along.
     fn arc_lengths(&self, _at: &At<'_>) -> Vec<f64> {
+        Vec::new()
+    }
+    /// Where it is and how it is turned, if it is compact: its marker without a place.
+    fn attitude(&self, _at: &At<'_>) -> Option<Attitude> {
+        None
+    }
+    /// What it looks like, if it is compact; seats are from its attitude and in its axes.
+    fn solids(&self) -> Vec<Solid> {
         Vec::new()
     }
     /// Unstretched length, or size [m].

@@ -218,6 +218,11 @@ impl CablePart {
         Some(self.section.ei * (now[0] - then[0]).hypot(now[1] - then[1]))
     }
 
+    /// Bending moment [N m], of which an element reads this much.
+    fn moment(&self, k: usize, l: f64, xi: f64, read: f64, at: &At<'_>) -> f64 {
+        self.bent(k, l, xi, at.q).unwrap_or(read) - self.section.ei * self.offset.1
+    }
+
     /// Second derivative of the curve at an end of element `k`: at its start, or at its end.
     fn bend(&self, k: usize, at_start: bool, q: &[f64]) -> Option<V3<f64>> {
         if k + 1 >= self.mesh.len() {
@@ -452,10 +457,15 @@ impl Line for CablePart {
             Quantity::Tension => self.tension(k, xi, &r.slope, at)?,
             Quantity::Strain => r.strain,
             Quantity::Curvature => r.curvature,
-            Quantity::Moment => {
-                self.bent(k, l, xi, at.q).unwrap_or(r.moment) - self.section.ei * self.offset.1
-            }
+            Quantity::Moment => self.moment(k, l, xi, r.moment, at),
         })
+    }
+
+    fn measure(&self, s: f64, at: &At<'_>) -> [f64; 3] {
+        let there = self.find(s, at.q).and_then(|(k, l, xi)| Some((k, l, xi, self.reading(k, l, xi, at)?)));
+        let Some((k, l, xi, r)) = there else { return [f64::NAN; 3] };
+        let tension = self.tension(k, xi, &r.slope, at).unwrap_or(f64::NAN);
+        [tension, r.curvature, self.moment(k, l, xi, r.moment, at)]
     }
 
     fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {

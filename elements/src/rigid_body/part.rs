@@ -1,10 +1,11 @@
 //! A rigid body as a part of a model.
 
+use super::Shape;
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{cross, matrix, times};
 use ropewalk_core::{
-    At, ContactSpan, DeadEntry, DeadLoad, DeadPull, Marker, Node, NodeId, Part, Per, SpanLine, Spot,
-    Stations, Term, Tip, V3,
+    At, Attitude, ContactSpan, DeadEntry, DeadLoad, DeadPull, Marker, Node, NodeId, Part, Per, Solid,
+    SpanLine, Spot, Stations, Term, Tip, V3,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -25,6 +26,8 @@ pub struct BodyPart {
     pub(crate) hull: Option<[V3<f64>; 2]>,
     /// Diameter of its hull [m].
     pub(crate) diameter: f64,
+    /// Its shape, if it is homogeneous.
+    pub(crate) shape: Option<Shape>,
     pub(crate) stations: Option<Arc<dyn Stations>>,
 }
 
@@ -125,6 +128,23 @@ impl Part for BodyPart {
                     .collect()
             }
         }
+    }
+    fn attitude(&self, at: &At<'_>) -> Option<Attitude> {
+        let turn = std::array::from_fn(|i| at.q[self.q + 3 + i]);
+        Some(Attitude { x: self.place(&self.origin, at), turn })
+    }
+    /// Its hull and its shape, from the origin of its frame.
+    fn solids(&self) -> Vec<Solid> {
+        let from_origin = |x: &V3<f64>| std::array::from_fn(|i| x[i] - self.origin[i]);
+        let hull = self
+            .hull
+            .map(|ends| Solid::between(&self.name, None, ends.each_ref().map(from_origin), self.diameter));
+        let shape = self.shape.as_ref().map(|shape| {
+            let (surface, axes) = shape.surface();
+            let seat = Attitude::new(from_origin(&[0.0; 3]), &axes);
+            Solid { name: self.name.clone(), surface, carrier: None, seat }
+        });
+        hull.into_iter().chain(shape).collect()
     }
     fn length(&self) -> f64 {
         let reach = |p: &V3<f64>| p.iter().map(|x| x * x).sum::<f64>().sqrt();

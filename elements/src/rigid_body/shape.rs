@@ -1,8 +1,8 @@
 //! Mass and moments of inertia: given, or of a simple shape.
 
 use ropewalk_core::error::{finite, positive};
-use ropewalk_core::rotation::M3;
-use ropewalk_core::{BuildError, V3};
+use ropewalk_core::rotation::{IDENTITY, M3};
+use ropewalk_core::{BuildError, Surface, V3};
 use ropewalk_scene::quantity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -39,6 +39,18 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// What it looks like, and its axes in those of the body.
+    pub(crate) fn surface(&self) -> (Surface, M3) {
+        let [x, y, z] = IDENTITY;
+        match *self {
+            Shape::Cylinder { length, radius, .. } => {
+                (Surface::Cylinder { radius, half: 0.5 * length }, [y, z, x])
+            }
+            Shape::Sphere { radius } => (Surface::Ball { radius }, IDENTITY),
+            Shape::Cuboid { edges } => (Surface::Cuboid { half: edges.map(|e| 0.5 * e) }, IDENTITY),
+        }
+    }
+
     /// Volume [m³] and moments of inertia per mass [m²].
     ///
     /// # Errors

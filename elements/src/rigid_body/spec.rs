@@ -242,6 +242,7 @@ impl ElementSpec for RigidBodySpec {
             points,
             hull: self.hull.map(|h| [from(self.centre, h.from), from(self.centre, h.to)]),
             diameter: self.hull.map_or(0.0, |h| h.diameter),
+            shape: self.shape.clone(),
             stations: self.hull.is_some().then(|| Arc::new(stations) as _),
         }))
     }

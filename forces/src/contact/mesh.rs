@@ -230,6 +230,12 @@ impl Mesh {
         Mesh::new(soup, false)
     }
 
+    /// Its corners [m], and the numbers of the corners of each triangle.
+    pub fn surface(&self) -> (Vec<V3<f64>>, Vec<[u32; 3]>) {
+        let corners = self.surface.vertices().iter().map(|x| from_parry(*x)).collect();
+        (corners, self.surface.indices().to_vec())
+    }
+
     /// Number of triangles.
     pub fn triangles(&self) -> usize {
         self.surface.num_triangles()

@@ -2,7 +2,7 @@
 
 use super::mesh::Mesh;
 use ropewalk_core::rotation::{around, cross};
-use ropewalk_core::{V3, dot};
+use ropewalk_core::{Surface, V3, dot};
 use std::sync::Arc;
 
 /// A shape in axes of its own, with its middle at the origin.
@@ -113,6 +113,21 @@ impl Shape {
             }
             Shape::Cuboid { half } => cuboid(x, half, reach),
             Shape::Mesh(mesh) => mesh.gap(x, reach),
+        }
+    }
+
+    /// What it looks like.
+    pub(crate) fn surface(&self) -> Surface {
+        match *self {
+            Shape::Plane => Surface::Plane,
+            Shape::Ball { radius } => Surface::Ball { radius },
+            Shape::Cylinder { radius, half } => Surface::Cylinder { radius, half },
+            Shape::Tube { radius, half } => Surface::Tube { radius, half },
+            Shape::Cuboid { half } => Surface::Cuboid { half },
+            Shape::Mesh(ref mesh) => {
+                let (corners, triangles) = mesh.surface();
+                Surface::Triangles { corners, triangles }
+            }
         }
     }
 

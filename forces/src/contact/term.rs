@@ -13,8 +13,8 @@ use ropewalk_core::error::{need, positive};
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Column, ContactPoint, ContactSpan, Energy, Foresees, Marker, Node, NodeKind,
-    Pattern, Power, Relaxed, Remembers, Shows, SpanLine, Term, V3, Weights, dot,
+    Assembly, At, Attitude, BuildError, Column, ContactPoint, ContactSpan, Energy, Foresees, Marker, Node,
+    NodeKind, Pattern, Power, Relaxed, Remembers, Shows, Solid, SpanLine, Term, V3, Weights, dot,
 };
 use std::ops::Range;
 
@@ -476,6 +476,15 @@ impl Shows for Contact {
         if self.law.friction.is_some() {
             out.push(if all > 0.0 { slipping / all } else { 0.0 });
         }
+    }
+    fn solids(&self) -> Vec<Solid> {
+        let fixed = &self.fixed;
+        let carrier = match fixed.seat {
+            Seat::Ground => None,
+            Seat::Body { q, .. } => Some(q),
+        };
+        let seat = Attitude::new(fixed.origin, &fixed.axes);
+        vec![Solid { name: self.label.clone(), surface: fixed.shape.surface(), carrier, seat }]
     }
     fn remark(&self, at: &At<'_>) -> Option<String> {
         self.coarse(at)

@@ -151,6 +151,13 @@ impl Running {
     pub fn shape(&self) -> Shape {
         self.problem.shape(&self.newmark.y, &self.newmark.now)
     }
+    /// Tension at each node [N]: between those of the two segments that meet there.
+    pub fn tensions(&self) -> Vec<f64> {
+        let ends = self.problem.tensions(&self.newmark.y, &self.newmark.now);
+        let within = self.problem.tension(&self.newmark.y, &self.newmark.now);
+        let between = within.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        std::iter::once(ends[0]).chain(between).chain([ends[1]]).collect()
+    }
     /// What was the matter so far.
     pub fn conditions(&self) -> &[Condition] {
         &self.watch.all

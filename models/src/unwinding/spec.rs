@@ -7,7 +7,7 @@ use super::steady::SteadyError;
 use ropewalk_constraints::package::{Package, PackageSpec};
 use ropewalk_core::error::positive;
 use ropewalk_core::integrator::Counts;
-use ropewalk_core::{BuildError, Column, V3, dot};
+use ropewalk_core::{BuildError, Column, Solid, V3, dot};
 use ropewalk_forces::{AddedMass, DragSpec, TimeFunction};
 use ropewalk_scene::{Channel, Process, ProcessSpec, Surroundings, Water, quantity, register_spec};
 use schemars::JsonSchema;
@@ -283,7 +283,8 @@ impl ProcessSpec for UnwindingSpec {
         };
         let running = Running::new(problem, start, self.stepping(), around.duration)
             .map_err(|e| if e.field.as_deref() == Some("feed") { e.of("motion") } else { e })?;
-        Ok(Box::new(Unwound { running, drag: self.drag.is_some(), bending: self.ei > 0.0 }))
+        let package = Package::new(&self.package)?.solid("package");
+        Ok(Box::new(Unwound { running, drag: self.drag.is_some(), bending: self.ei > 0.0, package }))
     }
 }
 
@@ -291,6 +292,8 @@ struct Unwound {
     running: Running,
     drag: bool,
     bending: bool,
+    /// What it looks like.
+    package: Solid,
 }
 
 impl Process for Unwound {
@@ -320,6 +323,12 @@ impl Process for Unwound {
     }
     fn line(&self) -> Vec<V3<f64>> {
         self.running.shape().x
+    }
+    fn tensions(&self) -> Vec<f64> {
+        self.running.tensions()
+    }
+    fn solids(&self) -> Vec<Solid> {
+        vec![self.package.clone()]
     }
     fn counts(&self) -> Counts {
         let [steps, newton_iterations, rejected] = self.running.work();

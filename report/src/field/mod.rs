@@ -4,6 +4,7 @@
 //! for ParaView ([`vtk`](crate::vtk)).
 
 mod mesh;
+mod npy;
 mod solid;
 
 pub use mesh::Mesh;
@@ -21,6 +22,7 @@ use crate::OutputError;
 ///     s: vec![0.0, 15.0, 30.0],
 ///     position: vec![[0.0, 0.0, 0.0], [-9.0, 0.0, -12.0], [-18.0, 0.0, -24.0]],
 ///     values: vec![vec![250.0, 120.0, 0.0]],
+///     ..LineSnapshot::default()
 /// });
 /// let field = FieldRecord { times: vec![0.0], lines: vec![hose], water: Some(0.0), ..FieldRecord::default() };
 /// field.check()?;
@@ -82,6 +84,8 @@ pub struct LineSnapshot {
     pub s: Vec<f64>,
     /// Places of the points [m].
     pub position: Vec<[f64; 3]>,
+    /// Velocities of the material there [m/s]; empty where they aren't known.
+    pub velocity: Vec<[f64; 3]>,
     /// For each of the line's quantities its values at the points; NaN where there is none.
     pub values: Vec<Vec<f64>>,
 }
@@ -135,11 +139,13 @@ impl FieldRecord {
             }
             for (t, snapshot) in self.times.iter().zip(&line.snapshots) {
                 let points = snapshot.position.len();
-                let named = line.quantities.iter().map(|q| q.name.as_str()).zip(&snapshot.values);
-                let columns = std::iter::once(("s", &snapshot.s)).chain(named);
-                for (name, values) in columns {
-                    if values.len() != points {
-                        let found = values.len();
+                let lengths = snapshot.values.iter().map(Vec::len);
+                let named = line.quantities.iter().map(|q| q.name.as_str()).zip(lengths);
+                let lengths = std::iter::once(("s", snapshot.s.len())).chain(named);
+                let velocities =
+                    (!snapshot.velocity.is_empty()).then_some(("velocity", snapshot.velocity.len()));
+                for (name, found) in lengths.chain(velocities) {
+                    if found != points {
                         return Err(fail(
                             &line.name,
                             format!("{found} values of {name} for {points} points at {t}"),
@@ -188,6 +194,7 @@ mod tests {
             s: vec![0.0, 1.0],
             position: vec![[0.0; 3], [1.0; 3]],
             values: vec![vec![5.0, f64::NAN]],
+            ..LineSnapshot::default()
         };
         line.snapshots = vec![snapshot.clone(), snapshot];
         let body = BodyRecord { poses: vec![Pose::default(); 2], ..BodyRecord::new("ship", "point") };

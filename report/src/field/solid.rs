@@ -1,12 +1,12 @@
 //! Shapes of bodies and of what stands on the ground.
 
 use ropewalk_core::rotation::{around, cross, from_matrix, matrix, times};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Mesh;
 
 /// Where something is and how it is turned.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     /// Its origin [m].
     pub position: [f64; 3],

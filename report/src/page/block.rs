@@ -83,6 +83,7 @@ pub(super) fn deflated(page: &Page, thinned: &[String]) -> Vec<u8> {
         "events": page.events,
         "settings": page.settings,
         "energy": page.energy,
+        "sections": page.sections,
         "axis": {"name": axis.0, "unit": axis.1},
         "history": history,
         "panels": panel::drawn(columns, &page.panels),
@@ -205,6 +206,7 @@ pub(super) mod tests {
             s: (0..n).map(|k| k as f64 * 0.5).collect(),
             position: (0..n).map(|k| [500_000.25 + k as f64, t, -0.5]).collect(),
             values: vec![(0..n).map(|k| t * k as f64).collect()],
+            ..LineSnapshot::default()
         };
         let line = |name: &str, counts: [usize; 3]| LineRecord {
             quantities: vec![Quantity::new("tension", "N")],

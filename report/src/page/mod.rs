@@ -70,6 +70,8 @@ pub struct Page {
     pub settings: Vec<Entry>,
     /// The balance of energy, term by term.
     pub energy: Vec<Entry>,
+    /// What else is to be told, such as last values: sections of their own.
+    pub sections: Vec<Section>,
     /// The histories; the first column is the time [s] or the load factor.
     pub history: Table,
     /// What is drawn together. Columns that are in none get panels of their own, by name and unit.
@@ -92,6 +94,7 @@ impl Default for Page {
             notes: Vec::new(),
             events: Vec::new(),
             settings: Vec::new(),
+            sections: Vec::new(),
             energy: Vec::new(),
             history: Table::default(),
             panels: Vec::new(),
@@ -99,6 +102,15 @@ impl Default for Page {
             budget: 2_000_000,
         }
     }
+}
+
+/// Entries under a title of their own.
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Section {
+    /// What they are, such as "Last values".
+    pub title: String,
+    /// The entries.
+    pub entries: Vec<Entry>,
 }
 
 /// A name and a value with its unit, such as "CPU time" and "0.52 s".
@@ -165,7 +177,7 @@ impl Page {
 }
 
 /// Text that HTML shows as it is.
-fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
         match c {

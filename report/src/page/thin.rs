@@ -84,6 +84,7 @@ impl Page {
             notes: self.notes.clone(),
             events: self.events.clone(),
             settings: self.settings.clone(),
+            sections: self.sections.clone(),
             energy: self.energy.clone(),
             panels: self.panels.clone(),
             budget: self.budget,
@@ -111,6 +112,7 @@ fn field(record: &FieldRecord, snapshots: usize, points: usize, meshes: usize) -
         LineSnapshot {
             s: kept.iter().map(|k| s.s[*k]).collect(),
             position: kept.iter().map(|k| s.position[*k]).collect(),
+            velocity: Vec::new(),
             values: s.values.iter().map(|v| kept.iter().map(|k| v[*k]).collect()).collect(),
         }
     };
@@ -233,6 +235,7 @@ mod tests {
                 s: (0..points).map(|k| k as f64).collect(),
                 position: (0..points).map(|_| [noise(), noise(), noise()]).collect(),
                 values: vec![(0..points).map(|_| noise()).collect()],
+                ..LineSnapshot::default()
             })
             .collect();
         let times = (0..snapshots).map(|k| k as f64).collect();

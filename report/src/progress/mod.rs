@@ -1,5 +1,6 @@
 //! What a run shows while it computes: a bar on a terminal, a few lines elsewhere, or nothing.
 
+mod spark;
 mod sweep;
 
 use std::fmt;
@@ -9,6 +10,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Elapsed, Stopwatch};
+use spark::Spark;
 pub use sweep::SweepProgress;
 
 /// Steps between two looks at the clock while steps are short: a look costs tens of ns.
@@ -64,6 +66,8 @@ pub struct Progress {
     last_shown: Instant,
     last_share: f64,
     rate: Rate,
+    /// The record whose course is shown, if one is.
+    spark: Option<Spark>,
 }
 
 enum Shown {
@@ -105,7 +109,26 @@ impl Progress {
             last_shown: now,
             last_share: 0.0,
             rate: Rate::new(t_start, now),
+            spark: None,
         }
+    }
+
+    /// Shows the course of a record of this name and unit besides, whose values [`value`](Self::value) takes.
+    pub fn follow(&mut self, name: &str, unit: &str) {
+        self.spark = Some(Spark::new(name, unit));
+    }
+
+    /// Takes the value of the followed record at time `t` [s].
+    pub fn value(&mut self, t: f64, value: f64) {
+        let share = self.share(t);
+        if let Some(spark) = &mut self.spark {
+            spark.push(share, value);
+        }
+    }
+
+    /// How much of the run is done at a time, 0 … 1.
+    fn share(&self, t: f64) -> f64 {
+        ((t - self.t_start) / (self.t_end - self.t_start)).clamp(0.0, 1.0)
     }
 
     /// Tells of an accepted step of size `h` that has reached time `t` (both in seconds) after
@@ -146,7 +169,7 @@ impl Progress {
         if matches!(self.shown, Shown::Nothing) {
             return;
         }
-        let share = ((t - self.t_start) / (self.t_end - self.t_start)).clamp(0.0, 1.0);
+        let share = self.share(t);
         let silence = now.duration_since(self.last_shown);
         let due = match self.shown {
             Shown::Bar(_) => silence >= BAR_PERIOD,
@@ -158,7 +181,9 @@ impl Progress {
         self.rate.update(t, now);
         self.last_shown = now;
         self.last_share = share;
-        let report = Report { t, t_end: self.t_end, h, rejected: self.rejected, speed: self.rate.value };
+        let (t_end, rejected, speed, spark) =
+            (self.t_end, self.rejected, self.rate.value, self.spark.as_ref());
+        let report = Report { t, t_end, h, rejected, speed, spark };
         match &mut self.shown {
             Shown::Bar(bar) => {
                 bar.set_message(report.to_string());
@@ -226,15 +251,16 @@ impl Rate {
 }
 
 /// What is said about a run on its way.
-struct Report {
+struct Report<'a> {
     t: f64,
     t_end: f64,
     h: f64,
     rejected: u64,
     speed: Option<f64>,
+    spark: Option<&'a Spark>,
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for Report<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // What matters most first: a narrow terminal cuts the end off.
         write!(f, "t {}/{} s", Short(self.t), Short(self.t_end))?;
@@ -242,6 +268,9 @@ impl fmt::Display for Report {
         let left = speed.map(|speed| (self.t_end - self.t).max(0.0) / speed);
         if let Some(left) = left.filter(|left| left.is_finite()) {
             write!(f, ", {} left", Clock(left))?;
+        }
+        if let Some(spark) = self.spark {
+            write!(f, ", {spark}")?;
         }
         write!(f, ", h {} s", Short(self.h))?;
         if let Some(speed) = speed {

@@ -1,5 +1,6 @@
 //! Vibration modes of a scene: its equilibrium, the modes about it, and a folder with tables and pictures of them.
 
+mod page;
 mod pictures;
 mod report;
 
@@ -74,7 +75,7 @@ impl Modal {
 
 /// Modes in a folder of their own.
 pub struct ModesOutcome {
-    /// The folder: `scene.toml`, `manifest.json`, `tables/modes.csv` and `plots/mode-N.svg`.
+    /// The folder: `scene.toml`, `manifest.json`, `tables/modes.csv`, `plots/mode-N.svg`, and `report.html` where they swing.
     pub folder: RunFolder,
     /// The modes.
     pub modal: Modal,
@@ -115,6 +116,7 @@ pub fn write_modes(
     let (folder, _lock) = folder.keep(file, &manifest)?;
     modal.table().write(&folder.table_file("modes")?)?;
     let pictures = pictures::draw(&folder, &modal, warn);
+    page::page(file, &modal).write(&folder.report_file()).unwrap_or_else(|e| warn(&e.to_string()));
     let report = report::report(file, &modal, &folder, pictures, stopwatch.elapsed());
     Ok(ModesOutcome { folder, modal, report })
 }

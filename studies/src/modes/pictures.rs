@@ -23,8 +23,7 @@ pub(super) fn draw(folder: &RunFolder, modal: &Modal, warn: &mut dyn FnMut(&str)
 }
 
 fn picture(modal: &Modal, number: usize, mode: &Mode, rest: &[V3<f64>], extent: V3<f64>) -> ShapePlot {
-    let largest = extent.iter().fold(0.0_f64, |a, b| a.max(*b));
-    let scale = SIZE * if largest > 0.0 { largest } else { modal.model.length() } / amplitude(modal, mode);
+    let scale = scale(modal, mode, extent);
     let standing = mode.quadrature.iter().all(|x| x.abs() < 0.02 * largest_of(&mode.shape));
     let phases: &[(f64, &str)] = match standing {
         true => &[(0.0, "phase 0°"), (2.0, "phase 180°")],
@@ -34,13 +33,16 @@ fn picture(modal: &Modal, number: usize, mode: &Mode, rest: &[V3<f64>], extent: 
     let mut names = vec!["equilibrium".to_string()];
     let mut q = modal.state.q.clone();
     for (turn, name) in phases {
-        let (sin, cos) = (turn * FRAC_PI_2).sin_cos();
-        let both = mode.shape.iter().zip(&mode.quadrature);
-        let d: Vec<f64> = both.map(|(a, b)| scale * (cos * a - sin * b)).collect();
-        modal.model.retract(&modal.state.q, &d, &mut q);
+        swing(modal, mode, scale, turn * FRAC_PI_2, &mut q);
         shapes.push((1.0 + turn, points(modal, &q)));
         names.push((*name).to_string());
     }
+    let plot = ShapePlot::of_positions(title(number, mode), plane(mode, extent), &shapes);
+    ShapePlot { names, ..plot }
+}
+
+/// What a mode is called.
+pub(super) fn title(number: usize, mode: &Mode) -> String {
     let what = match report::kind(mode) {
         "" => format!("{:.4} Hz", mode.frequency()),
         kind => kind.to_string(),
@@ -49,9 +51,27 @@ fn picture(modal: &Modal, number: usize, mode: &Mode, rest: &[V3<f64>], extent: 
         z if z.abs() > 5e-5 && mode.omega > 0.0 => format!(", damping ratio {z:.4}"),
         _ => String::new(),
     };
-    let title = format!("Mode {number}: {what}{damping}");
-    let plot = ShapePlot::of_positions(title, plane(mode, extent), &shapes);
-    ShapePlot { names, ..plot }
+    format!("Mode {number}: {what}{damping}")
+}
+
+/// How many times as large as a mode of size 1 its motion is drawn.
+fn scale(modal: &Modal, mode: &Mode, extent: V3<f64>) -> f64 {
+    let largest = extent.iter().fold(0.0_f64, |a, b| a.max(*b));
+    SIZE * if largest > 0.0 { largest } else { modal.model.length() } / amplitude(modal, mode)
+}
+
+/// The same for all modes.
+pub(super) fn scales(modal: &Modal) -> Vec<f64> {
+    let extent = extents(&points(modal, &modal.state.q));
+    modal.modes.iter().map(|mode| scale(modal, mode, extent)).collect()
+}
+
+/// Coordinates at a phase of a mode [rad].
+pub(super) fn swing(modal: &Modal, mode: &Mode, scale: f64, phase: f64, q: &mut [f64]) {
+    let (sin, cos) = phase.sin_cos();
+    let both = mode.shape.iter().zip(&mode.quadrature);
+    let d: Vec<f64> = both.map(|(a, b)| scale * (cos * a - sin * b)).collect();
+    modal.model.retract(&modal.state.q, &d, q);
 }
 
 /// Points of all parts, with marks along them; breaks are points that aren't finite.

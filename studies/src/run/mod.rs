@@ -1,33 +1,43 @@
 //! A run: a scene, computed into a folder of its own.
 
+mod beside;
 mod checkpoint;
+mod kept;
+mod leave;
 mod manifest;
+mod page;
 mod pictures;
 mod prepare;
 mod recorder;
 mod report;
+mod scenery;
 mod shapes;
 mod start;
 mod summary;
 mod surfacing;
 mod tables;
+mod view;
 
+pub use beside::compare;
 pub use checkpoint::Every;
+pub use leave::Leaves;
 pub use manifest::Manifest;
 pub(crate) use pictures::{PLANES, planes, view};
 pub(crate) use prepare::{NewFolder, prepare};
 pub(crate) use recorder::Recorder;
 use recorder::Warnings;
+pub(crate) use scenery::Scenery;
 pub(crate) use shapes::{Shape, last as last_shape, read as read_shapes};
 pub(crate) use start::Started;
 pub(crate) use summary::Ending;
 pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, Status, Summary};
+pub use view::{page_of, report_of};
 
 use crate::error::Error;
 use checkpoint::Saver;
 use prepare::locked;
 use ropewalk_report::{
-    Elapsed, FolderLock, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch,
+    Elapsed, FolderLock, Page, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch,
 };
 use ropewalk_scene::{Fault, SceneFile};
 use std::path::PathBuf;
@@ -46,6 +56,10 @@ pub struct RunOptions {
     pub checkpoint: Option<Every>,
     /// What may stop it; by default nothing, and the process keeps its signals.
     pub watch: Watch,
+    /// Which files it leaves behind for the eye: by default a page for the browser and pictures.
+    pub leaves: Leaves,
+    /// A column of the history whose course the progress shows, such as `hose.end.z`.
+    pub follow: Option<String>,
 }
 
 /// How a run ended and where its results are.
@@ -59,6 +73,8 @@ pub struct Outcome {
     pub history: Table,
     /// Names of the pictures in `plots/`, without ending.
     pub pictures: Vec<String>,
+    /// What is on `report.html`, if there is one.
+    pub page: Option<Box<Page>>,
     /// A summary for people, several lines.
     pub report: String,
 }
@@ -88,6 +104,9 @@ pub(crate) fn run_showing(
     if let Err(message) = tables::check(scene, &recorder.table) {
         return Err(file.document().fault_at("run.tables", message).into());
     }
+    if let Some(name) = &options.follow {
+        recorder.follow(name)?;
+    }
     let folder = NewFolder::create(options.out.clone(), file.name())?;
     let stopwatch = Stopwatch::start();
     let started = match Started::new(scene, model, options.watch) {
@@ -96,9 +115,13 @@ pub(crate) fn run_showing(
     };
     let (folder, lock) = folder.keep(file, &manifest)?;
     recorder.writer = Some(TableWriter::create(&folder.history_file(), &recorder.table)?);
-    recorder.progress = Some(progress(scene.run.duration));
+    recorder.show(progress(scene.run.duration));
     let before = Elapsed::default();
     if let Ok(started) = &started {
+        if options.leaves.field() {
+            recorder.kept.want_field(&scene.run, started.scenery(file));
+            recorder.kept.live_in(&folder);
+        }
         started.warnings(scene).iter().for_each(|w| warnings.say(w));
         match (started, options.checkpoint) {
             (Started::Dynamics(s, flutter, _), Some(every)) => {
@@ -114,16 +137,8 @@ pub(crate) fn run_showing(
         }
     }
     (recorder.warnings, recorder.watch) = (warnings, options.watch);
-    let job = Job {
-        file,
-        folder,
-        recorder,
-        stopwatch,
-        before,
-        is_resumed: false,
-        notes: manifest.notes,
-        _lock: lock,
-    };
+    let (is_resumed, notes, leaves) = (false, manifest.notes, options.leaves);
+    let job = Job { file, folder, recorder, stopwatch, before, is_resumed, notes, leaves, _lock: lock };
     Ok(job.complete(started, options.profile))
 }
 
@@ -142,6 +157,10 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let started = Started::restored(&file, saved.simulation.clone(), saved.flutter)?;
     let Started::Dynamics(simulation, ..) = &started else { unreachable!("only runs in time are resumed") };
     let mut recorder = Recorder::new(file.scene(), file.records(&simulation.model)?);
+    if options.leaves.field() {
+        recorder.kept.want_field(&file.scene().run, started.scenery(&file));
+        recorder.kept.live_in(&folder);
+    }
     recorder.take_up(&saved).map_err(Fault::new)?;
     let before = Elapsed { cpu_s: saved.cpu_s, wall_s: saved.wall_s };
     let every = options.checkpoint.unwrap_or(saved.every);
@@ -152,11 +171,16 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     // what it says is of rows that are computed again
     let _ = std::fs::remove_file(folder.summary_file());
     let (t, end) = (saved.simulation.state.t, file.scene().run.duration);
-    recorder.progress = Some(Progress::new(t, end, options.progress));
+    if let Some(name) = &options.follow {
+        recorder.follow(name)?;
+    }
+    recorder.show(Progress::new(t, end, options.progress));
     recorder.warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
     recorder.watch = options.watch;
     let notes = manifest::notes(file.scene(), &simulation.model);
-    let job = Job { file: &file, folder, recorder, stopwatch, before, is_resumed: true, notes, _lock: lock };
+    let (is_resumed, leaves) = (true, options.leaves);
+    let job =
+        Job { file: &file, folder, recorder, stopwatch, before, is_resumed, notes, leaves, _lock: lock };
     Ok(job.complete(Ok(started), options.profile))
 }
 
@@ -171,6 +195,7 @@ struct Job<'a> {
     is_resumed: bool,
     /// What its constraints have to say.
     notes: Vec<String>,
+    leaves: Leaves,
     /// Kept until everything is written.
     _lock: Option<FolderLock>,
 }
@@ -219,17 +244,31 @@ impl Job<'_> {
 
     /// Writes everything that is left to be written; what can't be is told.
     fn write(self, mut summary: Summary) -> Outcome {
-        let Job { file, folder, mut recorder, .. } = self;
+        let Job { file, folder, mut recorder, leaves, .. } = self;
         let mut warnings = std::mem::take(&mut recorder.warnings);
         if let Some(writer) = recorder.writer.take() {
             writer.finish().unwrap_or_else(|e| warnings.say(&e.to_string()));
         }
         recorder.finals(&mut summary);
         let mut warn = |text: &str| warnings.say(text);
-        let pictures = pictures::draw(&folder, file.title(), &recorder, &summary.critical, &mut warn);
-        shapes::write(&folder, &recorder.table.columns[0], &recorder.shapes)
+        let mut pictures = Vec::new();
+        if leaves.plots {
+            pictures = pictures::draw(&folder, file.title(), &recorder, &summary.critical, &mut warn);
+        }
+        shapes::write(&folder, &recorder.table.columns[0], &recorder.kept.shapes)
             .unwrap_or_else(|e| warn(&e.to_string()));
         let tables = tables::write(&folder, &recorder, &mut warn);
+        let field = recorder.kept.field();
+        if let Some(field) = &field {
+            leave::write_field(&folder, leaves, field, &mut warn);
+        }
+        summary.notes.extend(recorder.kept.thinned.take());
+        summary.warnings.clone_from(&warnings.all);
+        let mut page = None;
+        if leaves.report {
+            let (field, warn) = (field.unwrap_or_default(), &mut |text: &str| warnings.say(text));
+            page = leave::write_page(&folder, file, &summary, &mut recorder, field, warn).map(Box::new);
+        }
         summary.warnings = warnings.all;
         if summary.status.is_complete() && recorder.saver.is_some() {
             // there is nothing left to go on with
@@ -239,7 +278,10 @@ impl Job<'_> {
         if let Err(e) = folder.write_summary(&summary) {
             (summary.status, summary.message) = (Status::Failed, Some(e.to_string()));
         }
-        let report = report::report(file, &summary, &recorder, &folder, &pictures, &tables);
-        Outcome { folder, summary, history: recorder.table, pictures, report }
+        let pages: Vec<&str> =
+            page.iter().map(|_| "report.html").chain(leaves.vtk.then_some("vtk.pvd")).collect();
+        let files = report::Files { pictures: &pictures, tables: &tables, pages: &pages };
+        let report = report::report(file, &summary, &recorder, &folder, files);
+        Outcome { folder, summary, history: recorder.table, pictures, page, report }
     }
 }

@@ -26,7 +26,7 @@ pub(crate) fn draw(
     let titles = &recorder.scene.run.shape_titles;
     let asked = [(Plane::Oblique, &titles.space), (Plane::Radial, &titles.radial)];
     let asked = asked.into_iter().filter(|(_, title)| title.is_some()).map(|(plane, _)| plane);
-    let shapes: Vec<_> = recorder.shapes.iter().map(|shape| (shape.t, shape.points())).collect();
+    let shapes: Vec<_> = recorder.kept.drawn().map(|shape| (shape.t, shape.points())).collect();
     let t_label = match recorder.table.columns.first() {
         Some(t) if t.name != "t" => t.heading(),
         _ => String::new(),

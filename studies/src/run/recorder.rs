@@ -1,6 +1,7 @@
 //! The observer of a run: it evaluates the records, writes the history, shows the progress and keeps shapes.
 
 use super::checkpoint::{Saved, Saver};
+use super::kept::Kept;
 use super::shapes::{Line, Shape};
 use super::summary::{Ending, Happened, Summary};
 use super::surfacing::Surfacing;
@@ -9,7 +10,7 @@ use ropewalk_core::integrator::StepReport;
 use ropewalk_core::{At, Checkpoint, Layers, Model, NodeKind, Observer, Record, Remeshed, Sample, State, V3};
 use ropewalk_report as output;
 use ropewalk_report::{Progress, Table, TableWriter, Watch};
-use ropewalk_scene::{Analysis, Channel, Process, Scene};
+use ropewalk_scene::{Analysis, Channel, Fault, Process, Scene, did_you_mean};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -39,6 +40,8 @@ pub struct Recorder<'a> {
     pub writer: Option<TableWriter>,
     /// Where the progress is shown.
     pub progress: Option<Progress>,
+    /// The column whose course it shows, if one is asked for.
+    followed: Option<usize>,
     /// What may stop the run.
     pub watch: Watch,
     /// How often samples were taken and how long that took, if it is to be measured.
@@ -46,9 +49,7 @@ pub struct Recorder<'a> {
     /// Positions of all nodes at some hundred rows, if they are wanted.
     pub track: Option<Vec<Vec<V3<f64>>>>,
     /// Lines of all parts at several times.
-    pub shapes: Vec<Shape>,
-    /// When shapes are still to be kept, last first.
-    pub(super) due: Vec<f64>,
+    pub kept: Kept,
     /// Whether to look for what leaves water without a surface.
     surfacing: Option<Surfacing>,
     /// Why it stopped the run.
@@ -102,10 +103,6 @@ impl<'a> Recorder<'a> {
             let columns = first..table.columns.len();
             figures.push(Figure { name, title, columns });
         }
-        let n = scene.run.snapshots;
-        let last = n.saturating_sub(1).max(1);
-        let due =
-            (0..n).rev().map(|k| scene.run.duration * if n == 1 { 1.0 } else { k as f64 / last as f64 });
         Recorder {
             scene,
             needs_forces: records.iter().any(|r| r.needs_forces()),
@@ -116,11 +113,11 @@ impl<'a> Recorder<'a> {
             figures,
             writer: None,
             progress: None,
+            followed: None,
             watch: Watch::default(),
             spent: None,
             track: None,
-            shapes: Vec::new(),
-            due: due.collect(),
+            kept: Kept::new(&scene.run),
             surfacing: Surfacing::of(scene),
             stop: None,
             events: Vec::new(),
@@ -131,6 +128,29 @@ impl<'a> Recorder<'a> {
         }
     }
 
+    /// Lets the progress show the course of a column; says which there are if there is none of this name.
+    pub(super) fn follow(&mut self, name: &str) -> Result<(), Fault> {
+        let names: Vec<&str> = self.table.columns.iter().skip(1).map(|c| c.name.as_str()).collect();
+        let Some(k) = names.iter().position(|own| *own == name) else {
+            let fault = Fault::new(format!("there is no record `{name}` whose course could be shown"));
+            let fault = fault.with_note(format!("there are {}", names.join(", ")));
+            return Err(match did_you_mean(name, &names) {
+                Some(guess) => fault.with_help(guess),
+                None => fault,
+            });
+        };
+        self.followed = Some(k + 1);
+        Ok(())
+    }
+
+    /// Begins to show the progress.
+    pub(super) fn show(&mut self, mut progress: Progress) {
+        if let Some(column) = self.followed.map(|k| &self.table.columns[k]) {
+            progress.follow(&column.name, &column.unit);
+        }
+        self.progress = Some(progress);
+    }
+
     /// Takes up what was recorded until a checkpoint; says which column differs if the records are others.
     pub(super) fn take_up(&mut self, saved: &Saved<'_>) -> Result<(), String> {
         let heads = |t: &Table| t.columns.iter().map(|c| c.heading()).collect::<Vec<_>>();
@@ -138,8 +158,11 @@ impl<'a> Recorder<'a> {
             return Err("the checkpoint belongs to other records".into());
         }
         self.table = saved.table.clone().into_owned();
-        self.shapes = saved.shapes.clone().into_owned();
-        self.due = saved.due.clone().into_owned();
+        self.kept.shapes = saved.shapes.clone().into_owned();
+        self.kept.due = saved.due.clone().into_owned();
+        if self.kept.has_field() {
+            self.kept.field_due = saved.field_due.clone().into_owned();
+        }
         self.events = saved.events.clone().into_owned();
         self.remeshed = saved.remeshed.clone().into_owned();
         Ok(())
@@ -150,6 +173,7 @@ impl<'a> Recorder<'a> {
         let address = std::ptr::from_ref(model) as usize;
         if self.bound.is_some_and(|bound| bound != address) {
             self.records = self.scene.records(model)?;
+            self.kept.follow(model);
         }
         if self.bound != Some(address) {
             match &mut self.layers {
@@ -180,7 +204,9 @@ impl<'a> Recorder<'a> {
                 layers.look(s.model, &s.at);
             }
         }
-        self.keep(s.at.t, || Shape::of(s.model, &s.at))
+        self.keep()?;
+        self.kept.sample(s.model, &s.at);
+        Ok(())
     }
 
     /// Takes a row of a process, which made a step of `h` since the last.
@@ -193,33 +219,31 @@ impl<'a> Recorder<'a> {
         self.row.push(t);
         process.sample(&mut self.row);
         let name = self.scene.processes.first().map_or("", |p| p.name());
-        let kept = self.keep(t, || Shape { t, lines: vec![Line::of_process(name, process)] });
-        self.go_on(kept)?;
+        let row = self.keep();
+        self.kept.look(t, |_| {
+            let lines = vec![Line::of_process(name, process)];
+            Shape { t, is_drawn: true, lines, bodies: Vec::new() }
+        });
+        self.go_on(row)?;
         self.look_for_end()
     }
 
-    /// Keeps the row, and the shape if one is due.
-    fn keep(&mut self, t: f64, shape: impl FnOnce() -> Shape) -> Result<(), Error> {
+    /// Keeps the row.
+    fn keep(&mut self) -> Result<(), Error> {
         self.table.push_row(&self.row)?;
         if let Some(writer) = &mut self.writer {
             writer.push(&self.row)?;
         }
-        // an instant that is off by rounding is the right one
-        let now = t + 1e-9 * self.scene.run.duration;
-        if self.due.last().is_some_and(|due| *due <= now) {
-            while self.due.last().is_some_and(|due| *due <= now) {
-                self.due.pop();
-            }
-            self.shapes.push(shape());
+        if let (Some(k), Some(progress)) = (self.followed, &mut self.progress) {
+            progress.value(self.row[0], self.row[k]);
         }
         Ok(())
     }
 
     /// Keeps the shape in which the run ended, unless it is there already.
     pub(crate) fn last_shape(&mut self, model: &Model, state: &State) {
-        let missing = self.shapes.last().is_some_and(|last| last.t < state.t);
-        if missing && !self.due.is_empty() && self.scene.processes.is_empty() {
-            self.shapes.push(Shape::of(model, &state.at()));
+        if self.scene.processes.is_empty() {
+            self.kept.last(model, state);
         }
     }
 

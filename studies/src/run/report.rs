@@ -5,15 +5,22 @@ use super::summary::{CriticalLoad, Happened, ProfileEntry, Summary};
 use ropewalk_report::{Column, RunFolder, Sheet, number, rough};
 use ropewalk_scene::{Analysis, SceneFile};
 
+/// Names of the files that a run left.
+pub(crate) struct Files<'a> {
+    pub pictures: &'a [String],
+    pub tables: &'a [String],
+    pub pages: &'a [&'a str],
+}
+
 /// The whole report: status, work, energy, records, files.
 pub(crate) fn report(
     file: &SceneFile,
     summary: &Summary,
     recorder: &Recorder<'_>,
     folder: &RunFolder,
-    pictures: &[String],
-    tables: &[String],
+    files: Files<'_>,
 ) -> String {
+    let Files { pictures, tables, pages } = files;
     let mut sheet = Sheet::new(file.title());
     let scene = file.scene();
     let statics = scene.run.analysis == Analysis::Statics;
@@ -51,6 +58,7 @@ pub(crate) fn report(
     };
     sheet.entries("tables", (!tables.is_empty()).then(|| list(tables, "tables", "csv")));
     sheet.entries("pictures", (!pictures.is_empty()).then(|| list(pictures, "plots", "svg")));
+    sheet.entries("page", (!pages.is_empty()).then(|| pages.join(", ")));
     sheet.to_string()
 }
 
@@ -69,7 +77,7 @@ fn work(sheet: &mut Sheet, summary: &Summary, t: Option<f64>) {
     sheet.entry("time", format!("wall time {wall} s, CPU time {cpu} s{}", speed.unwrap_or_default()));
 }
 
-fn critical(c: &CriticalLoad) -> String {
+pub(super) fn critical(c: &CriticalLoad) -> String {
     let many = if c.directions > 1 { format!(" in {} directions", c.directions) } else { String::new() };
     format!("load factor {}, {}{many}: {}", number(c.load_factor), c.kind, c.what)
 }
@@ -85,7 +93,7 @@ fn event(name: &str, times: &[f64]) -> String {
 
 /// The last values of a record, under the names that its columns have in the history: those that differ only behind
 /// their last point, as `hose.end.x` and `hose.end.y`, on one line, and each unit once.
-fn finals(columns: &[Column]) -> Vec<(String, String)> {
+pub(super) fn finals(columns: &[Column]) -> Vec<(String, String)> {
     let value = |c: &Column| c.values.last().map_or("-".to_string(), |x| number(*x));
     let stem = |c: &Column| c.name.rsplit_once('.').map(|(stem, _)| stem.to_string());
     let shared = columns
@@ -106,7 +114,7 @@ fn finals(columns: &[Column]) -> Vec<(String, String)> {
 }
 
 /// The times of each kind of event, in the order in which they came first.
-fn by_name(events: &[Happened]) -> Vec<(&str, Vec<f64>)> {
+pub(super) fn by_name(events: &[Happened]) -> Vec<(&str, Vec<f64>)> {
     let mut all: Vec<(&str, Vec<f64>)> = Vec::new();
     for e in events {
         match all.iter_mut().find(|(name, _)| *name == e.name) {

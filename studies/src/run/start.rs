@@ -1,6 +1,7 @@
 //! The analyses: motion in time, and a path of equilibria.
 
 use super::recorder::Recorder;
+use super::scenery::Scenery;
 use super::summary::{Counts, CriticalLoad, Ending, ProfileEntry};
 use crate::error::{Error, caught};
 use ropewalk_core::integrator::{StepError, StepReport, Stepping};
@@ -104,6 +105,15 @@ impl Started {
             all.push("energy is recorded but not followed: set `audit = true` in [run]".into());
         }
         all
+    }
+
+    /// What there is to be seen.
+    pub(crate) fn scenery(&self, file: &SceneFile) -> Scenery {
+        match self {
+            Started::Dynamics(s, ..) => Scenery::new(file, &s.model, None),
+            Started::Statics(done) => Scenery::new(file, &done.model, None),
+            Started::Process(process, done) => Scenery::new(file, &done.model, Some(process.as_ref())),
+        }
     }
 
     /// What only the run could tell: equilibria that aren't stable, multipliers that ring.

@@ -3,7 +3,7 @@
 
 use super::share::{beside, publish};
 use crate::error::{Error, caught};
-use crate::run::{RunOptions, Status, Summary, run_showing};
+use crate::run::{Leaves, RunOptions, Status, Summary, run_showing};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use ropewalk_report::{ProgressMode, RunFolder, SweepProgress, Table, Watch};
 use ropewalk_scene::{Fault, SceneFile};
@@ -138,6 +138,8 @@ impl Runner {
             out: Some(path.to_path_buf()),
             progress: ProgressMode::Quiet,
             watch: self.watch,
+            // many runs are looked at together, by what the study makes of them
+            leaves: Leaves { report: false, ..Leaves::default() },
             ..RunOptions::default()
         };
         let progress = |t_end: f64| self.progress.begin(name, t_end);

@@ -7,6 +7,7 @@ mod axis;
 mod finals;
 mod grid;
 mod manifest;
+mod page;
 mod parts;
 mod pictures;
 mod report;
@@ -83,6 +84,9 @@ pub fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome, Error>
     let mut warn = |text: &str| progress.say(&format!("warning: {text}"));
     let pictures = pictures::draw(&folder, grid, &axes, &results, options.report, &mut warn);
     let tables = finals::write(&folder, grid, &axes, &results, options.report, &mut warn);
+    let names: Vec<String> = (0..grid.len()).map(|k| grid.name(k).to_string()).collect();
+    page::write(&folder, &results, &names, (options.report, options.over))
+        .unwrap_or_else(|e| progress.say(&format!("warning: {e}")));
     progress.finish();
 
     let interrupted = results.count(Status::Interrupted) > 0 || results.len() < grid.len();

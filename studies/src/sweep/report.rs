@@ -1,6 +1,6 @@
 //! What is said on the terminal when a sweep has ended.
 
-use super::results::Results;
+use super::results::{Recorded, Results, Row};
 use super::tail::{Over, Report, STEADY};
 use crate::run::Status;
 use crate::study::StudyFolder;
@@ -10,6 +10,11 @@ use ropewalk_report::{Sheet, TERMINAL, number, rough};
 const MOST_ROWS: usize = 80;
 /// Columns that are named as unsteady; the others are counted.
 const MOST_NAMED: usize = 6;
+
+/// The value of a column that stands for a run; nothing where the run doesn't have it.
+pub(super) fn shown_value(row: &Row, column: &Recorded, what: Report) -> String {
+    Results::values(row, column).map_or(String::new(), |v| number(v.reported(what)))
+}
 
 /// The whole report: the table, as far as there is room, and where everything is.
 pub(super) fn report(
@@ -34,10 +39,7 @@ pub(super) fn report(
                 row.counts.steps.to_string(),
                 row.counts.newton_iterations.to_string(),
             ];
-            let finals = recorded
-                .iter()
-                .skip(1)
-                .map(|c| Results::values(row, c).map_or(String::new(), |v| number(v.reported(what))));
+            let finals = recorded.iter().skip(1).map(|c| shown_value(row, c, what));
             results.cells(k).iter().cloned().chain(work).chain(finals).collect()
         })
         .collect();

@@ -13,6 +13,8 @@ export interface Run {
   events: Event[];
   settings: Entry[];
   energy: Entry[];
+  /** What else there is to tell, each with a title. */
+  sections: { title: string; entries: Entry[] }[];
   /** Time or load factor. */
   axis: { name: string; unit: string };
   /** The first column is the axis. */

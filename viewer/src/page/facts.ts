@@ -30,7 +30,7 @@ function events(run: Run, span: number, seek: (t: number) => void): HTMLElement 
 
 function parts(run: Run): HTMLElement {
   const { lines, bodies } = run.field;
-  const rows = [...lines.map((l) => [l.name, l.kind, withUnit(l.diameter, "m"), l.place]), ...bodies.map((b) => [b.name, b.kind, "", b.place])];
+  const rows = [...lines.map((l) => [l.name, l.kind, l.diameter > 0 ? withUnit(l.diameter, "m") : "", l.place]), ...bodies.map((b) => [b.name, b.kind, "", b.place])];
   const head = h("tr", {}, ...["part", "kind", "diameter", "in the scene"].map((t) => h("th", { scope: "col" }, t)));
   const body = rows.map((row) => h("tr", {}, ...row.map((text, i) => (i === 0 ? h("th", { scope: "row" }, text) : h("td", {}, text)))));
   return h("table", {}, h("thead", {}, head), h("tbody", {}, ...body));
@@ -49,6 +49,7 @@ export function facts(run: Run, span: number, seek: (t: number) => void): void {
   const all: [string, boolean, () => HTMLElement, boolean?][] = [
     ["Summary", run.summary.length > 0, () => list(run.summary)],
     ["Events", run.events.length > 0, () => events(run, span, seek)],
+    ...run.sections.map(({ title, entries }): [string, boolean, () => HTMLElement] => [title, entries.length > 0, () => list(entries)]),
     ["Balance of energy", run.energy.length > 0, () => list(run.energy)],
     ["Settings", run.settings.length > 0, () => list(run.settings)],
     ["Notes", run.notes.length > 0, () => bullets(run.notes)],

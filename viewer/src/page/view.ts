@@ -115,9 +115,11 @@ export class View {
     if (!scale) return;
     const { name, unit, low, high, beyond } = scale;
     const middle = (low + high) / 2;
+    // what rounding leaves is nothing
+    const text = (x: number) => short(Math.abs(x) < 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? 0 : x, 3);
     $("legend-name").textContent = `${name} [${unit || "-"}]`;
     $("legend-bar").style.background = gradient(this.stage.dark ? DARK : LIGHT);
-    $("legend-ticks").replaceChildren(...[short(low, 3), short(middle, 3), `${beyond ? "≥ " : ""}${short(high, 3)}`].map((text) => {
+    $("legend-ticks").replaceChildren(...[text(low), text(middle), `${beyond ? "≥ " : ""}${text(high)}`].map((text) => {
       const tick = document.createElement("span");
       tick.textContent = text;
       return tick;

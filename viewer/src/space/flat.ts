@@ -131,7 +131,7 @@ export class Flat implements Picture {
       for (let i = 0; i + 1 < count; i++) {
         const [a, b] = [at[i]!, at[i + 1]!];
         if (!(a[2] > 0 && b[2] > 0)) continue;
-        const thick = (height * line.diameter * stage.exaggeration) / (2 * Math.tan(ANGLE / 2) * a[2]);
+        const thick = (height * stage.drawn(line)) / (2 * Math.tan(ANGLE / 2) * a[2]);
         this.pen.lineWidth = Math.max(2 * this.ratio, thick);
         this.pen.strokeStyle = `rgb(${[0, 1, 2].map((j) => Math.round(255 * colour[3 * i + j]!)).join(" ")})`;
         this.pen.beginPath();

@@ -39,6 +39,8 @@ export class Stage {
   scale: Scale | null;
   /** How many times as thick as they are lines are drawn. */
   exaggeration = 1;
+  /** Diameter of lines that have none [m]. */
+  private hair = 0;
   dark = false;
   names = false;
   orbit: Orbit = { target: [0, 0, 0], distance: 1, azimuth: VIEWS.space![0], elevation: VIEWS.space![1] };
@@ -73,12 +75,18 @@ export class Stage {
     this.retrail();
   }
 
+  /** Diameter that a line is drawn with [m]; one without is as thick as needs be to be seen. */
+  drawn(line: Line): number {
+    return (line.diameter > 0 ? line.diameter : this.hair) * this.exaggeration;
+  }
+
   /** The first exaggeration: lines are seen as such, and thick ones stay as they are. */
   private thick(): void {
     const diameter = Math.max(0, ...this.field.lines.map((l) => l.diameter));
-    const wanted = (0.006 * diagonal(this.box())) / (diameter || 1);
+    const seen = 0.006 * diagonal(this.box());
     const steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
-    this.exaggeration = steps.find((s) => s >= wanted) ?? 1000;
+    this.exaggeration = diameter > 0 ? (steps.find((s) => s * diameter >= seen) ?? 1000) : 1;
+    this.hair = seen / this.exaggeration;
   }
 
   /** Puts everything where it is at a time. */

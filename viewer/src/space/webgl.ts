@@ -153,7 +153,7 @@ export class Webgl implements Picture {
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
     this.ground.rotation.z = -angle;
     this.ground.position.set(-c * x[0] - s * x[1], s * x[0] - c * x[1], -x[2]);
-    for (const one of this.tubes) this.drawTube(one, stage.exaggeration);
+    for (const one of this.tubes) this.drawTube(one, stage.drawn(one.actor.line) / 2);
     const from = eye(stage.orbit);
     this.bodies.forEach(({ group, point }, i) => {
       const { x: at, q } = stage.poses[i]!;
@@ -177,9 +177,9 @@ export class Webgl implements Picture {
     this.renderer.render(this.scene, this.camera);
   }
 
-  private drawTube(one: TubeMesh, exaggeration: number): void {
+  private drawTube(one: TubeMesh, radius: number): void {
     const { actor, mesh, buffers, colours } = one;
-    tube(actor.x, actor.count, (actor.line.diameter / 2) * exaggeration, buffers);
+    tube(actor.x, actor.count, radius, buffers);
     for (let i = 0; i < actor.count; i++) {
       for (let j = 0; j < 3; j++) {
         const value = linear[Math.round(255 * actor.colour[3 * i + j]!)]!;
