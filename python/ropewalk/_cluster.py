@@ -4,9 +4,13 @@ scheduler was lost."""
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
+import signal
+import sys
+import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
 from . import _native
@@ -15,6 +19,8 @@ from ._errors import RopewalkError
 T = TypeVar("T")
 R = TypeVar("R")
 
+LOOK = 0.5
+"""How often a worker looks whether a task is still wanted [s]."""
 AHEAD = 4
 """Batches for each thread of the cluster that the scheduler knows at the same time."""
 
@@ -107,6 +113,35 @@ def _wait_for_workers(client: Any, patience: float) -> None:
     raise RopewalkError(f"no scheduler with workers for {patience:g} s: the same call, with a new client, goes on")
 
 
+@contextlib.contextmanager
+def stopped_with_its_task() -> Iterator[_native.Stop]:
+    """Stops what a worker computes when nobody wants it any more; the worker itself would let it go on to its end."""
+    stop, over = _native.Stop(), threading.Event()
+    try:
+        from distributed import get_worker
+        from distributed.worker import thread_state
+
+        tasks, key = get_worker().state.tasks, thread_state.key
+    except (ImportError, ValueError, AttributeError):
+        # no worker
+        yield stop
+        return
+
+    def watch() -> None:
+        while not over.wait(LOOK):
+            task = tasks.get(key)
+            if task is None or task.state == "cancelled":
+                stop.set()
+                return
+
+    watcher = threading.Thread(target=watch, daemon=True, name="ropewalk")
+    watcher.start()
+    try:
+        yield stop
+    finally:
+        over.set()
+
+
 @functools.lru_cache(maxsize=4)
 def _shared(words: tuple[str, ...]) -> _native.SharedSweep:
     return _native.SharedSweep(list(words))
@@ -115,15 +150,31 @@ def _shared(words: tuple[str, ...]) -> _native.SharedSweep:
 def share(words: tuple[str, ...], runs: Sequence[int]) -> tuple[int, int]:
     """Computes runs of a sweep of the command line, on a worker: how many are complete, and how many failed."""
     try:
-        return _shared(words).compute(list(runs), _native.Stop())
+        with stopped_with_its_task() as stop:
+            return _shared(words).compute(list(runs), stop)
     except SystemExit:
         raise RopewalkError(f"this worker can't read the sweep: {' '.join(words)}") from None
 
 
+class Stopped(BaseException):
+    """A signal came."""
+
+
+def _listen(on: bool) -> None:
+    """Lets SIGTERM and SIGHUP end the command as Ctrl-C does, or leaves all of them to what follows."""
+
+    def stop(number: int, _: Any) -> None:
+        raise Stopped(number)
+
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        # `nohup` ignores a hangup
+        if number is not None and (signal.getsignal(number) is not signal.SIG_IGN or name == "SIGINT"):
+            signal.signal(number, stop if on else signal.SIG_DFL)
+
+
 def command(arguments: list[str]) -> int:
     """`ropewalk sweep … --dask ADDRESS`: the runs on the workers, what is missing after that and the table here."""
-    import sys
-
     try:
         from distributed import Client
     except ImportError:
@@ -131,8 +182,9 @@ def command(arguments: list[str]) -> int:
         return 2
     sweep = _native.SharedSweep(arguments)
     quiet = "--quiet" in arguments or "-q" in arguments
+    _listen(True)
     try:
-        folder, runs, missing, words = sweep.plan()
+        _, runs, missing, words = sweep.plan()
         if missing:
             there, told = runs - len(missing), time.monotonic()
 
@@ -149,15 +201,17 @@ def command(arguments: list[str]) -> int:
                 batch = max(1, min(50, len(missing) // (8 * threads)))
                 work = functools.partial(share, tuple(words))
                 each(client, work, missing, done, batch=batch, retries=3)
-    except KeyboardInterrupt:
-        print("stopped by Ctrl-C: the same command computes what is missing", file=sys.stderr)
-        return 130
+    except Stopped as e:
+        name = {2: "Ctrl-C", 15: "SIGTERM"}.get(e.args[0], "SIGHUP")
+        print(f"stopped by {name}: the same command computes what is missing", file=sys.stderr)
+        return 128 + e.args[0]
     except RopewalkError as e:
         print(f"error: {e}", file=sys.stderr)
         return 2
     except OSError as e:
         print(f"error: the cluster at {sweep.address} can't be reached: {e}", file=sys.stderr)
         return 2
+    _listen(False)
     return _native.main("ropewalk", *without_dask(arguments))
 
 

@@ -208,17 +208,18 @@ class Job:
         """Runs several on a worker; what another one has done meanwhile is left as it is. Rows that couldn't be written
         here, with the names of their files: whoever asked may have more room."""
         unwritten = []
-        for parameters in batch:
-            if self.row(parameters) is not None:
-                continue
-            text = self.compute(parameters)
-            if text is None:
-                continue
-            path = self.path(parameters)
-            try:
-                self.write(path, text)
-            except OutputError:
-                unwritten.append((path.name, text))
+        with _cluster.stopped_with_its_task() as stop:
+            for parameters in batch:
+                if self.row(parameters) is not None:
+                    continue
+                text = self.compute(parameters, stop)
+                if text is None:
+                    continue
+                path = self.path(parameters)
+                try:
+                    self.write(path, text)
+                except OutputError:
+                    unwritten.append((path.name, text))
         return unwritten
 
     def write_all(self, rows: Sequence[tuple[str, str]]) -> None:

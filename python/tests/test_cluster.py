@@ -180,6 +180,31 @@ def test_the_command_of_the_wheel_computes_on_a_cluster(cluster, tmp_path):
     assert len(list((tmp_path / "there" / "runs").iterdir())) == 40
 
 
+def test_sigterm_ends_the_command_and_it_goes_on(cluster, tmp_path):
+    # short runs are complete when the signal comes, long ones are not
+    words = [sys.executable, "-m", "ropewalk", "sweep", "hose-turn", "--vary", "duration=0.2,0.3,0.4,175", "--out", "out"]
+    words += ["--set", "tolerance=1e-9", "--quiet", "--dask", cluster.address]
+    process = subprocess.Popen(words, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    runs = tmp_path / "out" / "runs"
+    killer = when(lambda: len(list(runs.glob("duration*/summary.json"))) == 3, lambda: process.send_signal(signal.SIGTERM))
+    said = process.communicate(timeout=90)[1]
+    killer.join()
+    assert process.returncode == 143 and "stopped by SIGTERM: the same command" in said, said
+    # the worker lets go of what nobody wants any more, and with it of the folder
+    fcntl = pytest.importorskip("fcntl")
+    deadline = time.monotonic() + 20
+    with open(tmp_path / "out" / ".lock") as lock:
+        while True:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                assert time.monotonic() < deadline
+                time.sleep(0.1)
+    long = json.loads((runs / "duration=175" / "summary.json").read_text())
+    assert long["status"] == "interrupted" and len(list(runs.glob("*/summary.json"))) == 4
+
+
 def test_a_cluster_that_is_not_there_is_said(tmp_path):
     words = ["sweep", "hose-turn", "--vary", "speed=5kn", "--out", str(tmp_path / "a")]
     wrong = [sys.executable, "-m", "ropewalk", *words, "--dask", "tcp://127.0.0.1:1"]
