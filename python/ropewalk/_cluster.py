@@ -119,9 +119,9 @@ def stopped_with_its_task() -> Iterator[_native.Stop]:
     stop, over = _native.Stop(), threading.Event()
     try:
         from distributed import get_worker
-        from distributed.worker import thread_state
 
-        tasks, key = get_worker().state.tasks, thread_state.key
+        worker = get_worker()
+        tasks, key = worker.state.tasks, worker.get_current_task()
     except (ImportError, ValueError, AttributeError):
         # no worker
         yield stop
