@@ -21,6 +21,8 @@ R = TypeVar("R")
 
 LOOK = 0.5
 """How often a worker looks whether a task is still wanted [s]."""
+EACH, LARGEST = 8, 50
+"""Batches for each thread of the cluster, if that doesn't make them too large: a few to share them out evenly."""
 AHEAD = 4
 """Batches for each thread of the cluster that the scheduler knows at the same time."""
 
@@ -31,16 +33,18 @@ def each(
     items: Sequence[T],
     done: Callable[[R], None],
     *,
-    batch: int,
+    batch: int | None,
     retries: int,
     patience: float = 60.0,
 ) -> None:
-    """Calls `work` with all items, `batch` at a time, on the workers of a `distributed.Client`, and `done` here with each
+    """Calls `work` with all items, `batch` at a time or as many as seems fit, on the workers of a `distributed.Client`, and `done` here with each
     result.
 
     What a worker had begun when it was lost is done by another one. If the scheduler is lost, it may come back with
     workers within `patience` seconds, `retries` times: what had no result by then is begun anew.
     """
+    if batch is None:
+        batch = max(1, min(LARGEST, len(items) // (EACH * (sum(client.nthreads().values()) or 1))))
     batches = [items[k : k + batch] for k in range(0, len(items), batch)]
     for attempt in range(retries + 1):
         batches = _submit(client, work, batches, done, retries)
@@ -197,10 +201,8 @@ def command(arguments: list[str]) -> int:
 
             client: Any
             with Client(sweep.address, set_as_default=False) as client:
-                threads = sum(client.nthreads().values()) or 1
-                batch = max(1, min(50, len(missing) // (8 * threads)))
                 work = functools.partial(share, tuple(words))
-                each(client, work, missing, done, batch=batch, retries=3)
+                each(client, work, missing, done, batch=None, retries=3)
     except Stopped as e:
         name = {2: "Ctrl-C", 15: "SIGTERM"}.get(e.args[0], "SIGHUP")
         print(f"stopped by {name}: the same command computes what is missing", file=sys.stderr)

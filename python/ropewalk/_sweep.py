@@ -281,7 +281,7 @@ def sweep(
     latin: bool = False,
     client: Any = None,
     jobs: int | None = None,
-    batch: int = 1,
+    batch: int | None = None,
     retries: int = 3,
     measure: Measure | None = None,
     **fixed: Any,
@@ -292,7 +292,7 @@ def sweep(
     drawn at random, the same ones on every machine for the same `seed`; `latin` spreads them evenly (Latin hypercube).
 
     They run in `jobs` threads of this machine, by default one for each core, or on the workers of a
-    `dask.distributed.Client`, `batch` runs at a time: workers should be processes with one thread, and see the folder
+    `dask.distributed.Client`, `batch` runs at a time (by default what seems fit): workers should be processes with one thread, and see the folder
     `out`. A worker that is killed loses nothing, nor does one whose disk is full; a scheduler that is lost may come back
     within a minute, `retries` times. `measure(run)` adds numbers of one's own to the rows.
 
@@ -303,7 +303,7 @@ def sweep(
     both = [name for name in names if name in fixed]
     if both:
         raise SceneError(f"`{both[0]}` is both varied and set\n  = help: leave away one of them")
-    if jobs is not None and jobs < 1 or batch < 1:
+    if jobs is not None and jobs < 1 or batch is not None and batch < 1:
         raise SceneError("`jobs` and `batch` are at least 1")
     grid = combinations(vary, samples, seed, latin)
     if not grid:
