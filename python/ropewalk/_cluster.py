@@ -37,8 +37,8 @@ def each(
     retries: int,
     patience: float = 60.0,
 ) -> None:
-    """Calls `work` with all items, `batch` at a time or as many as seems fit, on the workers of a `distributed.Client`, and `done` here with each
-    result.
+    """Calls `work` with all items, `batch` at a time or as many as seems fit, on the workers of a `distributed.Client`, and
+    `done` here with each result.
 
     What a worker had begun when it was lost is done by another one. If the scheduler is lost, it may come back with
     workers within `patience` seconds, `retries` times: what had no result by then is begun anew.

@@ -292,8 +292,8 @@ def sweep(
     drawn at random, the same ones on every machine for the same `seed`; `latin` spreads them evenly (Latin hypercube).
 
     They run in `jobs` threads of this machine, by default one for each core, or on the workers of a
-    `dask.distributed.Client`, `batch` runs at a time (by default what seems fit): workers should be processes with one thread, and see the folder
-    `out`. A worker that is killed loses nothing, nor does one whose disk is full; a scheduler that is lost may come back
+    `dask.distributed.Client`, `batch` runs at a time (by default what seems fit): workers should be processes with one
+    thread, and see the folder `out`. A worker that is killed loses nothing, nor does one whose disk is full; a scheduler that is lost may come back
     within a minute, `retries` times. `measure(run)` adds numbers of one's own to the rows.
 
     The rows are in `out/rows`. What is there is not computed again, whoever computed it and whatever killed it: the same
