@@ -84,7 +84,7 @@ def linearise(scene: AnyScene, at: str | float = "equilibrium", **parameters: An
         constraints=said["constraints"],
         inputs=dict(said["inputs"]),
         outputs=dict(said["outputs"]),
-        **{name: _matrix(*rest) for name, *rest in matrices},
+        **{matrix[0]: _matrix(*matrix[1:]) for matrix in matrices},
     )
 
 
