@@ -422,7 +422,7 @@ impl Scene {
             return Ok(model);
         }
         let records = self.records(&model)?;
-        let controls = controllers::build_all(&self.controllers, &model, records);
+        let controls = controllers::build_all(&self.controllers, &model, records, self.run.duration);
         Ok(model.with_controls(controls.map_err(|(k, e)| of(SpecKind::Controller, k)(e))?))
     }
 

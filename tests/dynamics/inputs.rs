@@ -150,6 +150,11 @@ fn wrong_scenes_are_refused_with_a_remedy() {
             "it is in m, and has to be a plain number",
         ),
         (
+            "[[inputs]]\nname = \"u\"\n[[controllers]]\ntype = \"expression\"\ninput = \"u\"\nvalue = \"t / 1 s\"\nevery = 1e-300\n"
+                .into(),
+            "take a longer interval",
+        ),
+        (
             "[[inputs]]\nname = \"u\"\n[[controllers]]\ntype = \"pid\"\ninput = \"u\"\nmeasures = \"t\"\nsetpoint = 0\nkp = \"1 1/m\"\n\
              every = 1\n"
                 .into(),

@@ -182,6 +182,21 @@ impl Simulation {
     }
 }
 
+/// Whether the controllers of a model act at instants that pass, on inputs that there are.
+pub(super) fn check(model: &crate::model::Model) -> Result<(), StepError> {
+    let fits = |every: f64, input: usize| every > 0.0 && every.is_finite() && input < model.inputs().len();
+    match model.controls().iter().find(|c| !fits(c.every(), c.input())) {
+        None => Ok(()),
+        Some(c) => Err(StepError::Scheme(format!(
+            "the controller `{}` acts every {} s on input number {}, of {}: there is no such interval or input",
+            c.name(),
+            c.every(),
+            c.input(),
+            model.inputs().len()
+        ))),
+    }
+}
+
 /// What the controllers of a model remember at the start.
 pub(super) fn at_start(model: &crate::model::Model) -> Vec<Controlling> {
     model.controls().iter().map(|c| Controlling { next: 0, memory: vec![0.0; c.memory()] }).collect()

@@ -158,6 +158,7 @@ impl Simulation {
     /// system can't be solved.
     pub fn from(model: Model, mut state: State, options: &Options, duration: f64) -> Result<Self, StepError> {
         model.check(&state).map_err(StepError::Foreign)?;
+        inputs::check(&model)?;
         let integrator = options.integrator(&model, duration)?;
         let mut work = Workspace::new(&model).map_err(|source| StepError::Linear {
             t: state.t,

@@ -1,7 +1,8 @@
 use super::*;
 
 fn value(text: &str) -> f64 {
-    let e = Expression::parse(text, &|_| true).unwrap_or_else(|e| panic!("{text}: {}", e.message));
+    let e = Expression::parse(text, &|name| !name.contains('-'))
+        .unwrap_or_else(|e| panic!("{text}: {}", e.message));
     e.value(&vec![2.0; e.names().len()])
 }
 
@@ -49,7 +50,7 @@ fn names_behind_a_dollar_are_the_longest_that_are_known() {
     let known = |name: &str| ["wet-mass", "a"].contains(&name);
     let names = |text: &str| Expression::parse(text, &known).unwrap().names().to_vec();
     assert_eq!(names("$wet-mass - $a-1"), ["$wet-mass", "$a"]);
-    assert_eq!(names("$b-c"), ["$b"]);
+    assert_eq!(names("$b-c"), ["$b", "c"]);
 }
 
 #[test]
@@ -92,7 +93,6 @@ fn what_is_no_formula_is_refused_and_nothing_panics() {
         "{a",
         "1 parsec",
         "3 N m.x",
-        "é",
         "1 é",
         "a b",
         "1..2",

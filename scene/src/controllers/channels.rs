@@ -15,7 +15,12 @@ pub struct Channels<'a> {
     records: Arc<Vec<Box<dyn Record>>>,
     /// Every column with its record, and its place there.
     columns: Vec<(Column, usize, usize)>,
+    /// Length of the run [s].
+    duration: f64,
 }
+
+/// More instants of a controller than these are surely a mistake.
+const MOST_INSTANTS: f64 = 1e8;
 
 /// Where the value of a name comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,12 +40,12 @@ pub struct Bound {
 }
 
 impl<'a> Channels<'a> {
-    pub(super) fn new(model: &'a Model, records: Vec<Box<dyn Record>>) -> Self {
+    pub(super) fn new(model: &'a Model, records: Vec<Box<dyn Record>>, duration: f64) -> Self {
         let mut columns = Vec::new();
         for (record, r) in records.iter().enumerate() {
             columns.extend(r.columns().into_iter().enumerate().map(|(place, c)| (c, record, place)));
         }
-        Channels { model, records: Arc::new(records), columns }
+        Channels { model, records: Arc::new(records), columns, duration }
     }
 
     /// The input that a controller sets, and its number.
@@ -55,6 +60,22 @@ impl<'a> Channels<'a> {
             return Err(BuildError::at("input", format!("there is no input `{name}`; {guess}")));
         };
         Ok((k, &inputs[k]))
+    }
+
+    /// The interval of a controller [s].
+    ///
+    /// # Errors
+    /// It isn't positive, or so short that a run would never end.
+    pub fn interval(&self, every: f64) -> Result<f64, BuildError> {
+        let instants = self.duration / positive("every", every)?;
+        if instants <= MOST_INSTANTS {
+            return Ok(every);
+        }
+        let message = format!(
+            "every {every:e} s a controller would act {instants:.0e} times in {} s: take a longer interval",
+            self.duration
+        );
+        Err(BuildError::at("every", message))
     }
 
     /// Binds a formula to the records; a bare number is of whatever `dimension` it has to be, if that is known.
@@ -147,9 +168,4 @@ impl Bound {
             .iter()
             .any(|s| matches!(s, Source::Column { record, .. } if self.records[*record].needs_forces()))
     }
-}
-
-/// The interval of a controller, of which a run must not hold too many.
-pub(super) fn interval(every: f64) -> Result<f64, BuildError> {
-    positive("every", every)
 }

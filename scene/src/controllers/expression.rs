@@ -1,6 +1,6 @@
 //! An input as a formula of records and time.
 
-use super::channels::{Bound, Channels, interval};
+use super::channels::{Bound, Channels};
 use crate::register_spec;
 use crate::spec::ControllerSpec;
 use ropewalk_core::{BuildError, Controller, Sample};
@@ -48,7 +48,7 @@ impl ControllerSpec for ExpressionSpec {
         Ok(Arc::new(Expressed {
             name: self.name.clone().unwrap_or_else(|| self.input.clone()),
             input: number,
-            every: interval(self.every)?,
+            every: c.interval(self.every)?,
             value: c.bind("value", &self.value, Some(wanted))?,
         }))
     }

@@ -19,8 +19,9 @@ pub(crate) fn build_all(
     specs: &[Arc<dyn ControllerSpec>],
     model: &Model,
     records: Vec<Box<dyn Record>>,
+    duration: f64,
 ) -> Result<Vec<Arc<dyn Controller>>, (usize, BuildError)> {
-    let channels = Channels::new(model, records);
+    let channels = Channels::new(model, records, duration);
     let mut all: Vec<Arc<dyn Controller>> = Vec::with_capacity(specs.len());
     for (k, spec) in specs.iter().enumerate() {
         let controller = spec.build(&channels).map_err(|e| (k, e))?;

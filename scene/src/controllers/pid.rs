@@ -1,6 +1,6 @@
 //! A PID controller, sampled.
 
-use super::channels::{Bound, Channels, interval};
+use super::channels::{Bound, Channels};
 use crate::register_spec;
 use crate::spec::ControllerSpec;
 use ropewalk_core::error::{need, not_negative};
@@ -96,7 +96,7 @@ impl ControllerSpec for PidSpec {
         Ok(Arc::new(Pid {
             name: self.name.clone().unwrap_or_else(|| self.input.clone()),
             input: number,
-            every: interval(self.every)?,
+            every: c.interval(self.every)?,
             setpoint: c.bind("setpoint", &self.setpoint, Some(measures.dimension))?,
             bias: c.bind("bias", &self.bias, Some(of_input))?,
             measures,

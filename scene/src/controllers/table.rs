@@ -1,6 +1,6 @@
 //! An input as a table over a record.
 
-use super::channels::{Bound, Channels, interval};
+use super::channels::{Bound, Channels};
 use crate::register_spec;
 use crate::spec::ControllerSpec;
 use ropewalk_core::error::{finite, need};
@@ -67,7 +67,7 @@ impl ControllerSpec for ControlTableSpec {
         Ok(Arc::new(Tabled {
             name: self.name.clone().unwrap_or_else(|| self.input.clone()),
             input: number,
-            every: interval(self.every)?,
+            every: c.interval(self.every)?,
             over,
             rows: at.into_iter().zip(value).map(|(x, y)| [x, y]).collect(),
         }))
