@@ -3,8 +3,8 @@
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::held::{Held, MOST};
 use ropewalk_core::{
-    Assembly, At, Attitude, BuildError, ContactPoint, DeadEntry, DeadLoad, DeadPull, Energy, Marker, Node, NodeId,
-    NodeKind, Part, Pattern, Per, Power, Solid, Spot, Surface, Term, V3, dot,
+    Assembly, At, Attitude, BuildError, ContactPoint, DeadEntry, DeadLoad, DeadPull, Energy, Marker, Node,
+    NodeId, NodeKind, Part, Pattern, Per, Power, Solid, Spot, Surface, Term, V3, dot,
 };
 use ropewalk_scene::{Builder, Current, ElementSpec, MarkerRef, ball_below, quantity, register_spec};
 use schemars::JsonSchema;
@@ -361,7 +361,8 @@ impl Part for Body {
         if !(radius > 0.0 && radius.is_finite()) {
             return Vec::new();
         }
-        let (surface, seat) = (Surface::Ball { radius }, Attitude { x: [0.0; 3], turn: [1.0, 0.0, 0.0, 0.0] });
+        let (surface, seat) =
+            (Surface::Ball { radius }, Attitude { x: [0.0; 3], turn: [1.0, 0.0, 0.0, 0.0] });
         vec![Solid { name: self.spec.name.clone(), surface, carrier: None, seat }]
     }
     fn length(&self) -> f64 {

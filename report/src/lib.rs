@@ -24,8 +24,8 @@ mod watch;
 
 pub use error::OutputError;
 pub use field::{BodyRecord, FieldRecord, LineRecord, LineSnapshot, Mesh, Pose, Quantity, Shape, Solid};
-pub use folder::{RUNS, RunFolder, cannot_create, plain, write_atomic, write_durable, write_json};
 pub(crate) use folder::write_atomic_bytes;
+pub use folder::{RUNS, RunFolder, cannot_create, plain, write_atomic, write_durable, write_json};
 pub use interrupt::Interrupt;
 pub use number::{number, rough};
 pub use page::{Entry, Event, Page, Panel, Section, escaped};

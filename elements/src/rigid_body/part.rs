@@ -1,11 +1,11 @@
 //! A rigid body as a part of a model.
 
+use super::Shape;
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{cross, matrix, times};
-use super::Shape;
 use ropewalk_core::{
-    At, Attitude, ContactSpan, DeadEntry, DeadLoad, DeadPull, Marker, Node, NodeId, Part, Per, Solid, SpanLine, Spot,
-    Stations, Term, Tip, V3,
+    At, Attitude, ContactSpan, DeadEntry, DeadLoad, DeadPull, Marker, Node, NodeId, Part, Per, Solid,
+    SpanLine, Spot, Stations, Term, Tip, V3,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -136,9 +136,9 @@ impl Part for BodyPart {
     /// Its hull and its shape, from the origin of its frame.
     fn solids(&self) -> Vec<Solid> {
         let from_origin = |x: &V3<f64>| std::array::from_fn(|i| x[i] - self.origin[i]);
-        let hull = self.hull.map(|ends| {
-            Solid::between(&self.name, None, ends.each_ref().map(from_origin), self.diameter)
-        });
+        let hull = self
+            .hull
+            .map(|ends| Solid::between(&self.name, None, ends.each_ref().map(from_origin), self.diameter));
         let shape = self.shape.as_ref().map(|shape| {
             let (surface, axes) = shape.surface();
             let seat = Attitude::new(from_origin(&[0.0; 3]), &axes);

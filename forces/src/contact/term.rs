@@ -13,8 +13,8 @@ use ropewalk_core::error::{need, positive};
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Attitude, BuildError, Column, ContactPoint, ContactSpan, Energy, Foresees, Marker, Node, NodeKind,
-    Pattern, Power, Relaxed, Remembers, Shows, Solid, SpanLine, Term, V3, Weights, dot,
+    Assembly, At, Attitude, BuildError, Column, ContactPoint, ContactSpan, Energy, Foresees, Marker, Node,
+    NodeKind, Pattern, Power, Relaxed, Remembers, Shows, Solid, SpanLine, Term, V3, Weights, dot,
 };
 use std::ops::Range;
 

@@ -142,7 +142,8 @@ impl FieldRecord {
                 let lengths = snapshot.values.iter().map(Vec::len);
                 let named = line.quantities.iter().map(|q| q.name.as_str()).zip(lengths);
                 let lengths = std::iter::once(("s", snapshot.s.len())).chain(named);
-                let velocities = (!snapshot.velocity.is_empty()).then_some(("velocity", snapshot.velocity.len()));
+                let velocities =
+                    (!snapshot.velocity.is_empty()).then_some(("velocity", snapshot.velocity.len()));
                 for (name, found) in lengths.chain(velocities) {
                     if found != points {
                         return Err(fail(

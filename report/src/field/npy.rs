@@ -48,7 +48,8 @@ impl Rows {
     }
 
     fn write(self, path: &Path) -> Result<(), OutputError> {
-        let fields: String = self.fields.iter().map(|name| format!(", ('{}', '<f8')", quoted(name))).collect();
+        let fields: String =
+            self.fields.iter().map(|name| format!(", ('{}', '<f8')", quoted(name))).collect();
         let text = format!(
             "{{'descr': [('part', '<U{}'){fields}], 'fortran_order': False, 'shape': ({},), }}",
             self.wide, self.count
@@ -163,8 +164,12 @@ impl FieldRecord {
         times.dedup();
         let place = |t: f64| times.partition_point(|x| x.total_cmp(&t).is_lt());
         let mut field = FieldRecord { times: times.clone(), ..FieldRecord::default() };
-        let quantities: Vec<Quantity> =
-            lines.fields.iter().skip(POINT.len()).map(|name| Quantity::new(name.replace('_', " "), "")).collect();
+        let quantities: Vec<Quantity> = lines
+            .fields
+            .iter()
+            .skip(POINT.len())
+            .map(|name| Quantity::new(name.replace('_', " "), ""))
+            .collect();
         for (name, row) in &lines.rows {
             let line = match field.lines.iter().position(|line| line.name == *name) {
                 Some(k) => &mut field.lines[k],
@@ -173,7 +178,11 @@ impl FieldRecord {
                     let empty = LineSnapshot { values, ..LineSnapshot::default() };
                     let snapshots = vec![empty; times.len()];
                     let quantities = quantities.clone();
-                    field.lines.push(LineRecord { quantities, snapshots, ..LineRecord::new(name, "line", 0.0) });
+                    field.lines.push(LineRecord {
+                        quantities,
+                        snapshots,
+                        ..LineRecord::new(name, "line", 0.0)
+                    });
                     field.lines.last_mut().unwrap_or_else(|| unreachable!("it was just added"))
                 }
             };
@@ -228,7 +237,8 @@ impl Read {
         let (head, data) = rest.split_at_checked(length).ok_or("it is cut off")?;
         let head = std::str::from_utf8(head).map_err(|_| "its header is no text")?;
         // ('part', '<U5'), ('t', '<f8'), …: pairs of quoted texts
-        let list = head.split_once('[').and_then(|(_, rest)| rest.split_once(']')).ok_or("it has no fields")?.0;
+        let list =
+            head.split_once('[').and_then(|(_, rest)| rest.split_once(']')).ok_or("it has no fields")?.0;
         let texts: Vec<String> = quotes(list);
         let (pairs, _) = texts.as_chunks::<2>();
         let Some(([_, wide], numbers)) = pairs.split_first() else { return Err("it has no fields") };
@@ -246,7 +256,10 @@ impl Read {
             let (characters, _) = name.as_chunks::<4>();
             let name = characters.iter().filter_map(|c| char::from_u32(u32::from_le_bytes(*c)));
             let (numbers, _) = numbers.as_chunks::<8>();
-            (name.take_while(|c| *c != '\0').collect(), numbers.iter().map(|b| f64::from_le_bytes(*b)).collect())
+            (
+                name.take_while(|c| *c != '\0').collect(),
+                numbers.iter().map(|b| f64::from_le_bytes(*b)).collect(),
+            )
         };
         let fields = numbers.iter().map(|[name, _]| name.clone()).collect();
         Ok(Read { fields, rows: data.chunks_exact(size).map(row).collect() })
@@ -286,11 +299,15 @@ mod tests {
             snapshots: vec![snapshot(points[0], 0.0), snapshot(points[1], 0.25)],
             ..LineRecord::new(name, "line", 0.0)
         };
-        let body = BodyRecord { poses: vec![Pose::at([1.0, 2.0, 3.0]); 2], ..BodyRecord::new("Schiff", "body") };
+        let body =
+            BodyRecord { poses: vec![Pose::at([1.0, 2.0, 3.0]); 2], ..BodyRecord::new("Schiff", "body") };
         FieldRecord {
             times: vec![0.0, 0.25],
             // one isn't there at first
-            lines: vec![line("hose's \\ märe", "bending moment", [2, 3]), line("b", "bending moment", [0, 1])],
+            lines: vec![
+                line("hose's \\ märe", "bending moment", [2, 3]),
+                line("b", "bending moment", [0, 1]),
+            ],
             bodies: vec![body],
             ..FieldRecord::default()
         }
@@ -307,7 +324,9 @@ mod tests {
         assert_eq!((10 + head) % 64, 0);
         let text = std::str::from_utf8(&bytes[10..10 + head]).unwrap();
         assert!(text.starts_with("{'descr': [('part', '<U13'), ('t', '<f8'), ('s', '<f8'), "), "{text}");
-        assert!(text.trim_end().ends_with("('bending_moment', '<f8')], 'fortran_order': False, 'shape': (6,), }"));
+        assert!(
+            text.trim_end().ends_with("('bending_moment', '<f8')], 'fortran_order': False, 'shape': (6,), }")
+        );
         assert_eq!(bytes.len(), 10 + head + 6 * (4 * 13 + 8 * 9));
     }
 
@@ -319,9 +338,11 @@ mod tests {
         assert_eq!(FieldRecord::read_npy(&none, &none).unwrap(), FieldRecord::default());
         field().write_npy(&path, &none).unwrap();
         let whole = fs::read(&path).unwrap();
-        for (bytes, words) in
-            [(&b"t,x\n0,1\n"[..], "doesn't begin"), (&whole[..40], "cut off"), (&whole[..whole.len() - 3], "cut off")]
-        {
+        for (bytes, words) in [
+            (&b"t,x\n0,1\n"[..], "doesn't begin"),
+            (&whole[..40], "cut off"),
+            (&whole[..whole.len() - 3], "cut off"),
+        ] {
             fs::write(&path, bytes).unwrap();
             let message = FieldRecord::read_npy(&path, &none).unwrap_err().to_string();
             assert!(message.contains(words) && message.contains("field.npy"), "{message}");

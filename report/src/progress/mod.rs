@@ -181,7 +181,8 @@ impl Progress {
         self.rate.update(t, now);
         self.last_shown = now;
         self.last_share = share;
-        let (t_end, rejected, speed, spark) = (self.t_end, self.rejected, self.rate.value, self.spark.as_ref());
+        let (t_end, rejected, speed, spark) =
+            (self.t_end, self.rejected, self.rate.value, self.spark.as_ref());
         let report = Report { t, t_end, h, rejected, speed, spark };
         match &mut self.shown {
             Shown::Bar(bar) => {

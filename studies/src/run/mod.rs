@@ -30,12 +30,14 @@ pub(crate) use scenery::Scenery;
 pub(crate) use shapes::{Shape, last as last_shape, read as read_shapes};
 pub(crate) use start::Started;
 pub(crate) use summary::Ending;
-pub use view::{page_of, report_of};
 pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, Status, Summary};
+pub use view::{page_of, report_of};
 
 use crate::error::Error;
 use checkpoint::Saver;
-use ropewalk_report::{Elapsed, Page, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch};
+use ropewalk_report::{
+    Elapsed, Page, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch,
+};
 use ropewalk_scene::{Fault, SceneFile};
 use std::path::PathBuf;
 use std::time::Duration;
