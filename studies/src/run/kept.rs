@@ -75,7 +75,8 @@ impl Kept {
 
     /// Writes it if that is long ago. What goes wrong is said when it is written for good.
     fn write_now_and_then(&mut self) {
-        if !self.live.as_ref().is_some_and(|live| live.last.elapsed() >= PERIOD.max(SHARE * live.cost)) {
+        let due = |live: &Live| live.last.elapsed() >= PERIOD.max(SHARE * live.cost);
+        if !self.live.as_ref().is_some_and(due) {
             return;
         }
         let (start, field) = (Instant::now(), self.field());
