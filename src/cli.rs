@@ -18,7 +18,7 @@
 pub use crate::commands::shared::SharedSweep;
 use crate::commands::{self, Exit};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use ropewalk_models::Bundled;
 pub use ropewalk_studies::Error;
 use ropewalk_studies::run::Every;
@@ -33,7 +33,7 @@ use std::process::ExitCode;
     name = "ropewalk",
     version,
     after_help = "Examples:\n  \
-        ropewalk list                           what there is\n  \
+        ropewalk list                           what there is (--gallery: small examples)\n  \
         ropewalk run scene.toml                 results go to runs/scene\n  \
         ropewalk run scene.toml --set n=40      the same with another parameter\n  \
         ropewalk sweep scene.toml --vary n=10,20,40 --vary speed=5:25:10kn\n  \
@@ -164,7 +164,17 @@ pub(crate) enum Command {
         suggested limit is reported, no failure. Cases are scenes: `--scenes DIR` writes them, to be run and changed.")]
     Verify(commands::verify::VerifyArgs),
     /// List the bundled scenes and the types that a scene can use
-    List,
+    List {
+        /// The scenes of the gallery instead: small ones, each of which shows one thing
+        #[arg(long)]
+        gallery: bool,
+    },
+    /// Begin a scene of one's own with a copy of another
+    #[command(after_help = "Examples:\n  \
+        ropewalk new swing                      from the scene `simple-pendulum`\n  \
+        ropewalk new my-mooring --from mooring-line\n\n\
+        `ropewalk list` and `ropewalk list --gallery` name the scenes to begin with.")]
+    New(commands::new::NewArgs),
     /// Explain a scene, a type, or a section of a scene file
     #[command(after_help = "Examples:\n  \
         ropewalk describe scene.toml            title, parameters, parts\n  \
@@ -200,6 +210,22 @@ pub(crate) enum Command {
         ropewalk migrate scene.toml --out new.toml\n\n\
         Comments, order and layout stay as they are. A scene that uses the names of this version is not touched.")]
     Migrate(commands::migrate::MigrateArgs),
+    /// Write what a shell has to read to complete commands
+    #[command(after_help = "Examples:\n  \
+        ropewalk completions bash > ~/.local/share/bash-completion/completions/ropewalk\n  \
+        ropewalk completions zsh > ~/.zfunc/_ropewalk\n  \
+        ropewalk completions fish > ~/.config/fish/completions/ropewalk.fish")]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write the pages of the manual, one for each command
+    #[command(after_help = "Example:\n  ropewalk man ~/.local/share/man/man1")]
+    Man {
+        /// The folder, which is made if it isn't there
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Write a scene as an FMU, for co-simulation with other programs (FMI 3.0)
     #[command(after_help = "Examples:\n  \
         cargo build --release -p ropewalk-fmu   the shared library that goes into the file\n  \
@@ -327,7 +353,10 @@ pub fn exit_from(
         Command::Cost(args) => commands::cost::cost(args, bundled),
         Command::Effects(args) => commands::effects::effects(&args, bundled),
         Command::Verify(args) => commands::verify::verify(&args),
-        Command::List => commands::list::list(bundled),
+        Command::List { gallery } => commands::list::list(bundled, gallery),
+        Command::New(args) => commands::new::new(&args, bundled),
+        Command::Completions { shell } => commands::completions::completions(Cli::command(), shell),
+        Command::Man { folder } => commands::completions::man(Cli::command(), &folder),
         Command::Describe { what } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),
         Command::Variants(args) => commands::variants::variants(&args),

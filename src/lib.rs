@@ -45,7 +45,7 @@ pub use ropewalk_studies as studies;
 
 pub use ropewalk_core::integrator::Options;
 pub use ropewalk_core::{BuildError, Model, Simulation, State};
-pub use ropewalk_models::bundled;
+pub use ropewalk_models::{bundled, gallery, scenes};
 pub use ropewalk_report::Watch;
 pub use ropewalk_scene::{Air, Builder, Bundled, MarkerRef, Run, Scene, SceneError, SceneFile, Water};
 pub use ropewalk_studies::certificate::{Cause, Certificate, Change, certify_scene};

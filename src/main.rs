@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    ropewalk::cli::main_with(ropewalk::bundled())
+    ropewalk::cli::main_with(ropewalk::scenes())
 }

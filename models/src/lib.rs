@@ -1,9 +1,11 @@
 //! The cases that come with Ropewalk: scene files, compiled into the program; and solvers of their own kind for single
 //! problems.
 
+mod gallery;
 pub mod unwinding;
 
 pub use ropewalk_scene::Bundled;
+use std::sync::LazyLock;
 
 /// `scenes/NAME.toml` under its name.
 macro_rules! scenes {
@@ -25,6 +27,17 @@ pub fn bundled() -> &'static [Bundled] {
         "unwinding-paper"
     ];
     ALL
+}
+
+/// The scenes of the gallery, by name: small ones, each of which shows one thing and says what is known about its answer.
+pub fn gallery() -> &'static [Bundled] {
+    gallery::ALL
+}
+
+/// All scenes that are known by their names: the [`bundled`] ones and those of the [`gallery`].
+pub fn scenes() -> &'static [Bundled] {
+    static ALL: LazyLock<Vec<Bundled>> = LazyLock::new(|| [bundled(), gallery()].concat());
+    &ALL
 }
 
 /// All bundled atlases, by name: figures and tables of a document, computed from scenes.

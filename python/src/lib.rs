@@ -145,7 +145,7 @@ fn bundled() -> PyResult<Vec<(String, String)>> {
 /// What `ropewalk describe` says.
 #[pyfunction]
 fn describe(py: Python<'_>, what: &str) -> PyResult<String> {
-    ropewalk::cli::explain(what, ropewalk::bundled()).map_err(|e| raise(py, &e))
+    ropewalk::cli::explain(what, ropewalk::scenes()).map_err(|e| raise(py, &e))
 }
 
 /// JSON schemas of all types and sections of scenes.
@@ -162,7 +162,7 @@ fn schemas() -> String {
 #[pyo3(signature = (*arguments))]
 fn main(py: Python<'_>, arguments: &Bound<'_, PyTuple>) -> PyResult<u8> {
     let arguments: Vec<OsString> = arguments.extract()?;
-    Ok(py.detach(|| ropewalk::cli::exit_from(ropewalk::bundled(), arguments)))
+    Ok(py.detach(|| ropewalk::cli::exit_from(ropewalk::scenes(), arguments)))
 }
 
 #[pymodule]

@@ -14,7 +14,7 @@ impl Source {
     /// A scene by its bundled name or its path.
     #[staticmethod]
     fn open_scene(py: Python<'_>, scene: &str) -> PyResult<Self> {
-        SceneText::open(scene, ropewalk::bundled()).map(Source).map_err(|e| raise(py, &e.into()))
+        SceneText::open(scene, ropewalk::scenes()).map(Source).map_err(|e| raise(py, &e.into()))
     }
     /// A scene by its text, which is JSON or TOML; files that it names are in `folder`.
     #[staticmethod]

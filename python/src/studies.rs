@@ -92,7 +92,7 @@ impl SharedSweep {
     /// Reads the arguments of the command; what is wrong with them is said on standard error.
     #[new]
     fn new(arguments: Vec<String>) -> PyResult<Self> {
-        let read = ropewalk::cli::SharedSweep::parse(&arguments, ropewalk::bundled());
+        let read = ropewalk::cli::SharedSweep::parse(&arguments, ropewalk::scenes());
         read.map(SharedSweep).map_err(PySystemExit::new_err)
     }
     /// The scheduler.

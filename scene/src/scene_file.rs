@@ -258,7 +258,10 @@ fn unknown(scene: &str, bundled: &[Bundled]) -> Fault {
     let message = format!("there is no bundled scene and no file {}", quoted(scene));
     let fault = match names.as_slice() {
         [] => Fault::new(message),
-        _ => Fault::new(message).with_note(format!("the bundled scenes are {}", names.join(", "))),
+        few if few.len() <= 12 => {
+            Fault::new(message).with_note(format!("the bundled scenes are {}", names.join(", ")))
+        }
+        _ => Fault::new(message).with_note("`ropewalk list` and `ropewalk list --gallery` name those that there are"),
     };
     match did_you_mean(scene, &names) {
         Some(guess) => fault.with_help(guess),

@@ -1,7 +1,7 @@
 //! `ropewalk list`
 
 use super::{Exit, first_line, say, schema};
-use ropewalk_models::{Bundled, atlases};
+use ropewalk_models::{Bundled, atlases, gallery};
 use ropewalk_scene::{Document, Format, SpecKind, registered};
 pub use ropewalk_studies::Error;
 
@@ -16,9 +16,17 @@ const KINDS: [SpecKind; 7] = [
     SpecKind::Process,
 ];
 
-pub(crate) fn list(bundled: &[Bundled]) -> Result<Exit, Error> {
+pub(crate) fn list(bundled: &[Bundled], of_gallery: bool) -> Result<Exit, Error> {
     let mut out = String::new();
-    let scenes: Vec<(&str, String)> = bundled.iter().map(|b| (b.name, title(b))).collect();
+    if of_gallery {
+        let scenes: Vec<(&str, String)> = gallery().iter().map(|b| (b.name, title(b))).collect();
+        section(&mut out, "gallery", &scenes);
+        out += "`ropewalk describe NAME` explains one, `ropewalk run NAME` runs it, `ropewalk new MINE --from NAME` copies it.";
+        say(out);
+        return Ok(Exit::Done);
+    }
+    let own = bundled.iter().filter(|b| !gallery().iter().any(|g| g.name == b.name));
+    let scenes: Vec<(&str, String)> = own.map(|b| (b.name, title(b))).collect();
     section(&mut out, "scenes", &scenes);
     let atlases: Vec<(&str, String)> = atlases().iter().map(|b| (b.name, title(b))).collect();
     section(&mut out, "atlases", &atlases);
@@ -33,7 +41,7 @@ pub(crate) fn list(bundled: &[Bundled]) -> Result<Exit, Error> {
             .collect();
         section(&mut out, kind.list(), &types);
     }
-    out += "`ropewalk describe NAME` explains a scene or a type.";
+    out += "`ropewalk describe NAME` explains a scene or a type, `ropewalk list --gallery` has smaller scenes.";
     say(out);
     Ok(Exit::Done)
 }

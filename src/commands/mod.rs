@@ -3,6 +3,7 @@
 pub(crate) mod atlas;
 pub(crate) mod bench;
 pub(crate) mod check;
+pub(crate) mod completions;
 pub(crate) mod cost;
 pub(crate) mod describe;
 pub(crate) mod effects;
@@ -11,6 +12,7 @@ pub(crate) mod linearise;
 pub(crate) mod list;
 pub(crate) mod migrate;
 pub(crate) mod modes;
+pub(crate) mod new;
 pub(crate) mod plot;
 pub(crate) mod resume;
 pub(crate) mod run;

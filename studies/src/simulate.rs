@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::run::{Counts, CriticalLoad, Ending, ProfileEntry, Recorder, Started, Status, Summary};
 use ropewalk_core::{Audit, Model, Simulation, State, V3};
-use ropewalk_models::bundled;
+use ropewalk_models::scenes;
 use ropewalk_report::{Elapsed, Progress, Stopwatch, Table, Watch};
 use ropewalk_scene::{Fault, Scene, SceneFile};
 use std::path::Path;
@@ -16,7 +16,7 @@ use std::time::Duration;
 /// There is no such scene, or anything is wrong with it.
 pub fn read(scene: impl AsRef<Path>) -> Result<Scene, Error> {
     let scene = scene.as_ref().to_string_lossy();
-    Ok(SceneFile::open(&scene, &[], bundled())?.into_scene())
+    Ok(SceneFile::open(&scene, &[], scenes())?.into_scene())
 }
 
 /// What a run computed: the records over time, and where it ended.
