@@ -10,6 +10,8 @@
 //! # expect: critical 1 = 0.987 ± 1e-3     (why)      load factor at which an equilibrium loses its stability
 //! ```
 
+mod page;
+
 use ropewalk::{History, Modal, ModesOptions, Scene, modes, read, simulate};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
