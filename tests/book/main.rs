@@ -1,7 +1,7 @@
 //! The book: every command that it shows is run, and what it shows of its output compared; every scene that it shows runs.
 //!
 //! A page `book/src/NAME.md` has its commands in blocks ```` ```console ````, and the files that they need in
-//! `book/src/NAME.in/`; each page runs in a copy of that folder. `...` stands for lines and `[..]` for characters that differ
+//! `book/src/NAME.in/`; as there is a folder `NAME.out/` too, each page runs in a copy. `...` stands for lines and `[..]` for characters that differ
 //! from run to run. `TRYCMD=overwrite cargo test --test book` writes the output of today into the pages: read the diff.
 
 use std::path::{Path, PathBuf};
@@ -37,6 +37,19 @@ fn scenes_of_the_book_are_right() {
     for path in scenes {
         let scene = ropewalk::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         scene.build().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    }
+}
+
+#[test]
+fn scenes_that_are_also_in_the_gallery_are_the_same() {
+    let mut scenes = Vec::new();
+    files(&book().join("src"), "toml", &mut scenes);
+    for path in scenes {
+        let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("gallery").join(path.file_name().unwrap());
+        if original.exists() {
+            let [here, there] = [&path, &original].map(|p| std::fs::read_to_string(p).unwrap());
+            assert!(here == there, "{} differs from {}", path.display(), original.display());
+        }
     }
 }
 
