@@ -61,11 +61,13 @@ pub use ropewalk_studies::run::{Every, Leaves, Manifest, Outcome, RunOptions, St
 pub use ropewalk_studies::simulate::{History, read, simulate, simulate_with, start};
 pub use ropewalk_studies::{Error, Session, Snapshot, bench, variants, verify};
 
-/// The programs of the README and of CONTRIBUTING must compile and run.
+/// The programs of the README, of CONTRIBUTING and of the book must compile and run.
 #[cfg(doctest)]
 mod documents {
     #[doc = include_str!("../README.md")]
     struct Readme;
     #[doc = include_str!("../CONTRIBUTING.md")]
     struct Contributing;
+    #[doc = include_str!("../book/src/rust.md")]
+    struct Book;
 }

@@ -53,6 +53,11 @@ mod tests {
     #[test]
     fn names_ascend_and_are_names() {
         assert!(bundled().windows(2).all(|w| w[0].name < w[1].name));
-        assert!(bundled().iter().all(|b| !b.name.contains(['/', '\\', '.']) && !b.text.is_empty()));
+        assert!(gallery().windows(2).all(|w| w[0].name < w[1].name));
+        assert!(scenes().iter().all(|b| !b.name.contains(['/', '\\', '.']) && !b.text.is_empty()));
+        let mut names: Vec<&str> = scenes().iter().map(|b| b.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), scenes().len());
     }
 }

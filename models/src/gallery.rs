@@ -1,0 +1,61 @@
+//! The scenes of the gallery. `gallery/NAME.toml` is named here, described by itself, and drawn in the book.
+
+use ropewalk_scene::Bundled;
+
+/// `gallery/NAME.toml` under its name.
+macro_rules! scenes {
+    ($($name:literal),* $(,)?) => {
+        &[$(Bundled { name: $name, text: include_str!(concat!("../gallery/", $name, ".toml")) }),*]
+    };
+}
+
+/// All of them, by name.
+pub(crate) const ALL: &[Bundled] = scenes![
+    "atwood",
+    "bouncing-ball",
+    "breaking-line",
+    "buckling-column",
+    "bungee",
+    "cable-over-edge",
+    "cantilever-tip-load",
+    "capstan",
+    "clump-weights",
+    "conical-pendulum",
+    "constant-tension-winch",
+    "crane-trolley",
+    "current-profile",
+    "double-pendulum",
+    "driven-oscillator",
+    "dropped-load",
+    "engine-mounts",
+    "falling-chain",
+    "folded-whip",
+    "four-bar",
+    "free-disc",
+    "guyed-mast",
+    "hanging-cable-modes",
+    "heaving-cylinder",
+    "moored-float",
+    "mooring-line",
+    "munk-moment",
+    "net",
+    "pay-out",
+    "pinched-ring",
+    "power-line",
+    "rolled-up-strip",
+    "rolling-ball",
+    "rotating-arm",
+    "simple-pendulum",
+    "sinking-ball",
+    "slider-crank",
+    "sliding-block",
+    "spinning-top",
+    "taut-string",
+    "three-ropes",
+    "tightrope",
+    "tow-straight",
+    "universal-joint",
+    "vehicle-launch",
+    "whirling-bob",
+    "winch-hoist",
+];
