@@ -1,6 +1,7 @@
 //! Inputs that are set between steps, from outside or by the controllers of the scene.
 
 use super::Simulation;
+use crate::error::BuildError;
 use crate::model::input::{Input, InputError};
 use crate::model::term::Energy;
 use crate::simulation::record::Sample;
@@ -187,13 +188,13 @@ pub(super) fn check(model: &crate::model::Model) -> Result<(), StepError> {
     let fits = |every: f64, input: usize| every > 0.0 && every.is_finite() && input < model.inputs().len();
     match model.controls().iter().find(|c| !fits(c.every(), c.input())) {
         None => Ok(()),
-        Some(c) => Err(StepError::Scheme(format!(
+        Some(c) => Err(StepError::Options(BuildError::new(format!(
             "the controller `{}` acts every {} s on input number {}, of {}: there is no such interval or input",
             c.name(),
             c.every(),
             c.input(),
             model.inputs().len()
-        ))),
+        )))),
     }
 }
 
