@@ -261,7 +261,8 @@ fn unknown(scene: &str, bundled: &[Bundled]) -> Fault {
         few if few.len() <= 12 => {
             Fault::new(message).with_note(format!("the bundled scenes are {}", names.join(", ")))
         }
-        _ => Fault::new(message).with_note("`ropewalk list` and `ropewalk list --gallery` name those that there are"),
+        _ => Fault::new(message)
+            .with_note("`ropewalk list` and `ropewalk list --gallery` name those that there are"),
     };
     match did_you_mean(scene, &names) {
         Some(guess) => fault.with_help(guess),

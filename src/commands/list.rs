@@ -41,7 +41,8 @@ pub(crate) fn list(bundled: &[Bundled], of_gallery: bool) -> Result<Exit, Error>
             .collect();
         section(&mut out, kind.list(), &types);
     }
-    out += "`ropewalk describe NAME` explains a scene or a type, `ropewalk list --gallery` has smaller scenes.";
+    out +=
+        "`ropewalk describe NAME` explains a scene or a type, `ropewalk list --gallery` has smaller scenes.";
     say(out);
     Ok(Exit::Done)
 }

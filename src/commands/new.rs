@@ -31,19 +31,24 @@ pub(crate) fn new(args: &NewArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     }
     let mut file = File::create_new(&path).map_err(|e| match e.kind() {
         ErrorKind::AlreadyExists => Error::from(
-            Fault::new(format!("there is `{}` already", path.display())).with_help("choose another name, or move it away"),
+            Fault::new(format!("there is `{}` already", path.display()))
+                .with_help("choose another name, or move it away"),
         ),
         _ => OutputError::io("create", &path)(e).into(),
     })?;
     file.write_all(text.text.as_bytes()).map_err(OutputError::io("write", &path))?;
     let path = path.display();
-    say(format!("{path}: {} to begin with\n  ropewalk describe {path}    what it consists of\n  ropewalk run {path}", text.name));
+    say(format!(
+        "{path}: {} to begin with\n  ropewalk describe {path}    what it consists of\n  ropewalk run {path}",
+        text.name
+    ));
     Ok(Exit::Done)
 }
 
 /// The file of a new scene; files that the old one names are found from where it is.
 fn path(name: &Path, extension: &str) -> PathBuf {
-    let known = name.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"));
+    let known =
+        name.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"));
     if known {
         return name.to_path_buf();
     }

@@ -45,7 +45,8 @@ fn scenes_that_are_also_in_the_gallery_are_the_same() {
     let mut scenes = Vec::new();
     files(&book().join("src"), "toml", &mut scenes);
     for path in scenes {
-        let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/gallery").join(path.file_name().unwrap());
+        let original =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("models/gallery").join(path.file_name().unwrap());
         if original.exists() {
             let [here, there] = [&path, &original].map(|p| std::fs::read_to_string(p).unwrap());
             assert!(here == there, "{} differs from {}", path.display(), original.display());
@@ -66,7 +67,10 @@ fn pages_files_and_links_of_the_book_are_there() {
     let summary = std::fs::read_to_string(source.join("SUMMARY.md")).unwrap();
     for page in pages {
         let name = page.strip_prefix(&source).unwrap().to_string_lossy().replace('\\', "/");
-        assert!(name == "SUMMARY.md" || summary.contains(&format!("({name})")), "SUMMARY.md doesn't name {name}");
+        assert!(
+            name == "SUMMARY.md" || summary.contains(&format!("({name})")),
+            "SUMMARY.md doesn't name {name}"
+        );
         let text = std::fs::read_to_string(&page).unwrap();
         let folder = page.parent().unwrap();
         for link in between(&text, "](", ")") {

@@ -79,10 +79,15 @@ impl What {
                 let k = history.times().iter().position(|x| (x - t).abs() < 1e-6)?;
                 history.column(column)?.get(k).copied()
             }
-            What::Largest(column) => history.column(column)?.iter().copied().reduce(|a, b| if a >= b { a } else { b }),
-            What::Least(column) => history.column(column)?.iter().copied().reduce(|a, b| if a <= b { a } else { b }),
+            What::Largest(column) => {
+                history.column(column)?.iter().copied().reduce(|a, b| if a >= b { a } else { b })
+            }
+            What::Least(column) => {
+                history.column(column)?.iter().copied().reduce(|a, b| if a <= b { a } else { b })
+            }
             What::Frequency(n) => {
-                let modal = modal.get_or_init(|| modes(scene, &ModesOptions::default()).unwrap_or_else(|e| panic!("{e}")));
+                let modal = modal
+                    .get_or_init(|| modes(scene, &ModesOptions::default()).unwrap_or_else(|e| panic!("{e}")));
                 modal.table().column("frequency")?.values.get(n.checked_sub(1)?).copied()
             }
             What::Critical(n) => history.critical.get(n.checked_sub(1)?).map(|c| c.load_factor),
@@ -148,7 +153,12 @@ fn an_expectation_that_is_off_is_seen() {
     assert_eq!((at_end.value, at_end.tolerance), (-1.25, 1e-3));
     let at_time = parse("rope.end.z @ 0.5 s = 1 ± 0   (rest)").unwrap();
     assert!(matches!(at_time.what, What::At(_, Some(t)) if t == 0.5));
-    for wrong in ["rope.end.z @ end = 1", "rope.end.z @ end = 1 ± 1e-3", "rope.end.z @ 2 = 1 ± 1e-3   (why)", "mean a = 1 ± 1   (why)"] {
+    for wrong in [
+        "rope.end.z @ end = 1",
+        "rope.end.z @ end = 1 ± 1e-3",
+        "rope.end.z @ 2 = 1 ± 1e-3   (why)",
+        "mean a = 1 ± 1   (why)",
+    ] {
         assert!(parse(wrong).is_none(), "{wrong}");
     }
 }

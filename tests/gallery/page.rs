@@ -15,8 +15,13 @@ fn page() -> String {
     let mut page = std::fs::read_to_string(root().join("book/gallery-head.md")).unwrap();
     for (name, path) in scenes() {
         let scene = read(&path).unwrap_or_else(|e| panic!("{name}: {e}"));
-        let description = scene.description.trim().replace("\nChange: ", "\n\nChange: ").replace("\nKnown: ", "\n\nKnown: ");
-        write!(page, "\n## {name}\n\n**{}**\n\n![{0}](gallery/{name}.svg)\n\n{description}\n\n", scene.title).unwrap();
+        let description = scene
+            .description
+            .trim()
+            .replace("\nChange: ", "\n\nChange: ")
+            .replace("\nKnown: ", "\n\nKnown: ");
+        write!(page, "\n## {name}\n\n**{}**\n\n![{0}](gallery/{name}.svg)\n\n{description}\n\n", scene.title)
+            .unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         for (what, why) in text.lines().filter_map(|l| l.strip_prefix("# expect: ")?.split_once("   (")) {
             writeln!(page, "- `{what}` ({why}").unwrap();
@@ -64,7 +69,8 @@ fn make_the_pictures() {
         let plots = out.join("plots");
         let shapes = ["shape_side", "shape_top", "shape_end"].map(|shape| plots.join(format!("{shape}.svg")));
         let chosen = shapes.into_iter().find(|shape| shape.exists()).unwrap_or_else(|| {
-            let mut all: Vec<PathBuf> = std::fs::read_dir(&plots).unwrap().map(|e| e.unwrap().path()).collect();
+            let mut all: Vec<PathBuf> =
+                std::fs::read_dir(&plots).unwrap().map(|e| e.unwrap().path()).collect();
             all.sort();
             all.swap_remove(0)
         });
