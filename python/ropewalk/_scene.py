@@ -68,6 +68,11 @@ class Scene(Parts):
         self._scene.setdefault(list, []).append({"type": type} | given)
         return Part(str(given.get("name", type)))
 
+    def _append(self, list: str, fields: Mapping[str, Any]) -> Part:
+        given = {key: plain(value) for key, value in fields.items() if value is not None}
+        self._scene.setdefault(list, []).append(given)
+        return Part(str(given.get("name", list)))
+
     def _set(self, section: str, fields: Mapping[str, Any]) -> None:
         given = {key: plain(value) for key, value in fields.items() if value is not None}
         self._scene.setdefault(section, {}).update(given)

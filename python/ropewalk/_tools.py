@@ -81,7 +81,7 @@ def describe(what: str) -> str:
 
 
 def schemas() -> dict[str, dict[str, Any]]:
-    """JSON schemas of all types, by list and type ("elements.cable"), and of sections ("run"). They describe values
-    after parameters are put in, without the `type` of a part."""
+    """JSON schemas of all types, by list and type ("elements.cable"), of sections ("run"), and of lists without types
+    ("inputs[]"). They describe values after parameters are put in, without the `type` of a part."""
     every = json.loads(_native.schemas())
     return {s.get("section") or f"{s['list']}.{s['type']}": s["schema"] for s in every}

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyTuple};
 use ropewalk::core::modes::Mode;
 use ropewalk::report::{ProgressMode, Table};
-use ropewalk::scene::{SECTIONS, registered};
+use ropewalk::scene::{LISTS, SECTIONS, registered};
 use ropewalk::studies::run::Manifest;
 use ropewalk::{ModesOptions, RunOptions, Status};
 use scene::{Source, raise};
@@ -148,13 +148,14 @@ fn describe(py: Python<'_>, what: &str) -> PyResult<String> {
     ropewalk::cli::explain(what, ropewalk::scenes()).map_err(|e| raise(py, &e))
 }
 
-/// JSON schemas of all types and sections of scenes.
+/// JSON schemas of all types, sections and lists without types (`inputs[]`) of scenes.
 #[pyfunction]
 fn schemas() -> String {
     let types = registered();
     let types = types.iter().map(|s| json!({"list": s.kind.list(), "type": s.name, "schema": (s.schema)()}));
     let sections = SECTIONS.iter().map(|(name, schema)| json!({"section": name, "schema": schema()}));
-    serde_json::Value::Array(types.chain(sections).collect()).to_string()
+    let lists = LISTS.iter().map(|(name, schema)| json!({"section": format!("{name}[]"), "schema": schema()}));
+    serde_json::Value::Array(types.chain(sections).chain(lists).collect()).to_string()
 }
 
 /// The command line; its exit code.

@@ -37,9 +37,12 @@ Boolean = Union[bool, str]
 
 
 class Parts:
-    """A method for each type of part, and `set_...` for each section."""
+    """A method for each type of part, `set_...` for each section, `add_...` for lists without types."""
 
     def _add(self, list: str, type: str, fields: Mapping[str, Any]) -> Part:
+        raise NotImplementedError
+
+    def _append(self, list: str, fields: Mapping[str, Any]) -> Part:
         raise NotImplementedError
 
     def _set(self, section: str, fields: Mapping[str, Any]) -> None:
@@ -167,6 +170,9 @@ def generated() -> str:
         taken.add(name)
         out += method(name, f'self._add("{list}", "{type}"', "Part", schema)
     for section, schema in sections:
+        if section.endswith("[]"):
+            out += method(f"add_{section[:-3]}", f'self._append("{section[:-2]}"', "Part", schema)
+            continue
         out += method(f"set_{section}", f'self._set("{section}"', "None", schema)
     return out
 
