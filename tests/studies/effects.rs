@@ -146,7 +146,7 @@ fn a_scene_without_an_effect_is_never_larger() {
     assert!(tried >= 30, "only {tried} scenes were built");
     for (name, with, without) in [
         ("hose-turn", "winding=0.5 m/s", "winding=0 m/s"),
-        ("hose-turn", "bending_retardation_time=0.1 s", "bending_damping=0 s"),
+        ("hose-turn", "bending_retardation_time=0.1 s", "bending_retardation_time=0 s"),
         ("hose-turn", "body_drag_area=1 m^2", "body_drag_area=0 m^2"),
         ("unwinding", "axial_retardation_time=0.01 ms", "axial_retardation_time=0 ms"),
         ("shear-pin", "pin_strength=100 N", "pin_strength=1e9 N"),

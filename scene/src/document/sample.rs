@@ -199,7 +199,9 @@ mod tests {
             assert!((share - 1.0 / 3.0).abs() < 0.05, "{k}: {share}");
         }
         assert!(x.iter().all(|x| (4.0..=6.0).contains(x)));
-        assert_eq!(drawn("a=0..0.3:0.1 m", 50, 1, true).iter().filter(|v| *v == "0.3 m").count(), 13);
+        // a quarter of 50 parts is twelve and a half: the part at the border may fall to either side
+        let last = drawn("a=0..0.3:0.1 m", 50, 1, true).iter().filter(|v| *v == "0.3 m").count();
+        assert!((12..=13).contains(&last), "{last}");
     }
 
     #[test]

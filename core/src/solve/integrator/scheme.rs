@@ -64,7 +64,7 @@ impl Default for Scheme {
 /// let c = Scheme::default().coefficients()?;
 /// // generalized-alpha is of second order: its error grows with the third power of the step
 /// assert!(c.error_constant().abs() > 0.0);
-/// # Ok::<(), String>(())
+/// # Ok::<(), ropewalk_core::BuildError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
