@@ -17,9 +17,12 @@ Boolean = Union[bool, str]
 
 
 class Parts:
-    """A method for each type of part, and `set_...` for each section."""
+    """A method for each type of part, `set_...` for each section, `add_...` for lists without types."""
 
     def _add(self, list: str, type: str, fields: Mapping[str, Any]) -> Part:
+        raise NotImplementedError
+
+    def _append(self, list: str, fields: Mapping[str, Any]) -> Part:
         raise NotImplementedError
 
     def _set(self, section: str, fields: Mapping[str, Any]) -> None:
@@ -430,15 +433,15 @@ class Parts:
         marker: Union[Sequence[Number], str],
         to: Union[Sequence[Number], str] | None = None,
         path: str | None = None,
-        speed: Number | None = None,
+        speed: Union[Mapping[str, Any], Number] | None = None,
         start: Number | None = None,
         ramp: Number | None = None,
         stop: Number | None = None,
         motion: str | None = None,
-        tension: Number | None = None,
+        tension: Union[Mapping[str, Any], Number] | None = None,
         per_speed2: Number | None = None,
         reference_speed: str | None = None,
-        damping: Number | None = None,
+        damping: Union[Mapping[str, Any], Number] | None = None,
         shortest: Number | None = None,
         element_length: Number | None = None,
         fade: Number | None = None,
@@ -777,17 +780,17 @@ class Parts:
         *,
         name: str,
         marker: Union[Sequence[Number], str],
-        speed: Number | None = None,
+        speed: Union[Mapping[str, Any], Number] | None = None,
         start: Number | None = None,
         ramp: Number | None = None,
         stop: Number | None = None,
         payout: Number | None = None,
         final_length: Number | None = None,
         motion: str | None = None,
-        tension: Number | None = None,
-        brake: Number | None = None,
+        tension: Union[Mapping[str, Any], Number] | None = None,
+        brake: Union[Mapping[str, Any], Number] | None = None,
         slip_speed: Number | None = None,
-        damping: Number | None = None,
+        damping: Union[Mapping[str, Any], Number] | None = None,
         per_speed2: Number | None = None,
         reference_speed: str | None = None,
         inertia: Number | None = None,
@@ -806,6 +809,7 @@ class Parts:
         name: Name; records and events refer to it.
         marker: The end of the cable: `hose.start` or `hose.end`.
         speed: Payout rate after the ramp [m/s]; negative reels in. With `final_length` the sign may be left positive.
+            Of an input: the rate itself, without ramp, so the input needs `join = "linear"`.
         start: Start time [s]. Default 0.0.
         ramp: Time in which the speed rises, and falls again at the stop [s]. Default 1.0.
         stop: Time at which the speed begins to fall again [s]. Default: never.
@@ -1095,7 +1099,7 @@ class Parts:
     def line_load(
         self,
         *,
-        force: Sequence[Number],
+        force: Sequence[Union[Mapping[str, Any], Number]],
         stretched: Boolean | None = None,
         time: Union[Literal['constant'], Mapping[str, Any]] | None = None,
         on: Sequence[str] | None = None,
@@ -1118,9 +1122,9 @@ class Parts:
         self,
         *,
         marker: Union[Sequence[Number], str],
-        force: Sequence[Number] | None = None,
+        force: Sequence[Union[Mapping[str, Any], Number]] | None = None,
         local: Boolean | None = None,
-        follower: Number | None = None,
+        follower: Union[Mapping[str, Any], Number] | None = None,
         time: Union[Literal['constant'], Mapping[str, Any]] | None = None,
     ) -> Part:
         """A force at a marker: in a constant direction, in the axes of a rigid body, or along a cable.
@@ -1143,7 +1147,7 @@ class Parts:
         self,
         *,
         marker: Union[Sequence[Number], str],
-        moment: Sequence[Number],
+        moment: Sequence[Union[Mapping[str, Any], Number]],
         local: Boolean | None = None,
         time: Union[Literal['constant'], Mapping[str, Any]] | None = None,
     ) -> Part:
@@ -1200,9 +1204,9 @@ class Parts:
         name: str,
         marker: Union[Sequence[Number], str],
         to: Union[Sequence[Number], str],
-        stiffness: Number,
-        damping: Number | None = None,
-        length: Number | None = None,
+        stiffness: Union[Mapping[str, Any], Number],
+        damping: Union[Mapping[str, Any], Number] | None = None,
+        length: Union[Mapping[str, Any], Number] | None = None,
         tension_only: Boolean | None = None,
     ) -> Part:
         """A spring and damper between two markers, along the line between them.
@@ -1283,6 +1287,29 @@ class Parts:
             "phase": phase,
             "start": start,
             "ramp": ramp,
+        })
+
+    def input(
+        self,
+        *,
+        name: str,
+        speed: str,
+        direction: Sequence[Number] | None = None,
+    ) -> Part:
+        """Straight ahead with a speed that is set while the run goes on: by a controller, or by the program that runs
+        it.
+
+        The distance is the integral of the speed. Speeds can't jump, so the input needs `join = "linear"`. `sum` puts
+        several directions together.
+
+        name: Name; constraints refer to it.
+        speed: The input that the speed is read from, in m/s; of angles in rad/s.
+        direction: Direction of travel. Default [1.0, 0.0, 0.0].
+        """
+        return self._add("motions", "input", {
+            "name": name,
+            "speed": speed,
+            "direction": direction,
         })
 
     def rest(
@@ -1675,6 +1702,22 @@ class Parts:
             "name": name,
         })
 
+    def input_record(
+        self,
+        *,
+        of: str,
+        name: str | None = None,
+    ) -> Part:
+        """Value of an input: one column of its name. At the instant at which it jumps, the value before.
+
+        of: Name of the input.
+        name: Name in results. Default: that of the input.
+        """
+        return self._add("records", "input", {
+            "of": of,
+            "name": name,
+        })
+
     def length(
         self,
         *,
@@ -1843,6 +1886,114 @@ class Parts:
             "title": title,
         })
 
+    def expression(
+        self,
+        *,
+        input: str,
+        value: Union[Number, str],
+        every: Number,
+        name: str | None = None,
+    ) -> Part:
+        """Sets an input to a formula of records and of the time `t`, such as `-2 kN s/m * vessel.velocity.x`, at regular
+        instants.
+
+        A name is a column of a record; one with other signs than letters, digits, dots and underscores stands in
+        braces, as in `{rope@50%.tension}`. Units are checked. The value is brought within the limits of the input.
+
+        input: The input that it sets.
+        value: The formula: `+ - * / ^`, `sqrt`, `abs`, `sign`, `min`, `max`, `clamp`, `exp`, `ln`, `tanh`, `sin`,
+            `cos`, `tan`, `asin`, `acos`, `atan`, `atan2`, `floor`, `round`, `pi`, and numbers with units.
+        every: Time from one instant to the next [s].
+        name: Name in messages. Default: that of the input.
+        """
+        return self._add("controllers", "expression", {
+            "input": input,
+            "value": value,
+            "every": every,
+            "name": name,
+        })
+
+    def pid(
+        self,
+        *,
+        input: str,
+        measures: Union[Number, str],
+        setpoint: Union[Number, str],
+        every: Number,
+        kp: Union[Number, str] | None = None,
+        ki: Union[Number, str] | None = None,
+        kd: Union[Number, str] | None = None,
+        filter: Number | None = None,
+        bias: Union[Number, str] | None = None,
+        min: Union[Number, str] | None = None,
+        max: Union[Number, str] | None = None,
+        name: str | None = None,
+    ) -> Part:
+        """A PID controller: sets an input by what a record lacks of a setpoint, at regular instants.
+
+        With the error `e = setpoint - measures` it is `u = bias + kp e + I + D`. The integral `I` grows by `ki e
+        every`, but not further into a limit that `u` is at (anti-windup). `D` is `-kd` times the rate of what is
+        measured, through a filter of first order (Åström and Hägglund, Advanced PID Control, 2006, ch. 13: backward
+        differences). The first instant has no rate.
+
+        input: The input that it sets.
+        measures: What it measures: a column of a record such as `rope.start.tension`, or a formula of columns and of
+            the time `t`; one with other signs than letters, digits, dots and underscores stands in braces.
+        setpoint: What that is to be: a number, or a formula of columns and of the time `t`.
+        every: Time from one instant to the next [s].
+        kp: Proportional gain, in units of the input over those of what is measured: `"2 m/s / 1 kN"`. Default 0.0.
+        ki: Integral gain, the same over seconds. Default 0.0.
+        kd: Derivative gain, the same times seconds. Default 0.0.
+        filter: Time constant of the filter of the rate [s]. Default 0.0.
+        bias: What is added: a number, or a formula. Default 0.0.
+        min: Least value that it sets. Default: the limit of the input.
+        max: Largest value that it sets. Default: the limit of the input.
+        name: Name in messages. Default: that of the input.
+        """
+        return self._add("controllers", "pid", {
+            "input": input,
+            "measures": measures,
+            "setpoint": setpoint,
+            "every": every,
+            "kp": kp,
+            "ki": ki,
+            "kd": kd,
+            "filter": filter,
+            "bias": bias,
+            "min": min,
+            "max": max,
+            "name": name,
+        })
+
+    def table_controller(
+        self,
+        *,
+        input: str,
+        over: Union[Number, str],
+        at: Sequence[Union[Number, str]],
+        value: Sequence[Union[Number, str]],
+        every: Number,
+        name: str | None = None,
+    ) -> Part:
+        """Sets an input by a table over a record, over time or over a formula of them, at regular instants: straight
+        lines between its rows, constant before the first and after the last.
+
+        input: The input that it sets.
+        over: What the table is over: a column of a record, `t`, or a formula of them.
+        at: Values of `over`, ascending: numbers in SI units, or texts with units.
+        value: Values of the input there.
+        every: Time from one instant to the next [s].
+        name: Name in messages. Default: that of the input.
+        """
+        return self._add("controllers", "table", {
+            "input": input,
+            "over": over,
+            "at": at,
+            "value": value,
+            "every": every,
+            "name": name,
+        })
+
     def unwound_cable(
         self,
         *,
@@ -1943,7 +2094,7 @@ class Parts:
         density: Number | None = None,
         viscosity: Number | None = None,
         level: Number | None = None,
-        current: Sequence[Number] | None = None,
+        current: Sequence[Union[Mapping[str, Any], Number]] | None = None,
         profile: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
         """The water around a scene. Drag, buoyancy and added mass need it.
@@ -1951,7 +2102,8 @@ class Parts:
         density: Density [kg/m³]. Default 1025.0.
         viscosity: Dynamic viscosity [Pa s]. Default 0.00108.
         level: Height of its surface, which is flat [m]. Default: water everywhere.
-        current: Uniform velocity of the water [m/s]. Default [0.0, 0.0, 0.0].
+        current: Uniform velocity of the water [m/s]; inputs that it reads need `join = "hold"`. Default [0.0, 0.0,
+            0.0].
         profile: Current profile over height, instead of `current`: piecewise linear, constant beyond the ends.
         """
         self._set("water", {
@@ -1967,14 +2119,15 @@ class Parts:
         *,
         density: Number | None = None,
         viscosity: Number | None = None,
-        wind: Sequence[Number] | None = None,
+        wind: Sequence[Union[Mapping[str, Any], Number]] | None = None,
         profile: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
         """The air above the water, or around a scene without water: only drag looks at it. Default: vacuum.
 
         density: Density [kg/m³]. Default 1.225.
         viscosity: Dynamic viscosity [Pa s]. Default 1.79e-05.
-        wind: Velocity of the air, the same everywhere [m/s]. Default [0.0, 0.0, 0.0].
+        wind: Velocity of the air, the same everywhere [m/s]; inputs that it reads need `join = "hold"`. Default [0.0,
+            0.0, 0.0].
         profile: Velocity of the air by height, instead of `wind`: piecewise linear between the levels, constant
             beyond.
         """
@@ -2015,7 +2168,8 @@ class Parts:
         audit: Whether energy and work are balanced at every step. Default True.
         snapshots: Number of snapshots in the plots of shapes. Default 9.
         field_snapshots: Number of snapshots in the field record of a single run: `field.npy`, and the motion in
-            `report.html`. Rows of the history that come next are taken, so that there are at most as many. Default 361.
+            `report.html`. Rows of the history that come next are taken, so that there are at most as many. Default
+            361.
         shape_titles: Titles of the plots of shapes. Default: the title of the scene.
             side: From the side: x and z.
             top: From above: x and y.
@@ -2059,28 +2213,28 @@ class Parts:
     ) -> None:
         """Options of time integration. The defaults suit cables from 8 to 8192 elements.
 
-        scheme: The scheme. Default {'generalized-alpha': {'rho_inf': 0.8}}.
-        stepping: How the step size is chosen. Default {'controlled': {'tolerance': 0.0001}}.
-        newton: When the iteration matrix is computed anew. Default modified.
-        constraints: In which form constraints are met; Radau IIA meets both positions and velocities in any case.
-            Default positions.
-        force_tolerance: Error of tensions and reactions, relative to the largest in their part. Default 0.01.
-        allow_unstable: Accept a scheme that is unstable on constrained systems, with a warning. Default False.
-        h_max: Largest step [s]; if not given, a twentieth of the run.
-        h_min: Smallest step before the run gives up [s]; if not given, 1e-12 of the run.
-        h_start: First step of error control [s]; if not given, it follows from the motion at the start.
-        horizon: Time over which errors add up [s]; 0 takes the length of the run, but for time in which steps err by
-            next to nothing. Default 0.0.
-        project: Move an inconsistent start onto the constraints however far away it is. Default False.
-        filter_start: Filter the accelerations of the start by the stiffness, as fine meshes need, and let the
-            scheme's own begin ahead of them, as its order needs; only a textbook comparison of the bare scheme wants
-            them raw. Default True.
-        max_iterations: Most Newton iterations of a step before it is repeated smaller; Radau IIA takes at most 10.
-            Default 20.
-        newton_tolerance: Newton tolerance as a fraction of the default; smaller is tighter. Default 1.0.
-        stopping: When Newton's method stops. Default relative.
-        scales: Makes the equations dimensionless before they are solved. With the `relative` stopping test that
-            changes nothing but rounding.
+        scheme: Time integration scheme. Default {'generalized-alpha': {'rho_inf': 0.8}}.
+        stepping: Constant steps or error control. Default {'controlled': {'tolerance': 0.0001}}.
+        newton: When Newton's method computes a new iteration matrix. Default modified.
+        constraints: Form of the constraint equations. Radau IIA always satisfies positions and velocities. Default
+            positions.
+        force_tolerance: Error of tensions and reactions, relative to the largest in the same part. Default 0.01.
+        allow_unstable: Accept a scheme that is unstable for constrained systems, with a warning. Default False.
+        h_max: Largest step [s]. Default: a twentieth of the run.
+        h_min: Smallest step [s]; a run that needs a smaller one ends with an error. Default: 1e-12 of the run.
+        h_start: First step of error control [s]. Default: from the motion at the start.
+        horizon: Time over which step errors accumulate [s]. 0 means the whole run, without the time in which errors
+            are negligible. Default 0.0.
+        project: Project an inconsistent start onto the constraints, however far away it is. Default False.
+        filter_start: Filter the initial accelerations by the stiffness, which fine meshes need, and start the
+            scheme's own acceleration variable ahead of them, which its order needs. `false` is for textbook
+            comparisons of the bare scheme. Default True.
+        max_iterations: Most Newton iterations of a step before it is repeated with a smaller size. Radau IIA takes at
+            most 10. Default 20.
+        newton_tolerance: Newton tolerance as a multiple of the default: smaller is stricter. Default 1.0.
+        stopping: Stopping test of Newton's method. Default relative.
+        scales: Scales that make the equations dimensionless before they are solved. With the `relative` stopping test
+            they change nothing but rounding.
         """
         self._set("solver", {
             "scheme": scheme,
@@ -2109,16 +2263,48 @@ class Parts:
         stable: Boolean | None = None,
         tolerance: Number | None = None,
     ) -> None:
-        """How equilibria are found.
+        """Options of the search for equilibria.
 
         steps: Number of load steps from t = 0 to the end of the run. Default 10.
         max_iterations: Most Newton iterations per equilibrium. Default 60.
-        stable: Refuse equilibria that are unstable or folded, and look for the true one. Default True.
-        tolerance: Tolerance of positions, relative to the reference length. Default 1e-09.
+        stable: Reject unstable or folded equilibria and search for a stable one. Default True.
+        tolerance: Tolerance of positions, relative to the length of the longest cable (without cables: the size of
+            the scene). Default 1e-09.
         """
         self._set("statics", {
             "steps": steps,
             "max_iterations": max_iterations,
             "stable": stable,
             "tolerance": tolerance,
+        })
+
+    def add_input(
+        self,
+        *,
+        name: str,
+        unit: str | None = None,
+        default: Union[Number, str] | None = None,
+        min: Union[Number, str] | None = None,
+        max: Union[Number, str] | None = None,
+        join: Literal['hold', 'linear'] | None = None,
+    ) -> Part:
+        """A channel that is set while a run goes on: by a controller of the scene, or from Rust, Python or another
+        program between steps. A field reads it by `{ input = "name" }` instead of a number.
+
+        name: Name, by which fields, controllers and programs refer to it.
+        unit: SI unit of its values, such as `m/s`. Default: plain numbers.
+        default: Value until it is set: a number in its unit, or a text with a unit. Default 0.0.
+        min: Least value. Default: no limit.
+        max: Largest value. Default: no limit.
+        join: How values are joined: `hold` jumps when it is set, `linear` reaches the value at the end of the next
+            advance, or of a controller's interval. Speeds that are prescribed can't jump and need `linear`. Default
+            hold.
+        """
+        return self._append("inputs", {
+            "name": name,
+            "unit": unit,
+            "default": default,
+            "min": min,
+            "max": max,
+            "join": join,
         })

@@ -154,7 +154,8 @@ fn schemas() -> String {
     let types = registered();
     let types = types.iter().map(|s| json!({"list": s.kind.list(), "type": s.name, "schema": (s.schema)()}));
     let sections = SECTIONS.iter().map(|(name, schema)| json!({"section": name, "schema": schema()}));
-    let lists = LISTS.iter().map(|(name, schema)| json!({"section": format!("{name}[]"), "schema": schema()}));
+    let lists =
+        LISTS.iter().map(|(name, schema)| json!({"section": format!("{name}[]"), "schema": schema()}));
     serde_json::Value::Array(types.chain(sections).chain(lists).collect()).to_string()
 }
 
