@@ -179,11 +179,16 @@ pub(crate) enum Command {
     #[command(after_help = "Examples:\n  \
         ropewalk describe scene.toml            title, parameters, parts\n  \
         ropewalk describe cable                 fields with units and defaults\n  \
-        ropewalk describe solver                also: water, run, statics, inputs")]
+        ropewalk describe solver                also: water, run, statics, inputs\n  \
+        ropewalk describe mooring               the types that stand for a word of the field\n  \
+        ropewalk describe cable --json          the JSON schema")]
     Describe {
         /// A scene, a type, or one of: water, run, solver, statics, inputs
         #[arg(value_name = "SCENE|TYPE")]
         what: String,
+        /// Print the JSON schema of a type or section, for editors and programs
+        #[arg(long)]
+        json: bool,
     },
     /// Measure what an element costs on this machine, by phase and by stiffness model
     #[command(after_help = "Examples:\n  \
@@ -357,7 +362,8 @@ pub fn exit_from(
         Command::New(args) => commands::new::new(&args, bundled),
         Command::Completions { shell } => commands::completions::completions(Cli::command(), shell),
         Command::Man { folder } => commands::completions::man(Cli::command(), &folder),
-        Command::Describe { what } => commands::describe::describe(&what, bundled),
+        Command::Describe { what, json } if json => commands::describe::schemas(&what, bundled),
+        Command::Describe { what, .. } => commands::describe::describe(&what, bundled),
         Command::Bench(args) => commands::bench::bench(&args),
         Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),

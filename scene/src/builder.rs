@@ -404,7 +404,10 @@ impl Builder {
         if any {
             Ok(())
         } else {
-            Err(BuildError::new("there is nothing in the scene that carries this load"))
+            Err(BuildError::new(
+                "cables, chains and hulls carry this load, and the scene has none of them. Leave it out; a point mass has \
+                 `drag_area`, `added_mass` and `volume` of its own",
+            ))
         }
     }
 

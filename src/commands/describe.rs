@@ -1,5 +1,6 @@
 //! `ropewalk describe SCENE|TYPE`
 
+use super::words::types_for;
 use super::{Exit, first_line, say, schema, wrapped};
 use ropewalk_models::Bundled;
 use ropewalk_scene::{
@@ -7,6 +8,7 @@ use ropewalk_scene::{
     quoted, registered,
 };
 pub use ropewalk_studies::Error;
+use serde_json::json;
 use std::path::{Path, is_separator};
 
 pub(crate) fn describe(what: &str, bundled: &[Bundled]) -> Result<Exit, Error> {
@@ -36,10 +38,36 @@ pub(crate) fn explain(what: &str, bundled: &[Bundled]) -> Result<(String, Option
         let text = format!("[[{name}]]\n\n{}", schema::explain(&schema()));
         return Ok((text.trim_end().to_string(), None));
     }
+    let see = types_for(what);
+    if !is_path && let Some(first) = see.first() {
+        let names: Vec<String> = see.iter().map(|name| format!("`{name}`")).collect();
+        let (text, _) = explain(first, bundled)?;
+        return Ok((format!("{what}: see {}\n\n{text}", names.join(", ")), None));
+    }
     if !is_path && !Path::new(what).exists() {
         return Err(unknown(what, bundled).into());
     }
     Ok(scene(&Document::read(Path::new(what), &[])?, what))
+}
+
+/// Prints the JSON schemas of the types of a name, or of a section.
+pub(crate) fn schemas(what: &str, bundled: &[Bundled]) -> Result<Exit, Error> {
+    let types = registered().into_iter().filter(|s| s.name == what);
+    let types = types.map(|s| json!({"list": s.kind.list(), "type": s.name, "schema": (s.schema)()}));
+    let sections = SECTIONS.iter().chain(&LISTS).filter(|(name, _)| *name == what);
+    let sections = sections.map(|(name, schema)| json!({"section": name, "schema": schema()}));
+    let found: Vec<_> = types.chain(sections).collect();
+    match found.as_slice() {
+        [] => Err(unknown(what, bundled).into()),
+        [one] => {
+            say(format!("{one:#}"));
+            Ok(Exit::Done)
+        }
+        all => {
+            say(format!("{:#}", json!(all)));
+            Ok(Exit::Done)
+        }
+    }
 }
 
 fn of_type(s: &SpecInfo) -> String {

@@ -23,6 +23,7 @@ pub(crate) mod sweep;
 pub(crate) mod variants;
 pub(crate) mod verify;
 pub(crate) mod view;
+mod words;
 
 use ropewalk_report::{Interrupt, ProgressMode};
 use std::fmt::Display;

@@ -205,9 +205,10 @@ async function phone() {
 async function flat() {
   const { browser, page, errors } = await open({ args: ["--no-sandbox", "--disable-3d-apis"] });
   assert.equal(await page.evaluate(() => document.body.dataset.renderer), "flat");
-  assert.ok((await ink(page)) > 2000, "something is drawn without WebGL");
   await page.evaluate(() => window.ropewalk.player.seek(20));
   await page.waitForTimeout(300);
+  const drawn = await ink(page);
+  assert.ok(drawn > 500, `something is drawn without WebGL: ${drawn} pixels`);
   await shot(page, "flat");
   await plays(page);
   const speed = await rate(page);

@@ -5,7 +5,7 @@
 import axe from "axe-core";
 import { strict as assert } from "node:assert";
 import { existsSync, mkdirSync, statSync } from "node:fs";
-import { basename, join, resolve } from "node:path";
+import { basename, dirname, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
@@ -38,25 +38,21 @@ const ink = (page) => page.evaluate(() => {
   return n;
 });
 
-async function open(browser, file, name, sight) {
+async function open(browser, file, name, sight, still) {
   const page = await (await browser.newContext({ offline: true, ...sights[sight] })).newPage();
   const wrong = [];
   const address = pathToFileURL(file).href;
   page.on("pageerror", (e) => wrong.push(String(e)));
   page.on("console", (m) => (m.type() === "error" || m.type() === "warning") && !/GPU stall/.test(m.text()) && wrong.push(m.text()));
-  page.on("request", (r) => r.url() !== address && !r.url().startsWith("data:") && wrong.push(`asks for ${r.url()}`));
+  // the list of a sweep shows the pictures beside it; the page of a run holds all that it shows
+  const beside = new URL(".", address).href;
+  const own = (url) => url === address || url.startsWith("data:") || (still && url.startsWith(beside));
+  page.on("request", (r) => own(r.url()) || wrong.push(`asks for ${r.url()}`));
   await page.goto(address);
-  await page.waitForSelector("body[data-ready=yes]", { timeout: 60000 });
-  const told = await page.evaluate(() => {
-    const { run, part, player } = window.ropewalk;
-    player.seek(part.first + 0.6 * (part.last - part.first));
-    return { title: document.title, panels: run.panels.length, moving: run.field.lines.length + run.field.bodies.length, wide: document.documentElement.scrollWidth - innerWidth };
-  });
-  await page.waitForTimeout(300);
+  if (!still) await moving(page, name, sight);
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert.ok(wide <= 0, `${name}, ${sight}: ${wide} pixels too wide`);
   if (shots) await page.screenshot({ path: join(shots, `${name}-${sight}.png`) });
-  assert.ok(told.title && told.panels > 0, `${name}: a title and panels`);
-  assert.ok(told.wide <= 0, `${name}, ${sight}: ${told.wide} pixels too wide`);
-  if (told.moving > 0) assert.ok((await ink(page)) > 200, `${name}, ${sight}: something is drawn`);
   await page.evaluate(axe.source);
   const { violations } = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"] }));
   assert.deepEqual(violations.map((v) => `${v.id}: ${v.help}`), [], `axe, ${name}, ${sight}`);
@@ -64,13 +60,27 @@ async function open(browser, file, name, sight) {
   await page.close();
 }
 
+/** The page of a run has a title, panels and something that moves. */
+async function moving(page, name, sight) {
+  await page.waitForSelector("body[data-ready=yes]", { timeout: 60000 });
+  const told = await page.evaluate(() => {
+    const { run, part, player } = window.ropewalk;
+    player.seek(part.first + 0.6 * (part.last - part.first));
+    return { title: document.title, panels: run.panels.length, moving: run.field.lines.length + run.field.bodies.length };
+  });
+  await page.waitForTimeout(300);
+  assert.ok(told.title && told.panels > 0, `${name}: a title and panels`);
+  if (told.moving > 0) assert.ok((await ink(page)) > 200, `${name}, ${sight}: something is drawn`);
+}
+
 const browser = await chromium.launch({ executablePath: program, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
 for (const folder of words) {
   const file = resolve(folder.endsWith(".html") ? folder : join(folder, "report.html"));
-  const name = folder.endsWith(".html") ? basename(folder, ".html") : basename(resolve(folder));
+  const still = basename(file) === "index.html";
+  const name = basename(folder.endsWith(".html") && !still ? file.slice(0, -5) : dirname(file));
   const size = statSync(file).size;
   assert.ok(size < 2e6, `${name}: ${size} bytes`);
-  for (const sight of Object.keys(sights)) await open(browser, file, name, sight);
+  for (const sight of Object.keys(sights)) await open(browser, file, name, sight, still);
   console.log(`${name}: ${(size / 1e6).toFixed(2)} MB`);
 }
 await browser.close();

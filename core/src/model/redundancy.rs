@@ -18,7 +18,10 @@ impl std::fmt::Display for Redundancy {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        let equations = if self.equations == 1 { "equation follows" } else { "equations follow" };
-        write!(f, "{} of the {equations} from the others: {names}{more}", self.equations)
+        let which = match self.equations {
+            1 => "one equation follows".to_string(),
+            n => format!("{n} equations follow"),
+        };
+        write!(f, "{which} from the others: {names}{more}")
     }
 }

@@ -95,10 +95,15 @@ impl Simulation {
             return;
         }
         let (t, h) = (self.state.t, self.state.control.h_last);
+        let slender = self.model.parts().iter().any(|part| part.slender().is_some());
+        let damping = if slender {
+            "A little `axial_retardation_time` or `bending_retardation_time`"
+        } else {
+            "A little damping"
+        };
         observer.warn(&format!(
             "{MANY} steps so far, at t = {t:.4} s of {end} s, the last of {h:.1e} s: fast motion that nothing damps asks for \
-             them. A little `axial_retardation_time` or `bending_retardation_time`, a looser `tolerance`, a shorter `horizon` or Radau IIA \
-             need fewer"
+             them. {damping}, a looser `tolerance`, a shorter `horizon` or Radau IIA need fewer"
         ));
     }
 

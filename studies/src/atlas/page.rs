@@ -42,7 +42,7 @@ pub(super) fn page(file: &AtlasFile, outcomes: &[Outcome]) -> String {
     let title = escaped(&atlas.title);
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+         <style>\n{STYLE}</style>\n</head>\n<body><main>\n<h1>{title}</h1>\n"
     );
     for paragraph in atlas.description.split("\n\n").map(str::trim).filter(|p| !p.is_empty()) {
         out += &format!("<p>{}</p>\n", escaped(paragraph));
@@ -66,7 +66,7 @@ pub(super) fn page(file: &AtlasFile, outcomes: &[Outcome]) -> String {
         }
         out += &entry(file, k, &outcomes[k]);
     }
-    out + "</body>\n</html>\n"
+    out + "</main></body>\n</html>\n"
 }
 
 fn entry(file: &AtlasFile, k: usize, outcome: &Outcome) -> String {

@@ -35,7 +35,7 @@ pub(super) fn write(
     let mut out = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+         <style>\n{STYLE}</style>\n</head>\n<body><main>\n<h1>{title}</h1>\n"
     );
     let value =
         if what == Report::Last { "the last value".into() } else { format!("{} of {over}", what.ending()) };
@@ -72,7 +72,7 @@ pub(super) fn write(
         }
         out += "</div>\n";
     }
-    out += "</body>\n</html>\n";
+    out += "</main></body>\n</html>\n";
     write_atomic(&path, &out)
 }
 
