@@ -77,9 +77,7 @@ impl Session {
     pub fn start(file: SceneFile, watch: Watch) -> Result<Self, Error> {
         let (simulation, warnings) = start(file.scene(), watch).map_err(|e| e.in_file(&file))?;
         let records = file.records(&simulation.model)?;
-        let columns = records.iter().flat_map(|r| r.columns());
-        let unit = |unit: String| if unit == "1" { String::new() } else { unit };
-        let columns = columns.map(|c| Column::new(c.name, unit(c.unit))).collect();
+        let columns = columns(&records);
         let bound = simulation.model.clone();
         Ok(Session { file, simulation, records, bound, columns, row: None, stopped_by: None, warnings })
     }
@@ -222,4 +220,10 @@ impl Session {
         }
         Ok(())
     }
+}
+
+/// Names and units of the columns of records.
+pub(crate) fn columns(records: &[Box<dyn Record>]) -> Vec<Column> {
+    let unit = |unit: String| if unit == "1" { String::new() } else { unit };
+    records.iter().flat_map(|r| r.columns()).map(|c| Column::new(c.name, unit(c.unit))).collect()
 }

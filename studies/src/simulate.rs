@@ -5,7 +5,7 @@ use crate::run::{Counts, CriticalLoad, Ending, ProfileEntry, Recorder, Started, 
 use ropewalk_core::{Audit, Model, Simulation, State, V3};
 use ropewalk_models::scenes;
 use ropewalk_report::{Elapsed, Progress, Stopwatch, Table, Watch};
-use ropewalk_scene::{Fault, Scene, SceneFile};
+use ropewalk_scene::{Analysis, Fault, Scene, SceneFile};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -115,15 +115,25 @@ pub fn simulate_with(scene: &Scene, watch: Watch) -> Result<History, Error> {
 /// # Errors
 /// The scene can't be built, is no run in time, or `watch` stopped the search for the equilibrium that it starts from.
 pub fn start(scene: &Scene, watch: Watch) -> Result<(Simulation, Vec<String>), Error> {
+    in_time(scene)?;
     let started = Started::new(scene, scene.build()?, watch)?;
     let warnings = started.warnings(scene);
     match started {
         Started::Dynamics(simulation, ..) => Ok((*simulation, warnings)),
-        Started::Statics(_) | Started::Process(..) => {
-            let fault = Fault::new("this scene is no run in time, so there are no steps to be taken");
-            Err(fault.with_help("run it as a whole").into())
-        }
+        Started::Statics(_) | Started::Process(..) => unreachable!("only runs in time come so far"),
     }
+}
+
+/// Whether a scene is a run in time of elements and bodies, which steps can be taken of.
+///
+/// # Errors
+/// It isn't.
+pub(crate) fn in_time(scene: &Scene) -> Result<(), Error> {
+    if scene.run.analysis == Analysis::Dynamics && scene.processes.is_empty() {
+        return Ok(());
+    }
+    let fault = Fault::new("this scene is no run in time, so there are no steps to be taken");
+    Err(fault.with_help("run it as a whole").into())
 }
 
 /// How a scene is computed in memory.

@@ -247,7 +247,9 @@ impl Read {
         if numbers.iter().any(|[_, kind]| kind != "<f8") {
             return Err("it has fields that are no double-precision numbers");
         }
-        let size = 4 * wide + 8 * numbers.len();
+        // a file that was tampered with may name any width
+        let size = wide.checked_mul(4).and_then(|name| name.checked_add(8 * numbers.len()));
+        let size = size.filter(|size| *size > 0).ok_or("its rows have no width that can be")?;
         if data.len() % size != 0 {
             return Err("it is cut off");
         }
@@ -338,8 +340,16 @@ mod tests {
         assert_eq!(FieldRecord::read_npy(&none, &none).unwrap(), FieldRecord::default());
         field().write_npy(&path, &none).unwrap();
         let whole = fs::read(&path).unwrap();
+        let headed = |fields: &str| {
+            let length = u8::try_from(fields.len()).unwrap();
+            [MAGIC, &[1, 0, length, 0][..], fields.as_bytes()].concat()
+        };
+        let (no_width, too_wide) =
+            (headed("[('part', '<U0')]"), headed("[('part', '<U18446744073709551615')]"));
         for (bytes, words) in [
             (&b"t,x\n0,1\n"[..], "doesn't begin"),
+            (&no_width, "no width"),
+            (&too_wide, "no width"),
             (&whole[..40], "cut off"),
             (&whole[..whole.len() - 3], "cut off"),
         ] {

@@ -7,8 +7,8 @@
 mod description;
 
 use crate::error::Error;
-use crate::session::Session;
-use ropewalk_report::Watch;
+use crate::session::columns;
+use crate::simulate::in_time;
 use ropewalk_scene::{Fault, Format, SceneText};
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -88,13 +88,14 @@ impl Interface {
         }
         let (name, title) = (file.name().to_string(), file.title().to_string());
         let experiment = [file.scene().run.duration, file.scene().run.output];
-        let session = Session::start(file, Watch::default())?;
-        for input in session.simulation().inputs() {
+        in_time(file.scene())?;
+        let model = file.build()?;
+        for input in model.inputs() {
             let kind = Kind::Input { start: input.value(0.0), range: input.limits() };
             variables.push((kind, input.name().to_string(), String::new(), input.unit().to_string()));
         }
-        for column in session.columns() {
-            variables.push((Kind::Output, column.name.clone(), String::new(), column.unit.clone()));
+        for column in columns(&file.records(&model)?) {
+            variables.push((Kind::Output, column.name, String::new(), column.unit));
         }
         let variable = |(reference, (kind, name, description, unit))| Variable {
             reference,
