@@ -111,7 +111,7 @@ fn main() -> Result<()> {
         let look = begin.elapsed().as_secs_f64() / (repeats * ELEMENTS) as f64;
         let begin = Instant::now();
         for _ in 0..repeats {
-            let ahead = term.foresees().map_or(1.0, |t| t.horizon(&std::hint::black_box(&state).at()));
+            let ahead = term.foresees().map_or(1.0, |t| t.step_limit(&std::hint::black_box(&state).at()));
             sum += ahead.min(1.0);
         }
         let ahead = begin.elapsed().as_secs_f64() / (repeats * ELEMENTS) as f64;

@@ -33,8 +33,8 @@ pub(crate) fn main() -> Result<(), Error> {
         .constraint(DrivingSpec::new("buoy", "line.end", "waves"))
         .motion(HarmonicSpec {
             name: "waves".into(),
-            amplitude: [0.0, 0.0, 0.4],
-            frequency: 0.25,
+            amplitude: [0.0, 0.0, 0.4].map(Into::into),
+            frequency: 0.25.into(),
             phase: 0.0,
             start: 0.0,
             ramp: 4.0, // rises smoothly, since no finite force follows a jump

@@ -15,6 +15,7 @@
 //! }
 //! ```
 
+pub use crate::commands::export_fmu::export as export_fmu;
 pub use crate::commands::shared::SharedSweep;
 use crate::commands::{self, Exit};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -141,7 +142,7 @@ pub(crate) enum Command {
         Errors are relative to the largest magnitude of the record over the run; without @TIME the largest one over the\n\
         run counts. The reference is computed first, on all cores: steps and mesh are refined until they make no\n\
         difference, a second integrator has to agree, the mesh is extrapolated. Then runs are timed one by one.\n\
-        The folder holds table.csv, advice.json, advice/*.toml (the scene with the settings for each error), plots/cost.svg\n\
+        The folder holds index.html, table.csv, advice.json, advice/*.toml (the scene with the settings for each error), plots/cost.svg\n\
         (error over CPU time) and runs/. Ctrl-C stops; the same command goes on.")]
     Cost(commands::cost::CostArgs),
     /// What each effect costs and does, what its absence would change, and what absent effects would add
@@ -159,7 +160,7 @@ pub(crate) enum Command {
         ropewalk verify                         all cases\n  \
         ropewalk verify elastica flying         those whose names begin so\n  \
         ropewalk verify --list                  what there is\n  \
-        ropewalk verify -o docs/verification.md a page of the results, with a picture beside it\n\n\
+        ropewalk verify -o docs/verification.md a page of the results, with a picture beside it; also .html\n\n\
         Exit codes: 0 all within their tolerances, 1 something outside, 2 wrong usage, 130 Ctrl-C. CPU time beyond the\n\
         suggested limit is reported, no failure. Cases are scenes: `--scenes DIR` writes them, to be run and changed.")]
     Verify(commands::verify::VerifyArgs),
@@ -181,15 +182,34 @@ pub(crate) enum Command {
         ropewalk describe cable                 fields with units and defaults\n  \
         ropewalk describe solver                also: water, run, statics, inputs\n  \
         ropewalk describe mooring               the types that stand for a word of the field\n  \
-        ropewalk describe cable --json          the JSON schema")]
+        ropewalk describe cable --json          the JSON schema and the example; without a name those of all types\n\n\
+        `ropewalk book` has pages that show types in use, `ropewalk schema` is for editors.")]
     Describe {
-        /// A scene, a type, or one of: water, run, solver, statics, inputs
-        #[arg(value_name = "SCENE|TYPE")]
-        what: String,
-        /// Print the JSON schema of a type or section, for editors and programs
+        /// A scene, a type, or one of: water, air, run, solver, statics, inputs
+        #[arg(value_name = "SCENE|TYPE", required_unless_present = "json")]
+        what: Option<String>,
+        /// Print the JSON schema of a type or section, and its example, for programs
         #[arg(long)]
         json: bool,
     },
+    /// Print a page of the book in the terminal, or what pages there are
+    #[command(after_help = "Examples:\n  \
+        ropewalk book                           the pages\n  \
+        ropewalk book mooring | less\n  \
+        ropewalk book tension                   a word: the pages that speak of it")]
+    Book {
+        /// A page, or a word to look for
+        #[arg(value_name = "PAGE")]
+        page: Option<String>,
+    },
+    /// Print the JSON schema of scene files, by which editors explain, complete and check them
+    #[command(after_help = "Examples:\n  \
+        ropewalk schema                         to standard output\n  \
+        ropewalk schema --out scene.schema.json\n\n\
+        Editors with a TOML language server (Taplo, Tombi, Even Better TOML) read the first line of a scene:\n  \
+        #:schema ./scene.schema.json\n\
+        `ropewalk new NAME` writes it, and the file.")]
+    Schema(commands::scene_schema::SchemaArgs),
     /// Measure what an element costs on this machine, by phase and by stiffness model
     #[command(after_help = "Examples:\n  \
         ropewalk bench\n  \
@@ -362,8 +382,10 @@ pub fn exit_from(
         Command::New(args) => commands::new::new(&args, bundled),
         Command::Completions { shell } => commands::completions::completions(Cli::command(), shell),
         Command::Man { folder } => commands::completions::man(Cli::command(), &folder),
-        Command::Describe { what, json } if json => commands::describe::schemas(&what, bundled),
-        Command::Describe { what, .. } => commands::describe::describe(&what, bundled),
+        Command::Describe { what, json } if json => commands::describe::schemas(what.as_deref(), bundled),
+        Command::Describe { what, .. } => commands::describe::describe(&what.unwrap_or_default(), bundled),
+        Command::Book { page } => commands::book::book(page.as_deref()),
+        Command::Schema(args) => commands::scene_schema::schema(&args),
         Command::Bench(args) => commands::bench::bench(&args),
         Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
@@ -377,7 +399,10 @@ pub fn exit_from(
             Exit::Interrupted.code()
         }
         Err(e) => {
-            commands::error(&e);
+            match commands::remedy::see(&e) {
+                Some(see) => commands::error(format!("{e}\n  = see: {see}")),
+                None => commands::error(&e),
+            }
             if e.is_input() { Exit::Input as u8 } else { Exit::Solver as u8 }
         }
     }
@@ -392,6 +417,11 @@ pub fn explain(what: &str, bundled: &[Bundled]) -> Result<String, Error> {
         (text, None) => Ok(text),
         (_, Some(fault)) => Err(fault.into()),
     }
+}
+
+/// The pages of the book's reference of all types, each with its path in `book/src` and its text as Markdown.
+pub fn reference(bundled: &[Bundled]) -> Vec<(String, String)> {
+    commands::reference::pages(bundled)
 }
 
 #[cfg(test)]

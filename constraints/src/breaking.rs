@@ -63,6 +63,9 @@ impl Event for Break {
     fn direction(&self) -> i8 {
         1
     }
+    fn of_forces(&self) -> bool {
+        true
+    }
     fn act(&self, _: &Model, state: &mut State) -> Action {
         state.internal[self.variable] = 1.0;
         Action::Restart

@@ -1,10 +1,11 @@
 //! The direction of a cable held fast.
 
 use crate::check::unit;
-
+use crate::pair::{kind, slope, untwisted};
 use ropewalk_core::error::{finite, need};
+use ropewalk_core::model::twist;
 use ropewalk_core::rotation::{M3, around, cross};
-use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, NodeId, NodeKind, V3};
+use ropewalk_core::{Arrow, BuildError, Equation, Joint, Marker, Node, NodeId, NodeKind, V3};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,8 +13,9 @@ use serde::{Deserialize, Serialize};
 /// The slope `r'` of a cable node stays along the third axis of a marker, in space or on a rigid body: it is normal to
 /// the first two, two equations.
 ///
-/// The stretch `|r'|` stays free, as the tension there asks for it. The position is not held: add a
-/// [`spherical`](crate::spherical). `r'` and `-r'` both satisfy the equations; the start decides which it is.
+/// The stretch `|r'|` stays free, as the tension there asks for it, and so does the spin of a cable with torsion. The
+/// position is not held: add a [`spherical`](crate::spherical). `r'` and `-r'` both satisfy the equations; the start decides
+/// which it is.
 ///
 /// # Errors
 /// A node without slope; a marker without axes.
@@ -24,18 +26,28 @@ pub fn direction(
     to: Marker,
 ) -> Result<Joint, BuildError> {
     let name = name.into();
-    let kind = nodes.get(node.0 as usize).map(|n| n.kind);
-    need(kind == Some(NodeKind::Slope), || {
+    let slope = nodes.get(node.0 as usize).is_some_and(|n| n.kind.has_slope());
+    need(slope, || {
         format!("{name}: `direction` holds the slope of a cable node, which node {} doesn't have", node.0)
     })?;
-    let equations = vec![Equation::normal(0, 0), Equation::normal(1, 0)];
-    Joint::new(name, nodes, [to, Marker::node(node)], equations)
+    Joint::new(name, nodes, [to, Marker::node(node)], held(1, false))
+}
+
+/// The slope of a cable, the second marker or the first, along the third axis of the other marker; with `twist` its first
+/// director along the first.
+pub(crate) fn held(cable: usize, twist: bool) -> Vec<Equation> {
+    let mut equations = vec![Equation::beside(0, cable), Equation::beside(1, cable)];
+    if twist {
+        let (a, b) = (Arrow::Axis { of: 1 - cable, axis: 1 }, Arrow::Axis { of: cable, axis: 0 });
+        equations.push(Equation::Dot { a, b, value: 0.0, motion: None });
+    }
+    equations
 }
 
 /// Holds the direction of a cable at a marker, in space or on a rigid body. Position and stretch stay free.
 ///
 /// Use it for a guide that a cable slides through, or beside a constraint that drives the position. To hold the position
-/// as well, use `clamp`. A cable with a curved stress-free shape can't twist there either.
+/// as well, use `clamp`. A cable with torsion can't twist there either, unless `twist` is `false`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DirectionSpec {
@@ -49,49 +61,45 @@ pub struct DirectionSpec {
     /// The direction in space at the start. Default: the direction in which the cable is laid.
     #[serde(default)]
     pub direction: Option<V3<f64>>,
+    /// Whether a cable with torsion (`section.gj`) is kept from turning about its own axis. Default: it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub twist: Option<bool>,
 }
 register_spec!(Constraint, "direction", DirectionSpec);
 
 impl DirectionSpec {
     /// Holds the direction that a cable has at the start.
     pub fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
-        DirectionSpec { name: name.into(), marker: marker.into(), to: None, direction: None }
+        DirectionSpec { name: name.into(), marker: marker.into(), to: None, direction: None, twist: None }
     }
 }
 
-/// The tangent of a cable at a marker, and what turns about it.
+/// The tangent of a cable at a marker.
 pub(crate) struct Tangent {
-    /// Axes in space at the start, the third along the cable.
+    /// Axes in space at the start, the third along the cable; of one with torsion those of its section.
     pub axes: M3,
-    /// The node that knows how the cable is turned about its axis, if one does.
-    director: Option<NodeId>,
 }
 
 impl Tangent {
     /// The tangent that a cable has at the start, or the given one.
     pub(crate) fn new(b: &Builder, marker: &Marker, given: Option<V3<f64>>) -> Result<Self, BuildError> {
-        let direction = given.unwrap_or(b.place(marker).axes[0]);
+        let Some(laid) = slope(b, marker) else {
+            return Err(BuildError::at("marker", "a direction can only be held on a cable"));
+        };
+        let direction = given.unwrap_or(laid);
         finite("direction", &direction)?;
         let direction = unit("direction", direction)?;
-        let parts = b.parts(&[])?;
-        let director =
-            marker.on().and_then(|node| parts.iter().find_map(|(_, part)| part.line()?.director(node)));
-        let axes = match director.map(|d| b.place(&Marker::node(d)).x) {
-            None => around(direction),
-            Some(d) => {
-                let across = unit("direction", cross(&direction, &d))?;
-                [cross(&across, &direction), across, direction]
-            }
-        };
-        Ok(Tangent { axes, director })
-    }
-
-    /// Keeps a cable with a curved stress-free shape from turning about its axis; `to` has the axes of the tangent.
-    pub(crate) fn hold_twist(&self, b: &mut Builder, name: &str, to: Marker) -> Result<(), BuildError> {
-        let Some(director) = self.director else { return Ok(()) };
-        let equations = vec![Equation::normal(1, 0)];
-        let held = Joint::new(format!("{name}.twist"), b.nodes(), [to, Marker::node(director)], equations)?;
-        b.constraint(held)
+        if kind(b, marker) != Some(NodeKind::Twist) {
+            return Ok(Tangent { axes: around(direction) });
+        }
+        let [d, _, t] = b.place(marker).axes;
+        let cosine: f64 = (0..3).map(|i| t[i] * direction[i]).sum();
+        if cosine < -0.9 {
+            let message = "it is turned round against the cable as it is laid: lay it the other way";
+            return Err(BuildError::at("direction", message));
+        }
+        let d = twist::across(&twist::carried(&d, &t, &direction), &direction);
+        Ok(Tangent { axes: [d, cross(&direction, &d), direction] })
     }
 }
 
@@ -114,7 +122,12 @@ impl ConstraintSpec for DirectionSpec {
             None => Marker::ground([0.0; 3]),
         };
         let to = to.with_axes(b.nodes(), b.coordinates(), tangent.axes);
-        tangent.hold_twist(b, &self.name, to)?;
+        if kind(b, &marker) == Some(NodeKind::Twist) && self.twist.unwrap_or(true) {
+            return b.constraint(Joint::new(&self.name, b.nodes(), [to, marker], held(1, true))?);
+        }
+        if kind(b, &marker) != Some(NodeKind::Twist) {
+            untwisted(self.twist)?;
+        }
         b.constraint(direction(&self.name, b.nodes(), node, to)?)
     }
 }

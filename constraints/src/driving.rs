@@ -168,14 +168,16 @@ impl ConstraintSpec for RotationSpec {
 /// Axes about a direction; the first is the slope of a cable, so that a cable can be turned.
 fn turned_axes(b: &Builder, driven: &Marker, axis: V3<f64>) -> Result<[V3<f64>; 3], BuildError> {
     let axes = along("axis", axis)?;
-    if !crate::pair::on_cable(b, &[*driven, *driven]) {
+    let Some(slope) = crate::pair::slope(b, driven).filter(|_| crate::pair::on_cable(b, driven)) else {
         return Ok(axes);
-    }
-    let slope = b.place(driven).axes[0];
+    };
     let along_axis: f64 = (0..3).map(|i| slope[i] * axes[2][i]).sum();
     let across: V3<f64> = std::array::from_fn(|i| slope[i] - along_axis * axes[2][i]);
     let first = crate::check::unit("axis", across).map_err(|_| {
-        BuildError::at("axis", "the cable lies along the axis and can't be turned about it: it has no twist")
+        BuildError::at(
+            "axis",
+            "the cable lies along the axis and can't be turned about it: it has no torsion, `section.gj`",
+        )
     })?;
     Ok([first, ropewalk_core::rotation::cross(&axes[2], &first), axes[2]])
 }

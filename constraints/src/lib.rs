@@ -49,3 +49,9 @@ pub use spherical::{SphericalSpec, spherical};
 pub use universal::{PerpendicularSpec, UniversalSpec, perpendicular, universal};
 pub use weld::{WeldSpec, weld};
 pub use winch::{EyeletSpec, LiftOffSpec, WinchSpec};
+
+/// What the tests of this crate see of its inside; no part of its interface.
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::motion::function::{best_step, differences};
+}

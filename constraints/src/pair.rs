@@ -30,25 +30,46 @@ pub(crate) fn along(field: &str, direction: V3<f64>) -> Result<M3, BuildError> {
     Ok(around(unit(field, direction)?))
 }
 
-/// Whether one of the markers is on a cable, which has a slope but no twist.
-pub(crate) fn on_cable(b: &Builder, markers: &[Marker; 2]) -> bool {
-    markers.iter().filter_map(Marker::on).any(|n| b.nodes()[n.0 as usize].kind == NodeKind::Slope)
+/// What the node of a marker is, if it has one.
+pub(crate) fn kind(b: &Builder, marker: &Marker) -> Option<NodeKind> {
+    marker.on().map(|n| b.nodes()[n.0 as usize].kind)
 }
 
-/// The direction of a marker on a cable at the start, or the axis that the scene gives.
+/// Whether a marker is on a cable without torsion, which has a slope but no twist.
+pub(crate) fn on_cable(b: &Builder, marker: &Marker) -> bool {
+    kind(b, marker) == Some(NodeKind::Slope)
+}
+
+/// The slope of a marker on a cable when the run began.
+pub(crate) fn slope(b: &Builder, marker: &Marker) -> Option<V3<f64>> {
+    marker.slope(b.nodes(), b.coordinates())
+}
+
+/// The direction of a marker on a cable at the start, or the axis that the scene gives: it must on a body, it may on a
+/// cable with torsion.
 pub(crate) fn direction(
     b: &Builder,
     field: &str,
     marker: &Marker,
     given: Option<V3<f64>>,
 ) -> Result<V3<f64>, BuildError> {
-    let slope = marker.on().is_some_and(|n| b.nodes()[n.0 as usize].kind == NodeKind::Slope);
-    match given {
-        None if slope => Ok(b.place(marker).axes[0]),
-        Some(_) if slope => {
+    match (given, slope(b, marker)) {
+        (None, Some(slope)) => Ok(slope),
+        (Some(_), Some(_)) if on_cable(b, marker) => {
             Err(BuildError::at(field, format!("a cable has only its own direction: leave `{field}` out")))
         }
-        Some(axis) => unit(field, axis),
-        None => Err(BuildError::at(field, format!("`{field}` is missing: which axis is it to be?"))),
+        (Some(axis), _) => unit(field, axis),
+        (None, None) => Err(BuildError::at(field, format!("`{field}` is missing: which axis is it to be?"))),
+    }
+}
+
+/// Refuses to say what is to become of a twist that isn't there.
+pub(crate) fn untwisted(twist: Option<bool>) -> Result<(), BuildError> {
+    match twist {
+        None => Ok(()),
+        Some(_) => Err(BuildError::at(
+            "twist",
+            "what is held here has no torsion: leave `twist` out, or give the section of the cable a torsional stiffness, `gj`",
+        )),
     }
 }

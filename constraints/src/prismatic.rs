@@ -60,126 +60,56 @@ pub fn point_on_plane(
     Joint::new(name, nodes, between, vec![Equation::in_plane(2)])
 }
 
-/// Lets a body slide along an axis of another part or of space. It can't turn.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PrismaticSpec {
-    /// Name; records of the reaction refer to it.
-    pub name: String,
-    /// The marker that is held.
-    pub marker: MarkerRef,
-    /// The other marker, or a point in space. Default: the point where `marker` starts.
-    #[serde(default)]
-    pub to: Option<MarkerRef>,
-    /// Direction of the axis in space at the start. The axis turns with the parts.
-    pub axis: V3<f64>,
-}
-register_spec!(Constraint, "prismatic", PrismaticSpec);
+/// The spec of a joint whose axis the scene gives: `"name" => Spec, joint; what the axis is`.
+macro_rules! along_an_axis {
+    ($($(#[$what:meta])+ $name:literal => $spec:ident, $joint:ident; $axis:literal)+) => {$(
+        $(#[$what])+
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $spec {
+            /// Name; records of the reaction refer to it.
+            pub name: String,
+            /// The marker that is held.
+            pub marker: MarkerRef,
+            /// The other marker, or a point in space. Default: the point where `marker` starts.
+            #[serde(default)]
+            pub to: Option<MarkerRef>,
+            #[doc = $axis]
+            pub axis: V3<f64>,
+        }
+        register_spec!(Constraint, $name, $spec);
 
-#[typetag::serde(name = "prismatic")]
-impl ConstraintSpec for PrismaticSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn markers(&self) -> Vec<&MarkerRef> {
-        std::iter::once(&self.marker).chain(&self.to).collect()
-    }
-    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let markers = pair(b, &self.marker, self.to.as_ref())?;
-        let markers = aligned(b, markers, along("axis", self.axis)?);
-        b.constraint(prismatic(&self.name, b.nodes(), markers)?)
-    }
-}
-
-/// Lets a body slide along an axis of another part or of space, and turn about it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CylindricalSpec {
-    /// Name; records of the reaction refer to it.
-    pub name: String,
-    /// The marker that is held.
-    pub marker: MarkerRef,
-    /// The other marker, or a point in space. Default: the point where `marker` starts.
-    #[serde(default)]
-    pub to: Option<MarkerRef>,
-    /// Direction of the axis in space at the start. The axis turns with the parts.
-    pub axis: V3<f64>,
-}
-register_spec!(Constraint, "cylindrical", CylindricalSpec);
-
-#[typetag::serde(name = "cylindrical")]
-impl ConstraintSpec for CylindricalSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn markers(&self) -> Vec<&MarkerRef> {
-        std::iter::once(&self.marker).chain(&self.to).collect()
-    }
-    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let markers = pair(b, &self.marker, self.to.as_ref())?;
-        let markers = aligned(b, markers, along("axis", self.axis)?);
-        b.constraint(cylindrical(&self.name, b.nodes(), markers)?)
-    }
+        #[typetag::serde(name = $name)]
+        impl ConstraintSpec for $spec {
+            fn name(&self) -> &str {
+                &self.name
+            }
+            fn markers(&self) -> Vec<&MarkerRef> {
+                std::iter::once(&self.marker).chain(&self.to).collect()
+            }
+            fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+                let markers = pair(b, &self.marker, self.to.as_ref())?;
+                let markers = aligned(b, markers, along("axis", self.axis)?);
+                b.constraint($joint(&self.name, b.nodes(), markers)?)
+            }
+        }
+    )+};
 }
 
-/// Keeps a point on a straight line that is fixed to another part or in space.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PointOnLineSpec {
-    /// Name; records of the reaction refer to it.
-    pub name: String,
-    /// The marker that is held.
-    pub marker: MarkerRef,
-    /// The other marker, or a point in space. Default: the point where `marker` starts.
-    #[serde(default)]
-    pub to: Option<MarkerRef>,
-    /// Direction of the line in space at the start. The line turns with `to`.
-    pub axis: V3<f64>,
-}
-register_spec!(Constraint, "point_on_line", PointOnLineSpec);
+along_an_axis! {
+    /// Lets a body slide along an axis of another part or of space. It can't turn.
+    "prismatic" => PrismaticSpec, prismatic;
+    "Direction of the axis in space at the start. The axis turns with the parts."
 
-#[typetag::serde(name = "point_on_line")]
-impl ConstraintSpec for PointOnLineSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn markers(&self) -> Vec<&MarkerRef> {
-        std::iter::once(&self.marker).chain(&self.to).collect()
-    }
-    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let markers = pair(b, &self.marker, self.to.as_ref())?;
-        let markers = aligned(b, markers, along("axis", self.axis)?);
-        b.constraint(point_on_line(&self.name, b.nodes(), markers)?)
-    }
-}
+    /// Lets a body slide along an axis of another part or of space, and turn about it.
+    "cylindrical" => CylindricalSpec, cylindrical;
+    "Direction of the axis in space at the start. The axis turns with the parts."
 
-/// Keeps a point in a plane that is fixed to another part or in space.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PointOnPlaneSpec {
-    /// Name; records of the reaction refer to it.
-    pub name: String,
-    /// The marker that is held.
-    pub marker: MarkerRef,
-    /// The other marker, or a point in space. Default: the point where `marker` starts.
-    #[serde(default)]
-    pub to: Option<MarkerRef>,
-    /// Normal of the plane in space at the start. The plane turns with `to`.
-    pub axis: V3<f64>,
-}
-register_spec!(Constraint, "point_on_plane", PointOnPlaneSpec);
+    /// Keeps a point on a straight line that is fixed to another part or in space.
+    "point_on_line" => PointOnLineSpec, point_on_line;
+    "Direction of the line in space at the start. The line turns with `to`."
 
-#[typetag::serde(name = "point_on_plane")]
-impl ConstraintSpec for PointOnPlaneSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn markers(&self) -> Vec<&MarkerRef> {
-        std::iter::once(&self.marker).chain(&self.to).collect()
-    }
-    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let markers = pair(b, &self.marker, self.to.as_ref())?;
-        let markers = aligned(b, markers, along("axis", self.axis)?);
-        b.constraint(point_on_plane(&self.name, b.nodes(), markers)?)
-    }
+    /// Keeps a point in a plane that is fixed to another part or in space.
+    "point_on_plane" => PointOnPlaneSpec, point_on_plane;
+    "Normal of the plane in space at the start. The plane turns with `to`."
 }

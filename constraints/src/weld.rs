@@ -1,6 +1,6 @@
 //! Two parts joined rigidly.
 
-use crate::pair::{aligned, on_cable, pair};
+use crate::pair::{aligned, on_cable, pair, slope};
 use ropewalk_core::rotation::{IDENTITY, around};
 use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, NodeKind};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
@@ -8,12 +8,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Two markers are at the same point with the same axes: six equations. Of a cable's end the slope is held along the
-/// third axis of the other marker, its stretch stays free, and there is no twist to hold: 3 + 2 equations.
+/// third axis of the other marker, its stretch stays free, and there is no twist to hold: 3 + 2 equations. The end of a
+/// cable with torsion is held like a body, its stretch apart: two such ends may be welded to each other.
 ///
 /// Use it for: a sensor on a vehicle, a hose built into a flange.
 ///
 /// # Errors
-/// As for [`spherical`](crate::spherical); a marker without axes; cables at both markers.
+/// As for [`spherical`](crate::spherical); a marker without axes; cables without torsion at both markers.
 pub fn weld(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Result<Joint, BuildError> {
     let mut equations = Equation::coincide();
     let on_cable =
@@ -21,7 +22,8 @@ pub fn weld(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Re
     let normals = match [on_cable(&between[0]), on_cable(&between[1])] {
         [true, true] => {
             return Err(BuildError::new(
-                "a weld of two cables isn't available: their slopes differ in stretch; join them by one cable, or to a body",
+                "two cables without torsion can't be welded, since nothing says how they are turned: give their sections a \
+                 torsional stiffness, `gj`, make them one cable, or join them by a body",
             ));
         }
         [true, _] => [(0, 0), (0, 1)].as_slice(),
@@ -33,8 +35,8 @@ pub fn weld(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -> Re
     Joint::new(name, nodes, between, equations)
 }
 
-/// Joins two parts rigidly, as they stand at the start. Of a cable, point and tangent are held; the stretch stays
-/// free.
+/// Joins two parts rigidly, as they stand at the start. Of a cable, point and tangent are held, and of one with torsion
+/// (`section.gj`) the twist; the stretch stays free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WeldSpec {
@@ -58,8 +60,8 @@ impl ConstraintSpec for WeldSpec {
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let markers = pair(b, &self.marker, self.to.as_ref())?;
-        let cable = markers.iter().find(|m| on_cable(b, &[**m, **m]));
-        let axes = cable.map_or(IDENTITY, |m| around(b.place(m).axes[0]));
+        let cable = markers.iter().filter(|m| on_cable(b, m)).find_map(|m| slope(b, m));
+        let axes = cable.map_or(IDENTITY, around);
         b.constraint(weld(&self.name, b.nodes(), aligned(b, markers, axes))?)
     }
 }

@@ -32,3 +32,12 @@ pub use path::Path;
 pub use point_mass::{Across, PointMass, PointMassSpec};
 pub use rigid_body::RigidBodySpec;
 pub use rigid_chain::{LinkSection, RigidChainSpec};
+
+/// What the tests of this crate see of its inside; no part of its interface.
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::cable::mesh::{even, pinned};
+    pub use crate::cable::transmitted::weights;
+    pub use crate::rigid_chain::lay::filling;
+    pub use crate::rigid_chain::spec::orientations;
+}

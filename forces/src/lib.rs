@@ -27,11 +27,13 @@ mod bushing;
 pub mod contact;
 mod drag;
 mod drag_coefficient;
+mod function;
 mod gravity;
 mod latch;
 mod line_load;
 mod moment;
 mod point;
+mod signals;
 mod spring;
 mod surface;
 mod time;
@@ -46,6 +48,7 @@ pub use drag::{
     choo_casarella_ct_over_mu,
 };
 pub use drag_coefficient::DragCoefficientSpec;
+pub use function::{FunctionForce, FunctionLoad, FunctionSpec, Scales};
 pub use gravity::GravitySpec;
 pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
 pub use line_load::{LineLoad, LineLoadSpec};

@@ -121,7 +121,7 @@ pub(crate) fn orientation(at: &At<'_>, q: usize) -> [f64; 4] {
 
 pub(crate) fn slope_node<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Node, BuildError> {
     let n = find(nodes, node, what)?;
-    need(n.kind == NodeKind::Slope, || {
+    need(n.kind.has_slope(), || {
         format!("{what}: needs a cable node (position and slope), but node {} is {:?}", node.0, n.kind)
     })?;
     Ok(n)

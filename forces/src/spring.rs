@@ -1,5 +1,6 @@
 //! A spring and damper between two points.
 
+use crate::signals::{change, least, rate, reach};
 use ropewalk_core::error::{need, not_negative};
 use ropewalk_core::held::{Held, Pull as Pair, delta, dofs, pull};
 use ropewalk_core::{
@@ -78,10 +79,7 @@ impl Spring {
 
     /// Power of whoever changes stiffness and rest length: the rate of the strain energy at a fixed length [W].
     fn supplied(&self, t: f64, p: &Pull) -> f64 {
-        let rate = |s: &Signal| match s {
-            Signal::Constant(_) => 0.0,
-            Signal::Input(input) => input.at(t).rate,
-        };
+        let rate = |s: &Signal| rate(s, t);
         let stretch = p.length - self.rest_length.at(t);
         if self.tension_only && stretch <= 0.0 {
             return 0.0;
@@ -112,6 +110,9 @@ impl Spring {
 impl Term for Spring {
     fn label(&self) -> String {
         self.label.clone()
+    }
+    fn acts(&self) -> Option<&'static str> {
+        Some("spring")
     }
     fn pattern(&self, p: &mut Pattern) {
         p.clique(dofs(&self.ends));
@@ -159,7 +160,7 @@ impl Term for Spring {
         }
     }
     fn timed(&self) -> Option<&dyn Timed> {
-        if self.signals().iter().all(|s| s.is_constant()) { None } else { Some(self) }
+        if change(self.signals().into_iter()) { Some(self) } else { None }
     }
     fn shows(&self) -> Option<&dyn Shows> {
         Some(self)
@@ -168,7 +169,7 @@ impl Term for Spring {
 
 impl Timed for Spring {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        Some(self.signals().iter().fold(h, |h, s| s.reach(t, h)))
+        Some(reach(self.signals().into_iter(), t, h))
     }
 }
 
@@ -178,14 +179,6 @@ impl Shows for Spring {
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
         out.push(self.force(at));
-    }
-}
-
-/// The least value that a signal can have.
-fn least(signal: &Signal) -> f64 {
-    match signal {
-        Signal::Constant(x) => *x,
-        Signal::Input(input) => input.limits()[0],
     }
 }
 

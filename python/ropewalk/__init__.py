@@ -9,12 +9,15 @@ A scene is a bundled one (`rw.list()`), a path, a dict, or built: see `Scene`. N
 "2 kn" brings its own; z is up.
 """
 
-from ._errors import OutputError, RopewalkError, SceneError, SolverError
+from ._errors import FunctionError, OutputError, RopewalkError, SceneError, SolverError
+from ._fmu import export_fmu
+from ._functions import function
 from ._linearise import Linearised, linearise
 from ._native import Stop, __version__
 from ._objective import Objective, objective
 from ._run import Run, load, run
 from ._scene import AnyScene, Part, Scene
+from ._shapes import Body, Line, Shapes
 from ._simulation import Simulation
 from ._studies import Certificate, Cost, Effects, certify, cost, effects
 from ._sweep import Sweep, sweep
@@ -22,10 +25,13 @@ from ._tools import Checked, Modes, check, describe, list, modes, schemas
 
 __all__ = [
     "AnyScene",
+    "Body",
     "Certificate",
     "Checked",
     "Cost",
     "Effects",
+    "FunctionError",
+    "Line",
     "Linearised",
     "Modes",
     "Objective",
@@ -35,6 +41,7 @@ __all__ = [
     "Run",
     "Scene",
     "SceneError",
+    "Shapes",
     "Simulation",
     "SolverError",
     "Stop",
@@ -45,6 +52,8 @@ __all__ = [
     "cost",
     "describe",
     "effects",
+    "export_fmu",
+    "function",
     "linearise",
     "list",
     "load",

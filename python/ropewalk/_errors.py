@@ -34,3 +34,7 @@ class SolverError(RopewalkError, RuntimeError):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.args[0], self.run)
+
+
+class FunctionError(SolverError):
+    """A force or motion written in Python raised an exception, which is the `__cause__` of this one, or gave no number."""

@@ -19,6 +19,21 @@ except ImportError:  # dense arrays do where there is no SciPy
 
 
 @dataclass(frozen=True)
+class Reduced:
+    """Small motions in the coordinates that constraints leave: `M w'' + C w' + K w = B u + rate u' + integral ∫u`, with
+    `q = Z w + V ∫u`. The last ones are there where inputs prescribe speeds; `u` is all inputs."""
+
+    M: Any
+    C: Any
+    K: Any
+    B: Any
+    rate: Any
+    integral: Any
+    Z: Any
+    V: Any
+
+
+@dataclass(frozen=True)
 class Linearised:
     """Small motions about a state, in SI units:
 
@@ -60,6 +75,16 @@ class Linearised:
         _, sizes, rows = np.linalg.svd(g)
         rank = int(np.sum(sizes > 1e-10 * max(sizes.max(initial=0.0), 1e-300)))
         return rows[rank:].T
+
+    def reduced(self) -> Reduced:
+        """The equations without constraints, dense: what inputs that prescribe speeds carry along included."""
+        z, dense = self.null_space(), lambda a: a.toarray() if hasattr(a, "toarray") else a
+        v = np.zeros((len(self.unknowns), len(self.inputs)))
+        if self.constraints:
+            v = np.linalg.pinv(dense(self.G), rcond=1e-10) @ dense(self.D)
+        m, c, k = (dense(a) for a in (self.M, self.C, self.K))
+        b = z.T @ (dense(self.B) - c @ v)
+        return Reduced(z.T @ m @ z, z.T @ c @ z, z.T @ k @ z, b, -z.T @ m @ v, -z.T @ k @ v, z, v)
 
     def __repr__(self) -> str:
         n, m = len(self.unknowns), len(self.constraints)

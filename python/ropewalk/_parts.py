@@ -3,7 +3,7 @@
 # ruff: noqa: A002, E501
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, Union
 
 from ._part import Part
@@ -49,20 +49,28 @@ class Parts:
         stress_free: Literal['as-laid', 'straight'] | None = None,
         strain: Number | None = None,
         curvature: Number | None = None,
+        normal: Sequence[Number] | None = None,
+        twist: Number | None = None,
+        laid_twist: Number | None = None,
     ) -> Part:
-        """A cable, hose or tether with large displacements, stretch and bending. It has no torsion, unless its stress-
-        free shape is curved.
+        """A cable, hose or tether with large displacements, stretch and bending, and torsion if its section has a
+        torsional stiffness `gj`.
 
-        It is a chain of ANCF elements with 6 coordinates per node. Markers: `name.start`, `name.end`, `name@12.5m`.
+        It is a chain of ANCF elements with 6 velocities per node, with torsion 7. Markers: `name.start`, `name.end`,
+        `name@12.5m`.
 
         name: Name; the rest of the scene refers to the part by it.
         section: Cross-section.
             mass: Structural mass per unstretched length [kg/m]; gravity acts on it. Required.
             ea: Axial stiffness EA [N]. Required.
             ei: Bending stiffness EI [N m²]. With 0, the first and last element keep 1 % of their weight times their
-                length squared, so that free ends have a direction. Default 0.0.
-            gj: Torsional stiffness GJ [N m²] of a cable with a curved stress-free shape. Default: EI. Other cables
-                have no torsion.
+                length squared, so that free ends have a direction. Two numbers where it isn't the same in all
+                directions, of a cable with torsion: about the `normal` of the section, and about the axis across it.
+                Default 0.0.
+            gj: Torsional stiffness GJ [N m²]. With it the cable can be twisted, and its ends are held against
+                twisting where they are built in. Default: no torsion; but EI where the stress-free shape is curved.
+            rotary_inertia: Polar moment of inertia of the section, per length [kg m], of a cable with torsion.
+                Default: that of a solid round bar, `mass diameter²/8`.
             flooded: Mass of the water inside [kg/m]. It moves with the part and has no weight in water. Default 0.0.
             diameter: Hydrodynamic diameter, for drag and added mass [m]. Default 0.0.
             displaced: Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
@@ -70,6 +78,10 @@ class Parts:
                 ε̇)`. Default 0.0.
             bending_retardation_time: Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`.
                 Default 0.0.
+            torsional_retardation_time: Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ
+                dφ'/dt)`.
+            gyroscopic: Whether the spin of a cable with torsion about its own axis turns it aside, as that of a top
+                does: of shafts that turn fast. Ropes don't notice.
         points: Points of the path along which it is laid, from start to end [m], joined by straight lines. At
             corners, give a `radius`: a sharp corner would strain the cable.
         radius: Bend radius at the corners of `points` [m]. The arcs have elements of their own.
@@ -91,9 +103,15 @@ class Parts:
         velocity: Initial velocity of the whole cable [m/s]. Default [0.0, 0.0, 0.0].
         stress_free: Stress-free shape. Default straight.
         strain: Stress-free strain, added to that of `stress_free` [1]. Default 0.0.
-        curvature: Stress-free curvature, added to that of `stress_free` [1/m]. It has no direction: a cable without
-            torsion can curl to any side. For a curvature with a direction, lay the cable curved and set `stress_free
-            = "as-laid"`. Default 0.0.
+        curvature: Stress-free curvature, added to that of `stress_free` [1/m]. Of a cable with torsion it is about
+            the `normal` of the section; without, it has no direction, and the cable can curl to any side. Default
+            0.0.
+        normal: Direction in space of the first director of the section, at the start of the cable: the axis about
+            which the first of two bending stiffnesses and `curvature` are. Along the cable it is laid without twist.
+            Default: where a curved cable bends most, at right angles to the plane in which it does; else it doesn't
+            matter.
+        twist: Stress-free twist per length of a cable with torsion, added to that of `stress_free` [rad/m].
+        laid_twist: Twist per length with which a cable with torsion is laid [rad/m].
         """
         return self._add("elements", "cable", {
             "name": name,
@@ -114,6 +132,9 @@ class Parts:
             "stress_free": stress_free,
             "strain": strain,
             "curvature": curvature,
+            "normal": normal,
+            "twist": twist,
+            "laid_twist": laid_twist,
         })
 
     def point_mass(
@@ -167,6 +188,7 @@ class Parts:
         volume: Number | None = None,
         centre_of_volume: Sequence[Number] | None = None,
         hull: Mapping[str, Any] | None = None,
+        drawn: Mapping[str, Any] | None = None,
         points: Mapping[str, Any] | None = None,
     ) -> Part:
         """A rigid body with full inertia.
@@ -194,6 +216,10 @@ class Parts:
             from: One end of its axis [m]. Required.
             to: The other end [m]. Required.
             diameter: Diameter [m]. Required.
+        drawn: Cylinder that stands for it in pictures, if it has neither `hull` nor `shape`; nothing acts on it.
+            from: One end of its axis [m]. Required.
+            to: The other end [m]. Required.
+            diameter: Diameter [m]. Required.
         points: Named points of the body [m]; each is a marker.
         """
         return self._add("elements", "rigid_body", {
@@ -211,6 +237,7 @@ class Parts:
             "volume": volume,
             "centre_of_volume": centre_of_volume,
             "hull": hull,
+            "drawn": drawn,
             "points": points,
         })
 
@@ -295,24 +322,28 @@ class Parts:
         marker: Union[Sequence[Number], str],
         to: Union[Sequence[Number], str] | None = None,
         direction: Sequence[Number] | None = None,
+        twist: Boolean | None = None,
     ) -> Part:
         """Holds position and direction: a built-in end.
 
         On a cable it holds the point and the tangent; the stretch stays free, as the tension there needs. A cable
-        with a curved stress-free shape can't twist there either. On a rigid body or a link it holds all six degrees
-        of freedom, as `weld` does. To hold the direction only, use `direction`; to hold the position only,
-        `spherical`.
+        with torsion can't twist there either, unless it is on a swivel (`twist = false`). On a rigid body or a link
+        it holds all six degrees of freedom, as `weld` does. To hold the direction only, use `direction`; to hold the
+        position only, `spherical`.
 
         name: Name; records refer to the reaction by it.
         marker: The marker that is held, on a cable or a rigid body.
         to: What holds it: a marker on a rigid body or a point in space. Default: the point where the marker starts.
         direction: Direction of the cable at the start, in space. Default: the direction in which the cable is laid.
+        twist: Whether a cable with torsion (`section.gj`) is kept from turning about its own axis; `false` is a
+            swivel. Default: it is.
         """
         return self._add("constraints", "clamp", {
             "name": name,
             "marker": marker,
             "to": to,
             "direction": direction,
+            "twist": twist,
         })
 
     def coordinate(
@@ -367,22 +398,25 @@ class Parts:
         marker: Union[Sequence[Number], str],
         to: Union[Sequence[Number], str] | None = None,
         direction: Sequence[Number] | None = None,
+        twist: Boolean | None = None,
     ) -> Part:
         """Holds the direction of a cable at a marker, in space or on a rigid body. Position and stretch stay free.
 
         Use it for a guide that a cable slides through, or beside a constraint that drives the position. To hold the
-        position as well, use `clamp`. A cable with a curved stress-free shape can't twist there either.
+        position as well, use `clamp`. A cable with torsion can't twist there either, unless `twist` is `false`.
 
         name: Name; records of the reaction refer to it.
         marker: The marker on the cable.
         to: The rigid body that holds the direction. Default: space.
         direction: The direction in space at the start. Default: the direction in which the cable is laid.
+        twist: Whether a cable with torsion (`section.gj`) is kept from turning about its own axis. Default: it is.
         """
         return self._add("constraints", "direction", {
             "name": name,
             "marker": marker,
             "to": to,
             "direction": direction,
+            "twist": twist,
         })
 
     def distance(
@@ -439,7 +473,7 @@ class Parts:
         stop: Number | None = None,
         motion: str | None = None,
         tension: Union[Mapping[str, Any], Number] | None = None,
-        per_speed2: Number | None = None,
+        per_speed2: Union[Mapping[str, Any], Number] | None = None,
         reference_speed: str | None = None,
         damping: Union[Mapping[str, Any], Number] | None = None,
         shortest: Number | None = None,
@@ -762,8 +796,8 @@ class Parts:
         marker: Union[Sequence[Number], str],
         to: Union[Sequence[Number], str] | None = None,
     ) -> Part:
-        """Joins two parts rigidly, as they stand at the start. Of a cable, point and tangent are held; the stretch stays
-        free.
+        """Joins two parts rigidly, as they stand at the start. Of a cable, point and tangent are held, and of one with
+        torsion (`section.gj`) the twist; the stretch stays free.
 
         name: Name; records of the reaction refer to it.
         marker: The marker that is held.
@@ -791,7 +825,7 @@ class Parts:
         brake: Union[Mapping[str, Any], Number] | None = None,
         slip_speed: Number | None = None,
         damping: Union[Mapping[str, Any], Number] | None = None,
-        per_speed2: Number | None = None,
+        per_speed2: Union[Mapping[str, Any], Number] | None = None,
         reference_speed: str | None = None,
         inertia: Number | None = None,
         pile: Boolean | None = None,
@@ -909,10 +943,10 @@ class Parts:
         to: Union[Sequence[Number], str] | None = None,
         axis_x: Sequence[Number] | None = None,
         axis_y: Sequence[Number] | None = None,
-        stiffness: Sequence[Number] | None = None,
-        damping: Sequence[Number] | None = None,
-        rotational_stiffness: Sequence[Number] | None = None,
-        rotational_damping: Sequence[Number] | None = None,
+        stiffness: Sequence[Union[Mapping[str, Any], Number]] | None = None,
+        damping: Sequence[Union[Mapping[str, Any], Number]] | None = None,
+        rotational_stiffness: Sequence[Union[Mapping[str, Any], Number]] | None = None,
+        rotational_damping: Sequence[Union[Mapping[str, Any], Number]] | None = None,
     ) -> Part:
         """A spring and damper in all six directions between two rigid bodies, or a body and space: a rubber mount, a
         soft joint. There is no force in the initial position. Rotations up to half a turn are valid.
@@ -1036,6 +1070,37 @@ class Parts:
             "on": on,
         })
 
+    def function(
+        self,
+        *,
+        function: Union[Callable[..., Any], str],
+        name: str | None = None,
+        marker: Union[Sequence[Number], str] | None = None,
+        on: Sequence[str] | None = None,
+        parameters: Mapping[str, Any] | None = None,
+    ) -> Part:
+        """A force that a function gives, which the program that runs the scene has written, such as a script in Python:
+        at a `marker`, or along cables and what else carries distributed loads.
+
+        To try things out: each call takes microseconds, and a step takes tens of calls, since derivatives are
+        differences. What stays deserves a type of its own. All of its work counts as supplied from outside.
+
+        function: Name of the function that was registered; in Python the function itself. `type = "name"` says the
+            same, with its parameters beside it.
+        name: Name, by which records ask for it. Default: that of the function.
+        marker: The marker on which it acts. Default: it acts along cables.
+        on: Cables, chains and hulls that it acts along, without a marker. Default: all.
+        parameters: What the function is given besides the state, by name. A text that is a number with a unit becomes
+            a number in SI units.
+        """
+        return self._add("forces", "function", {
+            "function": function,
+            "name": name,
+            "marker": marker,
+            "on": on,
+            "parameters": parameters,
+        })
+
     def gravity(
         self,
         *,
@@ -1096,6 +1161,44 @@ class Parts:
             "stop": stop,
         })
 
+    def line_contact(
+        self,
+        *,
+        name: str,
+        stiffness_per_length: Number,
+        on: Sequence[str] | None = None,
+        itself: Boolean | None = None,
+        exponent: Number | None = None,
+        damping: Union[Literal['none'], Mapping[str, Any]] | None = None,
+        overlap: Literal['allow', 'refuse'] | None = None,
+    ) -> Part:
+        """Contact of cables and of bodies with a hull with each other, and of cables with themselves: lines that cross,
+        coils, knots, a line that falls onto itself.
+
+        They touch anywhere along their length where their middle lines are nearer than both radii; ends are round.
+        There is no friction between lines. An end that starts in another line, more than half of the radius deep, is
+        taken as tied to it, and both leave each other alone there. Along one line, what is nearer than 1.6 diameters
+        along it isn't looked at. A record of type `force` shows what presses, how deep and over which length; a
+        record `clearance` shows how near two lines are.
+
+        name: Name.
+        stiffness_per_length: Contact stiffness per length [N/m²]; with an exponent other than 1, at a depth of 1 m.
+        on: The cables and bodies with a hull that touch one another. Default: all that have a diameter.
+        itself: Whether each cable touches itself too. Default True.
+        exponent: Exponent `p` of the elastic force `k d^p`. Default 1.0.
+        damping: Damping law along the normal. Default none.
+        overlap: What to do with lines that start deep in each other. Default refuse.
+        """
+        return self._add("forces", "line_contact", {
+            "name": name,
+            "stiffness_per_length": stiffness_per_length,
+            "on": on,
+            "itself": itself,
+            "exponent": exponent,
+            "damping": damping,
+            "overlap": overlap,
+        })
+
     def line_load(
         self,
         *,
@@ -1147,21 +1250,25 @@ class Parts:
         self,
         *,
         marker: Union[Sequence[Number], str],
-        moment: Sequence[Union[Mapping[str, Any], Number]],
+        moment: Sequence[Union[Mapping[str, Any], Number]] | None = None,
+        torque: Union[Mapping[str, Any], Number] | None = None,
         local: Boolean | None = None,
         time: Union[Literal['constant'], Mapping[str, Any]] | None = None,
     ) -> Part:
-        """A moment on a rigid body or a cable, in space or in the axes of the body. A component along a cable has no
-        effect: cables have no torsion.
+        """A moment on a rigid body or a cable, in space or in the axes of the body. A component along a cable twists it
+        if it has torsion (`section.gj`), else it has no effect.
 
         marker: The marker on which it acts.
         moment: Moment [N m].
+        torque: Moment along a cable with torsion, towards its end [N m], instead of `moment`. It turns with the
+            cable.
         local: Whether `moment` is given in the axes of the rigid body and turns with it. Default False.
         time: Factor as a function of time. Default constant.
         """
         return self._add("forces", "point_moment", {
             "marker": marker,
             "moment": moment,
+            "torque": torque,
             "local": local,
             "time": time,
         })
@@ -1173,9 +1280,9 @@ class Parts:
         marker: Union[Sequence[Number], str],
         axis: Sequence[Number],
         to: Union[Sequence[Number], str] | None = None,
-        stiffness: Number | None = None,
-        damping: Number | None = None,
-        angle: Number | None = None,
+        stiffness: Union[Mapping[str, Any], Number] | None = None,
+        damping: Union[Mapping[str, Any], Number] | None = None,
+        angle: Union[Mapping[str, Any], Number] | None = None,
     ) -> Part:
         """A torsion spring and damper about an axis, used with a `revolute` joint. Angles up to half a turn from the
         stress-free angle are valid.
@@ -1260,12 +1367,37 @@ class Parts:
             "ramp": ramp,
         })
 
+    def function_motion(
+        self,
+        *,
+        name: str,
+        function: Union[Callable[..., Any], str],
+        parameters: Mapping[str, Any] | None = None,
+    ) -> Part:
+        """A motion that a function of time gives, which the program that runs the scene has written, such as a script in
+        Python.
+
+        To try things out: each call takes microseconds. A function that only knows the displacement has it
+        differentiated, which takes five calls and costs digits; it should be smooth.
+
+        name: Name; constraints refer to it.
+        function: Name of the function that was registered; in Python the function itself. `type = "name"` says the
+            same, with its parameters beside it.
+        parameters: What the function is given besides the time, by name. A text that is a number with a unit becomes
+            a number in SI units.
+        """
+        return self._add("motions", "function", {
+            "name": name,
+            "function": function,
+            "parameters": parameters,
+        })
+
     def harmonic(
         self,
         *,
         name: str,
-        amplitude: Sequence[Number],
-        frequency: Number,
+        amplitude: Sequence[Union[Mapping[str, Any], Number]],
+        frequency: Union[Mapping[str, Any], Number],
         phase: Number | None = None,
         start: Number | None = None,
         ramp: Number | None = None,
@@ -1273,8 +1405,10 @@ class Parts:
         """Oscillates harmonically.
 
         name: Name; constraints refer to it.
-        amplitude: Amplitude [m].
-        frequency: Frequency [Hz].
+        amplitude: Amplitude [m]. Inputs that it reads need `join = "smooth"`: where an amplitude jumps or bends, the
+            velocity jumps.
+        frequency: Frequency [Hz]. The phase goes on where an input changes it, which needs `join = "linear"` or
+            `"smooth"`, and counts from t = 0.
         phase: Phase [rad]. Default 0.0.
         start: Start time [s]. Default 0.0.
         ramp: Time in which the amplitude rises [s]; with 0 it oscillates from the first moment on and starts with
@@ -1430,8 +1564,8 @@ class Parts:
         self,
         *,
         name: str,
-        amplitude: Number,
-        frequency: Number,
+        amplitude: Union[Mapping[str, Any], Number],
+        frequency: Union[Mapping[str, Any], Number],
         phase: Number | None = None,
         start: Number | None = None,
         ramp: Number | None = None,
@@ -1439,8 +1573,10 @@ class Parts:
         """An oscillating angle for the constraint `rotation`; the amplitude rises smoothly.
 
         name: Name; constraints refer to it.
-        amplitude: Amplitude [rad].
-        frequency: Frequency [Hz].
+        amplitude: Amplitude [rad]. An input that it reads needs `join = "smooth"`: where an amplitude jumps or bends,
+            the velocity jumps.
+        frequency: Frequency [Hz]. The phase goes on where an input changes it, which needs `join = "linear"` or
+            `"smooth"`, and counts from t = 0.
         phase: Phase [rad]. Default 0.0.
         start: Start time [s]. Default 0.0.
         ramp: Time in which the amplitude rises [s]; with 0 it oscillates from the first moment on and starts with
@@ -1563,15 +1699,21 @@ class Parts:
         self,
         *,
         of: str,
-        what: Literal['curvature', 'moment', 'strain', 'tension'],
+        what: Literal['angle', 'curvature', 'curvature_across', 'curvature_normal', 'moment', 'moment_across', 'moment_normal', 'spin', 'strain', 'tension', 'torque', 'twist'],
         at: Number,
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """Tension, strain, curvature or bending moment of a cable at one place: column `hose.end.tension`.
+        """Tension, strain, curvature or bending moment of a cable at one place: column `hose.end.tension`. Of a cable
+        with torsion (`section.gj`) its twist, torque, angle and spin too, and curvature and moment about either
+        director of its section. Of a chain of rigid links its tension: what its joints carry, and between two joints
+        what lies between.
 
-        of: The cable.
-        what: Recorded quantity: tension [N], strain, curvature [1/m] or moment [N m].
+        of: The cable, or the chain.
+        what: Recorded quantity: tension [N], strain, curvature [1/m] or moment [N m]; of a cable with torsion twist
+            [rad/m], torque [N m], angle from the start [rad] or spin [rad/s], and `curvature_normal`,
+            `curvature_across`, `moment_normal` and `moment_across`, about the first director of the section and about
+            the second.
         at: Where: `start`, `end`, an unstretched arc length from the start as it is now [m], or a share of the length
             like `50 %`.
         name: Name in results. Default: cable, place and quantity.
@@ -1595,7 +1737,8 @@ class Parts:
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """Angular velocity of a rigid body: columns `crank.wx`, `.wy` and `.wz` in rad/s.
+        """Angular velocity of a rigid body, or of the section of a cable with torsion: columns `crank.wx`, `.wy` and
+        `.wz` in rad/s.
 
         of: The body, or a marker on it, such as `hose.link3`.
         to: The other body. Default: space. The relative angular velocity of a joint's two bodies is the speed of the
@@ -1612,6 +1755,24 @@ class Parts:
             "axes": axes,
             "name": name,
             "title": title,
+        })
+
+    def clearance(
+        self,
+        *,
+        between: Sequence[str],
+        name: str | None = None,
+    ) -> Part:
+        """The least distance between the surfaces of two cables or bodies with a hull: columns `a-b.clearance` in m,
+        below zero where they are in each other, and `a-b.first`, `a-b.second`, how far along each that is in m. They
+        need not be in contact.
+
+        between: Both.
+        name: Name in results. Default: both names, joined by a hyphen.
+        """
+        return self._add("records", "clearance", {
+            "between": between,
+            "name": name,
         })
 
     def drag_coefficient(
@@ -1764,8 +1925,9 @@ class Parts:
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """Orientation of a rigid body as Bryant angles 1-2-3, turns about its x axis, its new y axis, its new z axis:
-        columns `crank.phi1`, `.phi2` and `.phi3` in rad. The first and the third jump from π to -π.
+        """Orientation of a rigid body, or of the section of a cable with torsion (its two directors and its tangent), as
+        Bryant angles 1-2-3, turns about its x axis, its new y axis, its new z axis: columns `crank.phi1`, `.phi2` and
+        `.phi3` in rad. The first and the third jump from π to -π.
 
         of: The body, or a marker on it.
         degrees: Whether the angles are in degrees. Default False.
@@ -1830,8 +1992,8 @@ class Parts:
         title: str | None = None,
     ) -> Part:
         """Force of a constraint on what it holds, its `marker`: columns `anchor.fx`, `.fy`, `.fz` and `.magnitude` in N.
-        Where it holds the direction of a rigid body too, its moment about the marker as well: `.mx`, `.my`, `.mz` in
-        N m.
+        Where it holds the direction of a rigid body or of a cable with torsion too, its moment about the marker as
+        well: `.mx`, `.my`, `.mz` in N m.
 
         A rope that hangs from its anchor is pulled upwards, so `fz` is its weight.
 
@@ -2096,6 +2258,7 @@ class Parts:
         level: Number | None = None,
         current: Sequence[Union[Mapping[str, Any], Number]] | None = None,
         profile: Sequence[Mapping[str, Any]] | None = None,
+        profile_factor: Union[Mapping[str, Any], Number] | None = None,
     ) -> None:
         """The water around a scene. Drag, buoyancy and added mass need it.
 
@@ -2105,6 +2268,7 @@ class Parts:
         current: Uniform velocity of the water [m/s]; inputs that it reads need `join = "hold"`. Default [0.0, 0.0,
             0.0].
         profile: Current profile over height, instead of `current`: piecewise linear, constant beyond the ends.
+        profile_factor: Factor of the profile; an input that it reads needs `join = "hold"`. Default 1.0.
         """
         self._set("water", {
             "density": density,
@@ -2112,6 +2276,7 @@ class Parts:
             "level": level,
             "current": current,
             "profile": profile,
+            "profile_factor": profile_factor,
         })
 
     def set_air(
@@ -2121,6 +2286,7 @@ class Parts:
         viscosity: Number | None = None,
         wind: Sequence[Union[Mapping[str, Any], Number]] | None = None,
         profile: Sequence[Mapping[str, Any]] | None = None,
+        profile_factor: Union[Mapping[str, Any], Number] | None = None,
     ) -> None:
         """The air above the water, or around a scene without water: only drag looks at it. Default: vacuum.
 
@@ -2130,12 +2296,14 @@ class Parts:
             0.0, 0.0].
         profile: Velocity of the air by height, instead of `wind`: piecewise linear between the levels, constant
             beyond.
+        profile_factor: Factor of the profile; an input that it reads needs `join = "hold"`. Default 1.0.
         """
         self._set("air", {
             "density": density,
             "viscosity": viscosity,
             "wind": wind,
             "profile": profile,
+            "profile_factor": profile_factor,
         })
 
     def set_run(
@@ -2286,7 +2454,7 @@ class Parts:
         default: Union[Number, str] | None = None,
         min: Union[Number, str] | None = None,
         max: Union[Number, str] | None = None,
-        join: Literal['hold', 'linear'] | None = None,
+        join: Literal['hold', 'linear', 'smooth'] | None = None,
     ) -> Part:
         """A channel that is set while a run goes on: by a controller of the scene, or from Rust, Python or another
         program between steps. A field reads it by `{ input = "name" }` instead of a number.
@@ -2297,8 +2465,8 @@ class Parts:
         min: Least value. Default: no limit.
         max: Largest value. Default: no limit.
         join: How values are joined: `hold` jumps when it is set, `linear` reaches the value at the end of the next
-            advance, or of a controller's interval. Speeds that are prescribed can't jump and need `linear`. Default
-            hold.
+            advance, or of a controller's interval, and `smooth` does that without a kink. Speeds that are prescribed
+            can't jump and need `linear`; amplitudes of motions need `smooth`. Default hold.
         """
         return self._append("inputs", {
             "name": name,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _native, _show
+from . import _native, _shapes, _show
 from ._errors import OutputError, SolverError
 from ._scene import AnyScene, overrides, source
+from ._shapes import Shapes
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -116,6 +118,15 @@ class Run(Columns):
     def warnings(self) -> list[str]:
         """What one should know although the run went on."""
         return self.summary.get("warnings", [])
+
+    @functools.cached_property
+    def shapes(self) -> Shapes:
+        """Shapes of its lines and bodies over time: `run.shapes["hose"].position` is (times, points, 3), beside
+        `velocity`, `tension` and `curvature`; `run.shapes.bodies["ship"]` has `position` and `attitude`. They are in the
+        folder of a run: give `out`."""
+        if self.folder is None:
+            raise OutputError("the shapes of a run are in its folder\n  = help: run it with `out=\"runs/name\"`")
+        return _shapes.read(self.folder)
 
     def plot(self, *names: str, ax: Any = None, **options: Any) -> Any:
         """Draws columns over time by matplotlib; without names all records, one picture for each unit. Returns the axes."""

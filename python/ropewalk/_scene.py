@@ -10,6 +10,7 @@ from typing import Any, Union
 import numpy as np
 
 from ._errors import SceneError
+from ._functions import name_of
 from ._native import Source
 from ._part import Part
 from ._parts import Parts
@@ -100,6 +101,8 @@ def plain(value: Any) -> Any:
         return str(value)
     if isinstance(value, np.ndarray):
         return value.tolist()
+    if callable(value) and not isinstance(value, type):
+        return name_of(value)
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, Mapping):

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _cluster, _native
+from . import _cluster, _functions, _native
 from ._errors import OutputError, RopewalkError, SceneError, SolverError
 from ._run import Run, run
 from ._scene import AnyScene, Scene, plain, source
@@ -108,18 +108,6 @@ def _parquet(values: list[Any]) -> tuple[list[Any], str]:
     return [x if x is None or isinstance(x, str) else json.dumps(x) for x in values], "string"
 
 
-def _meaning(measure: Measure | None) -> list[str]:
-    """What tells one function from another. Where in doubt they differ, and runs are computed again."""
-    if measure is None:
-        return []
-    code = getattr(measure, "__code__", None)
-    if code is None:
-        return [repr(measure)]
-    inside = [cell.cell_contents for cell in getattr(measure, "__closure__", None) or ()]
-    what = (code.co_code, code.co_consts, code.co_names, getattr(measure, "__defaults__", None), inside)
-    return [repr(part) for part in what]
-
-
 class Job:
     """One scene for all workers: its text, so that it needs no file, and the folder of the rows."""
 
@@ -135,7 +123,9 @@ class Job:
             path = Path(scene)
             self.json = path.suffix.lower() == ".json"
             self.files = str(path.absolute().parent) if path.suffix else None
-        what = [_native.__version__, self.text, _meaning(measure), self.files_in(self.text)]
+        what = [_native.__version__, self.text, _functions.meaning(measure), self.files_in(self.text)]
+        # as it was before there were any
+        what += [functions] if (functions := _functions.meanings(self.text)) else []
         self.key = hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
     def files_in(self, text: str) -> dict[str, str]:

@@ -3,6 +3,7 @@
 //! Arrays go over as bytes, texts as JSON. Python's interpreter is free for other threads while anything computes, and no
 //! signal handler is installed: Ctrl-C stays Python's.
 
+mod functions;
 mod linearise;
 mod scene;
 mod simulation;
@@ -49,7 +50,7 @@ fn run<'py>(
 ) -> PyResult<Ran<'py>> {
     let (done, exception) = watched(py, stop, |watch| {
         let file = source.open(&set)?;
-        let (table, summary, folder) = match out {
+        let (table, summary, folder, cause) = match out {
             Some(out) => {
                 let options = RunOptions {
                     out: Some(out),
@@ -58,7 +59,8 @@ fn run<'py>(
                     ..RunOptions::default()
                 };
                 let outcome = ropewalk::run(&file, &options, &mut |_| {})?;
-                (outcome.history, outcome.summary, Some(outcome.folder.path().to_path_buf()))
+                let folder = outcome.folder.path().to_path_buf();
+                (outcome.history, outcome.summary, Some(folder), functions::cause(outcome.error.as_ref()))
             }
             None => {
                 let history = ropewalk::simulate_with(file.scene(), watch).map_err(|e| e.in_file(&file))?;
@@ -66,18 +68,20 @@ fn run<'py>(
                 let unused = unused.map(|name| format!("parameter `{name}` is not used by the scene"));
                 let mut summary = history.summary();
                 summary.warnings.splice(0..0, unused);
-                (history.table, summary, None)
+                let cause = functions::cause(history.error());
+                (history.table, summary, None, cause)
             }
         };
         let about = json!({
             "title": file.title(), "name": file.name(), "scene": file.document().to_toml(), "folder": folder,
             "failed": summary.status == Status::Failed, "summary": summary,
         });
-        Ok((table, about))
+        Ok((table, about, cause))
     })?;
-    let (table, mut about) = done.map_err(|e| raise(py, &e))?;
+    let (table, mut about, cause) = done.map_err(|e| raise(py, &e))?;
     let (data, heads) = columns(py, &table);
     about["columns"] = heads;
+    let exception = exception.or_else(|| cause.map(|broken| functions::raise(py, &broken)));
     Ok((data, about.to_string(), exception))
 }
 
@@ -135,6 +139,27 @@ fn modes<'py>(
     Ok((data, bytes(py, shapes.iter().map(Vec::as_slice)), about.to_string()))
 }
 
+/// Writes a scene as an FMU with this shared library: its path.
+#[pyfunction]
+#[pyo3(signature = (source, set, out, library))]
+fn export_fmu(
+    py: Python<'_>,
+    source: &Source,
+    set: Vec<String>,
+    out: Option<PathBuf>,
+    library: PathBuf,
+) -> PyResult<PathBuf> {
+    let text = source.scene_text().clone();
+    let done = py.detach(|| ropewalk::cli::export_fmu(text, set, out, Some(&library)));
+    done.map(|(path, _)| path).map_err(|e| raise(py, &e))
+}
+
+/// A number with a unit in SI units, of a text that is one.
+#[pyfunction]
+fn si(text: &str) -> Option<f64> {
+    ropewalk::scene::quantity::Written::parse(text).filter(|w| !w.unit.is_empty()).map(|w| w.si)
+}
+
 /// Names and titles of the bundled scenes.
 #[pyfunction]
 fn bundled() -> PyResult<Vec<(String, String)>> {
@@ -183,6 +208,9 @@ fn _native(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(studies::effects, m)?)?;
     m.add_function(wrap_pyfunction!(studies::certify, m)?)?;
     m.add_function(wrap_pyfunction!(studies::samples, m)?)?;
+    m.add_function(wrap_pyfunction!(functions::register, m)?)?;
+    m.add_function(wrap_pyfunction!(export_fmu, m)?)?;
+    m.add_function(wrap_pyfunction!(si, m)?)?;
     m.add_function(wrap_pyfunction!(bundled, m)?)?;
     m.add_function(wrap_pyfunction!(describe, m)?)?;
     m.add_function(wrap_pyfunction!(schemas, m)?)?;

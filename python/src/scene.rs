@@ -1,5 +1,6 @@
 //! Scenes as Python hands them over, and errors as Python's.
 
+use crate::functions;
 use pyo3::prelude::*;
 use ropewalk::scene::{Fault, Format, SceneText};
 use ropewalk::{Error, SceneFile};
@@ -51,12 +52,20 @@ impl Source {
 
 /// An error as an instance of the Python class that it belongs to.
 pub fn raise(py: Python<'_>, e: &Error) -> PyErr {
+    if let Error::Function(broken) = e {
+        return functions::raise(py, broken);
+    }
     let class = match e {
         Error::Output(_) => "OutputError",
         e if e.is_input() => "SceneError",
         _ => "SolverError",
     };
+    new_error(py, class, &e.to_string())
+}
+
+/// An error of a class of this package.
+pub fn new_error(py: Python<'_>, class: &str, message: &str) -> PyErr {
     let value =
-        py.import("ropewalk._errors").and_then(|m| m.getattr(class)).and_then(|c| c.call1((e.to_string(),)));
+        py.import("ropewalk._errors").and_then(|m| m.getattr(class)).and_then(|c| c.call1((message,)));
     value.map_or_else(|e| e, PyErr::from_value)
 }

@@ -74,7 +74,8 @@ pub fn watched<T: Send>(
             let ended = Ended { is: &over, waiting: thread::current() };
             let work = move || {
                 let _ended = ended;
-                work(watch)
+                // known to Python from the start: functions that are called from here would make it so each time
+                Python::attach(|py| py.detach(|| work(watch)))
             };
             let worker =
                 thread::Builder::new().name("ropewalk".into()).stack_size(STACK).spawn_scoped(scope, work)?;

@@ -186,7 +186,14 @@ def test_sigterm_ends_the_command_and_it_goes_on(cluster, tmp_path):
     words += ["--set", "tolerance=1e-9", "--quiet", "--dask", cluster.address]
     process = subprocess.Popen(words, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     runs = tmp_path / "out" / "runs"
-    killer = when(lambda: len(list(runs.glob("duration*/summary.json"))) == 3, lambda: process.send_signal(signal.SIGTERM))
+    long = runs / "duration=175"
+
+    def end():
+        # until the worker has taken the long one
+        time.sleep(0.5)
+        process.send_signal(signal.SIGTERM)
+
+    killer = when(lambda: len(list(runs.glob("duration*/summary.json"))) == 3, end)
     said = process.communicate(timeout=90)[1]
     killer.join()
     assert process.returncode == 143 and "stopped by SIGTERM: the same command" in said, said
@@ -201,8 +208,7 @@ def test_sigterm_ends_the_command_and_it_goes_on(cluster, tmp_path):
             except BlockingIOError:
                 assert time.monotonic() < deadline
                 time.sleep(0.1)
-    long = json.loads((runs / "duration=175" / "summary.json").read_text())
-    assert long["status"] == "interrupted" and len(list(runs.glob("*/summary.json"))) == 4
+    assert json.loads((long / "summary.json").read_text())["status"] == "interrupted" and len(list(runs.glob("*/summary.json"))) == 4
 
 
 def test_a_cluster_that_is_not_there_is_said(tmp_path):

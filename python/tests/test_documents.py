@@ -15,7 +15,7 @@ PYTHON = Path(__file__).parents[1]
 def test_the_readme_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", (PYTHON / "README.md").read_text(encoding="utf-8"), re.DOTALL)
-    assert len(blocks) == 5
+    assert len(blocks) == 8
     names: dict = {}
     for block in blocks:
         lines = [line for line in block.splitlines() if ".plot(" not in line]
@@ -33,7 +33,7 @@ def test_the_example_runs(tmp_path):
     assert len(deep) == 4 and deep == sorted(deep, reverse=True)
 
 
-@pytest.mark.parametrize("name", ["ropewalk", "ropewalk._objective", "ropewalk._scene", "ropewalk._simulation"])
+@pytest.mark.parametrize("name", ["ropewalk", "ropewalk._functions", "ropewalk._objective", "ropewalk._scene", "ropewalk._simulation"])
 def test_docstrings_run(name):
     module = importlib.import_module(name)
     import ropewalk

@@ -56,6 +56,26 @@ def export(tmp_path: pathlib.Path, scene: str, *more: str) -> pathlib.Path:
     return out
 
 
+def test_the_wheel_brings_the_library(tmp_path):
+    from ropewalk import _fmu
+
+    if _fmu.library() is None:
+        pytest.skip("this wheel was built without: python python/tools/wheel.py")
+    made = rw.export_fmu("pendulum", tmp_path / "p.fmu", duration="0.5 s")
+    assert made == tmp_path / "p.fmu" and fmpy.read_model_description(str(made)).modelName
+    command = [sys.executable, "-m", "ropewalk", "export-fmu", "pendulum", "--out", str(tmp_path / "q.fmu")]
+    said = subprocess.run(command, capture_output=True, text=True)
+    assert said.returncode == 0 and (tmp_path / "q.fmu").exists(), said.stderr
+
+
+def test_functions_stay_here(tmp_path):
+    scene = rw.Scene(title="A ball that Python pushes")
+    ball = scene.point_mass(name="ball", marker=[0, 0, 0], mass=1)
+    scene.function(function=lambda t: [t, 0, 0], marker=ball)
+    with pytest.raises(rw.SceneError, match="can't take along"):
+        rw.export_fmu(scene, tmp_path / "p.fmu", library=__file__)
+
+
 @pytest.fixture
 def ball(tmp_path):
     if not LIBRARY.exists():

@@ -25,7 +25,8 @@ def folder(tmp_path_factory):
 
 
 def test_every_snapshot_is_that_of_the_field_record(folder):
-    field = np.load(folder / "field.npy")
+    field, forces = np.load(folder / "field.npy"), np.load(folder / "forces.npy")
+    assert set(forces["name"]) == {"reaction: hinge", "weight: cable"}
     sets = ET.parse(folder / "vtk.pvd").getroot().iter("DataSet")
     files = [(float(s.get("timestep")), folder / s.get("file")) for s in sets]
     assert [t for t, _ in files] == sorted(set(field["t"]))
@@ -34,11 +35,18 @@ def test_every_snapshot_is_that_of_the_field_record(folder):
         reader.SetFileName(str(path))
         reader.Update()
         got, expected = reader.GetOutput(), field[field["t"] == t]
-        assert got.GetNumberOfLines() == 1 and got.GetNumberOfPoints() == len(expected)
-        places = np.stack([expected[x] for x in "xyz"], axis=1)
+        # behind the points of the line come those where forces act
+        count, acting = len(expected), forces[forces["t"] == t]
+        assert got.GetNumberOfLines() == 1 and got.GetNumberOfPoints() == count + len(acting)
+        places = np.concatenate([np.stack([part[x] for x in "xyz"], axis=1) for part in (expected, acting)])
         assert np.allclose(vtk_to_numpy(got.GetPoints().GetData()), places, rtol=1e-6, atol=1e-9)
+        vectors = vtk_to_numpy(got.GetPointData().GetArray("force [N]"))
+        arrows = np.stack([acting[x] for x in ("fx", "fy", "fz")], axis=1)
+        assert np.allclose(vectors[count:], arrows, rtol=1e-6) and not vectors[:count].any()
+        velocities = np.stack([expected[x] for x in ("vx", "vy", "vz")], axis=1)
+        assert np.allclose(vtk_to_numpy(got.GetPointData().GetArray("velocity [m/s]"))[:count], velocities, rtol=1e-6)
         for name, column in COLUMNS.items():
-            values = vtk_to_numpy(got.GetPointData().GetArray(name))
+            values = vtk_to_numpy(got.GetPointData().GetArray(name))[:count]
             size = max(np.abs(expected[column]).max(), 1e-30)
             assert np.allclose(values, expected[column], rtol=1e-6, atol=1e-6 * size), name
 

@@ -23,7 +23,7 @@ HEAD = '''"""Methods that add parts to a scene, one for each type. Made by gener
 # ruff: noqa: A002, E501
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, Union
 
 from ._part import Part
@@ -80,6 +80,8 @@ class Writer:
             return self.types(s["allOf"][0], depth)
         given = s.get("type", [])
         given = {given} if isinstance(given, str) else set(given)
+        if s.get("format") == "function":
+            return {"str", "Callable[..., Any]"}
         if "number" in given:
             # with or without a unit, it may be a parameter
             return {"Number"}

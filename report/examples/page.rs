@@ -11,8 +11,8 @@ use std::path::PathBuf;
 
 use ropewalk_core::rotation::exp;
 use ropewalk_report::{
-    BodyRecord, Column, Entry, Event, FieldRecord, LineRecord, LineSnapshot, Mesh, OutputError, Page, Panel,
-    Pose, Quantity, Shape, Solid, Table, vtk,
+    BodyRecord, Column, Entry, Event, FieldRecord, ForceRecord, LineRecord, LineSnapshot, Mesh, OutputError,
+    Page, Panel, Pose, Quantity, Shape, Solid, Steps, Table, vtk,
 };
 
 const POINTS: usize = 161;
@@ -88,7 +88,19 @@ fn field() -> FieldRecord {
         points: vec![[a, 0.0, 0.0], [0.0, a, 0.0], [-a, 0.0, 0.0], [0.0, -a, 0.0], [0.5, 0.3, b]],
         triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 3, 2], [0, 2, 1]],
     };
+    let force = |name: &str, at: fn(f64) -> ([f64; 3], [f64; 3])| {
+        let (points, forces) = times.iter().map(|t| at(*t)).unzip();
+        ForceRecord { name: name.into(), points, forces }
+    };
+    let pull = |t: f64| (cable(0.0, t), [-300.0, 40.0 * (TAU * t / 7.0).sin(), -900.0]);
+    let drag = |t: f64| (cable(0.5 * LENGTH, t), [-250.0, 0.0, 60.0 * (TAU * t / 3.1).sin()]);
+    let weight = |t: f64| (cable(LENGTH, t), [0.0, 0.0, -400.0]);
     FieldRecord {
+        forces: vec![
+            force("reaction: bow", pull),
+            force("drag: hose", drag),
+            force("weight: weight", weight),
+        ],
         times,
         lines: vec![hose],
         bodies: vec![vessel, ball, buoy],
@@ -115,6 +127,19 @@ fn history() -> Result<Table, OutputError> {
         table.push_row(&[t, end[0], end[1], end[2], pull(0.0), pull(15.0), ship(t)[2]])?;
     }
     Ok(table)
+}
+
+fn steps() -> Steps {
+    let t: Vec<f64> = (1..=600).map(|k| 0.1 * f64::from(k)).collect();
+    let size = |t: &f64| 0.03 * (1.2 + (TAU * t / 7.0).sin());
+    Steps {
+        least: t.iter().map(|t| 0.6 * size(t)).collect(),
+        greatest: t.iter().map(size).collect(),
+        cause: t.iter().map(|t| usize::from(size(t) < 0.03)).collect(),
+        causes: ["position error", "force error"].map(String::from).to_vec(),
+        counts: vec![2900, 3400],
+        t,
+    }
 }
 
 fn main() -> Result<(), OutputError> {
@@ -155,6 +180,7 @@ fn main() -> Result<(), OutputError> {
             entry("imbalance", "0.21 J"),
         ],
         history: history()?,
+        steps: Some(steps()),
         panels: vec![
             panel("End of the hose", &["hose.end.x", "hose.end.y", "hose.end.z"]),
             panel("Tension", &["hose.start.tension", "hose.middle.tension"]),

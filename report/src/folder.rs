@@ -126,6 +126,16 @@ impl RunFolder {
         self.path.join("bodies.npy")
     }
 
+    /// `forces.npy`: forces at points at these times, for arrows.
+    pub fn forces_file(&self) -> PathBuf {
+        self.path.join("forces.npy")
+    }
+
+    /// `steps.csv`: how long steps were and what limited them.
+    pub fn steps_file(&self) -> PathBuf {
+        self.path.join("steps.csv")
+    }
+
     /// `report.html`: all of the run as a page.
     pub fn report_file(&self) -> PathBuf {
         self.path.join("report.html")

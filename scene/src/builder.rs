@@ -493,8 +493,8 @@ impl Builder {
         self.motions.get(name).cloned().ok_or_else(missing)
     }
 
-    /// The longest part, or the size of the mechanism that rigid bodies make [m].
-    fn size(&self) -> f64 {
+    /// The longest part so far, or the size of the mechanism that rigid bodies make [m].
+    pub fn size(&self) -> f64 {
         let mut length = self.length;
         if self.nodes.iter().any(|n| n.kind == NodeKind::Frame) {
             let place = |n: &Node, i: usize| self.start.q[n.q + i];

@@ -37,6 +37,8 @@ pub enum Current {
         z: Vec<f64>,
         /// Velocity at each height [m/s].
         velocity: Vec<V3<f64>>,
+        /// Factor of all of them; of an input that holds.
+        factor: Signal,
     },
 }
 
@@ -46,7 +48,7 @@ impl Current {
     /// # Errors
     /// Heights that don't ascend, lists of different length, no entry, numbers that aren't finite.
     pub fn profile(z: Vec<f64>, velocity: Vec<V3<f64>>) -> Result<Self, BuildError> {
-        let current = Current::Profile { z, velocity };
+        let current = Current::Profile { z, velocity, factor: 1.0.into() };
         current.check().map(|()| current)
     }
 
@@ -64,7 +66,8 @@ impl Current {
                 finite("current", velocity)?;
                 finite("gradient of the current", gradient)
             }
-            Current::Profile { z, velocity } => {
+            Current::Profile { z, velocity, factor } => {
+                finite("factor of the current profile", &[factor.at(0.0)])?;
                 let (n, m) = (z.len(), velocity.len());
                 need(n == m, || format!("current profile has {n} heights but {m} velocities"))?;
                 need(n > 0, || "current profile has no entry; give one at least".into())?;
@@ -99,10 +102,11 @@ impl Current {
                 }
                 (u, du)
             }
-            Current::Profile { z: heights, velocity } => {
+            Current::Profile { z: heights, velocity, factor } => {
+                let factor = held(factor);
                 let (mut u, mut du) = (nought, nought);
                 if let Some(lowest) = velocity.first() {
-                    u = [R::of(lowest[0]), R::of(lowest[1]), R::of(lowest[2])];
+                    u = [R::of(factor * lowest[0]), R::of(factor * lowest[1]), R::of(factor * lowest[2])];
                 }
                 for (h, w) in heights.windows(2).zip(velocity.windows(2)) {
                     let (from, to) = (R::of(h[0]), R::of(h[1]));
@@ -110,7 +114,7 @@ impl Current {
                     let below = z.if_gt(from, z.if_gt(to, to, z), from) - from;
                     let inside = z.if_gt(from, z.if_gt(to, R::zero(), R::of(1.0)), R::zero());
                     for i in 0..3 {
-                        let gradient = R::of((w[1][i] - w[0][i]) / (h[1] - h[0]));
+                        let gradient = R::of(factor * (w[1][i] - w[0][i]) / (h[1] - h[0]));
                         u[i] = gradient.fma(below, u[i]);
                         du[i] = gradient.fma(inside, du[i]);
                     }
@@ -123,10 +127,14 @@ impl Current {
 
 /// What inputs that hold are set to.
 fn now(u: &[Signal; 3]) -> V3<f64> {
-    u.each_ref().map(|u| match u {
+    u.each_ref().map(held)
+}
+
+fn held(u: &Signal) -> f64 {
+    match u {
         Signal::Constant(x) => *x,
         Signal::Input(input) => input.latest(),
-    })
+    }
 }
 
 #[cfg(test)]

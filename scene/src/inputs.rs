@@ -27,7 +27,8 @@ pub struct InputSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<Formula>,
     /// How values are joined: `hold` jumps when it is set, `linear` reaches the value at the end of the next advance, or of
-    /// a controller's interval. Speeds that are prescribed can't jump and need `linear`.
+    /// a controller's interval, and `smooth` does that without a kink. Speeds that are prescribed can't jump and need
+    /// `linear`; amplitudes of motions need `smooth`.
     #[serde(default)]
     pub join: Hold,
 }

@@ -9,6 +9,7 @@ pub mod controllers;
 mod current;
 pub mod document;
 pub mod file;
+pub mod functions;
 mod inputs;
 mod marker;
 mod motions;

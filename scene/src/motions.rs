@@ -21,6 +21,7 @@ pub(crate) fn no_motion<'a>(name: &str, there: impl Iterator<Item = &'a str>) ->
 pub(crate) fn build_all(
     specs: &[Arc<dyn MotionSpec>],
     inputs: &Inputs,
+    duration: f64,
 ) -> Result<Motions, (usize, BuildError)> {
     let mut number = BTreeMap::new();
     for (k, spec) in specs.iter().enumerate() {
@@ -44,7 +45,7 @@ pub(crate) fn build_all(
         for (k, spec) in specs.iter().enumerate().filter(|(k, _)| made[*k].is_none()).collect::<Vec<_>>() {
             let parts: Option<Vec<_>> = of[k].iter().map(|j| made[*j].clone()).collect();
             let Some(parts) = parts else { continue };
-            made[k] = Some(spec.build_with(&parts, inputs).map_err(|e| (k, e))?);
+            made[k] = Some(spec.build_for(&parts, inputs, duration).map_err(|e| (k, e))?);
             more = true;
         }
         let Some(stuck) = made.iter().position(Option::is_none) else { break };

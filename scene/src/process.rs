@@ -74,6 +74,10 @@ pub trait Process: Send {
     fn tensions(&self) -> Vec<f64> {
         Vec::new()
     }
+    /// Curvatures at the points of that line [1/m], one for each; empty if it doesn't tell.
+    fn curvatures(&self) -> Vec<f64> {
+        Vec::new()
+    }
     /// What there is to be seen beside it, such as a package.
     fn solids(&self) -> Vec<Solid> {
         Vec::new()

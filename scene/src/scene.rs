@@ -323,8 +323,8 @@ impl Scene {
         }
         self.check_world().map_err(whole)?;
         self.run.check().map_err(whole)?;
-        let motions =
-            build_all(&self.motions, &Inputs::default()).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
+        let motions = build_all(&self.motions, &Inputs::default(), self.run.duration)
+            .map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
         let (gravity, mut water) = (self.gravity, self.water.clone());
         water.as_mut().map_or(Ok(()), |water| water.bind(&Inputs::default())).map_err(whole)?;
         let around = Surroundings { gravity, water, motions, duration: self.run.duration };
@@ -350,6 +350,8 @@ impl Scene {
             self.start_process()?;
             return Ok(Model::new(Vec::new(), Vec::new(), Vec::new(), Vec::new(), Start::default(), 1.0));
         }
+        // what failed before has been told, or was of no account
+        let _ = ropewalk_core::broken::take();
         let mut b = Builder::new();
         let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
         let whole = |error: BuildError| {
@@ -365,7 +367,10 @@ impl Scene {
         for (part, mesh) in plan {
             b.remesh(part, mesh.clone());
         }
-        b.set_motions(build_all(&self.motions, &inputs).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?);
+        b.set_motions(
+            build_all(&self.motions, &inputs, self.run.duration)
+                .map_err(|(k, e)| of(SpecKind::Motion, k)(e))?,
+        );
         b.set_inputs(inputs);
         for e in &self.elements {
             b.pin(&e.markers());

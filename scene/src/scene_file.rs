@@ -1,6 +1,7 @@
 //! From a scene file to a [`Scene`], and from what is wrong with the scene back to the place in the file.
 
 use crate::document::{Document, Fault, Format, did_you_mean, quoted, read_text};
+use crate::functions;
 use crate::scene::{GRAVITY, Scene, SceneError};
 use crate::spec::SpecKind;
 use ropewalk_core::{BuildError, Model, Record, V3};
@@ -22,7 +23,7 @@ pub struct Bundled {
 }
 
 /// The text of a scene, of which parameters make one scene or another.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SceneText {
     /// Its bundled name, or that of its file without ending.
     pub name: String,
@@ -136,6 +137,7 @@ impl SceneFile {
     }
 
     fn of(mut document: Document, name: String) -> Result<Self, Fault> {
+        functions::name_types(&mut document);
         let d = &mut document;
         let scene = Scene {
             title: d.take("title")?.unwrap_or_default(),

@@ -75,6 +75,15 @@ pub trait MotionSpec: Debug + Send + Sync {
     fn build_with(&self, of: &[Arc<dyn Motion>], _: &Inputs) -> Result<Arc<dyn Motion>, BuildError> {
         self.build(of)
     }
+    /// The same for one that looks at the whole of a run of this `duration` [s].
+    fn build_for(
+        &self,
+        of: &[Arc<dyn Motion>],
+        inputs: &Inputs,
+        _duration: f64,
+    ) -> Result<Arc<dyn Motion>, BuildError> {
+        self.build_with(of, inputs)
+    }
 }
 
 /// What sets an input of a scene by what its records show.

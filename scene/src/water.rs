@@ -4,7 +4,7 @@ use crate::current::Current;
 use crate::inputs::Inputs;
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::{BuildError, Hold, Real, Signal};
-use ropewalk_quantity::{Setting, kind};
+use ropewalk_quantity::{Kind, Setting, kind};
 use serde::{Deserialize, Serialize};
 
 /// The water around a scene. Drag, buoyancy and added mass need it.
@@ -31,10 +31,17 @@ pub struct Water {
     pub current: [Setting; 3],
     /// Current profile over height, instead of `current`: piecewise linear, constant beyond the ends.
     pub profile: Vec<Level>,
+    /// Factor of the profile; an input that it reads needs `join = "hold"`.
+    #[serde(deserialize_with = "ropewalk_quantity::setting::number")]
+    pub profile_factor: Setting,
     /// What `current` reads, in a model that is being built.
     #[serde(skip)]
     #[doc(hidden)]
     pub bound: Option<[Signal; 3]>,
+    /// What `profile_factor` reads.
+    #[serde(skip)]
+    #[doc(hidden)]
+    pub factor: Option<Signal>,
 }
 
 /// Velocity of the water, or the air, at one height.
@@ -57,7 +64,9 @@ impl Default for Water {
             level: None,
             current: [0.0; 3].map(Setting::from),
             profile: Vec::new(),
+            profile_factor: 1.0.into(),
             bound: None,
+            factor: None,
         }
     }
 }
@@ -66,6 +75,8 @@ impl Water {
     /// Binds the current to the inputs of a scene.
     pub(crate) fn bind(&mut self, inputs: &Inputs) -> Result<(), BuildError> {
         self.bound = bound("current", &self.current, inputs).map_err(|e| e.of("water.current"))?;
+        let factor = held("profile_factor", &self.profile_factor, inputs, &kind::NUMBER);
+        self.factor = Some(factor.map_err(|e| e.of("water.profile_factor"))?);
         Ok(())
     }
     /// Its velocity as a function of height.
@@ -75,7 +86,7 @@ impl Water {
     pub fn current(&self) -> Result<Current, BuildError> {
         velocity(
             (&self.current, &self.bound),
-            &self.profile,
+            (&self.profile, &self.profile_factor, &self.factor),
             "[water] has both `current` and `profile`: give one of them",
         )
     }
@@ -104,10 +115,17 @@ pub struct Air {
     pub wind: [Setting; 3],
     /// Velocity of the air by height, instead of `wind`: piecewise linear between the levels, constant beyond.
     pub profile: Vec<Level>,
+    /// Factor of the profile; an input that it reads needs `join = "hold"`.
+    #[serde(deserialize_with = "ropewalk_quantity::setting::number")]
+    pub profile_factor: Setting,
     /// What `wind` reads, in a model that is being built.
     #[serde(skip)]
     #[doc(hidden)]
     pub bound: Option<[Signal; 3]>,
+    /// What `profile_factor` reads.
+    #[serde(skip)]
+    #[doc(hidden)]
+    pub factor: Option<Signal>,
 }
 
 impl Default for Air {
@@ -118,7 +136,9 @@ impl Default for Air {
             viscosity: 1.79e-5,
             wind: [0.0; 3].map(Setting::from),
             profile: Vec::new(),
+            profile_factor: 1.0.into(),
             bound: None,
+            factor: None,
         }
     }
 }
@@ -127,6 +147,8 @@ impl Air {
     /// Binds the wind to the inputs of a scene.
     pub(crate) fn bind(&mut self, inputs: &Inputs) -> Result<(), BuildError> {
         self.bound = bound("wind", &self.wind, inputs).map_err(|e| e.of("air.wind"))?;
+        let factor = held("profile_factor", &self.profile_factor, inputs, &kind::NUMBER);
+        self.factor = Some(factor.map_err(|e| e.of("air.profile_factor"))?);
         Ok(())
     }
     /// Its velocity as a function of height.
@@ -136,7 +158,7 @@ impl Air {
     pub fn wind(&self) -> Result<Current, BuildError> {
         velocity(
             (&self.wind, &self.bound),
-            &self.profile,
+            (&self.profile, &self.profile_factor, &self.factor),
             "[air] has both `wind` and `profile`: give one of them",
         )
     }
@@ -166,27 +188,36 @@ fn bound(field: &str, u: &[Setting; 3], inputs: &Inputs) -> Result<Option<[Signa
     }
     let mut all = [0.0; 3].map(Signal::from);
     for (to, u) in all.iter_mut().zip(u) {
-        *to = inputs.signal(field, u, &kind::SPEED)?;
-        if let Signal::Input(input) = to
-            && input.join() != Hold::Hold
-        {
-            let message = format!(
-                "water and air change between steps: give the input `{}` `join = \"hold\"`",
-                input.name()
-            );
-            return Err(BuildError::at(field, message));
-        }
+        *to = held(field, u, inputs, &kind::SPEED)?;
     }
     Ok(Some(all))
 }
 
+/// What a number reads, which only changes between steps.
+fn held(field: &str, u: &Setting, inputs: &Inputs, kind: &Kind) -> Result<Signal, BuildError> {
+    let signal = inputs.signal(field, u, kind)?;
+    match &signal {
+        Signal::Input(input) if input.join() != Hold::Hold => {
+            let message = format!(
+                "water and air change between steps: give the input `{}` `join = \"hold\"`",
+                input.name()
+            );
+            Err(BuildError::at(field, message))
+        }
+        _ => Ok(signal),
+    }
+}
+
 fn velocity(
     (settings, bound): (&[Setting; 3], &Option<[Signal; 3]>),
-    profile: &[Level],
+    (profile, given, factor): (&[Level], &Setting, &Option<Signal>),
     both: &str,
 ) -> Result<Current, BuildError> {
     let driven = settings.iter().any(|u| u.number().is_none());
     let uniform = &numbers(settings);
+    if profile.is_empty() && !given.is(1.0) {
+        return Err(BuildError::new("`profile_factor` is the factor of a `profile`, and there is none"));
+    }
     if profile.is_empty() && driven {
         // before a model is built there is nothing to read
         return Ok(bound.clone().map_or(Current::Still, |signals| Current::Driven(Box::new(signals))));
@@ -199,7 +230,10 @@ fn velocity(
         return Err(BuildError::new(both));
     }
     let (z, velocity) = profile.iter().map(|l| (l.z, l.velocity)).unzip();
-    Current::profile(z, velocity)
+    // before a model is built there is nothing to read
+    let factor = factor.clone().unwrap_or(given.number().unwrap_or(0.0).into());
+    let current = Current::Profile { z, velocity, factor };
+    current.check().map(|()| current)
 }
 
 /// Share of a ball's volume that lies below a level, `½ + ¾ u - ¼ u³` at the depth `u` radii of its middle, and what it changes

@@ -1,6 +1,7 @@
 //! `ropewalk describe SCENE|TYPE`
 
-use super::words::types_for;
+use super::examples::{self, Example};
+use super::words::{note_on, types_for};
 use super::{Exit, first_line, say, schema, wrapped};
 use ropewalk_models::Bundled;
 use ropewalk_scene::{
@@ -27,22 +28,23 @@ pub(crate) fn explain(what: &str, bundled: &[Bundled]) -> Result<(String, Option
     }
     let types: Vec<&SpecInfo> = registered().into_iter().filter(|s| s.name == what).collect();
     if !is_path && !types.is_empty() {
-        let texts: Vec<String> = types.into_iter().map(of_type).collect();
-        return Ok((texts.join("\n").trim_end().to_string(), None));
+        let texts: Vec<String> = types.into_iter().map(|s| of_type(s, bundled)).collect();
+        return Ok((texts.join("\n\n\n"), None));
     }
     if !is_path && let Some((name, schema)) = SECTIONS.iter().find(|(name, _)| *name == what) {
         let text = format!("[{name}]\n\n{}", schema::explain(&schema()));
-        return Ok((text.trim_end().to_string(), None));
+        return Ok((text + &beside("", name, bundled), None));
     }
     if !is_path && let Some((name, schema)) = LISTS.iter().find(|(name, _)| *name == what) {
         let text = format!("[[{name}]]\n\n{}", schema::explain(&schema()));
-        return Ok((text.trim_end().to_string(), None));
+        return Ok((text + &beside("", name, bundled), None));
     }
     let see = types_for(what);
     if !is_path && let Some(first) = see.first() {
         let names: Vec<String> = see.iter().map(|name| format!("`{name}`")).collect();
         let (text, _) = explain(first, bundled)?;
-        return Ok((format!("{what}: see {}\n\n{text}", names.join(", ")), None));
+        let note = note_on(what).map_or_else(String::new, |note| format!("\n{}", wrapped(note, 0)));
+        return Ok((format!("{what}: see {}\n{note}\n{text}", names.join(", ")), None));
     }
     if !is_path && !Path::new(what).exists() {
         return Err(unknown(what, bundled).into());
@@ -50,15 +52,31 @@ pub(crate) fn explain(what: &str, bundled: &[Bundled]) -> Result<(String, Option
     Ok(scene(&Document::read(Path::new(what), &[])?, what))
 }
 
-/// Prints the JSON schemas of the types of a name, or of a section.
-pub(crate) fn schemas(what: &str, bundled: &[Bundled]) -> Result<Exit, Error> {
-    let types = registered().into_iter().filter(|s| s.name == what);
-    let types = types.map(|s| json!({"list": s.kind.list(), "type": s.name, "schema": (s.schema)()}));
-    let sections = SECTIONS.iter().chain(&LISTS).filter(|(name, _)| *name == what);
-    let sections = sections.map(|(name, schema)| json!({"section": name, "schema": schema()}));
-    let found: Vec<_> = types.chain(sections).collect();
+/// Prints the JSON schemas of the types of a name, or of a section, or of all of them, each with its example.
+pub(crate) fn schemas(what: Option<&str>, bundled: &[Bundled]) -> Result<Exit, Error> {
+    let of = |names: &[&str]| -> Vec<serde_json::Value> {
+        let wanted = |name: &str| names.is_empty() || names.contains(&name);
+        let types = registered().into_iter().filter(|s| wanted(s.name)).map(|s| {
+            let mut one = json!({"list": s.kind.list(), "type": s.name, "schema": (s.schema)()});
+            add_example(&mut one, s.kind.list(), s.name, bundled);
+            one
+        });
+        let sections = SECTIONS.iter().chain(&LISTS).filter(|s| wanted(s.0)).map(|(name, schema)| {
+            let mut one = json!({"section": name, "schema": schema()});
+            add_example(&mut one, "", name, bundled);
+            one
+        });
+        types.chain(sections).collect()
+    };
+    let found = match what {
+        None => of(&[]),
+        Some(what) => match of(&[what]) {
+            none if none.is_empty() && !types_for(what).is_empty() => of(types_for(what)),
+            found => found,
+        },
+    };
     match found.as_slice() {
-        [] => Err(unknown(what, bundled).into()),
+        [] => Err(unknown(what.unwrap_or_default(), bundled).into()),
         [one] => {
             say(format!("{one:#}"));
             Ok(Exit::Done)
@@ -70,8 +88,53 @@ pub(crate) fn schemas(what: &str, bundled: &[Bundled]) -> Result<Exit, Error> {
     }
 }
 
-fn of_type(s: &SpecInfo) -> String {
-    format!("[[{}]]\ntype = \"{}\"\n\n{}", s.kind.list(), s.name, schema::explain(&(s.schema)()))
+fn add_example(one: &mut serde_json::Value, list: &str, name: &str, bundled: &[Bundled]) {
+    if let Some(e) = examples::of(list, name) {
+        one["example"] = json!(e.text);
+        let scenes = examples::scenes(list, name, bundled, usize::MAX);
+        one["see_also"] = json!({"types": e.see, "scenes": scenes, "page": e.page});
+    }
+}
+
+fn of_type(s: &SpecInfo, bundled: &[Bundled]) -> String {
+    let head = format!("[[{}]]\ntype = \"{}\"", s.kind.list(), s.name);
+    let text = format!("{head}\n\n{}", schema::explain(&(s.schema)()));
+    text + &beside(s.kind.list(), s.name, bundled)
+}
+
+/// How a type or section is written, and what to look at beside it; ends without a line break.
+fn beside(list: &str, name: &str, bundled: &[Bundled]) -> String {
+    let example = examples::of(list, name);
+    let mut out = String::new();
+    if let Some(e) = example {
+        let lines: Vec<String> = e.text.lines().map(|line| format!("    {line}")).collect();
+        out += &format!("\nExample:\n\n{}\n", lines.join("\n").replace("    \n", "\n"));
+    }
+    let also = see_also(example, &examples::scenes(list, name, bundled, 4), |page| {
+        format!("`ropewalk book {page}`")
+    });
+    if !also.is_empty() {
+        out += &format!("\nSee also: {}", wrapped(&also, 0));
+    }
+    out.trim_end().to_string()
+}
+
+/// Types, scenes and the page of the book, in words.
+pub(super) fn see_also(example: Option<&Example>, scenes: &[&str], page: impl Fn(&str) -> String) -> String {
+    let quoted = |names: &[&str]| names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
+    let mut parts = Vec::new();
+    if let Some(e) = example {
+        parts.push(quoted(&e.see));
+    }
+    match scenes {
+        [] => {}
+        [one] => parts.push(format!("the scene `{one}`")),
+        many => parts.push(format!("the scenes {}", quoted(many))),
+    }
+    if let Some(e) = example {
+        parts.push(page(e.page));
+    }
+    parts.join("; ")
 }
 
 /// Title, description, parameters and parts of a scene.

@@ -30,11 +30,7 @@ pub(crate) struct ExportArgs {
 pub(crate) fn run(args: &ExportArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     let text = SceneText::open(&args.scene.scene, bundled)?;
     let set = args.scene.overrides.clone();
-    let interface = Interface::new(&text, &set)?;
-    let library = library(args.library.as_deref())?;
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.fmu", text.name)));
-    let resources = Resources { text, set };
-    pack(&out, &interface, &resources, &library).map_err(OutputError::io("write", &out))?;
+    let (out, interface) = export(text, set, args.out.clone(), args.library.as_deref())?;
     let count = |is: fn(&Kind) -> bool| interface.variables().iter().filter(|v| is(&v.kind)).count();
     say(format!(
         "{}: FMI 3.0 for co-simulation, {} parameters, {} inputs, {} outputs, for {}",
@@ -45,6 +41,25 @@ pub(crate) fn run(args: &ExportArgs, bundled: &[Bundled]) -> Result<Exit, Error>
         platform(),
     ));
     Ok(Exit::Done)
+}
+
+/// Writes a scene with these parameters as an FMU, by default `SCENE.fmu`, with the shared library of the crate ropewalk-fmu,
+/// by default the one beside this program: where it is, and its variables.
+///
+/// # Errors
+/// The scene is wrong, or is no run in time; there is no library; the file can't be written.
+pub fn export(
+    text: SceneText,
+    set: Vec<String>,
+    out: Option<PathBuf>,
+    given: Option<&Path>,
+) -> Result<(PathBuf, Interface), Error> {
+    let interface = Interface::new(&text, &set)?;
+    let library = library(given)?;
+    let out = out.unwrap_or_else(|| PathBuf::from(format!("{}.fmu", text.name)));
+    let resources = Resources { text, set };
+    pack(&out, &interface, &resources, &library).map_err(OutputError::io("write", &out))?;
+    Ok((out, interface))
 }
 
 /// The platform by the words of FMI.

@@ -2,11 +2,13 @@
 
 pub(crate) mod atlas;
 pub(crate) mod bench;
+pub(crate) mod book;
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod cost;
 pub(crate) mod describe;
 pub(crate) mod effects;
+mod examples;
 pub(crate) mod export_fmu;
 pub(crate) mod linearise;
 pub(crate) mod list;
@@ -14,8 +16,11 @@ pub(crate) mod migrate;
 pub(crate) mod modes;
 pub(crate) mod new;
 pub(crate) mod plot;
+pub(crate) mod reference;
+pub(crate) mod remedy;
 pub(crate) mod resume;
 pub(crate) mod run;
+pub(crate) mod scene_schema;
 mod schema;
 mod serve;
 pub(crate) mod shared;

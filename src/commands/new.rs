@@ -1,9 +1,9 @@
 //! `ropewalk new NAME --from SCENE`
 
-use super::{Exit, say};
+use super::{Exit, say, scene_schema};
 use ropewalk_models::Bundled;
-use ropewalk_report::OutputError;
-use ropewalk_scene::{Fault, SceneText, quoted};
+use ropewalk_report::{OutputError, write_atomic};
+use ropewalk_scene::{Fault, Format, SceneText, quoted};
 pub use ropewalk_studies::Error;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -18,6 +18,9 @@ pub(crate) struct NewArgs {
     /// A bundled scene, one of the gallery, or a .toml or .json file
     #[arg(long, value_name = "SCENE", default_value = "simple-pendulum")]
     from: String,
+    /// Write the scene alone: no first line that names the schema for editors, and no `scene.schema.json` beside it
+    #[arg(long)]
+    no_schema: bool,
 }
 
 pub(crate) fn new(args: &NewArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
@@ -36,13 +39,31 @@ pub(crate) fn new(args: &NewArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
         ),
         _ => OutputError::io("create", &path)(e).into(),
     })?;
-    file.write_all(text.text.as_bytes()).map_err(OutputError::io("write", &path))?;
+    let schema = !args.no_schema && text.format() == Format::Toml;
+    let own = if schema { with_schema(&text.text) } else { text.text.clone() };
+    file.write_all(own.as_bytes()).map_err(OutputError::io("write", &path))?;
+    let beside = path.with_file_name(scene_schema::FILE);
+    // one of an earlier version is replaced, a file of somebody else's stays
+    let ours = schema && std::fs::read_to_string(&beside).map_or(true, |old| scene_schema::is_one(&old));
+    if ours {
+        write_atomic(&beside, &scene_schema::text())?;
+    }
     let path = path.display();
-    say(format!(
-        "{path}: {} to begin with\n  ropewalk describe {path}    what it consists of\n  ropewalk run {path}",
-        text.name
-    ));
+    let mut said = format!("{path}: {} to begin with\n", text.name);
+    if ours {
+        said += &format!("{}: what editors know of scenes (see `ropewalk book editors`)\n", beside.display());
+    }
+    say(format!("{said}  ropewalk describe {path}    what it consists of\n  ropewalk run {path}"));
     Ok(Exit::Done)
+}
+
+/// The scene with a first line by which editors find the schema beside it.
+fn with_schema(text: &str) -> String {
+    let rest = match text.split_once('\n') {
+        Some((first, rest)) if first.starts_with("#:schema") => rest,
+        _ => text,
+    };
+    format!("#:schema ./{}\n{rest}", scene_schema::FILE)
 }
 
 /// The file of a new scene; files that the old one names are found from where it is.

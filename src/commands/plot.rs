@@ -20,7 +20,7 @@ pub(crate) struct PlotArgs {
     /// How it looks: `paper` has no title, and dashes besides colours
     #[arg(long, value_enum, default_value = "screen")]
     style: Look,
-    /// The picture, an .svg file [default: RECORD.svg]
+    /// The picture: .svg, or .png or .pdf if the program was built with the feature `raster` [default: RECORD.svg]
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
 }

@@ -182,7 +182,10 @@ pub(super) fn tell(outcome: &Outcome, quiet: bool) -> Exit {
     match outcome.summary.status {
         Status::Failed | Status::Refused => {
             let folder = outcome.folder.path().display();
-            error(format!("{message}\n  = note: the results until then are in {folder}"));
+            error(format!(
+                "{message}\n  = note: the results until then are in {folder}\n  = see: `ropewalk book {}`",
+                super::remedy::FAILED
+            ));
             Exit::Solver
         }
         Status::Interrupted => Exit::Interrupted,

@@ -5,15 +5,59 @@ use ropewalk_scene::quantity::unit_of;
 use ropewalk_scene::schemars::Schema;
 use serde_json::Value;
 
-/// Description and fields of a type.
+/// One line of an explanation: a field, or something that can be chosen for one.
+struct Item {
+    /// How deep it lies in the type.
+    level: usize,
+    /// Its name, as it is written.
+    name: String,
+    /// What stands there and whether it has to; nothing for a choice.
+    kind: Option<String>,
+    /// Its doc comment.
+    doc: String,
+}
+
+/// Description and fields of a type, for a terminal.
 pub(super) fn explain(schema: &Schema) -> String {
-    let root = schema.as_value();
-    let mut out = String::new();
-    if let Some(text) = description(root) {
-        out += &format!("{}\n", wrapped(&plain(text), 0));
+    let (about, items) = items(schema);
+    let mut out = about.map_or_else(String::new, |text| format!("{}\n", wrapped(&text, 0)));
+    for item in items {
+        let indent = 2 + 4 * item.level;
+        match (item.kind, item.doc.is_empty()) {
+            (Some(kind), _) => {
+                out += &format!("{:indent$}{}: {kind}\n", "", item.name);
+                out += &wrapped(&item.doc, indent + 4);
+            }
+            (None, true) => out += &wrapped(&item.name, indent),
+            (None, false) => out += &wrapped(&format!("{}: {}", item.name, item.doc), indent),
+        }
     }
-    Words { root }.fields(&mut out, root, 2, 0);
     out
+}
+
+/// The same as Markdown: a paragraph or more, then a list.
+pub(super) fn markdown(schema: &Schema) -> String {
+    let (about, items) = items(schema);
+    let mut out = about.map_or_else(String::new, |text| format!("{}\n\n", text.trim_end()));
+    for item in items {
+        let indent = 2 * item.level;
+        let doc = item.doc.split_whitespace().collect::<Vec<_>>().join(" ");
+        let head = format!("{:indent$}- `{}`", "", item.name);
+        out += &match (item.kind, doc.is_empty()) {
+            (Some(kind), true) => format!("{head}: {kind}\n"),
+            (Some(kind), false) => format!("{head}: {kind}. {doc}\n"),
+            (None, true) => format!("{head}\n"),
+            (None, false) => format!("{head}: {doc}\n"),
+        };
+    }
+    out
+}
+
+fn items(schema: &Schema) -> (Option<String>, Vec<Item>) {
+    let root = schema.as_value();
+    let mut out = Vec::new();
+    Words { root }.fields(&mut out, root, 0, 0);
+    (description(root).map(plain), out)
 }
 
 struct Words<'a> {
@@ -22,7 +66,7 @@ struct Words<'a> {
 
 impl<'a> Words<'a> {
     /// The fields of a table, each with those of the tables inside.
-    fn fields(&self, out: &mut String, schema: &'a Value, indent: usize, depth: usize) {
+    fn fields(&self, out: &mut Vec<Item>, schema: &'a Value, level: usize, depth: usize) {
         let Some(fields) = schema.get("properties").and_then(Value::as_object) else { return };
         let required = |name: &str| {
             let list = schema.get("required").and_then(Value::as_array);
@@ -32,32 +76,29 @@ impl<'a> Words<'a> {
             let inner = self.resolved(field);
             let doc = description(field).or_else(|| description(inner)).unwrap_or_default();
             let mut kind = self.kind(field, doc);
-            let doc = &plain(doc);
             match field.get("default").filter(|d| !d.is_null()).and_then(short) {
                 Some(default) => kind += &format!(", default {default}"),
                 None if required(name) => kind += ", required",
                 None => kind += ", optional",
             }
-            *out += &format!("{:indent$}{name}: {kind}\n", "");
-            *out += &wrapped(doc, indent + 4);
+            out.push(Item { level, name: name.clone(), kind: Some(kind), doc: plain(doc) });
             if depth < 3 {
                 // of a list, what each of its entries holds
                 let inner = inner.get("items").map_or(inner, |one| self.resolved(one));
-                self.fields(out, inner, indent + 4, depth + 1);
-                self.choices(out, inner, indent + 4, depth + 1);
+                self.fields(out, inner, level + 1, depth + 1);
+                self.choices(out, inner, level + 1, depth + 1);
             }
         }
     }
 
     /// The variants of an enum that have a doc comment or fields.
-    fn choices(&self, out: &mut String, schema: &'a Value, indent: usize, depth: usize) {
+    fn choices(&self, out: &mut Vec<Item>, schema: &'a Value, level: usize, depth: usize) {
         for variant in variants(schema) {
             let doc = plain(description(variant).unwrap_or_default());
             for name in names(variant) {
-                let text = if doc.is_empty() { format!("\"{name}\"") } else { format!("\"{name}\": {doc}") };
-                *out += &wrapped(&text, indent);
+                out.push(Item { level, name: format!("\"{name}\""), kind: None, doc: doc.clone() });
                 if let Some(fields) = variant.get("properties").and_then(|p| p.get(&name)) {
-                    self.fields(out, self.resolved(fields), indent + 4, depth + 1);
+                    self.fields(out, self.resolved(fields), level + 1, depth + 1);
                 }
             }
         }

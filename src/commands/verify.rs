@@ -4,7 +4,7 @@ use super::{Exit, complain, interrupted, progress, say, warn};
 use ropewalk_report::{OutputError, Watch, write_atomic};
 use ropewalk_scene::{Fault, did_you_mean, quoted};
 pub use ropewalk_studies::Error;
-use ropewalk_studies::verify::{Case, Outcome, cases, heading, lines, page, picture};
+use ropewalk_studies::verify::{Case, Outcome, cases, heading, html, lines, page, picture};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ pub(crate) struct VerifyArgs {
     /// List the cases and run none
     #[arg(long)]
     list: bool,
-    /// Write the results as a Markdown page, and a picture beside it; replaces an earlier page
+    /// Write the results as a page of Markdown or HTML, .md or .html, and a picture beside it; replaces an earlier page
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Write the scenes of the cases into a new or empty folder and run none
@@ -102,20 +102,25 @@ fn chosen(names: &[String]) -> Result<Vec<Case>, Error> {
 fn check_page(out: &Path) -> Result<(), Error> {
     let refuse = |why: &str| {
         let fault = Fault::new(format!("{} {why}", out.display()));
-        Err(fault.with_help("name a Markdown file, such as docs/verification.md").into())
+        Err(fault.with_help("name a file of Markdown or HTML, such as docs/verification.md").into())
     };
     if out.is_dir() || out.file_name().is_none() {
         return refuse("is a folder, not a page");
     }
-    if out.extension().is_none_or(|e| e != "md") {
-        return refuse("doesn't end in .md");
+    if !is_html(out) && out.extension().is_none_or(|e| e != "md") {
+        return refuse("doesn't end in .md or .html");
     }
     match fs::read_to_string(out) {
+        Ok(text) if is_html(out) && text.contains("<title>Verification</title>") => Ok(()),
         Ok(text) if !text.starts_with(ropewalk_studies::verify::TITLE) => {
             refuse("is no page of results: it stays")
         }
         _ => Ok(()),
     }
+}
+
+fn is_html(out: &Path) -> bool {
+    out.extension().is_some_and(|e| e == "html")
 }
 
 fn write_page(outcomes: &[Outcome], out: &Path) -> Result<(), Error> {
@@ -125,7 +130,8 @@ fn write_page(outcomes: &[Outcome], out: &Path) -> Result<(), Error> {
     let drawn = out.with_extension("svg");
     let name = drawn.file_name().unwrap_or_default().to_string_lossy();
     write_atomic(&drawn, &picture(outcomes)?)?;
-    write_atomic(out, &page(outcomes, &name))?;
+    let text = if is_html(out) { html(outcomes, &name) } else { page(outcomes, &name) };
+    write_atomic(out, &text)?;
     Ok(())
 }
 

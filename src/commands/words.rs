@@ -19,7 +19,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("fixed", &["weld", "clamp"]),
     ("float", &["point_mass", "buoyancy"]),
     ("floor", &["contact"]),
-    ("frame", &["straight", "circle", "turn"]),
+    ("frame", &["rigid_body", "run", "turn"]),
     ("friction", &["contact"]),
     ("hinge", &["revolute"]),
     ("hose", &["cable", "rigid_chain"]),
@@ -27,7 +27,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("joint", &["spherical", "revolute", "universal", "prismatic"]),
     ("line", &["cable"]),
     ("load", &["point_force", "line_load", "gravity"]),
-    ("marker", &["position"]),
+    ("marker", &["position", "spherical", "rigid_body"]),
     ("moment", &["point_moment"]),
     ("mooring", &["cable", "contact"]),
     ("morison", &["drag", "added_mass", "buoyancy"]),
@@ -40,17 +40,21 @@ const WORDS: &[(&str, &[&str])] = &[
     ("seabed", &["contact"]),
     ("section", &["cable"]),
     ("sensor", &["position", "reaction", "along"]),
+    ("shaft", &["cable", "rigid_body"]),
     ("sheave", &["contact", "eyelet"]),
     ("ship", &["driving", "rigid_body"]),
     ("slider", &["prismatic"]),
     ("spool", &["winch", "lift_off"]),
     ("string", &["cable"]),
     ("strut", &["distance", "rigid_body"]),
+    ("swivel", &["clamp"]),
     ("tendon", &["cable"]),
     ("tension", &["along", "winch"]),
     ("tether", &["cable"]),
     ("thruster", &["point_force"]),
     ("torque", &["point_moment"]),
+    ("torsion", &["cable", "point_moment", "along"]),
+    ("twist", &["cable", "along"]),
     ("umbilical", &["cable"]),
     ("vessel", &["driving", "rigid_body"]),
     ("weight", &["gravity", "point_mass"]),
@@ -58,11 +62,50 @@ const WORDS: &[(&str, &[&str])] = &[
     ("wire", &["cable"]),
 ];
 
-/// The types that a word of the field stands for, the nearest first; none for other words.
-pub(super) fn types_for(word: &str) -> &'static [&'static str] {
+/// What some of them are called here, and where they are written.
+const NOTES: &[(&str, &str)] = &[
+    (
+        "frame",
+        "A rigid body has a frame of its own: `position` and `angles` say where it starts, and all data of the body are in \
+         it. An equilibrium may be that in a moving frame: `frame = { velocity = …, omega = … }` in `[run]`.",
+    ),
+    (
+        "marker",
+        "A marker is a point that constraints, forces and records hold on to: `line.start`, `line@2.5m`, `line@50%`, \
+         `body`, `body.com` or one of the `points` of a body; in most places also a position such as `[0, 0, \"-5 m\"]`.",
+    ),
+    (
+        "mooring",
+        "A mooring is a cable that hangs from a fairlead to an anchor, on a seabed that is a `contact` with a plane. \
+         `from_equilibrium = true` in `[run]` starts it at rest: `ropewalk book mooring`.",
+    ),
+    (
+        "section",
+        "The cross-section of a cable is its table `section = { mass = …, ea = …, ei = … }`. Sections of a scene file are \
+         `run`, `solver`, `statics`, `water` and `air`.",
+    ),
+    (
+        "vessel",
+        "A vessel that moves as prescribed is a motion, and `driving` takes a marker along; one that is moved by its lines \
+         is a `rigid_body`.",
+    ),
+];
+
+/// A word of the field as it stands in the lists: small, in the singular.
+fn entry<T: Copy>(list: &'static [(&'static str, T)], word: &str) -> Option<T> {
     let word = word.trim().to_lowercase().replace([' ', '_'], "-");
     let singular = word.strip_suffix('s').unwrap_or(&word);
-    WORDS.iter().find(|(w, _)| *w == word || *w == singular).map_or(&[], |(_, types)| types)
+    list.iter().find(|(w, _)| *w == word || *w == singular).map(|(_, entry)| *entry)
+}
+
+/// What there is to say about a word of the field beyond the types that stand for it.
+pub(super) fn note_on(word: &str) -> Option<&'static str> {
+    entry(NOTES, word)
+}
+
+/// The types that a word of the field stands for, the nearest first; none for other words.
+pub(super) fn types_for(word: &str) -> &'static [&'static str] {
+    entry(WORDS, word).unwrap_or(&[])
 }
 
 #[cfg(test)]
@@ -86,6 +129,8 @@ mod tests {
                 );
             }
         }
+        assert!(NOTES.is_sorted_by_key(|n| n.0));
+        assert!(NOTES.iter().all(|(word, _)| !types_for(word).is_empty()));
         assert_eq!(types_for("Moorings"), ["cable", "contact"]);
         assert!(types_for("cable").is_empty());
     }

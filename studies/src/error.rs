@@ -1,5 +1,6 @@
 //! What can go wrong between a scene and its results.
 
+use ropewalk_core::broken::{self, Broken};
 use ropewalk_core::integrator::StepError;
 use ropewalk_core::modes::ModesError;
 use ropewalk_core::statics::StaticsError;
@@ -22,7 +23,7 @@ pub enum Error {
     Scene(#[from] SceneError),
     /// A step could not be taken.
     #[error("{0}")]
-    Step(#[from] StepError),
+    Step(StepError),
     /// A process could not go on.
     #[error("{0}")]
     Process(String),
@@ -31,10 +32,13 @@ pub enum Error {
     Statics(StaticsError),
     /// The vibration modes could not be found.
     #[error("{0}")]
-    Modes(#[from] ModesError),
+    Modes(ModesError),
     /// The equations could not be linearised.
     #[error("{0}")]
-    Linearise(#[from] LineariseError),
+    Linearise(LineariseError),
+    /// A function of the scene failed that was written elsewhere.
+    #[error("{0}")]
+    Function(Broken),
     /// Ctrl-C was pressed, or the system asked for the end, before there was anything to keep.
     #[error("stopped by {}", Interrupt::cause())]
     Interrupted,
@@ -45,18 +49,45 @@ pub enum Error {
 
 impl From<StaticsError> for Error {
     fn from(e: StaticsError) -> Self {
-        if e.interrupted { Error::Interrupted } else { Error::Statics(e) }
+        if e.interrupted { Error::Interrupted } else { Error::told(Error::Statics(e)) }
+    }
+}
+impl From<StepError> for Error {
+    fn from(e: StepError) -> Self {
+        match e {
+            StepError::Function(broken) => Error::Function(broken),
+            e => Error::told(Error::Step(e)),
+        }
+    }
+}
+impl From<ModesError> for Error {
+    fn from(e: ModesError) -> Self {
+        Error::told(Error::Modes(e))
+    }
+}
+impl From<LineariseError> for Error {
+    fn from(e: LineariseError) -> Self {
+        Error::told(Error::Linearise(e))
     }
 }
 
 impl Error {
+    /// An error, or the function of the scene that it came of.
+    fn told(e: Error) -> Error {
+        broken::take().map_or(e, Error::Function)
+    }
+
     /// Whether the scene or the command is to blame, not the solver: something has to be changed before the run
     /// can even begin.
     pub fn is_input(&self) -> bool {
         match self {
             Error::File(_) | Error::Scene(_) | Error::Output(_) => true,
             Error::Step(e) => Error::is_input_step(e),
-            Error::Statics(_) | Error::Process(_) | Error::Linearise(_) | Error::Interrupted => false,
+            Error::Statics(_)
+            | Error::Process(_)
+            | Error::Function(_)
+            | Error::Linearise(_)
+            | Error::Interrupted => false,
             Error::Modes(e) => matches!(
                 e,
                 ModesError::Massless { .. } | ModesError::Moving { .. } | ModesError::Held | ModesError::None

@@ -1,6 +1,7 @@
 //! Figures of one's own: columns of a history, or of the table of a sweep, over another column.
 
 use crate::error::Error;
+use ropewalk_report::plot::Raster;
 use ropewalk_report::{LinePlot, Mark, OutputError, Panels, RunFolder, Series, cells};
 use ropewalk_scene::Fault;
 use std::path::{Path, PathBuf};
@@ -50,19 +51,32 @@ pub fn figure(
     Ok(Panels { title, columns: 1, panels })
 }
 
-/// Writes a figure as SVG.
+/// Writes a figure as SVG; as PNG or PDF too, where the program was built with the feature `raster`.
 ///
 /// # Errors
 /// Another kind of picture is asked for; a file that can't be written.
 pub fn write_figure(figure: &Panels, path: &Path) -> Result<(), Error> {
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if ending != "svg" {
-        let message = format!("figures are drawn as .svg, not as `{}`", path.display());
-        let help = "write an .svg file: browsers and word processors read it, LaTeX by \\includesvg, and rsvg-convert or \
-                    Inkscape make PDF and PNG of it";
-        return Err(Fault::new(message).with_help(help).into());
+    if ending == "svg" {
+        return Ok(figure.write(path)?);
     }
-    Ok(figure.write(path)?)
+    let shown = path.display();
+    let Some(kind) = Raster::of(&ending) else {
+        let message = format!("figures are drawn as .svg, .png or .pdf, not as `{shown}`");
+        return Err(Fault::new(message).into());
+    };
+    let bytes = kind.picture(&figure.svg()?).map_err(|why| {
+        let help = match Raster::THERE {
+            true => "write an .svg file instead",
+            false => {
+                "build it with `cargo build --release --features raster`, or write an .svg file: browsers, word processors \
+                 and LaTeX (\\includesvg) read it, and rsvg-convert or Inkscape make PDF and PNG of it"
+            }
+        };
+        Fault::new(format!("`{shown}` can't be drawn: {why}")).with_help(help)
+    })?;
+    std::fs::write(path, bytes).map_err(OutputError::io("write", path))?;
+    Ok(())
 }
 
 /// A table whose cells may be text.
@@ -243,8 +257,15 @@ mod tests {
             figure(folder.path(), &strings(&["end.y"]), None, Style::Screen).err().unwrap().to_string();
         assert!(fault.contains("no column `end.y`") && fault.contains("end.tension"), "{fault}");
         let out = folder.path().join("fig.pdf");
-        let fault = write_figure(&path, &out).err().unwrap().to_string();
-        assert!(fault.contains(".svg") && fault.contains("rsvg-convert"), "{fault}");
+        match write_figure(&path, &out) {
+            Ok(()) => assert!(Raster::THERE && std::fs::read(&out).unwrap().starts_with(b"%PDF-")),
+            Err(fault) => {
+                let fault = fault.to_string();
+                assert!(!Raster::THERE && fault.contains("--features raster"), "{fault}");
+            }
+        }
+        let fault = write_figure(&path, &out.with_extension("jpg")).err().unwrap().to_string();
+        assert!(fault.contains(".svg, .png or .pdf"), "{fault}");
         write_figure(&path, &out.with_extension("svg")).unwrap();
     }
 

@@ -42,6 +42,9 @@ struct Steps<'a> {
 }
 
 impl Observer for Steps<'_> {
+    fn wants_samples(&self) -> bool {
+        false
+    }
     fn step(&mut self, _: &Model, _: &State, _: &StepReport) -> ControlFlow<()> {
         let answer = (self.ask)();
         self.asked_to_stop = answer.is_break();

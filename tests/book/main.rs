@@ -4,6 +4,9 @@
 //! `book/src/NAME.in/`; as there is a folder `NAME.out/` too, each page runs in a copy. `...` stands for lines and `[..]` for characters that differ
 //! from run to run. `TRYCMD=overwrite cargo test --test book` writes the output of today into the pages: read the diff.
 
+mod made;
+mod shipped;
+
 use std::path::{Path, PathBuf};
 
 fn book() -> PathBuf {
@@ -59,6 +62,17 @@ fn between<'a>(text: &'a str, before: &'a str, after: &'a str) -> impl Iterator<
     text.split(before).skip(1).filter_map(move |rest| rest.split(after).next())
 }
 
+/// What the headings of a page are called in links.
+fn anchors(text: &str) -> Vec<String> {
+    let headings =
+        text.lines().filter(|line| line.starts_with('#')).map(|line| line.trim_start_matches('#').trim());
+    let of = |heading: &str| -> String {
+        let kept = heading.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+        kept.map(|c| if c == ' ' { '-' } else { c.to_ascii_lowercase() }).collect()
+    };
+    headings.map(of).collect()
+}
+
 #[test]
 fn pages_files_and_links_of_the_book_are_there() {
     let source = book().join("src");
@@ -74,9 +88,18 @@ fn pages_files_and_links_of_the_book_are_there() {
         let text = std::fs::read_to_string(&page).unwrap();
         let folder = page.parent().unwrap();
         for link in between(&text, "](", ")") {
-            let target = link.split('#').next().unwrap();
-            if !target.is_empty() && !target.contains("://") {
-                assert!(folder.join(target).exists(), "{name}: no {target}");
+            let (target, anchor) = link.split_once('#').unwrap_or((link, ""));
+            if target.contains("://") {
+                continue;
+            }
+            let file = if target.is_empty() { page.clone() } else { folder.join(target) };
+            assert!(file.exists(), "{name}: no {target}");
+            if !anchor.is_empty() {
+                let there = anchors(&std::fs::read_to_string(&file).unwrap());
+                assert!(
+                    there.iter().any(|a| a == anchor),
+                    "{name}: no #{anchor} in {target}, only {there:?}"
+                );
             }
         }
         for include in between(&text, "{{#include ", "}}") {

@@ -546,6 +546,7 @@ pub fn squeezer(order: &[usize; 7], redundant: bool) -> Scene {
             marker: "k1".into(),
             local: false,
             moment: [0.0, 0.0, 0.033].map(Into::into),
+            torque: None,
             time: TimeFunction::Constant,
         });
     scene

@@ -45,3 +45,17 @@ impl Said {
 pub fn run(folder: &Path, arguments: &[&str]) -> Said {
     Said::of(program(folder, arguments).output().unwrap())
 }
+
+/// The signals that end a run, with what messages call them and the exit code: interrupt, end, hang-up. Under `nohup` runs
+/// are to go on after the last.
+#[cfg(unix)]
+pub fn signals() -> Vec<(&'static str, &'static str, i32)> {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored =
+        status.lines().find_map(|l| u64::from_str_radix(l.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    let mut all = vec![("INT", "Ctrl-C", 130), ("TERM", "SIGTERM", 143)];
+    if ignored.is_none_or(|signals| signals & 1 == 0) {
+        all.push(("HUP", "SIGHUP", 129));
+    }
+    all
+}

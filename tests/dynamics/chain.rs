@@ -3,13 +3,13 @@
 use crate::common::{data, law, number};
 use ropewalk::simulate;
 use ropewalk_constraints::motion::{CircleSpec, Towards};
-use ropewalk_constraints::{DrivingSpec, RevoluteSpec};
+use ropewalk_constraints::{DrivingSpec, RevoluteSpec, SphericalSpec};
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
-use ropewalk_core::{BuildError, Motion, Moving};
-use ropewalk_elements::RigidChainSpec;
+use ropewalk_core::{BuildError, Motion, Moving, Quantity};
 use ropewalk_elements::rigid_chain::LinkSection;
+use ropewalk_elements::{PointMassSpec, RigidChainSpec};
 use ropewalk_forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec, Theory};
-use ropewalk_scene::records::{PositionSpec, ReactionPart, ReactionSpec};
+use ropewalk_scene::records::{AlongSpec, PositionSpec, ReactionPart, ReactionSpec, RecordPlace};
 use ropewalk_scene::{MotionSpec, Scene, Water};
 use serde_json::Value;
 use std::sync::Arc;
@@ -116,6 +116,46 @@ fn a_swaying_chain_goes_where_the_reference_goes() {
             history.counts
         );
         assert!(tip < place && pull < force * size, "{name}: {tip:e} {pull:e}");
+    }
+}
+
+#[test]
+fn the_joints_of_a_hanging_chain_carry_what_hangs_below() {
+    let (mass, length, load, g) = (0.8, 2.0, 3.0, 9.81);
+    for hangs in [false, true] {
+        let mut scene = Scene::new();
+        let section = LinkSection { gyration: Some(1e-3), ..LinkSection::new(mass, 0.0) };
+        scene.set_gravity([0.0, 0.0, -g]).force(GravitySpec::default());
+        scene.element(RigidChainSpec::new("chain", vec![[0.0; 3], [0.0, 0.0, -length]], 5, section));
+        scene.constraint(SphericalSpec::pin("top", "chain.start"));
+        if hangs {
+            scene.element(PointMassSpec::new("load", [0.0, 0.0, -length], load));
+            scene.constraint(SphericalSpec::new("hook", "load", "chain.end"));
+        }
+        for at in [RecordPlace::Start, RecordPlace::At(0.8), RecordPlace::At(1.0), RecordPlace::End] {
+            scene.record(AlongSpec::new("chain", Quantity::Tension, at));
+        }
+        (scene.run.duration, scene.run.output) = (0.1, 0.05);
+        let history = simulate(&scene).unwrap_or_else(|e| panic!("{e}"));
+        let below = if hangs { load * g } else { 0.0 };
+        for (name, s) in [("chain.start", 0.0), ("chain@0.8m", 0.8), ("chain@1m", 1.0), ("chain.end", 2.0)] {
+            // between two joints it changes along a line
+            let exact = mass * g * (length - s) + below;
+            for got in history.column(&format!("{name}.tension")).expect(name) {
+                assert!((got - exact).abs() < 1e-9 * mass * g * length, "{name}: {got} {exact}");
+            }
+        }
+    }
+    // a place beside it, and what it doesn't know
+    let section = LinkSection { gyration: Some(1e-3), ..LinkSection::new(mass, 0.0) };
+    for (what, at, words) in
+        [(Quantity::Tension, 2.5, "chain"), (Quantity::Curvature, 1.0, "rigid_chain, which has no curvature")]
+    {
+        let mut scene = Scene::new();
+        scene.element(RigidChainSpec::new("chain", vec![[0.0; 3], [2.0, 0.0, 0.0]], 5, section.clone()));
+        scene.record(AlongSpec::new("chain", what, RecordPlace::At(at)));
+        let refused = simulate(&scene).err().expect("refused").to_string();
+        assert!(refused.contains(words), "{refused}");
     }
 }
 

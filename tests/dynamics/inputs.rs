@@ -272,6 +272,135 @@ fn what_changes_a_spring_does_work() {
     }
 }
 
+#[test]
+fn what_changes_a_torsion_spring_and_a_bushing_does_work() {
+    for join in ["hold", "linear", "smooth"] {
+        let input = |name: &str, unit: &str, value: f64| {
+            format!(
+                "[[inputs]]\nname = \"{name}\"\nunit = \"{unit}\"\ndefault = {value}\nmin = 0\njoin = \"{join}\"\n"
+            )
+        };
+        let text = format!(
+            r#"
+            [run]
+            duration = "6 s"
+            [solver]
+            stepping = {{ type = "controlled", tolerance = 1e-7 }}
+            {}{}{}
+            [[elements]]
+            type = "rigid_body"
+            name = "door"
+            position = [0, 0, 0]
+            mass = "2 kg"
+            inertia = [0.3, 0.3, 0.3]
+            angular_velocity = [0, 0, 1]
+            velocity = [0.4, 0, 0]
+            [[forces]]
+            type = "rotational_spring"
+            name = "spring"
+            marker = "door"
+            axis = [0, 0, 1]
+            stiffness = {{ input = "torsion" }}
+            angle = {{ input = "angle" }}
+            damping = 0.01
+            [[forces]]
+            type = "bushing"
+            name = "mount"
+            marker = "door"
+            stiffness = [{{ input = "stiffness" }}, 40, 40]
+            rotational_stiffness = [1, 1, {{ input = "torsion" }}]
+            "#,
+            input("torsion", "N m/rad", 2.0),
+            input("angle", "rad", 0.1),
+            input("stiffness", "N/m", 50.0)
+        );
+        let mut s = started(&scene(&text));
+        for k in 1..=6 {
+            s.set_inputs(&[
+                ("torsion", 2.0 + 0.5 * f64::from(k)),
+                ("angle", 0.1 * f64::from(k % 3)),
+                ("stiffness", 50.0 + 20.0 * f64::from(k)),
+            ])
+            .expect("set");
+            s.advance(f64::from(k), 0.5, &mut ()).expect("run");
+        }
+        let off = s.audit.imbalance() / s.audit.scale;
+        println!("{join}: imbalance {off:e}, supplied {} J", s.audit.supplied);
+        assert!(s.audit.supplied.abs() > 0.1 && off.abs() < 1e-3, "{join}: {off:e}");
+        assert!(refused(&text.replace("min = 0", "min = -1")).contains("must not be negative"));
+    }
+}
+
+/// A ball that a harmonic motion shakes along x.
+fn shaken(amplitude: &str, frequency: &str, joins: [&str; 2]) -> String {
+    format!(
+        r#"
+        [run]
+        duration = "8 s"
+        [solver]
+        stepping = {{ type = "fixed", h = 1e-3 }}
+        [[inputs]]
+        name = "a"
+        unit = "m"
+        default = 1
+        join = "{}"
+        [[inputs]]
+        name = "f"
+        unit = "Hz"
+        default = 0.5
+        join = "{}"
+        [[motions]]
+        type = "harmonic"
+        name = "sway"
+        amplitude = [{amplitude}, 0, 0]
+        frequency = {frequency}
+        ramp = 0
+        [[elements]]
+        type = "point_mass"
+        name = "ball"
+        marker = [0, 0, 0]
+        mass = 2
+        velocity = [{}, 0, 0]
+        [[constraints]]
+        type = "driving"
+        name = "shaker"
+        marker = "ball"
+        motion = "sway"
+        "#,
+        joins[0],
+        joins[1],
+        std::f64::consts::PI,
+    )
+}
+
+#[test]
+fn amplitude_and_frequency_follow_their_inputs_without_a_jump() {
+    use std::f64::consts::TAU;
+    let (a, f) = ("{ input = \"a\" }", "{ input = \"f\" }");
+    let mut s = started(&scene(&shaken(a, f, ["smooth", "linear"])));
+    let (mut frequency, mut turns) = (0.5, 0.0);
+    for (k, [to, by]) in [[1.0, 0.5], [2.0, 0.5], [2.0, 1.25], [0.5, 0.25]].into_iter().enumerate() {
+        s.set_inputs(&[("a", to), ("f", by)]).expect("set");
+        s.advance(2.0 * (k as f64 + 1.0), 1.0, &mut ()).expect("run");
+        turns += 0.5 * (frequency + by) * 2.0;
+        frequency = by;
+        let (sin, cos) = (TAU * turns).sin_cos();
+        let (x, v) = (to * sin, to * TAU * frequency * cos);
+        println!("{x} m, {v} m/s: off by {:e} and {:e}", s.state.q[0] - x, s.state.v[0] - v);
+        // velocities meet what moves them to the order of the steps
+        assert!((s.state.q[0] - x).abs() < 1e-9 && (s.state.v[0] - v).abs() < 1e-4 * (1.0 + v.abs()));
+    }
+    // what shakes it does the work
+    assert!(s.audit.imbalance().abs() < 1e-4 * s.audit.scale, "{:e}", s.audit.imbalance() / s.audit.scale);
+    for (joins, expected) in [
+        (["linear", "linear"], "where the amplitude jumps or bends the velocity jumps"),
+        (["smooth", "hold"], "where the frequency jumps the velocity jumps"),
+    ] {
+        let fault = refused(&shaken(a, f, joins));
+        assert!(fault.contains(expected) && fault.contains("give it `join = "), "{fault}");
+    }
+}
+
 /// A mass on which a PID controller of the position acts, against a steady force.
 fn positioned(every: &str, more: &str) -> Scene {
     scene(&format!(
@@ -599,4 +728,94 @@ fn current_that_is_an_input_drags_as_one_that_is_given() {
     assert!(given.state.q[0] > 0.2 && off < 1e-6, "{off:e}");
     let linear = text("{ input = \"tide\" }").replace("\"hold\"", "\"linear\"");
     assert!(refused(&linear).contains("`join = \"hold\"`"), "{}", refused(&linear));
+}
+
+#[test]
+fn profile_with_a_factor_drags_as_one_that_is_given() {
+    let text = |factor: &str, speed: f64| {
+        format!(
+            r#"
+            [run]
+            duration = "4 s"
+            [solver]
+            stepping = {{ type = "controlled", tolerance = 1e-8 }}
+            [[inputs]]
+            name = "tide"
+            join = "hold"
+            [water]
+            profile = [{{ z = -10, velocity = [0, 0, 0] }}, {{ z = 10, velocity = [{speed}, 0, 0] }}]
+            profile_factor = {factor}
+            [[elements]]
+            type = "point_mass"
+            name = "buoy"
+            marker = [0, 0, 0]
+            mass = "20 kg"
+            volume = "0.02 m^3"
+            drag_area = "0.1 m^2"
+            "#
+        )
+    };
+    let mut driven = started(&scene(&text("{ input = \"tide\" }", 2.0)));
+    driven.advance(1.0, 1.0, &mut ()).expect("run");
+    assert_eq!(driven.state.v[0], 0.0);
+    driven.set_input("tide", 0.8).expect("set");
+    driven.advance(3.0, 1.0, &mut ()).expect("run");
+    let run = |factor, speed| {
+        let mut given = started(&scene(&text(factor, speed)));
+        given.advance(2.0, 1.0, &mut ()).expect("run");
+        given.state.q[0]
+    };
+    let (given, factor) = (run("1", 1.6), run("0.8", 2.0));
+    println!("{given} m, off by {:e} and {:e}", driven.state.q[0] - given, factor - given);
+    assert!(given > 0.2 && (driven.state.q[0] - given).abs() < 1e-6 && (factor - given).abs() < 1e-12);
+    let linear = text("{ input = \"tide\" }", 1.0).replace("\"hold\"", "\"linear\"");
+    assert!(refused(&linear).contains("`join = \"hold\"`"), "{}", refused(&linear));
+    let none = refused(&text("2", 1.0).replace("profile = [", "# ["));
+    assert!(none.contains("there is none"), "{none}");
+}
+
+#[test]
+fn tension_by_the_speed_squared_is_read_from_an_input() {
+    let run = |k: &str| {
+        let text = format!(
+            r#"
+            [run]
+            duration = "2 s"
+            [[inputs]]
+            name = "k"
+            unit = "kg/m"
+            default = 0.4
+            [[elements]]
+            type = "cable"
+            name = "rope"
+            points = [[0, 0, 0], [0, 0, "-10 m"]]
+            elements = 6
+            section = {{ mass = "1 kg/m", ea = "20 kN", ei = "1 N m^2" }}
+            [[constraints]]
+            type = "spherical"
+            name = "hook"
+            marker = "rope.start"
+            [[constraints]]
+            type = "winch"
+            name = "winch"
+            marker = "rope.start"
+            tension = "80 N"
+            damping = "20 N s/m"
+            per_speed2 = {k}
+            [[forces]]
+            type = "gravity"
+            "#
+        );
+        let mut s = started(&scene(&text));
+        s.advance(1.0, 1.0, &mut ()).expect("run");
+        if k.contains("input") {
+            s.set_input("k", 5.0).expect("set");
+        }
+        s.advance(2.0, 1.0, &mut ()).expect("run");
+        let boundary = s.model.part("rope").and_then(|p| p.boundary(0)).expect("it feeds");
+        boundary.fed(&s.state.at())
+    };
+    let (driven, constant, none) = (run("{ input = \"k\" }"), run("0.4"), run("0"));
+    println!("{driven} m, {constant} m, {none} m");
+    assert!((driven - constant).abs() > 1e-2 && (none - constant).abs() > 1e-2);
 }

@@ -82,6 +82,7 @@ fn flying_cable_does_not_care_how_it_stands() {
                 marker: "rod.start".into(),
                 local: false,
                 moment: stand.vector([0.0, 0.0, -80.0]).map(Into::into),
+                torque: None,
                 time: pull(),
             });
         let mut s = start(&scene, &tight(5e-3), 2.0);

@@ -224,6 +224,90 @@ fn small_inputs_move_the_model_as_the_linear_equations_say() {
 }
 
 #[test]
+fn a_prescribed_speed_shakes_what_hangs_on_it() {
+    // a mass on a spring and damper to a hand that is moved at a speed: x = (c s + k) / (m s² + c s + k) X, with s X = u
+    let (mass, stiffness, damping) = (2.0, 50.0, 3.0);
+    let l = about(
+        &scene(&format!(
+            r#"
+            [[inputs]]
+            name = "u"
+            unit = "m/s"
+            join = "linear"
+            [[motions]]
+            type = "input"
+            name = "shake"
+            speed = "u"
+            [[elements]]
+            type = "point_mass"
+            name = "hand"
+            marker = [0, 0, 0]
+            mass = 7
+            [[elements]]
+            type = "point_mass"
+            name = "ball"
+            marker = ["2 m", 0, 0]
+            mass = {mass}
+            [[constraints]]
+            type = "driving"
+            name = "arm"
+            marker = "hand"
+            motion = "shake"
+            [[forces]]
+            type = "spring"
+            name = "spring"
+            marker = "ball"
+            to = "hand"
+            stiffness = {stiffness}
+            damping = {damping}
+            [[forces]]
+            type = "spring"
+            name = "aside"
+            marker = "ball"
+            to = [2, 5, 0]
+            stiffness = 1
+            [[forces]]
+            type = "spring"
+            name = "across"
+            marker = "ball"
+            to = [2, 0, 5]
+            stiffness = 1
+            [[records]]
+            type = "position"
+            of = "ball"
+            [[records]]
+            type = "position"
+            of = "hand"
+            "#
+        )),
+        About::Start,
+    );
+    let [m, c, k, b, z] = l.reduced();
+    let [p0, p1, p2, v] = l.carried().expect("numbers");
+    assert_eq!(b.norm_max(), 0.0);
+    let yq = l.output[0].to_dense();
+    for omega in [0.5, 4.9, 5.0, 30.0] {
+        let s = c64::new(0.0, omega);
+        let n = m.nrows();
+        let a = Mat::from_fn(n, n, |i, j| s * s * m[(i, j)] + s * c[(i, j)] + k[(i, j)]);
+        let push = Mat::from_fn(n, 1, |i, _| p0[(i, 0)] / s + p1[(i, 0)] + s * p2[(i, 0)]);
+        let w = a.partial_piv_lu().solve(push);
+        let place = |row: usize| {
+            let own = (0..z.nrows()).map(|i| {
+                let q = (0..n).map(|j| w[(j, 0)] * z[(i, j)]).fold(v[(i, 0)] / s, |sum, x| sum + x);
+                q * yq[(row, i)]
+            });
+            own.fold(c64::new(0.0, 0.0), |sum, x| sum + x)
+        };
+        let hand = c64::new(1.0, 0.0) / s;
+        let ball = (s * damping + stiffness) / (s * s * mass + s * damping + stiffness) * hand;
+        for (found, exact) in [(place(0), ball), (place(3), hand)] {
+            assert!((found - exact).norm() < 1e-8 * exact.norm(), "at {omega}: {found} instead of {exact}");
+        }
+    }
+}
+
+#[test]
 fn free_top_precesses_as_euler_says() {
     let l = about(
         &scene(

@@ -2,7 +2,7 @@
 
 use crate::common::{everything, models, pendulum, place, size};
 use ropewalk_constraints::SphericalSpec;
-use ropewalk_core::integrator::{Options, Scheme, StepError, StepReport, Stepping};
+use ropewalk_core::integrator::{Limit, Options, Scheme, StepError, StepReport, Stepping};
 use ropewalk_core::{Action, End, Event, Model, Observer, Plan, Simulation, State};
 use ropewalk_elements::{CableSpec, PointMassSpec, Section};
 use ropewalk_forces::{DragSpec, GravitySpec, SpringSpec};
@@ -286,5 +286,68 @@ fn stepping_does_not_allocate() {
         println!("{short} allocations in {few} steps, {long} in {many}");
         assert!(many > 10 * few.max(1) || many > 100);
         assert!(long <= short + 4, "{short} allocations in {few} steps, {long} in {many}");
+    }
+}
+
+/// What limited each step, and its size.
+#[derive(Default)]
+struct Limited(Vec<(Limit, f64)>);
+
+impl Observer for Limited {
+    fn step(&mut self, _: &Model, _: &State, report: &StepReport) -> ControlFlow<()> {
+        self.0.push((report.limit, report.h));
+        ControlFlow::Continue(())
+    }
+}
+
+#[test]
+fn every_step_says_what_kept_it_from_being_longer() {
+    let limits = |options: &Options, advances: &[f64], event: bool| {
+        let mut s = Simulation::new(swinging().build().expect("model"), options, 0.3).expect("start");
+        if event {
+            let mesh = (0..=30).map(|k| 1.2 * f64::from(k) / 30.0).collect();
+            s.add_event(Refine { at: 0.2, scene: swinging(), mesh, stop: false });
+        }
+        let mut seen = Limited::default();
+        for t in advances {
+            s.advance(*t, f64::INFINITY, &mut seen).expect("run");
+        }
+        let counts = s.work.counts;
+        assert_eq!(counts.limits.iter().sum::<u64>(), counts.steps);
+        assert!(Limit::ALL.iter().all(|limit| {
+            let count = seen.0.iter().filter(|(own, _)| own == limit).count() as u64;
+            counts.limits[*limit as usize] == count
+        }));
+        seen.0
+    };
+    assert!(limits(&fixed(1e-3), &[0.1], false).iter().all(|(limit, _)| *limit == Limit::Fixed));
+    for scheme in [Scheme::default(), Scheme::RadauIia5] {
+        // strict enough that errors limit steps, not their bound
+        let stepping = Stepping::Controlled { tolerance: 1e-6 };
+        let adaptive = Options { scheme, stepping, ..Options::default() };
+        let free = limits(&adaptive, &[0.3], false);
+        println!("{scheme:?}: {:?}", free.iter().map(|(l, _)| l.word()).collect::<Vec<_>>());
+        assert_eq!((free[0].0, free[free.len() - 1].0), (Limit::Start, Limit::Instant));
+        let by_error = |seen: &[(Limit, f64)]| {
+            seen.iter().filter(|(l, _)| matches!(l, Limit::Position | Limit::Force)).count()
+        };
+        assert!(by_error(&free) > free.len() / 2);
+        // a bound that is below what the error allows limits all but the first
+        let least = free.iter().skip(free.len() / 2).map(|(_, h)| *h).fold(f64::INFINITY, f64::min);
+        let bounded = Options { h_max: Some(0.3 * least), ..adaptive.clone() };
+        let bounded = limits(&bounded, &[0.1], false);
+        let longest = bounded.iter().filter(|(limit, _)| *limit == Limit::Longest).count();
+        assert!(
+            longest > bounded.len() / 2 && by_error(&bounded) < longest,
+            "{longest} of {}",
+            bounded.len()
+        );
+        // where it has to stand, and where something happens
+        let stands = limits(&adaptive, &[0.1, 0.2, 0.3], false);
+        assert!(stands.iter().filter(|(limit, _)| *limit == Limit::Instant).count() >= 3);
+        let events = limits(&adaptive, &[0.3], true);
+        let at = events.iter().position(|(limit, _)| *limit == Limit::Event).expect("an event");
+        // it is in the midst of the run, and what follows begins anew with a short step
+        assert!(at > 0 && at + 1 < events.len() && events[at + 1].1 < 0.5 * events[at].1, "{at}");
     }
 }

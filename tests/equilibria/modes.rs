@@ -10,7 +10,7 @@ use ropewalk_core::SteadyFrame;
 use ropewalk_core::modes::Mode;
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidBodySpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, SpringSpec, TimeFunction};
-use ropewalk_scene::{Analysis, Scene};
+use ropewalk_scene::{Analysis, Format, Scene, SceneFile};
 use std::f64::consts::PI;
 
 #[track_caller]
@@ -88,6 +88,48 @@ fn pendulum_on_a_revolute_swings_with_its_period() {
     assert!(found.warnings[0].contains("only one mode"), "{:?}", found.warnings);
     let exact = (mass * g * arm / (inertia + mass * arm * arm)).sqrt();
     close("pendulum", found.modes[0].omega, exact, 1e-9);
+}
+
+#[test]
+fn a_support_that_only_begins_to_move_is_held() {
+    // at rest at t = 0, but accelerated from then on
+    let (mass, inertia, l, g) = (3.0_f64, 0.1, 2.0, 9.81);
+    let text = r#"
+        [run]
+        duration = 3
+        [[elements]]
+        type = "rigid_body"
+        name = "bob"
+        position = [0, 0, -2]
+        mass = 3
+        inertia = [0.1, 0.1, 0.1]
+        points = { eye = [0, 0, 2] }
+        [[motions]]
+        type = "table"
+        name = "quake"
+        t = [0, 1, 2, 3]
+        x = [0, 0.1, -0.1, 0]
+        join = "cubic"
+        ends = "from-rest"
+        [[constraints]]
+        type = "driving"
+        name = "pivot"
+        marker = "bob.eye"
+        motion = "quake"
+        [[forces]]
+        type = "gravity"
+        "#;
+    let scene = SceneFile::parse(text, "scene.toml", Format::Toml, &[])
+        .unwrap_or_else(|e| panic!("{e}"))
+        .into_scene();
+    let found = modes(&scene, &ModesOptions { count: 3, ..ModesOptions::default() }).expect("modes").modes;
+    let exact = (mass * g * l / (inertia + mass * l * l)).sqrt();
+    println!("{:?}", found.iter().map(|m| m.omega).collect::<Vec<_>>());
+    // it swings both ways, and spins
+    assert_eq!(found.iter().filter(|m| (m.omega / exact - 1.0).abs() < 1e-6).count(), 2);
+    // while it moves there is no equilibrium
+    let later = ModesOptions { time: Some(0.5), ..ModesOptions::default() };
+    assert!(modes(&scene, &later).is_err());
 }
 
 #[test]

@@ -135,6 +135,7 @@ fn meshes_converge_with_the_fourth_power_however_stiff_the_cable() {
             marker: "beam.end".into(),
             local: false,
             moment: [0.0, 0.0, TAU].map(Into::into),
+            torque: None,
             time: linear(),
         });
         size(tip(&scene))
@@ -279,8 +280,8 @@ fn a_whip_cracks_without_breaking_the_balance_of_energy() {
             .element(CableSpec::straight("whip", [0.0; 3], [0.0, 0.0, -1.0], 16, whip))
             .motion(HarmonicSpec {
                 name: "hand".into(),
-                amplitude: [0.3, 0.0, 0.0],
-                frequency: 3.0,
+                amplitude: [0.3, 0.0, 0.0].map(Into::into),
+                frequency: 3.0.into(),
                 phase: 0.0,
                 start: 0.0,
                 ramp: 0.1,

@@ -38,6 +38,9 @@ pub fn scene(rng: &mut Rng) -> String {
         closing(rng, &mut text, &parts);
     }
     forces(rng, &mut text, &parts, water);
+    if rng.chance(0.35) {
+        inputs(rng, &mut text, &parts);
+    }
     // now and then, one number is out of all proportion
     if rng.chance(0.15) {
         let odd = rng.pick(&["0", "-1", "1e-12", "1e12", "1e300", "nan", "1e-300", "1e9"]);
@@ -284,4 +287,68 @@ fn forces(rng: &mut Rng, text: &mut String, parts: &[Part], water: bool) {
              stiffness = {stiffness:.2e}\nstiffness_per_length = {stiffness:.2e}\n{friction}\n"
         );
     }
+}
+
+/// Something that reads an input, and a controller that sets it.
+fn inputs(rng: &mut Rng, text: &mut String, parts: &[Part]) {
+    let end = &parts[rng.below(parts.len())].end;
+    let (name, size) = ("u", rng.log(1e-2, 1e3));
+    let join = rng.pick(&["hold", "linear", "smooth"]);
+    let (unit, reads) = match rng.below(5) {
+        0 | 1 => {
+            let force = "force = [{ input = \"u\" }, 0, 1]";
+            ("N", format!("[[forces]]\ntype = \"point_force\"\nmarker = \"{end}\"\n{force}\n\n"))
+        }
+        2 => {
+            let spring = "stiffness = { input = \"u\" }\ndamping = 1";
+            let to = list(rng.vector(5.0));
+            (
+                "N/m",
+                format!(
+                    "[[forces]]\ntype = \"spring\"\nname = \"set\"\nmarker = \"{end}\"\nto = {to}\n{spring}\n\n"
+                ),
+            )
+        }
+        3 => {
+            let winch = "speed = { input = \"u\" }";
+            (
+                "m/s",
+                format!(
+                    "[[constraints]]\ntype = \"winch\"\nname = \"reel\"\nmarker = \"{end}\"\n{winch}\n\n"
+                ),
+            )
+        }
+        _ => {
+            let swing = "amplitude = [{ input = \"u\" }, 0, 0]\nfrequency = 0.7\nramp = 0.5";
+            let drive = format!(
+                "[[constraints]]\ntype = \"driving\"\nname = \"shaken\"\nmarker = \"{end}\"\nmotion = \"sway\"\n"
+            );
+            ("m", format!("[[motions]]\ntype = \"harmonic\"\nname = \"sway\"\n{swing}\n{drive}\n"))
+        }
+    };
+    let least = if unit == "N/m" || rng.chance(0.3) { 0.0 } else { -size };
+    _ = write!(
+        text,
+        "[[inputs]]\nname = \"{name}\"\nunit = \"{unit}\"\njoin = \"{join}\"\nmin = {least:.3e}\nmax = {size:.3e}\n\n{reads}"
+    );
+    let every = rng.log(1e-3, 0.5);
+    let control = match rng.below(3) {
+        0 => format!(
+            "type = \"expression\"\nvalue = \"{size:.3e} {unit} * sin({:.2} * t / 1 s)\"",
+            rng.log(0.1, 50.0)
+        ),
+        1 => format!(
+            "type = \"pid\"\nmeasures = \"seen.x\"\nsetpoint = 0\nkp = \"{:.3e} {unit} / 1 m\"\nki = \"{:.3e} {unit} / 1 m / 1 s\"",
+            -rng.log(1e-3, 1e3),
+            rng.log(1e-3, 1e3)
+        ),
+        _ => format!(
+            "type = \"table\"\nover = \"t\"\nat = [0, 0.3, 0.6]\nvalue = [0, {size:.3e}, {least:.3e}]"
+        ),
+    };
+    _ = write!(
+        text,
+        "[[records]]\ntype = \"position\"\nname = \"seen\"\nof = \"{end}\"\n\n[[controllers]]\n{control}\ninput = \"{name}\"\n\
+         every = {every:.3e}\n\n"
+    );
 }

@@ -10,6 +10,7 @@
 //! # expect: critical 1 = 0.987 ± 1e-3     (why)      load factor at which an equilibrium loses its stability
 //! ```
 
+mod measured;
 mod page;
 
 use ropewalk::{History, Modal, ModesOptions, Scene, modes, read, simulate};
@@ -113,7 +114,7 @@ fn expectations(name: &str, text: &str) -> Vec<Expectation> {
 
 #[test]
 fn every_scene_gives_what_is_known_about_it() {
-    let mut off = Vec::new();
+    let (mut off, mut rows) = (Vec::new(), Vec::new());
     for (name, path) in scenes() {
         let expected = expectations(&name, &std::fs::read_to_string(&path).unwrap());
         assert!(!expected.is_empty(), "{name} says nothing about its answer");
@@ -127,9 +128,18 @@ fn every_scene_gives_what_is_known_about_it() {
             if !got.is_some_and(|got| (got - one.value).abs() <= one.tolerance) {
                 off.push(format!("{name}: {} (got {got:?})", one.line));
             }
+            let (scene, known, tolerance) = (name.clone(), one.value, one.tolerance);
+            rows.push(measured::Row {
+                scene,
+                line: one.line,
+                known,
+                tolerance,
+                got: got.unwrap_or(f64::NAN),
+            });
         }
     }
     assert!(off.is_empty(), "{}", off.join("\n"));
+    measured::check(&rows);
 }
 
 #[test]

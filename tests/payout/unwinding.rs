@@ -605,7 +605,10 @@ fn finite_differences_and_finite_elements_agree_from_rest_to_15_knots() {
         )
         .motion(peeled)
         .constraint(SphericalSpec::new("eyelet", "fibre.start", [0.0; 3]))
-        .constraint(WinchSpec { per_speed2, ..WinchSpec::tension("pull", "fibre.start", rest) })
+        .constraint(WinchSpec {
+            per_speed2: per_speed2.into(),
+            ..WinchSpec::tension("pull", "fibre.start", rest)
+        })
         .constraint(WinchSpec::motion("spool", "fibre.end", "peel"))
         .constraint(LiftOffSpec::new("off", "fibre.end", spec))
         .force(drag);

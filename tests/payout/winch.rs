@@ -644,7 +644,7 @@ fn an_eyelet_is_a_point_and_a_winch_in_one() {
             &|s| {
                 s.constraint(EyeletSpec {
                     path: Some("course".into()),
-                    per_speed2: 0.5,
+                    per_speed2: 0.5.into(),
                     damping: 2.0.into(),
                     ..EyeletSpec::tension("eyelet", "rope.start", 20.0)
                 });
@@ -652,7 +652,7 @@ fn an_eyelet_is_a_point_and_a_winch_in_one() {
             &|s| {
                 let winch = WinchSpec::tension("", "rope.start", 20.0);
                 s.constraint(DrivingSpec::new("eyelet", "rope.start", "course"))
-                    .constraint(feed(WinchSpec { per_speed2: 0.5, damping: 2.0.into(), ..winch }));
+                    .constraint(feed(WinchSpec { per_speed2: 0.5.into(), damping: 2.0.into(), ..winch }));
             },
         ),
         (
@@ -720,7 +720,7 @@ fn what_no_eyelet_can_do_is_refused() {
             "the tension at this eyelet is a result",
         ),
         (EyeletSpec { damping: 5.0.into(), ..speed() }, "damping", "goes with `tension`"),
-        (EyeletSpec { per_speed2: 5.0, ..speed() }, "per_speed2", "goes with `tension`"),
+        (EyeletSpec { per_speed2: 5.0.into(), ..speed() }, "per_speed2", "goes with `tension`"),
         (
             EyeletSpec { to: Some([0.0; 3].into()), path: Some("course".into()), ..speed() },
             "path",
@@ -770,8 +770,8 @@ fn balance(speed: f64, h: f64) -> (f64, usize) {
     scene
         .motion(HarmonicSpec {
             name: "heave".into(),
-            amplitude: [0.3, 0.2, 0.4],
-            frequency: 0.5,
+            amplitude: [0.3, 0.2, 0.4].map(Into::into),
+            frequency: 0.5.into(),
             phase: 0.0,
             start: 0.0,
             ramp: 0.5,

@@ -1,6 +1,6 @@
 //! The program as a user calls it: what it says, what it leaves behind, how it ends.
 
-use crate::program::{Said, program, run};
+use crate::program::{Said, program, run, signals};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -486,7 +486,7 @@ motion = "away"
 #[cfg(unix)]
 #[test]
 fn signals_end_a_run_in_good_order() {
-    for (signal, name, code) in [("INT", "Ctrl-C", 130), ("TERM", "SIGTERM", 143), ("HUP", "SIGHUP", 129)] {
+    for (signal, name, code) in signals() {
         stopped_by(signal, name, code);
     }
 }

@@ -15,7 +15,9 @@ use std::time::Instant;
 const SHORT: [&str; 5] = ["pendulum", "--set", "duration=0.1 s", "--set", "elements=8"];
 
 fn done(said: Said) -> String {
-    assert_eq!((said.code, said.stderr.as_str()), (Some(0), ""), "{}", said.stdout);
+    // slow machines say how far they are
+    let errors: Vec<&str> = said.stderr.lines().filter(|l| !l.contains(" x real time")).collect();
+    assert_eq!((said.code, errors), (Some(0), vec![]), "{}", said.stdout);
     said.stdout
 }
 
@@ -42,7 +44,8 @@ fn a_run_leaves_a_page_and_a_field_record_that_agree_with_its_tables() {
     assert!(page.len() < 2_000_000, "{}", page.len());
     assert!(page.contains("<title>A hose towed by a ship that starts to turn</title>"));
 
-    let (field, history) = (field(&out), Table::read(&out.join("history.csv")).unwrap());
+    let (mut field, history) = (field(&out), Table::read(&out.join("history.csv")).unwrap());
+    field.read_forces_npy(&out.join("forces.npy")).unwrap();
     assert!((300..=361).contains(&field.times.len()), "{}", field.times.len());
     assert_eq!((field.times[0], *field.times.last().unwrap()), (0.0, 60.0));
     let hose = &field.lines[0];
@@ -73,6 +76,33 @@ fn a_run_leaves_a_page_and_a_field_record_that_agree_with_its_tables() {
     let ahead = [1.0 - 2.0 * z * z, 2.0 * w * z];
     let x = &ship.poses.last().unwrap().position;
     assert!((ahead[0] * x[0] + ahead[1] * (x[1] - 25.0)).abs() < 1e-3 * 25.0, "{ahead:?} {x:?}");
+
+    // the forces are those of the records, and of the scene
+    let force = |name: &str| {
+        let names: Vec<&str> = field.forces.iter().map(|f| f.name.as_str()).collect();
+        field.forces.iter().find(|f| f.name == name).unwrap_or_else(|| panic!("{name} isn't in {names:?}"))
+    };
+    let (reaction, weight) = (force("reaction: ship"), force("weight: hose"));
+    for (k, t) in field.times.iter().enumerate() {
+        for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+            assert_eq!(reaction.forces[k][i], column(&format!("ship.f{axis}"), row(&history, *t)));
+            assert_eq!(reaction.points[k][i], hose.snapshots[k].position[0][i]);
+        }
+        assert!((weight.forces[k][2] + 0.5 * 30.0 * 9.81).abs() < 1e-9 && weight.forces[k][0] == 0.0);
+    }
+    // drag holds back
+    let drag = force("drag: hose").forces.last().unwrap();
+    let middle = hose.snapshots.last().unwrap().velocity[hose.snapshots[0].s.len() / 2];
+    assert!((0..3).map(|i| drag[i] * middle[i]).sum::<f64>() < 0.0);
+
+    // steps and what limited them
+    let steps = fs::read_to_string(out.join("steps.csv")).unwrap();
+    assert!(steps.starts_with("t [s],least [s],greatest [s],limited by\n") && steps.contains(" error\n"));
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let limits = summary["limits"].as_object().unwrap();
+    let all: u64 = limits.values().map(|n| n.as_u64().unwrap()).sum();
+    assert_eq!(Some(all), summary["counts"]["steps"].as_u64(), "{limits:?}");
 
     // the shapes are some of its snapshots
     let shapes = fs::read_to_string(out.join("shapes.csv")).unwrap();
@@ -232,8 +262,11 @@ fn files_for_paraview_hold_what_the_csv_holds() {
         }
         let of = |k: usize| rows.iter().map(|row| row[k]).collect::<Vec<f64>>();
         let places: Vec<f64> = rows.iter().flat_map(|row| row[2..5].to_vec()).collect();
-        assert_eq!(array(&bytes, "Points"), places);
-        let same = |name: &str, k: usize| assert_eq!(array(&bytes, name), of(k), "{name}");
+        // behind the points of the line come those where forces act
+        assert_eq!(array(&bytes, "Points")[..places.len()], places);
+        let acting = array(&bytes, "Points").len() / 3 - rows.len();
+        assert!(array(&bytes, "force [N]").chunks(3).filter(|f| **f != [0.0; 3]).count() == acting);
+        let same = |name: &str, k: usize| assert_eq!(array(&bytes, name)[..rows.len()], of(k), "{name}");
         same("s [m]", 1);
         same("speed [m/s]", 8);
         same("tension [N]", 9);
@@ -318,7 +351,17 @@ fn figures_of_ones_own_are_drawn_from_runs() {
     let told = done(run(folder.path(), &["plot", "out", "cable.end"]));
     assert_eq!(told.trim(), "cable.end.svg");
     run(folder.path(), &["plot", "out", "cable.ende"]).refused(&["no column `cable.ende`", "cable.end.x"]);
-    run(folder.path(), &["plot", "out", "cable.end", "-o", "a.pdf"]).refused(&[".svg", "rsvg-convert"]);
+    run(folder.path(), &["plot", "out", "cable.end", "-o", "a.jpg"]).refused(&[".svg, .png or .pdf"]);
+    if cfg!(feature = "raster") {
+        done(run(folder.path(), &["plot", "out", "cable.end", "-o", "a.png"]));
+        assert!(fs::read(folder.path().join("a.png")).unwrap().starts_with(b"\x89PNG"));
+    } else {
+        run(folder.path(), &["plot", "out", "cable.end", "-o", "a.pdf"]).refused(&[
+            "feature `raster`",
+            "--features raster",
+            "rsvg-convert",
+        ]);
+    }
     run(folder.path(), &["plot", "nowhere", "x"]).refused(&["nowhere", "doesn't exist"]);
     let wrong =
         run(folder.path(), &[&["run"], &SHORT[..], &["--watch", "cable.end.w", "--out", "b"]].concat());

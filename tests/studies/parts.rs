@@ -1,6 +1,6 @@
 //! Sweeps that several processes compute: plans, parts, kills at any moment, and two of everything at once.
 
-use crate::program::{Said, program, run};
+use crate::program::{Said, program, run, signals};
 use crate::sweep::{cells, done, folder, table, text, timeless};
 use std::fs;
 use std::path::Path;
@@ -144,7 +144,7 @@ fn parts_and_the_whole_are_not_at_work_together() {
 fn signals_end_a_part_as_they_end_a_run() {
     let folder = folder();
     let here = folder.path();
-    for (signal, name, code) in [("TERM", "SIGTERM", 143), ("HUP", "SIGHUP", 129), ("INT", "Ctrl-C", 130)] {
+    for (signal, name, code) in signals() {
         let arguments =
             format!("sweep swing.toml --vary duration=0.02,10000 --out {signal} --part 1/1 --jobs 2");
         let child = start(here, &arguments);

@@ -119,8 +119,8 @@ fn a_block_moved_to_and_fro_loses_what_its_bristle_does_not_give_back() {
         scene
             .motion(HarmonicSpec {
                 name: "sway".into(),
-                amplitude: [amplitude, 0.0, 0.0],
-                frequency: 1.0 / period,
+                amplitude: [amplitude, 0.0, 0.0].map(Into::into),
+                frequency: (1.0 / period).into(),
                 phase: 0.0,
                 start: 0.0,
                 ramp: 0.0,

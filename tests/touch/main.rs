@@ -7,3 +7,4 @@ mod contact;
 mod contact_along;
 mod feeding_contact;
 mod friction;
+mod lines;

@@ -311,3 +311,45 @@ fn cylinders_in_axial_flow_lose_stability_where_they_should() {
         assert!(below < 1e-4 && above > 1e-2, "{ends}: {below} below and {above} above {critical}");
     }
 }
+
+/// The far end of a fine mesh begins to move with less than the smallest numbers.
+#[test]
+fn cables_on_fine_meshes_begin_to_move() {
+    for elements in [300, 512, 513] {
+        let h = run(&format!(
+            r#"
+            gravity = [0, -9.81, 0]
+            [run]
+            duration = "3 ms"
+            output = "1 ms"
+            [water]
+            [solver]
+            stepping = {{ fixed = {{ h = "1 ms" }} }}
+            [[elements]]
+            type = "cable"
+            name = "cable"
+            points = [[0, 0, 0], [1, 0, 0]]
+            elements = {elements}
+            section = {{ mass = 0.5, ea = 5000, ei = 0.1, diameter = 0.02 }}
+            [[constraints]]
+            type = "spherical"
+            name = "pin"
+            marker = "cable.start"
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "buoyancy"
+            [[forces]]
+            type = "added_mass"
+            [[records]]
+            type = "position"
+            of = "cable.end"
+            "#
+        ));
+        // the tip falls with the net weight over the mass that moves with it
+        let (mass, water) = (0.5, 1025.0 * std::f64::consts::PI * 0.01 * 0.01);
+        let fallen = 0.5 * 9.81 * (mass - water) / (mass + water) * 9e-6;
+        let found = -last(&h, "cable.end.y");
+        assert!((found / fallen - 1.0).abs() < 1e-3, "{elements}: {found:e} instead of {fallen:e}");
+    }
+}

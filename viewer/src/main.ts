@@ -2,6 +2,7 @@
 
 import { decode } from "./data/decode.ts";
 import type { Run } from "./data/run.ts";
+import { derive } from "./data/derive.ts";
 import { short, timeText } from "./data/text.ts";
 import { $, choices, h } from "./page/dom.ts";
 import { facts } from "./page/facts.ts";
@@ -10,6 +11,8 @@ import { themed } from "./page/theme.ts";
 import { View } from "./page/view.ts";
 import { Envelopes } from "./plots/envelopes.ts";
 import { Histories } from "./plots/histories.ts";
+import { Spectra } from "./plots/spectra.ts";
+import { StepPlot } from "./plots/steps.ts";
 import { TimeWindow } from "./plots/window.ts";
 
 /** How often numbers change while the run plays [s]. */
@@ -19,6 +22,7 @@ const REST = 0.08;
 
 function start(run: Run): void {
   const { field, history } = run;
+  derive(field);
   const ends = [field.times, history[0]?.values ?? new Float64Array()].filter((t) => t.length > 0);
   const first = Math.min(...ends.map((t) => t[0]!));
   const last = Math.max(...ends.map((t) => t.at(-1)!));
@@ -29,6 +33,8 @@ function start(run: Run): void {
   let view: View | null = null;
   let histories: Histories | null = null;
   let envelopes: Envelopes | null = null;
+  let spectra: Spectra | null = null;
+  let steps: StepPlot | null = null;
   let sinceRead = 0;
   let sinceRest = 0;
   const show = (t: number, seconds: number) => {
@@ -42,6 +48,7 @@ function start(run: Run): void {
       player?.paint();
       histories?.to(t, read);
       envelopes?.to(t);
+      steps?.to(t);
     }
     if (seconds === 0) say(t);
   };
@@ -73,20 +80,32 @@ function start(run: Run): void {
   windowInputs(part, span);
   envelopes = chooseEnvelope(run, part, seek);
   $("envelopes").hidden = !envelopes;
+  if (history.length > 1 && run.axis.unit === "s" && history[0]!.values.length > 8) {
+    $("spectra").hidden = false;
+    spectra = new Spectra(run, part);
+  }
+  if (run.steps && run.steps.t.length > 0) {
+    $("solver").hidden = false;
+    steps = new StepPlot(run, run.steps, part, seek);
+  }
 
   themed($("theme"), () => {
     view?.recolour();
     histories?.recolour();
     envelopes?.recolour();
+    spectra?.recolour();
+    steps?.recolour();
     envelopes?.to(player.clock.t);
   });
   new ResizeObserver(() => {
     view?.resize();
     histories?.resize();
     envelopes?.resize();
+    spectra?.resize();
+    steps?.resize();
   }).observe(document.body);
   player.seek(part.first);
-  Object.assign(window, { ropewalk: { run, player, view, histories, envelopes, part } });
+  Object.assign(window, { ropewalk: { run, player, view, histories, envelopes, spectra, steps, part } });
   document.body.dataset.renderer = view?.picture.kind ?? "none";
   document.body.dataset.ready = "yes";
 }

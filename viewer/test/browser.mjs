@@ -173,6 +173,9 @@ async function works(page) {
   await page.waitForTimeout(200);
   await shot(page, "frame-of-first");
   await page.selectOption("#frame", "0");
+  await forces(page);
+  await spectra(page);
+  await steps(page);
   // records
   await page.click("#panels-count");
   const shown = await page.locator("#histories figure").count();
@@ -186,6 +189,60 @@ async function works(page) {
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
   await page.click("#theme");
   if (shots) await page.pdf({ path: `${shots}/print.pdf`, format: "A4" });
+}
+
+/** Arrows are drawn, and as long as is wished; kinds can be left out. */
+async function forces(page) {
+  if (!(await page.locator("#choose-forces").isVisible())) return;
+  await page.click("#choose-forces summary");
+  const boxes = page.locator("#force-kinds input");
+  const all = await boxes.count();
+  for (let k = 0; k < all; k++) await boxes.nth(k).setChecked(false);
+  assert.ok(await page.locator("#forces-legend").isHidden(), "without forces there is no legend");
+  const without = await ink(page);
+  for (let k = 0; k < all; k++) await boxes.nth(k).setChecked(true);
+  await page.waitForTimeout(150);
+  const arrows = await ink(page);
+  assert.ok(arrows !== without, "arrows are drawn");
+  assert.match(await page.textContent("#forces-bar span"), /^[125][\d.]*( \S+)? ?[kM]?N$/);
+  await page.locator("#force-length").fill("1");
+  await page.waitForTimeout(150);
+  assert.equal(await page.textContent("#force-length-value"), "10×");
+  assert.notEqual(await ink(page), arrows, "longer arrows are drawn longer");
+  await page.locator("#force-length").fill("0");
+  await page.click("#choose-forces summary");
+}
+
+/** Each record has a spectrum, whose integral is what the page says of the variance; also of a window, and on even axes. */
+async function spectra(page) {
+  if (!(await page.locator("#spectra").isVisible())) return;
+  await page.locator("#spectra").scrollIntoViewIfNeeded();
+  await page.waitForSelector("#spectrum canvas");
+  const count = await page.locator("#spectrum-of option").count();
+  for (let k = 0; k < count; k++) {
+    await page.selectOption("#spectrum-of", String(k));
+    assert.match(await page.textContent("#spectrum-told"), /standard deviation|Too few/);
+  }
+  await page.selectOption("#spectrum-of", "0");
+  const whole = await page.textContent("#spectrum-told");
+  await page.evaluate(() => window.ropewalk.part.set(window.ropewalk.part.first, 0.5 * (window.ropewalk.part.first + window.ropewalk.part.last)));
+  assert.notEqual(await page.textContent("#spectrum-told"), whole, "the window counts");
+  await page.click("#whole");
+  await page.selectOption("#spectrum-pieces", "0");
+  await page.uncheck("#spectrum-log");
+  await page.waitForSelector("#spectrum canvas");
+  await page.check("#spectrum-log");
+  await page.selectOption("#spectrum-pieces", "2");
+}
+
+/** The steps of the solver share the cursor. */
+async function steps(page) {
+  if (!(await page.locator("#solver").isVisible())) return;
+  const where = () => page.evaluate(() => document.querySelector("#steps .now").style.transform);
+  const before = await where();
+  await page.evaluate(() => window.ropewalk.player.seek(0.3 * window.ropewalk.part.last + 0.7 * window.ropewalk.part.first));
+  assert.notEqual(await where(), before);
+  assert.match(await page.textContent("#steps-keys"), /%/);
 }
 
 async function phone() {

@@ -108,7 +108,7 @@ test("a body turns by the shorter way", () => {
   assert.ok(Math.abs(heading(middle.q) - Math.PI / 4) < 1e-6, "an eighth of a turn, not three eighths");
   const x = turned([half, 0, 0, half], [1, 0, 0]);
   assert.ok(Math.abs(x[1] - 1) < 1e-12 && Math.abs(x[0]) < 1e-12);
-  const [start] = points({ origin: [0, 0, 0], times: new Float64Array(3), lines: [line], bodies: [], shapes: [], water: null, bed: null });
+  const [start] = points({ origin: [0, 0, 0], times: new Float64Array(3), lines: [line], bodies: [], forces: [], shapes: [], water: null, bed: null });
   assert.deepEqual(start!.at({ k: 1, f: 0 }), [0, 2, 0]);
 });
 
@@ -121,6 +121,10 @@ test("the envelope is that of the window, its mean is over time", () => {
   // trapezoids: (0 + 4) / 2 for one second, (4 + 2) / 2 for three
   assert.ok(Math.abs(all.mean[0]! - (2 + 9) / 4) < 1e-12);
   assert.deepEqual(all.highest, { value: 10, s: 1, t: 0 });
+  // half a second of 0, two of 4, one and a half of 2, about 11/4
+  const variance = (0.5 * (0 - 2.75) ** 2 + 2 * (4 - 2.75) ** 2 + 1.5 * (2 - 2.75) ** 2) / 4;
+  assert.ok(Math.abs(all.deviation[0]! - Math.sqrt(variance)) < 1e-12);
+  assert.equal(all.deviation[1], 0);
   assert.deepEqual([...envelope(still, of, [0, 1, 4], 0.5, 4)!.least], [2, 10]);
   assert.equal(envelope(still, of, [0, 1, 4], 5, 6), null);
 });

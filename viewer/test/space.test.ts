@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Field, V3 } from "../src/data/run.ts";
+import { Arrows } from "../src/space/arrows.ts";
 import { viridis } from "../src/space/colour.ts";
 import { edges } from "../src/space/edges.ts";
 import { seen, stand } from "../src/space/frame.ts";
@@ -103,7 +104,7 @@ function field(): Field {
   const x = Float32Array.from({ length: 5 * 6 }, (_, i) => (i % 3 === 0 ? 100 * Math.floor(i / 6) + (i % 6 === 0 ? 0 : 1) : 0));
   const line = { name: "hose", kind: "cable", place: "", diameter: 0.001, counts: Array(5).fill(2), starts: [0, 2, 4, 6, 8], s: Float32Array.of(0, 1), x,
     quantities: [{ name: "tension", unit: "N", values: Float32Array.from({ length: 10 }, (_, i) => i) }] };
-  return { origin: [0, 0, 0], times, lines: [line], bodies: [], shapes: [], water: 0, bed: null };
+  return { origin: [0, 0, 0], times, lines: [line], bodies: [], forces: [], shapes: [], water: 0, bed: null };
 }
 
 test("the stage stays with a line that is small beside its path", () => {
@@ -129,7 +130,7 @@ test("in the frame of its own point a trail stands still", () => {
 });
 
 test("a stage without anything, and one of points that aren't there", () => {
-  const empty = new Stage({ origin: [0, 0, 0], times: new Float64Array(), lines: [], bodies: [], shapes: [], water: null, bed: null });
+  const empty = new Stage({ origin: [0, 0, 0], times: new Float64Array(), lines: [], bodies: [], forces: [], shapes: [], water: null, bed: null });
   empty.to(3);
   empty.fit("all", 1);
   assert.ok(Number.isFinite(empty.orbit.distance));
@@ -139,4 +140,41 @@ test("a stage without anything, and one of points that aren't there", () => {
   stage.to(1);
   stage.fit("now", 1);
   assert.ok(stage.orbit.target.every(Number.isFinite) && Number.isFinite(stage.orbit.distance));
+});
+
+test("arrows are as long as their forces say, and are where they act", () => {
+  const force = (kind: string, size: number) => ({
+    name: kind === "reaction" ? "reaction: pin" : kind, kind, x: Float32Array.of(0, 0, 0, 2, 0, 0, NaN, NaN, NaN), f: Float32Array.of(0, 0, size, 0, 0, 3 * size, 0, 0, size),
+  });
+  const arrows = new Arrows([force("reaction", 100), force("weight", 1e6)], 10);
+  assert.deepEqual(arrows.kinds, [{ name: "reaction: pin", shown: true }, { name: "weight", shown: false }]);
+  arrows.to({ k: 0, f: 0.5 });
+  const [pin, weight] = arrows.actors;
+  assert.deepEqual([pin!.x, pin!.f, pin!.seen, weight!.seen], [[1, 0, 0], [0, 0, 200], true, false]);
+  // what usually is the largest takes a share of the size: at least 95 of a hundred snapshots have no larger one
+  near(100 * arrows.scale, 1.5);
+  arrows.factor = 2;
+  near(100 * arrows.scale, 3);
+  near(arrows.round(3), 100);
+  near(arrows.round(2), 50);
+  // beside a far larger one it is as short as needs be
+  arrows.factor = 1;
+  arrows.kinds[1]!.shown = true;
+  arrows.measure();
+  near(1e6 * arrows.scale, 5);
+  arrows.to({ k: 2, f: 0 });
+  assert.ok(!arrows.actors[0]!.seen, "one that has no place isn't drawn");
+  // what alone is there is shown
+  assert.ok(new Arrows([force("weight", 1)], 1).kinds[0]!.shown);
+  assert.ok(Number.isNaN(new Arrows([], 1).round(1)));
+});
+
+test("a trail begins where its motion does", () => {
+  const stage = new Stage(field(), [0, 3]);
+  stage.to(2.5);
+  assert.deepEqual([stage.since, stage.reached], [0, 3]);
+  stage.to(3);
+  assert.deepEqual([stage.since, stage.reached], [3, 4]);
+  stage.to(4);
+  assert.deepEqual([stage.since, stage.reached], [3, 5]);
 });

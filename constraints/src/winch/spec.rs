@@ -86,8 +86,8 @@ pub struct WinchSpec {
     #[serde(default, deserialize_with = "quantity::setting::damping")]
     pub damping: Setting,
     /// Tension per speed squared, added to `tension` [kg/m]. Measurements at eyelets often follow this law.
-    #[serde(default, deserialize_with = "quantity::mass_per_length")]
-    pub per_speed2: f64,
+    #[serde(default, deserialize_with = "quantity::setting::mass_per_length")]
+    pub per_speed2: Setting,
     /// Name of a motion whose speed along x `per_speed2` refers to. Default: the payout rate here. A tension that
     /// draws the cable and grows with its speed is unstable: then name a motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -168,7 +168,7 @@ impl WinchSpec {
             brake: 0.0.into(),
             slip_speed: slip_speed(),
             damping: 0.0.into(),
-            per_speed2: 0.0,
+            per_speed2: 0.0.into(),
             reference_speed: None,
             inertia: 0.0,
             pile: false,
@@ -262,6 +262,8 @@ impl ConstraintSpec for WinchSpec {
                     &kind::FORCE,
                 )?;
                 finite("tension", &[tension.at(0.0)])?;
+                let per_speed2 = b.signal("per_speed2", &self.per_speed2, &kind::MASS_PER_LENGTH)?;
+                finite("per_speed2", &[per_speed2.at(0.0)])?;
                 let reference_speed = self.reference_speed(b)?;
                 b.term(Box::new(Pull {
                     name: self.name.clone(),
@@ -270,7 +272,7 @@ impl ConstraintSpec for WinchSpec {
                     brake,
                     slip_speed: self.slip_speed,
                     damping,
-                    per_speed2: self.per_speed2,
+                    per_speed2,
                     reference: reference_speed,
                     inertia: self.inertia,
                     pile: self.pile,

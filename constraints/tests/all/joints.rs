@@ -18,10 +18,22 @@ const CABLE: NodeId = NodeId(1);
 const BODY: NodeId = NodeId(2);
 const OTHER: NodeId = NodeId(3);
 const NUMBER: NodeId = NodeId(4);
+/// Cables with torsion.
+const WIRE: NodeId = NodeId(5);
+const ROD: NodeId = NodeId(6);
+const VELOCITIES: usize = 36;
 
 fn nodes() -> Vec<Node> {
     let mut all: Vec<Node> = Vec::new();
-    for kind in [NodeKind::Point, NodeKind::Slope, NodeKind::Frame, NodeKind::Frame, NodeKind::Scalars(1)] {
+    for kind in [
+        NodeKind::Point,
+        NodeKind::Slope,
+        NodeKind::Frame,
+        NodeKind::Frame,
+        NodeKind::Scalars(1),
+        NodeKind::Twist,
+        NodeKind::Twist,
+    ] {
         let (q, v) = all.last().map_or((0, 0), |n| (n.coords().end, n.dofs().end));
         all.push(Node { kind, q, v, shared: false });
     }
@@ -43,10 +55,15 @@ fn numbers(seed: u64) -> Numbers {
             })
             .collect()
     };
-    let mut s = Numbers { q: list(24), v: list(22) };
+    let mut s = Numbers { q: list(44), v: list(VELOCITIES) };
     for body in [12, 19] {
         let norm: f64 = s.q[body..body + 4].iter().map(|x| x * x).sum::<f64>().sqrt();
         s.q[body..body + 4].iter_mut().for_each(|x| *x /= norm);
+    }
+    for cable in [24, 34] {
+        let three = |i: usize| [s.q[cable + i], s.q[cable + i + 1], s.q[cable + i + 2]];
+        let node = ropewalk_core::model::twist::laid(&three(0), &three(3), &three(6), s.q[cable + 9]);
+        s.q[cable..cable + 10].copy_from_slice(&node);
     }
     s
 }
@@ -106,6 +123,10 @@ fn joints() -> Vec<(Joint, bool)> {
         all.push((make("cable on body", &n, [on(BODY), node(CABLE)]), false));
         all.push((make("body on cable", &n, [node(CABLE), on(BODY)]), false));
         all.push((make("cable on ground", &n, [ground(), node(CABLE)]), true));
+        all.push((make("section on body", &n, [on(BODY), on(WIRE)]), false));
+        all.push((make("body on section", &n, [on(WIRE), on(BODY)]), false));
+        all.push((make("section on ground", &n, [ground(), on(WIRE)]), false));
+        all.push((make("two sections", &n, [on(WIRE), on(ROD)]), false));
     }
     let sliding: [Make; 4] = [
         |name, n, m| prismatic(name, n, m),
@@ -117,6 +138,12 @@ fn joints() -> Vec<(Joint, bool)> {
         all.push((make("slider", &n, [on(OTHER), on(BODY)]), false));
         all.push((make("slider on ground", &n, [ground(), on(BODY)]), false));
     }
+    all.push((direction("swivel", &n, WIRE, ground()), true));
+    all.push((direction("swivel", &n, WIRE, on(BODY)), false));
+    all.push((rotation("turn", &n, [ground(), on(WIRE)], heave()), false));
+    all.push((rotation("turn", &n, [on(ROD), on(WIRE)], heave()), false));
+    all.push((distance("lever", &n, [on(ROD), on(WIRE)], 2.0), false));
+    all.push((spherical("pin", &n, [ground(), node(WIRE)]), true));
     all.push((point_on_line("bead", &n, [ground(), node(CABLE)]), true));
     all.into_iter().map(|(joint, linear)| (joint.unwrap(), linear)).collect()
 }
@@ -126,7 +153,7 @@ fn derivatives_are_exact() {
     let mut worst = 0.0_f64;
     for seed in 1..=6 {
         let s = numbers(seed);
-        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], internal: &[], relaxed: None };
+        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; VELOCITIES], internal: &[], relaxed: None };
         for (joint, linear) in joints() {
             assert_eq!(joint.linear(), linear, "{}", joint.name());
             let error = check_constraint(&joint, &nodes(), &at);
@@ -157,22 +184,23 @@ impl Relation for Hinge {
 fn closed_forms_agree_with_forward_differentiation() {
     let n = nodes();
     // the relation orders its nodes by number
-    let markers = [on(BODY), on(OTHER)];
-    let (closed, dual) =
-        (revolute("hinge", &n, markers).unwrap(), Related::new("hinge", Hinge, markers.to_vec()));
-    for seed in 1..=6 {
-        let s = numbers(seed);
-        let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; 22], internal: &[], relaxed: None };
-        let all = |c: &dyn Constraint| {
-            let (mut g, mut jac, mut h) = ([0.0; 5], [0.0; 60], [0.0; 144]);
-            let (mut rate, mut bias) = ([0.0; 5], [0.0; 5]);
-            c.jacobian(&n, &at, &mut g, &mut jac);
-            c.geometric(&n, &at, &[1.0, -2.0, 0.5, 3.0, -1.5], &mut h);
-            c.rates(&n, &at, &mut rate, &mut bias);
-            [&g[..], &jac, &h, &rate, &bias].concat()
-        };
-        for (a, b) in all(&closed).iter().zip(all(&dual)) {
-            assert!((a - b).abs() < 1e-13 * (1.0 + b.abs()), "{a} {b}");
+    for (markers, columns) in [([on(BODY), on(OTHER)], 12), ([on(WIRE), on(ROD)], 14)] {
+        let (closed, dual) =
+            (revolute("hinge", &n, markers).unwrap(), Related::new("hinge", Hinge, markers.to_vec()));
+        for seed in 1..=6 {
+            let s = numbers(seed);
+            let at = At { t: 1.3, q: &s.q, v: &s.v, a: &[0.0; VELOCITIES], internal: &[], relaxed: None };
+            let all = |c: &dyn Constraint| {
+                let (mut jac, mut h) = (vec![0.0; 5 * columns], vec![0.0; columns * columns]);
+                let (mut g, mut rate, mut bias) = ([0.0; 5], [0.0; 5], [0.0; 5]);
+                c.jacobian(&n, &at, &mut g, &mut jac);
+                c.geometric(&n, &at, &[1.0, -2.0, 0.5, 3.0, -1.5], &mut h);
+                c.rates(&n, &at, &mut rate, &mut bias);
+                [&g[..], &jac, &h, &rate, &bias].concat()
+            };
+            for (a, b) in all(&closed).iter().zip(all(&dual)) {
+                assert!((a - b).abs() < 1e-13 * (1.0 + b.abs()), "{a} {b}");
+            }
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::model::node::{NodeKind, retract};
 use crate::model::state::At;
 use crate::model::structure::Structure;
 use crate::model::term::{Assembly, Leap, Weights};
+use crate::model::twist;
 use std::time::{Duration, Instant};
 
 /// Calls and the time that they took.
@@ -68,6 +69,20 @@ impl Model {
     pub fn turn(&self, d: &[f64]) -> f64 {
         let bodies = self.nodes.iter().filter(|n| !self.flat && n.kind == NodeKind::Frame);
         bodies.map(|n| d[n.v + 3..n.v + 6].iter().map(|x| x * x).sum::<f64>()).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Whether these increments turn a section of a cable so far that its director can't follow.
+    pub(crate) fn flips(&self, q: &[f64], d: &[f64]) -> bool {
+        let mut nodes = self.nodes.iter().filter(|n| !self.twisted.is_empty() && n.kind == NodeKind::Twist);
+        nodes.any(|n| twist::flips(&q[n.coords()], &d[n.dofs()]))
+    }
+
+    /// Lays the reference directors of twisted lines anew where neighbours are far apart; the sections stay. To be called
+    /// between steps, with no state from before in use.
+    pub(crate) fn relabel(&self, q: &mut [f64]) {
+        for line in &self.twisted {
+            twist::relabel(q, line);
+        }
     }
 
     /// Evaluates the residual `[r + Gᵀλ; g]` into `sys` and, with weights, the iteration matrix

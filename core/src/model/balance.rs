@@ -1,10 +1,15 @@
 //! What a model balances: forces of single terms and constraints, energy and power.
 
+use crate::algebra::lane::{V3, dot};
 use crate::model::Model;
-use crate::model::constraint::MOST_ROWS;
+use crate::model::constraint::{MOST_ROWS, RowKind};
+use crate::model::marker::frame;
 use crate::model::node::NodeId;
+use crate::model::part::Part;
 use crate::model::state::At;
 use crate::model::term::{Assembly, Energy, Power, Term, Weights};
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 impl Model {
     /// Kinetic and potential energy of all terms.
@@ -44,6 +49,65 @@ impl Model {
             .collect()
     }
 
+    /// Axial forces at the ends of the links of a chain [N], one more than there are links: those that its joints carry
+    /// along the mean of both links, and at either end that of what holds it there. A free end has what the two joints next
+    /// to it continue to: loads are taken to be even there. NaN where nothing is known, and where it isn't `wanted`. None
+    /// for any other part.
+    pub fn axial_forces(
+        &self,
+        part: &dyn Part,
+        at: &At<'_>,
+        lambda: &[f64],
+        wanted: RangeInclusive<usize>,
+    ) -> Vec<f64> {
+        let links = part.links();
+        let Some(last) = links.len().checked_sub(1) else { return Vec::new() };
+        // an end may be told by the two joints next to it
+        let (first, end) = (*wanted.start(), *wanted.end());
+        let asked = |k: usize| {
+            wanted.contains(&k) || (first == 0 && k <= 2) || (end > last && k + 1 >= last && k <= last)
+        };
+        let place: BTreeMap<u32, usize> = links.iter().enumerate().map(|(k, node)| (node.0, k)).collect();
+        let ahead = |k: usize| {
+            let r = frame(&at.q[self.node(links[k]).coords()]);
+            [r[0][0], r[1][0], r[2][0]]
+        };
+        let along = |f: &[f64], d: &V3<f64>| {
+            let size = dot(d, d).sqrt();
+            (0..3).map(|i| f[i] * d[i] / size).sum::<f64>()
+        };
+        let mut forces = vec![f64::NAN; links.len() + 1];
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            if !constraint.rows().contains(&RowKind::Position) || !self.holds(c, at.internal) {
+                continue;
+            }
+            let on = |node: &NodeId| place.get(&node.0).copied();
+            let own: Vec<usize> = constraint.nodes().iter().filter_map(on).collect();
+            let pull = |k: usize, d: &V3<f64>| along(&self.reaction(c, links[k], at, lambda), d);
+            match *own.as_slice() {
+                // the joint pulls the second of them back
+                [a, b] if a.abs_diff(b) == 1 && asked(a.max(b)) => {
+                    let k = a.max(b);
+                    let (d, e) = (ahead(k - 1), ahead(k));
+                    forces[k] = -pull(k, &std::array::from_fn(|i| d[i] + e[i]));
+                }
+                [0] if last > 0 && asked(0) => forces[0] = or_zero(forces[0]) - pull(0, &ahead(0)),
+                [k] if k == last && last > 0 && asked(k + 1) => {
+                    forces[k + 1] = or_zero(forces[k + 1]) + pull(k, &ahead(k))
+                }
+                _ => {}
+            }
+        }
+        if last > 1 {
+            for (end, one, two) in [(0, 1, 2), (last + 1, last, last - 1)] {
+                if forces[end].is_nan() && asked(end) {
+                    forces[end] = 2.0 * forces[one] - forces[two];
+                }
+            }
+        }
+        forces
+    }
+
     /// The residual of one term alone, one entry for each velocity: minus the forces that it exerts. The term is one of
     /// this model, or of the [`Term::effects`] of one.
     pub fn share_of(&self, term: &dyn Term, at: &At<'_>) -> Vec<f64> {
@@ -62,4 +126,9 @@ impl Model {
         term.add(at, &mut out);
         residual
     }
+}
+
+/// The number, or zero where none is known yet.
+fn or_zero(x: f64) -> f64 {
+    if x.is_nan() { 0.0 } else { x }
 }

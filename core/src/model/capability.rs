@@ -1,9 +1,11 @@
-//! What some terms can do besides adding forces. A term that can says so once ([`Term::timed`](crate::Term::timed) and the
+//! What some terms can do besides adding forces. A term that can says so once ([`Term::timed`] and the
 //! like); of all others nothing is asked, and they cost nothing.
 
 use crate::model::column::Column;
 use crate::model::solid::Solid;
 use crate::model::state::At;
+use crate::model::term::Term;
+use std::sync::Arc;
 
 /// Depends on time otherwise than through the state.
 pub trait Timed {
@@ -24,7 +26,7 @@ pub trait Timed {
 pub trait Foresees {
     /// The longest step from here that is sure not to leap over what it has ahead, such as a shape that a point flies
     /// towards [s]. Error control takes no longer one; fixed steps are left alone.
-    fn horizon(&self, at: &At<'_>) -> f64;
+    fn step_limit(&self, at: &At<'_>) -> f64;
     /// What has gone where it can't have gone in a step between two states, such as through a wall; nothing if all is
     /// well. The step is then repeated smaller, and if that doesn't help the run ends with these words.
     fn passes(&self, _before: &At<'_>, _after: &At<'_>) -> Option<String> {
@@ -37,6 +39,14 @@ pub trait Remembers {
     /// Brings what it remembers up to date at a state that was accepted: `memory` is all of the internal variables, as they
     /// were at the start of the step, and `at` has none.
     fn remember(&self, at: &At<'_>, memory: &mut [f64]);
+}
+
+/// Couples unknowns that depend on the state, such as those of lines that come near each other: all that it may couple
+/// around the state that it was made for. [`Foresees`] keeps steps within that.
+pub trait Couples {
+    /// The same term as it couples around this state, where what it couples may soon not cover it; with `anyhow` in any
+    /// case. It has to follow from the state alone, so that a run that is resumed goes on alike.
+    fn renewed(&self, at: &At<'_>, anyhow: bool) -> Option<Arc<dyn Term>>;
 }
 
 /// Shows more of itself than forces and energy.

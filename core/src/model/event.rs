@@ -28,6 +28,11 @@ pub trait Event: Send + Sync {
     fn direction(&self) -> i8 {
         0
     }
+    /// Whether it depends on forces. Inside a step they don't follow from interpolated positions: they are then those of the
+    /// equations of motion there.
+    fn of_forces(&self) -> bool {
+        false
+    }
     /// What happens there.
     fn act(&self, model: &Model, state: &mut State) -> Action;
     /// What is reported once it is located: its name, and what of the state belongs to it.

@@ -16,6 +16,8 @@ pub enum Hold {
     Hold,
     /// It goes to a value in a straight line, and reaches it at the end of the next advance.
     Linear,
+    /// The same without a kink: by a polynomial of fifth degree, with two continuous derivatives.
+    Smooth,
 }
 
 /// A straight piece: value and integral at its start, and its slope up to its end; constant from there on.
@@ -27,10 +29,39 @@ struct Piece {
     value: f64,
     slope: f64,
     integral: f64,
+    /// Of one without kinks: its derivatives at the start over the first three powers of its duration, and where it goes.
+    smooth: Option<[f64; 3]>,
 }
 
 impl Piece {
+    /// A piece without kinks at its place, 0 to 1.
+    fn smoothly(&self, [slope, bend, target]: [f64; 3], t: f64) -> Driven {
+        let span = self.end - self.start;
+        let u = (t - self.start) / span;
+        let (v, d, b, c) = (self.value, slope * span, bend * span * span, target - self.value);
+        // Hermite's polynomial through value, slope and bend at the start, and the target at rest at the end
+        let (c3, c4, c5) =
+            (10.0 * c - 6.0 * d - 1.5 * b, -15.0 * c + 8.0 * d + 1.5 * b, 6.0 * c - 3.0 * d - 0.5 * b);
+        let at = |u: f64| v + u * (d + u * (0.5 * b + u * (c3 + u * (c4 + u * c5))));
+        let sum =
+            |u: f64| u * (v + u * (d / 2.0 + u * (b / 6.0 + u * (c3 / 4.0 + u * (c4 / 5.0 + u * c5 / 6.0)))));
+        if u >= 1.0 {
+            let integral = self.integral + span * sum(1.0) + (t - self.end) * target;
+            return Driven { integral, value: target, rate: 0.0, second: 0.0 };
+        }
+        let u = u.max(0.0);
+        Driven {
+            integral: self.integral + span * sum(u) + (t - self.start).min(0.0) * v,
+            value: at(u),
+            rate: (d + u * (b + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / span,
+            second: (b + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (span * span),
+        }
+    }
+
     fn at(&self, t: f64) -> Driven {
+        if let Some(smooth) = self.smooth {
+            return self.smoothly(smooth, t);
+        }
         let rising = (t.min(self.end) - self.start).max(0.0);
         let level = (t - self.end).max(0.0);
         let before = (t - self.start).min(0.0);
@@ -42,6 +73,7 @@ impl Piece {
                 + before * self.value,
             value,
             rate: if t >= self.start && t < self.end { self.slope } else { 0.0 },
+            second: 0.0,
         }
     }
 }
@@ -55,6 +87,8 @@ pub struct Driven {
     pub value: f64,
     /// Its slope; at a kink the one that follows.
     pub rate: f64,
+    /// The slope of that; 0 unless it is joined smoothly.
+    pub second: f64,
 }
 
 /// What an input is at present and was just before: all of it that changes.
@@ -179,13 +213,19 @@ impl Input {
     /// What it is set to at last: its value now, if it holds.
     pub fn latest(&self) -> f64 {
         let course = self.course.read().unwrap_or_else(PoisonError::into_inner);
-        course.now.value + course.now.slope * (course.now.end - course.now.start)
+        match course.now.smooth {
+            Some([.., target]) => target,
+            None => course.now.value + course.now.slope * (course.now.end - course.now.start),
+        }
     }
 
     /// How much of a step `h` from `t` leads over no kink [s].
     pub fn reach(&self, t: f64, h: f64) -> f64 {
         let course = self.course.read().unwrap_or_else(PoisonError::into_inner);
         let ahead = course.now.end - t;
+        if course.now.smooth.is_some() {
+            return crate::model::reach::rise(course.now.start, course.now.end, t, h);
+        }
         if course.now.slope != 0.0 && ahead > 0.0 { h.min(ahead) } else { h }
     }
 
@@ -216,7 +256,7 @@ impl Input {
     pub(crate) fn set(&self, t: f64, value: f64) -> bool {
         let mut course = self.course.write().unwrap_or_else(PoisonError::into_inner);
         match self.join {
-            Hold::Linear => {
+            Hold::Linear | Hold::Smooth => {
                 course.target = Some(value);
                 false
             }
@@ -225,7 +265,7 @@ impl Input {
                 if here.value == value {
                     return false;
                 }
-                course.turn(Piece { start: t, end: t, value, slope: 0.0, integral: here.integral });
+                course.turn(Piece { start: t, end: t, value, integral: here.integral, ..Piece::default() });
                 true
             }
         }
@@ -239,8 +279,12 @@ impl Input {
         }
         if let Some(target) = course.target.take() {
             let here = course.now.at(t);
-            let slope = (target - here.value) / (end - t);
-            course.turn(Piece { start: t, end, value: here.value, slope, integral: here.integral });
+            let piece =
+                Piece { start: t, end, value: here.value, integral: here.integral, ..Piece::default() };
+            course.turn(match self.join {
+                Hold::Smooth => Piece { smooth: Some([here.rate, here.second, target]), ..piece },
+                _ => Piece { slope: (target - here.value) / (end - t), ..piece },
+            });
         }
     }
 }
@@ -249,7 +293,8 @@ impl Course {
     /// The same with another value from time `t` on, and the integral that it has there.
     pub(crate) fn moved(&self, t: f64, by: f64) -> Self {
         let here = if t < self.now.start { self.before.at(t) } else { self.now.at(t) };
-        let now = Piece { start: t, end: t, value: here.value + by, slope: 0.0, integral: here.integral };
+        let (value, integral) = (here.value + by, here.integral);
+        let now = Piece { start: t, end: t, value, integral, ..Piece::default() };
         Course { before: self.now, now, target: None }
     }
     fn turn(&mut self, next: Piece) {
@@ -277,6 +322,13 @@ impl Signal {
         match self {
             Signal::Constant(x) => *x,
             Signal::Input(input) => input.value(t),
+        }
+    }
+    /// It at a time [s] with its integral since t = 0 and its derivatives.
+    pub fn course(&self, t: f64) -> Driven {
+        match self {
+            Signal::Constant(x) => Driven { integral: x * t, value: *x, ..Driven::default() },
+            Signal::Input(input) => input.at(t),
         }
     }
     /// Whether it is constant.
@@ -331,6 +383,41 @@ mod tests {
         line.set(3.0, 0.0);
         line.depart(3.0, 5.0);
         assert_eq!([2.5, 3.0, 4.0, 5.0, 7.0].map(|t| line.at(t).value), [1.5, 2.0, 1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn smooth_joints_have_two_continuous_derivatives() {
+        let free = [f64::NEG_INFINITY, f64::INFINITY];
+        let input = Input::new("u", "m", 1.0, free, Hold::Smooth).unwrap();
+        input.set(2.0, 3.0);
+        input.depart(2.0, 4.0);
+        assert_eq!([2.0, 3.0, 4.0, 9.0].map(|t| input.at(t).value), [1.0, 2.0, 3.0, 3.0]);
+        assert_eq!([2.0, 4.0, 6.0].map(|t| input.at(t).integral), [2.0, 6.0, 12.0]);
+        assert_eq!(input.latest(), 3.0);
+        assert!(input.reach(2.0, 9.0) == 0.5 && input.reach(5.0, 9.0) == 9.0);
+        // turned round on its way
+        let before = input.at(3.3);
+        input.set(3.3, 0.0);
+        input.depart(3.3, 5.0);
+        let after = input.at(3.3);
+        for (a, b) in [
+            (before.value, after.value),
+            (before.rate, after.rate),
+            (before.second, after.second),
+            (before.integral, after.integral),
+            (0.0, input.at(5.0).value),
+        ] {
+            assert!((a - b).abs() < 1e-12, "{before:?} {after:?}");
+        }
+        let d = 1e-5;
+        for t in [2.5, 3.4, 4.7] {
+            let [a, b] = [t - d, t + d].map(|t| input.at(t));
+            let now = input.at(t);
+            let slope = |a: f64, b: f64| (b - a) / (2.0 * d);
+            assert!((slope(a.integral, b.integral) - now.value).abs() < 1e-8);
+            assert!((slope(a.value, b.value) - now.rate).abs() < 1e-8);
+            assert!((slope(a.rate, b.rate) - now.second).abs() < 1e-7);
+        }
     }
 
     #[test]

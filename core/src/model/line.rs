@@ -2,7 +2,6 @@
 
 use crate::algebra::lane::V3;
 use crate::model::feed::MovingBoundary;
-use crate::model::node::NodeId;
 use crate::model::remesh::{Change, Mesh};
 use crate::model::state::At;
 
@@ -24,6 +23,23 @@ pub enum Quantity {
     Curvature,
     /// Bending moment [N m].
     Moment,
+    /// Curvature about the first director of the section, with its sign [1/m]; of a cable with torsion.
+    CurvatureNormal,
+    /// The same about the second director.
+    CurvatureAcross,
+    /// Bending moment about the first director [N m].
+    MomentNormal,
+    /// The same about the second director.
+    MomentAcross,
+    /// Twist per unstretched length [rad/m].
+    Twist,
+    /// Twisting moment [N m].
+    Torque,
+    /// Angle by which the section is turned about the tangent against that at the start of the cable, whole turns included
+    /// [rad].
+    Angle,
+    /// Angular velocity of the section about the tangent [rad/s].
+    Spin,
 }
 
 impl Quantity {
@@ -32,8 +48,11 @@ impl Quantity {
         match self {
             Quantity::Tension => "N",
             Quantity::Strain => "1",
-            Quantity::Curvature => "1/m",
-            Quantity::Moment => "N m",
+            Quantity::Curvature | Quantity::CurvatureNormal | Quantity::CurvatureAcross => "1/m",
+            Quantity::Moment | Quantity::MomentNormal | Quantity::MomentAcross | Quantity::Torque => "N m",
+            Quantity::Twist => "rad/m",
+            Quantity::Angle => "rad",
+            Quantity::Spin => "rad/s",
         }
     }
 }
@@ -98,12 +117,13 @@ pub trait Line: Send + Sync {
     }
     /// Lays its nodes evenly along the straight line between its ends, as the start of another search for equilibrium.
     fn straighten(&self, _q: &mut [f64]) {}
-    /// The node, three numbers, that tells which way the section at a node looks; `None` where it doesn't know.
-    fn director(&self, _node: NodeId) -> Option<NodeId> {
-        None
+    /// Whether it can be twisted: its nodes are [`NodeKind::Twist`](crate::NodeKind).
+    fn twists(&self) -> bool {
+        false
     }
-    /// Interpolates the numbers of those nodes, or their rates, at a point of the mesh.
-    fn looks(&self, _s: f64, _x: &[f64], _coordinates: bool) -> Option<V3<f64>> {
+    /// The first director of the section at a point of the mesh, and the turns it has been twisted by from the start of the
+    /// line [rad]; `None` where sections don't know which way they look.
+    fn looks(&self, _s: f64, _q: &[f64]) -> Option<(V3<f64>, f64)> {
         None
     }
     /// Interpolates coordinates (or velocities) `x` of its nodes at a point of the mesh: position and slope.

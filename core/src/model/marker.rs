@@ -1,9 +1,10 @@
 //! Markers: named points and axes of bodies, which constraints, point loads and records hold on to.
 
 use crate::algebra::lane::V3;
-use crate::algebra::rotation::{IDENTITY, M3, cross, matrix, transposed_times};
+use crate::algebra::rotation::{IDENTITY, M3, cross, matrix, times, transposed_times};
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::state::At;
+use crate::model::twist;
 use num_dual::DualNum;
 
 /// A number that carries derivatives along: what relations and markers are evaluated with.
@@ -20,8 +21,8 @@ pub enum Marker {
         /// Three unit vectors at right angles, one after the other.
         axes: M3,
     },
-    /// On a node. For a frame, `point` and `axes` are in the body's own axes; else they are unused: a cable has only
-    /// its slope.
+    /// On a node. For a frame, `point` and `axes` are in the body's own axes; for a cable with torsion in those of its
+    /// section, the two directors and the tangent. Else they are unused: another cable has only its slope.
     Node {
         /// The node.
         node: NodeId,
@@ -37,7 +38,8 @@ pub enum Marker {
 pub struct Place<S> {
     /// Position [m].
     pub x: V3<S>,
-    /// Its axes, one after the other. Of a cable the first is the slope `r'`, not normalised, and the others are zero.
+    /// Its axes, one after the other. Of a cable without torsion the first is the slope `r'`, not normalised, and the
+    /// others are zero.
     pub axes: [V3<S>; 3],
 }
 
@@ -66,11 +68,20 @@ impl Marker {
                         let r = frame(&q[n.coords()]);
                         in_space.map(|a| transposed_times(&r, &a))
                     }
+                    NodeKind::Twist => {
+                        let r = twist::section(&q[n.coords()]);
+                        in_space.map(|a| transposed_times(&r, &a))
+                    }
                     _ => in_space,
                 };
                 Marker::Node { node, point, axes }
             }
         }
+    }
+    /// The slope `r'` of its node while the model has the coordinates `q`, if that is on a cable.
+    pub fn slope(&self, nodes: &[Node], q: &[f64]) -> Option<V3<f64>> {
+        let n = &nodes[self.on()?.0 as usize];
+        n.kind.has_slope().then(|| [q[n.q + 3], q[n.q + 4], q[n.q + 5]])
     }
     /// Its node, if it has one.
     pub fn on(&self) -> Option<NodeId> {
@@ -97,6 +108,12 @@ impl Marker {
             NodeKind::Slope => {
                 let nothing = [S::zero(); 3];
                 Place { x, axes: [[moved(3), moved(4), moved(5)], nothing, nothing] }
+            }
+            NodeKind::Twist => {
+                let r = twist::section(q);
+                let turned = |a: V3<f64>| slid([d(3), d(4), d(5)], d(6), &q[3..6], times(&r, &a));
+                let at = turned(point);
+                Place { x: std::array::from_fn(|i| x[i] + at[i]), axes: axes.map(turned) }
             }
             NodeKind::Frame => {
                 let (turn, r) = ([d(3), d(4), d(5)], frame(q));
@@ -146,6 +163,21 @@ fn turned<S: Jet>(theta: V3<S>, u: V3<f64>) -> V3<S> {
     let once = cross(&theta, &u);
     let twice = cross(&theta, &once);
     std::array::from_fn(|i| u[i] + once[i] + twice[i] * 0.5)
+}
+
+/// A vector of a cable's section after the slope `p` has moved by `h` and the section has spun by `sigma`: the smallest
+/// rotation of the tangent and that about it, one after the other, to second order.
+fn slid<S: Jet>(h: V3<S>, sigma: S, p: &[f64], a: V3<f64>) -> V3<S> {
+    let inverse = 1.0 / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt();
+    let t = [p[0] * inverse, p[1] * inverse, p[2] * inverse];
+    let along = (h[0] * t[0] + h[1] * t[1] + h[2] * t[2]) * inverse;
+    let side = cross(&t.map(S::from), &h);
+    let omega: V3<S> = std::array::from_fn(|i| side[i] * inverse - side[i] * along * inverse);
+    let spin = t.map(|t| sigma * t);
+    let a = a.map(S::from);
+    let (once, spun) = (cross(&omega, &a), cross(&spin, &a));
+    let (twice, both, again) = (cross(&omega, &once), cross(&omega, &spun), cross(&spin, &spun));
+    std::array::from_fn(|i| a[i] + once[i] + spun[i] + both[i] + (twice[i] + again[i]) * 0.5)
 }
 
 /// The rotation matrix of a frame with coordinates `q`.

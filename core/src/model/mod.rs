@@ -2,6 +2,7 @@
 
 pub mod assembly;
 mod balance;
+pub mod broken;
 pub mod capability;
 mod carry;
 pub mod column;
@@ -13,6 +14,7 @@ pub mod feed;
 pub mod held;
 pub mod input;
 pub mod joint;
+pub mod limit;
 pub mod line;
 pub mod marker;
 pub mod motion;
@@ -25,12 +27,14 @@ pub mod reach;
 pub mod redundancy;
 pub mod relation;
 pub mod remesh;
+mod renewal;
 pub mod solid;
 pub mod span;
 pub mod state;
 pub mod station;
 pub mod structure;
 pub mod term;
+pub mod twist;
 
 use crate::algebra::lane::Width;
 use crate::error::BuildError;
@@ -50,13 +54,13 @@ use crate::model::structure::Structure;
 use crate::model::term::Term;
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Nodes, terms and constraints, shared by reference. Remeshing makes a new one.
 pub struct Model {
     pub(crate) nodes: Vec<Node>,
-    pub(crate) terms: Vec<Box<dyn Term>>,
-    pub(crate) constraints: Vec<Box<dyn Constraint>>,
+    pub(crate) terms: Vec<Arc<dyn Term>>,
+    pub(crate) constraints: Vec<Arc<dyn Constraint>>,
     pub(crate) parts: Vec<Arc<dyn Part>>,
     pub(crate) start: Start,
     /// What can happen during a run, and which constraints end by it.
@@ -86,6 +90,8 @@ pub struct Model {
     width: Width,
     /// Whether no node has an orientation, so that `q ⊕ d` is `q + d`.
     flat: bool,
+    /// First coordinate of each node of each line that can be twisted, in their order along it.
+    twisted: Vec<Vec<usize>>,
     /// Most elements along one part.
     finest: usize,
     /// The terms that see something ahead.
@@ -100,6 +106,9 @@ pub struct Model {
     kinked: bool,
     /// Terms that remember something.
     remembering: Vec<usize>,
+    /// Terms that couple what comes near, and what the model became in a search for equilibria by that.
+    coupling: Vec<usize>,
+    next: OnceLock<Box<Model>>,
 }
 
 /// Builds a model of the same scene on other meshes.
@@ -166,7 +175,9 @@ impl Model {
             !c.linear() && c.nodes().iter().any(|k| nodes[k.0 as usize].kind == NodeKind::Frame)
         };
         let symmetric = terms.iter().all(|t| t.symmetric()) && !constraints.iter().any(|c| turns(c.as_ref()));
-        let flat = nodes.iter().all(|n| n.kind != NodeKind::Frame);
+        let flat = nodes.iter().all(|n| !n.kind.turns());
+        let lines = parts.iter().filter(|p| p.line().is_some_and(|line| line.twists()));
+        let twisted = lines.map(|p| p.seats().iter().map(|seat| seat.0).collect()).collect();
         let positions = nodes.iter().filter(|n| n.kind.has_position()).flat_map(|n| &start.q[n.q..n.q + 3]);
         let farthest = positions.fold(length, |m, x| m.max(x.abs()));
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);
@@ -174,6 +185,7 @@ impl Model {
         let timed = (0..terms.len()).filter(|&k| terms[k].timed().is_some()).collect();
         let moving = (0..constraints.len()).filter(|&c| constraints[c].moves()).collect();
         let remembering = (0..terms.len()).filter(|&k| terms[k].remembers().is_some()).collect();
+        let coupling = (0..terms.len()).filter(|&k| terms[k].couples().is_some()).collect();
         let kinked = terms.iter().any(|t| t.kinked());
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
         let driven = constraints.iter().enumerate();
@@ -181,8 +193,8 @@ impl Model {
         let mechanism = constraints.iter().any(|c| !c.linear());
         Model {
             nodes,
-            terms,
-            constraints,
+            terms: terms.into_iter().map(Arc::from).collect(),
+            constraints: constraints.into_iter().map(Arc::from).collect(),
             parts,
             start,
             switches: Switches::default(),
@@ -202,6 +214,7 @@ impl Model {
             rounding: 0.5 * f64::EPSILON * farthest,
             width: Width::best(),
             flat,
+            twisted,
             finest,
             watchful,
             timed,
@@ -209,6 +222,8 @@ impl Model {
             driven,
             kinked,
             remembering,
+            coupling,
+            next: OnceLock::new(),
         }
     }
 
@@ -330,11 +345,11 @@ impl Model {
         &self.nodes[id.0 as usize]
     }
     /// Its terms.
-    pub fn terms(&self) -> &[Box<dyn Term>] {
+    pub fn terms(&self) -> &[Arc<dyn Term>] {
         &self.terms
     }
     /// Its constraints.
-    pub fn constraints(&self) -> &[Box<dyn Constraint>] {
+    pub fn constraints(&self) -> &[Arc<dyn Constraint>] {
         &self.constraints
     }
     /// Its named parts.
@@ -411,6 +426,7 @@ impl Model {
         let what = match component {
             0..=2 => format!("position {}", ["x", "y", "z"][component]),
             3..=5 => format!("slope or rotation {}", ["x", "y", "z"][component - 3]),
+            6 if self.nodes[k].kind == NodeKind::Twist => "twist".to_string(),
             n => format!("coordinate {n}"),
         };
         let id = NodeId(k as u32);
@@ -443,8 +459,8 @@ impl Model {
     }
 
     /// The longest step from here that leaps over nothing that a term has ahead [s].
-    pub fn horizon(&self, at: &At<'_>) -> f64 {
-        self.watchful().map(|term| term.horizon(at)).fold(f64::INFINITY, f64::min)
+    pub fn step_limit(&self, at: &At<'_>) -> f64 {
+        self.watchful().map(|term| term.step_limit(at)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether something changes with time of its own accord.

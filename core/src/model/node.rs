@@ -5,6 +5,7 @@
 
 use crate::algebra::lane::V3;
 use crate::algebra::rotation::{cross, exp, log, then};
+use crate::model::twist;
 
 /// What a node carries.
 ///
@@ -20,6 +21,10 @@ pub enum NodeKind {
     Point,
     /// A position and a slope, `r` and `r' = dr/dx` (6 coordinates): the node of an ANCF cable.
     Slope,
+    /// The same with a reference director `u`, a unit vector normal to the slope, and an angle `θ` (10 coordinates), and
+    /// the velocity `(ṙ, ṙ', w)` with the spin `w` of the section about its tangent (7 velocities): the node of a cable
+    /// that can be twisted. See [`twist`].
+    Twist,
     /// A position and a unit quaternion `(w, x, y, z)` (7 coordinates), with the velocity `(ṙ, ω)`: `ω` in the
     /// body's own axes (6 velocities). The node of a rigid body.
     Frame,
@@ -33,6 +38,7 @@ impl NodeKind {
         match self {
             NodeKind::Point => 3,
             NodeKind::Slope => 6,
+            NodeKind::Twist => twist::COORDINATES,
             NodeKind::Frame => 7,
             NodeKind::Scalars(n) => n,
         }
@@ -47,8 +53,19 @@ impl NodeKind {
     pub fn velocities(self) -> usize {
         match self {
             NodeKind::Frame => 6,
+            NodeKind::Twist => twist::VELOCITIES,
             other => other.coordinates(),
         }
+    }
+
+    /// Whether it has a slope, behind its position: the node of a cable.
+    pub fn has_slope(self) -> bool {
+        matches!(self, NodeKind::Slope | NodeKind::Twist)
+    }
+
+    /// Whether it has an orientation, so that `q ⊕ d` isn't `q + d`.
+    pub fn turns(self) -> bool {
+        matches!(self, NodeKind::Frame | NodeKind::Twist)
     }
 
     /// `out = q ⊕ d`: moves along the increment `d`. For a frame the last three entries of `d` are a rotation
@@ -63,6 +80,8 @@ impl NodeKind {
             for i in 0..4 {
                 out[3 + i] = p[i] / norm;
             }
+        } else if self == NodeKind::Twist {
+            twist::retract(q, d, out);
         } else {
             for i in 0..q.len() {
                 out[i] = q[i] + d[i];
@@ -70,10 +89,13 @@ impl NodeKind {
         }
     }
 
-    /// The velocity of the motion `q ⊕ d(t)`, whose increment changes at `rate`. For a frame the angular velocity is
+    /// The velocity of the motion `q ⊕ d(t)` from `q`, whose increment changes at `rate`. For a frame the angular velocity is
     /// `θ̇ - (1-cos φ)/φ² θ×θ̇ + (φ-sin φ)/φ³ θ×(θ×θ̇)` (Iserles, Munthe-Kaas, Nørsett & Zanna 2000, "dexp").
-    pub fn velocity(self, d: &[f64], rate: &[f64], v: &mut [f64]) {
+    pub fn velocity(self, q: &[f64], d: &[f64], rate: &[f64], v: &mut [f64]) {
         v.copy_from_slice(rate);
+        if self == NodeKind::Twist {
+            twist::velocity(q, d, v);
+        }
         if self == NodeKind::Frame {
             let theta = [d[3], d[4], d[5]];
             let once = cross(&theta, &[rate[3], rate[4], rate[5]]);
@@ -96,9 +118,12 @@ impl NodeKind {
 
     /// First and second time derivatives of the increment in a motion `q ⊕ d(t)` with these velocities and accelerations:
     /// undoes [`NodeKind::velocity`] and its derivative. For rotations by less than a whole turn.
-    pub fn rates(self, d: &[f64], v: &[f64], a: &[f64], first: &mut [f64], second: &mut [f64]) {
+    pub fn rates(self, q: &[f64], d: &[f64], v: &[f64], a: &[f64], first: &mut [f64], second: &mut [f64]) {
         first.copy_from_slice(v);
         second.copy_from_slice(a);
+        if self == NodeKind::Twist {
+            twist::rates(q, d, first, second);
+        }
         if self == NodeKind::Frame {
             let [d, v, a] = [d, v, a].map(|x| [x[3], x[4], x[5]]);
             let square = d.iter().map(|x| x * x).sum::<f64>();
@@ -137,6 +162,9 @@ impl NodeKind {
 
     /// The increment `d` that leads from `from` to `to`: `to = from ⊕ d`.
     pub fn difference(self, from: &[f64], to: &[f64], d: &mut [f64]) {
+        if self == NodeKind::Twist {
+            return twist::difference(from, to, d);
+        }
         let plain = if self == NodeKind::Frame { 3 } else { from.len() };
         for i in 0..plain {
             d[i] = to[i] - from[i];
@@ -194,10 +222,10 @@ pub fn retract(nodes: &[Node], q: &[f64], d: &[f64], out: &mut [f64]) {
     }
 }
 
-/// The velocities of every node in the motion `q ⊕ d(t)`, whose increments change at `rate`.
-pub fn velocity(nodes: &[Node], d: &[f64], rate: &[f64], v: &mut [f64]) {
+/// The velocities of every node in the motion `q ⊕ d(t)` from `q`, whose increments change at `rate`.
+pub fn velocity(nodes: &[Node], q: &[f64], d: &[f64], rate: &[f64], v: &mut [f64]) {
     for n in nodes {
-        n.kind.velocity(&d[n.dofs()], &rate[n.dofs()], &mut v[n.dofs()]);
+        n.kind.velocity(&q[n.coords()], &d[n.dofs()], &rate[n.dofs()], &mut v[n.dofs()]);
     }
 }
 
@@ -254,7 +282,7 @@ mod tests {
                 to
             };
             let mut exact = [0.0; 6];
-            NodeKind::Frame.velocity(&d, &rate, &mut exact);
+            NodeKind::Frame.velocity(&q, &d, &rate, &mut exact);
             let now = place(0.0);
             let v = crate::testing::difference(|t| {
                 let mut v = vec![0.0; 6];
@@ -275,6 +303,7 @@ mod tests {
                 let d: [f64; 6] = std::array::from_fn(|i| size * d[i] + t * rate[i] + 0.5 * t * t * bend[i]);
                 let mut v = vec![0.0; 6];
                 NodeKind::Frame.velocity(
+                    &[],
                     &d,
                     &std::array::from_fn::<_, 6, _>(|i| rate[i] + t * bend[i]),
                     &mut v,
@@ -283,7 +312,7 @@ mod tests {
             };
             let (v, a) = (velocity(0.0), crate::testing::difference(velocity));
             let (mut first, mut second) = ([0.0; 6], [0.0; 6]);
-            NodeKind::Frame.rates(&d.map(|x| size * x), &v, &a, &mut first, &mut second);
+            NodeKind::Frame.rates(&[], &d.map(|x| size * x), &v, &a, &mut first, &mut second);
             for i in 0..6 {
                 approx::assert_abs_diff_eq!(first[i], rate[i], epsilon = 1e-12);
                 approx::assert_abs_diff_eq!(second[i], bend[i], epsilon = 1e-9);

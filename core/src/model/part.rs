@@ -95,6 +95,10 @@ pub trait Part: Send + Sync {
     fn line(&self) -> Option<&dyn Line> {
         None
     }
+    /// The links of a chain, in order; each reaches from its start to its end along the x axis of its frame.
+    fn links(&self) -> &[NodeId] {
+        &[]
+    }
     /// Points of its centre line.
     fn centre_line(&self, _at: &At<'_>) -> Vec<V3<f64>> {
         Vec::new()

@@ -9,7 +9,7 @@
 /// pattern.clique([3, 4, 5, 9]);
 /// assert_eq!((pattern.len(), pattern.get(1)), (2, &[3, 4, 5, 9][..]));
 /// ```
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pattern {
     /// Unknowns of all cliques, one after the other.
     dofs: Vec<u32>,

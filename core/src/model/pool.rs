@@ -1,10 +1,12 @@
 //! All elements of one type, evaluated over lanes: gather, compute, scatter.
 
 use crate::algebra::lane::{LaneTask, Real, Width, run};
-use crate::model::node::{Node, NodeId};
+use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::pattern::Pattern;
 use crate::model::state::{At, Relaxation, Relaxed};
 use crate::model::term::{Assembly, Energy, Power, Term, Weights};
+use crate::model::twist::PREFIX;
+use std::ops::Range;
 
 /// What an element sees of the state: its own coordinates, velocities and accelerations.
 #[derive(Clone, Copy, Debug)]
@@ -146,6 +148,9 @@ pub(crate) struct Seat<const Q: usize, const N: usize> {
 pub(crate) enum Places<const M: usize> {
     /// One after the other, as those of two neighbours along a cable.
     From(u32),
+    /// Half of them from the first place on, the others from the second: those of two neighbours along a cable whose nodes
+    /// have others besides.
+    Two(u32, u32),
     /// Anywhere.
     List(Box<[u32; M]>),
 }
@@ -155,15 +160,29 @@ impl<const M: usize> Places<M> {
         let list: Vec<u32> = places.map(|i| i as u32).collect();
         let list: Box<[u32; M]> = list.try_into().ok()?;
         let first = list.first().copied().unwrap_or(0);
-        let run = list.iter().zip(first..).all(|(&i, k)| i == k);
-        Some(if run { Places::From(first) } else { Places::List(list) })
+        let run = |list: &[u32]| list.iter().zip(list[0]..).all(|(&i, k)| i == k);
+        let (one, two) = list.split_at(M / 2);
+        Some(if M == 0 || run(&list[..]) {
+            Places::From(first)
+        } else if M.is_multiple_of(2) && run(one) && run(two) {
+            Places::Two(one[0], two[0])
+        } else {
+            Places::List(list)
+        })
+    }
+    /// The place of number `i`.
+    #[inline(always)]
+    fn at(&self, i: usize) -> usize {
+        match self {
+            Places::From(first) => *first as usize + i,
+            Places::Two(one, _) if i < M / 2 => *one as usize + i,
+            Places::Two(_, two) => *two as usize + i - M / 2,
+            Places::List(list) => list[i] as usize,
+        }
     }
     /// Each of them.
     pub fn iter(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..M).map(move |i| match self {
-            Places::From(first) => *first as usize + i,
-            Places::List(list) => list[i] as usize,
-        })
+        (0..M).map(move |i| self.at(i))
     }
     /// The numbers at the places of each lane, side by side.
     #[inline(always)]
@@ -177,7 +196,7 @@ impl<const M: usize> Places<M> {
                     Some(row) => rows[l] = row,
                     None => neighbours = false,
                 },
-                Places::List(_) => neighbours = false,
+                Places::Two(..) | Places::List(_) => neighbours = false,
             }
         }
         if neighbours {
@@ -191,10 +210,7 @@ impl<const M: usize> Places<M> {
             }
         } else {
             for (i, out) in out.iter_mut().enumerate() {
-                *out = R::each(|l| match of(l) {
-                    Places::From(first) => x[*first as usize + i],
-                    Places::List(list) => x[list[i] as usize],
-                });
+                *out = R::each(|l| x[of(l).at(i)]);
             }
         }
         out
@@ -234,12 +250,27 @@ fn unpack<R: Real, const N: usize>(values: &[R; N], mut put: impl FnMut(usize, u
 }
 
 impl<const Q: usize, const N: usize> Seat<Q, N> {
-    /// The seat of an element on these nodes, or `None` if their kinds don't add up to `Q` and `N`.
+    /// The seat of an element on these nodes, or `None` if their kinds don't add up to `Q` and `N`. What knows no twist
+    /// sits on position and slope of a node that does.
     pub fn new(nodes: &[Node], on: &[NodeId]) -> Option<Self> {
-        Some(Seat {
-            q: Places::new(on.iter().flat_map(|k| nodes[k.0 as usize].coords()))?,
-            v: Places::new(on.iter().flat_map(|k| nodes[k.0 as usize].dofs()))?,
-        })
+        let nodes = || on.iter().map(|k| &nodes[k.0 as usize]);
+        let whole = || {
+            Some(Seat {
+                q: Places::new(nodes().flat_map(Node::coords))?,
+                v: Places::new(nodes().flat_map(Node::dofs))?,
+            })
+        };
+        let front = |n: &Node, first: usize, all: Range<usize>| match n.kind {
+            NodeKind::Twist => first..first + PREFIX,
+            _ => all,
+        };
+        let prefix = || {
+            Some(Seat {
+                q: Places::new(nodes().flat_map(|n| front(n, n.q, n.coords())))?,
+                v: Places::new(nodes().flat_map(|n| front(n, n.v, n.dofs())))?,
+            })
+        };
+        whole().or_else(prefix)
     }
     /// Gathers the local state of a batch.
     #[inline(always)]
@@ -270,6 +301,10 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
         for (row, seat) in rows.iter().zip(seats) {
             match &seat.v {
                 Places::From(first) => out.add_run(*first as usize, row),
+                Places::Two(one, two) => {
+                    out.add_slice(*one as usize, &row[..N / 2]);
+                    out.add_slice(*two as usize, &row[N / 2..]);
+                }
                 Places::List(list) => {
                     for i in 0..N {
                         out.add(list[i] as usize, row[i]);

@@ -152,7 +152,7 @@ impl<R: Relation> Constraint for Related<R> {
     fn geometric(&self, nodes: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
         let n = self.local_size(nodes);
         let mut out = [HyperDual64::from(0.0); MOST_ROWS];
-        let mut slope = [0.0; MOST_MARKERS * 6];
+        let mut slope = [0.0; MOST_MARKERS * 7];
         for j in 0..n {
             for k in 0..=j {
                 let one = |on: bool| if on { 1.0 } else { 0.0 };

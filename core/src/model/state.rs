@@ -1,5 +1,7 @@
 //! Everything that changes during a run, as plain data.
 
+use crate::model::limit::Limit;
+
 /// Time, configuration, velocities, multipliers and the memory of the integrator: what a checkpoint holds.
 ///
 /// A `State` belongs to the [`Model`](crate::Model) that made it with [`Model::state`](crate::Model::state).
@@ -37,6 +39,9 @@ pub struct Control {
     pub h_start: f64,
     /// Size proposed for the next step [s]; 0 if none.
     pub h_next: f64,
+    /// What keeps that from being longer.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub limit: Limit,
     /// No larger step until it has grown back after a failure of Newton's method [s]; 0 if free.
     pub h_cap: f64,
     /// What Newton's method expects its remaining error to be, in parts of its last correction.
@@ -88,6 +93,7 @@ clone_in_place!(Control {
     h_last,
     h_start,
     h_next,
+    limit,
     h_cap,
     eta,
     theta,

@@ -1,7 +1,7 @@
 //! A term is one share of the equations of motion; a model is a flat list of them.
 
 use crate::algebra::lane::{Real, Width};
-use crate::model::capability::{Foresees, Remembers, Shows, Timed};
+use crate::model::capability::{Couples, Foresees, Remembers, Shows, Timed};
 use crate::model::pattern::Pattern;
 use crate::model::state::At;
 use crate::model::structure::Structure;
@@ -105,6 +105,11 @@ pub trait Term: Send + Sync {
     fn is_load(&self) -> bool {
         false
     }
+    /// What it is called where its forces are drawn as arrows, if it acts on parts from outside or between them: in a word,
+    /// such as `contact`. Forces within a part, and its inertia, aren't drawn.
+    fn acts(&self) -> Option<&'static str> {
+        self.is_load().then_some("load")
+    }
     /// Adds its share of the residual and, if wanted, of the tangent.
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>);
     /// Its kinetic and potential energy.
@@ -130,6 +135,10 @@ pub trait Term: Send + Sync {
     }
     /// What it remembers, if it does.
     fn remembers(&self) -> Option<&dyn Remembers> {
+        None
+    }
+    /// How what it couples changes with the state, if it does.
+    fn couples(&self) -> Option<&dyn Couples> {
         None
     }
     /// What it shows of itself, if it does.
@@ -201,6 +210,13 @@ impl Assembly<'_> {
         self.residual[dof] += r;
     }
     /// Adds to equations of the residual that follow each other.
+    #[inline(always)]
+    pub(crate) fn add_slice(&mut self, first: usize, r: &[f64]) {
+        for (sum, r) in self.residual[first..first + r.len()].iter_mut().zip(r) {
+            *sum += r;
+        }
+    }
+    /// The same of a number of them that is known while compiling.
     #[inline(always)]
     pub(crate) fn add_run<const N: usize>(&mut self, first: usize, r: &[f64; N]) {
         for (sum, r) in self.residual[first..first + N].iter_mut().zip(r) {

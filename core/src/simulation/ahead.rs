@@ -1,12 +1,14 @@
 //! What steps must not leap over: what terms see ahead in the state, and what changes with time of its own accord.
 
 use super::Simulation;
+use super::checkpoint::no_memory;
 use crate::model::Model;
 use crate::model::constraint::Constraint;
 use crate::model::reach::{SAME, shown};
 use crate::model::state::At;
 use crate::model::term::Term;
-use crate::solve::integrator::{StepError, restart};
+use crate::solve::integrator::{Limit, StepError, restart};
+use std::sync::Arc;
 
 /// What would be left of the way to a kink after a whole step, in parts of the step, that is shared out between the two.
 const SLIVER: f64 = 0.2;
@@ -17,7 +19,7 @@ impl Simulation {
     /// The longest step from here that leaps over nothing, where `left` are left.
     pub(super) fn limit(&self, left: f64) -> f64 {
         let (model, at) = (&self.model, self.state.at());
-        let left = left.min(model.horizon(&at));
+        let left = left.min(model.step_limit(&at));
         if !model.is_timed() {
             return left;
         }
@@ -34,6 +36,18 @@ impl Simulation {
         if rest < SLIVER * wish && wish + rest < left { 0.5 * (wish + rest) } else { left }
     }
 
+    /// Couples what is near here, where what is coupled may soon not be all; `anyhow` without asking. The integrator goes on
+    /// as if nothing had happened.
+    pub(super) fn recouple(&mut self, anyhow: bool) -> Result<(), StepError> {
+        let Some(renewed) = self.model.renewed(&self.state.at(), anyhow) else { return Ok(()) };
+        if !self.model.couples_as(&renewed) {
+            self.work.renew(&renewed).map_err(|e| no_memory(self.state.t, e))?;
+            self.aside = None;
+        }
+        self.model = Arc::new(renewed);
+        Ok(())
+    }
+
     /// Starts anew where a force jumps, if it does so here.
     pub(super) fn leap(&mut self) -> Result<(), StepError> {
         if !self.model.is_timed() {
@@ -44,7 +58,7 @@ impl Simulation {
             let h = self.state.control.h_last;
             self.state.t = jump;
             restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
-            self.state.control.h_next = 0.1 * h;
+            (self.state.control.h_next, self.state.control.limit) = (0.1 * h, Limit::Ahead);
             self.power = self.model.power(&self.state.at(), &self.state.lambda);
         }
         Ok(())

@@ -72,7 +72,7 @@ fn traits(model: &Model) -> Vec<(String, usize)> {
     all
 }
 
-fn no_memory(t: f64, source: SolveError) -> StepError {
+pub(super) fn no_memory(t: f64, source: SolveError) -> StepError {
     StepError::Linear { t, source, unknown: "the structure of the equations".into() }
 }
 
@@ -83,6 +83,7 @@ impl Simulation {
     /// # Errors
     /// Not enough memory for new scratch.
     pub fn checkpoint(&mut self) -> Result<Checkpoint, StepError> {
+        self.recouple(true)?;
         self.work.renew(&self.model).map_err(|e| no_memory(self.state.t, e))?;
         Ok(Checkpoint {
             state: self.state.clone(),
@@ -130,6 +131,7 @@ impl Simulation {
         }
         let mut integrator = options.integrator(&model, duration)?;
         integrator.set_horizon(c.memory.horizon());
+        let model = model.renewed(&c.state.at(), true).unwrap_or(model);
         let mut work = Workspace::new(&model).map_err(|e| no_memory(c.state.t, e))?;
         if c.softened && work.softening.is_none() {
             work.soften(&model);

@@ -31,7 +31,7 @@ impl<'a> Dense<'a> {
         for n in model.nodes() {
             let k = n.dofs();
             let (first, second) = (&mut v[k.clone()], &mut a[k.clone()]);
-            n.kind.rates(&d[k.clone()], &to.v[k.clone()], &to.a[k], first, second);
+            n.kind.rates(&from.q[n.coords()], &d[k.clone()], &to.v[k.clone()], &to.a[k], first, second);
         }
         // only Radau IIA leaves stages
         let derived = !to.control.stages[0].is_empty();
@@ -68,7 +68,7 @@ impl<'a> Dense<'a> {
         }
         if self.derived {
             out.v.copy_from_slice(&rate);
-            velocity(self.model.nodes(), &d, &rate, &mut out.v);
+            velocity(self.model.nodes(), &a.q, &d, &rate, &mut out.v);
         } else {
             // the angular velocity of a body is a vector in its own axes, as good as any other
             let (y, y2) = (1.0 - x, (1.0 - x) * (1.0 - x));

@@ -5,7 +5,7 @@ use crate::error::BuildError;
 use crate::model::input::{Input, InputError};
 use crate::model::term::Energy;
 use crate::simulation::record::Sample;
-use crate::solve::integrator::{StepError, restart};
+use crate::solve::integrator::{Limit, StepError, restart};
 use std::sync::Arc;
 
 /// What a controller remembers.
@@ -114,7 +114,7 @@ impl Simulation {
         let internal = self.state.internal.clone();
         restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
         self.state.internal = internal;
-        self.state.control.h_next = 0.1 * h;
+        (self.state.control.h_next, self.state.control.limit) = (0.1 * h, Limit::Event);
         self.resume(usize::MAX, false);
         Ok(())
     }

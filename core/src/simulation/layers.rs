@@ -6,7 +6,6 @@
 
 use crate::model::Model;
 use crate::model::line::Quantity;
-use crate::model::node::NodeKind;
 use crate::model::part::Part;
 use crate::model::state::At;
 
@@ -63,7 +62,7 @@ impl Layers {
         let bends = |p: &dyn Part| p.slender().is_some_and(|s| s.ei > 0.0);
         for (constraint, c) in model.constraints().iter().enumerate() {
             let nodes = c.nodes();
-            if nodes.iter().all(|&n| model.node(n).kind != NodeKind::Slope) {
+            if nodes.iter().all(|&n| !model.node(n).kind.has_slope()) {
                 continue;
             }
             let (rows, columns) =
@@ -76,7 +75,7 @@ impl Layers {
                 let slope = first + 3..first + 6;
                 first += node.kind.velocities();
                 let turns = |row: usize| slope.clone().any(|i| jacobian[row * columns + i] != 0.0);
-                if node.kind != NodeKind::Slope || !(0..rows).any(turns) {
+                if !node.kind.has_slope() || !(0..rows).any(turns) {
                     continue;
                 }
                 for (part, p) in model.parts().iter().enumerate().filter(|(_, p)| bends(p.as_ref())) {

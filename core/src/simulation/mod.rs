@@ -16,6 +16,7 @@ pub use checkpoint::{Checkpoint, Unfit};
 
 use crate::error::BuildError;
 use crate::model::Model;
+use crate::model::broken;
 use crate::model::event::{Action, Event};
 use crate::model::line::Quantity;
 use crate::model::remesh::Remeshed;
@@ -25,7 +26,7 @@ use crate::simulation::audit::Audit;
 use crate::simulation::dense::Dense;
 use crate::simulation::record::Sample;
 use crate::solve::integrator::{
-    Correction, Integrator, Options, StepError, StepReport, Stepping, Workspace, prepare, restart,
+    Correction, Integrator, Limit, Options, StepError, StepReport, Stepping, Workspace, prepare, restart,
 };
 use crate::solve::times::Phase;
 use inputs::Controlling;
@@ -43,6 +44,10 @@ pub trait Observer {
     /// Whether samples need consistent accelerations and multipliers, at the price of a factorisation each.
     fn needs_forces(&self) -> bool {
         false
+    }
+    /// Whether it wants samples at all.
+    fn wants_samples(&self) -> bool {
+        true
     }
     /// A sample at an instant of the output interval.
     fn sample(&mut self, _sample: &Sample<'_>) -> ControlFlow<()> {
@@ -90,6 +95,12 @@ struct Fired {
     after: State,
     /// Whether it changed an internal variable.
     changed: bool,
+}
+
+/// A result, or the function of the scene that failed meanwhile: then that is why.
+fn told<T>(result: Result<T, StepError>) -> Result<T, StepError> {
+    let broken = if result.is_ok() { broken::take_failed() } else { broken::take() };
+    broken.map_or(result, |broken| Err(StepError::Function(broken)))
 }
 
 /// The value of an event at the start. What has come to pass already happens at once.
@@ -160,12 +171,15 @@ impl Simulation {
         model.check(&state).map_err(StepError::Foreign)?;
         inputs::check(&model)?;
         let integrator = options.integrator(&model, duration)?;
+        let model = model.renewed(&state.at(), true).unwrap_or(model);
         let mut work = Workspace::new(&model).map_err(|source| StepError::Linear {
             t: state.t,
             source,
             unknown: "the structure of the equations".into(),
         })?;
-        let correction = prepare(&model, &mut state, &mut work, integrator.as_ref())?;
+        let _ = broken::take();
+        let prepared = prepare(&model, &mut state, &mut work, integrator.as_ref());
+        let correction = told(prepared)?;
         let audit = Audit::start(model.energy(&state.at()));
         let power = model.power(&state.at(), &state.lambda);
         let (previous, scratch) = (state.clone(), state.clone());
@@ -220,8 +234,9 @@ impl Simulation {
         observer: &mut dyn Observer,
     ) -> Result<End, StepError> {
         self.check_state()?;
+        let _ = broken::take();
         self.sampled = (self.state.t, 0);
-        if self.sample(observer, None)?.is_break() {
+        if told(self.sample(observer, None))?.is_break() {
             return Ok(End::Stopped { by: "observer".into() });
         }
         self.sampled.1 = 1;
@@ -234,6 +249,10 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn go_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
+        told(self.move_on(end, interval, observer))
+    }
+
+    fn move_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
         self.check_state()?;
         let (start, mut next) = self.sampled;
         let samples = (end - start) / interval;
@@ -262,17 +281,20 @@ impl Simulation {
         };
         let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * short + 4.0 * f64::EPSILON * b.abs();
         while self.state.t < end && !same(self.state.t, end) {
+            self.recouple(false)?;
             self.control(same)?;
             self.take_jumps()?;
             let target = end.min(self.next_control());
-            let mut left = target - self.state.t;
+            let whole = target - self.state.t;
+            let mut left = whole;
             if let Stepping::Controlled { .. } = self.integrator.options().stepping {
                 self.leap()?;
-                left = self.limit(target - self.state.t);
+                left = self.limit(whole);
             }
+            self.model.relabel(&mut self.state.q);
             self.previous.clone_from(&self.state);
             let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left);
-            let report = report.map_err(|e| self.suspect(e))?;
+            let mut report = report.map_err(|e| self.suspect(e))?;
             self.check_constraints()?;
             if let Some(why) = self.model.passes(&self.previous.at(), &self.state.at()) {
                 self.turn_back(report.h, why)?;
@@ -283,7 +305,14 @@ impl Simulation {
                 self.state.t = target;
             }
             let fired = self.locate(observer);
+            report.limit = match report.limit {
+                _ if fired.is_some() => Limit::Event,
+                Limit::Ahead if left >= whole => Limit::Instant,
+                other => other,
+            };
+            self.work.counts.limits[report.limit as usize] += 1;
             self.account();
+            broken::take_failed().map_or(Ok(()), |b| Err(StepError::Function(b)))?;
             let energy = self.watch_energy(end, observer);
             self.watch_steps(end, observer);
             self.measure_ringing();
@@ -356,6 +385,9 @@ impl Simulation {
 
     /// Samples at time `t` inside the last step, or at the present state.
     fn sample(&mut self, observer: &mut dyn Observer, t: Option<f64>) -> Result<ControlFlow<()>, StepError> {
+        if !observer.wants_samples() {
+            return Ok(ControlFlow::Continue(()));
+        }
         match t {
             Some(t) if t < self.state.t => {
                 Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
@@ -385,8 +417,9 @@ impl Simulation {
     /// The first event inside the last step after a time, and when it comes.
     fn next_event(&mut self, from: f64) -> Option<(usize, f64)> {
         let mut first: Option<(usize, f64)> = None;
-        for (k, (event, before)) in self.events.iter().enumerate() {
-            let (before, after) = (*before, event.value(&self.model, &self.state));
+        for k in 0..self.events.len() {
+            let (event, before) = (self.events[k].0.clone(), self.events[k].1);
+            let after = event.value(&self.model, &self.state);
             let crossed = match event.direction() {
                 1 => before < 0.0 && after >= 0.0,
                 -1 => before > 0.0 && after <= 0.0,
@@ -395,23 +428,55 @@ impl Simulation {
             if !crossed {
                 continue;
             }
-            let dense = Dense::new(&self.model, &self.previous, &self.state);
-            let (mut low, mut high) = (from, self.state.t);
-            let tolerance = 4.0 * f64::EPSILON * high.abs() + 1e-12 * (high - low);
-            while high - low > tolerance {
-                let mid = 0.5 * (low + high);
-                if mid <= low || mid >= high {
-                    break;
-                }
-                dense.at(mid, &mut self.scratch);
-                let value = event.value(&self.model, &self.scratch);
-                if (value > 0.0) == (before > 0.0) && value != 0.0 { low = mid } else { high = mid }
-            }
-            if first.is_none_or(|(_, t)| high < t) {
-                first = Some((k, high));
+            let t = self.crossing(event.as_ref(), [from, self.state.t], [before, after]);
+            if first.is_none_or(|(_, first)| t < first) {
+                first = Some((k, t));
             }
         }
         first
+    }
+
+    /// When an event's function changes its sign between two times with these values: by halves, or, where every look costs
+    /// a search for forces, by false position with the Illinois rule.
+    fn crossing(
+        &mut self,
+        event: &dyn Event,
+        [mut low, mut high]: [f64; 2],
+        [before, after]: [f64; 2],
+    ) -> f64 {
+        let forces = event.of_forces();
+        let fine = if forces { 1e-9 } else { 1e-12 };
+        let tolerance = 4.0 * f64::EPSILON * high.abs() + fine * (high - low);
+        let (mut below, mut above, mut last) = (before, after, None);
+        while high - low > tolerance {
+            let share = if forces { (below / (below - above)).clamp(1e-3, 0.999) } else { 0.5 };
+            let mid = low + share * (high - low);
+            if mid <= low || mid >= high {
+                break;
+            }
+            self.look_inside(mid, forces);
+            let value = event.value(&self.model, &self.scratch);
+            let early = (value > 0.0) == (before > 0.0) && value != 0.0;
+            if early {
+                (low, below) = (mid, value);
+            } else {
+                (high, above) = (mid, value);
+            }
+            if last == Some(early) {
+                *(if early { &mut above } else { &mut below }) *= 0.5;
+            }
+            last = Some(early);
+        }
+        high
+    }
+
+    /// Sets the scratch state to a time inside the last step, with the forces of the motion there if they are needed.
+    fn look_inside(&mut self, t: f64, forces: bool) {
+        Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+        // where none are found, the interpolated ones have to do
+        if forces && self.find_forces().is_err() {
+            Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+        }
     }
 
     /// Lets the events inside the last step act, one after the other, up to the first that changes something: the state
@@ -419,7 +484,7 @@ impl Simulation {
     fn locate(&mut self, observer: &mut dyn Observer) -> Option<Fired> {
         let mut from = self.previous.t;
         while let Some((event, t)) = self.next_event(from) {
-            Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+            self.look_inside(t, self.events[event].0.of_forces());
             self.scratch.control.clone_from(&self.state.control);
             self.model.remember(&mut self.scratch);
             for (k, (other, value)) in self.events.iter_mut().enumerate() {
@@ -497,7 +562,7 @@ impl Simulation {
         let now = self.state.internal.clone();
         restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
         self.state.internal = now;
-        self.state.control.h_next = 0.1 * h;
+        (self.state.control.h_next, self.state.control.limit) = (0.1 * h, Limit::Event);
         self.resume(k, changed);
         Ok(None)
     }

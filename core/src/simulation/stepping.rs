@@ -10,6 +10,9 @@ use std::ops::ControlFlow;
 struct Once;
 
 impl Observer for Once {
+    fn wants_samples(&self) -> bool {
+        false
+    }
     fn step(&mut self, _: &Model, _: &State, _: &StepReport) -> ControlFlow<()> {
         ControlFlow::Break(())
     }
@@ -40,6 +43,7 @@ impl Simulation {
     pub fn set_state(&mut self, state: State) -> Result<Correction, StepError> {
         fits(&self.model, &state)?;
         self.state = state;
+        self.recouple(true)?;
         let internal = self.state.internal.clone();
         let correction = restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
         self.state.internal = internal;

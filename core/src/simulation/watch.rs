@@ -2,7 +2,7 @@
 
 use super::{Observer, Simulation};
 use crate::simulation::audit::Created;
-use crate::solve::integrator::{StepError, Stepping};
+use crate::solve::integrator::{Limit, StepError, Stepping};
 
 /// What may be left of constraints after a step, in parts of the model's length: ten times what Newton's method leaves.
 const LEFT: f64 = 1e-9;
@@ -60,6 +60,7 @@ impl Simulation {
         let control = &mut self.state.control;
         control.h_cap = half;
         control.h_next = if next > 0.0 { half.min(next) } else { 0.0 };
+        control.limit = Limit::Ahead;
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! The equations of motion linearised about a state, with what inputs do to them and what records see of it: for control,
 //! frequency responses and other programs.
 
+use crate::algebra::rotation::cross;
 use crate::model::Model;
 use crate::model::assembly::System;
 use crate::model::column::Column;
@@ -128,6 +129,8 @@ pub fn linearise(
 ) -> Result<Linearised, LineariseError> {
     model.check(state).map_err(LineariseError::Foreign)?;
     let mut state = state.clone();
+    let renewed = model.renewed(&state.at(), true);
+    let model = renewed.as_ref().unwrap_or(model);
     let stored = stored(model, &mut state, frame)?;
     let nv = model.velocities();
     let holding: Vec<usize> = (0..model.constraints().len())
@@ -223,8 +226,17 @@ fn stored(
 /// What turning bodies make of increments along their own axes: `δθ̇ = δω - ω × δθ`.
 fn kinematic(model: &Model, state: &State) -> Result<Sparse, SolveError> {
     let mut n = Entries::new(model.velocities(), model.velocities());
-    for node in model.nodes().iter().filter(|n| n.kind == NodeKind::Frame) {
+    for node in model.nodes().iter().filter(|n| n.kind.turns()) {
         let k = node.v + 3;
+        if node.kind == NodeKind::Twist {
+            // of a section about its tangent: δθ̇ = δw - t·(ṫ × δt)
+            let p = &state.q[node.q + 3..node.q + 6];
+            let p = [p[0], p[1], p[2]];
+            let by = cross(&p, &[state.v[k], state.v[k + 1], state.v[k + 2]]);
+            let size = p.iter().map(|x| x * x).sum::<f64>().powf(1.5);
+            (0..3).for_each(|i| n.add(k + 3, k + i, -by[i] / size));
+            continue;
+        }
         let w = [state.v[k], state.v[k + 1], state.v[k + 2]];
         for (i, j, x) in
             [(0, 1, w[2]), (0, 2, -w[1]), (1, 0, -w[2]), (1, 2, w[0]), (2, 0, w[1]), (2, 1, -w[0])]
@@ -381,7 +393,8 @@ impl Linearised {
     }
 
     /// Mass, damping, stiffness and forces of the inputs in the coordinates `w` of `δq = Z w`, with `Z` from
-    /// [`Linearised::null_space`]: dense equations without constraints. Inputs that prescribe speeds have no part in them.
+    /// [`Linearised::null_space`]: dense equations without constraints. What inputs that prescribe speeds do to them tells
+    /// [`Linearised::carried`].
     pub fn reduced(&self) -> [Mat<f64>; 5] {
         let z = self.null_space();
         let project = |a: &Sparse| z.transpose() * (a * &z);
@@ -392,5 +405,31 @@ impl Linearised {
             z.transpose() * self.forces.to_dense(),
             z,
         ]
+    }
+
+    /// What inputs that prescribe speeds carry along: `δv = Z ẇ + V u`, where `V` is the smallest motion with `G V = D`. Since
+    /// then `δq = Z w + V ∫u`, the equations of [`Linearised::reduced`] become
+    ///
+    /// `M_w ẅ + C_w ẇ + K_w w = B_w u + P_0 ∫u + P_1 u + P_2 u̇`.
+    ///
+    /// Returns `[P_0, P_1, P_2, V]`, dense; without such inputs all are zero.
+    ///
+    /// # Errors
+    /// A matrix with entries that are no numbers.
+    pub fn carried(&self) -> Result<[Mat<f64>; 4], LineariseError> {
+        let (z, n) = (self.null_space(), self.unknowns.len());
+        let mut v = Mat::zeros(n, self.inputs.len());
+        if !self.constraints.is_empty() {
+            let g = self.jacobian.to_dense();
+            let svd = g.thin_svd().map_err(|_| SolveError::NotFinite)?;
+            let (sizes, along) = (svd.S(), svd.U().transpose() * self.drives.to_dense());
+            let largest = (0..sizes.dim()).fold(0.0_f64, |m, k| m.max(sizes[k]));
+            let scaled = Mat::from_fn(along.nrows(), along.ncols(), |k, j| {
+                if sizes[k] > RANK * largest { along[(k, j)] / sizes[k] } else { 0.0 }
+            });
+            v = svd.V() * scaled;
+        }
+        let part = |a: &Sparse| -(z.transpose() * (a * &v));
+        Ok([part(&self.stiffness), part(&self.damping), part(&self.mass), v])
     }
 }

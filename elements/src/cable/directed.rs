@@ -1,45 +1,49 @@
-//! Cables that are bent when free of stress, with sections that know which way: directors, and twist between them.
+//! Bending with a direction: sections that resist it otherwise about one axis than about the other, and material that is
+//! bent when free of stress.
 //!
-//! A curvature has a direction, and material keeps it: bent out of the plane of its natural arc, a cable is held by
-//! its bending stiffness only as far as its sections can't turn about its axis instead. No function of the centre line
-//! of an element alone tells how they have turned (with nothing that holds the twist the best is `|κ| - κ₀`, and that
-//! has no stiffness out of the plane), so each node gets a director `D`, a vector of which the part normal to the
-//! tangent counts. With the directions `d`, `e = t × d` of a section, carried from both nodes of an element to its points
-//! by the smallest rotation of the tangent and blended, the energy is
+//! With the directors `d` and `e = t × d` of the section at a point the curvature `k = r' × r''/|r'|²` has the components
+//! `K_d = k·d` and `K_e = k·e`, about either, and the energy per length is `½ EI_d (K_d - K_d0)² + ½ EI_e (K_e - K_e0)²`.
+//! The section is that of the first node, carried along by the smallest rotation of the tangent and turned by
 //!
-//! `½ EI ∫ |K - K₀|² dx + ½ GJ (Φ - Φ₀)²/L`, `K = (k·d, k·e)`, `k = r' × r''/|r'|²`.
+//! `φ = θ₁ + ψ ξ + A (ξ - ξ³) + 4 ξ (1 - ξ) β`, `ψ = Φ - A`,
 //!
-//! `Φ` is the twist of the element: the angle between its directors, and the solid angle that the tangent sweeps between
-//! the chord and both ends. Both are functions of directions alone: a rigid rotation changes neither, and the shape as
-//! laid is free of energy and force. `GJ` is the torsional stiffness; as it goes to zero only `|κ| - κ₀` is left. What `D`
-//! has along the tangent, and its length, are held by springs that are free of force in equilibrium. Sections turn with
-//! the inertia `ρJ |Ḋ|²/2`.
+//! with the twist `Φ` of the element and its area `A` ([`Twisting`](super::twisting)). The bubble `β`, an angle of the
+//! element's own, lets the twist vary along it: without, an element is of second order where it does, with it of fourth. It
+//! costs `8/3 GJ/L β²`.
+//!
+//! A small motion of the centre line and the angles changes `K_d` by `d·δk + K_e δσ` and `K_e` by `e·δk - K_d δσ`, where
+//! `δσ` is the spin of the section about its own tangent: that is all that derivatives are made of.
 
 use super::quadrature::{MOST, Point, Points, Quadrature};
-use super::shape::{Natural, combine, second};
+use super::reduced::M3;
+use super::twisting::{
+    Blocks, Holonomy, SECOND, Twisting, add_outer, add_skew, add_unit, nought, plus, three, times,
+};
 use ropewalk_core::rotation::cross;
-use ropewalk_core::{Batch, Dual, Element, Energy, Local, Real, Share, V3, Weights, dot};
+use ropewalk_core::{Batch, Element, Energy, Local, Power, Real, Share, V3, Weights, dot};
 
-/// Chord, slopes and directors of an element: what its energy depends on.
-type Variables<R> = [R; VARIABLES];
-const VARIABLES: usize = 15;
-/// Twelve dofs of the cable and both directors.
-const DOFS: usize = 18;
+/// Two nodes with torsion and the bubble.
+const COORDINATES: usize = 21;
+const VELOCITIES: usize = 15;
+/// What the energy depends on: both slopes with `Δ` between them, both angles, the bubble.
+const VARIABLES: usize = 12;
+const ANGLES: usize = 9;
+const BUBBLE: usize = 11;
+/// Energy of the bubble over `GJ/L β²`.
+const BUBBLE_ENERGY: f64 = 8.0 / 3.0;
+/// Inertia of the bubble, and of it and a node together, over `ρJ L`.
+const BUBBLE_MASS: [f64; 2] = [8.0 / 15.0, 1.0 / 3.0];
 
-/// The stress-free curvature of a cable element whose sections know which way they look, and its torsion.
-///
-/// Its unknowns are the twelve dofs of the element and then the directors of both nodes. It adds to the energy of the
-/// elastic element, which bends with T3, what makes that of a straight one into the one above.
+/// What makes the bending of a cable element, which resists it by `EI_e` in every direction, one with a direction: with the
+/// elastic element and its torsion the energy is the one above.
 #[derive(Clone, Copy, Debug)]
 pub struct Directed {
     /// What it is made of.
     pub params: DirectedParams,
     /// Stress-free curvature about both directors at the quadrature points [1/m].
-    kappa0: [[f64; 2]; MOST],
-    /// Stress-free twist [rad].
-    twist0: f64,
+    pub kappa0: [[f64; 2]; MOST],
     /// Where the curvature is taken.
-    rule: Points,
+    pub rule: Points,
 }
 
 /// What a directed element is made of; over lanes with `R` other than `f64`.
@@ -47,10 +51,14 @@ pub struct Directed {
 pub struct DirectedParams<R = f64> {
     /// Unstretched length [m].
     pub l: R,
-    /// Bending stiffness [N m²].
-    pub ei: R,
+    /// Bending stiffness about the first director [N m²].
+    pub ei_d: R,
+    /// Bending stiffness about the second, which the elastic element has [N m²].
+    pub ei_e: R,
     /// Torsional stiffness [N m²].
     pub gj: R,
+    /// Its damping of twist, `η GJ` [N m² s].
+    pub eta_gj: R,
     /// Polar moment of inertia per length [kg m].
     pub rho_j: R,
 }
@@ -60,216 +68,262 @@ pub struct DirectedParams<R = f64> {
 pub struct DirectedLanes<R> {
     params: DirectedParams<R>,
     kappa0: [[R; 2]; MOST],
-    twist0: R,
     rule: Points,
 }
 
-impl<R: Real> DirectedLanes<R> {
-    fn lift(&self) -> DirectedLanes<Dual<R>> {
-        let c = Dual::constant;
-        let DirectedParams { l, ei, gj, rho_j } = self.params;
-        DirectedLanes {
-            params: DirectedParams { l: c(l), ei: c(ei), gj: c(gj), rho_j: c(rho_j) },
-            kappa0: self.kappa0.map(|k| k.map(c)),
-            twist0: c(self.twist0),
-            rule: self.rule,
+/// The curve and its section at a point.
+struct Section<R> {
+    /// Shares of the slopes and of `Δ` in `r'`, and in `L r''`.
+    first: [R; 3],
+    second: [R; 3],
+    /// `r'` and `r''`
+    p: V3<R>,
+    q: V3<R>,
+    /// Both directors.
+    d: V3<R>,
+    e: V3<R>,
+    /// Curvature about both.
+    k: [R; 2],
+    /// From the tangent of the first node to this one.
+    holonomy: Holonomy<R>,
+    /// Shares of `m`, `A` and the bubble in the angle.
+    angle: [R; 3],
+    xi: R,
+    inverse: R,
+}
+
+impl<R: Real> Section<R> {
+    #[inline(always)]
+    fn new(x: &[R; COORDINATES], twisting: &Twisting<R>, at: &Point, il: R) -> Self {
+        let [f0, f1, f2] = at.phi;
+        let [s1, s2] = at.psi;
+        let first = [R::of(f1), R::of(f0 - f1 - f2), R::of(f2)];
+        let second = [R::of(s1), R::of(-s1 - s2), R::of(s2)];
+        let delta = [il * (x[10] - x[0]), il * (x[11] - x[1]), il * (x[12] - x[2])];
+        let nodes = [three(x, 3), delta, three(x, 13)];
+        let (mut p, mut q) = ([R::zero(); 3], [R::zero(); 3]);
+        for i in 0..3 {
+            p = plus(&p, first[i], &nodes[i]);
+            q = plus(&q, il * second[i], &nodes[i]);
+        }
+        let a = dot(&p, &p);
+        let inverse = R::of(1.0) / a.sqrt();
+        let (t, t1, u) = (times(inverse, &p), twisting.e[0], three(x, 6));
+        let xi = at.xi;
+        let angle = [R::of(xi), R::of(xi - xi * xi * xi), R::of(4.0 * xi * (1.0 - xi))];
+        let turn = angle[0]
+            .fma(twisting.twist - twisting.area, angle[1].fma(twisting.area, angle[2].fma(x[20], x[9])));
+        let (sin, cos) = (turn.map(f64::sin), turn.map(f64::cos));
+        let w = cross(&t1, &u);
+        let own = plus(&times(cos, &u), sin, &w);
+        let holonomy = Holonomy::new([t1, t], [twisting.inverse[0], inverse]);
+        let along = dot(&own, &t) / (R::of(1.0) + dot(&t1, &t));
+        let d = plus(&own, -along, &plus(&t1, R::of(1.0), &t));
+        let e = cross(&t, &d);
+        let curvature = times(inverse * inverse, &cross(&p, &q));
+        let k = [dot(&curvature, &d), dot(&curvature, &e)];
+        Section { first, second, p, q, d, e, k, holonomy, angle, xi: R::of(xi), inverse }
+    }
+
+    /// How the spin of the section changes.
+    #[inline(always)]
+    fn spin(&self, twisting: &Twisting<R>) -> [R; VARIABLES] {
+        let mut out = [R::zero(); VARIABLES];
+        let own = twisting.gradient(self.angle[0], self.angle[1]);
+        let [one, here] = self.holonomy.gradient();
+        for c in 0..3 {
+            for i in 0..3 {
+                out[3 * i + c] = own[i][c] - self.first[i] * here[c];
+            }
+            out[c] -= one[c];
+        }
+        out[ANGLES] = R::of(1.0) - self.xi;
+        out[ANGLES + 1] = self.xi;
+        out[BUBBLE] = self.angle[2];
+        out
+    }
+
+    /// How `m·k` changes with the centre line while the vector `m`, normal to the tangent, stays: by `r'` and by `r''`.
+    #[inline(always)]
+    fn bends(&self, m: &V3<R>, mk: R) -> [V3<R>; 2] {
+        let ia = self.inverse * self.inverse;
+        let by_p = plus(&times(ia, &cross(&self.q, m)), R::of(-2.0) * mk * ia, &self.p);
+        [by_p, times(ia, &cross(m, &self.p))]
+    }
+
+    /// The same by the variables.
+    #[inline(always)]
+    fn lift(&self, [by_p, by_q]: &[V3<R>; 2], il: R) -> [R; VARIABLES] {
+        let mut out = [R::zero(); VARIABLES];
+        for i in 0..3 {
+            for c in 0..3 {
+                out[3 * i + c] = self.first[i].fma(by_p[c], il * self.second[i] * by_q[c]);
+            }
+        }
+        out
+    }
+
+    /// Adds `s` times a force, with the moments `m` about both directors, to `f`; and `s` times its derivative to `h`,
+    /// moments that stay and those of the stiffness `stiff` about the first director.
+    #[inline(always)]
+    fn add<const TANGENT: bool>(
+        &self,
+        twisting: &Twisting<R>,
+        s: R,
+        m: [R; 2],
+        stiff: R,
+        il: R,
+        f: &mut [R; VARIABLES],
+        h: &mut [[R; VARIABLES]; VARIABLES],
+    ) {
+        let [kd, ke] = self.k;
+        let moment = plus(&times(m[0], &self.d), m[1], &self.e);
+        let mk = m[0].fma(kd, m[1] * ke);
+        // the moment that turns the section about its own tangent
+        let torque = m[0].fma(ke, -(m[1] * kd));
+        let spin = self.spin(twisting);
+        let bends = self.bends(&moment, mk);
+        let by = self.lift(&bends, il);
+        for i in 0..VARIABLES {
+            f[i] = s.fma(by[i] + torque * spin[i], f[i]);
+        }
+        if !TANGENT {
+            return;
+        }
+        let beside = plus(&times(m[0], &self.e), -m[1], &self.d);
+        let beside = self.lift(&self.bends(&beside, m[0] * ke - m[1] * kd), il);
+        let bent = self.lift(&self.bends(&self.d, kd), il);
+        let mut own = [R::zero(); VARIABLES];
+        for i in 0..VARIABLES {
+            own[i] = ke.fma(spin[i], bent[i]);
+        }
+        for i in 0..VARIABLES {
+            let (x, y, z) = (s * spin[i], s * (beside[i] - mk * spin[i]), s * stiff * own[i]);
+            for j in 0..VARIABLES {
+                h[i][j] += x.fma(beside[j], y.fma(spin[j], z * own[j]));
+            }
+        }
+        self.add_curve(s, &moment, mk, torque, il, h);
+        let mut blocks: Blocks<R> = [[nought(); 3]; 3];
+        let st = s * torque;
+        twisting.add_hessian(st * self.angle[0], st * self.angle[1], &mut blocks);
+        for i in 0..3 {
+            for j in i..3 {
+                add_block(h, i, j, R::of(1.0), &blocks[i][j]);
+            }
+        }
+    }
+
+    /// Adds what the second derivatives of the curvature and of the way to the section make.
+    #[inline(always)]
+    fn add_curve(&self, s: R, m: &V3<R>, mk: R, torque: R, il: R, h: &mut [[R; VARIABLES]; VARIABLES]) {
+        let ia = self.inverse * self.inverse;
+        let (half, two) = (R::of(0.5) * ia, R::of(-2.0) * ia * ia);
+        let k = plus(&times(self.k[0], &self.d), self.k[1], &self.e);
+        let (qm, mp) = (cross(&self.q, m), cross(m, &self.p));
+        let (mut pp, mut pq, mut first, mut mixed) = (nought(), nought(), nought(), nought());
+        add_outer(&mut pp, half, &k, m);
+        add_outer(&mut pp, half, m, &k);
+        add_outer(&mut pp, two, &self.p, &qm);
+        add_outer(&mut pp, two, &qm, &self.p);
+        add_outer(&mut pp, R::of(8.0) * mk * ia * ia, &self.p, &self.p);
+        add_unit(&mut pp, R::of(-2.0) * mk * ia);
+        add_skew(&mut pq, -ia, m);
+        add_outer(&mut pq, two, &self.p, &mp);
+        self.holonomy.add_hessian(-torque, [&mut first, &mut pp], &mut mixed);
+        for i in 0..3 {
+            for j in i..3 {
+                let (ci, cj) = (self.first[i], self.first[j]);
+                let (di, dj) = (il * self.second[i], il * self.second[j]);
+                let mut block = nought();
+                for r in 0..3 {
+                    for c in 0..3 {
+                        let mut x = ci * cj * pp[r][c] + ci * dj * pq[r][c] + di * cj * pq[c][r];
+                        if i == 0 {
+                            x += cj * mixed[r][c];
+                        }
+                        if j == 0 {
+                            x += ci * mixed[c][r] + first[r][c];
+                        }
+                        block[r][c] = x;
+                    }
+                }
+                add_block(h, i, j, s, &block);
+            }
         }
     }
 }
 
-fn three<R: Real>(x: &Variables<R>, block: usize) -> V3<R> {
-    [x[3 * block], x[3 * block + 1], x[3 * block + 2]]
-}
-
-fn scaled<R: Real>(s: R, x: &V3<R>) -> V3<R> {
-    x.map(|x| s * x)
-}
-
-fn plus<R: Real>(a: &V3<R>, b: &V3<R>) -> V3<R> {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-fn unit<R: Real>(x: &V3<R>) -> V3<R> {
-    scaled(R::of(1.0) / dot(x, x).sqrt(), x)
-}
-
-/// A vector normal to the unit vector `from`, turned with it by the smallest rotation that takes it to `to`.
-pub(crate) fn carry<R: Real>(v: &V3<R>, from: &V3<R>, to: &V3<R>) -> V3<R> {
-    let s = dot(v, to) / (R::of(1.0) + dot(from, to));
-    let both = plus(from, to);
-    [v[0] - s * both[0], v[1] - s * both[1], v[2] - s * both[2]]
-}
-
-/// What of a vector is normal to a unit vector, at unit size.
-pub(crate) fn normal<R: Real>(v: &V3<R>, t: &V3<R>) -> V3<R> {
-    let s = dot(v, t);
-    unit(&[v[0] - s * t[0], v[1] - s * t[1], v[2] - s * t[2]])
-}
-
-/// Tangents and directions at both nodes, and the chord.
-struct Frames<R> {
-    t: [V3<R>; 2],
-    d: [V3<R>; 2],
-    chord: V3<R>,
-}
-
-impl<R: Real> Frames<R> {
-    fn new(x: &Variables<R>) -> Self {
-        let t = [unit(&three(x, 1)), unit(&three(x, 2))];
-        let d = [normal(&three(x, 3), &t[0]), normal(&three(x, 4), &t[1])];
-        Frames { t, d, chord: unit(&three(x, 0)) }
-    }
-
-    /// The twist: `2 tan` of half the angle between the directors, which for small angles is that angle, and twice the
-    /// area of the triangle of both tangents and the chord on the unit sphere.
-    fn twist(&self) -> R {
-        let ([t1, t2], [d1, d2]) = (&self.t, &self.d);
-        let (e1, e2) = (cross(t1, d1), cross(t2, d2));
-        let (one, c) = (R::of(1.0), dot(t1, t2));
-        let angle = (dot(&e1, d2) - dot(d1, &e2)) / (one + dot(d1, d2) + dot(&e1, &e2) + c);
-        let area = dot(&self.chord, &cross(t1, t2)) / (one + dot(t1, &self.chord) + dot(&self.chord, t2) + c);
-        R::of(2.0) * angle + R::of(4.0) * area
-    }
-
-    /// Curvature about both directions of the section at a point.
-    fn curvature(&self, nat: &Natural<R>, at: &Point, il: R) -> [R; 2] {
-        let (p, q) = (combine(&at.phi, nat), second(&at.psi, il, nat));
-        let square = dot(&p, &p);
-        let t = scaled(R::of(1.0) / square.sqrt(), &p);
-        let ends = [carry(&self.d[0], &self.t[0], &t), carry(&self.d[1], &self.t[1], &t)];
-        let d = unit(&plus(&scaled(R::of(1.0 - at.xi), &ends[0]), &scaled(R::of(at.xi), &ends[1])));
-        let k = scaled(R::of(1.0) / square, &cross(&p, &q));
-        [dot(&k, &d), dot(&k, &cross(&t, &d))]
-    }
-}
-
-fn natural_of<R: Real>(x: &Variables<R>) -> Natural<R> {
-    let chord = three(x, 0);
-    let minus = scaled(R::of(-1.0), &chord);
-    [chord, plus(&three(x, 1), &minus), plus(&three(x, 2), &minus)]
-}
-
-/// What makes the energy of the elastic element that of this one.
-fn potential<R: Real>(p: &DirectedLanes<R>, x: &Variables<R>) -> R {
-    let DirectedParams { l, ei, gj, .. } = p.params;
-    let (half, il, frames, nat) = (R::of(0.5), R::of(1.0) / l, Frames::new(x), natural_of(x));
-    let twist = frames.twist() - p.twist0;
-    let mut gauge = R::zero();
-    for i in 0..2 {
-        let director = three(x, 3 + i);
-        let (along, long) = (dot(&director, &frames.t[i]), dot(&director, &director) - R::of(1.0));
-        gauge += along * along + R::of(0.25) * long * long;
-    }
-    let mut sum = half * gj * il * (twist * twist + gauge);
-    for (at, k0) in p.rule.points().iter().zip(&p.kappa0) {
-        let k = frames.curvature(&nat, at, il);
-        let w = ei * l * R::of(at.w);
-        for i in 0..2 {
-            sum += w * k0[i] * (half * k0[i] - k[i]);
+/// Adds a block above the diagonal, and its mirror image.
+#[inline(always)]
+fn add_block<R: Real>(h: &mut [[R; VARIABLES]; VARIABLES], i: usize, j: usize, s: R, block: &M3<R>) {
+    for r in 0..3 {
+        for c in 0..3 {
+            let x = s * block[r][c];
+            h[3 * i + r][3 * j + c] += x;
+            if i != j {
+                h[3 * j + c][3 * i + r] += x;
+            }
         }
     }
-    sum
 }
 
-/// The variables of the dofs.
-fn variables<R: Real>(q: &[R; DOFS], il: R) -> Variables<R> {
-    let mut x = [R::zero(); VARIABLES];
-    for c in 0..3 {
-        x[c] = il * (q[6 + c] - q[c]);
-        (x[3 + c], x[6 + c]) = (q[3 + c], q[9 + c]);
-        (x[9 + c], x[12 + c]) = (q[12 + c], q[15 + c]);
-    }
-    x
-}
-
-/// The dofs that a variable is made of, with their shares.
+/// The increments that a variable is made of, with their shares.
 #[inline(always)]
 fn dofs<R: Real>(variable: usize, il: R) -> [(usize, R); 2] {
     let one = |dof| [(dof, R::of(1.0)), (dof, R::zero())];
     match variable {
-        c @ 0..3 => [(c, -il), (6 + c, il)],
-        c @ 3..6 => one(c),
-        c @ 6..9 => one(3 + c),
-        c => one(3 + c),
+        c @ 0..3 => one(3 + c),
+        c @ 3..6 => [(c - 3, -il), (SECOND + c - 3, il)],
+        c @ 6..9 => one(SECOND + c - 3),
+        ANGLES => one(6),
+        BUBBLE => one(14),
+        _ => one(SECOND + 6),
     }
+}
+
+/// How many of them count.
+#[inline(always)]
+fn count(variable: usize) -> usize {
+    if (3..6).contains(&variable) { 2 } else { 1 }
+}
+
+fn twisting<R: Real>(x: &[R; COORDINATES], il: R) -> Twisting<R> {
+    let mut nodes = [R::zero(); 20];
+    nodes.copy_from_slice(&x[..20]);
+    Twisting::new(&nodes, il)
+}
+
+/// Curvature about both directors of the section at a point of an element with these coordinates and bubble [1/m].
+pub(crate) fn curvature(x: &[f64; COORDINATES], l: f64, at: &Point) -> [f64; 2] {
+    Section::new(x, &twisting(x, 1.0 / l), at, 1.0 / l).k
 }
 
 impl Directed {
-    /// An element that is free of stress at this shape, its twelve dofs, with these directors of its nodes.
-    pub fn at_shape(
-        params: DirectedParams,
-        shape: &[f64; 12],
-        directors: [V3<f64>; 2],
-        rule: impl Quadrature,
-    ) -> Self {
-        let mut kappa0 = [[0.0; 2]; MOST];
-        let (x, il) = (laid(shape, directors, params.l), 1.0 / params.l);
-        let (frames, nat) = (Frames::new(&x), natural_of(&x));
-        for (kappa0, at) in kappa0.iter_mut().zip(rule.points()) {
-            *kappa0 = frames.curvature(&nat, at, il);
+    /// An element with this curvature about both directors when free of stress [1/m], at each of the points of the rule.
+    pub fn new(params: DirectedParams, kappa0: [[f64; 2]; MOST], rule: impl Quadrature) -> Self {
+        Directed { params, kappa0, rule: Points::of(rule) }
+    }
+
+    /// The curvature about both directors that an element has at each of the points of a rule [1/m].
+    pub fn curvature(x: &[f64; COORDINATES], l: f64, rule: impl Quadrature) -> [[f64; 2]; MOST] {
+        let mut all = [[0.0; 2]; MOST];
+        for (k, at) in all.iter_mut().zip(rule.points()) {
+            *k = curvature(x, l, at);
         }
-        Directed { params, kappa0, twist0: frames.twist(), rule: Points::of(rule) }
-    }
-
-    /// Its numbers for one lane.
-    pub fn to_lanes(&self) -> DirectedLanes<f64> {
-        DirectedLanes { params: self.params, kappa0: self.kappa0, twist0: self.twist0, rule: self.rule }
+        all
     }
 }
 
-fn laid(shape: &[f64; 12], directors: [V3<f64>; 2], l: f64) -> Variables<f64> {
-    let all: [f64; DOFS] =
-        std::array::from_fn(|i| if i < 12 { shape[i] } else { directors[(i - 12) / 3][i % 3] });
-    variables(&all, 1.0 / l)
-}
-
-/// Curvature of an element about both directions of its section at `xi` [1/m].
-pub(crate) fn curvature(shape: &[f64; 12], directors: [V3<f64>; 2], l: f64, xi: f64) -> [f64; 2] {
-    let x = laid(shape, directors, l);
-    Frames::new(&x).curvature(&natural_of(&x), &Point::new(xi, 1.0), 1.0 / l)
-}
-
-/// Directors of a cable that is laid with these slopes at its nodes: free of twist from the first, which is normal to the
-/// plane in which the cable bends most. `None` where it is straight.
-pub(crate) fn directors(shapes: &[[f64; 12]], mesh: &[f64]) -> Option<Vec<V3<f64>>> {
-    let tangent = |e: &[f64; 12], at: usize| unit(&[e[at], e[at + 1], e[at + 2]]);
-    let mut tangents: Vec<V3<f64>> = shapes.iter().map(|e| tangent(e, 3)).collect();
-    tangents.push(tangent(shapes.last()?, 9));
-    let mut most = (0.0, [0.0; 3], 0);
-    for (k, shape) in shapes.iter().enumerate() {
-        let l = mesh[k + 1] - mesh[k];
-        let nat = super::shape::natural(shape, 1.0 / l);
-        for xi in [0.0, 0.5, 1.0] {
-            let at = Point::new(xi, 1.0);
-            let turn = cross(&combine(&at.phi, &nat), &second(&at.psi, 1.0 / l, &nat));
-            let size = dot(&turn, &turn).sqrt() * l;
-            if size > most.0 {
-                most = (size, turn, k);
-            }
-        }
-    }
-    let (size, turn, k) = most;
-    if !(size > super::rest::STRAIGHT) {
-        return None;
-    }
-    let mut all = vec![[0.0; 3]; tangents.len()];
-    all[k] = normal(&turn, &tangents[k]);
-    for i in k + 1..all.len() {
-        all[i] = normal(&carry(&all[i - 1], &tangents[i - 1], &tangents[i]), &tangents[i]);
-    }
-    for i in (0..k).rev() {
-        all[i] = normal(&carry(&all[i + 1], &tangents[i + 1], &tangents[i]), &tangents[i]);
-    }
-    Some(all)
-}
-
-impl Element<DOFS, DOFS> for Directed {
+impl Element<COORDINATES, VELOCITIES> for Directed {
     type Lanes<R: Real> = DirectedLanes<R>;
+    // its code is long, and wide copies of it take longer to compile than they save
     const WIDE: bool = false;
 
     fn label(&self) -> String {
-        format!("stress-free curvature with its direction {}", self.rule.label())
+        format!("bending with a direction {}", self.rule.label())
     }
+    #[inline(always)]
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> DirectedLanes<R> {
         let mut kappa0 = [[R::zero(); 2]; MOST];
         for (k, kappa0) in kappa0.iter_mut().enumerate() {
@@ -278,63 +332,88 @@ impl Element<DOFS, DOFS> for Directed {
         DirectedLanes {
             params: DirectedParams {
                 l: batch.get(|e| e.params.l),
-                ei: batch.get(|e| e.params.ei),
+                ei_d: batch.get(|e| e.params.ei_d),
+                ei_e: batch.get(|e| e.params.ei_e),
                 gj: batch.get(|e| e.params.gj),
+                eta_gj: batch.get(|e| e.params.eta_gj),
                 rho_j: batch.get(|e| e.params.rho_j),
             },
             kappa0,
-            twist0: batch.get(|e| e.twist0),
             rule: batch.first().rule,
         }
     }
+    #[inline(always)]
     fn add<R: Real, const TANGENT: bool>(
-        p: &DirectedLanes<R>,
-        x: &Local<R, DOFS, DOFS>,
+        DirectedLanes { params: p, kappa0, rule }: &DirectedLanes<R>,
+        x: &Local<R, COORDINATES, VELOCITIES>,
         w: &Weights,
-        out: &mut Share<R, DOFS>,
+        out: &mut Share<R, VELOCITIES>,
     ) {
-        let il = R::of(1.0) / p.params.l;
-        let (x0, once) = (variables(&x.q, il), p.lift());
-        let twice = once.lift();
+        let il = R::of(1.0) / p.l;
+        let twisting = twisting(&x.q, il);
+        let more = p.ei_d - p.ei_e;
+        let (mut f, mut h) = ([R::zero(); VARIABLES], [[R::zero(); VARIABLES]; VARIABLES]);
+        for (at, k0) in rule.points().iter().zip(kappa0) {
+            let section = Section::new(&x.q, &twisting, at, il);
+            let m = [more * section.k[0] - p.ei_d * k0[0], -(p.ei_e * k0[1])];
+            let s = R::of(at.w) * p.l;
+            section.add::<TANGENT>(&twisting, s, m, more, il, &mut f, &mut h);
+        }
+        let stiff = R::of(2.0 * BUBBLE_ENERGY) * p.gj * il;
+        let damping = R::of(2.0 * BUBBLE_ENERGY) * p.eta_gj * il;
+        f[BUBBLE] += stiff * x.q[20] + damping * x.v[14];
+        h[BUBBLE][BUBBLE] += stiff;
+        let (wq, wv, wa) = (R::of(w.q), R::of(w.v), R::of(w.a));
         for i in 0..VARIABLES {
-            let mut at = Dual::constants(&x0);
-            at[i].eps = R::of(1.0);
-            let slope = potential::<Dual<R>>(&once, &at).eps;
-            for (dof, share) in dofs(i, il) {
-                out.r[dof] += share * slope;
-            }
-            if !TANGENT {
-                continue;
-            }
-            for j in 0..=i {
-                let mut at = Dual::constants(&at);
-                at[j].eps = Dual::constant(R::of(1.0));
-                let second = R::of(w.q) * potential::<Dual<Dual<R>>>(&twice, &at).eps.eps;
-                for (row, by_row) in dofs(i, il) {
-                    for (column, by_column) in dofs(j, il) {
-                        let k = by_row * by_column * second;
-                        out.k[row][column] += k;
-                        if i != j {
-                            out.k[column][row] += k;
-                        }
+            for &(row, by_row) in &dofs(i, il)[..count(i)] {
+                out.r[row] = by_row.fma(f[i], out.r[row]);
+                if !TANGENT {
+                    continue;
+                }
+                for j in 0..VARIABLES {
+                    for &(column, by_column) in &dofs(j, il)[..count(j)] {
+                        out.k[row][column] += wq * by_row * by_column * h[i][j];
                     }
                 }
             }
         }
-        let mass = R::of(0.5) * p.params.rho_j * p.params.l;
-        for i in 12..DOFS {
-            out.r[i] += mass * x.a[i];
-            if TANGENT {
-                out.k[i][i] += R::of(w.a) * mass;
+        let [own, with] = BUBBLE_MASS.map(|m| R::of(m) * p.rho_j * p.l);
+        let (a, b) = (x.a[6] + x.a[SECOND + 6], x.a[14]);
+        out.r[14] += own * b + with * a;
+        out.r[6] += with * b;
+        out.r[SECOND + 6] += with * b;
+        if TANGENT {
+            out.k[14][14] += wa * own + wv * damping;
+            for i in [6, SECOND + 6] {
+                out.k[14][i] += wa * with;
+                out.k[i][14] += wa * with;
             }
         }
     }
-    fn energy<R: Real>(p: &DirectedLanes<R>, x: &Local<R, DOFS, DOFS>) -> Energy<R> {
-        let mut square = R::zero();
-        for i in 12..DOFS {
-            square = x.v[i].fma(x.v[i], square);
+    #[inline(always)]
+    fn energy<R: Real>(
+        DirectedLanes { params: p, kappa0, rule }: &DirectedLanes<R>,
+        x: &Local<R, COORDINATES, VELOCITIES>,
+    ) -> Energy<R> {
+        let (il, half) = (R::of(1.0) / p.l, R::of(0.5));
+        let twisting = twisting(&x.q, il);
+        let mut potential = R::of(BUBBLE_ENERGY) * p.gj * il * x.q[20] * x.q[20];
+        for (at, k0) in rule.points().iter().zip(kappa0) {
+            let [kd, ke] = Section::new(&x.q, &twisting, at, il).k;
+            let more = half * (p.ei_d - p.ei_e) * kd * kd;
+            let laid = p.ei_d * k0[0] * (half * k0[0] - kd) + p.ei_e * k0[1] * (half * k0[1] - ke);
+            potential += R::of(at.w) * p.l * (more + laid);
         }
-        let kinetic = R::of(0.25) * p.params.rho_j * p.params.l * square;
-        Energy { kinetic, potential: potential::<R>(p, &variables(&x.q, R::of(1.0) / p.params.l)) }
+        let [own, with] = BUBBLE_MASS.map(|m| R::of(m) * p.rho_j * p.l);
+        let b = x.v[14];
+        Energy { kinetic: b * (half * own * b + with * (x.v[6] + x.v[SECOND + 6])), potential }
+    }
+    #[inline(always)]
+    fn power<R: Real>(
+        DirectedLanes { params: p, .. }: &DirectedLanes<R>,
+        x: &Local<R, COORDINATES, VELOCITIES>,
+    ) -> Power<R> {
+        let damping = R::of(2.0 * BUBBLE_ENERGY) * p.eta_gj / p.l;
+        Power { dissipated: damping * x.v[14] * x.v[14], ..Power::zero() }
     }
 }

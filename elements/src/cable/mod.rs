@@ -1,13 +1,14 @@
-//! Cable elements in the absolute nodal coordinate formulation (ANCF), without torsion.
+//! Cable elements in the absolute nodal coordinate formulation (ANCF).
 //!
 //! - [`shape`], [`quadrature`], [`reduced`]: the curve, and the nine natural variables in which kernels work.
 //! - [`longitudinal`] with L1 … L4 and [`transverse`] with T1 … T3: the strain measures, a file for each.
 //! - [`Cable`]: elastic force and mass. [`CableModel`] chooses its models at run time, [`push_cable`] makes it.
+//! - [`Torsion`] and [`Directed`]: twist, and bending with a direction, beside it on nodes that know them.
 
 mod bending_damping;
 mod chosen;
 mod damping;
-pub(crate) mod directed;
+mod directed;
 mod element;
 pub mod flow;
 mod l1;
@@ -16,7 +17,7 @@ mod l2;
 mod l3;
 mod l4;
 pub mod longitudinal;
-mod mesh;
+pub(crate) mod mesh;
 mod model;
 mod output;
 mod part;
@@ -26,12 +27,17 @@ mod relaxed;
 mod rest;
 pub mod shape;
 mod spec;
+mod spin;
 mod stations;
+mod stiffness;
 mod t1;
 mod t2;
 mod t3;
-mod transmitted;
+mod torsion;
+pub(crate) mod transmitted;
 pub mod transverse;
+mod twisted;
+mod twisting;
 
 pub use bending_damping::{BendingDamping, BendingDampingLanes};
 pub use damping::{AxialDamping, AxialDampingLanes};
@@ -52,7 +58,10 @@ pub use part::CablePart;
 pub use quadrature::{Full, LockingFree};
 pub use rest::{AxialRest, BendingRest, Rest, RestLanes, push_rest};
 pub use spec::{CableSpec, Section, StressFree};
+pub use spin::{SpinInertia, SpinInertiaLanes};
 pub use stations::CableStations;
+pub use stiffness::BendingStiffness;
 pub use t1::T1;
 pub use t2::T2;
 pub use t3::T3;
+pub use torsion::{Torsion, TorsionDamping, TorsionDampingLanes, TorsionParams};

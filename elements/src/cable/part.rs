@@ -1,13 +1,14 @@
 //! A cable as a part of a model: its markers, its stations, what can be observed along it.
 
-use super::directed::curvature;
 use super::flow::change::{self, Snapshot};
 use super::flow::{self, push};
 use super::output::{Reading, read};
 use super::shape::{hermite, hermite_slope, natural, second};
 use super::spec::Section;
 use super::transmitted::{self, Unstressed};
-use super::{CableModel, CableParams, DirectedParams};
+use super::twisted::{self, Twisted};
+use super::{CableModel, CableParams};
+use ropewalk_core::model::twist::tangent;
 use ropewalk_core::{
     At, Change, ContactSpan, DeadEntry, DeadLoad, Line, Marker, Mesh, MeshState, MovingBoundary, Node,
     NodeId, Part, Per, Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
@@ -42,23 +43,8 @@ pub struct CablePart {
     pub(crate) rest: Option<Vec<[f64; 12]>>,
     /// Stress-free strain and curvature on top of that.
     pub(crate) offset: (f64, f64),
-    /// Which way its sections look, where it is bent when free of stress.
-    pub(crate) directors: Option<Directors>,
-}
-
-/// The directors of a cable, node by node.
-pub(crate) struct Directors {
-    pub nodes: Vec<NodeId>,
-    /// First coordinate and first velocity of each.
-    pub seats: Vec<(usize, usize)>,
-    /// As the cable was laid.
-    pub laid: Vec<V3<f64>>,
-}
-
-impl Directors {
-    fn at(&self, k: usize, q: &[f64]) -> [V3<f64>; 2] {
-        [k, k + 1].map(|k| std::array::from_fn(|i| q[self.seats[k].0 + i]))
-    }
+    /// Its torsion, if it has any.
+    pub(crate) twisted: Option<Twisted>,
 }
 
 impl CablePart {
@@ -102,6 +88,11 @@ impl CablePart {
         std::array::from_fn(|i| if i < 6 { q[a + i] } else { q[b + i - 6] })
     }
 
+    /// First coordinates of the nodes of an element.
+    fn around(&self, k: usize) -> [usize; 2] {
+        [self.seats[k].0, self.seats[k + 1].0]
+    }
+
     fn velocities(&self, k: usize, v: &[f64]) -> [f64; 12] {
         let (a, b) = (self.seats[k].1, self.seats[k + 1].1);
         std::array::from_fn(|i| if i < 6 { v[a + i] } else { v[b + i - 6] })
@@ -110,7 +101,7 @@ impl CablePart {
     /// The elastic force that element `k` of length `l` transmits [N].
     fn transmits(&self, k: usize, l: f64, at: &At<'_>) -> Option<V3<f64>> {
         let (s, q) = (&self.section, self.dofs(k, at.q));
-        let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
+        let params = CableParams { l, ea: s.ea, ei: s.ei.across, rho_a: s.mass };
         let mut points: Option<Vec<f64>> = None;
         for p in self.prestrain.iter().filter(|p| p.element == k) {
             let left = p.left(at.t).0;
@@ -118,14 +109,11 @@ impl CablePart {
             sum.iter_mut().zip(&p.strain).for_each(|(sum, strain)| *sum += left * strain);
         }
         let shape = self.rest.as_ref().map(|r| &r[k]);
-        let (strain, curvature) = self.offset;
+        let (strain, curvature) = (self.offset.0, if self.twisted.is_some() { 0.0 } else { self.offset.1 });
         let unstressed = Unstressed { shape, strain, curvature, points: points.as_deref() };
         let mut force = transmitted::force(self.model, &params, &q, unstressed).ok()?;
-        if let (Some(directors), Some(shape)) = (&self.directors, shape) {
-            let params = DirectedParams { l, ei: s.ei, gj: s.gj.unwrap_or(s.ei), rho_j: 0.0 };
-            let laid = [directors.laid[k], directors.laid[k + 1]];
-            let (now, rest) = ((&q, directors.at(k, at.q)), (shape, laid));
-            let more = transmitted::directed(self.model.integration, params, now, rest);
+        if let Some(twisted) = &self.twisted {
+            let more = twisted.transmits(k, l, at.q, self.around(k));
             (0..3).for_each(|i| force[i] += more[i]);
         }
         Some(force)
@@ -171,7 +159,7 @@ impl CablePart {
 
     fn reading(&self, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<Reading> {
         let s = &self.section;
-        let params = CableParams { l, ea: s.ea, ei: s.ei, rho_a: s.mass };
+        let params = CableParams { l, ea: s.ea, ei: s.ei.across, rho_a: s.mass };
         let rest = self.rest.as_ref().map(|r| &r[k]);
         read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()
     }
@@ -210,17 +198,39 @@ impl CablePart {
         Ok(snapshot)
     }
 
-    /// Bending moment where sections know which way they look [N m].
-    fn bent(&self, k: usize, l: f64, xi: f64, q: &[f64]) -> Option<f64> {
-        let (directors, rest) = (self.directors.as_ref()?, &self.rest.as_ref()?[k]);
-        let now = curvature(&self.dofs(k, q), directors.at(k, q), l, xi);
-        let then = curvature(rest, [directors.laid[k], directors.laid[k + 1]], l, xi);
-        Some(self.section.ei * (now[0] - then[0]).hypot(now[1] - then[1]))
-    }
-
     /// Bending moment [N m], of which an element reads this much.
     fn moment(&self, k: usize, l: f64, xi: f64, read: f64, at: &At<'_>) -> f64 {
-        self.bent(k, l, xi, at.q).unwrap_or(read) - self.section.ei * self.offset.1
+        match &self.twisted {
+            Some(twisted) if twisted.is_directed() => {
+                let [_, moment] = twisted.bends(k, l, xi, at.q, self.around(k));
+                moment[0].hypot(moment[1])
+            }
+            Some(_) => read,
+            None => read - self.section.ei.across * self.offset.1,
+        }
+    }
+
+    /// What only a cable with torsion knows, at a place of element `k`.
+    fn twist(&self, what: Quantity, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<f64> {
+        let twisted = self.twisted.as_ref()?;
+        let bends = || twisted.bends(k, l, xi, at.q, self.around(k));
+        Some(match what {
+            Quantity::CurvatureNormal => bends()[0][0],
+            Quantity::CurvatureAcross => bends()[0][1],
+            Quantity::MomentNormal => bends()[1][0],
+            Quantity::MomentAcross => bends()[1][1],
+            Quantity::Twist => twisted.twist(k, l, at.q, self.around(k))[0],
+            Quantity::Torque => twisted.twist(k, l, at.q, self.around(k))[1],
+            Quantity::Angle => {
+                let own = |k: usize, part: f64| {
+                    let l = self.mesh[k + 1] - self.mesh[k];
+                    part * l * twisted.twist(k, l, at.q, self.around(k))[0]
+                };
+                (0..k).map(|k| own(k, 1.0)).sum::<f64>() + own(k, xi)
+            }
+            Quantity::Spin => twisted::spin(at, [self.seats[k].1, self.seats[k + 1].1], xi),
+            Quantity::Tension | Quantity::Strain | Quantity::Curvature | Quantity::Moment => return None,
+        })
     }
 
     /// Second derivative of the curve at an end of element `k`: at its start, or at its end.
@@ -386,10 +396,8 @@ impl Part for CablePart {
         {
             return Some(format!("what is fed at its {}", ["start", "end"][*end]));
         }
-        if let Some(directors) = &self.directors
-            && let Some(k) = directors.nodes.iter().position(|&n| n == node)
-        {
-            return Some(format!("director at {:.4} m", self.mesh[k]));
+        if let Some(k) = self.twisted.as_ref().and_then(|twisted| twisted.bubble(node)) {
+            return Some(format!("twist within the element at {:.4} m", self.mesh[k]));
         }
         let k = self.nodes.iter().position(|&n| n == node)?;
         Some(format!("at {:.4} m", self.mesh[k]))
@@ -412,12 +420,14 @@ impl Part for CablePart {
                 v[node.v + 3..node.v + 6].copy_from_slice(&dx);
             }
         }
-        let seats = self.directors.iter().flat_map(|d| &d.seats);
-        for (s, &(own_q, own_v)) in self.mesh.iter().zip(seats) {
-            for (x, all, own, coordinates) in [(at.q, &mut *q, own_q, true), (at.v, &mut *v, own_v, false)] {
-                if let Some(d) = old.looks(*s, x, coordinates) {
-                    all[own..own + 3].copy_from_slice(&d);
-                }
+        for (s, &(own_q, own_v)) in self.mesh.iter().zip(&self.seats).filter(|_| self.twisted.is_some()) {
+            let three = |i: usize| [q[own_q + i], q[own_q + i + 1], q[own_q + i + 2]];
+            if let Some((d, angle)) = old.looks(*s, at.q) {
+                let node = twisted::node_at(&three(0), &three(3), &d, angle);
+                q[own_q..own_q + 10].copy_from_slice(&node);
+            }
+            if let Some(spin) = old.observe(Quantity::Spin, *s, at) {
+                v[own_v + 6] = spin;
             }
         }
     }
@@ -431,7 +441,7 @@ impl Line for CablePart {
     fn slender(&self) -> Slender {
         let s = &self.section;
         let element = self.laid / (self.mesh.len() - 1) as f64;
-        Slender { element, mass: s.mass + s.flooded, ea: s.ea, ei: s.ei }
+        Slender { element, mass: s.mass + s.flooded, ea: s.ea, ei: s.ei.mean() }
     }
 
     fn mesh(&self) -> &[f64] {
@@ -458,6 +468,7 @@ impl Line for CablePart {
             Quantity::Strain => r.strain,
             Quantity::Curvature => r.curvature,
             Quantity::Moment => self.moment(k, l, xi, r.moment, at),
+            _ => return self.twist(what, k, l, xi, at),
         })
     }
 
@@ -481,23 +492,34 @@ impl Line for CablePart {
             // ends that coincide give no direction; any will do
             way = [1e-3 * self.length(), 0.0, 0.0];
         }
+        let tangents: Vec<V3<f64>> = self.seats.iter().map(|s| tangent(&q[s.0..])).collect();
         for (k, &(at, _)) in self.seats.iter().enumerate() {
             for i in 0..3 {
                 q[at + i] = from[i] + way[i] * self.mesh[k] / self.length();
                 q[at + 3 + i] = way[i] / self.length();
             }
         }
+        if self.twisted.is_some() {
+            let seats: Vec<usize> = self.seats.iter().map(|s| s.0).collect();
+            twisted::follow(q, &seats, &tangents);
+        }
     }
 
-    fn director(&self, node: NodeId) -> Option<NodeId> {
-        let k = self.nodes.iter().position(|&n| n == node)?;
-        Some(self.directors.as_ref()?.nodes[k])
+    fn twists(&self) -> bool {
+        self.twisted.is_some()
     }
 
-    fn looks(&self, s: f64, x: &[f64], coordinates: bool) -> Option<V3<f64>> {
-        let (directors, (k, _, xi)) = (self.directors.as_ref()?, Self::locate(&self.mesh, s)?);
-        let seat = |k: usize| if coordinates { directors.seats[k].0 } else { directors.seats[k].1 };
-        Some(std::array::from_fn(|i| (1.0 - xi) * x[seat(k) + i] + xi * x[seat(k + 1) + i]))
+    fn looks(&self, s: f64, q: &[f64]) -> Option<(V3<f64>, f64)> {
+        let (twisted, (k, l, xi)) = (self.twisted.as_ref()?, Self::locate(&self.mesh, s)?);
+        let before: f64 = (0..k)
+            .map(|k| {
+                let l = self.mesh[k + 1] - self.mesh[k];
+                l * twisted.twist(k, l, q, self.around(k))[0]
+            })
+            .sum();
+        let slope = interpolate(hermite_slope::<f64>(xi, 1.0 / l), &self.dofs(k, q));
+        let (d, turn) = twisted.looks(k, [l, xi], &slope, q, self.around(k));
+        Some((d, before + turn))
     }
 
     fn slope(&self, s: f64, x: &[f64], coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {

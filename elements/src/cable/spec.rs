@@ -1,14 +1,13 @@
 //! `type = "cable"`: what a scene says about a cable.
 
 use super::damping::{push_axial_damping, push_bending_damping};
-use super::directed::{self, Directed, DirectedParams};
 use super::flow::Line;
 use super::flow::push::{self, Piece};
 use super::mesh::{MeshSpec, counted, even, pinned};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
-use super::part::{CablePart, Directors};
-use super::quadrature::Rule;
+use super::part::CablePart;
 use super::rest::{Rest, push_rest};
+use super::stiffness::BendingStiffness;
 use super::{CableParams, CableStations};
 use crate::path::{Corner, Path};
 use ropewalk_core::error::{finite, not_negative, positive};
@@ -31,17 +30,26 @@ pub struct Section {
     #[serde(deserialize_with = "quantity::axial_stiffness")]
     pub ea: f64,
     /// Bending stiffness EI [N m²]. With 0, the first and last element keep 1 % of their weight times their length
-    /// squared, so that free ends have a direction.
-    #[serde(default, deserialize_with = "quantity::bending_stiffness")]
-    pub ei: f64,
-    /// Torsional stiffness GJ [N m²] of a cable with a curved stress-free shape. Default: EI. Other cables have no
-    /// torsion.
+    /// squared, so that free ends have a direction. Two numbers where it isn't the same in all directions, of a cable with
+    /// torsion: about the `normal` of the section, and about the axis across it.
+    #[serde(default)]
+    pub ei: BendingStiffness,
+    /// Torsional stiffness GJ [N m²]. With it the cable can be twisted, and its ends are held against twisting where they are
+    /// built in. Default: no torsion; but EI where the stress-free shape is curved.
     #[serde(
         default,
         deserialize_with = "quantity::optional::bending_stiffness",
         skip_serializing_if = "Option::is_none"
     )]
     pub gj: Option<f64>,
+    /// Polar moment of inertia of the section, per length [kg m], of a cable with torsion. Default: that of a solid round
+    /// bar, `mass diameter²/8`.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::inertia_per_length",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub rotary_inertia: Option<f64>,
     /// Mass of the water inside [kg/m]. It moves with the part and has no weight in water.
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub flooded: f64,
@@ -57,6 +65,13 @@ pub struct Section {
     /// Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`.
     #[serde(default, deserialize_with = "quantity::time")]
     pub bending_retardation_time: f64,
+    /// Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ dφ'/dt)`.
+    #[serde(default, deserialize_with = "quantity::time", skip_serializing_if = "is_nought")]
+    pub torsional_retardation_time: f64,
+    /// Whether the spin of a cable with torsion about its own axis turns it aside, as that of a top does: of shafts that turn
+    /// fast. Ropes don't notice.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub gyroscopic: bool,
 }
 
 /// Bending stiffness of the end elements of a cable that has none, in parts of their weight times the square of their length.
@@ -68,13 +83,16 @@ impl Section {
         Section {
             mass,
             ea,
-            ei,
+            ei: ei.into(),
             gj: None,
+            rotary_inertia: None,
             flooded: 0.0,
             diameter: 0.0,
             displaced: None,
             axial_retardation_time: 0.0,
             bending_retardation_time: 0.0,
+            torsional_retardation_time: 0.0,
+            gyroscopic: false,
         }
     }
     /// Displaced volume per length [m²].
@@ -86,12 +104,14 @@ impl Section {
         positive("ea", self.ea)?;
         positive("gj", self.gj.unwrap_or(1.0))?;
         for (name, x) in [
-            ("ei", self.ei),
+            ("ei", self.ei.about_normal),
+            ("ei", self.ei.across),
             ("flooded", self.flooded),
             ("diameter", self.diameter),
             ("displaced", self.displaced.unwrap_or(0.0)),
             ("axial_retardation_time", self.axial_retardation_time),
             ("bending_retardation_time", self.bending_retardation_time),
+            ("torsional_retardation_time", self.torsional_retardation_time),
         ] {
             not_negative(name, x)?;
         }
@@ -111,10 +131,10 @@ pub enum StressFree {
     AsLaid,
 }
 
-/// A cable, hose or tether with large displacements, stretch and bending. It has no torsion, unless its stress-free
-/// shape is curved.
+/// A cable, hose or tether with large displacements, stretch and bending, and torsion if its section has a torsional
+/// stiffness `gj`.
 ///
-/// It is a chain of ANCF elements with 6 coordinates per node. Markers: `name.start`, `name.end`, `name@12.5m`.
+/// It is a chain of ANCF elements with 6 velocities per node, with torsion 7. Markers: `name.start`, `name.end`, `name@12.5m`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CableSpec {
@@ -179,16 +199,31 @@ pub struct CableSpec {
     /// Stress-free strain, added to that of `stress_free` [1].
     #[serde(default, deserialize_with = "quantity::number")]
     pub strain: f64,
-    /// Stress-free curvature, added to that of `stress_free` [1/m]. It has no direction: a cable without torsion can
-    /// curl to any side. For a curvature with a direction, lay the cable curved and set `stress_free = "as-laid"`.
+    /// Stress-free curvature, added to that of `stress_free` [1/m]. Of a cable with torsion it is about the `normal` of the
+    /// section; without, it has no direction, and the cable can curl to any side.
     #[serde(default, deserialize_with = "quantity::curvature")]
     pub curvature: f64,
+    /// Direction in space of the first director of the section, at the start of the cable: the axis about which the first of
+    /// two bending stiffnesses and `curvature` are. Along the cable it is laid without twist. Default: where a curved cable
+    /// bends most, at right angles to the plane in which it does; else it doesn't matter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub normal: Option<V3<f64>>,
+    /// Stress-free twist per length of a cable with torsion, added to that of `stress_free` [rad/m].
+    #[serde(default, deserialize_with = "quantity::curvature", skip_serializing_if = "is_nought")]
+    pub twist: f64,
+    /// Twist per length with which a cable with torsion is laid [rad/m].
+    #[serde(default, deserialize_with = "quantity::curvature", skip_serializing_if = "is_nought")]
+    pub laid_twist: f64,
 }
 
 register_spec!(Element, "cable", CableSpec);
 
 fn is_zero(x: &usize) -> bool {
     *x == 0
+}
+
+fn is_nought(x: &f64) -> bool {
+    *x == 0.0
 }
 
 impl CableSpec {
@@ -213,6 +248,9 @@ impl CableSpec {
             stress_free: StressFree::default(),
             strain: 0.0,
             curvature: 0.0,
+            normal: None,
+            twist: 0.0,
+            laid_twist: 0.0,
         }
     }
     /// With other stiffness models.
@@ -384,67 +422,27 @@ impl CableSpec {
         params: CableParams,
         on: &[NodeId],
         shape: &[f64; 12],
+        twists: bool,
     ) -> Result<(), BuildError> {
         let s = &self.section;
+        // with torsion a curvature has a direction
+        let kappa0 = if twists { 0.0 } else { self.curvature };
         if self.stress_free == StressFree::AsLaid {
             push_rest(pools, model, params, Rest::Stretched(*shape), on).map_err(BuildError::new)?;
         }
-        if self.strain != 0.0 || self.curvature != 0.0 {
-            let rest = Rest::Uniform { eps0: self.strain, kappa0: self.curvature };
+        if self.strain != 0.0 || kappa0 != 0.0 {
+            let rest = Rest::Uniform { eps0: self.strain, kappa0 };
             push_rest(pools, model, params, rest, on).map_err(BuildError::new)?;
         }
         if s.axial_retardation_time > 0.0 {
             push_axial_damping(pools, model, params.l, s.axial_retardation_time * s.ea, on)
                 .map_err(BuildError::new)?;
         }
-        if s.bending_retardation_time > 0.0 && s.ei > 0.0 {
-            push_bending_damping(pools, model, params.l, s.bending_retardation_time * s.ei, on)
+        if s.bending_retardation_time > 0.0 && s.ei.across > 0.0 {
+            push_bending_damping(pools, model, params.l, s.bending_retardation_time * s.ei.mean(), on)
                 .map_err(BuildError::new)?;
         }
         Ok(())
-    }
-}
-
-impl CableSpec {
-    /// Nodes for the directors of a cable that is bent when free of stress, and its elements that know them.
-    fn directed(
-        &self,
-        b: &mut Builder,
-        mesh: &[f64],
-        nodes: &[NodeId],
-        shapes: &[[f64; 12]],
-    ) -> Result<Option<Directors>, BuildError> {
-        let s = &self.section;
-        let bent = self.stress_free == StressFree::AsLaid && s.ei > 0.0;
-        let laid = if bent { directed::directors(shapes, mesh) } else { None };
-        let Some(laid) = laid else {
-            return match s.gj {
-                None => Ok(None),
-                Some(_) => Err(BuildError::at(
-                    "section.gj",
-                    "only a cable that is bent when free of stress (`stress_free = \"as-laid\"`) knows twist: leave out `gj`",
-                )),
-            };
-        };
-        if self.transverse != TransverseModel::T3 {
-            let message = format!(
-                "the curvature of {:?} has no direction: a cable that is bent when free of stress needs T3",
-                self.transverse
-            );
-            return Err(BuildError::at("transverse", message));
-        }
-        let own: Vec<NodeId> =
-            laid.iter().map(|d| b.node(NodeKind::Scalars(3), d, &[0.0; 3])).collect::<Result<_, _>>()?;
-        let gj = s.gj.unwrap_or(s.ei);
-        // a round bar of this mass has its bending stiffness and its inertia about the axis from one radius
-        let rho_j = 2.0 * (s.mass + s.flooded) * s.ei / s.ea;
-        for (k, shape) in shapes.iter().enumerate() {
-            let params = DirectedParams { l: mesh[k + 1] - mesh[k], ei: s.ei, gj, rho_j };
-            let (on, both) = ([nodes[k], nodes[k + 1], own[k], own[k + 1]], [laid[k], laid[k + 1]]);
-            b.element(Directed::at_shape(params, shape, both, self.integration.bending()), &on)?;
-        }
-        let seats = own.iter().map(|n| (b.nodes()[n.0 as usize].q, b.nodes()[n.0 as usize].v)).collect();
-        Ok(Some(Directors { nodes: own, seats, laid }))
     }
 }
 
@@ -513,6 +511,8 @@ impl ElementSpec for CableSpec {
             return Err(BuildError::at("strain", message));
         }
         finite("curvature", &[self.curvature])?;
+        finite("twist", &[self.twist])?;
+        finite("laid_twist", &[self.laid_twist])?;
         legal(self.longitudinal, self.transverse).map_err(|e| BuildError::at("transverse", e))?;
         let path = self.path()?;
         let length = self.unstretched_length(path.length())?;
@@ -538,26 +538,32 @@ impl ElementSpec for CableSpec {
             return Err(BuildError::new("a mesh must start at 0 and ascend"));
         }
 
+        let places: Vec<[f64; 6]> = (0..mesh.len())
+            .map(|k| {
+                // a cable that has fed since it was laid gets its true shape from the state before
+                let (x, t) = match k {
+                    // an end has stayed one while material went through it
+                    0 => path.at(0.0),
+                    k if k + 1 == mesh.len() => path.at(path.length()),
+                    _ => path.at((mesh[k] * stretch).clamp(0.0, path.length())),
+                };
+                [x[0], x[1], x[2], t[0] * stretch, t[1] * stretch, t[2] * stretch]
+            })
+            .collect();
+        let (mut twisted, laid) = self.twisted(&mesh, &places, feeds)?.unzip();
         let mut nodes = Vec::with_capacity(mesh.len());
         let mut seats = Vec::with_capacity(mesh.len());
         let state = given.as_ref().and_then(|m| m.state.as_ref());
-        for (k, &at) in mesh.iter().enumerate() {
-            // a cable that has fed since it was laid gets its true shape from the state before
-            let (x, t) = match k {
-                // an end has stayed one while material went through it
-                0 => path.at(0.0),
-                k if k + 1 == mesh.len() => path.at(path.length()),
-                _ => path.at((at * stretch).clamp(0.0, path.length())),
-            };
-            let q = [x[0], x[1], x[2], t[0] * stretch, t[1] * stretch, t[2] * stretch];
-            let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0];
-            let node = match state {
-                Some(state) => {
+        for (k, q) in places.iter().enumerate() {
+            let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0, 0.0];
+            let node = match (state, &laid) {
+                (Some(state), _) => {
                     let node = b.node(NodeKind::Slope, &state.q[k], &state.v[k])?;
-                    b.was_laid(node, &q);
+                    b.was_laid(node, q);
                     node
                 }
-                None => b.node(NodeKind::Slope, &q, &v)?,
+                (None, Some(laid)) => b.node(NodeKind::Twist, &laid[k], &v)?,
+                (None, None) => b.node(NodeKind::Slope, q, &v[..6])?,
             };
             nodes.push(node);
             let n = &b.nodes()[node.0 as usize];
@@ -583,8 +589,8 @@ impl ElementSpec for CableSpec {
         let params = |k: usize| {
             let l = mesh[k + 1] - mesh[k];
             // without tension a limp tip points anywhere: a little of the weight that hangs there straightens it
-            let tip = s.ei == 0.0 && (k == 0 || k == last);
-            let ei = if tip { TIP * weight * l.powi(3) } else { s.ei };
+            let tip = s.ei.largest() == 0.0 && (k == 0 || k == last);
+            let ei = if tip { TIP * weight * l.powi(3) } else { s.ei.across };
             CableParams { l, ea: s.ea, ei, rho_a: s.mass + s.flooded }
         };
         for k in 0..mesh.len() - 1 {
@@ -596,14 +602,16 @@ impl ElementSpec for CableSpec {
         for k in (0..mesh.len() - 1).filter(|&k| flows(k).is_none()) {
             let (on, params) = ([nodes[k], nodes[k + 1]], params(k));
             push_cable(&mut pools, model, params, &on).map_err(BuildError::new)?;
-            self.extras(&mut pools, model, params, &on, &shapes[k])?;
+            self.extras(&mut pools, model, params, &on, &shapes[k], twisted.is_some())?;
         }
         pools.result?;
         let stations = match &line {
             Some(line) => push::stations(b.nodes(), line, &nodes, s, false)?,
             None => stations(b.nodes(), &mesh, &nodes, s)?,
         };
-        let directors = self.directed(b, &mesh, &nodes, &shapes)?;
+        if let Some(twisted) = &mut twisted {
+            twisted.push(b, &mesh, &nodes)?;
+        }
         let prestrain = given.as_ref().map_or_else(Vec::new, |m| m.prestrain.clone());
         if let Some(line) = &line {
             for strain in &prestrain {
@@ -627,7 +635,7 @@ impl ElementSpec for CableSpec {
             line,
             model,
             rest: (self.stress_free == StressFree::AsLaid).then_some(shapes),
-            directors,
+            twisted,
             offset: (self.strain, self.curvature),
         }))
     }

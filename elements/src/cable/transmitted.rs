@@ -6,10 +6,9 @@
 //! doesn't. So the force at any place is the polynomial with the means of the elements around, and the tension its part
 //! along the tangent.
 
-use super::directed::{Directed, DirectedParams};
 use super::element::CableParams;
 use super::longitudinal::{Longitudinal, Strain, add_axial};
-use super::model::{CableModel, Integration, Models};
+use super::model::{CableModel, Models};
 use super::quadrature::{MOST, Rule};
 use super::reduced::Reduced;
 use super::rest::BendingRest;
@@ -66,28 +65,12 @@ pub(super) fn force(
     Ok([out.r[6], out.r[7], out.r[8]])
 }
 
-/// What its stress-free curvature with a direction adds to that, where `directors` are those of its nodes and `laid` those
-/// with which it was laid, in the shape `rest`.
-pub(super) fn directed(
-    integration: Integration,
-    params: DirectedParams,
-    (q, directors): (&[f64; 12], [V3<f64>; 2]),
-    (rest, laid): (&[f64; 12], [V3<f64>; 2]),
-) -> V3<f64> {
-    let x = std::array::from_fn(|i| if i < 12 { q[i] } else { directors[(i - 12) / 3][i % 3] });
-    let x = Local { q: x, v: [0.0; 18], a: [0.0; 18], last: [0.0; 18], relaxed: None };
-    let (w, mut out) = (Weights { q: 0.0, v: 0.0, a: 0.0 }, Share::zero());
-    let element = Directed::at_shape(params, rest, laid, integration.bending());
-    Directed::add::<f64, false>(&element.to_lanes(), &x, &w, &mut out);
-    [out.r[6], out.r[7], out.r[8]]
-}
-
 /// Variance of the weight `6ξ(1-ξ)`.
 const VARIANCE: f64 = 0.05;
 
 /// With what the means of up to three neighbours count in the value at a place: that of the polynomial which has these
 /// means. `middle` are their middles as seen from the place, `length` their lengths.
-pub(super) fn weights(middle: &[f64], length: &[f64]) -> [f64; 3] {
+pub fn weights(middle: &[f64], length: &[f64]) -> [f64; 3] {
     match *middle {
         [_] => [1.0, 0.0, 0.0],
         [a, b] => [b / (b - a), a / (a - b), 0.0],
@@ -100,44 +83,5 @@ pub(super) fn weights(middle: &[f64], length: &[f64]) -> [f64; 3] {
             w.map(|w| w / sum)
         }
         _ => [0.0; 3],
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Mean with the weight of an element, by Simpson's rule on a fine grid.
-    fn mean(f: impl Fn(f64) -> f64, from: f64, l: f64) -> f64 {
-        let n = 2000;
-        (0..=n)
-            .map(|k| {
-                let xi = f64::from(k) / f64::from(n);
-                let simpson = if k == 0 || k == n {
-                    1.0
-                } else if k % 2 == 1 {
-                    4.0
-                } else {
-                    2.0
-                };
-                simpson / (3.0 * f64::from(n)) * 6.0 * xi * (1.0 - xi) * f(from + l * xi)
-            })
-            .sum()
-    }
-
-    #[test]
-    fn polynomials_are_found_from_their_means() {
-        let (ends, f) = ([0.2, 0.5, 1.4, 1.6], |s: f64| 2.0 - 3.0 * s + 0.7 * s * s);
-        let length = [0.3, 0.9, 0.2];
-        let means: Vec<f64> = (0..3).map(|k| mean(f, ends[k], length[k])).collect();
-        for at in [0.2, 0.7, 1.6] {
-            let middle = [0, 1, 2].map(|k| ends[k] + 0.5 * length[k] - at);
-            let w = weights(&middle, &length);
-            let found: f64 = (0..3).map(|k| w[k] * means[k]).sum();
-            assert!((found - f(at)).abs() < 1e-9, "{found} {}", f(at));
-            let (line, two) = (|s: f64| 1.0 + s, weights(&middle[..2], &length[..2]));
-            let found: f64 = (0..2).map(|k| two[k] * mean(line, ends[k], length[k])).sum();
-            assert!((found - line(at)).abs() < 1e-9);
-        }
     }
 }

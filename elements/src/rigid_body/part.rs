@@ -26,6 +26,8 @@ pub struct BodyPart {
     pub(crate) hull: Option<[V3<f64>; 2]>,
     /// Diameter of its hull [m].
     pub(crate) diameter: f64,
+    /// Ends and diameter [m] of the cylinder that it is drawn as, if it is nothing else.
+    pub(crate) drawn: Option<([V3<f64>; 2], f64)>,
     /// Its shape, if it is homogeneous.
     pub(crate) shape: Option<Shape>,
     pub(crate) stations: Option<Arc<dyn Stations>>,
@@ -144,7 +146,11 @@ impl Part for BodyPart {
             let seat = Attitude::new(from_origin(&[0.0; 3]), &axes);
             Solid { name: self.name.clone(), surface, carrier: None, seat }
         });
-        hull.into_iter().chain(shape).collect()
+        let seen: Vec<Solid> = hull.into_iter().chain(shape).collect();
+        let drawn = self.drawn.filter(|_| seen.is_empty());
+        let drawn =
+            drawn.map(|(ends, d)| Solid::between(&self.name, None, ends.each_ref().map(from_origin), d));
+        seen.into_iter().chain(drawn).collect()
     }
     fn length(&self) -> f64 {
         let reach = |p: &V3<f64>| p.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -61,6 +61,9 @@ pub struct RigidBodySpec {
     /// Cylinder for drag and added mass. Default: none, and neither acts.
     #[serde(default)]
     pub hull: Option<HullSpec>,
+    /// Cylinder that stands for it in pictures, if it has neither `hull` nor `shape`; nothing acts on it.
+    #[serde(default)]
+    pub drawn: Option<HullSpec>,
     /// Named points of the body [m]; each is a marker.
     #[serde(default)]
     pub points: BTreeMap<String, Point>,
@@ -94,6 +97,15 @@ pub struct HullSpec {
     pub diameter: f64,
 }
 
+impl HullSpec {
+    /// Whether there is such a cylinder.
+    fn check(&self) -> Result<(), BuildError> {
+        let axis = from(self.from, self.to);
+        positive("diameter", self.diameter)?;
+        positive("length", axis.iter().map(|x| x * x).sum::<f64>().sqrt()).map(|_| ())
+    }
+}
+
 impl RigidBodySpec {
     /// A body at rest with its frame's origin at its centre of mass, of given mass [kg] and moments of inertia [kg m²].
     pub fn new(name: &str, position: V3<f64>, mass: f64, inertia: V3<f64>) -> Self {
@@ -112,6 +124,7 @@ impl RigidBodySpec {
             volume: 0.0,
             centre_of_volume: None,
             hull: None,
+            drawn: None,
             points: BTreeMap::new(),
         }
     }
@@ -200,6 +213,7 @@ impl ElementSpec for RigidBodySpec {
         b.element(inertia, &[node])?;
 
         let mut stations = StationPool::<Hull, 7, 6, 4>::new();
+        self.drawn.as_ref().map_or(Ok(()), HullSpec::check).map_err(|e| e.of("drawn"))?;
         if let Some(hull) = &self.hull {
             finite("from", &hull.from)?;
             finite("to", &hull.to)?;
@@ -242,6 +256,7 @@ impl ElementSpec for RigidBodySpec {
             points,
             hull: self.hull.map(|h| [from(self.centre, h.from), from(self.centre, h.to)]),
             diameter: self.hull.map_or(0.0, |h| h.diameter),
+            drawn: self.drawn.map(|d| ([from(self.centre, d.from), from(self.centre, d.to)], d.diameter)),
             shape: self.shape.clone(),
             stations: self.hull.is_some().then(|| Arc::new(stations) as _),
         }))

@@ -46,7 +46,7 @@ fn trace(path: &Path, links: usize, length: f64) -> Result<(Vec<V3<f64>>, f64), 
 ///
 /// # Errors
 /// There is none: at a sharp corner the end jumps past.
-pub(crate) fn filling(path: &Path, links: usize) -> Result<f64, String> {
+pub fn filling(path: &Path, links: usize) -> Result<f64, String> {
     let arc = path.length();
     // no chord is longer than its arc
     let mut high = arc / links as f64;
@@ -68,45 +68,5 @@ pub(crate) fn filling(path: &Path, links: usize) -> Result<f64, String> {
              {:.6} m, and it ends on the path where it ends",
             low * links as f64
         )),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn sizes(joints: &[V3<f64>]) -> Vec<f64> {
-        joints.windows(2).map(|w| (0..3).map(|i| (w[1][i] - w[0][i]).powi(2)).sum::<f64>().sqrt()).collect()
-    }
-
-    #[test]
-    fn a_straight_chain_fills_its_path() {
-        let path = Path::polyline(&[[0.0; 3], [3.0, 4.0, 0.0]]).unwrap();
-        assert_eq!(filling(&path, 10), Ok(0.5));
-        let joints = joints(&path, 10, 0.5).unwrap();
-        approx::assert_relative_eq!(joints[10][..], [3.0, 4.0, 0.0][..], epsilon = 1e-12);
-    }
-
-    #[test]
-    fn links_are_equal_around_corners_and_on_spools() {
-        let path = Path::polyline(&[[1.0, 0.0, 0.3], [0.0, 0.0, 0.3]]).unwrap();
-        let path = path.wind([0.0; 3], [-1.0, 0.0, 0.0], 0.025, 5.0).unwrap();
-        let joints = joints(&path, 100, 0.1).unwrap();
-        for size in sizes(&joints) {
-            approx::assert_relative_eq!(size, 0.1, max_relative = 1e-12);
-        }
-        for x in &joints[11..] {
-            approx::assert_relative_eq!(x[1].hypot(x[2]), 0.3, max_relative = 1e-7);
-        }
-        let length = filling(&path, 60).unwrap();
-        let joints = super::joints(&path, 60, length).unwrap();
-        let end = path.at(path.length()).0;
-        assert!((0..3).all(|i| (joints[60][i] - end[i]).abs() < 1e-6), "{:?} {end:?}", joints[60]);
-    }
-
-    #[test]
-    fn a_path_that_is_too_short_is_told() {
-        let path = Path::polyline(&[[0.0; 3], [1.0, 0.0, 0.0]]).unwrap();
-        assert_eq!(joints(&path, 3, 0.4), Err(2));
     }
 }

@@ -3,9 +3,9 @@
 //! Each link is a rigid cylinder with its frame's x axis from its start to its end; spherical joints hold them together.
 
 mod bends;
-mod lay;
+pub(crate) mod lay;
 mod part;
-mod spec;
+pub(crate) mod spec;
 
 pub use bends::{Bend, Bends};
 pub use lay::joints;

@@ -135,6 +135,9 @@ impl Part for ChainPart {
         let own = three(at.v, v);
         Some((self.place(k, ahead, at), std::array::from_fn(|i| own[i] + swing[i])))
     }
+    fn links(&self) -> &[NodeId] {
+        &self.nodes
+    }
     fn centre_line(&self, at: &At<'_>) -> Vec<V3<f64>> {
         let half = 0.5 * self.link;
         let starts = (0..self.seats.len()).map(|k| self.place(k, -half, at));

@@ -5,10 +5,13 @@ mod spec;
 
 pub use spec::{BushingSpec, RotationalSpringSpec};
 
+use crate::signals::{change, least, now, rate, reach};
 use frames::{Frames, Pose, Wrench, between};
 use ropewalk_core::error::{finite, not_negative};
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
-use ropewalk_core::{Assembly, At, BuildError, Energy, Jet, Marker, Node, Pattern, Power, Term, V3};
+use ropewalk_core::{
+    Assembly, At, BuildError, Energy, Jet, Marker, Node, Pattern, Power, Signal, Term, Timed, V3,
+};
 use std::f64::consts::{PI, TAU};
 
 /// A spring and damper in all directions: of the second marker's place `d` and rotation vector `φ` as seen from the first
@@ -22,13 +25,13 @@ pub struct Bushing {
     /// A name, such as `mount`.
     pub label: String,
     /// Stiffness by axis of the first marker [N/m].
-    pub stiffness: V3<f64>,
+    pub stiffness: [Signal; 3],
     /// Damping by axis [N s/m].
-    pub damping: V3<f64>,
+    pub damping: [Signal; 3],
     /// Rotational stiffness by axis [N m/rad].
-    pub rotational_stiffness: V3<f64>,
+    pub rotational_stiffness: [Signal; 3],
     /// Rotational damping by axis [N m s/rad].
-    pub rotational_damping: V3<f64>,
+    pub rotational_damping: [Signal; 3],
     frames: Frames,
 }
 
@@ -40,15 +43,9 @@ impl Bushing {
     pub fn new(label: impl Into<String>, nodes: &[Node], markers: [Marker; 2]) -> Result<Self, BuildError> {
         let label = label.into();
         let frames = Frames::new(nodes, &markers, &label)?;
-        let none = [0.0; 3];
-        Ok(Bushing {
-            label,
-            stiffness: none,
-            damping: none,
-            rotational_stiffness: none,
-            rotational_damping: none,
-            frames,
-        })
+        let none = || [0.0; 3].map(Signal::from);
+        let [stiffness, damping, rotational_stiffness, rotational_damping] = [(); 4].map(|()| none());
+        Ok(Bushing { label, stiffness, damping, rotational_stiffness, rotational_damping, frames })
     }
 
     /// What is wrong with the numbers, if anything.
@@ -63,11 +60,33 @@ impl Bushing {
             ("rotational_damping", &self.rotational_damping),
         ] {
             for x in all {
-                not_negative(name, *x)?;
+                not_negative(name, least(x))?;
             }
         }
         Ok(())
     }
+
+    fn signals(&self) -> impl Iterator<Item = &Signal> {
+        let all = [&self.stiffness, &self.damping, &self.rotational_stiffness, &self.rotational_damping];
+        all.into_iter().flatten()
+    }
+
+    fn mount(&self, t: f64) -> Mount {
+        Mount {
+            stiffness: now(&self.stiffness, t),
+            damping: now(&self.damping, t),
+            rotational_stiffness: now(&self.rotational_stiffness, t),
+            rotational_damping: now(&self.rotational_damping, t),
+        }
+    }
+}
+
+/// A bushing at an instant.
+struct Mount {
+    stiffness: V3<f64>,
+    damping: V3<f64>,
+    rotational_stiffness: V3<f64>,
+    rotational_damping: V3<f64>,
 }
 
 /// The second frame as seen from the first: place, its rate, rotation vector, relative angular velocity.
@@ -125,7 +144,7 @@ fn as_moment<S: Jet>(phi: &V3<S>, g: &V3<S>) -> V3<S> {
     std::array::from_fn(|i| g[i] + once[i] * 0.5 + twice[i] * c)
 }
 
-impl Wrench for Bushing {
+impl Wrench for Mount {
     fn wrench<S: Jet>(&self, pose: &[Pose<S>; 2]) -> (V3<S>, V3<S>) {
         let s = seen(pose);
         let force: V3<S> =
@@ -142,6 +161,9 @@ impl Term for Bushing {
     fn label(&self) -> String {
         self.label.clone()
     }
+    fn acts(&self) -> Option<&'static str> {
+        Some("bushing")
+    }
     fn pattern(&self, p: &mut Pattern) {
         p.clique(self.frames.dofs());
     }
@@ -149,19 +171,33 @@ impl Term for Bushing {
         false
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        self.frames.add(self, at, out);
+        self.frames.add(&self.mount(at.t), at, out);
     }
     fn energy(&self, at: &At<'_>) -> Energy {
-        let s = seen(&self.frames.now(at));
+        let (s, m) = (seen(&self.frames.now(at)), self.mount(at.t));
         let stored = |k: &V3<f64>, x: &V3<f64>| -> f64 { (0..3).map(|i| 0.5 * k[i] * x[i] * x[i]).sum() };
-        let potential = stored(&self.stiffness, &s.d) + stored(&self.rotational_stiffness, &s.phi);
+        let potential = stored(&m.stiffness, &s.d) + stored(&m.rotational_stiffness, &s.phi);
         Energy { potential, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let s = seen(&self.frames.now(at));
+        let (s, m) = (seen(&self.frames.now(at)), self.mount(at.t));
         let lost = |c: &V3<f64>, x: &V3<f64>| -> f64 { (0..3).map(|i| c[i] * x[i] * x[i]).sum() };
-        let dissipated = lost(&self.damping, &s.rate) + lost(&self.rotational_damping, &s.spin);
-        Power { dissipated, ..Power::default() }
+        let dissipated = lost(&m.damping, &s.rate) + lost(&m.rotational_damping, &s.spin);
+        // whoever changes a stiffness works on what is strained
+        let change = |k: &[Signal; 3], x: &V3<f64>| -> f64 {
+            (0..3).map(|i| 0.5 * rate(&k[i], at.t) * x[i] * x[i]).sum()
+        };
+        let supplied = change(&self.stiffness, &s.d) + change(&self.rotational_stiffness, &s.phi);
+        Power { dissipated, supplied, ..Power::default() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if change(self.signals()) { Some(self) } else { None }
+    }
+}
+
+impl Timed for Bushing {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(reach(self.signals(), t, h))
     }
 }
 
@@ -175,11 +211,11 @@ pub struct RotationalSpring {
     /// A name, such as `spring of the door`.
     pub label: String,
     /// Stiffness `κ` [N m/rad].
-    pub stiffness: f64,
+    pub stiffness: Signal,
     /// Damping `c` [N m s/rad].
-    pub damping: f64,
+    pub damping: Signal,
     /// Angle without moment `φ_0` [rad].
-    pub rest: f64,
+    pub rest: Signal,
     frames: Frames,
 }
 
@@ -192,16 +228,34 @@ impl RotationalSpring {
         label: impl Into<String>,
         nodes: &[Node],
         markers: [Marker; 2],
-        stiffness: f64,
-        rest: f64,
+        stiffness: impl Into<Signal>,
+        rest: impl Into<Signal>,
     ) -> Result<Self, BuildError> {
-        let label = label.into();
-        not_negative("stiffness", stiffness)?;
-        finite("angle", &[rest])?;
+        let (label, stiffness, rest) = (label.into(), stiffness.into(), rest.into());
+        not_negative("stiffness", least(&stiffness))?;
+        finite("angle", &[rest.at(0.0)])?;
         let frames = Frames::new(nodes, &markers, &label)?;
-        Ok(RotationalSpring { label, stiffness, damping: 0.0, rest, frames })
+        Ok(RotationalSpring { label, stiffness, damping: 0.0.into(), rest, frames })
     }
 
+    fn signals(&self) -> [&Signal; 3] {
+        [&self.stiffness, &self.damping, &self.rest]
+    }
+
+    fn torsion(&self, t: f64) -> Torsion {
+        let [stiffness, damping, rest] = self.signals().map(|s| s.at(t));
+        Torsion { stiffness, damping, rest }
+    }
+}
+
+/// A torsion spring at an instant.
+struct Torsion {
+    stiffness: f64,
+    damping: f64,
+    rest: f64,
+}
+
+impl Torsion {
     /// Angle from that without moment, and its rate.
     fn turn<S: Jet>(&self, pose: &[Pose<S>; 2]) -> (S, S) {
         let axes = pose.each_ref().map(|p| matrix(&p.axes));
@@ -216,7 +270,7 @@ impl RotationalSpring {
     }
 }
 
-impl Wrench for RotationalSpring {
+impl Wrench for Torsion {
     fn wrench<S: Jet>(&self, pose: &[Pose<S>; 2]) -> (V3<S>, V3<S>) {
         let (angle, rate) = self.turn(pose);
         let moment = -(angle * self.stiffness) - rate * self.damping;
@@ -236,14 +290,28 @@ impl Term for RotationalSpring {
         false
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        self.frames.add(self, at, out);
+        self.frames.add(&self.torsion(at.t), at, out);
     }
     fn energy(&self, at: &At<'_>) -> Energy {
-        let (angle, _) = self.turn(&self.frames.now(at));
-        Energy { potential: 0.5 * self.stiffness * angle * angle, ..Energy::default() }
+        let torsion = self.torsion(at.t);
+        let (angle, _) = torsion.turn(&self.frames.now(at));
+        Energy { potential: 0.5 * torsion.stiffness * angle * angle, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let (_, rate) = self.turn(&self.frames.now(at));
-        Power { dissipated: self.damping * rate * rate, ..Power::default() }
+        let torsion = self.torsion(at.t);
+        let (angle, spin) = torsion.turn(&self.frames.now(at));
+        // whoever changes stiffness and angle works on the moment
+        let supplied = 0.5 * rate(&self.stiffness, at.t) * angle * angle
+            - torsion.stiffness * angle * rate(&self.rest, at.t);
+        Power { dissipated: torsion.damping * spin * spin, supplied, ..Power::default() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        if change(self.signals().into_iter()) { Some(self) } else { None }
+    }
+}
+
+impl Timed for RotationalSpring {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        Some(reach(self.signals().into_iter(), t, h))
     }
 }

@@ -1,9 +1,11 @@
 //! What a scene says about bushings and torsion springs.
 
 use super::{Bushing, RotationalSpring};
+use crate::signals::least;
 use ropewalk_core::error::{finite, not_negative};
 use ropewalk_core::rotation::{IDENTITY, M3, around, cross};
-use ropewalk_core::{BuildError, Marker, V3, dot};
+use ropewalk_core::{BuildError, Marker, Signal, V3, dot};
+use ropewalk_scene::quantity::{Kind, Setting, kind};
 use ropewalk_scene::{Builder, ForceSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -28,17 +30,17 @@ pub struct BushingSpec {
     #[serde(default)]
     pub axis_y: Option<V3<f64>>,
     /// Stiffness along each axis [N/m].
-    #[serde(default, deserialize_with = "quantity::vec3::spring_stiffness")]
-    pub stiffness: V3<f64>,
+    #[serde(default, deserialize_with = "quantity::setting::vec3::spring_stiffness")]
+    pub stiffness: [Setting; 3],
     /// Damping along each axis [N s/m].
-    #[serde(default, deserialize_with = "quantity::vec3::damping")]
-    pub damping: V3<f64>,
+    #[serde(default, deserialize_with = "quantity::setting::vec3::damping")]
+    pub damping: [Setting; 3],
     /// Stiffness about each axis [N m/rad].
-    #[serde(default, deserialize_with = "quantity::vec3::rotational_stiffness")]
-    pub rotational_stiffness: V3<f64>,
+    #[serde(default, deserialize_with = "quantity::setting::vec3::rotational_stiffness")]
+    pub rotational_stiffness: [Setting; 3],
     /// Damping about each axis [N m s/rad].
-    #[serde(default, deserialize_with = "quantity::vec3::rotational_damping")]
-    pub rotational_damping: V3<f64>,
+    #[serde(default, deserialize_with = "quantity::setting::vec3::rotational_damping")]
+    pub rotational_damping: [Setting; 3],
 }
 register_spec!(Force, "bushing", BushingSpec);
 
@@ -55,6 +57,12 @@ fn pair(
         None => Marker::ground(b.place(&held).x),
     };
     Ok([holds, held].map(|m| m.with_axes(b.nodes(), b.coordinates(), axes)))
+}
+
+/// Three numbers of a kind that may be read from inputs.
+fn three(b: &Builder, field: &str, of: &[Setting; 3], kind: &Kind) -> Result<[Signal; 3], BuildError> {
+    let [x, y, z] = of.each_ref().map(|s| b.signal(field, s, kind));
+    Ok([x?, y?, z?])
 }
 
 fn unit(field: &str, d: V3<f64>) -> Result<V3<f64>, BuildError> {
@@ -86,10 +94,12 @@ impl ForceSpec for BushingSpec {
         };
         let markers = pair(b, &self.marker, self.to.as_ref(), axes)?;
         let mut bushing = Bushing::new(&self.name, b.nodes(), markers)?;
-        bushing.stiffness = self.stiffness;
-        bushing.damping = self.damping;
-        bushing.rotational_stiffness = self.rotational_stiffness;
-        bushing.rotational_damping = self.rotational_damping;
+        bushing.stiffness = three(b, "stiffness", &self.stiffness, &kind::SPRING_STIFFNESS)?;
+        bushing.damping = three(b, "damping", &self.damping, &kind::DAMPING)?;
+        let (stiffness, damping) = (&kind::ROTATIONAL_STIFFNESS, &kind::ROTATIONAL_DAMPING);
+        bushing.rotational_stiffness =
+            three(b, "rotational_stiffness", &self.rotational_stiffness, stiffness)?;
+        bushing.rotational_damping = three(b, "rotational_damping", &self.rotational_damping, damping)?;
         bushing.check()?;
         b.term(Box::new(bushing));
         Ok(())
@@ -111,14 +121,14 @@ pub struct RotationalSpringSpec {
     /// Direction of the axis in space at the start.
     pub axis: V3<f64>,
     /// Stiffness [N m/rad].
-    #[serde(default, deserialize_with = "quantity::rotational_stiffness")]
-    pub stiffness: f64,
+    #[serde(default, deserialize_with = "quantity::setting::rotational_stiffness")]
+    pub stiffness: Setting,
     /// Damping [N m s/rad].
-    #[serde(default, deserialize_with = "quantity::rotational_damping")]
-    pub damping: f64,
+    #[serde(default, deserialize_with = "quantity::setting::rotational_damping")]
+    pub damping: Setting,
     /// Angle without moment, from the initial position [rad].
-    #[serde(default, deserialize_with = "quantity::angle")]
-    pub angle: f64,
+    #[serde(default, deserialize_with = "quantity::setting::angle")]
+    pub angle: Setting,
 }
 register_spec!(Force, "rotational_spring", RotationalSpringSpec);
 
@@ -130,8 +140,12 @@ impl ForceSpec for RotationalSpringSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let axes = around(unit("axis", self.axis)?);
         let markers = pair(b, &self.marker, self.to.as_ref(), axes)?;
-        let mut spring = RotationalSpring::new(&self.name, b.nodes(), markers, self.stiffness, self.angle)?;
-        spring.damping = not_negative("damping", self.damping)?;
+        let stiffness = b.signal("stiffness", &self.stiffness, &kind::ROTATIONAL_STIFFNESS)?;
+        let angle = b.signal("angle", &self.angle, &kind::ANGLE)?;
+        let damping = b.signal("damping", &self.damping, &kind::ROTATIONAL_DAMPING)?;
+        not_negative("damping", least(&damping))?;
+        let mut spring = RotationalSpring::new(&self.name, b.nodes(), markers, stiffness, angle)?;
+        spring.damping = damping;
         b.term(Box::new(spring));
         Ok(())
     }

@@ -18,19 +18,19 @@ pub(crate) struct Cubic(pub [V3<f64>; 4]);
 const SHORTEST: f64 = 1e-6;
 /// Around hollows of any kind, such as the valleys of a mesh, what is smaller than this part of the radius isn't looked
 /// for: between two places that far apart the depth changes by a thousandth of it.
-const DETAIL: f64 = 0.125;
+pub(crate) const DETAIL: f64 = 0.125;
 
 /// A place that was looked at: depth, and its derivative by `ξ`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
-    xi: f64,
-    x: V3<f64>,
-    depth: f64,
-    slope: f64,
+    pub xi: f64,
+    pub x: V3<f64>,
+    pub depth: f64,
+    pub slope: f64,
 }
 
 /// What is known of a piece.
-enum Piece {
+pub(crate) enum Piece {
     Free,
     Touches,
     /// It has one end of contact.
@@ -48,7 +48,7 @@ impl Cubic {
         let s = xi * xi * (3.0 - 2.0 * xi);
         blend([1.0 - s, xi * rest * rest, s, -xi * xi * rest], &self.0)
     }
-    fn slope(&self, xi: f64) -> V3<f64> {
+    pub fn slope(&self, xi: f64) -> V3<f64> {
         let s = 6.0 * xi * (1.0 - xi);
         blend([-s, (1.0 - xi) * (1.0 - 3.0 * xi), s, xi * (3.0 * xi - 2.0)], &self.0)
     }
@@ -63,36 +63,31 @@ impl Cubic {
         let (slope, bend) = (self.slope(0.5), blend([0.0, -1.0, 0.0, 1.0], &self.0));
         -dot(&bend, normal) / dot(&slope, &slope)
     }
+    /// `p''`
+    pub fn second(&self, xi: f64) -> V3<f64> {
+        let s = 12.0 * xi - 6.0;
+        blend([s, 6.0 * xi - 4.0, -s, 6.0 * xi - 2.0], &self.0)
+    }
     /// The largest `|p''|`, which is at an end.
-    fn bend(&self) -> f64 {
+    pub fn bend(&self) -> f64 {
         let start = blend([-6.0, -4.0, 6.0, -2.0], &self.0);
         let end = blend([6.0, 2.0, -6.0, 4.0], &self.0);
         dot(&start, &start).max(dot(&end, &end)).sqrt()
     }
 }
 
-/// A curve with a thickness, in the axes of the shape that it may touch.
-pub(crate) struct Search<'a> {
-    pub shape: &'a Shape,
-    pub curve: &'a Cubic,
-    pub radius: f64,
-    speed: f64,
-    bend: f64,
-}
+/// The depth along a curve: what the search looks at, and what is known in between.
+pub(crate) trait Depth {
+    /// A place; nothing where there is nothing to touch.
+    fn look(&self, xi: f64) -> Option<Look>;
+    /// A bound of `|δ'|`.
+    fn speed(&self) -> f64;
+    /// A bound of `δ''` on a piece; infinite if there is none.
+    fn rise(&self, a: &Look, b: &Look) -> f64;
 
-impl<'a> Search<'a> {
-    pub fn new(shape: &'a Shape, curve: &'a Cubic, radius: f64) -> Self {
-        Search { shape, curve, radius, speed: curve.speed(), bend: 0.0 }
-    }
-
-    /// The places that touch, from `ξ` to `ξ`, in order, put behind those in `found`. A curve that is farther away than
-    /// it is long costs one look.
-    pub fn find(&mut self, pieces: &mut Vec<[Look; 2]>, found: &mut Vec<[f64; 2]>) {
-        if self.shape.gap(&self.curve.at(0.5), self.radius + 0.5 * self.speed).is_none() {
-            return;
-        }
-        self.bend = self.curve.bend();
-        let (Some(first), Some(last)) = (self.look(0.0), self.look(1.0)) else { return };
+    /// The places that touch from `from` to `to`, each from `ξ` to `ξ`, in order, put behind those in `found`.
+    fn find_between(&self, [from, to]: [f64; 2], pieces: &mut Vec<[Look; 2]>, found: &mut Vec<[f64; 2]>) {
+        let (Some(first), Some(last)) = (self.look(from), self.look(to)) else { return };
         pieces.clear();
         pieces.push([first, last]);
         let mut since: Option<f64> = None;
@@ -121,25 +116,16 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        found.extend(since.map(|from| [from, 1.0]));
-    }
-
-    /// A lower bound of the distance of the curve's surface from the shape [m].
-    pub fn room(&mut self) -> f64 {
-        let Some(gap) = self.shape.at_least(&self.curve.at(0.5)) else { return f64::INFINITY };
-        let far = gap.distance - 0.5 * self.speed - self.radius;
-        if far > 0.0 {
-            return far;
-        }
-        self.bend = self.curve.bend();
-        match (self.look(0.0), self.look(1.0)) {
-            (Some(a), Some(b)) => far.max(-self.bounds(&a, &b).0),
-            _ => f64::INFINITY,
-        }
+        found.extend(since.map(|from| [from, to]));
     }
 
     /// The greatest depth on a piece that touches, as records show it: between the looks next to the deepest.
-    pub fn deepest(&self, [from, to]: [f64; 2]) -> f64 {
+    fn deepest(&self, piece: [f64; 2]) -> f64 {
+        self.deepest_at(piece).1
+    }
+
+    /// The place of the greatest depth on a piece, and the depth there.
+    fn deepest_at(&self, [from, to]: [f64; 2]) -> (f64, f64) {
         const LOOKS: usize = 16;
         let depth = |xi: f64| self.look(xi).map_or(f64::NEG_INFINITY, |l| l.depth);
         let place = |k: usize| from + (to - from) * k as f64 / LOOKS as f64;
@@ -149,35 +135,8 @@ impl<'a> Search<'a> {
             let third = (high - low) / 3.0;
             if depth(low + third) < depth(high - third) { low += third } else { high -= third }
         }
-        depth(0.5 * (low + high)).max(depth(place(best)))
-    }
-
-    fn look(&self, xi: f64) -> Option<Look> {
-        let x = self.curve.at(xi);
-        let mut gap = self.shape.gap(&x, f64::INFINITY)?;
-        if gap.distance < 0.0 && self.shape.gap(&x, self.radius).is_none() {
-            // beyond the box of a surface with borders there is no inside
-            (gap.distance, gap.normal) = (-gap.distance, gap.normal.map(|n| -n));
-        }
-        Some(Look {
-            xi,
-            x,
-            depth: self.radius - gap.distance,
-            slope: -dot(&gap.normal, &self.curve.slope(xi)),
-        })
-    }
-
-    /// A bound of `δ''` on a piece; infinite if there is none.
-    fn rise(&self, a: &Look, b: &Look) -> f64 {
-        let way = 0.5 * self.speed * (b.xi - a.xi);
-        let middle: V3<f64> = std::array::from_fn(|i| 0.5 * (a.x[i] + b.x[i]));
-        // every point of the piece is within `way` of the middle of its chord
-        let reach = (self.radius - 0.5 * (a.depth + b.depth)).abs() + way;
-        let hollow = self.shape.hollow(&middle, way, reach);
-        if hollow == 0.0 || hollow.is_infinite() && way < DETAIL * self.radius {
-            return self.bend;
-        }
-        self.bend + hollow * self.speed * self.speed
+        let (inner, middle) = (depth(0.5 * (low + high)), depth(place(best)));
+        if inner > middle { (0.5 * (low + high), inner) } else { (place(best), middle) }
     }
 
     /// Bounds of the depth on a piece: the most and the least.
@@ -187,7 +146,7 @@ impl<'a> Search<'a> {
 
     fn bounds_with(&self, c: f64, a: &Look, b: &Look) -> (f64, f64) {
         let h = b.xi - a.xi;
-        let (mean, way) = (0.5 * (a.depth + b.depth), 0.5 * self.speed * h);
+        let (mean, way) = (0.5 * (a.depth + b.depth), 0.5 * self.speed() * h);
         let (mut most, mut least) = (mean + way, mean - way);
         if c.is_finite() {
             let (up, down) = (a.slope + 0.5 * c * h, b.slope - 0.5 * c * h);
@@ -247,6 +206,78 @@ impl<'a> Search<'a> {
             }
         }
         xi
+    }
+}
+
+/// A curve with a thickness, in the axes of the shape that it may touch.
+pub(crate) struct Search<'a> {
+    pub shape: &'a Shape,
+    pub curve: &'a Cubic,
+    pub radius: f64,
+    speed: f64,
+    bend: f64,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(shape: &'a Shape, curve: &'a Cubic, radius: f64) -> Self {
+        Search { shape, curve, radius, speed: curve.speed(), bend: 0.0 }
+    }
+
+    /// The places that touch, from `ξ` to `ξ`, in order, put behind those in `found`. A curve that is farther away than
+    /// it is long costs one look.
+    pub fn find(&mut self, pieces: &mut Vec<[Look; 2]>, found: &mut Vec<[f64; 2]>) {
+        if self.shape.gap(&self.curve.at(0.5), self.radius + 0.5 * self.speed).is_none() {
+            return;
+        }
+        self.bend = self.curve.bend();
+        self.find_between([0.0, 1.0], pieces, found);
+    }
+
+    /// A lower bound of the distance of the curve's surface from the shape [m].
+    pub fn room(&mut self) -> f64 {
+        let Some(gap) = self.shape.at_least(&self.curve.at(0.5)) else { return f64::INFINITY };
+        let far = gap.distance - 0.5 * self.speed - self.radius;
+        if far > 0.0 {
+            return far;
+        }
+        self.bend = self.curve.bend();
+        match (self.look(0.0), self.look(1.0)) {
+            (Some(a), Some(b)) => far.max(-self.bounds(&a, &b).0),
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+impl Depth for Search<'_> {
+    fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    fn look(&self, xi: f64) -> Option<Look> {
+        let x = self.curve.at(xi);
+        let mut gap = self.shape.gap(&x, f64::INFINITY)?;
+        if gap.distance < 0.0 && self.shape.gap(&x, self.radius).is_none() {
+            // beyond the box of a surface with borders there is no inside
+            (gap.distance, gap.normal) = (-gap.distance, gap.normal.map(|n| -n));
+        }
+        Some(Look {
+            xi,
+            x,
+            depth: self.radius - gap.distance,
+            slope: -dot(&gap.normal, &self.curve.slope(xi)),
+        })
+    }
+
+    fn rise(&self, a: &Look, b: &Look) -> f64 {
+        let way = 0.5 * self.speed * (b.xi - a.xi);
+        let middle: V3<f64> = std::array::from_fn(|i| 0.5 * (a.x[i] + b.x[i]));
+        // every point of the piece is within `way` of the middle of its chord
+        let reach = (self.radius - 0.5 * (a.depth + b.depth)).abs() + way;
+        let hollow = self.shape.hollow(&middle, way, reach);
+        if hollow == 0.0 || hollow.is_infinite() && way < DETAIL * self.radius {
+            return self.bend;
+        }
+        self.bend + hollow * self.speed * self.speed
     }
 }
 

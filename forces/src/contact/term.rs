@@ -5,7 +5,7 @@ use super::flowing::Flowing;
 use super::friction::{CELLS, Pressed};
 use super::group::{Ball, Group, Scratch, Span, What};
 use super::law::ContactLaw;
-use super::search::Search;
+use super::search::{Depth, Search};
 use super::seat::{Fixed, Frame, Seat, minus, rotation};
 use super::shape::Shape;
 use super::touch::{Pair, Touch};
@@ -345,6 +345,9 @@ impl Term for Contact {
     fn label(&self) -> String {
         self.label.clone()
     }
+    fn acts(&self) -> Option<&'static str> {
+        Some("contact")
+    }
     fn pattern(&self, p: &mut Pattern) {
         let body = self.body();
         for g in &self.groups {
@@ -417,7 +420,7 @@ impl Remembers for Contact {
 }
 
 impl Foresees for Contact {
-    fn horizon(&self, at: &At<'_>) -> f64 {
+    fn step_limit(&self, at: &At<'_>) -> f64 {
         let frame = self.fixed.frame(at);
         let fixed = self.groups.iter().map(|g| self.free(g, &frame, at));
         let flowing = self.flowing.iter().map(|f| {

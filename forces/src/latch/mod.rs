@@ -118,6 +118,9 @@ impl Term for Latch {
     fn label(&self) -> String {
         self.label.clone()
     }
+    fn acts(&self) -> Option<&'static str> {
+        Some("latch")
+    }
     fn pattern(&self, p: &mut Pattern) {
         for seat in &self.seats {
             p.clique(dofs(&seat.ends));
@@ -178,7 +181,7 @@ impl Term for Latch {
 }
 
 impl Foresees for Latch {
-    fn horizon(&self, at: &At<'_>) -> f64 {
+    fn step_limit(&self, at: &At<'_>) -> f64 {
         // what fades is not leapt over
         let fades = |s: &Seat| at.internal[s.variable] != 0.0 && at.t < at.internal[s.variable] + self.fade;
         if self.seats.iter().any(fades) { 0.25 * self.fade } else { f64::INFINITY }
@@ -203,6 +206,9 @@ impl Event for Release {
     }
     fn direction(&self) -> i8 {
         1
+    }
+    fn of_forces(&self) -> bool {
+        true
     }
     fn act(&self, _: &Model, state: &mut State) -> Action {
         // the located time is right to rounding, and so is the load there

@@ -43,7 +43,7 @@ enum Slope {
 pub fn at_tip(law: impl TipLaw, part: &str, nodes: &[Node], tip: &Tip) -> Option<Box<dyn Term>> {
     let node = nodes.get(tip.marker.on()?.0 as usize)?;
     let slope = match node.kind {
-        NodeKind::Slope => Slope::Node { q: node.q + 3, v: node.v + 3 },
+        NodeKind::Slope | NodeKind::Twist => Slope::Node { q: node.q + 3, v: node.v + 3 },
         NodeKind::Frame => Slope::Axis { axis: tip.axis, q: node.q },
         _ => return None,
     };
@@ -77,6 +77,9 @@ fn frame(at: &At<'_>, q: usize) -> [V3<f64>; 3] {
 impl<L: TipLaw> Term for AtTip<L> {
     fn label(&self) -> String {
         self.label.clone()
+    }
+    fn acts(&self) -> Option<&'static str> {
+        Some("drag")
     }
     fn pattern(&self, p: &mut Pattern) {
         match self.slope {

@@ -40,10 +40,12 @@ impl TipLaw for BluntEnd {
         let w: V3<R> = std::array::from_fn(|i| v[i] - u[i]);
         let inverse = R::of(1.0) / dot(slope, slope).sqrt();
         let out = scaled(if self.first { -inverse } else { inverse }, slope);
-        let (along, speed) = (dot(&w, &out), dot(&w, &w).sqrt());
-        if !(along.lane(0) < 0.0) {
+        let (along, square) = (dot(&w, &out), dot(&w, &w));
+        // far from where a long cable begins to move, velocities are so small that their squares are nothing
+        if !(along.lane(0) < 0.0 && square.lane(0) >= f64::MIN_POSITIVE) {
             return [R::zero(); 3];
         }
+        let speed = square.sqrt();
         let wet = self.surface.map_or(R::of(1.0), |surface| surface.ball(z, 0.5 * self.diameter).0);
         let per = wet * R::of(1.0 - self.taper) * self.added_mass.mass(R::of(self.diameter)) * inverse;
         let n: V3<R> = std::array::from_fn(|i| w[i] - along * out[i]);

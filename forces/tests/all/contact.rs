@@ -367,7 +367,7 @@ fn a_ball_that_flies_towards_a_shape_sees_it_in_time() {
             let ball = ContactPoint { held: Held::Moves { q: 0, v: 0 }, radius: 0.05 };
             let law = ContactLaw::default();
             let c = Contact::new("c", &nodes, shape.clone(), &marker, (&[ball], &[]), STIFF, law).unwrap();
-            let h = c.horizon(&s.at());
+            let h = c.step_limit(&s.at());
             if !h.is_finite() {
                 continue;
             }
@@ -632,7 +632,7 @@ fn a_curve_that_flies_towards_a_shape_sees_it_in_time() {
             if c.depths(&s.at()).next().unwrap().is_some() {
                 continue;
             }
-            let h = c.horizon(&s.at());
+            let h = c.step_limit(&s.at());
             finite += usize::from(h < 0.2);
             for k in 1..100 {
                 let t = 0.99 * h.min(0.2) * k as f64 / 100.0;

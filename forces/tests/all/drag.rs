@@ -331,3 +331,27 @@ fn bad_numbers_are_refused() {
     assert!(Drag { blend: Some(2.0), ..drag }.check().is_err());
     assert!(AddedMass::new(1025.0, -1.0).is_err());
 }
+
+/// Where a long cable begins to move, its far end does so with velocities whose squares are smaller than any number.
+#[test]
+fn an_end_that_hardly_moves_sheds_nothing() {
+    let nodes = [Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false }];
+    let tip = Tip {
+        marker: Marker::node(NodeId(0)),
+        axis: [1.0, 0.0, 0.0],
+        diameter: 0.2,
+        first: false,
+        sheds: true,
+    };
+    let added_mass = AddedMass::new(1025.0, 1.0).unwrap();
+    let law = BluntEnd { added_mass, diameter: 0.2, taper: 0.0, first: false, surface: None };
+    let term = at_tip(law, "part", &nodes, &tip).expect("a slope");
+    for speed in [0.0, 5e-324, 1e-300, 1e-165, 1e-155, 1e-20] {
+        let v = [-speed, 0.5 * speed, 0.0, 0.0, 0.0, 0.0];
+        let q = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0];
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 6], internal: &[], relaxed: None };
+        let weights = Weights { q: 1.0, v: 1.0, a: 1.0 };
+        let (r, k) = dense(term.as_ref(), &nodes, &at, weights, Width::One);
+        assert!(r.iter().chain(k.iter().flatten()).all(|x| x.is_finite()), "{speed:e}: {r:?} {k:?}");
+    }
+}

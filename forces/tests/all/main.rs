@@ -3,7 +3,11 @@
 #[cfg(feature = "contact")]
 mod contact;
 mod drag;
+mod functions;
+#[cfg(feature = "contact")]
+mod lines;
 mod mounts;
 mod random;
 mod surface;
 mod terms;
+mod time;

@@ -4,7 +4,7 @@ use crate::random::Random;
 use ropewalk_core::held::Held;
 use ropewalk_core::rotation::{IDENTITY, cross, matrix, times};
 use ropewalk_core::testing::{check_tangent, dense, difference};
-use ropewalk_core::{At, Marker, Node, NodeId, NodeKind, Term, V3, Weights, Width, retract};
+use ropewalk_core::{At, Marker, Node, NodeId, NodeKind, Signal, Term, V3, Weights, Width, retract};
 use ropewalk_forces::{Bushing, Floor, Latch, RotationalSpring, Seat};
 
 /// Two rigid bodies and a point.
@@ -54,8 +54,8 @@ fn bushings() -> Vec<Bushing> {
     [[a, b], [ground, b], [a, ground]]
         .map(|pair| {
             let mut bushing = Bushing::new("mount", &nodes(), pair).unwrap();
-            bushing.stiffness = [100.0, 200.0, 50.0];
-            bushing.rotational_stiffness = [10.0, 30.0, 20.0];
+            bushing.stiffness = [100.0, 200.0, 50.0].map(Signal::from);
+            bushing.rotational_stiffness = [10.0, 30.0, 20.0].map(Signal::from);
             bushing
         })
         .to_vec()
@@ -99,11 +99,12 @@ fn tangents_are_exact() {
         let mut terms: Vec<Box<dyn Term>> = Vec::new();
         for mut bushing in bushings() {
             terms.push(Box::new(bushing.clone()));
-            (bushing.damping, bushing.rotational_damping) = ([5.0, 7.0, 1.0], [2.0, 0.5, 3.0]);
+            (bushing.damping, bushing.rotational_damping) =
+                ([5.0, 7.0, 1.0].map(Signal::from), [2.0, 0.5, 3.0].map(Signal::from));
             terms.push(Box::new(bushing));
         }
         let mut spring = RotationalSpring::new("spring", &nodes(), frames(), 30.0, 0.4).unwrap();
-        spring.damping = 2.0;
+        spring.damping = 2.0.into();
         terms.push(Box::new(spring));
         terms.extend(latches().into_iter().map(|l| Box::new(l) as Box<dyn Term>));
         for (k, term) in terms.iter().enumerate() {
@@ -135,7 +136,8 @@ fn what_is_taken_is_stored_or_dissipated() {
         let s = Numbers::new(seed);
         let mut terms: Vec<Box<dyn Term>> = Vec::new();
         for mut bushing in bushings() {
-            (bushing.damping, bushing.rotational_damping) = ([5.0, 7.0, 1.0], [2.0, 0.5, 3.0]);
+            (bushing.damping, bushing.rotational_damping) =
+                ([5.0, 7.0, 1.0].map(Signal::from), [2.0, 0.5, 3.0].map(Signal::from));
             terms.push(Box::new(bushing));
         }
         terms.extend(latches().into_iter().map(|l| Box::new(l) as Box<dyn Term>));
@@ -156,7 +158,8 @@ fn what_is_taken_is_stored_or_dissipated() {
 fn a_bushing_between_bodies_keeps_momentum_and_angular_momentum() {
     let s = Numbers::new(3);
     let mut bushing = bushings().remove(0);
-    (bushing.damping, bushing.rotational_damping) = ([5.0, 7.0, 1.0], [2.0, 0.5, 3.0]);
+    (bushing.damping, bushing.rotational_damping) =
+        ([5.0, 7.0, 1.0].map(Signal::from), [2.0, 0.5, 3.0].map(Signal::from));
     let (r, _) = dense(&bushing, &nodes(), &s.at(), Weights::default(), Width::One);
     let mut force = [0.0; 3];
     let mut moment = [0.0; 3];
@@ -196,6 +199,6 @@ fn bushings_need_two_bodies() {
     let point = Marker::node(NodeId(2));
     assert!(Bushing::new("m", &nodes, [a, point]).unwrap_err().message.contains("`spring`"));
     let mut bushing = Bushing::new("m", &nodes, [a, b]).unwrap();
-    bushing.damping = [0.0, -1.0, 0.0];
+    bushing.damping = [0.0, -1.0, 0.0].map(Signal::from);
     assert!(bushing.check().unwrap_err().message.contains("`damping` must not be negative"));
 }

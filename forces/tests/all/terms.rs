@@ -8,7 +8,14 @@ use ropewalk_forces::{PointForce, PointMoment, Spring, TimeFunction};
 /// A point, a cable node, a body and another cable node.
 fn nodes() -> Vec<Node> {
     let mut all: Vec<Node> = Vec::new();
-    for kind in [NodeKind::Point, NodeKind::Slope, NodeKind::Frame, NodeKind::Slope, NodeKind::Scalars(1)] {
+    for kind in [
+        NodeKind::Point,
+        NodeKind::Slope,
+        NodeKind::Frame,
+        NodeKind::Slope,
+        NodeKind::Scalars(1),
+        NodeKind::Twist,
+    ] {
         let (q, v) = all.last().map_or((0, 0), |n| (n.coords().end, n.dofs().end));
         all.push(Node { kind, q, v, shared: false });
     }
@@ -24,9 +31,12 @@ struct Numbers {
 impl Numbers {
     fn new(seed: u64) -> Self {
         let mut r = Random(seed);
-        let mut s = Numbers { q: r.list(23, 2.0), v: r.list(22, 2.0), a: r.list(22, 2.0) };
+        let mut s = Numbers { q: r.list(33, 2.0), v: r.list(29, 2.0), a: r.list(29, 2.0) };
         let norm: f64 = s.q[12..16].iter().map(|x| x * x).sum::<f64>().sqrt();
         s.q[12..16].iter_mut().for_each(|x| *x /= norm);
+        let three = |i: usize| [s.q[i], s.q[i + 1], s.q[i + 2]];
+        let section = ropewalk_core::model::twist::laid(&three(23), &three(26), &three(29), s.q[32]);
+        s.q[23..33].copy_from_slice(&section);
         s
     }
     fn at(&self) -> At<'_> {
@@ -39,6 +49,7 @@ const CABLE: NodeId = NodeId(1);
 const BODY: NodeId = NodeId(2);
 const OTHER: NodeId = NodeId(3);
 const NUMBER: NodeId = NodeId(4);
+const SECTION: NodeId = NodeId(5);
 
 fn harmonic() -> TimeFunction {
     TimeFunction::Harmonic { mean: 1.0, amplitude: 0.5, frequency: 0.7, phase: 0.1 }
@@ -75,7 +86,8 @@ fn terms() -> Vec<Box<dyn Term>> {
         let dead = DeadLoad::at_marker(&nodes, &Marker::node(node), force).unwrap();
         all.push(Box::new(DeadLoad::new("w", dead).unwrap()));
     }
-    for node in [CABLE, OTHER] {
+    all.push(Box::new(PointMoment::along("m", &nodes, SECTION, 3.0, harmonic()).unwrap()));
+    for node in [CABLE, OTHER, SECTION] {
         all.push(Box::new(PointForce::follower("f", &nodes, node, 12.0, harmonic()).unwrap()));
         all.push(Box::new(PointMoment::new("m", &nodes, node, force, harmonic()).unwrap()));
     }
@@ -225,6 +237,7 @@ fn what_cannot_be_loaded_is_refused() {
     assert!(dead(&Marker::node(NUMBER)).is_err());
     assert!(dead(&Marker::node(NodeId(77))).is_err());
     assert!(PointForce::follower("f", &nodes, POINT, 1.0, constant.clone()).is_err());
+    assert!(PointMoment::along("m", &nodes, CABLE, 1.0, constant.clone()).is_err());
     assert!(PointMoment::new("m", &nodes, POINT, [1.0; 3], constant.clone()).is_err());
     let spring = |pair| Spring::new("s", &nodes, pair, 1.0, 1.0);
     assert!(spring([Marker::ground([0.0; 3]), Marker::ground([1.0; 3])]).is_err());

@@ -52,7 +52,7 @@ pub struct Shape {
     pub x: Vec<V3<f64>>,
     /// Tension at the middle of each segment [N].
     pub tension: Vec<f64>,
-    /// Curvature at each node [1/m].
+    /// Curvature at each node [1/m]; without bending stiffness nothing tells it at the ends, where it is NaN.
     pub curvature: Vec<f64>,
 }
 
@@ -157,6 +157,14 @@ impl Running {
         let within = self.problem.tension(&self.newmark.y, &self.newmark.now);
         let between = within.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         std::iter::once(ends[0]).chain(between).chain([ends[1]]).collect()
+    }
+    /// Curvature at each node [1/m]; without bending stiffness nothing tells it at the ends, where it is NaN.
+    pub fn curvatures(&self) -> Vec<f64> {
+        let (y, now) = (&self.newmark.y, &self.newmark.now);
+        let n = y.segments();
+        let known = |j: usize| self.problem.cable.ei > 0.0 || (1..n).contains(&j);
+        let at = |j: usize| if known(j) { length(&self.problem.curvature(y, now, j)) } else { f64::NAN };
+        (0..=n).map(at).collect()
     }
     /// What was the matter so far.
     pub fn conditions(&self) -> &[Condition] {

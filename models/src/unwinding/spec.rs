@@ -327,6 +327,9 @@ impl Process for Unwound {
     fn tensions(&self) -> Vec<f64> {
         self.running.tensions()
     }
+    fn curvatures(&self) -> Vec<f64> {
+        self.running.curvatures()
+    }
     fn solids(&self) -> Vec<Solid> {
         vec![self.package.clone()]
     }

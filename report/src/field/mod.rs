@@ -3,10 +3,12 @@
 //! The [`FieldRecord`] is the one source of the page in the browser ([`Page`](crate::Page)) and of the files
 //! for ParaView ([`vtk`](crate::vtk)).
 
+mod force;
 mod mesh;
 mod npy;
 mod solid;
 
+pub use force::ForceRecord;
 pub use mesh::Mesh;
 pub use solid::{Pose, Shape, Solid};
 
@@ -36,6 +38,8 @@ pub struct FieldRecord {
     pub lines: Vec<LineRecord>,
     /// Rigid bodies and points.
     pub bodies: Vec<BodyRecord>,
+    /// Forces at points, for arrows.
+    pub forces: Vec<ForceRecord>,
     /// Shapes that stand on the ground.
     pub shapes: Vec<Shape>,
     /// Height of the water's surface [m], if there is one.
@@ -161,6 +165,13 @@ impl FieldRecord {
         for body in &self.bodies {
             if body.poses.len() != count {
                 return Err(fail(&body.name, format!("{} poses for {count} times", body.poses.len())));
+            }
+        }
+        for force in &self.forces {
+            for found in [force.points.len(), force.forces.len()] {
+                if found != count {
+                    return Err(fail(&force.name, format!("{found} forces for {count} times")));
+                }
             }
         }
         Ok(())

@@ -20,7 +20,9 @@ const POINT: [&str; 8] = ["t", "s", "x", "y", "z", "vx", "vy", "vz"];
 const BODY: [&str; 8] = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"];
 
 /// Rows of a name and some numbers.
-struct Rows {
+pub(super) struct Rows {
+    /// What the name is the name of.
+    first: &'static str,
     /// Longest name, in characters.
     wide: usize,
     fields: Vec<String>,
@@ -29,30 +31,34 @@ struct Rows {
 }
 
 impl Rows {
-    fn new<'a>(names: impl Iterator<Item = &'a str>, fields: impl Iterator<Item = String>) -> Self {
+    pub fn new<'a>(
+        first: &'static str,
+        names: impl Iterator<Item = &'a str>,
+        fields: impl Iterator<Item = String>,
+    ) -> Self {
         let wide = names.map(|name| name.chars().count()).max().unwrap_or(0).max(1);
-        Rows { wide, fields: fields.collect(), bytes: Vec::new(), count: 0 }
+        Rows { first, wide, fields: fields.collect(), bytes: Vec::new(), count: 0 }
     }
 
-    fn push(&mut self, name: &[u8], numbers: impl IntoIterator<Item = f64>) {
+    pub fn push(&mut self, name: &[u8], numbers: impl IntoIterator<Item = f64>) {
         self.bytes.extend(name);
         self.bytes.extend(numbers.into_iter().flat_map(f64::to_le_bytes));
         self.count += 1;
     }
 
     /// A name as NumPy keeps it: characters of four bytes, filled up with zeros.
-    fn name(&self, name: &str) -> Vec<u8> {
+    pub fn name(&self, name: &str) -> Vec<u8> {
         let mut bytes: Vec<u8> = name.chars().flat_map(|c| u32::from(c).to_le_bytes()).collect();
         bytes.resize(4 * self.wide, 0);
         bytes
     }
 
-    fn write(self, path: &Path) -> Result<(), OutputError> {
+    pub fn write(self, path: &Path) -> Result<(), OutputError> {
         let fields: String =
             self.fields.iter().map(|name| format!(", ('{}', '<f8')", quoted(name))).collect();
         let text = format!(
-            "{{'descr': [('part', '<U{}'){fields}], 'fortran_order': False, 'shape': ({},), }}",
-            self.wide, self.count
+            "{{'descr': [('{}', '<U{}'){fields}], 'fortran_order': False, 'shape': ({},), }}",
+            self.first, self.wide, self.count
         );
         // the numbers begin at a multiple of 64 bytes
         let short = text.len() + 11 + 64 <= usize::from(u16::MAX);
@@ -114,7 +120,7 @@ impl FieldRecord {
             }
         }
         let fields = POINT.iter().map(ToString::to_string).chain(names.iter().cloned());
-        let mut rows = Rows::new(self.lines.iter().map(|l| l.name.as_str()), fields);
+        let mut rows = Rows::new("part", self.lines.iter().map(|l| l.name.as_str()), fields);
         for (k, t) in self.times.iter().enumerate() {
             for line in &self.lines {
                 let (name, at) = (rows.name(&line.name), &line.snapshots[k]);
@@ -135,7 +141,7 @@ impl FieldRecord {
             return Ok(());
         }
         let fields = BODY.iter().map(ToString::to_string);
-        let mut rows = Rows::new(self.bodies.iter().map(|b| b.name.as_str()), fields);
+        let mut rows = Rows::new("part", self.bodies.iter().map(|b| b.name.as_str()), fields);
         for (k, t) in self.times.iter().enumerate() {
             for body in &self.bodies {
                 let pose = &body.poses[k];
@@ -211,13 +217,13 @@ impl FieldRecord {
 
 /// What is in a file.
 #[derive(Default)]
-struct Read {
+pub(super) struct Read {
     fields: Vec<String>,
-    rows: Vec<(String, Vec<f64>)>,
+    pub rows: Vec<(String, Vec<f64>)>,
 }
 
 impl Read {
-    fn file(path: &Path, known: &[&str]) -> Result<Self, OutputError> {
+    pub fn file(path: &Path, known: &[&str]) -> Result<Self, OutputError> {
         let bytes = fs::read(path).map_err(OutputError::io("read", path))?;
         let fail = |message: &str| OutputError::Npy { path: path.into(), message: message.into() };
         let read = Self::bytes(&bytes).map_err(fail)?;

@@ -3,8 +3,8 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Page, pack, panel};
-use crate::{BodyRecord, FieldRecord, LineRecord, Pose, Shape, Solid};
+use super::{Page, Steps, pack, panel};
+use crate::{BodyRecord, FieldRecord, ForceRecord, LineRecord, Pose, Shape, Solid};
 
 /// Version of the format, for a page that is older than its data.
 const VERSION: u32 = 1;
@@ -87,6 +87,8 @@ pub(super) fn deflated(page: &Page, thinned: &[String]) -> Vec<u8> {
         "axis": {"name": axis.0, "unit": axis.1},
         "history": history,
         "panels": panel::drawn(columns, &page.panels),
+        "steps": page.steps.as_ref().map(|s| steps(&mut arrays, s)),
+        "restarts": page.restarts,
         "field": field(&mut arrays, &page.field),
         "thinned": thinned,
     })
@@ -107,6 +109,7 @@ fn field(arrays: &mut Arrays, record: &FieldRecord) -> Value {
         "times": arrays.times(&record.times),
         "lines": record.lines.iter().map(|l| line(arrays, l, &origin)).collect::<Vec<_>>(),
         "bodies": record.bodies.iter().map(|b| body(arrays, b, &origin)).collect::<Vec<_>>(),
+        "forces": record.forces.iter().map(|f| force(arrays, f, &origin)).collect::<Vec<_>>(),
         "shapes": record.shapes.iter().map(|s| shape(arrays, s, &origin)).collect::<Vec<_>>(),
         "water": record.water,
         "bed": record.bed,
@@ -160,6 +163,27 @@ fn body(arrays: &mut Arrays, body: &BodyRecord, origin: &[f64; 3]) -> Value {
         "shapes": body.shapes.iter().map(|s| shape(arrays, s, &[0.0; 3])).collect::<Vec<_>>(),
         "position": position,
         "orientation": arrays.add(body.poses.iter().flat_map(|p| p.orientation), 4, 0.0),
+    })
+}
+
+fn force(arrays: &mut Arrays, force: &ForceRecord, origin: &[f64; 3]) -> Value {
+    let points = force.points.iter().flat_map(|x| [0, 1, 2].map(|i| x[i] - origin[i]));
+    json!({
+        "name": force.name,
+        "kind": force.kind(),
+        "position": arrays.add(points, 3, 0.0),
+        "force": arrays.add(force.forces.iter().flatten().copied(), 3, 0.0),
+    })
+}
+
+fn steps(arrays: &mut Arrays, steps: &Steps) -> Value {
+    json!({
+        "t": arrays.times(&steps.t),
+        "least": arrays.series(&steps.least),
+        "greatest": arrays.series(&steps.greatest),
+        "cause": arrays.add(steps.cause.iter().map(|k| *k as f64), 1, 0.0),
+        "causes": steps.causes,
+        "counts": steps.counts,
     })
 }
 
@@ -224,11 +248,25 @@ pub(super) mod tests {
         Page {
             title: "A title".into(),
             history,
+            steps: Some(Steps {
+                t: vec![0.001, 0.002],
+                least: vec![1e-4, 2e-4],
+                greatest: vec![1e-3; 2],
+                cause: vec![1, 0],
+                causes: vec!["a".into(), "b".into()],
+                counts: vec![3, 7],
+            }),
+            restarts: vec![0.0, 1.0],
             events: vec![Event { t: 0.5, text: "it broke".into() }],
             field: FieldRecord {
                 times: vec![0.0, 1.0, 2.0],
                 lines: vec![line("steady", [4, 4, 4]), line("growing", [0, 2, 3])],
                 bodies: vec![body],
+                forces: vec![ForceRecord {
+                    name: "drag: steady".into(),
+                    points: vec![[500_001.0, 0.0, 0.5]; 3],
+                    forces: vec![[0.0, -2.5, 1e4]; 3],
+                }],
                 shapes: vec![Shape::new("hole", endless, Pose::at([0.0, 0.0, 2.0]))],
                 water: Some(0.0),
                 bed: None,
@@ -269,6 +307,12 @@ pub(super) mod tests {
         let ship = &text["field"]["bodies"][0];
         assert_eq!(get(&ship["orientation"])[4..8], [0.0, 1.0, 0.0, 0.0]);
         assert_eq!(get(&ship["shapes"][0]["solid"]["triangles"]), [0.0, 1.0, 2.0]);
+        let drag = &text["field"]["forces"][0];
+        assert_eq!(drag["kind"], "drag");
+        assert_eq!(get(&drag["force"])[..3], [0.0, -2.5, 1e4]);
+        assert_eq!(get(&drag["position"])[0] + origin[0], 500_001.0);
+        assert_eq!(get(&text["steps"]["cause"]), [1.0, 0.0]);
+        assert_eq!((&text["steps"]["counts"], &text["restarts"]), (&json!([3, 7]), &json!([0.0, 1.0])));
         assert_eq!(text["field"]["shapes"][0]["solid"], json!({"type": "tube", "radius": 0.5, "half": null}));
         assert_eq!(text["field"]["shapes"][0]["pose"]["position"][0], -origin[0]);
     }

@@ -7,7 +7,12 @@
 mod block;
 mod pack;
 mod panel;
+mod steps;
+mod still;
 mod thin;
+
+pub use steps::Steps;
+pub use still::StillPage;
 
 use std::path::Path;
 
@@ -76,6 +81,10 @@ pub struct Page {
     pub history: Table,
     /// What is drawn together. Columns that are in none get panels of their own, by name and unit.
     pub panels: Vec<Panel>,
+    /// The steps of the solver, if they are known.
+    pub steps: Option<Steps>,
+    /// Times at which another motion begins that has nothing to do with the one before, such as the next mode.
+    pub restarts: Vec<f64>,
     /// What moved.
     pub field: FieldRecord,
     /// Size of the file [bytes] above which histories and snapshots are thinned; the page then says so.
@@ -98,6 +107,8 @@ impl Default for Page {
             energy: Vec::new(),
             history: Table::default(),
             panels: Vec::new(),
+            steps: None,
+            restarts: Vec::new(),
             field: FieldRecord::default(),
             budget: 2_000_000,
         }

@@ -39,7 +39,8 @@ fn numbers(page: &Page) -> usize {
     };
     let lines: usize = page.field.lines.iter().map(line).sum();
     let bodies: usize = page.field.bodies.iter().map(|b| 7 * b.poses.len()).sum();
-    lines + bodies + page.history.columns.len() * page.history.rows() + 6 * triangles(&page.field)
+    let forces: usize = page.field.forces.iter().map(|f| 6 * f.points.len()).sum();
+    lines + bodies + forces + page.history.columns.len() * page.history.rows() + 6 * triangles(&page.field)
 }
 
 fn triangles(field: &FieldRecord) -> usize {
@@ -87,6 +88,8 @@ impl Page {
             sections: self.sections.clone(),
             energy: self.energy.clone(),
             panels: self.panels.clone(),
+            steps: self.steps.clone(),
+            restarts: self.restarts.clone(),
             budget: self.budget,
             history: Table::default(),
             field: FieldRecord::default(),
@@ -140,6 +143,11 @@ fn field(record: &FieldRecord, snapshots: usize, points: usize, meshes: usize) -
         let poses = kept.iter().map(|k| body.poses[*k]).collect();
         let (name, kind, place) = (body.name.clone(), body.kind.clone(), body.place.clone());
         thin.bodies.push(crate::BodyRecord { name, kind, place, shapes: body.shapes.clone(), poses });
+    }
+    for force in &record.forces {
+        let pick = |all: &[[f64; 3]]| kept.iter().map(|k| all[*k]).collect();
+        let (points, forces) = (pick(&force.points), pick(&force.forces));
+        thin.forces.push(crate::ForceRecord { name: force.name.clone(), points, forces });
     }
     let all = triangles(record);
     for shape in thin.shapes.iter_mut().chain(thin.bodies.iter_mut().flat_map(|b| &mut b.shapes)) {

@@ -5,6 +5,7 @@
 //! - [`Panels`]: several of these as one picture.
 //! - [`BarPlot`]: quantities side by side.
 //! - [`ShapePlot`]: a cable in a plane at several times.
+//! - [`Raster`]: PNG and PDF of them, where the program was built with the feature `raster`.
 
 mod axis;
 mod bars;
@@ -14,10 +15,12 @@ mod colour;
 mod frame;
 mod line;
 mod panels;
+mod raster;
 mod shape;
 mod thin;
 
 pub use bars::{Bar, BarPlot};
 pub use line::{LinePlot, Mark, Series};
 pub use panels::Panels;
+pub use raster::Raster;
 pub use shape::{Plane, ShapePlot, Snapshot};

@@ -60,6 +60,8 @@ pub struct Progress {
     stopwatch: Stopwatch,
     steps: u64,
     rejected: u64,
+    /// What limited the last step, if that is told.
+    limit: &'static str,
     stride: u32,
     until_look: u32,
     last_look: Instant,
@@ -103,6 +105,7 @@ impl Progress {
             stopwatch: Stopwatch::start(),
             steps: 0,
             rejected: 0,
+            limit: "",
             stride: 1,
             until_look: 1,
             last_look: now,
@@ -143,6 +146,12 @@ impl Progress {
         }
     }
 
+    /// Says what limited the step that [`step`](Self::step) is told of next: `position error`.
+    #[inline]
+    pub fn limited(&mut self, by: &'static str) {
+        self.limit = by;
+    }
+
     /// Takes the bar away, writes `message` (unless it is empty or all is quiet), and returns how
     /// long the run took.
     pub fn finish(mut self, message: &str) -> Elapsed {
@@ -181,9 +190,9 @@ impl Progress {
         self.rate.update(t, now);
         self.last_shown = now;
         self.last_share = share;
-        let (t_end, rejected, speed, spark) =
-            (self.t_end, self.rejected, self.rate.value, self.spark.as_ref());
-        let report = Report { t, t_end, h, rejected, speed, spark };
+        let (t_end, rejected, limit) = (self.t_end, self.rejected, self.limit);
+        let (speed, spark) = (self.rate.value, self.spark.as_ref());
+        let report = Report { t, t_end, h, limit, rejected, speed, spark };
         match &mut self.shown {
             Shown::Bar(bar) => {
                 bar.set_message(report.to_string());
@@ -255,6 +264,7 @@ struct Report<'a> {
     t: f64,
     t_end: f64,
     h: f64,
+    limit: &'static str,
     rejected: u64,
     speed: Option<f64>,
     spark: Option<&'a Spark>,
@@ -273,6 +283,9 @@ impl fmt::Display for Report<'_> {
             write!(f, ", {spark}")?;
         }
         write!(f, ", h {} s", Short(self.h))?;
+        if !self.limit.is_empty() {
+            write!(f, " by {}", self.limit)?;
+        }
         if let Some(speed) = speed {
             write!(f, ", {} x real time", Short(speed))?;
         }
@@ -387,6 +400,10 @@ mod tests {
         progress.last_look = past;
         progress.step(5.0, 0.0125, 0);
         assert_eq!(log.text(), text, "no second line within 5 s");
+        (progress.until_look, progress.last_shown) = (1, past);
+        progress.limited("force error");
+        progress.step(6.0, 0.0125, 0);
+        assert!(log.text().contains(", h 0.0125 s by force error, "), "{}", log.text());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! run.pvd            the times, each with its file: open this one
-//! run/00000.vtp      lines, bodies and points at the first snapshot, with all quantities
+//! run/00000.vtp      lines, bodies and points at the first snapshot, with all quantities; forces as vectors of points
 //! run/00001.vtp      …
 //! run/ground.vtp     shapes that stand on the ground, if there are any
 //! ```
@@ -17,7 +17,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::{FieldRecord, Mesh, OutputError, cannot_create, write_atomic};
-use poly::{Poly, Values};
+use poly::Poly;
 
 /// Writes `name.pvd` and the folder `name` with a file for each snapshot into `folder`.
 ///
@@ -82,7 +82,7 @@ fn snapshot(field: &FieldRecord, k: usize, reach: f64) -> Poly {
             names.push(name);
         }
     }
-    let mut s: Vec<f64> = Vec::new();
+    let (mut s, mut velocity): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut values: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     let mut part = 0;
     for line in &field.lines {
@@ -91,6 +91,8 @@ fn snapshot(field: &FieldRecord, k: usize, reach: f64) -> Poly {
         if !at.position.is_empty() {
             poly.add_line(&at.position, &line.name, part);
             s.extend(&at.s);
+            let v = |i: usize| at.velocity.get(i).copied().unwrap_or([f64::NAN; 3]);
+            velocity.extend((0..at.position.len()).flat_map(v));
             for (name, column) in names.iter().zip(&mut values) {
                 let own = line.quantities.iter().position(|q| (q.name.as_str(), q.unit.as_str()) == *name);
                 match own {
@@ -113,11 +115,26 @@ fn snapshot(field: &FieldRecord, k: usize, reach: f64) -> Poly {
         }
         part += 1;
     }
+    // where nothing is there is no point, but parts keep their numbers
+    let mut forces = Vec::new();
+    for force in &field.forces {
+        if force.points[k].iter().all(|x| x.is_finite()) {
+            forces.push((poly.points(), force.forces[k]));
+            poly.add_point(force.points[k], &force.name, part);
+        }
+        part += 1;
+    }
     let heading = |name: &str, unit: &str| format!("{name} [{}]", if unit.is_empty() { "-" } else { unit });
     for (column, (name, unit)) in
         std::iter::once(s).chain(values).zip(std::iter::once(("s", "m")).chain(names))
     {
-        poly.point_data.push(Values { name: heading(name, unit), values: poly.in_order(column) });
+        poly.add_values(heading(name, unit), 1, column);
+    }
+    if velocity.iter().any(|x| x.is_finite()) {
+        poly.add_values(heading("velocity", "m/s"), 3, velocity);
+    }
+    if !field.forces.is_empty() {
+        poly.add_vectors(heading("force", "N"), &forces);
     }
     poly
 }

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-/// A name with one number for each point.
+/// A name with as many numbers for each point as it is wide.
 pub(super) struct Values {
     pub name: String,
+    pub width: usize,
     pub values: Vec<f64>,
 }
 
@@ -36,7 +37,7 @@ pub(super) struct Poly {
     polys: Cells,
     /// Names of the parts by number; a comment of the file, since VTK has no names of cells.
     parts: Vec<(i32, String)>,
-    pub point_data: Vec<Values>,
+    point_data: Vec<Values>,
 }
 
 impl Poly {
@@ -65,10 +66,24 @@ impl Poly {
         self.name(name, part);
     }
 
-    /// Numbers of the points of lines, which come first, made as many as there are points.
-    pub fn in_order(&self, mut of_lines: Vec<f64>) -> Vec<f64> {
-        of_lines.resize(self.points.len(), f64::NAN);
-        of_lines
+    /// Adds numbers of the points of lines, which come first; other points have none.
+    pub fn add_values(&mut self, name: String, width: usize, mut of_lines: Vec<f64>) {
+        of_lines.resize(width * self.points.len(), f64::NAN);
+        self.point_data.push(Values { name, width, values: of_lines });
+    }
+
+    /// Adds vectors of the points with these numbers; those of others are zero, so that they have no arrow.
+    pub fn add_vectors(&mut self, name: String, vectors: &[(usize, [f64; 3])]) {
+        let mut values = vec![0.0; 3 * self.points.len()];
+        for (k, v) in vectors {
+            values[3 * k..3 * k + 3].copy_from_slice(v);
+        }
+        self.point_data.push(Values { name, width: 3, values });
+    }
+
+    /// How many points there are.
+    pub fn points(&self) -> usize {
+        self.points.len()
     }
 
     fn name(&mut self, name: &str, part: i32) {
@@ -104,8 +119,8 @@ impl Poly {
             let _ = writeln!(file.head, "</{tag}>");
         }
         file.head += "<PointData>\n";
-        for Values { name, values } in &self.point_data {
-            file.array(name, "Float64", 1, values.iter().map(|x| x.to_le_bytes()));
+        for Values { name, width, values } in &self.point_data {
+            file.array(name, "Float64", *width, values.iter().map(|x| x.to_le_bytes()));
         }
         file.head += "</PointData>\n<CellData>\n";
         // VTK counts cells in this order

@@ -1,6 +1,7 @@
 //! An input as a formula of records and time.
 
 use super::channels::{Bound, Channels};
+use super::sampled::{Act, sampled};
 use crate::register_spec;
 use crate::spec::ControllerSpec;
 use ropewalk_core::{BuildError, Controller, Sample};
@@ -31,9 +32,6 @@ pub struct ExpressionSpec {
 register_spec!(Controller, "expression", ExpressionSpec);
 
 struct Expressed {
-    name: String,
-    input: usize,
-    every: f64,
     value: Bound,
 }
 
@@ -43,29 +41,15 @@ impl ControllerSpec for ExpressionSpec {
         &self.input
     }
     fn build(&self, c: &Channels<'_>) -> Result<Arc<dyn Controller>, BuildError> {
-        let (number, input) = c.input(&self.input)?;
-        let wanted = Dimension::of(input.unit()).unwrap_or_default();
-        Ok(Arc::new(Expressed {
-            name: self.name.clone().unwrap_or_else(|| self.input.clone()),
-            input: number,
-            every: c.interval(self.every)?,
-            value: c.bind("value", &self.value, Some(wanted))?,
-        }))
+        let wanted = Dimension::of(c.input(&self.input)?.1.unit()).unwrap_or_default();
+        let act = Expressed { value: c.bind("value", &self.value, Some(wanted))? };
+        sampled(c, &self.input, &self.name, self.every, act)
     }
 }
 
-impl Controller for Expressed {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn input(&self) -> usize {
-        self.input
-    }
-    fn every(&self) -> f64 {
-        self.every
-    }
-    fn needs_forces(&self) -> bool {
-        self.value.needs_forces()
+impl Act for Expressed {
+    fn sees(&self) -> Vec<&Bound> {
+        vec![&self.value]
     }
     fn act(&self, sample: &Sample<'_>, _: &mut [f64]) -> f64 {
         self.value.value(sample)

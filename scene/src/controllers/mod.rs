@@ -3,6 +3,7 @@
 mod channels;
 mod expression;
 mod pid;
+mod sampled;
 mod table;
 
 pub use channels::{Bound, Channels};

@@ -1,6 +1,7 @@
 //! A PID controller, sampled.
 
 use super::channels::{Bound, Channels};
+use super::sampled::{Act, sampled};
 use crate::register_spec;
 use crate::spec::ControllerSpec;
 use ropewalk_core::error::{need, not_negative};
@@ -56,8 +57,6 @@ pub struct PidSpec {
 register_spec!(Controller, "pid", PidSpec);
 
 struct Pid {
-    name: String,
-    input: usize,
     every: f64,
     measures: Bound,
     setpoint: Bound,
@@ -73,7 +72,7 @@ impl ControllerSpec for PidSpec {
         &self.input
     }
     fn build(&self, c: &Channels<'_>) -> Result<Arc<dyn Controller>, BuildError> {
-        let (number, input) = c.input(&self.input)?;
+        let (_, input) = c.input(&self.input)?;
         let of_input = Dimension::of(input.unit()).unwrap_or_default();
         let measures = c.bind("measures", &self.measures, None)?;
         let constant = |field: &'static str, x: &Formula, of: Dimension| {
@@ -93,38 +92,24 @@ impl ControllerSpec for PidSpec {
         let limits = [limit("min", &self.min, least)?.max(least), limit("max", &self.max, most)?.min(most)];
         need(limits[0] <= limits[1], || format!("`min` must not be above `max`, but they are {limits:?}"))
             .map_err(|e| e.of("min"))?;
-        Ok(Arc::new(Pid {
-            name: self.name.clone().unwrap_or_else(|| self.input.clone()),
-            input: number,
-            every: c.interval(self.every)?,
+        let act = Pid {
+            every: self.every,
             setpoint: c.bind("setpoint", &self.setpoint, Some(measures.dimension))?,
             bias: c.bind("bias", &self.bias, Some(of_input))?,
             measures,
             gains,
             filter: not_negative("filter", self.filter)?,
             limits,
-        }))
+        };
+        sampled(c, &self.input, &self.name, self.every, act)
     }
 }
 
-/// What it remembers: whether it has begun, the integral, the last measured value, the filtered rate.
-const MEMORY: usize = 4;
-
-impl Controller for Pid {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn input(&self) -> usize {
-        self.input
-    }
-    fn every(&self) -> f64 {
-        self.every
-    }
-    fn memory(&self) -> usize {
-        MEMORY
-    }
-    fn needs_forces(&self) -> bool {
-        [&self.measures, &self.setpoint, &self.bias].iter().any(|b| b.needs_forces())
+impl Act for Pid {
+    /// Whether it has begun, the integral, the last measured value, the filtered rate.
+    const MEMORY: usize = 4;
+    fn sees(&self) -> Vec<&Bound> {
+        vec![&self.measures, &self.setpoint, &self.bias]
     }
     fn act(&self, sample: &Sample<'_>, memory: &mut [f64]) -> f64 {
         let [begun, integral, last, rate] = memory else { return f64::NAN };

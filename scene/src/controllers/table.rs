@@ -1,6 +1,7 @@
 //! An input as a table over a record.
 
 use super::channels::{Bound, Channels};
+use super::sampled::{Act, sampled};
 use crate::register_spec;
 use crate::spec::ControllerSpec;
 use ropewalk_core::error::{finite, need};
@@ -33,9 +34,6 @@ pub struct ControlTableSpec {
 register_spec!(Controller, "table", ControlTableSpec);
 
 struct Tabled {
-    name: String,
-    input: usize,
-    every: f64,
     over: Bound,
     rows: Vec<[f64; 2]>,
 }
@@ -53,7 +51,7 @@ impl ControllerSpec for ControlTableSpec {
         &self.input
     }
     fn build(&self, c: &Channels<'_>) -> Result<Arc<dyn Controller>, BuildError> {
-        let (number, input) = c.input(&self.input)?;
+        let (_, input) = c.input(&self.input)?;
         let over = c.bind("over", &self.over, None)?;
         let at = numbers("at", &self.at, over.dimension)?;
         let value = numbers("value", &self.value, Dimension::of(input.unit()).unwrap_or_default())?;
@@ -64,28 +62,14 @@ impl ControllerSpec for ControlTableSpec {
         .map_err(|e| e.of("value"))?;
         need(at.windows(2).all(|x| x[0] < x[1]), || "the entries of `at` must ascend".into())
             .map_err(|e| e.of("at"))?;
-        Ok(Arc::new(Tabled {
-            name: self.name.clone().unwrap_or_else(|| self.input.clone()),
-            input: number,
-            every: c.interval(self.every)?,
-            over,
-            rows: at.into_iter().zip(value).map(|(x, y)| [x, y]).collect(),
-        }))
+        let act = Tabled { over, rows: at.into_iter().zip(value).map(|(x, y)| [x, y]).collect() };
+        sampled(c, &self.input, &self.name, self.every, act)
     }
 }
 
-impl Controller for Tabled {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn input(&self) -> usize {
-        self.input
-    }
-    fn every(&self) -> f64 {
-        self.every
-    }
-    fn needs_forces(&self) -> bool {
-        self.over.needs_forces()
+impl Act for Tabled {
+    fn sees(&self) -> Vec<&Bound> {
+        vec![&self.over]
     }
     fn act(&self, sample: &Sample<'_>, _: &mut [f64]) -> f64 {
         let x = self.over.value(sample);

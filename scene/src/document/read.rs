@@ -136,6 +136,39 @@ impl Document {
         }
     }
 
+    /// Rewrites parts of a list whose `type` is the name of a function: keys that aren't the part's `own` are the function's
+    /// parameters.
+    pub(crate) fn call_functions(&mut self, list: &str, own: &[&str], is_function: &dyn Fn(&str) -> bool) {
+        let Kind::Table(root) = &mut self.root.kind else { return };
+        let Some((_, Value { kind: Kind::Array(parts), .. })) =
+            root.0.iter_mut().find(|(key, _)| key.name == list)
+        else {
+            return;
+        };
+        for part in parts {
+            let span = part.span;
+            let Kind::Table(table) = &mut part.kind else { continue };
+            let is_one = table.get("type").and_then(Value::as_str).is_some_and(is_function);
+            if !is_one || table.get("function").is_some() {
+                continue;
+            }
+            let Some((key, name)) = table.remove("type") else { continue };
+            let all = std::mem::take(&mut table.0);
+            let (mut kept, mut given): (Vec<_>, Vec<_>) =
+                all.into_iter().partition(|(key, _)| own.contains(&key.name.as_str()));
+            let named = |name: &str| Key { name: name.into(), span: key.span };
+            kept.push((named("type"), Value { kind: Kind::String("function".into()), ..name.clone() }));
+            kept.push((named("function"), name));
+            if kept.iter().any(|(key, _)| key.name == "parameters") {
+                kept.append(&mut given);
+            }
+            if !given.is_empty() {
+                kept.push((named("parameters"), Value::new(Kind::Table(Table(given)), span)));
+            }
+            table.0 = kept;
+        }
+    }
+
     fn ask(&mut self, name: &str) {
         if !self.asked.iter().any(|a| a == name) {
             self.asked.push(name.to_string());

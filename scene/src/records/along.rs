@@ -9,13 +9,17 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Tension, strain, curvature or bending moment of a cable at one place: column `hose.end.tension`.
+/// Tension, strain, curvature or bending moment of a cable at one place: column `hose.end.tension`. Of a cable with torsion
+/// (`section.gj`) its twist, torque, angle and spin too, and curvature and moment about either director of its section. Of a
+/// chain of rigid links its tension: what its joints carry, and between two joints what lies between.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AlongSpec {
-    /// The cable.
+    /// The cable, or the chain.
     pub of: String,
-    /// Recorded quantity: tension [N], strain, curvature [1/m] or moment [N m].
+    /// Recorded quantity: tension [N], strain, curvature [1/m] or moment [N m]; of a cable with torsion twist [rad/m], torque
+    /// [N m], angle from the start [rad] or spin [rad/s], and `curvature_normal`, `curvature_across`, `moment_normal` and
+    /// `moment_across`, about the first director of the section and about the second.
     pub what: Quantity,
     /// Where: `start`, `end`, an unstretched arc length from the start as it is now [m], or a share of the length like
     /// `50 %`.
@@ -43,6 +47,14 @@ fn word(what: Quantity) -> &'static str {
         Quantity::Strain => "strain",
         Quantity::Curvature => "curvature",
         Quantity::Moment => "moment",
+        Quantity::CurvatureNormal => "curvature_normal",
+        Quantity::CurvatureAcross => "curvature_across",
+        Quantity::MomentNormal => "moment_normal",
+        Quantity::MomentAcross => "moment_across",
+        Quantity::Twist => "twist",
+        Quantity::Torque => "torque",
+        Quantity::Angle => "angle",
+        Quantity::Spin => "spin",
     }
 }
 
@@ -73,13 +85,48 @@ impl Record for Along {
     }
 }
 
+/// The tension of a chain.
+struct ChainTension(Along);
+
+impl Record for ChainTension {
+    fn title(&self) -> String {
+        self.0.title()
+    }
+    fn name(&self) -> String {
+        self.0.name()
+    }
+    fn columns(&self) -> Vec<Column> {
+        self.0.columns()
+    }
+    fn needs_forces(&self) -> bool {
+        true
+    }
+    fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
+        let (part, place) = (self.0.part.as_ref(), &self.0.place);
+        let links = part.links().len();
+        let at = place.now(part, &s.at) / part.length() * links as f64;
+        let k = (at.max(0.0) as usize).min(links - 1);
+        let share = (at - k as f64).clamp(0.0, 1.0);
+        let forces = s.model.axial_forces(part, &s.at, s.lambda, k..=k + 1);
+        out.push(match share {
+            0.0 => forces[k],
+            1.0 => forces[k + 1],
+            _ => forces[k] + share * (forces[k + 1] - forces[k]),
+        });
+    }
+}
+
 #[typetag::serde(name = "along")]
 impl RecordSpec for AlongSpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
         let part = part(model, self.of.trim())?;
         let s = self.at.on(part.length());
         let state = model.state();
-        if part.observe(self.what, s, &state.at()).is_none() {
+        let chained = !part.links().is_empty() && self.what == Quantity::Tension;
+        if chained && part.point(s, &state.at()).is_none() {
+            return Err(off(part.as_ref(), "at", s));
+        }
+        if !chained && part.observe(self.what, s, &state.at()).is_none() {
             // a part that is nowhere to be observed is no cable
             return Err(match part.observe(self.what, 0.0, &state.at()) {
                 Some(_) => off(part.as_ref(), "at", s),
@@ -95,6 +142,7 @@ impl RecordSpec for AlongSpec {
             let word = word(self.what);
             format!("{}{} of {place}", word[..1].to_uppercase(), &word[1..])
         });
-        Ok(Box::new(Along { part, what: self.what, place: self.at, name, title }))
+        let along = Along { part, what: self.what, place: self.at, name, title };
+        Ok(if chained { Box::new(ChainTension(along)) } else { Box::new(along) })
     }
 }

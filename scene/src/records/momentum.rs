@@ -3,8 +3,9 @@
 use super::named;
 use crate::register_spec;
 use crate::spec::RecordSpec;
+use ropewalk_core::model::twist::tangent;
 use ropewalk_core::rotation::{cross, matrix, transposed_times};
-use ropewalk_core::{At, BuildError, Column, Model, NodeKind, Record, Sample, V3};
+use ropewalk_core::{At, BuildError, Column, Model, NodeKind, Record, Sample, V3, dot};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +43,10 @@ fn as_one(model: &Model, at: &At<'_>, along: V3<f64>, turn: V3<f64>) -> Vec<f64>
         (0..3).for_each(|i| v[i] = along[i] + swing[i]);
         match n.kind {
             NodeKind::Slope => v[3..6].copy_from_slice(&cross(&turn, &[q[3], q[4], q[5]])),
+            NodeKind::Twist => {
+                v[3..6].copy_from_slice(&cross(&turn, &[q[3], q[4], q[5]]));
+                v[6] = dot(&turn, &tangent(q));
+            }
             NodeKind::Frame => {
                 v[3..6].copy_from_slice(&transposed_times(&matrix(&[q[3], q[4], q[5], q[6]]), &turn));
             }

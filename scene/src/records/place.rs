@@ -2,7 +2,7 @@
 
 use super::listed;
 use crate::marker::split_marker;
-use ropewalk_core::{At, BuildError, Marker, Model, NodeId, NodeKind, Part, Sample, Spot, V3};
+use ropewalk_core::{At, BuildError, Marker, Model, NodeId, Part, Sample, Spot, V3};
 use schemars::JsonSchema;
 use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize};
@@ -74,16 +74,19 @@ impl Spotted {
     }
 }
 
-/// The rigid body of a marker: its node, and what it is called.
+/// The rigid body of a marker, or the section of a cable with torsion: its node, and what it is called.
 pub(super) fn body(model: &Model, field: &'static str, of: &str) -> Result<(NodeId, String), BuildError> {
     let (name, spot) = split_marker(of).map_err(|e| BuildError::at(field, format!("`{of}`: {e}")))?;
     let part = part(model, name).map_err(|e| e.of(field))?;
     let marker = part.marker(&spot).map_err(|e| BuildError::at(field, format!("`{of}`: {e}")))?;
     match marker.on() {
-        Some(node) if model.node(node).kind == NodeKind::Frame => {
+        Some(node) if model.node(node).kind.turns() => {
             Ok((node, of.chars().filter(|c| !c.is_whitespace()).collect()))
         }
-        _ => Err(BuildError::at(field, format!("`{of}` is not on a rigid body: it doesn't turn"))),
+        _ => Err(BuildError::at(
+            field,
+            format!("`{of}` is not on a rigid body, nor on a cable with torsion: it doesn't turn"),
+        )),
     }
 }
 

@@ -4,8 +4,9 @@ use super::{listed, named};
 use crate::register_spec;
 use crate::spec::RecordSpec;
 use ropewalk_core::model::marker::frame;
+use ropewalk_core::model::twist;
 use ropewalk_core::rotation::{cross, times};
-use ropewalk_core::{BuildError, Column, Marker, Model, NodeId, NodeKind, Record, RowKind, Sample};
+use ropewalk_core::{BuildError, Column, Marker, Model, NodeId, Record, RowKind, Sample};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +26,7 @@ pub enum ReactionPart {
 }
 
 /// Force of a constraint on what it holds, its `marker`: columns `anchor.fx`, `.fy`, `.fz` and `.magnitude` in N. Where
-/// it holds the direction of a rigid body too, its moment about the marker as well: `.mx`, `.my`, `.mz` in N m.
+/// it holds the direction of a rigid body or of a cable with torsion too, its moment about the marker as well: `.mx`, `.my`, `.mz` in N m.
 ///
 /// A rope that hangs from its anchor is pulled upwards, so `fz` is its weight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -53,7 +54,7 @@ struct Reaction {
     stem: String,
     title: String,
     what: ReactionPart,
-    /// The marker on a rigid body whose direction is held.
+    /// The marker on a rigid body, or on a cable with torsion, whose direction is held.
     body: Option<Marker>,
 }
 
@@ -95,7 +96,11 @@ impl Record for Reaction {
         if let Some(marker) = &self.body {
             let q = &s.at.q[s.model.node(self.node).coords()];
             let (own, held) = ([q[0], q[1], q[2]], marker.now(s.model.nodes(), &s.at).x);
-            let turning = times(&frame(q), &[force[3], force[4], force[5]]);
+            let own_axes = [force[3], force[4], force[5]];
+            let turning = match force.get(6) {
+                Some(spin) => twist::moment(q, &own_axes, *spin),
+                None => times(&frame(q), &own_axes),
+            };
             let lever = cross(&[held[0] - own[0], held[1] - own[1], held[2] - own[2]], &[x, y, z]);
             out.extend((0..3).map(|i| turning[i] - lever[i]));
         }
@@ -119,9 +124,11 @@ impl RecordSpec for ReactionSpec {
         let stem = named(&self.name, || of.to_string());
         let name = named(&self.name, || format!("{of}.reaction"));
         let directed = all[constraint].rows().contains(&RowKind::Direction);
-        let body = (directed && model.node(node).kind == NodeKind::Frame).then_some(marker);
+        let body = (directed && model.node(node).kind.turns()).then_some(marker);
         if self.what == ReactionPart::Moment && body.is_none() {
-            let message = format!("constraint `{of}` holds no direction of a rigid body: it has no moment");
+            let message = format!(
+                "constraint `{of}` holds no direction of a rigid body or of a cable with torsion: it has no moment"
+            );
             return Err(BuildError::at("what", message));
         }
         let title = named(&self.title, || format!("Reaction of {of}"));

@@ -4,8 +4,9 @@ use super::named;
 use super::place::{SpaceAxis, all_axes, body, check_axes};
 use crate::register_spec;
 use crate::spec::RecordSpec;
-use ropewalk_core::rotation::{bryant, matrix, times, transposed_times};
-use ropewalk_core::{BuildError, Column, Model, NodeId, Record, Sample};
+use ropewalk_core::model::twist;
+use ropewalk_core::rotation::{bryant, from_matrix, matrix, times, transposed_times};
+use ropewalk_core::{BuildError, Column, Model, Node, NodeId, NodeKind, Record, Sample};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +23,7 @@ pub enum SeenFrom {
     To,
 }
 
-/// Angular velocity of a rigid body: columns `crank.wx`, `.wy` and `.wz` in rad/s.
+/// Angular velocity of a rigid body, or of the section of a cable with torsion: columns `crank.wx`, `.wy` and `.wz` in rad/s.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AngularVelocitySpec {
@@ -46,7 +47,7 @@ pub struct AngularVelocitySpec {
     pub title: Option<String>,
 }
 
-/// Orientation of a rigid body as Bryant angles 1-2-3, turns about its x axis, its new y axis, its new z axis: columns
+/// Orientation of a rigid body, or of the section of a cable with torsion (its two directors and its tangent), as Bryant angles 1-2-3, turns about its x axis, its new y axis, its new z axis: columns
 /// `crank.phi1`, `.phi2` and `.phi3` in rad. The first and the third jump from π to -π.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -78,13 +79,19 @@ struct Turning {
 }
 
 fn quaternion(s: &Sample<'_>, node: NodeId) -> [f64; 4] {
-    let q = s.model.node(node).q;
+    let Node { kind, q, .. } = *s.model.node(node);
+    if kind == NodeKind::Twist {
+        return from_matrix(&twist::section(&s.at.q[q..]));
+    }
     [s.at.q[q + 3], s.at.q[q + 4], s.at.q[q + 5], s.at.q[q + 6]]
 }
 
 /// In space [rad/s].
 fn angular_velocity(s: &Sample<'_>, node: NodeId) -> [f64; 3] {
-    let v = s.model.node(node).v;
+    let Node { kind, q, v, .. } = *s.model.node(node);
+    if kind == NodeKind::Twist {
+        return twist::angular_velocity(&s.at.q[q..], &s.at.v[v..]);
+    }
     times(&matrix(&quaternion(s, node)), &[s.at.v[v + 3], s.at.v[v + 4], s.at.v[v + 5]])
 }
 

@@ -3,6 +3,7 @@
 use super::read::AtlasFile;
 use super::spec::{Entry, Runs};
 use super::table::{escaped, pairs};
+use ropewalk_report::StillPage;
 use std::path::Path;
 
 /// What became of an entry.
@@ -20,35 +21,16 @@ pub(super) enum Outcome {
     Missing(String),
 }
 
-const STYLE: &str = "\
-body { font: 16px/1.45 Georgia, serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222 }
-h1, h2, h3, nav, table, .settings { font-family: Helvetica, Arial, sans-serif }
-h2 { margin-top: 3rem; border-bottom: 1px solid #bbb }
-h3 { font-size: 1rem; margin: 2.2rem 0 .4rem }
-img { max-width: 100%; height: auto; display: block }
-table { border-collapse: collapse; font-size: .85rem; margin: .5rem 0 }
-th, td { padding: .2rem .7rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
-th { border-bottom: 1px solid #222 }
-td.number { text-align: right; font-variant-numeric: tabular-nums }
-.settings, .note, .absent { font-size: .85rem; color: #555 }
-.absent { font-style: italic }
-nav a { margin-right: .6rem }
-@media print { nav { display: none } }
-";
-
 /// The whole page; `outcomes` are those of the entries in the order of the file.
 pub(super) fn page(file: &AtlasFile, outcomes: &[Outcome]) -> String {
     let atlas = &file.atlas;
-    let title = escaped(&atlas.title);
-    let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body><main>\n<h1>{title}</h1>\n"
-    );
+    let mut page = StillPage::new(&atlas.title, format!("atlas · Ropewalk {}", env!("CARGO_PKG_VERSION")));
+    let mut out = String::new();
     for paragraph in atlas.description.split("\n\n").map(str::trim).filter(|p| !p.is_empty()) {
         out += &format!("<p>{}</p>\n", escaped(paragraph));
     }
     if atlas.chapters.len() > 1 {
-        out += "<nav>";
+        out += "<nav aria-label=\"Chapters\">";
         for c in &atlas.chapters {
             out += &format!("<a href=\"#chapter-{0}\">{0} {1}</a> ", escaped(&c.number), escaped(&c.title));
         }
@@ -66,13 +48,18 @@ pub(super) fn page(file: &AtlasFile, outcomes: &[Outcome]) -> String {
         }
         out += &entry(file, k, &outcomes[k]);
     }
-    out + "</main></body>\n</html>\n"
+    page.raw(&out);
+    page.html()
 }
 
 fn entry(file: &AtlasFile, k: usize, outcome: &Outcome) -> String {
     let entry = &file.atlas.entries[k];
     let (head, name) = (entry.head(), escaped(&entry.name()));
-    let mut out = format!("<h3 id=\"{name}\">{}. {}</h3>\n", entry.caption(), escaped(head.title));
+    let mut out = format!(
+        "<section class=\"card\" aria-labelledby=\"{name}\"><h3 id=\"{name}\">{}. {}</h3>\n",
+        entry.caption(),
+        escaped(head.title)
+    );
     let csv = match (outcome, entry) {
         (Outcome::Figure(notes), _) => {
             out += &format!("<img src=\"figures/{name}.svg\" alt=\"{}\">\n", escaped(head.title));
@@ -104,7 +91,7 @@ fn entry(file: &AtlasFile, k: usize, outcome: &Outcome) -> String {
     if !settings.is_empty() && !matches!(outcome, Outcome::NotAsked) {
         out += &format!("<p class=\"settings\">{}</p>\n", settings.join("<br>"));
     }
-    out
+    out + "</section>\n"
 }
 
 /// The scene of a run and what is set in it.

@@ -218,9 +218,10 @@ impl Printed {
 
     /// The table alone, to be put on a page.
     pub(super) fn html(&self) -> String {
-        let mut text = String::from("<table>\n<tr>");
-        self.headings.iter().for_each(|h| text += &format!("<th>{}</th>", escaped(h)));
-        text += "</tr>\n";
+        // what is wider than the screen is moved by keys
+        let mut text = String::from("<div class=\"table\" tabindex=\"0\"><table>\n<thead><tr>");
+        self.headings.iter().for_each(|h| text += &format!("<th scope=\"col\">{}</th>", escaped(h)));
+        text += "</tr></thead>\n<tbody>\n";
         for row in &self.rows {
             text += "<tr>";
             for item in row {
@@ -235,7 +236,7 @@ impl Printed {
             }
             text += "</tr>\n";
         }
-        text += "</table>\n";
+        text += "</tbody></table></div>\n";
         if self.is_unsteady() {
             text += "<p class=\"note\">* not steady: the record still ranges by more than 1 % of its size in the end</p>\n";
         }

@@ -2,6 +2,7 @@
 //! a record against a reference that is computed as well, and which settings are the cheapest for an accuracy.
 
 mod front;
+mod page;
 mod reference;
 mod report;
 mod walk;
@@ -16,7 +17,9 @@ use front::distrust;
 use reference::Reference;
 use report::{GOALS, Report};
 use ropewalk_models::Bundled;
-use ropewalk_report::{ProgressMode, Sheet, Stopwatch, SweepProgress, Watch, plain, rough, write_json};
+use ropewalk_report::{
+    ProgressMode, Sheet, Stopwatch, SweepProgress, Watch, plain, rough, write_atomic, write_json,
+};
 use ropewalk_scene::{Fault, SceneText};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -185,7 +188,7 @@ pub fn cost_of(text: &SceneText, options: &CostOptions) -> Result<CostOutcome, E
     sheet.entry("folder", path.display());
     sheet.entry(
         "results",
-        "table.csv, advice.json, advice/*.toml (scenes with these settings), plots/cost.svg, runs/",
+        "index.html, table.csv, advice.json, advice/*.toml (scenes with these settings), plots/cost.svg, runs/",
     );
     runs.progress.finish();
     Ok(CostOutcome { interrupted, advice, uncertainty, folder: path, report: sheet.to_string() })
@@ -213,5 +216,6 @@ fn write(
     write_json(&folder.path().join("advice.json"), &found)?;
     let warn = &mut |text: &str| progress.say(&format!("warning: {text}"));
     folder.files().draw("cost", |path| report.plot(scene).write(path), warn);
+    write_atomic(&folder.path().join("index.html"), &page::page(report, scene))?;
     Ok(advice)
 }

@@ -103,8 +103,7 @@ impl Report<'_> {
     pub(super) fn text(&self) -> String {
         let mut sheet = Sheet::default();
         let best = front(&self.points);
-        let (shown, left_out) = self.shown(&best);
-        let (headings, rows) = self.table(&shown, &best);
+        let (headings, rows, left_out) = self.rows(&best);
         sheet.table_within(TERMINAL, &headings, &rows);
         if left_out > 0 {
             sheet.line(format!("  … and {left_out} more runs in table.csv"));
@@ -148,6 +147,13 @@ impl Report<'_> {
             shown.sort_by(|a, b| a.run.cpu_s.total_cmp(&b.run.cpu_s));
         }
         (shown, left_out)
+    }
+
+    /// Headings and rows of the runs that are shown, and how many are left out.
+    pub(super) fn rows(&self, best: &[Point]) -> (Vec<String>, Vec<Vec<String>>, usize) {
+        let (shown, left_out) = self.shown(best);
+        let (headings, rows) = self.table(&shown, best);
+        (headings, rows, left_out)
     }
 
     /// Headings and rows, without columns of which the scene has nothing.

@@ -270,7 +270,9 @@ fn absent_of_elements(scene: &Scene, all: &mut Vec<Candidate>, hints: &mut Vec<H
             ));
             hint("material flow", text);
         }
-        let (ea, ei, d) = (section("ea"), section("ei"), section("diameter"));
+        // one number, or one for each direction
+        let ei = section("ei").max(section("ei/0")).max(section("ei/1"));
+        let (ea, d) = (section("ea"), section("diameter"));
         if ei == 0.0 && d > 0.0 {
             let ei = ea * d * d / 16.0;
             let note = format!("ei = EA d^2/16 = {ei:.2e} N m^2, as of a solid rod: the most it can be");

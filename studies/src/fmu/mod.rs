@@ -9,7 +9,7 @@ mod description;
 use crate::error::Error;
 use crate::session::columns;
 use crate::simulate::in_time;
-use ropewalk_scene::{Fault, Format, SceneText};
+use ropewalk_scene::{Document, Fault, Format, SceneText};
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Component, Path};
@@ -68,6 +68,23 @@ pub struct Interface {
     token: String,
 }
 
+/// Whether a scene asks for nothing that only this process knows.
+fn self_contained(document: &Document) -> Result<(), Fault> {
+    for list in ["forces", "motions"] {
+        let mut k = 0;
+        while let Some(part) = document.find(&format!("{list}[{k}]")).and_then(|p| p.as_table()) {
+            if part.get("type").and_then(|t| t.as_str()) == Some("function") {
+                let message = "an FMU can't take along a function of the program that exports it";
+                return Err(document
+                    .fault_at(&format!("{list}[{k}]"), message)
+                    .with_help("use a built-in type"));
+            }
+            k += 1;
+        }
+    }
+    Ok(())
+}
+
 impl Interface {
     /// The variables of a scene with these parameters, each `name=value`.
     ///
@@ -89,6 +106,7 @@ impl Interface {
         let (name, title) = (file.name().to_string(), file.title().to_string());
         let experiment = [file.scene().run.duration, file.scene().run.output];
         in_time(file.scene())?;
+        self_contained(file.document())?;
         let model = file.build()?;
         for input in model.inputs() {
             let kind = Kind::Input { start: input.value(0.0), range: input.limits() };

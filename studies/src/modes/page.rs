@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 
 /// Snapshots of a period.
 const FRAMES: usize = 24;
+/// Where the last of them stands, in parts of the period.
+const WHOLE: f64 = 0.9999;
 /// Points of all snapshots together.
 const MOST_POINTS: usize = 200_000;
 
@@ -41,6 +43,7 @@ pub(super) fn page(file: &SceneFile, modal: &Modal) -> Page {
         events,
         history,
         panels: panels.into(),
+        restarts: (1..=modal.modes.len()).map(|k| k as f64).collect(),
         field: field(file, modal),
         ..Page::default()
     }
@@ -49,20 +52,24 @@ pub(super) fn page(file: &SceneFile, modal: &Modal) -> Page {
 /// Every mode through a period.
 fn field(file: &SceneFile, modal: &Modal) -> FieldRecord {
     let scenery = Scenery::new(file, &modal.model, None);
-    let shape = |t: f64, q: &[f64]| Shape::of(&modal.model, &At { t, q, ..modal.state.at() }, Some(&scenery));
+    let shape =
+        |t: f64, q: &[f64]| Shape::of(&modal.model, &At { t, q, ..modal.state.at() }, &[], Some(&scenery));
     let scales = pictures::scales(modal);
     let fits = MOST_POINTS / (scenery.points().max(1) * FRAMES);
     let mut shapes = Vec::new();
     let mut q = modal.state.q.clone();
     for (k, (mode, scale)) in modal.modes.iter().zip(scales).enumerate().take(fits.max(1)) {
-        for frame in 0..FRAMES {
+        for frame in 0..=FRAMES {
             let share = frame as f64 / FRAMES as f64;
             pictures::swing(modal, mode, scale, TAU * share, &mut q);
-            shapes.push(shape((k + 1) as f64 + share, &q));
+            // the end of a period is the beginning of the next mode, but for a hair
+            shapes.push(shape((k + 1) as f64 + share.min(WHOLE), &q));
         }
     }
     let rest = scenery.field(&[shape(0.0, &modal.state.q)]);
     let mut field = scenery.field(&shapes);
+    // a mode has no forces of its own
+    field.forces.clear();
     for (line, rest) in field.lines.iter_mut().zip(&rest.lines) {
         displace(line, rest);
     }

@@ -113,6 +113,8 @@ fn amplitude(modal: &Modal, mode: &Mode) -> f64 {
     };
     let turns = |n: &ropewalk_core::Node| match n.kind {
         ropewalk_core::NodeKind::Frame => 0.25 * modal.model.length() * size(n, 3, 3),
+        // a cable that only twists
+        ropewalk_core::NodeKind::Twist => 0.25 * modal.model.length() * size(n, 6, 1),
         _ => 0.0,
     };
     let farthest = modal.model.nodes().iter().map(|n| size(n, 0, 3).max(turns(n))).fold(0.0, f64::max);

@@ -4,8 +4,8 @@ use super::page;
 use super::view::Held;
 use crate::error::Error;
 use ropewalk_report::{
-    BodyRecord, Column, Entry, Event, FieldRecord, LineRecord, LineSnapshot, Page, Panel, Pose, Section,
-    Table,
+    BodyRecord, Column, Entry, Event, FieldRecord, ForceRecord, LineRecord, LineSnapshot, Page, Panel, Pose,
+    Section, Table,
 };
 use std::path::Path;
 
@@ -36,7 +36,7 @@ pub fn compare(folders: [&Path; 2]) -> Result<Page, Error> {
     let [first, second] = [a, b].map(|run| {
         let (history, field, missing) = (run.history, run.field, run.missing);
         let mut one = match &run.file {
-            Some(file) => page::page(file, &run.summary, history, &run.figures, field),
+            Some(file) => page::page(file, &run.summary, history, &run.figures, field, None),
             None => Page { status: run.summary.status.to_string(), history, field, ..Page::default() },
         };
         page::without(&mut one, &missing);
@@ -178,6 +178,13 @@ fn together(fields: [&FieldRecord; 2], labels: &[String; 2]) -> FieldRecord {
             let name = format!("{label}: {}", body.name);
             both.bodies.push(BodyRecord { name, poses: times.iter().map(at).collect(), ..body.clone() });
         }
+        for force in &field.forces {
+            // its kind stays, so that both are shown alike
+            let name = force.name.replacen(": ", &format!(": {label}: "), 1);
+            let points = times.iter().map(|t| vector_at(&force.points, &field.times, *t)).collect();
+            let forces = times.iter().map(|t| vector_at(&force.forces, &field.times, *t)).collect();
+            both.forces.push(ForceRecord { name, points, forces });
+        }
         for shape in &field.shapes {
             if !both.shapes.contains(shape) {
                 both.shapes.push(shape.clone());
@@ -211,6 +218,13 @@ fn line_at(line: &LineRecord, times: &[f64], t: f64) -> LineSnapshot {
         velocity: places(&now.velocity, &next.velocity),
         values: now.values.iter().zip(&next.values).map(|(a, b)| numbers(a, b)).collect(),
     }
+}
+
+/// A vector between two snapshots.
+fn vector_at(all: &[[f64; 3]], times: &[f64], t: f64) -> [f64; 3] {
+    let Some((k, share)) = between(times, t) else { return [f64::NAN; 3] };
+    let next = all.get(k + 1).filter(|_| share > 0.0).unwrap_or(&all[k]);
+    std::array::from_fn(|i| mix(all[k][i], next[i], share))
 }
 
 /// A pose between two snapshots.

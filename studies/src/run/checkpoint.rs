@@ -5,6 +5,7 @@
 
 use super::recorder::Recorder;
 use super::shapes::Shape;
+use super::steps::StepCourse;
 use super::summary::{Happened, Status, Summary};
 use crate::error::Error;
 use ropewalk_core::{Checkpoint, Remeshed};
@@ -59,6 +60,7 @@ pub(crate) struct Saved<'a> {
     pub shapes: Cow<'a, [Shape]>,
     pub due: Cow<'a, [f64]>,
     pub field_due: Cow<'a, [f64]>,
+    pub course: Cow<'a, Option<StepCourse>>,
     pub events: Cow<'a, [Happened]>,
     pub remeshed: Cow<'a, [Remeshed]>,
     pub warnings: Cow<'a, [String]>,
@@ -138,6 +140,7 @@ impl Saver {
             shapes: Cow::Borrowed(&recorder.kept.shapes),
             due: Cow::Borrowed(&recorder.kept.due),
             field_due: Cow::Borrowed(&recorder.kept.field_due),
+            course: Cow::Borrowed(&recorder.course),
             events: Cow::Borrowed(&recorder.events),
             remeshed: Cow::Borrowed(&recorder.remeshed),
             warnings: Cow::Borrowed(&self.warnings),

@@ -19,7 +19,7 @@ const LEAST: usize = 61;
 
 /// Where a field record is written, when that was done last, and how long it took.
 struct Live {
-    files: [PathBuf; 2],
+    files: [PathBuf; 3],
     last: Instant,
     cost: Duration,
 }
@@ -68,7 +68,7 @@ impl Kept {
 
     /// Writes the field record into this folder now and then, so that a run that still goes on can be seen.
     pub fn live_in(&mut self, folder: &RunFolder) {
-        let files = [folder.field_file(), folder.bodies_file()];
+        let files = [folder.field_file(), folder.bodies_file(), folder.forces_file()];
         self.live =
             self.scenery.is_some().then(|| Live { files, last: Instant::now(), cost: Duration::ZERO });
     }
@@ -82,6 +82,7 @@ impl Kept {
         let (start, field) = (Instant::now(), self.field());
         if let (Some(field), Some(live)) = (field, &mut self.live) {
             let _ = field.write_npy(&live.files[0], &live.files[1]);
+            let _ = field.write_forces_npy(&live.files[2]);
             (live.last, live.cost) = (Instant::now(), start.elapsed());
         }
     }
@@ -116,7 +117,7 @@ impl Kept {
     pub fn last(&mut self, model: &Model, state: &State) {
         let missing = self.shapes.last().is_some_and(|last| last.t < state.t);
         if missing && (!self.due.is_empty() || !self.field_due.is_empty()) {
-            let shape = Shape::of(model, &state.at(), self.scenery.as_ref());
+            let shape = Shape::of(model, &state.at(), &state.lambda, self.scenery.as_ref());
             self.push(Shape { is_drawn: !self.due.is_empty(), ..shape });
         }
     }
@@ -137,8 +138,8 @@ impl Kept {
     }
 
     /// An instant of a model, as it is looked at.
-    pub fn sample(&mut self, model: &Model, at: &At<'_>) {
-        self.look(at.t, |scenery| Shape::of(model, at, scenery));
+    pub fn sample(&mut self, model: &Model, at: &At<'_>, lambda: &[f64]) {
+        self.look(at.t, |scenery| Shape::of(model, at, lambda, scenery));
     }
 }
 
@@ -154,7 +155,7 @@ mod tests {
     use super::*;
 
     fn shape(t: f64) -> Shape {
-        Shape { t, is_drawn: true, lines: Vec::new(), bodies: Vec::new() }
+        Shape::bare(t)
     }
 
     #[test]

@@ -10,7 +10,7 @@ use ropewalk_scene::SceneFile;
 /// Which files a run leaves behind beside scene, history, shapes, tables and summary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leaves {
-    /// `report.html`, and the field record that its motion is made of: `field.npy` and `bodies.npy`.
+    /// `report.html`, and what it is made of: `field.npy`, `bodies.npy` and `forces.npy`, and `steps.csv`.
     pub report: bool,
     /// `plots/*.svg`.
     pub plots: bool,
@@ -40,8 +40,9 @@ pub(super) fn write_field(
     warn: &mut dyn FnMut(&str),
 ) {
     let npy = || field.write_npy(&folder.field_file(), &folder.bodies_file());
+    let forces = || field.write_forces_npy(&folder.forces_file());
     let for_vtk = || if leaves.vtk { vtk::write(field, folder.path(), "vtk") } else { Ok(()) };
-    for written in [npy(), for_vtk()] {
+    for written in [npy(), forces(), for_vtk()] {
         written.unwrap_or_else(|e| warn(&e.to_string()));
     }
 }
@@ -56,7 +57,8 @@ pub(super) fn write_page(
     warn: &mut dyn FnMut(&str),
 ) -> Option<Page> {
     let history = std::mem::take(&mut recorder.table);
-    let mut page = page::page(file, summary, history, &recorder.figures, field);
+    let steps = recorder.steps.take();
+    let mut page = page::page(file, summary, history, &recorder.figures, field, steps);
     let written = page.write(&folder.report_file());
     // one copy of it is enough
     recorder.table = std::mem::take(&mut page.history);

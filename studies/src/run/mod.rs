@@ -2,6 +2,7 @@
 
 mod beside;
 mod checkpoint;
+mod forces;
 mod kept;
 mod leave;
 mod manifest;
@@ -13,6 +14,7 @@ mod report;
 mod scenery;
 mod shapes;
 mod start;
+mod steps;
 mod summary;
 mod surfacing;
 mod tables;
@@ -77,6 +79,8 @@ pub struct Outcome {
     pub page: Option<Box<Page>>,
     /// A summary for people, several lines.
     pub report: String,
+    /// Why the solver gave up, if it did.
+    pub error: Option<Error>,
 }
 
 /// Runs a scene into a folder of its own. Warnings are given to `warn` at once.
@@ -118,6 +122,7 @@ pub(crate) fn run_showing(
     recorder.show(progress(scene.run.duration));
     let before = Elapsed::default();
     if let Ok(started) = &started {
+        recorder.watch_steps(options.leaves, started);
         if options.leaves.field() {
             recorder.kept.want_field(&scene.run, started.scenery(file));
             recorder.kept.live_in(&folder);
@@ -157,6 +162,7 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let started = Started::restored(&file, saved.simulation.clone(), saved.flutter)?;
     let Started::Dynamics(simulation, ..) = &started else { unreachable!("only runs in time are resumed") };
     let mut recorder = Recorder::new(file.scene(), file.records(&simulation.model)?);
+    recorder.watch_steps(options.leaves, &started);
     if options.leaves.field() {
         recorder.kept.want_field(&file.scene().run, started.scenery(&file));
         recorder.kept.live_in(&folder);
@@ -214,7 +220,8 @@ impl Job<'_> {
         let elapsed = self.stopwatch.elapsed();
         (summary.cpu_s, summary.wall_s) =
             (self.before.cpu_s + elapsed.cpu_s, self.before.wall_s + elapsed.wall_s);
-        self.write(summary)
+        let error = if let Ending::Failed(error) = ending { Some(error) } else { None };
+        Outcome { error, ..self.write(summary) }
     }
 
     /// Moves the analysis to its end.
@@ -235,6 +242,9 @@ impl Job<'_> {
         if let Some(e) = recorder.saver.as_mut().and_then(|s| s.trouble.take()) {
             recorder.warnings.say(&format!("the last checkpoint is older than it should be: {e}"));
         }
+        let limits = started.limits();
+        summary.set_limits(&limits);
+        recorder.steps = recorder.course.as_ref().and_then(|course| course.steps(&limits));
         let done = started.done();
         recorder.last_shape(&done.model, &done.state);
         summary.critical = done.critical_loads();
@@ -262,6 +272,9 @@ impl Job<'_> {
         if let Some(field) = &field {
             leave::write_field(&folder, leaves, field, &mut warn);
         }
+        if let Some(steps) = &recorder.steps {
+            steps.write(&folder.steps_file()).unwrap_or_else(|e| warn(&e.to_string()));
+        }
         summary.notes.extend(recorder.kept.thinned.take());
         summary.warnings.clone_from(&warnings.all);
         let mut page = None;
@@ -282,6 +295,6 @@ impl Job<'_> {
             page.iter().map(|_| "report.html").chain(leaves.vtk.then_some("vtk.pvd")).collect();
         let files = report::Files { pictures: &pictures, tables: &tables, pages: &pages };
         let report = report::report(file, &summary, &recorder, &folder, files);
-        Outcome { folder, summary, history: recorder.table, pictures, page, report }
+        Outcome { folder, summary, history: recorder.table, pictures, page, report, error: None }
     }
 }

@@ -4,7 +4,7 @@ use super::recorder::Figure;
 use super::report::{by_name, critical, finals};
 use super::summary::{ProfileEntry, Status, Summary};
 use ropewalk_core::integrator::Options;
-use ropewalk_report::{Entry, Event, FieldRecord, Page, Panel, Section, Table, number, rough};
+use ropewalk_report::{Entry, Event, FieldRecord, Page, Panel, Section, Steps, Table, number, rough};
 use ropewalk_scene::{Analysis, SceneFile};
 use serde_json::Value;
 
@@ -15,6 +15,7 @@ pub(crate) fn page(
     history: Table,
     figures: &[Figure],
     field: FieldRecord,
+    steps: Option<Steps>,
 ) -> Page {
     let panel = |figure: &Figure| Panel {
         title: figure.title.clone(),
@@ -37,6 +38,7 @@ pub(crate) fn page(
         energy: energy(file, summary),
         history,
         panels,
+        steps,
         field,
         ..Page::default()
     }
@@ -72,6 +74,9 @@ fn entries(file: &SceneFile, summary: &Summary, history: &Table) -> Vec<Entry> {
     }
     let rejected = if c.rejected > 0 { format!(" ({} rejected)", c.rejected) } else { String::new() };
     add(if statics { "equilibria" } else { "steps" }, format!("{}{rejected}", c.steps));
+    if let Some(limits) = summary.limits_told() {
+        add("limited by", limits);
+    }
     add("Newton iterations", c.newton_iterations.to_string());
     add("factorizations", c.factorizations.to_string());
     add("wall time", format!("{} s", rough(summary.wall_s)));

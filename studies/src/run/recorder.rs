@@ -2,11 +2,14 @@
 
 use super::checkpoint::{Saved, Saver};
 use super::kept::Kept;
+use super::leave::Leaves;
 use super::shapes::{Line, Shape};
+use super::start::Started;
+use super::steps::StepCourse;
 use super::summary::{Ending, Happened, Summary};
 use super::surfacing::Surfacing;
 use crate::error::Error;
-use ropewalk_core::integrator::StepReport;
+use ropewalk_core::integrator::{StepReport, Stepping};
 use ropewalk_core::{At, Checkpoint, Layers, Model, NodeKind, Observer, Record, Remeshed, Sample, State, V3};
 use ropewalk_report as output;
 use ropewalk_report::{Progress, Table, TableWriter, Watch};
@@ -50,8 +53,14 @@ pub struct Recorder<'a> {
     pub track: Option<Vec<Vec<V3<f64>>>>,
     /// Lines of all parts at several times.
     pub kept: Kept,
+    /// Whether the sizes of steps follow from what happens.
+    adaptive: bool,
     /// Whether to look for what leaves water without a surface.
     surfacing: Option<Surfacing>,
+    /// How long steps were, if that is to be told, …
+    pub course: Option<StepCourse>,
+    /// … and the same for pages, at the end.
+    pub steps: Option<output::Steps>,
     /// Why it stopped the run.
     pub stop: Option<Ending>,
     /// What happened and when.
@@ -118,7 +127,11 @@ impl<'a> Recorder<'a> {
             spent: None,
             track: None,
             kept: Kept::new(&scene.run),
+            adaptive: scene.run.analysis != Analysis::Statics
+                && matches!(scene.solver.stepping, Stepping::Controlled { .. }),
             surfacing: Surfacing::of(scene),
+            course: None,
+            steps: None,
             stop: None,
             events: Vec::new(),
             remeshed: Vec::new(),
@@ -143,6 +156,12 @@ impl<'a> Recorder<'a> {
         Ok(())
     }
 
+    /// Keeps the sizes of steps, if a page tells of them.
+    pub(super) fn watch_steps(&mut self, leaves: Leaves, started: &Started) {
+        let counts = leaves.report && matches!(started, Started::Dynamics(..));
+        self.course = counts.then(StepCourse::default);
+    }
+
     /// Begins to show the progress.
     pub(super) fn show(&mut self, mut progress: Progress) {
         if let Some(column) = self.followed.map(|k| &self.table.columns[k]) {
@@ -163,6 +182,7 @@ impl<'a> Recorder<'a> {
         if self.kept.has_field() {
             self.kept.field_due = saved.field_due.clone().into_owned();
         }
+        self.course = self.course.take().map(|_| saved.course.clone().into_owned().unwrap_or_default());
         self.events = saved.events.clone().into_owned();
         self.remeshed = saved.remeshed.clone().into_owned();
         Ok(())
@@ -205,7 +225,7 @@ impl<'a> Recorder<'a> {
             }
         }
         self.keep()?;
-        self.kept.sample(s.model, &s.at);
+        self.kept.sample(s.model, &s.at, s.lambda);
         Ok(())
     }
 
@@ -222,7 +242,7 @@ impl<'a> Recorder<'a> {
         let row = self.keep();
         self.kept.look(t, |_| {
             let lines = vec![Line::of_process(name, process)];
-            Shape { t, is_drawn: true, lines, bodies: Vec::new() }
+            Shape { lines, ..Shape::bare(t) }
         });
         self.go_on(row)?;
         self.look_for_end()
@@ -287,7 +307,13 @@ impl<'a> Recorder<'a> {
 impl Observer for Recorder<'_> {
     fn step(&mut self, model: &Model, state: &State, report: &StepReport) -> ControlFlow<()> {
         if let Some(progress) = &mut self.progress {
+            if self.adaptive {
+                progress.limited(report.limit.word());
+            }
             progress.step(state.t, report.h, report.rejected);
+        }
+        if let Some(course) = &mut self.course {
+            course.push(state.t, report.h, report.limit);
         }
         if let Some(saver) = &mut self.saver {
             saver.step();

@@ -1,5 +1,6 @@
 //! What there is to be seen in a scene: lines, bodies, the shapes that they touch, water and bed.
 
+use super::forces::{self, Acting, Forces};
 use super::shapes::{Line, MEASURED, Shape};
 use ropewalk_core::rotation::{from_matrix, matrix, transposed_times};
 use ropewalk_core::{At, Attitude, Marker, Model, NodeKind, Part, Quantity, Solid, Surface, V3};
@@ -18,6 +19,8 @@ pub(crate) struct Scenery {
     movers: Vec<Mover>,
     /// Points of all lines together.
     points: usize,
+    /// What exerts forces.
+    forces: Forces,
 }
 
 /// What moves a body.
@@ -63,15 +66,15 @@ impl Scenery {
             }
         }
         if let (Some(process), Some(spec)) = (process, scene.processes.first()) {
-            let quantities = match process.tensions().is_empty() {
-                true => Vec::new(),
-                false => vec![output::Quantity::new("tension", "N")],
-            };
+            let known = [("tension", process.tensions()), ("curvature", process.curvatures())];
+            let known = known.iter().filter(|(_, values)| !values.is_empty());
+            let quantities = known.map(|(name, _)| output::Quantity::new(*name, unit(name))).collect();
             let line = LineRecord::new(spec.name(), spec.typetag_name().replace('_', " "), 0.0);
             scenery.still.lines.push(LineRecord { place: place("processes", 0), quantities, ..line });
             scenery.points += process.line().len();
         }
         scenery.add_driven(model);
+        scenery.forces = Forces::new(model);
         let of_terms = model.terms().iter().filter_map(|t| t.shows()).flat_map(|s| s.solids());
         let of_constraints = model.constraints().iter().flat_map(|c| c.solids());
         let of_process = process.into_iter().flat_map(|p| p.solids());
@@ -133,6 +136,7 @@ impl Scenery {
 
     /// Another model of the same scene, whose nodes have other numbers: carriers of shapes are found anew.
     pub fn follow(&mut self, model: &Model) {
+        self.forces = Forces::new(model);
         let solids: Vec<Solid> =
             model.terms().iter().filter_map(|t| t.shows()).flat_map(|s| s.solids()).collect();
         for (mover, body) in self.movers.iter_mut().zip(&self.still.bodies) {
@@ -176,15 +180,22 @@ impl Scenery {
         self.movers.iter().map(pose).collect()
     }
 
+    /// All forces at a state with these multipliers.
+    pub fn forces(&self, model: &Model, at: &At<'_>, lambda: &[f64]) -> Vec<Acting> {
+        self.forces.at(model, at, lambda)
+    }
+
     /// The field record of these shapes.
     pub fn field(&self, shapes: &[Shape]) -> FieldRecord {
         let mut field = self.still.clone();
+        let mut forces: Vec<&[Acting]> = Vec::new();
         for shape in shapes {
             // a load path may turn back, or stand at a critical load
             if field.times.last().is_some_and(|last| !(shape.t > *last)) {
                 continue;
             }
             field.times.push(shape.t);
+            forces.push(&shape.forces);
             for line in &mut field.lines {
                 let of = shape.lines.iter().find(|of| of.part == line.name);
                 line.snapshots.push(snapshot(&line.quantities, of));
@@ -195,6 +206,7 @@ impl Scenery {
             }
         }
         field.bodies.iter_mut().for_each(|body| settle(&mut body.poses));
+        field.forces = forces::records(forces.into_iter());
         field
     }
 
@@ -244,7 +256,9 @@ fn quantities(part: &dyn Part, moves: bool) -> Vec<output::Quantity> {
     let bends = part.slender().is_some_and(|s| s.ei > 0.0);
     let known = MEASURED.iter().filter(|(what, _)| *what != Quantity::Moment || bends);
     let measured = part.line().is_some().then_some(known).into_iter().flatten().map(|(_, name)| *name);
-    let names = measured.chain(moves.then_some(SPEED));
+    // what the joints of a chain carry
+    let carried = (!part.links().is_empty()).then_some("tension");
+    let names = carried.into_iter().chain(measured).chain(moves.then_some(SPEED));
     names.map(|name| output::Quantity::new(name, unit(name))).collect()
 }
 
@@ -329,7 +343,7 @@ mod tests {
 
     #[test]
     fn a_load_path_that_turns_back_leaves_times_that_rise() {
-        let shape = |t| Shape { t, is_drawn: true, lines: Vec::new(), bodies: Vec::new() };
+        let shape = Shape::bare;
         let field = Scenery::default().field(&[shape(0.0), shape(0.5), shape(0.5), shape(0.4), shape(0.6)]);
         assert_eq!(field.times, [0.0, 0.5, 0.6]);
         field.check().unwrap();

@@ -1,5 +1,6 @@
 //! The lines of all parts at several times: what pictures are drawn of, `shapes.csv`, and the field record.
 
+use super::forces::Acting;
 use super::scenery::Scenery;
 use ropewalk_core::{At, Model, Part, Quantity, V3};
 use ropewalk_report::{Column, Csv, OutputError, Pose, RunFolder, cells, write_atomic};
@@ -23,6 +24,8 @@ pub struct Shape {
     pub lines: Vec<Line>,
     /// Where bodies are, in the order of the scenery.
     pub bodies: Vec<Pose>,
+    /// Forces at points, for a scenery.
+    pub forces: Vec<Acting>,
 }
 
 /// One part.
@@ -54,11 +57,15 @@ impl Line {
             tensions.clear();
         }
         let s = s.collect();
-        Line { part: part.to_string(), s, x, v: Vec::new(), values: [tensions, Vec::new(), Vec::new()] }
+        let mut curvatures = process.curvatures();
+        if curvatures.len() != x.len() {
+            curvatures.clear();
+        }
+        Line { part: part.to_string(), s, x, v: Vec::new(), values: [tensions, curvatures, Vec::new()] }
     }
 
     /// The line of a part, with what is measured along it if that is wanted.
-    fn of_part(part: &dyn Part, at: &At<'_>, measure: bool) -> Self {
+    fn of_part(model: &Model, part: &dyn Part, at: &At<'_>, lambda: &[f64], measure: bool) -> Self {
         let (x, mut s) = (part.centre_line(at), part.arc_lengths(at));
         let mut line = Line { part: part.name().to_string(), x, ..Line::default() };
         if measure && s.len() == line.x.len() {
@@ -72,6 +79,8 @@ impl Line {
                 if !(known.slender().ei > 0.0) {
                     line.values[2].fill(f64::NAN);
                 }
+            } else if lambda.len() == model.multipliers() {
+                line.values[0] = model.axial_forces(part, at, lambda, 0..=part.links().len());
             }
         }
         s.resize(line.x.len(), f64::NAN);
@@ -85,12 +94,22 @@ impl Line {
 }
 
 impl Shape {
-    /// All parts of a model that have a line; with a scenery, what is measured along them too, and all bodies.
-    pub(crate) fn of(model: &Model, at: &At<'_>, scenery: Option<&Scenery>) -> Self {
-        let line = |part: &std::sync::Arc<dyn Part>| Line::of_part(part.as_ref(), at, scenery.is_some());
+    /// Nothing at a time.
+    pub(crate) fn bare(t: f64) -> Self {
+        Shape { t, is_drawn: true, lines: Vec::new(), bodies: Vec::new(), forces: Vec::new() }
+    }
+
+    /// All parts of a model that have a line; with a scenery, what is measured along them too, all bodies, and all forces,
+    /// with the multipliers `lambda` of constraints; without those neither forces nor what joints carry.
+    pub(crate) fn of(model: &Model, at: &At<'_>, lambda: &[f64], scenery: Option<&Scenery>) -> Self {
+        let line = |part: &std::sync::Arc<dyn Part>| {
+            Line::of_part(model, part.as_ref(), at, lambda, scenery.is_some())
+        };
         let lines = model.parts().iter().map(line).filter(|line| !line.x.is_empty()).collect();
         let bodies = scenery.map_or_else(Vec::new, |scenery| scenery.poses(model, at));
-        Shape { t: at.t, is_drawn: true, lines, bodies }
+        let known = scenery.filter(|_| lambda.len() == model.multipliers());
+        let forces = known.map_or_else(Vec::new, |scenery| scenery.forces(model, at, lambda));
+        Shape { t: at.t, is_drawn: true, lines, bodies, forces }
     }
 
     /// The points of all parts; those of one are parted from those of the next by one that isn't finite.
@@ -161,7 +180,7 @@ pub fn read(folder: &RunFolder) -> Result<Vec<Shape>, OutputError> {
         let numbers = numbers.iter().take(4).map(number).collect::<Result<Vec<_>, _>>()?;
         let [s, x, y, z] = numbers[..] else { return Err(fail("not a row of shapes")) };
         if shapes.last().is_none_or(|shape| shape.t != t) {
-            shapes.push(Shape { t, is_drawn: true, lines: Vec::new(), bodies: Vec::new() });
+            shapes.push(Shape::bare(t));
         }
         let lines = &mut shapes.last_mut().ok_or_else(|| fail("no shape"))?.lines;
         match lines.last_mut().filter(|line| line.part == *part) {
@@ -179,8 +198,7 @@ pub fn read(folder: &RunFolder) -> Result<Vec<Shape>, OutputError> {
 
 /// The last of them; empty if there is none.
 pub fn last(folder: &RunFolder) -> Result<Shape, OutputError> {
-    let nothing = Shape { t: f64::NAN, is_drawn: true, lines: Vec::new(), bodies: Vec::new() };
-    Ok(read(folder)?.pop().unwrap_or(nothing))
+    Ok(read(folder)?.pop().unwrap_or_else(|| Shape::bare(f64::NAN)))
 }
 
 #[cfg(test)]
@@ -198,7 +216,7 @@ mod tests {
             ..Line::default()
         };
         let lines = |t| vec![line("hose, \"old\"", t), line("buoy", 5.0)];
-        let shape = |t| Shape { t, is_drawn: true, lines: lines(t), bodies: Vec::new() };
+        let shape = |t| Shape { lines: lines(t), ..Shape::bare(t) };
         let between = Shape { is_drawn: false, ..shape(0.3) };
         write(&folder, &Column::new("load factor", ""), &[shape(0.0), between, shape(0.7)]).unwrap();
         let text = std::fs::read_to_string(folder.shapes_file()).unwrap();

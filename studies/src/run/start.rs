@@ -4,7 +4,7 @@ use super::recorder::Recorder;
 use super::scenery::Scenery;
 use super::summary::{Counts, CriticalLoad, Ending, ProfileEntry};
 use crate::error::{Error, caught};
-use ropewalk_core::integrator::{StepError, StepReport, Stepping};
+use ropewalk_core::integrator::{Limit, StepError, StepReport, Stepping};
 use ropewalk_core::statics::{Critical, Statics};
 use ropewalk_core::{Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit};
 use ropewalk_report::Watch;
@@ -163,6 +163,14 @@ impl Started {
             }
         }
         all
+    }
+
+    /// How many steps were limited by what, in the order of [`Limit::ALL`].
+    pub(crate) fn limits(&self) -> [u64; Limit::ALL.len()] {
+        match self {
+            Started::Dynamics(s, ..) => s.work.counts.limits,
+            Started::Statics(_) | Started::Process(..) => [0; Limit::ALL.len()],
+        }
     }
 
     /// Measures the time of every term from now on.

@@ -5,7 +5,7 @@ use super::recorder::{Figure, Recorder};
 use super::scenery::Scenery;
 use super::summary::Summary;
 use crate::error::Error;
-use ropewalk_report::{FieldRecord, Page, RunFolder, Table};
+use ropewalk_report::{FieldRecord, Page, RunFolder, Steps, Table};
 use ropewalk_scene::{Fault, SceneFile};
 use std::path::{Path, PathBuf};
 
@@ -37,7 +37,7 @@ pub fn page_of(folder: &Path) -> Result<Page, Error> {
     let missing = std::mem::take(&mut run.missing);
     let (file, summary) = (run.file, run.summary);
     let mut page = match &file {
-        Some(file) => page::page(file, &summary, run.history, &run.figures, run.field),
+        Some(file) => page::page(file, &summary, run.history, &run.figures, run.field, run.steps),
         None => Page {
             title: run.name.clone(),
             status: summary.status.to_string(),
@@ -45,6 +45,7 @@ pub fn page_of(folder: &Path) -> Result<Page, Error> {
             notes: summary.notes,
             history: run.history,
             field: run.field,
+            steps: run.steps,
             ..Page::default()
         },
     };
@@ -61,6 +62,7 @@ pub(super) struct Held {
     pub history: Table,
     pub figures: Vec<Figure>,
     pub field: FieldRecord,
+    pub steps: Option<Steps>,
     /// Names of files that aren't there.
     pub missing: Vec<&'static str>,
 }
@@ -97,6 +99,8 @@ impl Held {
         let file = file.map(|file| file.named(&name));
         let mut missing = Vec::new();
         let mut field = FieldRecord::read_npy(&run.field_file(), &run.bodies_file())?;
+        field.read_forces_npy(&run.forces_file())?;
+        let mut steps: Option<Steps> = there(run.steps_file()).map(|path| Steps::read(&path)).transpose()?;
         let mut drawn = Vec::new();
         let model = file.as_ref().and_then(|file| Some((file, file.build().ok()?)));
         match &model {
@@ -117,7 +121,7 @@ impl Held {
             }
             None => missing.push("scene.toml, or one that this version can build"),
         }
-        let summary = there(run.summary_file()).map(|_| run.read_summary()).transpose()?;
+        let summary: Option<Summary> = there(run.summary_file()).map(|_| run.read_summary()).transpose()?;
         let checks = [
             ("history.csv", history.is_some()),
             ("field.npy", has_field),
@@ -125,6 +129,10 @@ impl Held {
         ];
         missing.extend(checks.iter().filter(|(_, is)| !is).map(|(name, _)| *name));
         let (history, summary) = (history.unwrap_or_default(), summary.unwrap_or_default());
-        Ok(Held { name, file, summary, history, figures: drawn, field, missing })
+        if let Some(steps) = &mut steps {
+            let counts = steps.causes.iter().map(|cause| summary.limits.get(cause).copied());
+            steps.counts = counts.zip(&steps.counts).map(|(all, some)| all.unwrap_or(*some)).collect();
+        }
+        Ok(Held { name, file, summary, history, figures: drawn, field, steps, missing })
     }
 }

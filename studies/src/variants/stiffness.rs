@@ -164,6 +164,7 @@ fn cantilever(models: CableModel, n: usize, ea: f64, load: Load) -> Option<(f64,
             marker,
             local: false,
             moment: [0.0, 0.0, 1.0].map(Into::into),
+            torque: None,
             time: grows(),
         }),
     };

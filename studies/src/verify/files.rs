@@ -43,6 +43,7 @@ pub(super) const SCENES: &[(&str, &str)] = files![".toml":
     "a02_n_four_bar",
     "a02_n_four_bar_40",
     "a03_andrews_squeezer",
+    "bend45_cantilever",
     "cable_in_current_buoy",
     "cable_in_current_equilibrium",
     "contact_block",

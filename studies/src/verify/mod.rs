@@ -14,6 +14,6 @@ mod report;
 
 pub use case::{Case, LeftOut, Outcome, case, cases};
 pub use page::TITLE;
-pub use page::{page, picture};
+pub use page::{html, page, picture};
 pub use quantity::{Measured, Quantity};
 pub use report::{heading, lines};

@@ -1,7 +1,7 @@
 // Text to numbers: base64, inflate, byte planes, guesses. The other half is report/src/page/{block,pack}.rs.
 
 import { turned } from "./motion.ts";
-import type { Body, Field, Line, Run, Shape, V3 } from "./run.ts";
+import type { Body, Field, Force, Line, Run, Shape, V3 } from "./run.ts";
 
 const VERSION = 1;
 
@@ -25,6 +25,9 @@ export async function decode(text: string): Promise<Run> {
   const arrays = bytes.subarray(4 + length);
   const get = (place: Place) => numbers(arrays, place);
   for (const column of run.history) column.values = wide(get(column.values), column.values);
+  if (run.steps) for (const key of ["t", "least", "greatest", "cause"]) run.steps[key] = wide(get(run.steps[key]), run.steps[key]);
+  run.steps ??= null;
+  run.restarts ??= [];
   run.field = field(run.field, get);
   return run as Run;
 }
@@ -68,7 +71,8 @@ function field(raw: any, get: (place: Place) => Float32Array): Field {
     const shapes = body.shapes.map((s: any) => shape(s, get));
     return { name, kind, place, shapes, x: get(body.position), q: get(body.orientation) };
   });
-  return { ...raw, times, lines, bodies, shapes: raw.shapes.map((s: any) => near(shape(s, get))) };
+  const forces = (raw.forces ?? []).map((force: any): Force => ({ name: force.name, kind: force.kind, x: get(force.position), f: get(force.force) }));
+  return { ...raw, times, lines, bodies, forces, shapes: raw.shapes.map((s: any) => near(shape(s, get))) };
 }
 
 /** A plane has no middle: the foot of the field's origin will do. */

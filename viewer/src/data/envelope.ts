@@ -1,4 +1,4 @@
-// Least, mean and greatest value at each place of a line, over all or some of the snapshots.
+// Least, mean and greatest value and the standard deviation at each place of a line, over all or some of the snapshots.
 
 import { firstS, type Line, type Quantity } from "./run.ts";
 
@@ -14,6 +14,8 @@ export interface Envelope {
   least: Float64Array;
   mean: Float64Array;
   greatest: Float64Array;
+  /** Standard deviation over time. */
+  deviation: Float64Array;
   lowest: Extreme;
   highest: Extreme;
 }
@@ -29,6 +31,8 @@ export function envelope(line: Line, of: Quantity, times: ArrayLike<number>, fro
   const least = new Float64Array(n).fill(Infinity);
   const greatest = new Float64Array(n).fill(-Infinity);
   const sum = new Float64Array(n);
+  const squares = new Float64Array(n);
+  const first = new Float64Array(n).fill(NaN);
   const weights = new Float64Array(n);
   const lowest: Extreme = { value: Infinity, s: NaN, t: NaN };
   const highest: Extreme = { value: -Infinity, s: NaN, t: NaN };
@@ -50,13 +54,17 @@ export function envelope(line: Line, of: Quantity, times: ArrayLike<number>, fro
       least[i] = Math.min(least[i]!, value);
       greatest[i] = Math.max(greatest[i]!, value);
       sum[i]! += weight * value;
+      // counted from the first value: the mean may be far larger than what it varies by
+      if (Number.isNaN(first[i]!)) first[i] = value;
+      squares[i]! += weight * (value - first[i]!) ** 2;
       weights[i]! += weight;
     }
   }
   if (!Number.isFinite(lowest.value)) return null;
   const mean = sum.map((x, i) => x / weights[i]!);
+  const deviation = mean.map((m, i) => Math.sqrt(Math.max(0, squares[i]! / weights[i]! - (m - first[i]!) ** 2)));
   const gap = (x: number) => (Number.isFinite(x) ? x : NaN);
-  return { s: places, least: least.map(gap), mean, greatest: greatest.map(gap), lowest, highest };
+  return { s: places, least: least.map(gap), mean, greatest: greatest.map(gap), deviation, lowest, highest };
 }
 
 /** Half of the time to the neighbours that count. */

@@ -20,6 +20,10 @@ export interface Run {
   /** The first column is the axis. */
   history: Column[];
   panels: Panel[];
+  /** How long steps were and what kept them so; null where there were none. */
+  steps: Steps | null;
+  /** Where another motion begins that has nothing to do with the one before, such as the next mode. */
+  restarts: number[];
   field: Field;
   /** What was left out, in words. */
   thinned: string[];
@@ -41,6 +45,20 @@ export interface Column {
   values: Float64Array;
 }
 
+/** Steps of the solver, some together: one number of each array for all of them. */
+export interface Steps {
+  /** Time at the end [s]. */
+  t: Float64Array;
+  /** Sizes of the smallest and the largest [s]. */
+  least: Float64Array;
+  greatest: Float64Array;
+  /** Number of what most of them were limited by. */
+  cause: Float64Array;
+  /** What steps were limited by, and how many were by each, of all steps. */
+  causes: string[];
+  counts: number[];
+}
+
 /** Columns of one unit that are drawn together, by number. */
 export interface Panel {
   title: string;
@@ -54,6 +72,7 @@ export interface Field {
   times: Float64Array;
   lines: Line[];
   bodies: Body[];
+  forces: Force[];
   shapes: Shape[];
   water: number | null;
   bed: number | null;
@@ -80,7 +99,7 @@ export interface Quantity {
   name: string;
   unit: string;
   /** One for each point. */
-  values: Float32Array;
+  readonly values: Float32Array;
 }
 
 export interface Body {
@@ -92,6 +111,17 @@ export interface Body {
   x: Float32Array;
   /** Four for each snapshot, the real part first. */
   q: Float32Array;
+}
+
+/** A force that acts at a point that may move; it isn't there where its numbers aren't. */
+export interface Force {
+  name: string;
+  /** Such as `reaction`, `drag`: forces of one kind are shown together. */
+  kind: string;
+  /** Three for each snapshot [m]. */
+  x: Float32Array;
+  /** Three for each snapshot [N]. */
+  f: Float32Array;
 }
 
 /** Null lengths have no end. */

@@ -1,15 +1,16 @@
 // The picture of the motion with its choices: frame, point to follow, trail, colours, thickness.
 
-import { short } from "../data/text.ts";
+import { short, withUnit } from "../data/text.ts";
 import type { Run } from "../data/run.ts";
 import { DARK, gradient, LIGHT } from "../space/colour.ts";
+import { ANGLE } from "../space/orbit.ts";
 import { Flat } from "../space/flat.ts";
 import type { Frame } from "../space/frame.ts";
 import { gestures } from "../space/gestures.ts";
 import type { Picture } from "../space/picture.ts";
 import { Stage } from "../space/stage.ts";
 import { Webgl } from "../space/webgl.ts";
-import { $, choices } from "./dom.ts";
+import { $, choices, h } from "./dom.ts";
 import { Labels } from "./labels.ts";
 import { Quality } from "./quality.ts";
 import { dark } from "./theme.ts";
@@ -26,7 +27,7 @@ export class View {
   private moving = false;
 
   constructor(run: Run) {
-    this.stage = new Stage(run.field);
+    this.stage = new Stage(run.field, run.restarts);
     this.stage.dark = dark();
     this.picture = this.start();
     this.box.prepend(this.picture.canvas);
@@ -104,9 +105,63 @@ export class View {
     for (const button of document.querySelectorAll<HTMLButtonElement>("[data-view]")) button.onclick = () => this.turn(button.dataset.view!);
     $("fit").onclick = () => this.fit("now");
     $("fit-all").onclick = () => this.fit("all");
+    this.forces();
     this.legend();
     $("choose-colour").hidden = stage.scales.length === 0;
     $("choose-thick").hidden = stage.lines.length === 0;
+  }
+
+  /** Which kinds of forces are drawn, and how long. */
+  private forces(): void {
+    const { arrows } = this.stage;
+    const drawn = () => {
+      this.stage.to(this.time());
+      this.keys();
+      this.soon();
+    };
+    $("force-kinds").append(...arrows.kinds.map((kind, i) => {
+      const box = h("input", { type: "checkbox" });
+      box.checked = kind.shown;
+      box.onchange = () => {
+        kind.shown = box.checked;
+        arrows.measure();
+        drawn();
+      };
+      return h("label", {}, box, h("i", { class: `swatch f${i % 6}`, "aria-hidden": "true" }), kind.name);
+    }));
+    const length = $<HTMLInputElement>("force-length");
+    const say = () => {
+      const text = `${short(arrows.factor, 2)}×`;
+      $("force-length-value").textContent = text;
+      length.setAttribute("aria-valuetext", `${short(arrows.factor, 2)} times`);
+    };
+    length.oninput = () => {
+      arrows.factor = 10 ** Number(length.value);
+      say();
+      this.soon();
+    };
+    say();
+    for (const id of ["choose-forces", "choose-length"]) $(id).hidden = arrows.actors.length === 0;
+    this.keys();
+  }
+
+  /** Which colour of arrow is which kind. */
+  private keys(): void {
+    const shown = this.stage.arrows.kinds.map(({ name, shown }, i) => shown && h("span", { class: "key" }, h("i", { class: `swatch f${i % 6}` }), name));
+    $("forces-keys").replaceChildren(...shown.filter((key) => key !== false));
+    $("forces-legend").hidden = !shown.some(Boolean);
+  }
+
+  /** An arrow of a round force, as long as arrows at the middle of the picture are. */
+  private bar(height: number): void {
+    const { arrows, orbit } = this.stage;
+    if ($("forces-legend").hidden) return;
+    const pixel = (2 * orbit.distance * Math.tan(ANGLE / 2)) / height;
+    const force = arrows.round(90 * pixel);
+    const [line, text] = [$("forces-bar").children[0] as HTMLElement, $("forces-bar").children[1]!];
+    const words = Number.isFinite(force) ? withUnit(force, "N") : "";
+    if (text.textContent !== words) text.textContent = words;
+    line.style.width = `${Number.isFinite(force) ? ((force * arrows.scale) / pixel).toFixed(0) : 0}px`;
   }
 
   private legend(): void {
@@ -161,6 +216,7 @@ export class View {
     if (ratio !== this.ratio) this.picture.resize(width, height, (this.ratio = ratio));
     this.picture.draw(this.stage);
     this.labels.draw(width, height);
+    this.bar(height);
   }
 
   resize(): void {

@@ -21,11 +21,16 @@ export function axisStyle(): Pick<uPlot.Axis, "stroke" | "grid" | "ticks" | "fon
 }
 
 /** Axes that say little: numbers below and at the left. */
-export function axes(label: string): uPlot.Axis[] {
-  const values = (_: uPlot, splits: number[]) => splits.map((x) => (x === null ? "" : short(x)));
+export function axes(label: string, log: { x?: boolean; y?: boolean } = {}): uPlot.Axis[] {
+  // of a logarithmic axis the powers of ten alone are written
+  const power = (x: number) => Math.abs(Math.log10(x) - Math.round(Math.log10(x))) < 1e-6;
+  const filter = (_: uPlot, splits: number[]) => splits.map((x) => (power(x) ? x : null));
+  const values = (_: uPlot, splits: (number | null)[]) => splits.map((x) => (x === null ? "" : short(x)));
+  const style = axisStyle();
+  const own = (log?: boolean) => (log ? { ...style, filter, grid: { ...style.grid, filter }, ticks: { ...style.ticks, filter } } : style);
   return [
-    { ...axisStyle(), values, size: 24, gap: 3, label, labelSize: 15, labelGap: 2, labelFont: "11px system-ui, sans-serif" },
-    { ...axisStyle(), values, size: 58, gap: 3 },
+    { ...own(log.x), values, size: 24, gap: 3, label, labelSize: 15, labelGap: 2, labelFont: "11px system-ui, sans-serif" },
+    { ...own(log.y), values, size: 58, gap: 3 },
   ];
 }
 

@@ -1,4 +1,4 @@
-// Least, mean and greatest along a line, with the present curve over them.
+// Least, mean, greatest and standard deviation along a line, with the present curve over them.
 
 import uPlot from "uplot";
 import { envelope, type Envelope } from "../data/envelope.ts";
@@ -49,9 +49,10 @@ export class Envelopes {
     this.plot = null;
     this.say();
     if (!this.found) return;
-    const { s, least, mean, greatest } = this.found;
-    const data = [s, greatest, mean, least].map((a) => Array.from(a, (x) => (Number.isFinite(x) ? x : null))) as unknown as uPlot.AlignedData;
-    const line1 = (dash?: number[]) => ({ stroke: () => styled("--c0"), width: 1.25, points: { show: false }, ...(dash && { dash }) });
+    const { s, least, mean, greatest, deviation } = this.found;
+    const spread = (sign: number) => mean.map((m, i) => m + sign * deviation[i]!);
+    const data = [s, greatest, mean, least, spread(1), spread(-1)].map((a) => Array.from(a, (x) => (Number.isFinite(x) ? x : null))) as unknown as uPlot.AlignedData;
+    const line1 = (dash?: number[], width = 1.25) => ({ stroke: () => styled("--c0"), width, points: { show: false }, ...(dash && { dash }) });
     this.plot = new uPlot({
       width: this.box.clientWidth || 400,
       height: HEIGHT,
@@ -59,8 +60,8 @@ export class Envelopes {
       cursor: { drag: { x: true, y: false, dist: 4 }, y: false, points: { size: 6 } },
       scales: { x: { time: false } },
       axes: axes("s [m]"),
-      series: [{}, line1(), line1([5, 4]), line1()],
-      bands: [{ series: [1, 3], fill: () => styled("--band") }],
+      series: [{}, line1(), line1([5, 4]), line1(), line1([1, 3], 1), line1([1, 3], 1)],
+      bands: [{ series: [1, 3], fill: () => styled("--band") }, { series: [4, 5], fill: () => styled("--band") }],
       hooks: { draw: [() => this.curve()], setCursor: [(u) => this.hover(u)] },
     }, data, this.box);
     this.plot.over.append(this.now);
@@ -92,9 +93,10 @@ export class Envelopes {
       out.textContent = "";
       return;
     }
-    const { s, least, mean, greatest } = this.found;
+    const { s, least, mean, greatest, deviation } = this.found;
     const { unit } = this.quantity;
-    out.textContent = `s = ${withUnit(s[i]!, "m")}: ${withUnit(least[i]!, unit)} · ${withUnit(mean[i]!, unit)} · ${withUnit(greatest[i]!, unit)}`;
+    const text = (of: Float64Array) => withUnit(of[i]!, unit, 3);
+    out.textContent = `s = ${withUnit(s[i]!, "m")}: ${text(least)} · ${text(mean)} ± ${text(deviation)} · ${text(greatest)}`;
   }
 
   to(t: number): void {

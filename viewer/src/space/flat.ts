@@ -5,7 +5,7 @@ import type { Shape, V3 } from "../data/run.ts";
 import { edges } from "./edges.ts";
 import { seen } from "./frame.ts";
 import { ANGLE, project } from "./orbit.ts";
-import { styled, type Picture } from "./picture.ts";
+import { kindColour, styled, type Picture } from "./picture.ts";
 import type { Stage } from "./stage.ts";
 
 type Put = (x: V3) => V3;
@@ -59,6 +59,24 @@ export class Flat implements Picture {
     });
     this.trail(stage, shown);
     this.lines(stage, ground, height);
+    this.arrows(stage, ground);
+  }
+
+  private arrows(stage: Stage, put: Put): void {
+    const { actors, scale } = stage.arrows;
+    this.pen.lineWidth = 2 * this.ratio;
+    for (const { x, f, kind, seen } of actors) {
+      if (!seen) continue;
+      const [from, to] = [put(x), put(x.map((v, i) => v + scale * f[i]!) as V3)];
+      if (!(from[2] > 0 && to[2] > 0)) continue;
+      this.pen.strokeStyle = kindColour(kind);
+      const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+      const length = Math.hypot(dx, dy) || 1;
+      const head = Math.min(9 * this.ratio, 0.4 * length) / length;
+      const barb = (sign: number): V3 => [to[0] - head * (dx - 0.45 * sign * dy), to[1] - head * (dy + 0.45 * sign * dx), 1];
+      this.path([from, to]);
+      this.path([barb(1), to, barb(-1)]);
+    }
   }
 
   private solid(shape: Shape, reach: number, put: Put, colour: string): void {
@@ -120,7 +138,7 @@ export class Flat implements Picture {
   private trail(stage: Stage, put: Put): void {
     this.pen.strokeStyle = this.colours.trail!;
     const all: V3[] = [];
-    for (let k = 0; k < stage.reached; k++) all.push(put(Array.from(stage.trail.subarray(3 * k, 3 * k + 3)) as V3));
+    for (let k = stage.since; k < stage.reached; k++) all.push(put(Array.from(stage.trail.subarray(3 * k, 3 * k + 3)) as V3));
     if (all.length > 1) this.path(all);
   }
 

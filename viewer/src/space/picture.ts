@@ -12,6 +12,11 @@ export interface Picture {
   recolour(stage: Stage): void;
 }
 
+/** The colour of a kind of force. */
+export function kindColour(kind: number): string {
+  return styled(`--f${kind % 6}`);
+}
+
 /** A colour of the page's style. */
 export function styled(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();

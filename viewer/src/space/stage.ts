@@ -3,6 +3,7 @@
 import { range } from "../data/envelope.ts";
 import { along, moment, points, pose, settle, type Moment, type Point, type Pose } from "../data/motion.ts";
 import type { Field, Line, Quantity, V3 } from "../data/run.ts";
+import { Arrows } from "./arrows.ts";
 import { DARK, LIGHT, viridis } from "./colour.ts";
 import { seen, stand, type Frame, type Stand } from "./frame.ts";
 import { fit, fitBall, type Box, type Orbit, VIEWS } from "./orbit.ts";
@@ -31,6 +32,7 @@ export class Stage {
   readonly points: Point[];
   readonly scales: Scale[];
   readonly lines: LineActor[];
+  arrows: Arrows;
   poses: Pose[] = [];
   stand: Stand = { x: [0, 0, 0], angle: 0 };
   frame: Frame = { point: null, turns: false };
@@ -44,8 +46,9 @@ export class Stage {
   dark = false;
   names = false;
   orbit: Orbit = { target: [0, 0, 0], distance: 1, azimuth: VIEWS.space![0], elevation: VIEWS.space![1] };
-  /** The path of the followed point in the frame, for all snapshots; `reached` of them are shown. */
+  /** The path of the followed point in the frame, for all snapshots; those from `since` until `reached` are shown. */
   trail = new Float32Array();
+  since = 0;
   reached = 0;
   /** Size of all that happens on the ground [m]. */
   readonly size: number;
@@ -54,7 +57,8 @@ export class Stage {
   private last: V3 | null = null;
   private at: Moment = { k: 0, f: 0 };
 
-  constructor(field: Field) {
+  /** `restarts` are times at which another motion begins, which has no trail from before. */
+  constructor(field: Field, private restarts: number[] = []) {
     this.field = field;
     this.points = points(field);
     this.scales = scales(field.lines);
@@ -64,10 +68,13 @@ export class Stage {
       return { line, count: 0, x: new Float32Array(3 * most), colour: new Float32Array(3 * most) };
     });
     this.values = new Float32Array(Math.max(0, ...field.lines.flatMap((l) => l.counts)));
+    this.arrows = new Arrows([], 1);
     this.whole = this.wholeBox();
     this.size = diagonal(this.whole);
     this.trailed = this.points.find((p) => p.name.endsWith(", end")) ?? this.points[0] ?? null;
     this.to(field.times[0] ?? 0);
+    this.arrows = new Arrows(field.forces, diagonal(this.box()));
+    this.arrows.to(this.at);
     this.thick();
     // a line that is small beside its path is lost in it: stay with it
     const here = this.box();
@@ -100,10 +107,20 @@ export class Stage {
       if (!settle(actor.x, actor.count)) actor.count = 0;
       this.paint(actor);
     }
-    this.reached = this.trail.length > 0 ? at.k + 1 : 0;
+    this.arrows.to(at);
+    this.reach();
     const here = this.here();
     if (here && this.last) for (let i = 0; i < 3; i++) this.orbit.target[i]! += here[i]! - this.last[i]!;
     if (here) this.last = here;
+  }
+
+  private reach(): void {
+    const { k } = this.at;
+    this.reached = this.trail.length > 0 ? k + 1 : 0;
+    const times = this.field.times;
+    const begun = this.restarts.findLast((t) => t <= (times[k] ?? 0)) ?? -Infinity;
+    this.since = 0;
+    while (this.since < k && times[this.since]! < begun) this.since++;
   }
 
   /** The followed point in the frame, if it is there. */
@@ -154,7 +171,7 @@ export class Stage {
       this.trail.set(seen(stand(this.frame, m), point!.at(m)), 3 * k);
     }
     if (!settle(this.trail, count)) this.trail = new Float32Array();
-    this.reached = this.trail.length > 0 ? this.at.k + 1 : 0;
+    this.reach();
   }
 
   /** What moves, as it is now in the frame. */
@@ -199,8 +216,10 @@ function scales(lines: Line[]): Scale[] {
   const all: Scale[] = [];
   for (const { name, unit } of lines.flatMap((l) => l.quantities)) {
     if (all.some((s) => s.name === name && s.unit === unit)) continue;
-    const of = lines.flatMap((l) => find(l, { name, unit })?.values ?? []);
-    all.push({ name, unit, ...range(of) });
+    // only what is looked at is gone through
+    let known: ReturnType<typeof range> | null = null;
+    const measured = () => (known ??= range(lines.flatMap((l) => find(l, { name, unit })?.values ?? [])));
+    all.push({ name, unit, get low() { return measured().low; }, get high() { return measured().high; }, get beyond() { return measured().beyond; } });
   }
   return all;
 }

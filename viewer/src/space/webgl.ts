@@ -1,12 +1,13 @@
 // The stage drawn by three.js.
 
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, DynamicDrawUsage, GridHelper, Group, Line as Polyline,
-  LineBasicMaterial, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, PlaneGeometry, Scene, Sphere, SphereGeometry, WebGLRenderer,
+  AmbientLight, BufferAttribute, BufferGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, DynamicDrawUsage, GridHelper,
+  Group, InstancedMesh, Line as Polyline, LineBasicMaterial, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, PlaneGeometry,
+  Quaternion, Scene, Sphere, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import type { Shape } from "../data/run.ts";
 import { ANGLE, eye } from "./orbit.ts";
-import { styled, type Picture } from "./picture.ts";
+import { kindColour, styled, type Picture } from "./picture.ts";
 import { geometry } from "./solids.ts";
 import type { LineActor, Stage } from "./stage.ts";
 import { SIDES, tube, tubeIndex, type Tube } from "./tube.ts";
@@ -42,6 +43,8 @@ export class Webgl implements Picture {
   private tubes: TubeMesh[];
   private bodies: { group: Group; point: boolean }[];
   private trail: Polyline;
+  /** Shafts and heads of all arrows. */
+  private arrows: [InstancedMesh, InstancedMesh] | null;
   private grids: GridHelper[] = [];
   private solids: MeshLambertMaterial[] = [];
   private seas: MeshBasicMaterial[] = [];
@@ -65,6 +68,7 @@ export class Webgl implements Picture {
     this.trail.frustumCulled = false;
     this.trail.geometry.boundingSphere = new Sphere();
     this.scene.add(this.trail);
+    this.arrows = this.arrow(stage.arrows.actors.length);
     this.recolour(stage);
   }
 
@@ -104,6 +108,20 @@ export class Webgl implements Picture {
     return { actor, mesh, buffers, colours, count: 0 };
   }
 
+  /** Shafts and heads of unit size, along y from the origin. */
+  private arrow(count: number): [InstancedMesh, InstancedMesh] | null {
+    if (count === 0) return null;
+    const shaft = new CylinderGeometry(1, 1, 1, 8).translate(0, 0.5, 0);
+    const head = new ConeGeometry(1, 1, 12).translate(0, 0.5, 0);
+    const make = (shape: BufferGeometry) => {
+      const mesh = new InstancedMesh(shape, new MeshLambertMaterial({ color: 0xffffff }), count);
+      mesh.frustumCulled = false;
+      this.ground.add(mesh);
+      return mesh;
+    };
+    return [make(shaft), make(head)];
+  }
+
   /** The surface of the water and the sea bed, or a grid below everything. */
   private levels(stage: Stage): void {
     const { field, size, whole } = stage;
@@ -139,12 +157,14 @@ export class Webgl implements Picture {
     this.camera.aspect = width / height;
   }
 
-  recolour(_stage: Stage): void {
+  recolour(stage: Stage): void {
     const set = (of: { color: Color; userData: Record<string, unknown> }) => of.color.set(styled(of.userData.colour as string));
     this.solids.forEach(set);
     this.seas.forEach(set);
     for (const grid of this.grids) (grid.material as LineBasicMaterial).color.set(styled("--grid"));
     (this.trail.material as LineBasicMaterial).color.set(styled("--trail"));
+    stage.arrows.actors.forEach(({ kind }, i) => this.arrows?.forEach((mesh) => mesh.setColorAt(i, new Color(kindColour(kind)))));
+    this.arrows?.forEach((mesh) => mesh.instanceColor && (mesh.instanceColor.needsUpdate = true));
     this.scene.background = new Color(styled("--space"));
   }
 
@@ -164,6 +184,7 @@ export class Webgl implements Picture {
       if (point) group.scale.setScalar(0.007 * stage.orbit.distance);
     });
     this.drawTrail(stage);
+    this.drawArrows(stage);
     this.camera.position.fromArray(from);
     this.camera.up.set(0, 0, 1);
     // from straight above there is no up but that of the azimuth
@@ -193,7 +214,31 @@ export class Webgl implements Picture {
   private drawTrail(stage: Stage): void {
     const shape = this.trail.geometry;
     if (stage.reached > 0 && shape.getAttribute("position")?.array !== stage.trail) shape.setAttribute("position", new BufferAttribute(stage.trail, 3));
-    shape.setDrawRange(0, stage.reached);
-    this.trail.visible = stage.reached > 1;
+    shape.setDrawRange(stage.since, stage.reached - stage.since);
+    this.trail.visible = stage.reached - stage.since > 1;
+  }
+
+  private drawArrows(stage: Stage): void {
+    if (!this.arrows) return;
+    const { actors, scale } = stage.arrows;
+    // as thick from wherever they are seen
+    const thick = 0.0022 * stage.orbit.distance;
+    const [up, along, place, size, turn, matrix] = [new Vector3(0, 1, 0), new Vector3(), new Vector3(), new Vector3(), new Quaternion(), new Matrix4()];
+    const [shafts, heads] = this.arrows;
+    let shown = 0;
+    for (const [i, { x, f, seen }] of actors.entries()) {
+      along.fromArray(f).multiplyScalar(scale);
+      const length = along.length();
+      const head = seen ? Math.min(9 * thick, 0.5 * length) : 0;
+      turn.setFromUnitVectors(up, length > 0 ? along.divideScalar(length) : up);
+      shafts.setMatrixAt(i, matrix.compose(place.fromArray(x), turn, seen ? size.set(thick, length - head, thick) : size.set(0, 0, 0)));
+      place.fromArray(x).addScaledVector(along, length - head);
+      heads.setMatrixAt(i, matrix.compose(place, turn, size.set(0.35 * head, head, 0.35 * head)));
+      shown += Number(seen);
+    }
+    for (const mesh of this.arrows) {
+      mesh.visible = shown > 0;
+      mesh.instanceMatrix.needsUpdate = true;
+    }
   }
 }

@@ -5,9 +5,10 @@ use crate::algebra::rotation::{IDENTITY, M3, cross, product, skew, times, transp
 use crate::model::joint::equation::Arrow;
 use crate::model::node::NodeKind;
 use crate::model::state::At;
+use crate::model::twist::Turned;
 
 /// More unknowns than two nodes have.
-pub(super) const MOST: usize = 12;
+pub(super) const MOST: usize = 14;
 
 /// Where one marker is.
 pub(super) struct End {
@@ -22,6 +23,10 @@ pub(super) struct End {
     /// Axes of the marker: on the body, or in space.
     pub axes: M3,
     pub r: M3,
+    /// The slope of a cable.
+    pub slope: V3<f64>,
+    /// How the section of a cable with torsion turns.
+    pub section: Option<Turned>,
 }
 
 /// A vector now: its value, its change with time at rest, its first and second change along the motion.
@@ -51,11 +56,24 @@ impl End {
                 ]
             }
             Arrow::Axis { axis, .. } => [self.axes[*axis], [0.0; 3], [0.0; 3]],
+            Arrow::Tangent { .. } => [self.axes[2], [0.0; 3], [0.0; 3]],
             Arrow::Between => [[0.0; 3]; 3],
         }
     }
+    /// Whether its vectors turn with a rotation.
+    fn turns(&self) -> bool {
+        self.is_body() || self.section.is_some()
+    }
+    /// Whether an arrow is its slope.
+    fn is_slope(&self, arrow: &Arrow) -> bool {
+        match self.kind {
+            Some(NodeKind::Slope) => true,
+            Some(NodeKind::Twist) => matches!(arrow, Arrow::Tangent { .. }),
+            _ => false,
+        }
+    }
     fn in_space(&self, u: &V3<f64>) -> V3<f64> {
-        if self.is_body() { times(&self.r, u) } else { *u }
+        if self.turns() { times(&self.r, u) } else { *u }
     }
     /// Adds the change of `p·x` by the unknowns.
     fn add_point(&self, p: &V3<f64>, sign: f64, row: &mut [f64]) {
@@ -63,17 +81,31 @@ impl End {
             return;
         }
         (0..3).for_each(|i| row[self.start + i] += sign * p[i]);
-        if self.is_body() {
+        if self.turns() {
             self.add_turn(&self.point, p, sign, row);
         }
     }
     /// Adds the change of `p·R u` by the rotation.
     fn add_turn(&self, u: &V3<f64>, p: &V3<f64>, sign: f64, row: &mut [f64]) {
+        if let Some(section) = &self.section {
+            let by = section.slope(&times(&self.r, u), p);
+            (0..4).for_each(|i| row[self.start + 3 + i] += sign * by[i]);
+            return;
+        }
         let turn = cross(u, &transposed_times(&self.r, p));
         (0..3).for_each(|i| row[self.start + 3 + i] += sign * turn[i]);
     }
-    /// Adds the change of what [`End::add_turn`] adds, by the rotation.
+    /// Adds the change of what [`End::add_turn`] adds, by the rotation; of a cable the symmetric part, see
+    /// [`twist`](crate::model::twist).
     pub fn add_turn_twice(&self, u: &V3<f64>, p: &V3<f64>, scale: f64, n: usize, h: &mut [f64]) {
+        if let Some(section) = &self.section {
+            for (i, row) in section.second(&times(&self.r, u), p).iter().enumerate() {
+                for (j, x) in row.iter().enumerate() {
+                    h[(self.start + 3 + i) * n + self.start + 3 + j] += scale * x;
+                }
+            }
+            return;
+        }
         let k = product(&skew(u), &skew(&transposed_times(&self.r, p)));
         for i in 0..3 {
             for j in 0..3 {
@@ -83,6 +115,16 @@ impl End {
     }
     /// Velocity, or second change along the motion, of a vector of the body that changes with time.
     fn turning(&self, at: &At<'_>, [u, du, ddu]: &[V3<f64>; 3]) -> [V3<f64>; 2] {
+        if let Some(section) = &self.section {
+            let [omega, change] = section.spinning(&at.v[self.v..self.v + 7]);
+            let [u, du, ddu] = [u, du, ddu].map(|x| times(&self.r, x));
+            let once = cross(&omega, &u);
+            let (twice, swing, with) = (cross(&omega, &once), cross(&change, &u), cross(&omega, &du));
+            return [
+                std::array::from_fn(|i| once[i] + du[i]),
+                std::array::from_fn(|i| twice[i] + swing[i] + 2.0 * with[i] + ddu[i]),
+            ];
+        }
         let omega = [at.v[self.v + 3], at.v[self.v + 4], at.v[self.v + 5]];
         let once = cross(&omega, u);
         let (twice, with) = (cross(&omega, &once), cross(&omega, du));
@@ -96,7 +138,10 @@ impl End {
 pub(super) fn value(arrow: &Arrow, ends: &[End; 2], t: f64) -> V3<f64> {
     match arrow {
         Arrow::Between => std::array::from_fn(|i| ends[1].x[i] - ends[0].x[i]),
-        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => ends[*of].in_space(&ends[*of].axis(arrow, t)[0]),
+        Arrow::Axis { of, .. } | Arrow::Tangent { of } | Arrow::Turned { of, .. } => {
+            let end = &ends[*of];
+            if end.is_slope(arrow) { end.slope } else { end.in_space(&end.axis(arrow, t)[0]) }
+        }
     }
 }
 
@@ -107,11 +152,13 @@ pub(super) fn add(arrow: &Arrow, ends: &[End; 2], t: f64, p: &V3<f64>, row: &mut
             ends[0].add_point(p, -1.0, row);
             ends[1].add_point(p, 1.0, row);
         }
-        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => {
+        Arrow::Axis { of, .. } | Arrow::Tangent { of } | Arrow::Turned { of, .. } => {
             let end = &ends[*of];
             match end.kind {
-                Some(NodeKind::Frame) => end.add_turn(&end.axis(arrow, t)[0], p, 1.0, row),
-                Some(NodeKind::Slope) => (0..3).for_each(|i| row[end.start + 3 + i] += p[i]),
+                _ if end.is_slope(arrow) => (0..3).for_each(|i| row[end.start + 3 + i] += p[i]),
+                Some(NodeKind::Frame | NodeKind::Twist) => {
+                    end.add_turn(&end.axis(arrow, t)[0], p, 1.0, row);
+                }
                 Some(NodeKind::Scalars(_)) => (0..3).for_each(|i| row[end.start + i] += p[i]),
                 _ => {}
             }
@@ -132,14 +179,14 @@ pub(super) fn add_twice(
     match arrow {
         Arrow::Between => {
             for (end, sign) in ends.iter().zip([-scale, scale]) {
-                if end.is_body() && end.point != [0.0; 3] {
+                if end.turns() && end.point != [0.0; 3] {
                     end.add_turn_twice(&end.point, p, sign, n, h);
                 }
             }
         }
-        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => {
+        Arrow::Axis { of, .. } | Arrow::Tangent { of } | Arrow::Turned { of, .. } => {
             let end = &ends[*of];
-            if end.is_body() {
+            if end.turns() && !end.is_slope(arrow) {
                 end.add_turn_twice(&end.axis(arrow, t)[0], p, scale, n, h);
             }
         }
@@ -166,7 +213,7 @@ pub(super) fn flow(arrow: &Arrow, ends: &[End; 2], at: &At<'_>) -> Flow {
                     continue;
                 }
                 (0..3).for_each(|i| f.first[i] += sign * at.v[end.v + i]);
-                if end.is_body() {
+                if end.turns() {
                     let [first, second] = end.turning(at, &[end.point, none, none]);
                     for i in 0..3 {
                         f.first[i] += sign * first[i];
@@ -176,16 +223,16 @@ pub(super) fn flow(arrow: &Arrow, ends: &[End; 2], at: &At<'_>) -> Flow {
             }
             f
         }
-        Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => {
+        Arrow::Axis { of, .. } | Arrow::Tangent { of } | Arrow::Turned { of, .. } => {
             let end = &ends[*of];
             let axis = end.axis(arrow, at.t);
             match end.kind {
-                Some(NodeKind::Frame) => {
+                Some(NodeKind::Frame | NodeKind::Twist) if !end.is_slope(arrow) => {
                     let [first, second] = end.turning(at, &axis);
                     Flow { value, by_t: times(&end.r, &axis[1]), first, second }
                 }
                 Some(kind) => {
-                    let v = end.v + if kind == NodeKind::Slope { 3 } else { 0 };
+                    let v = end.v + if kind.has_slope() { 3 } else { 0 };
                     let first = [at.v[v], at.v[v + 1], at.v[v + 2]];
                     Flow { value, by_t: none, first, second: none }
                 }

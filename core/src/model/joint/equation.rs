@@ -11,12 +11,18 @@ use std::sync::Arc;
 pub enum Arrow {
     /// From the first marker's point to the second's [m].
     Between,
-    /// An axis of one of the markers; of a cable's marker its slope, whichever axis is named.
+    /// An axis of one of the markers; of one on a cable without torsion its slope, whichever axis is named.
     Axis {
         /// Which marker, 0 or 1.
         of: usize,
         /// Which of its axes.
         axis: usize,
+    },
+    /// The slope `r'` of a cable's marker, whether or not its sections know which way they look; of any other its third
+    /// axis.
+    Tangent {
+        /// Which marker, 0 or 1.
+        of: usize,
     },
     /// The second axis of a marker, turned about the third by the angle `φ(t)` that is the motion's first component.
     Turned {
@@ -67,6 +73,11 @@ impl Equation {
     /// An axis of the first marker is normal to one of the second.
     pub fn normal(axis: usize, other: usize) -> Equation {
         let (a, b) = (Arrow::Axis { of: 0, axis }, Arrow::Axis { of: 1, axis: other });
+        Equation::Dot { a, b, value: 0.0, motion: None }
+    }
+    /// An axis of the first marker is normal to the cable at the second; or the other way round, with the cable `of` 0.
+    pub fn beside(axis: usize, cable: usize) -> Equation {
+        let (a, b) = (Arrow::Axis { of: 1 - cable, axis }, Arrow::Tangent { of: cable });
         Equation::Dot { a, b, value: 0.0, motion: None }
     }
     /// The second marker stays in the plane through the first that is normal to this axis of it.

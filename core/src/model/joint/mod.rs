@@ -3,8 +3,8 @@
 //!
 //! With `D = x_1 - x_0` and axes `u`, `w` of the markers the equations are `d·D = …` (a coordinate in space),
 //! `u·D = …` (a coordinate in a body's axes, "dot-2"), `u·w = …` (an angle, "dot-1") and `|D| = L`. An axis of a body
-//! turns with it: `δ(R u) = R (θ × u)`; the "axis" of a cable is its slope `r'`, that of a director the vector itself,
-//! whose length doesn't matter to a right angle. Haug, *Computer-Aided Kinematics and Dynamics* (1989), chapter 9, has them all.
+//! turns with it: `δ(R u) = R (θ × u)`, that of a cable's section with its slope and spin; the "axis" of a cable without
+//! torsion is its slope `r'`, whose length doesn't matter to a right angle. Haug, *Computer-Aided Kinematics and Dynamics* (1989), chapter 9, has them all.
 
 mod end;
 pub mod equation;
@@ -19,6 +19,7 @@ use crate::model::marker::Marker;
 use crate::model::motion::Motion;
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::state::At;
+use crate::model::twist::{self, Turned};
 use std::sync::Arc;
 
 /// Equations between two markers, as a constraint.
@@ -71,7 +72,14 @@ impl Joint {
             range = (range.0.max(a), range.1.min(b));
         }
         let rows = equations.iter().map(Equation::kind).collect();
-        let coincide = Equation::coincide_only(&equations);
+        // levers on the section of a cable are rare
+        let lever = |m: &Marker| match m {
+            Marker::Node { node, point, .. } => {
+                nodes[node.0 as usize].kind == NodeKind::Twist && *point != [0.0; 3]
+            }
+            Marker::Ground { .. } => false,
+        };
+        let coincide = Equation::coincide_only(&equations) && !markers.iter().any(lever);
         let linear_rows = Vec::new();
         let mut c =
             Joint { name, equations, markers, nodes: on, rows, range, linear: false, linear_rows, coincide };
@@ -97,12 +105,13 @@ impl Joint {
         for arrow in arrows {
             let (of, turned) = match arrow {
                 Arrow::Between => continue,
-                Arrow::Axis { of, .. } => (*of, false),
+                Arrow::Tangent { of } if self.kind(nodes, *of).is_some_and(NodeKind::has_slope) => continue,
+                Arrow::Axis { of, .. } | Arrow::Tangent { of } => (*of, false),
                 Arrow::Turned { of, .. } => (*of, true),
             };
             let node = self.markers[of].on().map_or(0, |n| n.0);
             let good = match self.kind(nodes, of) {
-                None | Some(NodeKind::Frame) => true,
+                None | Some(NodeKind::Frame | NodeKind::Twist) => true,
                 Some(NodeKind::Slope | NodeKind::Scalars(_)) => !turned,
                 Some(NodeKind::Point) => false,
             };
@@ -125,16 +134,19 @@ impl Joint {
         // 0: constant, 1: linear, 2: neither
         let point = |of: usize| match (self.kind(nodes, of), self.markers[of]) {
             (None, _) => 0,
-            (Some(NodeKind::Frame), Marker::Node { point, .. }) if point != [0.0; 3] => 2,
+            (Some(NodeKind::Frame | NodeKind::Twist), Marker::Node { point, .. }) if point != [0.0; 3] => 2,
             _ => 1,
         };
         let degree = |arrow: &Arrow| match arrow {
             Arrow::Between => point(0).max(point(1)),
-            Arrow::Axis { of, .. } | Arrow::Turned { of, .. } => match self.kind(nodes, *of) {
-                None => 0,
-                Some(NodeKind::Slope | NodeKind::Scalars(_)) => 1,
-                Some(_) => 2,
-            },
+            Arrow::Axis { of, .. } | Arrow::Tangent { of } | Arrow::Turned { of, .. } => {
+                match self.kind(nodes, *of) {
+                    None => 0,
+                    Some(NodeKind::Twist) if matches!(arrow, Arrow::Tangent { .. }) => 1,
+                    Some(NodeKind::Slope | NodeKind::Scalars(_)) => 1,
+                    Some(_) => 2,
+                }
+            }
         };
         match equation {
             Equation::Along { .. } => degree(&Arrow::Between) <= 1,
@@ -178,7 +190,8 @@ impl Joint {
         let mut start = 0;
         self.markers.map(|m| match m {
             Marker::Ground { point, axes } => {
-                End { kind: None, start, v: 0, x: point, point, axes, r: [[0.0; 3]; 3] }
+                let (r, slope) = ([[0.0; 3]; 3], [0.0; 3]);
+                End { kind: None, start, v: 0, x: point, point, axes, r, slope, section: None }
             }
             Marker::Node { node, point, axes } => {
                 let n = &nodes[node.0 as usize];
@@ -191,6 +204,8 @@ impl Joint {
                     point,
                     axes,
                     r: [[0.0; 3]; 3],
+                    slope: [0.0; 3],
+                    section: None,
                 };
                 start += n.kind.velocities();
                 match n.kind {
@@ -199,7 +214,14 @@ impl Joint {
                         let arm = times(&end.r, &point);
                         (0..3).for_each(|i| end.x[i] += arm[i]);
                     }
-                    NodeKind::Slope => end.axes = [[q[3], q[4], q[5]]; 3],
+                    NodeKind::Slope => end.slope = [q[3], q[4], q[5]],
+                    NodeKind::Twist => {
+                        end.slope = [q[3], q[4], q[5]];
+                        end.r = twist::section(q);
+                        let arm = times(&end.r, &point);
+                        (0..3).for_each(|i| end.x[i] += arm[i]);
+                        end.section = Some(Turned::new(q));
+                    }
                     NodeKind::Scalars(_) => end.axes = [[q[0], q[1], q[2]]; 3],
                     NodeKind::Point => {}
                 }

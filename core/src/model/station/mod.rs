@@ -209,6 +209,8 @@ pub trait Stations: Send + Sync {
     fn energy(&self, laws: &Laws, at: &At<'_>) -> Energy;
     /// Applies all laws and adds what comes of it.
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>);
+    /// Adds what comes of loads that were found elsewhere, one for each station in the order of [`Stations::each`].
+    fn spread(&self, loads: &[Load<f64>], gives: Gives, at: &At<'_>, out: &mut Assembly<'_>);
 }
 
 /// The laws that act together on the same stations.

@@ -156,6 +156,23 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             });
         }
     }
+    fn spread(&self, loads: &[Load<f64>], gives: Gives, at: &At<'_>, out: &mut Assembly<'_>) {
+        let (w, tangent) = (out.weights(), out.wants_tangent());
+        let mut blocks = Blocks::take(out);
+        let mut share = Share::zero();
+        for (e, (element, loads)) in self.elements.iter().zip(loads.as_chunks::<S>().0).enumerate() {
+            let seats = std::slice::from_ref(&self.seats[e]);
+            let p = E::lanes::<f64>(&Batch(std::slice::from_ref(element)));
+            let x = Seat::gather::<f64>(seats, at);
+            if tangent {
+                E::spread::<f64, true>(&p, &x, loads, gives, &w, &mut share);
+            } else {
+                E::spread::<f64, false>(&p, &x, loads, gives, &w, &mut share);
+            }
+            Seat::scatter(seats, e, &share, &mut blocks, out);
+        }
+        blocks.give_back(out);
+    }
     fn power(&self, laws: &Laws, at: &At<'_>) -> Power {
         let mut total = Power::default();
         EXCHANGE.with_borrow_mut(|exchange| {

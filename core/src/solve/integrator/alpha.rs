@@ -1,7 +1,7 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
 use super::controller::{StepController, StepLaw};
-use super::convergence::{Failure, Rate};
+use super::convergence::{FLIPS, Failure, Rate};
 use super::forces::larger;
 use super::newton::Newton;
 use super::options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
@@ -13,6 +13,7 @@ use super::step::{Integrator, StepError, StepReport, linear, too_strict};
 use super::workspace::{Which, Workspace};
 use crate::error::BuildError;
 use crate::model::Model;
+use crate::model::limit::Limit;
 use crate::model::node::NodeKind;
 use crate::model::state::State;
 use crate::solve::linear::SolveError;
@@ -279,15 +280,20 @@ impl Alpha {
         rate: Rate,
     ) -> Result<Attempt, StepError> {
         let bad = |why: &str| Ok(Attempt::Bad { why: why.into() });
+        if model.flips(&state.q, &work.trial.d) {
+            return bad(FLIPS);
+        }
         match self.options.stepping {
-            Stepping::Fixed { .. } if !model.is_mechanism() => Ok(Attempt::Good { rate, error: 0.0 }),
+            Stepping::Fixed { .. } if !model.is_mechanism() => {
+                Ok(Attempt::Good { rate, error: 0.0, by: Limit::Fixed })
+            }
             Stepping::Fixed { .. } if model.turn(&work.trial.d) > MOST_TURN => {
                 bad("a body turns too far in one step: it may end on another branch of its joint")
             }
             Stepping::Fixed { .. } if jumps(state, work) => {
                 bad("velocities jump: a mechanism leaves its branch, or an impact is shorter than `h`")
             }
-            Stepping::Fixed { .. } => Ok(Attempt::Good { rate, error: 0.0 }),
+            Stepping::Fixed { .. } => Ok(Attempt::Good { rate, error: 0.0, by: Limit::Fixed }),
             Stepping::Controlled { tolerance } => {
                 let turn = model.turn(&work.trial.d);
                 let [local, force] =
@@ -295,12 +301,13 @@ impl Alpha {
                 // errors of positions add up, per unit step; stiff directions follow what moves them, and forget
                 let position = local * (self.horizon / h) / tolerance.min(1e-3);
                 let error = larger(position, force);
+                let by = if force > position { Limit::Force } else { Limit::Position };
                 // a body that is driven has no error, but a larger turn may end on another branch of its joint
                 let error = if turn > 1.0 { error + turn * turn } else { error };
                 match error {
-                    e if e <= 1.0 => Ok(Attempt::Good { rate, error }),
+                    e if e <= 1.0 => Ok(Attempt::Good { rate, error, by }),
                     e if e.is_nan() => bad("the error estimate is not a number"),
-                    _ => Ok(Attempt::TooLarge { error, iterations: rate.iterations }),
+                    _ => Ok(Attempt::TooLarge { error, iterations: rate.iterations, by }),
                 }
             }
         }
@@ -335,10 +342,10 @@ impl Alpha {
 
 /// What a trial step came to.
 enum Attempt {
-    /// To be accepted, with this estimated error over the tolerance.
-    Good { rate: Rate, error: f64 },
+    /// To be accepted, with this estimated error over the tolerance, and what that is the error of.
+    Good { rate: Rate, error: f64, by: Limit },
     /// To be repeated with a smaller step.
-    TooLarge { error: f64, iterations: u32 },
+    TooLarge { error: f64, iterations: u32, by: Limit },
     /// It converged to something that can't be, and is to be repeated with a smaller step.
     Bad { why: String },
     /// It didn't converge.
@@ -434,15 +441,15 @@ impl Integrator for Alpha {
         loop {
             let h = steps.h;
             let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
-                Attempt::Good { rate, error } => {
+                Attempt::Good { rate, error, by } => {
                     self.accept(state, work, h, &rate);
-                    steps.accepted(&mut state.control, error, rate.iterations);
-                    let (iterations, rejected) = (rate.iterations, steps.rejected);
-                    return Ok(StepReport { h, iterations, rejected, error });
+                    steps.accepted(&mut state.control, error, rate.iterations, by);
+                    let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
+                    return Ok(StepReport { h, iterations, rejected, error, limit });
                 }
-                Attempt::TooLarge { error, iterations } => {
+                Attempt::TooLarge { error, iterations, by } => {
                     work.counts.rejected += 1;
-                    if !steps.too_large(error, iterations) {
+                    if !steps.too_large(error, iterations, by) {
                         return Err(too_strict(model, state.t, steps.h, work));
                     }
                     continue;

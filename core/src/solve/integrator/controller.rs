@@ -1,6 +1,7 @@
 //! The size of steps: from the error of the last one, from failures of Newton's method, and from where a step must end.
 
 use super::options::{Limits, Stepping, fixed_step};
+use crate::model::limit::Limit;
 use crate::model::state::Control;
 
 /// Factor by which a step may change, from its error, that of the step before, and the sizes of both.
@@ -38,6 +39,8 @@ pub(super) struct StepController<'a> {
     pub h: f64,
     /// Size that the next step may have at least [s], where this one is cut and says nothing about it.
     kept: Option<f64>,
+    /// What keeps the present try from being longer.
+    pub limit: Limit,
     /// Tries that were rejected.
     pub rejected: u32,
     /// Tries that failed otherwise than by their error.
@@ -48,11 +51,11 @@ impl<'a> StepController<'a> {
     /// The first try of a step of at most `h_max` [s].
     pub fn new(law: &'a StepLaw, stepping: Stepping, limits: Limits, control: &Control, h_max: f64) -> Self {
         let cap = if control.h_cap > 0.0 { control.h_cap } else { f64::INFINITY };
+        let next = if control.h_next > 0.0 { control.h_next } else { control.h_start };
         let (h, kept) = match stepping {
             Stepping::Fixed { h } if law.shares_rest => (fixed_step(h.min(cap), h_max), None),
             Stepping::Fixed { h } => (fixed_step(h, h_max).min(cap), None),
             Stepping::Controlled { .. } => {
-                let next = if control.h_next > 0.0 { control.h_next } else { control.h_start };
                 if law.shares_rest {
                     let wish = next.min(cap).min(limits.most);
                     let rest = if h_max < 2.0 * wish { 0.5 * h_max } else { wish };
@@ -66,13 +69,23 @@ impl<'a> StepController<'a> {
             }
         };
         let controlled = matches!(stepping, Stepping::Controlled { .. });
-        StepController { law, least: limits.least, controlled, h, kept, rejected: 0, failures: 0 }
+        let limit = match stepping {
+            Stepping::Fixed { h: whole } if h >= cap && cap < whole => Limit::Newton,
+            Stepping::Fixed { .. } => Limit::Fixed,
+            Stepping::Controlled { .. } if h < next.min(cap).min(limits.most) || h >= h_max => Limit::Ahead,
+            Stepping::Controlled { .. } if h >= limits.most => Limit::Longest,
+            Stepping::Controlled { .. } if cap < next => Limit::Newton,
+            Stepping::Controlled { .. } => control.limit,
+        };
+        StepController { law, least: limits.least, controlled, h, kept, limit, rejected: 0, failures: 0 }
     }
 
-    /// A smaller step after one whose error was too large; `false` if none is left.
+    /// A smaller step after one whose error was too large, which `by` says was that of positions or forces; `false` if none
+    /// is left.
     #[must_use]
-    pub fn too_large(&mut self, error: f64, iterations: u32) -> bool {
+    pub fn too_large(&mut self, error: f64, iterations: u32, by: Limit) -> bool {
         self.rejected += 1;
+        self.limit = by;
         self.h *= (self.law.growth)(error, iterations).clamp(REJECTED[0], REJECTED[1]);
         !(self.h < self.least)
     }
@@ -82,6 +95,7 @@ impl<'a> StepController<'a> {
     pub fn failed(&mut self, control: &mut Control) -> bool {
         self.rejected += 1;
         self.failures += 1;
+        self.limit = Limit::Newton;
         let smaller = self.h * if self.failures == 1 { FAILED[0] } else { FAILED[1] };
         if smaller < self.least {
             return false;
@@ -91,14 +105,15 @@ impl<'a> StepController<'a> {
         true
     }
 
-    /// Notes an accepted step, and the size of the next.
-    pub fn accepted(&self, control: &mut Control, error: f64, iterations: u32) {
+    /// Notes an accepted step, and the size of the next. `by` says whether its error was that of positions or forces.
+    pub fn accepted(&self, control: &mut Control, error: f64, iterations: u32, by: Limit) {
         if self.controlled {
-            let next = self.next(control, error, iterations);
-            control.h_next = match self.kept {
-                Some(kept) if self.rejected == 0 => next.max(kept),
-                _ => next,
-            };
+            let (next, limit) = self.next(control, error, iterations, by);
+            match self.kept {
+                // what limited it before does so still
+                Some(kept) if self.rejected == 0 && kept > next => control.h_next = kept,
+                _ => (control.h_next, control.limit) = (next, limit),
+            }
         }
         if self.law.trend.is_some() {
             control.error = error;
@@ -107,7 +122,7 @@ impl<'a> StepController<'a> {
         control.h_last = self.h;
     }
 
-    fn next(&self, control: &Control, error: f64, iterations: u32) -> f64 {
+    fn next(&self, control: &Control, error: f64, iterations: u32, by: Limit) -> (f64, Limit) {
         let (law, h) = (self.law, self.h);
         let mut growth = (law.growth)(error, iterations);
         if let Some(trend) = law.trend
@@ -115,7 +130,9 @@ impl<'a> StepController<'a> {
         {
             growth = growth.min(trend(error, control.error, [h, control.h_last]));
         }
-        let growth = growth.clamp(REJECTED[0], law.most[usize::from(self.rejected > 0)]);
-        if (1.0..law.worthless).contains(&growth) { h } else { h * growth }
+        let most = law.most[usize::from(self.rejected > 0)];
+        let limit = if growth > most { Limit::Growth } else { by };
+        let growth = growth.clamp(REJECTED[0], most);
+        (if (1.0..law.worthless).contains(&growth) { h } else { h * growth }, limit)
     }
 }

@@ -16,6 +16,7 @@ mod start;
 mod step;
 mod workspace;
 
+pub use crate::model::limit::Limit;
 pub use alpha::Alpha;
 pub use options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
 pub use radau::Radau;

@@ -4,6 +4,8 @@ use super::options::{Limits, Options};
 use super::workspace::Workspace;
 use crate::error::BuildError;
 use crate::model::Model;
+use crate::model::broken::Broken;
+use crate::model::limit::Limit;
 use crate::model::state::State;
 use crate::solve::linear::SolveError;
 
@@ -18,6 +20,9 @@ pub struct StepReport {
     pub rejected: u32,
     /// Estimated error over tolerance; 0 without error control.
     pub error: f64,
+    /// What kept it from being longer. A scheme calls whatever is left to go [`Limit::Ahead`]; a
+    /// [`Simulation`](crate::Simulation) knows what is there.
+    pub limit: Limit,
 }
 
 /// Why a step could not be taken. The state is as it was before.
@@ -110,6 +115,9 @@ pub enum StepError {
         /// Its input.
         input: String,
     },
+    /// A function of the scene failed that was written elsewhere, or gave no number.
+    #[error("{0}")]
+    Function(Broken),
     /// The start is not on the constraints and is too far away to be corrected without asking.
     #[error("{0}")]
     Inconsistent(String),

@@ -6,6 +6,7 @@ use super::radau::stages::Stages;
 use super::scales::Scaled;
 use crate::model::Model;
 use crate::model::assembly::System;
+use crate::model::limit::Limit;
 use crate::model::node::NodeKind;
 use crate::model::state::{At, State};
 use crate::model::structure::Structure;
@@ -36,6 +37,9 @@ pub struct Counts {
     pub cut: u64,
     /// Steps whose stopping test was never met, since rounding leaves more.
     pub unmet: u64,
+    /// Accepted steps by what limited them, in the order of [`Limit::ALL`].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub limits: [u64; Limit::ALL.len()],
 }
 
 /// Scratch of an integration: system, factors, mass matrix.

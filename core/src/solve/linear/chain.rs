@@ -54,11 +54,12 @@ struct Step {
     factors: usize,
 }
 
-/// Width of a front: two nodes of a cable, two rigid bodies with a spherical joint each, and the largest.
+/// Width of a front: two nodes of a cable, of one with torsion, two rigid bodies with a spherical joint each, and the largest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Front {
     #[default]
     Cable = 12,
+    Twisted = 16,
     Middle = 20,
     Large = 32,
 }
@@ -70,7 +71,8 @@ impl Front {
     fn of(columns: usize) -> Self {
         match columns {
             ..=12 => Front::Cable,
-            13..=20 => Front::Middle,
+            13..=16 => Front::Twisted,
+            17..=20 => Front::Middle,
             _ => Front::Large,
         }
     }
@@ -200,7 +202,15 @@ impl<T: Scalar> Chain<T> {
                         &mut carried,
                     )?;
                 }
+                (Front::Twisted, 7, 7, 0) => {
+                    self.front::<16, FUSED>(
+                        &Step { size: 7, next: 7, border: 0, ..s },
+                        values,
+                        &mut carried,
+                    )?;
+                }
                 (Front::Cable, ..) => self.front::<12, FUSED>(&s, values, &mut carried)?,
+                (Front::Twisted, ..) => self.front::<16, FUSED>(&s, values, &mut carried)?,
                 (Front::Middle, ..) => self.front::<20, FUSED>(&s, values, &mut carried)?,
                 (Front::Large, ..) => self.front::<32, FUSED>(&s, values, &mut carried)?,
             }
@@ -316,6 +326,7 @@ impl<T: Scalar> Chain<T> {
                     self.forward::<12, FUSED>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
                 }
                 (Front::Cable, ..) => self.forward::<12, FUSED>(s, x),
+                (Front::Twisted, ..) => self.forward::<16, FUSED>(s, x),
                 (Front::Middle, ..) => self.forward::<20, FUSED>(s, x),
                 (Front::Large, ..) => self.forward::<32, FUSED>(s, x),
             }
@@ -326,6 +337,7 @@ impl<T: Scalar> Chain<T> {
                     self.backward::<12>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
                 }
                 (Front::Cable, ..) => self.backward::<12>(s, x),
+                (Front::Twisted, ..) => self.backward::<16>(s, x),
                 (Front::Middle, ..) => self.backward::<20>(s, x),
                 (Front::Large, ..) => self.backward::<32>(s, x),
             }

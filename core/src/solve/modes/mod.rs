@@ -35,6 +35,8 @@ pub fn in_balance(
     options: &StaticsOptions,
     frame: Option<SteadyFrame>,
 ) -> Result<bool, ModesError> {
+    let renewed = model.renewed(&state.at(), true);
+    let model = renewed.as_ref().unwrap_or(model);
     let mut statics = Statics::relative(model, options, frame).map_err(ModesError::Solver)?;
     statics.run_material(state)?;
     let mut trial = state.clone();
@@ -85,13 +87,15 @@ pub fn modes(
     if count == 0 {
         return Err(ModesError::None);
     }
+    let renewed = model.renewed(&state.at(), true);
+    let model = renewed.as_ref().unwrap_or(model);
     let mut statics = Statics::relative(model, options, frame).map_err(ModesError::Solver)?;
     statics.run_material(state)?;
     let mut rest = state.clone();
     rest.v.fill(0.0);
     rest.a.fill(0.0);
     statics.ride(&mut rest);
-    refuse_moving(model, &rest, frame)?;
+    refuse_moving(model, &rest)?;
     let mut pencil = Pencil::new(model, &state.internal, statics.linearise(&rest))?;
     let mut watch = Watch(look);
     let found = if pencil.damped || !pencil.symmetric {
@@ -142,19 +146,19 @@ pub(crate) fn slowest(
     Ok(found.modes.into_iter().map(|raw| finish(model, &pencil, raw)).collect())
 }
 
-/// What is held still moves with the frame; what is driven must move like it, or not at all.
-fn refuse_moving(model: &Model, state: &State, frame: Option<SteadyFrame>) -> Result<(), ModesError> {
+/// What is held still moves with the frame; what is driven must move like it, or not at all. What only begins to move is
+/// held where it is.
+fn refuse_moving(model: &Model, state: &State) -> Result<(), ModesError> {
     let m = model.multipliers();
-    let (mut rate, mut bias, mut sum) = (vec![0.0; m], vec![0.0; m], vec![0.0; m]);
+    let (mut rate, mut sum) = (vec![0.0; m], vec![0.0; m]);
     let at: At<'_> = state.at();
-    model.rates(&at, &mut rate, &mut bias);
+    model.rates(&at, &mut rate, &mut vec![0.0; m]);
     model.constraint_rates(&at, &mut System::default(), &mut sum);
+    let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     for (c, constraint) in model.constraints().iter().enumerate() {
         let rows = model.rows_of(c);
-        let driven = rate[rows.clone()].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let off = sum[rows.clone()].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let pushed = bias[rows].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        if (driven > 0.0 && off > 1e-9 * driven) || (frame.is_none() && pushed > 0.0) {
+        let (driven, off) = (largest(&rate[rows.clone()]), largest(&sum[rows]));
+        if driven > 0.0 && off > 1e-9 * driven {
             return Err(ModesError::Moving { constraint: constraint.name().into(), t: state.t });
         }
     }

@@ -155,6 +155,7 @@ pub struct Critical {
 pub(super) fn direction(node: &Node, component: usize) -> Option<usize> {
     match node.kind {
         NodeKind::Frame if component >= 3 => Some(3),
+        NodeKind::Twist if component == 6 => Some(3),
         NodeKind::Scalars(_) => None,
         _ => Some(component % 3),
     }

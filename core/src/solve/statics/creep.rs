@@ -10,7 +10,7 @@
 use super::outcome::{Found, StaticsError};
 use super::problem::Statics;
 use crate::model::node::{difference, retract};
-use crate::model::state::{Relaxation, Relaxed, State};
+use crate::model::state::{At, Relaxation, Relaxed, State};
 
 /// Most steps, and most iterations of one.
 const STEPS: u32 = 400;
@@ -132,6 +132,7 @@ impl Statics<'_> {
         masses: &[f64],
         [drag, load, ramp]: [f64; 3],
     ) -> Option<(u32, bool)> {
+        self.cover(&state.at()).ok()?;
         let (model, nv) = (self.model, self.model.velocities());
         let start = state.q.clone();
         let (mut moved, mut next) = (vec![0.0; nv], state.q.clone());
@@ -164,7 +165,7 @@ impl Statics<'_> {
             retract(model.nodes(), &state.q, &d[..nv], &mut next);
             std::mem::swap(&mut state.q, &mut next);
             state.lambda.iter_mut().zip(&d[nv..]).for_each(|(l, d)| *l += d);
-            if self.gap(&start, &state.q) > FARTHEST {
+            if self.gap(&start, &state.q) > FARTHEST || self.has_passed(state, &start) {
                 return None;
             }
             last = Some(d[..nv].to_vec());
@@ -174,6 +175,12 @@ impl Statics<'_> {
             before = size;
         }
         None
+    }
+
+    /// Whether something has gone through what it is only coupled with where they are near.
+    fn has_passed(&self, state: &State, start: &[f64]) -> bool {
+        let now = state.at();
+        self.model.recouples() && self.model.coupled_passes(&At { q: start, ..now }, &now).is_some()
     }
 
     /// Largest difference of two configurations, relative to the reference length.

@@ -119,6 +119,8 @@ impl Statics<'_> {
             let vectors = match n.kind {
                 NodeKind::Point | NodeKind::Frame => 1,
                 NodeKind::Slope => 2,
+                // the reference director turns with all the others
+                NodeKind::Twist => 3,
                 NodeKind::Scalars(_) => 0,
             };
             for b in 0..vectors {

@@ -15,6 +15,7 @@ impl Statics<'_> {
     /// # Errors
     /// None was found, or there is none since the length of a cable changes; the state is as it was.
     pub fn find(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
+        self.model.relabel(&mut state.q);
         self.run_material(state)?;
         let before = state.clone();
         let found = self.seek(state, cold)?;
@@ -120,6 +121,7 @@ impl Statics<'_> {
         let short = h.abs() / 4.5;
         let mut arcs = 0;
         while state.t != t {
+            self.model.relabel(&mut state.q);
             let before = state.clone();
             let swings = self.judged.flutter > 0.0;
             state.t = if (t - before.t).abs() <= 1.001 * h.abs() { t } else { before.t + h };

@@ -5,6 +5,7 @@ use crate::algebra::rotation::cross;
 use crate::model::Model;
 use crate::model::marker::frame;
 use crate::model::node::{Node, NodeId, NodeKind};
+use crate::model::twist::tangent;
 use nalgebra::{DMatrix, DVector};
 
 /// Part of a direction that the rigid motion that fits it best may miss.
@@ -24,6 +25,9 @@ pub(super) fn describe(model: &Model, q: &[f64], shape: &[f64]) -> String {
     let who = names(model, &moving);
     if moving.is_empty() {
         return format!("{who} moves");
+    }
+    if moving.iter().all(|(_, n)| spins(n, shape, length)) {
+        return format!("{who} turns about its own axis");
     }
     let origin: V3<f64> = std::array::from_fn(|i| q[moving[0].1.q + i]);
     let Some((u, omega, left)) = rigid_motion(q, shape, &moving, origin, length) else {
@@ -66,6 +70,15 @@ fn size_of(n: &Node, shape: &[f64], length: f64) -> f64 {
     }
 }
 
+/// Whether a node of a cable does little else than turn about its tangent.
+fn spins(n: &Node, shape: &[f64], length: f64) -> bool {
+    let d = &shape[n.dofs()];
+    let most = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    n.kind == NodeKind::Twist
+        && most(&d[..3]) / length <= RIGID * d[6].abs()
+        && most(&d[3..6]) <= RIGID * d[6].abs()
+}
+
 /// The parts that these nodes belong to.
 fn names(model: &Model, moving: &[(usize, &Node)]) -> String {
     let mut names: Vec<String> = Vec::new();
@@ -106,7 +119,7 @@ fn rigid_motion(
             rows.push((row, d[i] / length));
         }
         let turned: Option<[V3<f64>; 3]> = match n.kind {
-            NodeKind::Slope => {
+            NodeKind::Slope | NodeKind::Twist => {
                 let slope: V3<f64> = std::array::from_fn(|i| q[n.q + 3 + i]);
                 Some(std::array::from_fn(|j| cross(&unit(j), &slope)))
             }
@@ -124,6 +137,10 @@ fn rigid_motion(
                 }
                 rows.push((row, d[3 + i]));
             }
+        }
+        if n.kind == NodeKind::Twist {
+            let t = tangent(&q[n.coords()]);
+            rows.push(([0.0, 0.0, 0.0, t[0], t[1], t[2]], d[6]));
         }
     }
     let a = DMatrix::from_fn(rows.len(), 6, |i, j| rows[i].0[j]);

@@ -5,6 +5,7 @@ use super::outcome::{Critical, Judgement, Neutral};
 use crate::model::Model;
 use crate::model::assembly::System;
 use crate::model::motion::SteadyFrame;
+use crate::model::state::At;
 use crate::model::structure::Structure;
 use crate::solve::linear::{Guard, SolveError};
 use crate::solve::redundancy::Softening;
@@ -98,6 +99,23 @@ impl<'a> Statics<'a> {
             span: 0.0,
             is_over: None,
         })
+    }
+
+    /// Goes over to the model as it couples around a state, if it doesn't cover that yet; whether it did.
+    pub(super) fn cover(&mut self, at: &At<'_>) -> Result<bool, SolveError> {
+        let Some(renewed) = self.model.renewed(at, false) else { return Ok(false) };
+        let turning = self.structure.symmetric != self.model.structure().symmetric;
+        let same = self.model.couples_as(&renewed);
+        self.model = self.model.keep(renewed);
+        if same {
+            return Ok(true);
+        }
+        self.structure =
+            if turning { self.model.unsymmetric_structure() } else { self.model.structure().clone() };
+        self.solver = Guard::new(&self.structure)?;
+        self.softening = self.softening.take().map(|_| Softening::new(self.model, &self.structure));
+        self.free.clear();
+        Ok(true)
     }
 
     /// Gives up as soon as this says so; it is asked at every iteration. The error then

@@ -6,11 +6,16 @@ use super::tangent::Trial;
 use crate::algebra::lane::V3;
 use crate::model::Model;
 use crate::model::node::retract;
-use crate::model::state::{Relaxation, State};
+use crate::model::state::{At, Relaxation, State};
 use crate::solve::times::Phase;
 
 /// Cosine between neighbouring chords below which a cable counts as folded.
 pub(super) const FOLD: f64 = 0.5;
+
+/// How often an equilibrium is found anew since other things are near each other there.
+const RECOUPLED: u32 = 50;
+/// How often a correction is halved that leads through something.
+const HALVED: u32 = 30;
 
 /// Corrections, in parts of their tolerance, that may be left where rounding allows no less.
 const ROUNDED: f64 = 1e3;
@@ -72,6 +77,24 @@ impl Statics<'_> {
         careful: bool,
         leave: bool,
     ) -> Result<Found, StaticsError> {
+        let mut sum = self.search_once(state, cold, careful, leave)?;
+        for _ in 0..RECOUPLED {
+            let more = self.cover(&state.at()).map_err(|e| self.fail(state, &e.to_string(), 0))?;
+            if !more {
+                return Ok(sum);
+            }
+            sum.add(&self.search_once(state, false, careful, leave)?);
+        }
+        Err(self.fail(state, "what touches what changes again and again", sum.iterations))
+    }
+
+    fn search_once(
+        &mut self,
+        state: &mut State,
+        cold: bool,
+        careful: bool,
+        leave: bool,
+    ) -> Result<Found, StaticsError> {
         let load = self.load(state);
         let mut found = Found::default();
         let mut it = Iterate::new(state, cold, careful, load);
@@ -83,6 +106,8 @@ impl Statics<'_> {
                 return Err(self.fail(state, "it was stopped", found.iterations));
             }
             found.iterations += 1;
+            let there = At { q: &it.q, ..state.at() };
+            self.cover(&there).map_err(|e| self.fail(state, &e.to_string(), found.iterations))?;
             let verdict = match self.correct(state, &mut it, &mut found) {
                 Ok(true) => self.examine(state, &it, &mut found, load, [cold, leave]),
                 Ok(false) => Ok(Verdict::GoOn),
@@ -127,6 +152,10 @@ impl Statics<'_> {
         if !size.is_finite() {
             return Err("the iteration left the finite numbers".into());
         }
+        while self.model.flips(&it.q, &d) {
+            d.iter_mut().for_each(|d| *d *= 0.5);
+        }
+        let cut = self.stop_short(state, &it.q, &mut d);
         it.move_by(self.model, &d);
         for (l, m) in it.lambda.iter_mut().zip(&multipliers) {
             *l += m;
@@ -142,7 +171,27 @@ impl Statics<'_> {
         let falls = !bad && found.iterations >= 2 && size * it.theta <= tolerance;
         let done = size <= tolerance || falls || !bad && self.wanders(found.iterations, size, it.theta);
         it.last = Some(d);
-        Ok(done && !ramping)
+        Ok(done && !ramping && !cut)
+    }
+
+    /// Shortens a correction that would carry something through what it only couples with where they are near; whether it
+    /// did.
+    fn stop_short(&self, state: &State, from: &[f64], d: &mut [f64]) -> bool {
+        if !self.model.recouples() {
+            return false;
+        }
+        let mut to = from.to_vec();
+        let mut cut = false;
+        for _ in 0..HALVED {
+            retract(self.model.nodes(), from, d, &mut to);
+            let at = state.at();
+            if self.model.coupled_passes(&At { q: from, ..at }, &At { q: &to, ..at }).is_none() {
+                break;
+            }
+            cut = true;
+            d.iter_mut().for_each(|d| *d *= 0.5);
+        }
+        cut
     }
 
     /// What is accepted is checked at the point itself: its residual, and whether it is stable.

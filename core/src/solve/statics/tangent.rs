@@ -2,12 +2,13 @@
 
 use super::problem::Statics;
 use super::stability::MARGIN;
-use crate::algebra::lane::V3;
+use crate::algebra::lane::{V3, dot};
 use crate::algebra::rotation::{M3, cross, product, skew, transposed_times};
 use crate::model::marker::frame;
 use crate::model::node::NodeKind;
 use crate::model::state::{At, Relaxation, Relaxed, State};
 use crate::model::term::Weights;
+use crate::model::twist::tangent;
 use crate::solve::linear::SolveError;
 use crate::solve::times::Phase;
 
@@ -132,7 +133,7 @@ impl Statics<'_> {
             let x = &q[n.coords()];
             let blocks = match n.kind {
                 NodeKind::Point | NodeKind::Frame => 1,
-                NodeKind::Slope => 2,
+                NodeKind::Slope | NodeKind::Twist => 2,
                 NodeKind::Scalars(_) => 0,
             };
             for b in 0..blocks {
@@ -149,6 +150,9 @@ impl Statics<'_> {
                 // a body turns with the frame; in its own axes its spin is constant
                 let spin = transposed_times(&frame(x), &f.omega);
                 self.v[n.v + 3..n.v + 6].copy_from_slice(&spin);
+            }
+            if n.kind == NodeKind::Twist {
+                self.v[n.v + 6] = dot(&tangent(x), &f.omega);
             }
         }
     }

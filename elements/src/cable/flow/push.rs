@@ -63,7 +63,7 @@ macro_rules! push {
             let eta_ea = s.axial_retardation_time * s.ea;
             // what bends in a layer that the element hardly resolves stretches between the points of its rule; elements that
             // are born and swallowed keep the other form, which is continuous over that
-            let bends = s.ei > 0.0 && $models.points().len() > 1 && line.zone == [false; 2];
+            let bends = s.ei.across > 0.0 && $models.points().len() > 1 && line.zone == [false; 2];
             if bends {
                 $self.b.element(FlowAxialDamping::new(eta_ea, by, longitudinal, rule.axial()), &nodes)?;
             } else {
@@ -71,8 +71,8 @@ macro_rules! push {
                 $self.b.element(FlowDamping { damping, by }, &nodes)?;
             }
         }
-        if s.bending_retardation_time > 0.0 && s.ei > 0.0 {
-            let damping = BendingDamping::new($self.params.l, s.bending_retardation_time * s.ei, rule.bending());
+        if s.bending_retardation_time > 0.0 && s.ei.across > 0.0 {
+            let damping = BendingDamping::new($self.params.l, s.bending_retardation_time * s.ei.across, rule.bending());
             $self.b.element(FlowDamping { damping, by }, &nodes)?;
         }
         Ok(())

@@ -11,12 +11,13 @@ pub(super) mod stages;
 mod tableau;
 
 use super::controller::{StepController, StepLaw};
-use super::convergence::{Failure, Rate};
+use super::convergence::{FLIPS, Failure, Rate};
 use super::forces::larger;
 use super::options::{Limits, Options, Stepping};
 use super::step::{Integrator, StepError, StepReport, linear, too_strict};
 use super::workspace::Workspace;
 use crate::model::Model;
+use crate::model::limit::Limit;
 use crate::model::state::State;
 use crate::solve::integrator::workspace::Which;
 use crate::solve::linear::SolveError;
@@ -102,6 +103,9 @@ impl Radau {
             linear_constraints: !model.is_mechanism(),
         };
         let converged = newton.solve(work, s)?;
+        if model.flips(&state.q, &s.z[2]) {
+            return Err(Failure::newton(FLIPS));
+        }
         let mut error = 0.0;
         if let Stepping::Controlled { .. } = self.options.stepping {
             let [q, v] = s.errors(model, state, work, h)?;
@@ -137,15 +141,15 @@ impl Radau {
                     s.accept(model, state, h);
                     let c = &mut state.control;
                     work.forces.keep(&mut c.forces);
-                    steps.accepted(c, error, rate.iterations);
+                    steps.accepted(c, error, rate.iterations, Limit::Position);
                     (c.eta, c.theta) = (rate.eta, rate.theta.unwrap_or(c.theta));
                     work.counts.steps += 1;
-                    let (iterations, rejected) = (rate.iterations, steps.rejected);
-                    return Ok(StepReport { h, iterations, rejected, error });
+                    let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
+                    return Ok(StepReport { h, iterations, rejected, error, limit });
                 }
                 Ok((rate, error)) => {
                     work.counts.rejected += 1;
-                    if !steps.too_large(error, rate.iterations) {
+                    if !steps.too_large(error, rate.iterations, Limit::Position) {
                         return Err(too_strict(model, state.t, steps.h, work));
                     }
                 }

@@ -2,7 +2,7 @@
 
 use super::tableau::{ALPHA, C, GAMMA, INVERSE, continuation};
 use crate::model::Model;
-use crate::model::node::{NodeKind, retract, velocity};
+use crate::model::node::{retract, velocity};
 use crate::model::state::{At, State};
 use crate::model::structure::Structure;
 use crate::model::term::Weights;
@@ -79,7 +79,7 @@ impl Stages {
             has_mass: false,
             coupling: coupling(s),
             factored: 0.0,
-            turning: model.nodes().iter().any(|n| n.kind == NodeKind::Frame),
+            turning: model.nodes().iter().any(|n| n.kind.turns()),
             d: vec![0.0; nv],
             e: vec![0.0; nv],
             rate: vec![0.0; m],
@@ -153,7 +153,7 @@ impl Stages {
             }
             if self.turning {
                 d.copy_from_slice(&v[i]);
-                velocity(model.nodes(), &z[i], d, &mut v[i]);
+                velocity(model.nodes(), &state.q, &z[i], d, &mut v[i]);
             }
             retract(model.nodes(), &state.q, &z[i], &mut q[i]);
         }

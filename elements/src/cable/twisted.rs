@@ -1,0 +1,379 @@
+//! A cable with torsion: how its sections are laid, what is added to its elements, and what can be observed of it.
+
+use super::directed::{Directed, DirectedParams, curvature};
+use super::quadrature::{MOST, Point, Quadrature, Rule};
+use super::rest::STRAIGHT;
+use super::shape::{combine, natural, second};
+use super::spin::SpinInertia;
+use super::torsion::{Torsion, TorsionDamping, TorsionParams};
+use super::{BendingStiffness, CableSpec, Integration, StressFree, TransverseModel};
+use ropewalk_core::error::{finite, positive};
+use ropewalk_core::model::twist::{across, carried, laid, section};
+use ropewalk_core::rotation::{IDENTITY, around, cross};
+use ropewalk_core::{At, BuildError, Element, Local, NodeId, NodeKind, Share, V3, Weights, dot};
+use ropewalk_scene::Builder;
+
+/// A node with torsion as it is laid.
+type Laid = [f64; 10];
+
+/// The torsion of a cable.
+pub(crate) struct Twisted {
+    /// Torsional stiffness [N m²], its damping [N m² s], polar moment of inertia per length [kg m].
+    gj: f64,
+    eta_gj: f64,
+    rho_j: f64,
+    gyroscopic: bool,
+    ei: BendingStiffness,
+    integration: Integration,
+    /// Twist of each element when free of stress [rad].
+    twist0: Vec<f64>,
+    /// The nodes without twist, in whose shape the cable is free of stress if `as_laid`.
+    straight: Vec<Laid>,
+    as_laid: bool,
+    /// Stress-free curvature about the first director on top of that [1/m].
+    curvature: f64,
+    /// Whether bending has a direction, and then the bubble of each element: node, coordinate and velocity.
+    directed: bool,
+    bubbles: Vec<(NodeId, usize, usize)>,
+}
+
+/// The nodes of an element as it is laid, with its bubble.
+fn element(nodes: &[Laid], k: usize) -> [f64; 21] {
+    std::array::from_fn(|i| match i {
+        0..10 => nodes[k][i],
+        10..20 => nodes[k + 1][i - 10],
+        _ => 0.0,
+    })
+}
+
+fn pair(x: &[f64; 21]) -> [f64; 20] {
+    std::array::from_fn(|i| x[i])
+}
+
+fn unit(x: &V3<f64>) -> V3<f64> {
+    let size = dot(x, x).sqrt();
+    x.map(|x| x / size)
+}
+
+/// The normal of the plane in which a cable that is laid like this bends most, and the element where it does; `None` where
+/// it is straight.
+fn most_bent(shapes: &[[f64; 12]], mesh: &[f64]) -> Option<(V3<f64>, usize)> {
+    let mut most = (STRAIGHT, None);
+    for (k, shape) in shapes.iter().enumerate() {
+        let l = mesh[k + 1] - mesh[k];
+        let nat = natural(shape, 1.0 / l);
+        for xi in [0.0, 0.5, 1.0] {
+            let at = Point::new(xi, 1.0);
+            let turn = cross(&combine(&at.phi, &nat), &second(&at.psi, 1.0 / l, &nat));
+            let size = dot(&turn, &turn).sqrt() * l;
+            if size > most.0 {
+                most = (size, Some((turn, k)));
+            }
+        }
+    }
+    most.1
+}
+
+/// Directors at the nodes of a cable, free of twist along it, from one that looks like `normal` at node `k`.
+fn directors(tangents: &[V3<f64>], normal: &V3<f64>, k: usize) -> Vec<V3<f64>> {
+    let mut all = vec![[0.0; 3]; tangents.len()];
+    all[k] = across(normal, &tangents[k]);
+    for i in k + 1..all.len() {
+        all[i] = across(&carried(&all[i - 1], &tangents[i - 1], &tangents[i]), &tangents[i]);
+    }
+    for i in (0..k).rev() {
+        all[i] = across(&carried(&all[i + 1], &tangents[i + 1], &tangents[i]), &tangents[i]);
+    }
+    all
+}
+
+impl CableSpec {
+    /// The torsion of the cable, if it has any, and its nodes as they are laid: with these places and slopes.
+    pub(super) fn twisted(
+        &self,
+        mesh: &[f64],
+        places: &[[f64; 6]],
+        feeds: bool,
+    ) -> Result<Option<(Twisted, Vec<Laid>)>, BuildError> {
+        let s = &self.section;
+        let shape = |k: usize| -> [f64; 12] {
+            std::array::from_fn(|i| if i < 6 { places[k][i] } else { places[k + 1][i - 6] })
+        };
+        let shapes: Vec<[f64; 12]> = (0..mesh.len() - 1).map(shape).collect();
+        let bent = most_bent(&shapes, mesh);
+        let as_laid = self.stress_free == StressFree::AsLaid;
+        let springy = as_laid && s.ei.largest() > 0.0 && bent.is_some();
+        if s.gj.is_none() && !springy {
+            self.refuse_twist()?;
+            return Ok(None);
+        }
+        if feeds {
+            let message = "what a winch feeds can't have torsion yet: leave out `gj`, and let the cable be free of \
+                           stress when straight";
+            return Err(BuildError::at("section.gj", message));
+        }
+        let gj = positive("gj", s.gj.unwrap_or(s.ei.mean()))
+            .map_err(|e| BuildError::at("section.gj", e.message))?;
+        let rho_j = self.rotary_inertia()?;
+        let tangents: Vec<V3<f64>> = places.iter().map(|x| unit(&[x[3], x[4], x[5]])).collect();
+        let (normal, from) = self.first_director(&tangents, bent)?;
+        let u = directors(&tangents, &normal, from);
+        let node = |k: usize, theta: f64| {
+            let x = &places[k];
+            laid(&[x[0], x[1], x[2]], &[x[3], x[4], x[5]], &u[k], theta)
+        };
+        let straight: Vec<Laid> = (0..mesh.len()).map(|k| node(k, 0.0)).collect();
+        let nodes = (0..mesh.len()).map(|k| node(k, self.laid_twist * mesh[k])).collect();
+        let twist0 = |k: usize| {
+            let l = mesh[k + 1] - mesh[k];
+            let own = if as_laid { Torsion::twist(&pair(&element(&straight, k)), l) } else { 0.0 };
+            own + self.twist * l
+        };
+        let twisted = Twisted {
+            gj,
+            eta_gj: s.torsional_retardation_time * gj,
+            rho_j,
+            gyroscopic: s.gyroscopic,
+            ei: s.ei,
+            integration: self.integration,
+            twist0: (0..mesh.len() - 1).map(twist0).collect(),
+            straight,
+            as_laid,
+            curvature: self.curvature,
+            directed: s.ei.has_direction() || springy || self.curvature != 0.0,
+            bubbles: Vec::new(),
+        };
+        if twisted.directed && self.transverse != TransverseModel::T3 {
+            let message = format!(
+                "the curvature of {:?} has no direction: a cable that is bent when free of stress, or that has two bending \
+                 stiffnesses, needs T3",
+                self.transverse
+            );
+            return Err(BuildError::at("transverse", message));
+        }
+        Ok(Some((twisted, nodes)))
+    }
+
+    /// Refuses what only a cable with torsion can have.
+    fn refuse_twist(&self) -> Result<(), BuildError> {
+        let s = &self.section;
+        let asked = [
+            ("section.ei", s.ei.has_direction()),
+            ("section.rotary_inertia", s.rotary_inertia.is_some()),
+            ("section.torsional_retardation_time", s.torsional_retardation_time != 0.0),
+            ("section.gyroscopic", s.gyroscopic),
+            ("normal", self.normal.is_some()),
+            ("twist", self.twist != 0.0),
+            ("laid_twist", self.laid_twist != 0.0),
+        ];
+        let Some((field, _)) = asked.into_iter().find(|(_, asked)| *asked) else { return Ok(()) };
+        let what = if field == "section.ei" { "two bending stiffnesses" } else { "this" };
+        Err(BuildError::at(
+            field,
+            format!(
+                "a cable without torsion can't have {what}: give its section a torsional stiffness, `gj`"
+            ),
+        ))
+    }
+
+    /// Polar moment of inertia per length [kg m]: that of a round bar, of the diameter of the cable or of the one that its
+    /// stiffnesses have.
+    fn rotary_inertia(&self) -> Result<f64, BuildError> {
+        let s = &self.section;
+        let mass = s.mass + s.flooded;
+        let round = match (s.rotary_inertia, s.diameter > 0.0) {
+            (Some(given), _) => given,
+            (None, true) => mass * s.diameter * s.diameter / 8.0,
+            (None, false) => 2.0 * mass * s.ei.mean() / s.ea,
+        };
+        positive("rotary_inertia", round).map_err(|_| {
+            let message = "a cable with torsion needs an inertia about its axis: give `rotary_inertia` [kg m], which must be \
+                           positive, or a `diameter`, of which a round bar has mass × diameter² / 8";
+            BuildError::at("section.rotary_inertia", message)
+        })
+    }
+
+    /// The direction that the first director of the section has, and the node where.
+    fn first_director(
+        &self,
+        tangents: &[V3<f64>],
+        bent: Option<(V3<f64>, usize)>,
+    ) -> Result<(V3<f64>, usize), BuildError> {
+        let Some(normal) = self.normal else {
+            if let Some(bent) = bent {
+                return Ok(bent);
+            }
+            if self.section.ei.has_direction() || self.curvature != 0.0 {
+                let message = "which way does the section look? Give the direction in space, at the start of the cable, of \
+                               the axis that the first of both bending stiffnesses is about";
+                return Err(BuildError::at("normal", message));
+            }
+            return Ok((around(tangents[0])[0], 0));
+        };
+        finite("normal", &normal)?;
+        let t = &tangents[0];
+        let (along, size) = (dot(&normal, t), dot(&normal, &normal).sqrt());
+        if !((size * size - along * along).max(0.0).sqrt() > 1e-3 * size) {
+            let message =
+                "the normal of a section must not lie along the cable: give one at right angles to it";
+            return Err(BuildError::at("normal", message));
+        }
+        Ok((normal, 0))
+    }
+}
+
+impl Twisted {
+    /// Adds torsion, and bending with a direction, to a cable with these nodes.
+    pub(super) fn push(&mut self, b: &mut Builder, mesh: &[f64], nodes: &[NodeId]) -> Result<(), BuildError> {
+        for k in 0..mesh.len() - 1 {
+            let on = [nodes[k], nodes[k + 1]];
+            let l = mesh[k + 1] - mesh[k];
+            b.element(Torsion::new(self.params(k, l)), &on)?;
+            if self.eta_gj > 0.0 {
+                b.element(TorsionDamping { l, eta_gj: self.eta_gj }, &on)?;
+            }
+            if self.gyroscopic {
+                b.element(SpinInertia { l, rho_j: self.rho_j }, &on)?;
+            }
+        }
+        for k in (0..mesh.len() - 1).filter(|_| self.directed) {
+            let bubble = b.node(NodeKind::Scalars(1), &[0.0], &[0.0])?;
+            let own = b.nodes()[bubble.0 as usize];
+            self.bubbles.push((bubble, own.q, own.v));
+            b.element(self.bending(k, mesh[k + 1] - mesh[k]), &[nodes[k], nodes[k + 1], bubble])?;
+        }
+        Ok(())
+    }
+
+    fn params(&self, k: usize, l: f64) -> TorsionParams {
+        TorsionParams { l, gj: self.gj, rho_j: self.rho_j, twist0: self.twist0[k] }
+    }
+
+    fn bending(&self, k: usize, l: f64) -> Directed {
+        let (rule, mut kappa0) = (self.integration.bending(), [[0.0; 2]; MOST]);
+        if self.as_laid {
+            kappa0 = Directed::curvature(&element(&self.straight, k), l, rule);
+        }
+        kappa0.iter_mut().take(rule.points().len()).for_each(|k| k[0] += self.curvature);
+        let params = DirectedParams {
+            l,
+            ei_d: self.ei.about_normal,
+            ei_e: self.ei.across,
+            gj: self.gj,
+            eta_gj: self.eta_gj,
+            rho_j: self.rho_j,
+        };
+        Directed::new(params, kappa0, rule)
+    }
+
+    /// The coordinates (or velocities) of an element with its bubble: 10 (or 7) of each node.
+    fn gather<const N: usize>(&self, k: usize, x: &[f64], seats: [usize; 2], rates: bool) -> [f64; N] {
+        let half = N / 2;
+        let bubble = self.bubbles.get(k).map(|&(_, q, v)| x[if rates { v } else { q }]);
+        std::array::from_fn(|i| match i {
+            i if i < half => x[seats[0] + i],
+            i if i < 2 * half => x[seats[1] + i - half],
+            _ => bubble.unwrap_or(0.0),
+        })
+    }
+
+    /// What twist and bending with a direction add to the force that element `k` transmits [N].
+    pub(super) fn transmits(&self, k: usize, l: f64, q: &[f64], seats: [usize; 2]) -> V3<f64> {
+        let w = Weights { q: 0.0, v: 0.0, a: 0.0 };
+        let x: [f64; 21] = self.gather(k, q, seats, false);
+        let mut twist = Share::<f64, 14>::zero();
+        let local = Local { q: pair(&x), v: [0.0; 14], a: [0.0; 14], last: [0.0; 14], relaxed: None };
+        Torsion::add::<f64, false>(&self.params(k, l), &local, &w, &mut twist);
+        let mut bent = Share::<f64, 15>::zero();
+        if self.directed {
+            let local = Local { q: x, v: [0.0; 15], a: [0.0; 15], last: [0.0; 15], relaxed: None };
+            let own = self.bending(k, l);
+            let lanes = Directed::lanes::<f64>(&ropewalk_core::Batch::of(std::slice::from_ref(&own)));
+            Directed::add::<f64, false>(&lanes, &local, &w, &mut bent);
+        }
+        std::array::from_fn(|i| twist.r[7 + i] + bent.r[7 + i])
+    }
+
+    /// Twist of element `k` per length [rad/m], and the moment that it transmits [N m].
+    pub(super) fn twist(&self, k: usize, l: f64, q: &[f64], seats: [usize; 2]) -> [f64; 2] {
+        let twist = Torsion::twist(&pair(&self.gather(k, q, seats, false)), l);
+        [twist / l, self.gj * (twist - self.twist0[k]) / l]
+    }
+
+    /// Curvature about both directors at a point of element `k` [1/m], and the moments [N m].
+    pub(super) fn bends(&self, k: usize, l: f64, xi: f64, q: &[f64], seats: [usize; 2]) -> [[f64; 2]; 2] {
+        let at = Point::new(xi, 1.0);
+        let now = curvature(&self.gather(k, q, seats, false), l, &at);
+        let mut then = if self.as_laid { curvature(&element(&self.straight, k), l, &at) } else { [0.0; 2] };
+        then[0] += self.curvature;
+        let ei = [self.ei.about_normal, self.ei.across];
+        [now, std::array::from_fn(|i| ei[i] * (now[i] - then[i]))]
+    }
+
+    /// Whether bending has a direction.
+    pub(super) fn is_directed(&self) -> bool {
+        self.directed
+    }
+
+    /// The element that a node is the bubble of.
+    pub(super) fn bubble(&self, node: NodeId) -> Option<usize> {
+        self.bubbles.iter().position(|b| b.0 == node)
+    }
+
+    /// First director of the section at a place of element `k` with this tangent, and the angle that it has been turned by
+    /// relative to the start of the cable [rad], where that of the element's start is `before`.
+    pub(super) fn looks(
+        &self,
+        k: usize,
+        [l, xi]: [f64; 2],
+        tangent: &V3<f64>,
+        q: &[f64],
+        seats: [usize; 2],
+    ) -> (V3<f64>, f64) {
+        let [rate, _] = self.twist(k, l, q, seats);
+        let start = &q[seats[0]..seats[0] + 10];
+        let s = section(start);
+        let (d, t) = ([s[0][0], s[1][0], s[2][0]], [s[0][2], s[1][2], s[2][2]]);
+        let (here, turn) = (unit(tangent), rate * l * xi);
+        let own = across(&carried(&d, &t, &here), &here);
+        let (beside, (sin, cos)) = (cross(&here, &own), turn.sin_cos());
+        (std::array::from_fn(|i| cos * own[i] + sin * beside[i]), turn)
+    }
+}
+
+/// Lays the sections of a cable along other tangents: each director rides with the tangent of its node, and the twist of each
+/// element stays as far as the way allows.
+pub(super) fn follow(q: &mut [f64], seats: &[usize], before: &[V3<f64>]) {
+    for (&at, old) in seats.iter().zip(before) {
+        let t = unit(&[q[at + 3], q[at + 4], q[at + 5]]);
+        let u = [q[at + 6], q[at + 7], q[at + 8]];
+        // a tangent that is turned round has no way to go by
+        let u = if dot(old, &t) > -0.99 { carried(&u, old, &t) } else { u };
+        let along = dot(&u, &t).abs();
+        let u = if along < 0.9 {
+            u
+        } else {
+            *IDENTITY
+                .iter()
+                .min_by(|a, b| dot(a, &t).abs().total_cmp(&dot(b, &t).abs()))
+                .unwrap_or(&IDENTITY[0])
+        };
+        q[at + 6..at + 9].copy_from_slice(&across(&u, &t));
+    }
+}
+
+/// The reference director and angle of a node where a section with director `d` has been turned by `angle` from that of the
+/// node before, or of the first node: the angle counts turns that directors don't see.
+pub(super) fn node_at(r: &V3<f64>, slope: &V3<f64>, d: &V3<f64>, angle: f64) -> Laid {
+    let t = unit(slope);
+    let own = across(d, &t);
+    // u such that d is u turned by the angle
+    let (beside, (sin, cos)) = (cross(&t, &own), angle.sin_cos());
+    let u: V3<f64> = std::array::from_fn(|i| cos * own[i] - sin * beside[i]);
+    laid(r, slope, &u, angle)
+}
+
+/// Velocity of an element's section about its tangent at a place [rad/s].
+pub(super) fn spin(at: &At<'_>, seats: [usize; 2], xi: f64) -> f64 {
+    (1.0 - xi) * at.v[seats[0] + 6] + xi * at.v[seats[1] + 6]
+}

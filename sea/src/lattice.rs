@@ -1,0 +1,267 @@
+//! The motion of the water in many waves from a table that is filled where it is looked at.
+//!
+//! A sum over 200 waves costs as much as a hundred elements of a cable. Its terms vary no faster than the shortest wave,
+//! so that it can be interpolated: in space between lines `x' = i Δ` along the waves' direction and heights `z_j`, by
+//! bicubic Hermite polynomials of velocities, and in time between instants `n τ`, by cubic ones of velocities and
+//! accelerations, whose derivative is the acceleration. The table holds exact sums. Since the flow is irrotational and
+//! free of divergence, `u_z = w_x`, `w_z = -u_x`, six sums make all that is needed of velocities at a corner, and six that
+//! of accelerations.
+
+use crate::waves::{Flow, Stretching, Waves, stretch};
+use std::collections::HashMap;
+
+/// A line of the table is this part of the shortest wave away from the next.
+const ALONG: f64 = 0.2;
+/// Heights near the surface are this part of the shortest wave apart.
+const DOWN: f64 = 0.1;
+/// Farther down they are this part of the depth below the surface apart: short waves don't reach there.
+const GROWTH: f64 = 0.07;
+/// Instants are this part of the shortest period apart.
+const TIME: f64 = 1.0 / 12.0;
+/// Columns are forgotten beyond this number.
+const MOST: usize = 4096;
+
+/// Velocities along the waves and upwards, each with its derivative along the waves and the second one, and then the
+/// same of accelerations.
+type Corner = [f64; 12];
+
+/// A line of the table at one instant.
+#[derive(Clone, Debug)]
+struct Column {
+    /// Elevation, its slope, and the time derivatives of both.
+    surface: [f64; 4],
+    corners: Vec<Option<Corner>>,
+}
+
+/// The table of a sea whose waves have one direction. It has a memory of its own, and so is looked at by one at a time.
+#[derive(Clone, Debug)]
+pub struct Lattice {
+    waves: Waves,
+    way: [f64; 2],
+    /// Speed of the current that carries them, along them [m/s].
+    current: f64,
+    /// Distance of lines [m], of instants [s].
+    along: f64,
+    time: f64,
+    /// Heights [m], descending from the highest.
+    heights: Vec<f64>,
+    columns: HashMap<(i64, i64), Column>,
+}
+
+impl Lattice {
+    /// The table of these waves, down to the bed, or to where nothing of them is left; `None` if they have more than one
+    /// direction.
+    ///
+    /// `finer` divides its distances: the error falls with the fourth power.
+    pub fn new(waves: Waves, finer: f64) -> Option<Self> {
+        let way = waves.way()?;
+        let length = std::f64::consts::TAU / waves.shortest();
+        let time = TIME * std::f64::consts::TAU / waves.fastest() / finer;
+        let top = match waves.stretching {
+            // stretched to still water, but for rounding
+            Stretching::Wheeler | Stretching::Constant => 0.0,
+            Stretching::None => 6.0 * waves.deviation(),
+        };
+        let step = DOWN * length / finer;
+        let mut heights = vec![top + 2.0 * step];
+        let mut z = heights[0];
+        // a factor of 1e-9 of the longest wave is nothing
+        let longest = waves.all.iter().fold(f64::INFINITY, |m, c| c.k.min(m));
+        let bottom = (-waves.depth()).max(-21.0 / longest);
+        while z > bottom {
+            z -= step.max(-GROWTH / finer * z);
+            heights.push(z);
+        }
+        let current = waves.all.first().map_or(0.0, |c| (c.omega - c.sigma) / c.k);
+        Some(Lattice {
+            way,
+            current,
+            along: ALONG * length / finer,
+            time,
+            heights,
+            columns: HashMap::new(),
+            waves,
+        })
+    }
+
+    /// The waves themselves.
+    pub fn waves(&self) -> &Waves {
+        &self.waves
+    }
+
+    /// Number of columns that it holds.
+    pub fn columns(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// The motion of the water, as [`Waves::at`] gives it, but for the pressure, which is left out.
+    pub fn at(&mut self, [x, y, z]: [f64; 3], t: f64) -> Flow {
+        let place = (x * self.way[0] + y * self.way[1]) / self.along;
+        let instant = t / self.time;
+        let (i, n) = (place.floor(), instant.floor());
+        let (across, late) = (place - i, instant - n);
+        let (i, n) = (i as i64, n as i64);
+        if self.columns.len() > MOST {
+            self.columns.retain(|key, _| key.1 == n || key.1 == n + 1);
+        }
+        for key in [(i, n), (i + 1, n), (i, n + 1), (i + 1, n + 1)] {
+            if !self.columns.contains_key(&key) {
+                let column = self.column(key);
+                self.columns.insert(key, column);
+            }
+        }
+        let [risen, rising] = self.waves.risen(t);
+        let (elevation, steep) = self.surface([i, n], across, late);
+        let (elevation, steep) = (risen * elevation, risen * steep);
+        let slope = self.way.map(|w| steep * w);
+        let (up, by_z, by_eta) = self.waves.stretched(z, elevation);
+        let mut flow = Flow { elevation, slope, ..Flow::default() };
+        // below the last height nothing moves
+        let below = self.heights.partition_point(|h| *h > up);
+        let j = below.clamp(1, self.heights.len() - 1) - 1;
+        if below < self.heights.len() || self.waves.depth().is_finite() {
+            let (u, w) = self.inside([i, n], j, across, late, up);
+            let [cx, cy] = self.way;
+            // as one sees it who drifts with the current
+            let (du, dw) = (u[3] + self.current * u[1], w[3] + self.current * w[1]);
+            flow.velocity = [u[0] * cx, u[0] * cy, w[0]];
+            flow.acceleration = [du * cx, du * cy, dw];
+            flow.gradient = [
+                [u[1] * cx * cx, u[1] * cx * cy, u[2] * cx],
+                [u[1] * cx * cy, u[1] * cy * cy, u[2] * cy],
+                [w[1] * cx, w[1] * cy, w[2]],
+            ];
+        }
+        for (a, u) in flow.acceleration.iter_mut().zip(&flow.velocity) {
+            *a = risen * *a + rising * u;
+        }
+        flow.velocity = flow.velocity.map(|u| risen * u);
+        stretch(&mut flow, risen, by_z, by_eta);
+        flow
+    }
+
+    /// Elevation and slope before the waves have risen, between two columns and two instants.
+    fn surface(&self, [i, n]: [i64; 2], across: f64, late: f64) -> (f64, f64) {
+        let h = hermite(late);
+        let blend = |i: i64| {
+            let (a, b) = (&self.columns[&(i, n)].surface, &self.columns[&(i, n + 1)].surface);
+            let at = |k: usize| {
+                h[0] * a[k] + h[1] * self.time * a[k + 2] + h[2] * b[k] + h[3] * self.time * b[k + 2]
+            };
+            [at(0), at(1)]
+        };
+        let (a, b, h, dh) = (blend(i), blend(i + 1), hermite(across), slopes(across));
+        let value = h[0] * a[0] + h[1] * self.along * a[1] + h[2] * b[0] + h[3] * self.along * b[1];
+        let slope = (dh[0] * a[0] + dh[2] * b[0]) / self.along + dh[1] * a[1] + dh[3] * b[1];
+        (value, slope)
+    }
+
+    /// Velocity along the waves and upwards, each with its derivatives along and upwards and its rate, at a height in the
+    /// cell below height `j`.
+    fn inside(
+        &mut self,
+        [i, n]: [i64; 2],
+        j: usize,
+        across: f64,
+        late: f64,
+        up: f64,
+    ) -> ([f64; 4], [f64; 4]) {
+        let (h, dh, tau) = (hermite(late), slopes(late), self.time);
+        // the four corners at this instant: of each its velocities and their rates
+        let mut corners = [[[0.0; 6]; 2]; 4];
+        for (k, corner) in corners.iter_mut().enumerate() {
+            let (i, j) = (i + (k % 2) as i64, j + k / 2);
+            let (a, b) = (self.corner((i, n), j), self.corner((i, n + 1), j));
+            for m in 0..6 {
+                let (a, da, b, db) = (a[m], a[m + 6], b[m], b[m + 6]);
+                corner[0][m] = h[0] * a + h[1] * tau * da + h[2] * b + h[3] * tau * db;
+                corner[1][m] = (dh[0] * a + dh[2] * b) / tau + dh[1] * da + dh[3] * db;
+            }
+        }
+        let (top, height) = (self.heights[j], self.heights[j] - self.heights[j + 1]);
+        let depth = (top - up) / height;
+        let (hx, dx, hz, dz) = (hermite(across), slopes(across), hermite(depth), slopes(depth));
+        let (mut u, mut w) = ([0.0; 4], [0.0; 4]);
+        for (k, corner) in corners.iter().enumerate() {
+            let (x, z) = (2 * (k % 2), 2 * (k / 2));
+            // heights count downwards
+            let (fx, fz) = ([hx[x], hx[x + 1] * self.along], [hz[z], -hz[z + 1] * height]);
+            let (gx, gz) = ([dx[x] / self.along, dx[x + 1]], [-dz[z] / height, dz[z + 1]]);
+            let sum = |f: [f64; 4], x: &[f64; 2], z: &[f64; 2]| {
+                z[0] * (x[0] * f[0] + x[1] * f[1]) + z[1] * (x[0] * f[2] + x[1] * f[3])
+            };
+            for (rate, now) in corner.iter().enumerate() {
+                let [a, ax, axx, b, bx, bxx] = *now;
+                // value, by x, by z, by both: u_z = w_x, u_xz = w_xx, w_z = -u_x, w_xz = -u_xx
+                let (fu, fw) = ([a, ax, bx, bxx], [b, bx, -ax, -axx]);
+                if rate == 1 {
+                    u[3] += sum(fu, &fx, &fz);
+                    w[3] += sum(fw, &fx, &fz);
+                } else {
+                    for (to, f) in [(&mut u, fu), (&mut w, fw)] {
+                        to[0] += sum(f, &fx, &fz);
+                        to[1] += sum(f, &gx, &fz);
+                        to[2] += sum(f, &fx, &gz);
+                    }
+                }
+            }
+        }
+        (u, w)
+    }
+
+    fn corner(&mut self, key: (i64, i64), j: usize) -> Corner {
+        if let Some(corner) = self.columns[&key].corners[j] {
+            return corner;
+        }
+        let (x, t, z) = (key.0 as f64 * self.along, key.1 as f64 * self.time, self.heights[j]);
+        let mut sums = [0.0; 12];
+        for c in &self.waves.all {
+            let (sin, cos) = (c.k * x - c.omega * t + c.phase).sin_cos();
+            let [ch, sh, _] = c.depths(z, self.waves.depth());
+            let (u, w, k, omega) = (c.a * c.sigma * ch, c.a * c.sigma * sh, c.k, c.omega);
+            let own = [
+                u * cos,
+                -u * k * sin,
+                -u * k * k * cos,
+                w * sin,
+                w * k * cos,
+                -w * k * k * sin,
+                u * omega * sin,
+                u * omega * k * cos,
+                -u * omega * k * k * sin,
+                -w * omega * cos,
+                w * omega * k * sin,
+                w * omega * k * k * cos,
+            ];
+            sums.iter_mut().zip(own).for_each(|(sum, x)| *sum += x);
+        }
+        if let Some(column) = self.columns.get_mut(&key) {
+            column.corners[j] = Some(sums);
+        }
+        sums
+    }
+
+    fn column(&self, (i, n): (i64, i64)) -> Column {
+        let (x, t) = (i as f64 * self.along, n as f64 * self.time);
+        let mut surface = [0.0; 4];
+        for c in &self.waves.all {
+            let (sin, cos) = (c.k * x - c.omega * t + c.phase).sin_cos();
+            let own = [c.a * cos, -c.a * c.k * sin, c.a * c.omega * sin, c.a * c.k * c.omega * cos];
+            surface.iter_mut().zip(own).for_each(|(sum, x)| *sum += x);
+        }
+        Column { surface, corners: vec![None; self.heights.len()] }
+    }
+}
+
+/// Cubic Hermite polynomials on 0 … 1: value and derivative at the start, value and derivative at the end.
+fn hermite(x: f64) -> [f64; 4] {
+    let (x2, rest) = (x * x, 1.0 - x);
+    let s = x2 * (3.0 - 2.0 * x);
+    [1.0 - s, x * rest * rest, s, -x2 * rest]
+}
+
+/// Their derivatives.
+fn slopes(x: f64) -> [f64; 4] {
+    let s = 6.0 * x * (1.0 - x);
+    [-s, (1.0 - x) * (1.0 - 3.0 * x), s, x * (3.0 * x - 2.0)]
+}

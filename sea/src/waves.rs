@@ -1,0 +1,282 @@
+//! Elevation and motion of the water in linear waves.
+
+use crate::dispersion::{wavenumber, wavenumber_on_current};
+use crate::error::{SeaError, finite, positive};
+use std::f64::consts::PI;
+
+/// A regular wave: `η = a cos(k (x cos β + y sin β) - ω t + φ)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Regular {
+    /// Amplitude `a`, half of its height [m].
+    pub amplitude: f64,
+    /// Angular frequency `ω` [rad/s].
+    pub omega: f64,
+    /// Phase `φ` at the origin at `t = 0` [rad]: 0 is a crest.
+    pub phase: f64,
+    /// Direction `β` that it travels towards, from x to y [rad].
+    pub direction: f64,
+}
+
+/// What linear theory, which ends at still water, is taken to say between there and the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stretching {
+    /// The column of water is stretched or compressed to the surface: `z' = (z - η)/(1 + η/h)` (Wheeler, 1970).
+    #[default]
+    Wheeler,
+    /// Above still water the motion is that at still water.
+    Constant,
+    /// The formulas as they are, also above still water: short waves grow without bound in crests. For verification.
+    None,
+}
+
+/// The motion of the water at a place and a time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Flow {
+    /// Elevation `η` of the surface above still water there [m].
+    pub elevation: f64,
+    /// `∂η/∂x` and `∂η/∂y`.
+    pub slope: [f64; 2],
+    /// Velocity [m/s].
+    pub velocity: [f64; 3],
+    /// `∂u/∂t` [m/s²]; of waves on a current as one sees it who drifts with it.
+    pub acceleration: [f64; 3],
+    /// `∂u_i/∂x_j` [1/s], stretching included.
+    pub gradient: [[f64; 3]; 3],
+    /// Pressure by the waves over the density of water [m²/s²].
+    pub pressure: f64,
+}
+
+/// One wave, ready for sums.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Component {
+    /// Amplitude [m].
+    pub a: f64,
+    /// Frequency that an observer at rest sees [rad/s].
+    pub omega: f64,
+    /// Frequency in water at rest [rad/s].
+    pub sigma: f64,
+    /// Wavenumber [1/m].
+    pub k: f64,
+    pub phase: f64,
+    /// Direction.
+    pub way: [f64; 2],
+}
+
+/// Waves on water of constant depth, as many as there are.
+#[derive(Clone, Debug)]
+pub struct Waves {
+    pub(crate) all: Vec<Component>,
+    pub(crate) depth: f64,
+    g: f64,
+    pub(crate) stretching: Stretching,
+    /// Time in which they rise from nothing [s].
+    ramp: f64,
+}
+
+/// The least share of the depth that is taken to be left under a trough.
+const DRY: f64 = 0.05;
+
+impl Waves {
+    /// Waves on water of this depth [m], which may be infinite, under gravity `g` [m/s²].
+    ///
+    /// # Errors
+    /// A frequency, depth or gravity that isn't above zero, numbers that aren't finite.
+    pub fn new(waves: &[Regular], depth: f64, g: f64, stretching: Stretching) -> Result<Self, SeaError> {
+        if !(depth > 0.0) {
+            return Err(SeaError::new("depth", format!("`depth` must be above 0, not {depth}")));
+        }
+        positive("gravity", g)?;
+        let component = |w: &Regular| {
+            finite("amplitude", w.amplitude)?;
+            positive("omega", w.omega)?;
+            finite("phase", w.phase)?;
+            finite("direction", w.direction)?;
+            let (sin, cos) = w.direction.sin_cos();
+            let k = wavenumber(w.omega, depth, g);
+            Ok(Component {
+                a: w.amplitude,
+                omega: w.omega,
+                sigma: w.omega,
+                k,
+                phase: w.phase,
+                way: [cos, sin],
+            })
+        };
+        let all = waves.iter().map(component).collect::<Result<_, _>>()?;
+        Ok(Waves { all, depth, g, stretching, ramp: 0.0 })
+    }
+
+    /// Lets them rise from nothing in a time [s].
+    ///
+    /// # Errors
+    /// A negative time.
+    pub fn with_ramp(mut self, ramp: f64) -> Result<Self, SeaError> {
+        if !(ramp.is_finite() && ramp >= 0.0) {
+            return Err(SeaError::new("ramp", format!("`ramp` must not be negative, and is {ramp}")));
+        }
+        self.ramp = ramp;
+        Ok(self)
+    }
+
+    /// Lets a uniform current [m/s] carry them: frequencies stay those that an observer at rest sees, lengths change.
+    ///
+    /// # Errors
+    /// An opposing current that is too fast for one of them.
+    pub fn on_current(mut self, current: [f64; 2]) -> Result<Self, SeaError> {
+        for c in &mut self.all {
+            let along = current[0] * c.way[0] + current[1] * c.way[1];
+            let k = wavenumber_on_current(c.omega, self.depth, self.g, along).ok_or_else(|| {
+                let message = format!(
+                    "waves of {:.3} s can't advance against a current of {:.3} m/s: take slower current or longer waves",
+                    2.0 * PI / c.omega,
+                    -along
+                );
+                SeaError::new("doppler", message)
+            })?;
+            (c.k, c.sigma) = (k, c.omega - k * along);
+        }
+        Ok(self)
+    }
+
+    /// Depth of the water [m].
+    pub fn depth(&self) -> f64 {
+        self.depth
+    }
+    /// Number of waves.
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+    /// Whether the sea is still.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+    /// Largest wavenumber [1/m].
+    pub fn shortest(&self) -> f64 {
+        self.all.iter().fold(0.0, |m, c| c.k.max(m))
+    }
+    /// Highest frequency that an observer at rest sees [rad/s].
+    pub fn fastest(&self) -> f64 {
+        self.all.iter().fold(0.0, |m, c| c.omega.max(m))
+    }
+    /// Standard deviation of the elevation once they have risen [m].
+    pub fn deviation(&self) -> f64 {
+        self.all.iter().map(|c| 0.5 * c.a * c.a).sum::<f64>().sqrt()
+    }
+    /// The direction of all of them, if they have one.
+    pub(crate) fn way(&self) -> Option<[f64; 2]> {
+        let first = self.all.first()?.way;
+        self.all.iter().all(|c| c.way == first).then_some(first)
+    }
+
+    /// How far they have risen, and how fast they do [1/s].
+    pub(crate) fn risen(&self, t: f64) -> [f64; 2] {
+        if t >= self.ramp {
+            return [1.0, 0.0];
+        }
+        if t <= 0.0 {
+            return [0.0, 0.0];
+        }
+        let u = PI * t / self.ramp;
+        [0.5 * (1.0 - u.cos()), 0.5 * PI / self.ramp * u.sin()]
+    }
+
+    /// Elevation above still water [m], and its slopes.
+    pub fn elevation(&self, x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
+        let [risen, _] = self.risen(t);
+        let (mut eta, mut slope) = (0.0, [0.0; 2]);
+        for c in &self.all {
+            let (sin, cos) = c.angle(x, y, t).sin_cos();
+            eta += c.a * cos;
+            let steep = -c.a * c.k * sin;
+            slope[0] += steep * c.way[0];
+            slope[1] += steep * c.way[1];
+        }
+        (risen * eta, slope.map(|s| risen * s))
+    }
+
+    /// The height at which linear theory is asked for what happens at `z` [m], and its derivatives by `z` and by the
+    /// elevation.
+    pub(crate) fn stretched(&self, z: f64, eta: f64) -> (f64, f64, f64) {
+        match self.stretching {
+            Stretching::None => (z, 1.0, 0.0),
+            Stretching::Constant => {
+                if z > 0.0 {
+                    (0.0, 0.0, 0.0)
+                } else {
+                    (z, 1.0, 0.0)
+                }
+            }
+            Stretching::Wheeler if self.depth.is_infinite() => (z - eta, 1.0, -1.0),
+            Stretching::Wheeler => {
+                let s = 1.0 / (1.0 + eta / self.depth).max(DRY);
+                let up = (z - eta) * s;
+                (up, s, -s * (1.0 + up / self.depth))
+            }
+        }
+    }
+
+    /// The motion of the water at a place, which should be in it, and a time: the sum over all waves.
+    pub fn at(&self, [x, y, z]: [f64; 3], t: f64) -> Flow {
+        let (elevation, slope) = self.elevation(x, y, t);
+        let (up, by_z, by_eta) = self.stretched(z, elevation);
+        let [risen, rising] = self.risen(t);
+        let mut flow = Flow { elevation, slope, ..Flow::default() };
+        for c in &self.all {
+            let (sin, cos) = c.angle(x, y, t).sin_cos();
+            let [ch, sh, p] = c.depths(up, self.depth);
+            let (u, w) = (c.a * c.sigma * ch, c.a * c.sigma * sh);
+            let [cx, cy] = c.way;
+            let along = [u * cos, -u * c.k * sin, w * c.k * cos];
+            flow.velocity[0] += along[0] * cx;
+            flow.velocity[1] += along[0] * cy;
+            flow.velocity[2] += w * sin;
+            flow.acceleration[0] += u * c.sigma * sin * cx;
+            flow.acceleration[1] += u * c.sigma * sin * cy;
+            flow.acceleration[2] -= w * c.sigma * cos;
+            flow.pressure += self.g * c.a * p * cos;
+            let g = &mut flow.gradient;
+            g[0][0] += along[1] * cx * cx;
+            g[0][1] += along[1] * cx * cy;
+            g[1][1] += along[1] * cy * cy;
+            g[0][2] += along[2] * cx;
+            g[1][2] += along[2] * cy;
+            g[2][2] += u * c.k * sin;
+        }
+        let g = &mut flow.gradient;
+        (g[1][0], g[2][0], g[2][1]) = (g[0][1], g[0][2], g[1][2]);
+        for (a, u) in flow.acceleration.iter_mut().zip(&flow.velocity) {
+            *a = risen * *a + rising * u;
+        }
+        flow.velocity = flow.velocity.map(|u| risen * u);
+        flow.pressure *= risen;
+        stretch(&mut flow, risen, by_z, by_eta);
+        flow
+    }
+}
+
+/// Makes the gradient of linear theory at the stretched height, before the waves have risen, that at the place itself.
+pub(crate) fn stretch(flow: &mut Flow, risen: f64, by_z: f64, by_eta: f64) {
+    for row in &mut flow.gradient {
+        let up = risen * row[2];
+        row[0] = risen * row[0] + up * by_eta * flow.slope[0];
+        row[1] = risen * row[1] + up * by_eta * flow.slope[1];
+        row[2] = up * by_z;
+    }
+}
+
+impl Component {
+    pub fn angle(&self, x: f64, y: f64, t: f64) -> f64 {
+        self.k * (x * self.way[0] + y * self.way[1]) - self.omega * t + self.phase
+    }
+
+    /// `cosh k(z + h)/sinh kh`, `sinh k(z + h)/sinh kh` and `cosh k(z + h)/cosh kh`, without overflow at any depth.
+    pub fn depths(&self, z: f64, depth: f64) -> [f64; 3] {
+        let down = (self.k * z).exp();
+        if depth.is_infinite() {
+            return [down; 3];
+        }
+        let back = (-self.k * (z + 2.0 * depth)).exp();
+        let bed = (-2.0 * self.k * depth).exp();
+        [(down + back) / (1.0 - bed), (down - back) / (1.0 - bed), (down + back) / (1.0 + bed)]
+    }
+}

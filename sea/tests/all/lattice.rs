@@ -1,0 +1,96 @@
+//! The table against the sums that it stands for.
+
+use ropewalk_sea::{Flow, Lattice, Sampling, Spectrum, SplitMix64, Stretching, Waves, sample};
+
+fn sea(depth: f64, stretching: Stretching) -> Waves {
+    let spectrum = Spectrum::Jonswap { hs: 4.0, tp: 10.0, gamma: 3.3 };
+    let waves = sample(&spectrum, 200, 11, Sampling::EqualEnergy, 0.6, None).expect("sea");
+    Waves::new(&waves, depth, 9.81, stretching).expect("waves")
+}
+
+/// The largest and the mean square of differences, in parts of the velocity's deviation: of velocity, acceleration,
+/// gradient, elevation.
+fn off(waves: &Waves, lattice: &mut Lattice) -> [[f64; 2]; 4] {
+    let (mut random, mut worst, mut squares) = (SplitMix64::new(5), [0.0_f64; 4], [0.0; 4]);
+    let points = 300;
+    let (mut speed, mut rate, mut steep) = (0.0, 0.0, 0.0);
+    for _ in 0..points {
+        let mut between = |a: f64, b: f64| a + (b - a) * random.unit();
+        let (x, t) =
+            ([between(-300.0, 300.0), between(-50.0, 50.0), between(-40.0, 0.0)], between(0.0, 500.0));
+        let Flow { elevation, velocity, acceleration, gradient, .. } = waves.at(x, t);
+        let found = lattice.at(x, t);
+        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+        let all = [
+            apart(&velocity, &found.velocity),
+            apart(&acceleration, &found.acceleration),
+            apart(&gradient.concat(), &found.gradient.concat()),
+            (elevation - found.elevation).powi(2),
+        ];
+        for k in 0..4 {
+            assert!(all[k].is_finite());
+            worst[k] = worst[k].max(all[k].sqrt());
+            squares[k] += all[k] / f64::from(points);
+        }
+        let zero = [0.0; 9];
+        speed += apart(&velocity, &zero) / f64::from(points);
+        rate += apart(&acceleration, &zero) / f64::from(points);
+        steep += apart(&gradient.concat(), &zero) / f64::from(points);
+    }
+    let sizes = [speed.sqrt(), rate.sqrt(), steep.sqrt(), waves.deviation()];
+    std::array::from_fn(|k| [squares[k].sqrt() / sizes[k], worst[k] / sizes[k]])
+}
+
+#[test]
+fn the_table_stands_for_the_sums() {
+    for (depth, stretching) in [
+        (80.0, Stretching::Wheeler),
+        (f64::INFINITY, Stretching::Wheeler),
+        (60.0, Stretching::Constant),
+        (45.0, Stretching::None),
+    ] {
+        let waves = sea(depth, stretching);
+        let mut lattice = Lattice::new(waves.clone(), 1.0).expect("one direction");
+        let [u, du, gradient, eta] = off(&waves, &mut lattice);
+        println!("{depth} m {stretching:?}: u {u:?}, du {du:?}, gradient {gradient:?}, eta {eta:?}");
+        assert!(u[0] < 1e-3 && u[1] < 1e-2, "{u:?}");
+        assert!(du[0] < 2e-3 && du[1] < 2e-2, "{du:?}");
+        assert!(gradient[0] < 2e-2 && eta[1] < 1e-2, "{gradient:?} {eta:?}");
+    }
+}
+
+#[test]
+fn half_the_distances_leave_a_sixteenth_of_the_error() {
+    let waves = sea(80.0, Stretching::Wheeler);
+    let [coarse, fine] =
+        [1.0, 2.0].map(|finer| off(&waves, &mut Lattice::new(waves.clone(), finer).expect("one")));
+    let ratio = coarse[0][0] / fine[0][0];
+    assert!((10.0..24.0).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn it_is_filled_only_where_it_is_looked_at() {
+    let waves = sea(80.0, Stretching::Wheeler);
+    let mut lattice = Lattice::new(waves, 1.0).expect("one direction");
+    for k in 0..100 {
+        lattice.at([0.5, 0.2, -3.0], 0.001 * f64::from(k));
+    }
+    assert_eq!(lattice.columns(), 4);
+}
+
+#[test]
+fn on_a_current_rates_are_those_of_who_drifts() {
+    let waves = sea(80.0, Stretching::None).on_current([1.0, 0.5]).expect("current");
+    let mut lattice = Lattice::new(waves.clone(), 1.0).expect("one direction");
+    let [u, du, ..] = off(&waves, &mut lattice);
+    assert!(u[0] < 1e-3 && du[0] < 2e-3, "{u:?} {du:?}");
+}
+
+#[test]
+fn seas_of_several_directions_have_no_table() {
+    let spectrum = Spectrum::Jonswap { hs: 4.0, tp: 10.0, gamma: 3.3 };
+    let spreading = Some(ropewalk_sea::Spreading { s: 4.0, directions: 5 });
+    let waves = sample(&spectrum, 50, 1, Sampling::EqualEnergy, 0.0, spreading).expect("sea");
+    let waves = Waves::new(&waves, 80.0, 9.81, Stretching::Wheeler).expect("waves");
+    assert!(Lattice::new(waves, 1.0).is_none());
+}
