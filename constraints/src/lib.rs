@@ -16,6 +16,7 @@
 //!
 //! Joints between markers, and the motions that drive them. Each kind of joint here makes a [`Joint`](ropewalk_core::Joint) of its equations.
 
+mod axis;
 mod breaking;
 mod check;
 mod clamp;

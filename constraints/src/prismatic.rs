@@ -1,10 +1,7 @@
 //! Slides along an axis.
 
-use crate::pair::{aligned, along, pair};
-use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, V3};
-use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::axis::along_an_axis;
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node};
 
 /// The second marker slides along the third axis of the first and doesn't turn: five equations.
 ///
@@ -58,42 +55,6 @@ pub fn point_on_plane(
     between: [Marker; 2],
 ) -> Result<Joint, BuildError> {
     Joint::new(name, nodes, between, vec![Equation::in_plane(2)])
-}
-
-/// The spec of a joint whose axis the scene gives: `"name" => Spec, joint; what the axis is`.
-macro_rules! along_an_axis {
-    ($($(#[$what:meta])+ $name:literal => $spec:ident, $joint:ident; $axis:literal)+) => {$(
-        $(#[$what])+
-        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields)]
-        pub struct $spec {
-            /// Name; records of the reaction refer to it.
-            pub name: String,
-            /// The marker that is held.
-            pub marker: MarkerRef,
-            /// The other marker, or a point in space. Default: the point where `marker` starts.
-            #[serde(default)]
-            pub to: Option<MarkerRef>,
-            #[doc = $axis]
-            pub axis: V3<f64>,
-        }
-        register_spec!(Constraint, $name, $spec);
-
-        #[typetag::serde(name = $name)]
-        impl ConstraintSpec for $spec {
-            fn name(&self) -> &str {
-                &self.name
-            }
-            fn markers(&self) -> Vec<&MarkerRef> {
-                std::iter::once(&self.marker).chain(&self.to).collect()
-            }
-            fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-                let markers = pair(b, &self.marker, self.to.as_ref())?;
-                let markers = aligned(b, markers, along("axis", self.axis)?);
-                b.constraint($joint(&self.name, b.nodes(), markers)?)
-            }
-        }
-    )+};
 }
 
 along_an_axis! {

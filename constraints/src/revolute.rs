@@ -1,10 +1,7 @@
 //! A hinge.
 
-use crate::pair::{aligned, along, pair};
-use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, NodeKind, V3};
-use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::axis::along_an_axis;
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Node, NodeKind};
 
 /// Two markers are at the same point and share their third axis: a hinge, five equations. At a cable's end, which has
 /// no twist, the slope stays normal to the axis: 3 + 1 equations.
@@ -25,34 +22,9 @@ pub fn revolute(name: impl Into<String>, nodes: &[Node], between: [Marker; 2]) -
     Joint::new(name, nodes, between, equations)
 }
 
-/// A hinge: holds two points together; only the rotation about an axis is free. The end of a cable swings in the
-/// plane normal to the axis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RevoluteSpec {
-    /// Name; records of the reaction refer to it.
-    pub name: String,
-    /// The marker that is held.
-    pub marker: MarkerRef,
-    /// The other marker, or a point in space. Default: the point where `marker` starts.
-    #[serde(default)]
-    pub to: Option<MarkerRef>,
-    /// Direction of the axis in space at the start. The axis turns with the parts.
-    pub axis: V3<f64>,
-}
-register_spec!(Constraint, "revolute", RevoluteSpec);
-
-#[typetag::serde(name = "revolute")]
-impl ConstraintSpec for RevoluteSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn markers(&self) -> Vec<&MarkerRef> {
-        std::iter::once(&self.marker).chain(&self.to).collect()
-    }
-    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let markers = pair(b, &self.marker, self.to.as_ref())?;
-        let markers = aligned(b, markers, along("axis", self.axis)?);
-        b.constraint(revolute(&self.name, b.nodes(), markers)?)
-    }
+along_an_axis! {
+    /// A hinge: holds two points together; only the rotation about an axis is free. The end of a cable swings in the
+    /// plane normal to the axis.
+    "revolute" => RevoluteSpec, revolute;
+    "Direction of the axis in space at the start. The axis turns with the parts."
 }

@@ -48,87 +48,58 @@ fn crossed(what: &str, a: V3<f64>, b: V3<f64>) -> Result<(), BuildError> {
     Err(BuildError::new(message))
 }
 
-/// Keeps an axis of one part at right angles to an axis of another part or of space.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PerpendicularSpec {
-    /// Name; records of the reaction refer to it.
-    pub name: String,
-    /// The marker that is held.
-    pub marker: MarkerRef,
-    /// The other marker, or a point in space. Default: the point where `marker` starts.
-    #[serde(default)]
-    pub to: Option<MarkerRef>,
-    /// Axis of `to` in space at the start; it turns with `to`. Leave it out on a cable: there the axis is the
-    /// tangent.
-    #[serde(default)]
-    pub axis_to: Option<V3<f64>>,
-    /// Axis of `marker` in space at the start; it turns with `marker`. Leave it out on a cable.
-    #[serde(default)]
-    pub axis: Option<V3<f64>>,
-}
-register_spec!(Constraint, "perpendicular", PerpendicularSpec);
+/// The spec of a joint between two axes: `"name" => Spec, joint, what a message calls it`.
+macro_rules! between_two_axes {
+    ($($(#[$what:meta])+ $name:literal => $spec:ident, $joint:ident, $called:literal;)+) => {$(
+        $(#[$what])+
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $spec {
+            /// Name; records of the reaction refer to it.
+            pub name: String,
+            /// The marker that is held.
+            pub marker: MarkerRef,
+            /// The other marker, or a point in space. Default: the point where `marker` starts.
+            #[serde(default)]
+            pub to: Option<MarkerRef>,
+            /// Axis of `to` in space at the start; it turns with `to`. Leave it out on a cable: there the axis is the
+            /// tangent.
+            #[serde(default)]
+            pub axis_to: Option<V3<f64>>,
+            /// Axis of `marker` in space at the start; it turns with `marker`. Leave it out on a cable.
+            #[serde(default)]
+            pub axis: Option<V3<f64>>,
+        }
+        register_spec!(Constraint, $name, $spec);
 
-#[typetag::serde(name = "perpendicular")]
-impl ConstraintSpec for PerpendicularSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn markers(&self) -> Vec<&MarkerRef> {
-        std::iter::once(&self.marker).chain(&self.to).collect()
-    }
-    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let markers = pair(b, &self.marker, self.to.as_ref())?;
-        let on = direction(b, "axis_to", &markers[0], self.axis_to)?;
-        let held = direction(b, "axis", &markers[1], self.axis)?;
-        let markers = [
-            markers[0].with_axes(b.nodes(), b.coordinates(), around(on)),
-            markers[1].with_axes(b.nodes(), b.coordinates(), around(held)),
-        ];
-        crossed("right angle", on, held)?;
-        b.constraint(perpendicular(&self.name, b.nodes(), markers)?)
-    }
+        #[typetag::serde(name = $name)]
+        impl ConstraintSpec for $spec {
+            fn name(&self) -> &str {
+                &self.name
+            }
+            fn markers(&self) -> Vec<&MarkerRef> {
+                std::iter::once(&self.marker).chain(&self.to).collect()
+            }
+            fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+                let markers = pair(b, &self.marker, self.to.as_ref())?;
+                let on = direction(b, "axis_to", &markers[0], self.axis_to)?;
+                let held = direction(b, "axis", &markers[1], self.axis)?;
+                let markers = [
+                    markers[0].with_axes(b.nodes(), b.coordinates(), around(on)),
+                    markers[1].with_axes(b.nodes(), b.coordinates(), around(held)),
+                ];
+                crossed($called, on, held)?;
+                b.constraint($joint(&self.name, b.nodes(), markers)?)
+            }
+        }
+    )+};
 }
 
-/// A universal joint: holds two points together, and keeps an axis of one part at right angles to an axis of the
-/// other.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct UniversalSpec {
-    /// Name; records of the reaction refer to it.
-    pub name: String,
-    /// The marker that is held.
-    pub marker: MarkerRef,
-    /// The other marker, or a point in space. Default: the point where `marker` starts.
-    #[serde(default)]
-    pub to: Option<MarkerRef>,
-    /// Axis of `to` in space at the start; it turns with `to`. Leave it out on a cable: there the axis is the
-    /// tangent.
-    #[serde(default)]
-    pub axis_to: Option<V3<f64>>,
-    /// Axis of `marker` in space at the start; it turns with `marker`. Leave it out on a cable.
-    #[serde(default)]
-    pub axis: Option<V3<f64>>,
-}
-register_spec!(Constraint, "universal", UniversalSpec);
+between_two_axes! {
+    /// Keeps an axis of one part at right angles to an axis of another part or of space.
+    "perpendicular" => PerpendicularSpec, perpendicular, "right angle";
 
-#[typetag::serde(name = "universal")]
-impl ConstraintSpec for UniversalSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn markers(&self) -> Vec<&MarkerRef> {
-        std::iter::once(&self.marker).chain(&self.to).collect()
-    }
-    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let markers = pair(b, &self.marker, self.to.as_ref())?;
-        let on = direction(b, "axis_to", &markers[0], self.axis_to)?;
-        let held = direction(b, "axis", &markers[1], self.axis)?;
-        let markers = [
-            markers[0].with_axes(b.nodes(), b.coordinates(), around(on)),
-            markers[1].with_axes(b.nodes(), b.coordinates(), around(held)),
-        ];
-        crossed("universal joint", on, held)?;
-        b.constraint(universal(&self.name, b.nodes(), markers)?)
-    }
+    /// A universal joint: holds two points together, and keeps an axis of one part at right angles to an axis of the
+    /// other.
+    "universal" => UniversalSpec, universal, "universal joint";
 }

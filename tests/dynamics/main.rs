@@ -13,6 +13,7 @@ mod bodies;
 mod chain;
 mod consistency;
 mod contradictions;
+mod controllers;
 mod corners;
 mod curved;
 mod energy;

@@ -5,7 +5,10 @@ mod common;
 #[path = "../common/program.rs"]
 mod program;
 
+mod births;
+mod eyelet;
 mod reeling;
+mod running;
 mod shear_pin;
 mod unwinding;
 mod unwinding_scene;

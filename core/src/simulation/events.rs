@@ -1,0 +1,233 @@
+//! Events inside a step: when they come, in which order, and what they change.
+
+use super::{Dense, End, Observer, Simulation};
+use crate::model::Model;
+use crate::model::event::{Action, Event};
+use crate::model::line::Quantity;
+use crate::model::remesh::Remeshed;
+use crate::model::state::State;
+use crate::model::term::Energy;
+use crate::solve::integrator::{Limit, StepError, restart};
+use std::sync::Arc;
+
+/// An event that has changed something.
+pub(super) struct Fired {
+    event: usize,
+    action: Action,
+    /// The state as it left it.
+    after: State,
+    /// Whether it changed an internal variable.
+    changed: bool,
+}
+
+/// The value of an event at the start. What has come to pass already happens at once.
+pub(super) fn at_start(event: &dyn Event, model: &Model, state: &State) -> f64 {
+    let value = event.value(model, state);
+    match event.direction() {
+        1 if value >= 0.0 => -f64::MIN_POSITIVE,
+        -1 if value <= 0.0 => f64::MIN_POSITIVE,
+        _ => value,
+    }
+}
+
+impl Simulation {
+    /// The first event inside the last step after a time, and when it comes.
+    fn next_event(&mut self, from: f64) -> Option<(usize, f64)> {
+        let mut first: Option<(usize, f64)> = None;
+        for k in 0..self.events.len() {
+            let (event, before) = (self.events[k].0.clone(), self.events[k].1);
+            let after = event.value(&self.model, &self.state);
+            let crossed = match event.direction() {
+                1 => before < 0.0 && after >= 0.0,
+                -1 => before > 0.0 && after <= 0.0,
+                _ => before * after < 0.0 || (after == 0.0 && before != 0.0),
+            };
+            if !crossed {
+                continue;
+            }
+            let t = self.crossing(event.as_ref(), [from, self.state.t], [before, after]);
+            if first.is_none_or(|(_, first)| t < first) {
+                first = Some((k, t));
+            }
+        }
+        first
+    }
+
+    /// When an event's function changes its sign between two times with these values: by halves, or, where every look costs
+    /// a search for forces, by false position with the Illinois rule.
+    fn crossing(
+        &mut self,
+        event: &dyn Event,
+        [mut low, mut high]: [f64; 2],
+        [before, after]: [f64; 2],
+    ) -> f64 {
+        let forces = event.of_forces();
+        let fine = if forces { 1e-9 } else { 1e-12 };
+        let tolerance = 4.0 * f64::EPSILON * high.abs() + fine * (high - low);
+        let (mut below, mut above, mut last) = (before, after, None);
+        while high - low > tolerance {
+            let share = if forces { (below / (below - above)).clamp(1e-3, 0.999) } else { 0.5 };
+            let mid = low + share * (high - low);
+            if mid <= low || mid >= high {
+                break;
+            }
+            self.look_inside(mid, forces);
+            let value = event.value(&self.model, &self.scratch);
+            let early = (value > 0.0) == (before > 0.0) && value != 0.0;
+            if early {
+                (low, below) = (mid, value);
+            } else {
+                (high, above) = (mid, value);
+            }
+            if last == Some(early) {
+                *(if early { &mut above } else { &mut below }) *= 0.5;
+            }
+            last = Some(early);
+        }
+        high
+    }
+
+    /// Sets the scratch state to a time inside the last step, with the forces of the motion there if they are needed.
+    fn look_inside(&mut self, t: f64, forces: bool) {
+        Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+        // where none are found, the interpolated ones have to do
+        if forces && self.find_forces().is_err() {
+            Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+        }
+    }
+
+    /// Lets the events inside the last step act, one after the other, up to the first that changes something: the state
+    /// moves to just before it.
+    pub(super) fn locate(&mut self, observer: &mut dyn Observer) -> Option<Fired> {
+        let mut from = self.previous.t;
+        while let Some((event, t)) = self.next_event(from) {
+            self.look_inside(t, self.events[event].0.of_forces());
+            self.scratch.control.clone_from(&self.state.control);
+            self.model.remember(&mut self.scratch);
+            for (k, (other, value)) in self.events.iter_mut().enumerate() {
+                let (before, now) = (*value, other.value(&self.model, &self.scratch));
+                // what came at the same instant is still due
+                let due = k != event && now * before < 0.0;
+                *value = if due { before.signum() * f64::MIN_POSITIVE } else { now };
+            }
+            let mut after = self.scratch.clone();
+            let action = self.events[event].0.act(&self.model, &mut after);
+            let changed = after.internal != self.scratch.internal;
+            if !changed && matches!(action, Action::Continue) {
+                let report = self.events[event].0.report(&self.model, &self.scratch);
+                observer.event(&report, t);
+                from = t;
+                continue;
+            }
+            std::mem::swap(&mut self.state, &mut self.scratch);
+            return Some(Fired { event, action, after, changed });
+        }
+        self.model.remember(&mut self.state);
+        for (event, value) in &mut self.events {
+            *value = event.value(&self.model, &self.state);
+        }
+        None
+    }
+
+    pub(super) fn fire(
+        &mut self,
+        fired: Fired,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<End>, StepError> {
+        let Fired { event: k, action, after, changed } = fired;
+        observer.event(&self.events[k].0.name(), self.state.t);
+        let h = self.state.control.h_last;
+        self.state = after;
+        match action {
+            Action::Continue => {
+                // the step has become shorter, and what was predicted from it doesn't fit any more
+                let control = &mut self.state.control;
+                control.h_last = self.state.t - self.previous.t;
+                (control.backs, control.order) = (0, 0);
+                control.stages[0].clear();
+                let short = if h > 0.0 { control.h_last / h } else { 1.0 };
+                for (aux, a) in self.state.aux.iter_mut().zip(&self.state.a) {
+                    *aux = a + short * (*aux - a);
+                }
+                self.resume(k, changed);
+                return Ok(None);
+            }
+            Action::Stop => {
+                // the moment that ends the run is worth a sample
+                let _ = self.sample(observer, None)?;
+                return Ok(Some(End::Stopped { by: self.events[k].0.name() }));
+            }
+            Action::Fail(why) => {
+                return Err(StepError::Event { t: self.state.t, event: self.events[k].0.name(), why });
+            }
+            Action::Restart => {}
+            Action::Remesh(model) => {
+                let event = self.events[k].0.clone();
+                let before = self.measure(event.as_ref());
+                self.state = model.carry(&self.model, &self.state);
+                self.aside = None;
+                self.work.change_mesh(&self.model, &model).map_err(|source| StepError::Linear {
+                    t: self.state.t,
+                    source,
+                    unknown: "the structure of the new mesh".into(),
+                })?;
+                // events of the scene belong to its model; those that were added stay
+                let own = self.model.events().len();
+                let new = model.events().iter().map(|e| (e.clone(), 0.0)).collect::<Vec<_>>();
+                self.events.splice(..own, new);
+                self.model = Arc::from(model);
+                self.report(event.as_ref(), before, observer);
+            }
+        }
+        // history doesn't reach across an event
+        let now = self.state.internal.clone();
+        restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
+        self.state.internal = now;
+        (self.state.control.h_next, self.state.control.limit) = (0.1 * h, Limit::Event);
+        self.resume(k, changed);
+        Ok(None)
+    }
+
+    /// Energy, momentum, and the tension where an event changes the mesh.
+    fn measure(&mut self, event: &dyn Event) -> (Energy, [f64; 3], f64) {
+        let (model, at) = (&self.model, self.state.at());
+        let tension = event.remeshes().and_then(|(name, end)| {
+            let part = model.part(name)?;
+            part.observe(Quantity::Tension, if end == 0 { 0.0 } else { part.length_now(&at) }, &at)
+        });
+        (model.energy(&at), self.work.momentum(model, &self.state), tension.unwrap_or(f64::NAN))
+    }
+
+    fn report(&mut self, event: &dyn Event, before: (Energy, [f64; 3], f64), observer: &mut dyn Observer) {
+        let after = self.measure(event);
+        let report = Remeshed {
+            name: event.name(),
+            t: self.state.t,
+            kinetic: after.0.kinetic - before.0.kinetic,
+            potential: after.0.potential - before.0.potential,
+            momentum: std::array::from_fn(|i| after.1[i] - before.1[i]),
+            tension: [before.2, after.2],
+        };
+        self.audit.remeshed += report.kinetic + report.potential;
+        observer.remeshed(&report);
+    }
+
+    /// Goes on from a state that event `k` has seen; `changed` says that it has changed an internal variable.
+    fn resume(&mut self, k: usize, changed: bool) {
+        self.previous.clone_from(&self.state);
+        self.scratch.clone_from(&self.state);
+        self.power = self.model.power(&self.state.at(), &self.state.lambda);
+        for (j, (event, value)) in self.events.iter_mut().enumerate() {
+            let (before, now) = (*value, event.value(&self.model, &self.state));
+            *value = match (j == k, changed) {
+                // the next of many that one event stands for may be due at once
+                (true, true) => at_start(event.as_ref(), &self.model, &self.state),
+                // meeting the constraints again may have moved the state back by a hair: it mustn't pass twice
+                (true, false) if now * before < 0.0 => before,
+                // what this has set off happens in the next step
+                (false, _) if now * before < 0.0 => before.signum() * f64::MIN_POSITIVE,
+                _ => now,
+            };
+        }
+    }
+}
