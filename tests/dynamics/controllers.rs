@@ -6,7 +6,7 @@ use ropewalk_core::{Checkpoint, InputError, Simulation};
 use ropewalk_scene::{Format, Scene, SceneFile};
 
 /// A mass on which a PID controller of the position acts, against a steady force.
-fn positioned(every: &str, more: &str) -> Scene {
+pub fn positioned(every: &str, more: &str) -> Scene {
     scene(&format!(
         r#"
         [run]

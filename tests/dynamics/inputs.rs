@@ -1,5 +1,6 @@
 //! Inputs that are set while a run goes on.
 
+use super::controllers::positioned;
 use ropewalk_core::integrator::StepError;
 use ropewalk_core::{End, InputError, Simulation, Unfit};
 use ropewalk_scene::{Format, Scene, SceneFile};

@@ -213,7 +213,7 @@ impl Simulation {
     }
 
     /// Goes on from a state that event `k` has seen; `changed` says that it has changed an internal variable.
-    fn resume(&mut self, k: usize, changed: bool) {
+    pub(super) fn resume(&mut self, k: usize, changed: bool) {
         self.previous.clone_from(&self.state);
         self.scratch.clone_from(&self.state);
         self.power = self.model.power(&self.state.at(), &self.state.lambda);
