@@ -129,7 +129,8 @@ fn a_support_that_only_begins_to_move_is_held() {
     assert_eq!(found.iter().filter(|m| (m.omega / exact - 1.0).abs() < 1e-6).count(), 2);
     // while it moves there is no equilibrium
     let later = ModesOptions { time: Some(0.5), ..ModesOptions::default() };
-    assert!(modes(&scene, &later).is_err());
+    let message = modes(&scene, &later).err().map(|e| e.to_string()).expect("refused");
+    assert!(message.contains("`pivot` moves at t = 0.5 s") && message.contains("frame"), "{message}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Elements that are born and swallowed at a winch: tension and mesh on the way out and back.
 
-use super::winch::{fixed, go, hang, hanging, hung, reaction};
+use super::winch::{fixed, go, hang, hanging, hung};
 use ropewalk_constraints::WinchSpec;
 use ropewalk_core::integrator::Options;
 use ropewalk_core::{End, Simulation};

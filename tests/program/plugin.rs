@@ -77,3 +77,20 @@ fn plugin_adds_types_and_a_scene() {
         summary["energy"]["imbalance"].as_f64().unwrap() / summary["energy"]["dissipated"].as_f64().unwrap();
     assert!(lost.abs() < 1e-4, "{lost}");
 }
+
+/// How a manifest has dependencies compiled for tests: package and optimisation, without this project's own.
+fn compiled(manifest: &str) -> std::collections::BTreeMap<String, i64> {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(manifest)).unwrap();
+    let manifest: toml::Table = text.parse().unwrap();
+    let all = manifest["profile"]["dev"]["package"].as_table().unwrap().iter();
+    all.filter(|(name, _)| !name.starts_with("ropewalk"))
+        .map(|(name, profile)| (name.clone(), profile["opt-level"].as_integer().unwrap()))
+        .collect()
+}
+
+#[test]
+fn dependencies_are_compiled_alike() {
+    let ours = compiled("Cargo.toml");
+    assert!(ours.len() > 10 && ours["*"] == 0, "{ours:?}");
+    assert_eq!(compiled("examples/plugin/Cargo.toml"), ours, "they would be compiled a second time");
+}

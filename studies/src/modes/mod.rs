@@ -142,6 +142,8 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
         return Err(Fault::new(message).into());
     }
     let mut warnings = Vec::new();
+    let start = State { t: time, ..model.state() };
+    core::check_at_rest(&model, &start, &scene.statics, run.frame)?;
     let (state, search) = balance(scene, &model, time, options.watch)?;
     let found = core::modes(&model, &state, &scene.statics, run.frame, options.count, look)?;
     if let Some(of) = found.of.filter(|of| *of < options.count) {

@@ -24,6 +24,31 @@ use std::ops::ControlFlow;
 /// A stiffness of less than so many times its own rounding is none.
 const ZERO: f64 = 64.0;
 
+/// Refuses a time at which a constraint moves otherwise than the frame, before an equilibrium is looked for in vain.
+///
+/// # Errors
+/// [`ModesError::Moving`] with the constraint's name; the equations can't be set up.
+pub fn check_at_rest(
+    model: &Model,
+    state: &State,
+    options: &StaticsOptions,
+    frame: Option<SteadyFrame>,
+) -> Result<(), ModesError> {
+    let mut statics = Statics::relative(model, options, frame).map_err(ModesError::Solver)?;
+    statics.run_material(state)?;
+    let mut rest = at_rest(state);
+    statics.ride(&mut rest);
+    refuse_moving(model, &rest)
+}
+
+/// Without velocities and accelerations.
+fn at_rest(state: &State) -> State {
+    let mut rest = state.clone();
+    rest.v.fill(0.0);
+    rest.a.fill(0.0);
+    rest
+}
+
 /// Whether a state is in balance as it is, up to the tolerance of positions; if so, its multipliers are set. What no
 /// search for equilibrium can find, since nothing tells one place from another, may be in balance all the same.
 ///
@@ -91,9 +116,7 @@ pub fn modes(
     let model = renewed.as_ref().unwrap_or(model);
     let mut statics = Statics::relative(model, options, frame).map_err(ModesError::Solver)?;
     statics.run_material(state)?;
-    let mut rest = state.clone();
-    rest.v.fill(0.0);
-    rest.a.fill(0.0);
+    let mut rest = at_rest(state);
     statics.ride(&mut rest);
     refuse_moving(model, &rest)?;
     let mut pencil = Pencil::new(model, &state.internal, statics.linearise(&rest))?;
