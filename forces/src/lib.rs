@@ -29,6 +29,7 @@ mod drag;
 mod drag_coefficient;
 mod function;
 mod gravity;
+mod internal_flow;
 mod latch;
 mod line_load;
 mod moment;
@@ -50,6 +51,7 @@ pub use drag::{
 pub use drag_coefficient::DragCoefficientSpec;
 pub use function::{FunctionForce, FunctionLoad, FunctionSpec, Scales};
 pub use gravity::GravitySpec;
+pub use internal_flow::{InternalFlow, InternalFlowSpec};
 pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
 pub use line_load::{LineLoad, LineLoadSpec};
 pub use moment::{PointMoment, PointMomentSpec};

@@ -1,5 +1,6 @@
 //! Factors that change with time.
 
+use crate::signals::rate;
 use ropewalk_core::error::{finite, need};
 use ropewalk_core::reach::Knots;
 use ropewalk_core::{BuildError, EndSlope, Interpolation, Join, Signal, V3, reach};
@@ -118,6 +119,12 @@ impl TimeTable {
         let (Some(first), Some(last)) = (self.t.first(), self.t.last()) else { return 0.0 };
         self.curve().0.at(t.clamp(*first, *last))[1]
     }
+    fn rate(&self, t: f64) -> f64 {
+        match (self.t.first(), self.t.last()) {
+            (Some(first), Some(last)) if t >= *first && t < *last => self.curve().0.at(t)[2],
+            _ => 0.0,
+        }
+    }
 }
 
 impl TimeFunction {
@@ -212,6 +219,27 @@ impl TimeFunction {
                 mean + amplitude * (TAU * frequency * t + phase).sin()
             }
             TimeFunction::Input(input) => input.signal.as_ref().map_or(f64::NAN, |s| s.at(t)),
+        }
+    }
+
+    /// How fast the factor changes at time `t` [1/s].
+    pub fn rate(&self, t: f64) -> f64 {
+        match self {
+            TimeFunction::Constant => 0.0,
+            TimeFunction::Ramp { from, to, t0, t1 } => {
+                let u = ((t - t0) / (t1 - t0)).clamp(0.0, 1.0);
+                30.0 * (to - from) / (t1 - t0) * (u * (1.0 - u)).powi(2)
+            }
+            TimeFunction::Table(table) => table.rate(t),
+            TimeFunction::Triangle { t0, peak, t1 } => match t {
+                t if t < *t0 || t >= *t1 => 0.0,
+                t if t < *peak => 1.0 / (peak - t0),
+                _ => -1.0 / (t1 - peak),
+            },
+            TimeFunction::Harmonic { amplitude, frequency, phase, .. } => {
+                TAU * frequency * amplitude * (TAU * frequency * t + phase).cos()
+            }
+            TimeFunction::Input(input) => input.signal.as_ref().map_or(f64::NAN, |s| rate(s, t)),
         }
     }
 }

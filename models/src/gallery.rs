@@ -44,6 +44,7 @@ pub(crate) const ALL: &[Bundled] = scenes![
     "overhand-knot",
     "pay-out",
     "pinched-ring",
+    "pipe-conveying-fluid",
     "power-line",
     "rolled-up-strip",
     "rolling-ball",

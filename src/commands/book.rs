@@ -39,6 +39,7 @@ const PAGES: &[Text] = pages![
     "eyelet",
     "contact",
     "joints",
+    "internal-flow",
     "equilibria",
     "sweeps",
     "accuracy",

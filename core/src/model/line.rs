@@ -100,6 +100,11 @@ pub trait Line: Send + Sync {
     fn mesh_now(&self, _at: &At<'_>) -> Vec<f64> {
         self.mesh().to_vec()
     }
+    /// Places in each of its elements, from 0 to 1, at which the axial strain is taken, with their weights, which add up to 1;
+    /// none where it is an average over the element.
+    fn axial_rule(&self) -> Vec<[f64; 2]> {
+        Vec::new()
+    }
     /// Unstretched length now [m]: what has been fed out included.
     fn length_now(&self, at: &At<'_>) -> f64;
     /// Something along it.

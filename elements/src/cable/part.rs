@@ -453,6 +453,12 @@ impl Line for CablePart {
         mesh.iter().map(|p| p - mesh[0]).collect()
     }
 
+    fn axial_rule(&self) -> Vec<[f64; 2]> {
+        let points = self.model.models().map_or(&[][..], |models| models.points());
+        // one is that of an average over the element
+        points.iter().filter(|_| points.len() > 1).map(|p| [p.xi, p.w]).collect()
+    }
+
     fn length_now(&self, at: &At<'_>) -> f64 {
         match &self.line {
             None => self.length(),

@@ -205,10 +205,12 @@ fn shape(arrays: &mut Arrays, shape: &Shape, origin: &[f64; 3]) -> Value {
 pub(super) mod tests {
     use super::*;
     use crate::{Column, Event, LineSnapshot, Mesh, Quantity, Table};
+    use std::io::Read;
 
     /// The JSON text and the arrays of a page's data, as the page reads them.
     pub fn open(data: &str) -> (Value, Vec<u8>) {
-        let bytes = miniz_oxide::inflate::decompress_to_vec_zlib(&pack::tests::bytes(data)).unwrap();
+        let (packed, mut bytes) = (pack::tests::bytes(data), Vec::new());
+        flate2::read::ZlibDecoder::new(&packed[..]).read_to_end(&mut bytes).unwrap();
         let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
         (serde_json::from_slice(&bytes[4..4 + length]).unwrap(), bytes[4 + length..].to_vec())
     }

@@ -1,6 +1,11 @@
 //! Numbers as few bytes: what is left of them after a guess, byte by byte, deflated, as text.
 
-use miniz_oxide::deflate::compress_to_vec_zlib;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use std::io::Write;
+
+/// Of nine: more takes longer than it saves bytes.
+const LEVEL: u32 = 5;
 
 const SYMBOLS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
@@ -32,7 +37,10 @@ pub(super) fn rows(values: &[f32], columns: usize, out: &mut Vec<u8>) -> u8 {
 
 /// A zlib stream, as browsers inflate it.
 pub(super) fn deflated(bytes: &[u8]) -> Vec<u8> {
-    compress_to_vec_zlib(bytes, 6)
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
+    // a vector takes all that is written to it
+    let done = packed.write_all(bytes).and_then(|()| packed.finish());
+    done.unwrap_or_default()
 }
 
 /// Bytes as text.
