@@ -31,7 +31,7 @@ fn pipe(elements: usize, ea: f64, beta: f64, u: f64, ends: &str, more: &str) -> 
         [[elements]]
         type = "cable"
         name = "pipe"
-        shape = {{ type = "line", from = [0, 0, 0], to = [1, 0, 0] }}
+        points = [[0, 0, 0], [1, 0, 0]]
         elements = {elements}
         section = {{ mass = {}, ea = {ea}, ei = 1 }}
         {}{}
@@ -99,7 +99,7 @@ fn frequencies_are_those_of_the_galerkin_solution() {
             }
         }
     }
-    assert!(looked > 60, "{looked}");
+    assert!(looked >= 60, "{looked}");
 }
 
 #[test]
@@ -189,8 +189,13 @@ fn energy_closes_while_the_flow_changes() {
         let scene = pipe(6, 2000.0, 0.4, 6.0, "clamped-free", more);
         let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
         let mut state = model.state();
-        state.v[6 * 6 + 1] = 0.3;
-        state.v[6 * 6 + 2] = -0.2;
+        for node in 1..=6 {
+            let x = node as f64 / 6.0;
+            for (c, speed) in [(1, 0.3), (2, -0.2)] {
+                state.v[6 * node + c] = speed * x * x;
+                state.v[6 * node + 3 + c] = 2.0 * speed * x;
+            }
+        }
         let options =
             Options { scheme: Scheme::RadauIia5, stepping: Stepping::Fixed { h }, ..Options::default() };
         let mut s = Simulation::from(model, state, &options, 1.5).unwrap_or_else(|e| panic!("{e}"));
@@ -277,13 +282,13 @@ fn what_no_flow_can_be_is_refused_with_a_remedy() {
             [[elements]]
             type = "cable"
             name = "pipe"
-            shape = {{ type = "line", from = [0, 0, 0], to = [1, 0, 0] }}
+            points = [[0, 0, 0], [1, 0, 0]]
             elements = 4
             section = {{ mass = 1, ea = 100, ei = 1 }}
             [[elements]]
             type = "point_mass"
             name = "ball"
-            position = [0, 0, 1]
+            marker = [0, 0, 1]
             mass = 1
             [[constraints]]
             type = "spherical"
