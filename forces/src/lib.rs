@@ -51,7 +51,7 @@ pub use drag::{
 pub use drag_coefficient::DragCoefficientSpec;
 pub use function::{FunctionForce, FunctionLoad, FunctionSpec, Scales};
 pub use gravity::GravitySpec;
-pub use internal_flow::{InternalFlow, InternalFlowSpec};
+pub use internal_flow::{Bore, InternalFlow, InternalFlowSpec, WallTensionSpec};
 pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
 pub use line_load::{LineLoad, LineLoadSpec};
 pub use moment::{PointMoment, PointMomentSpec};

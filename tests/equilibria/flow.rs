@@ -269,6 +269,66 @@ fn a_bent_pipe_is_pushed_by_what_turns_in_it() {
 }
 
 #[test]
+fn the_wall_carries_what_friction_and_its_own_weight_ask_for() {
+    // a hose that hangs, open below: T_wall = (m g + f m_f u²/2D) (L - s), the pressure is below that of the air unless
+    // friction holds the water back
+    let (l, d, u, f, own) = (4.0, 0.02, 3.0, 0.03, 0.5);
+    let text = format!(
+        r#"
+        [run]
+        duration = "1 ms"
+        output = "1 ms"
+        [[elements]]
+        type = "cable"
+        name = "hose"
+        points = [[0, 0, 0], [0, 0, {}]]
+        elements = 4
+        section = {{ mass = {own}, ea = 1e7, ei = 1 }}
+        [[constraints]]
+        type = "clamp"
+        name = "top"
+        marker = "hose.start"
+        [[forces]]
+        type = "gravity"
+        [[forces]]
+        type = "internal_flow"
+        cable = "hose"
+        density = 1000
+        bore = {d}
+        speed = {u}
+        friction = {f}
+        [[records]]
+        type = "wall_tension"
+        of = "hose"
+        at = ["start", "25 %", "end"]
+        "#,
+        -l
+    );
+    let scene = scene(&text);
+    let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
+    let mut state = model.state();
+    let mut statics =
+        ropewalk_core::statics::Statics::new(&model, &scene.statics).unwrap_or_else(|e| panic!("{e}"));
+    statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
+    let audit = ropewalk_core::Audit::start(model.energy(&state.at()));
+    let mut row = Vec::new();
+    let sample =
+        ropewalk_core::Sample { model: &model, at: state.at(), lambda: &state.lambda, audit: &audit };
+    model.records()[0].sample(&sample, &mut row);
+    let inside = 1000.0 * std::f64::consts::PI * d * d / 4.0;
+    let drag = f * u * u / (2.0 * d);
+    for (k, share) in [0.0, 0.25, 1.0].into_iter().enumerate() {
+        let below = l * (1.0 - share);
+        let (wall, pressure) = ((own * 9.81 + inside * drag) * below, 1000.0 * (drag - 9.81) * below);
+        println!("{share}: {} N, exact {wall}; {} Pa, exact {pressure}", row[k], row[3 + k]);
+        assert!(
+            (row[k] - wall).abs() < 1e-4 * wall.max(1.0)
+                && (row[3 + k] - pressure).abs() < 1e-3 * (1.0 + pressure.abs())
+        );
+    }
+}
+
+#[test]
 fn what_no_flow_can_be_is_refused_with_a_remedy() {
     let refused = |more: &str, change: &dyn Fn(String) -> String, says: &str| {
         let text = format!(

@@ -17,8 +17,12 @@
 //! Clamped at both ends a pipe buckles at `u = 2π √(EI/m)/L`; a cantilever flutters (Païdoussis, *Fluid-Structure
 //! Interactions*, vol. 1, ch. 3).
 
+mod pressure;
+mod record;
 mod spec;
 mod term;
 
+pub use pressure::Bore;
+pub use record::WallTensionSpec;
 pub use spec::InternalFlowSpec;
 pub use term::InternalFlow;

@@ -1,8 +1,8 @@
 //! The spec of a flow.
 
-use super::InternalFlow;
+use super::{Bore, InternalFlow};
 use crate::time::TimeFunction;
-use ropewalk_core::error::positive;
+use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::{BuildError, Hold, Signal};
 use ropewalk_scene::quantity::{Setting, kind};
 use ropewalk_scene::{Builder, ForceSpec, quantity, register_spec};
@@ -46,6 +46,13 @@ pub struct InternalFlowSpec {
         skip_serializing_if = "Option::is_none"
     )]
     pub nozzle: Option<f64>,
+    /// Pressure that it meets where it leaves, above that of the surroundings [Pa]; in a closed loop that at the start. Only
+    /// the record `wall_tension` asks for it.
+    #[serde(default, deserialize_with = "quantity::pressure")]
+    pub outlet_pressure: f64,
+    /// Darcy's friction factor, about 0.02 in a smooth hose. Only the record `wall_tension` asks for it.
+    #[serde(default)]
+    pub friction: f64,
     /// Whether the cable's end leads into its start, so that nothing enters or leaves.
     #[serde(default)]
     pub closed: bool,
@@ -90,6 +97,19 @@ impl ForceSpec for InternalFlowSpec {
             }
             flow.nozzle = (self.bore / nozzle).powi(2);
         }
+        finite("outlet_pressure", &[self.outlet_pressure])?;
+        not_negative("friction", self.friction)?;
+        let around = b.water().ok().and_then(|water| Some((water.density, water.level?)));
+        let g = b.gravity();
+        let weight = g.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let outer = part.1.tips().first().map_or(0.0, |tip| tip.diameter);
+        flow.bore = Some(Bore {
+            diameter: self.bore,
+            density: self.density,
+            friction: self.friction,
+            outlet: self.outlet_pressure,
+            water: around.map(|(density, level)| [density * weight, level, outer]),
+        });
         if self.weight {
             flow.gravity = b.gravity();
         }

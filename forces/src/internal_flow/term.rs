@@ -1,10 +1,11 @@
 //! The inertia of a fluid that flows through a cable.
 
+use super::Bore;
 use crate::signals::rate;
 use crate::time::TimeFunction;
 use ropewalk_core::held::three;
 use ropewalk_core::{
-    Assembly, At, BuildError, Energy, Part, Pattern, Power, Signal, Term, Timed, V3, Weights, dot,
+    Assembly, At, BuildError, Energy, Part, Pattern, Power, Shows, Signal, Term, Timed, V3, Weights, dot,
 };
 
 /// Number of coordinates of an element: position and slope of its two nodes.
@@ -12,10 +13,10 @@ const N: usize = 12;
 
 /// An element of the cable: where position and slope of its nodes stand, and its matrices.
 #[derive(Clone, Debug, PartialEq)]
-struct Piece {
-    q: [usize; 2],
-    v: [usize; 2],
-    length: f64,
+pub(super) struct Piece {
+    pub q: [usize; 2],
+    pub v: [usize; 2],
+    pub length: f64,
     /// `∫ S'ᵀS' ds` by the rule of the cable's axial strain.
     stretch: [[f64; 4]; 4],
 }
@@ -39,8 +40,11 @@ pub struct InternalFlow {
     pub nozzle: f64,
     /// Whether the outlet leads into the inlet, so that nothing enters or leaves.
     pub closed: bool,
+    /// What pressures follow from, if they are to be known. They move nothing.
+    pub bore: Option<Bore>,
     label: String,
-    pieces: Vec<Piece>,
+    pub(super) part: String,
+    pub(super) pieces: Vec<Piece>,
 }
 
 /// `∫ SᵀS'` of an element of length `l`.
@@ -65,10 +69,15 @@ fn inertia(l: f64) -> [[f64; 4]; 4] {
     rows.map(|row| row.map(|x| x * l / 420.0))
 }
 
-/// Derivatives of the shape functions by the arc length, at a share `x` of an element of length `l`.
-fn slopes(x: f64, l: f64) -> [f64; 4] {
-    let bow = 6.0 * x * (1.0 - x) / l;
-    [-bow, 1.0 - 4.0 * x + 3.0 * x * x, bow, x * (3.0 * x - 2.0)]
+/// The shape functions and their first two derivatives by the arc length, at a share `x` of an element of length `l`.
+pub(super) fn shapes(x: f64, l: f64) -> [[f64; 4]; 3] {
+    let (y, bow) = (1.0 - x, 6.0 * x * (1.0 - x) / l);
+    let bend = (6.0 - 12.0 * x) / (l * l);
+    [
+        [y * y * (1.0 + 2.0 * x), l * x * y * y, x * x * (3.0 - 2.0 * x), -l * x * x * y],
+        [-bow, 1.0 - 4.0 * x + 3.0 * x * x, bow, x * (3.0 * x - 2.0)],
+        [-bend, (6.0 * x - 4.0) / l, bend, (6.0 * x - 2.0) / l],
+    ]
 }
 
 /// `∫ S'ᵀS'` by a rule on [0, 1], or exactly by three points of Gauss where there is none.
@@ -78,7 +87,7 @@ fn stretch(l: f64, rule: &[[f64; 2]]) -> [[f64; 4]; 4] {
     let rule = if rule.is_empty() { &gauss } else { rule };
     let mut all = [[0.0; 4]; 4];
     for [x, weight] in rule {
-        let s = slopes(*x, l);
+        let [_, s, _] = shapes(*x, l);
         for i in 0..4 {
             for j in 0..4 {
                 all[i][j] += l * weight * s[i] * s[j];
@@ -117,13 +126,15 @@ impl InternalFlow {
             gravity: [0.0; 3],
             nozzle: 1.0,
             closed: false,
+            bore: None,
+            part: name.to_string(),
             label: format!("{name}: internal flow"),
             pieces,
         })
     }
 
     /// Speed and its rate.
-    fn flow(&self, t: f64) -> [f64; 2] {
+    pub(super) fn flow(&self, t: f64) -> [f64; 2] {
         let (u, f) = (self.speed.at(t), self.time.at(t));
         [u * f, rate(&self.speed, t) * f + u * self.time.rate(t)]
     }
@@ -169,7 +180,7 @@ fn jet(u: f64, nozzle: f64, p: &V3<f64>) -> (V3<f64>, [V3<f64>; 3]) {
 }
 
 /// The four vectors of an element: position and slope of both nodes.
-fn nodal(x: &[f64], at: [usize; 2]) -> [V3<f64>; 4] {
+pub(super) fn nodal(x: &[f64], at: [usize; 2]) -> [V3<f64>; 4] {
     [three(x, at[0]), three(x, at[0] + 3), three(x, at[1]), three(x, at[1] + 3)]
 }
 
@@ -280,6 +291,9 @@ impl Term for InternalFlow {
             }
         }
         Power { supplied, ..Power::default() }
+    }
+    fn shows(&self) -> Option<&dyn Shows> {
+        self.bore.as_ref().map(|_| self as &dyn Shows)
     }
     fn timed(&self) -> Option<&dyn Timed> {
         if self.time.changes() || !self.speed.is_constant() { Some(self) } else { None }
