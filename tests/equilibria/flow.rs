@@ -276,8 +276,7 @@ fn the_wall_carries_what_friction_and_its_own_weight_ask_for() {
     let text = format!(
         r#"
         [run]
-        duration = "1 ms"
-        output = "1 ms"
+        analysis = "statics"
         [[elements]]
         type = "cable"
         name = "hose"
@@ -304,27 +303,20 @@ fn the_wall_carries_what_friction_and_its_own_weight_ask_for() {
         "#,
         -l
     );
-    let scene = scene(&text);
-    let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
-    let mut state = model.state();
-    let mut statics =
-        ropewalk_core::statics::Statics::new(&model, &scene.statics).unwrap_or_else(|e| panic!("{e}"));
-    statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
-    let audit = ropewalk_core::Audit::start(model.energy(&state.at()));
-    let mut row = Vec::new();
-    let sample =
-        ropewalk_core::Sample { model: &model, at: state.at(), lambda: &state.lambda, audit: &audit };
-    model.records()[0].sample(&sample, &mut row);
+    let history = ropewalk::simulate(&scene(&text)).unwrap_or_else(|e| panic!("{e}"));
+    let last = |what: &str, at: &str| {
+        let name = format!("hose.{what}{at}");
+        history.last(&name).unwrap_or_else(|| panic!("no {name}"))
+    };
     let inside = 1000.0 * std::f64::consts::PI * d * d / 4.0;
     let drag = f * u * u / (2.0 * d);
-    for (k, share) in [0.0, 0.25, 1.0].into_iter().enumerate() {
+    for (at, share) in [(".start", 0.0), ("@25%", 0.25), (".end", 1.0)] {
         let below = l * (1.0 - share);
         let (wall, pressure) = ((own * 9.81 + inside * drag) * below, 1000.0 * (drag - 9.81) * below);
-        println!("{share}: {} N, exact {wall}; {} Pa, exact {pressure}", row[k], row[3 + k]);
-        assert!(
-            (row[k] - wall).abs() < 1e-4 * wall.max(1.0)
-                && (row[3 + k] - pressure).abs() < 1e-3 * (1.0 + pressure.abs())
-        );
+        let found = [last("wall_tension", at), last("pressure", at)];
+        println!("{at}: {found:?}, exact {wall} N, {pressure} Pa");
+        assert!((found[0] - wall).abs() < 1e-4 * wall.max(1.0), "{at}: {found:?}");
+        assert!((found[1] - pressure).abs() < 1e-3 * (1.0 + pressure.abs()), "{at}: {found:?}");
     }
 }
 

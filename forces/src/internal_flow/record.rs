@@ -57,7 +57,7 @@ impl Record for WallTension {
     }
     fn columns(&self) -> Vec<Column> {
         let of = |what: &str, unit: &str| {
-            let column = |at: &RecordPlace| Column::new(format!("{}.{what}@{at}", self.name), unit);
+            let column = |at: &RecordPlace| Column::new(format!("{}.{what}{at}", self.name), unit);
             self.at.iter().map(column).collect::<Vec<_>>()
         };
         [of("wall_tension", "N"), of("pressure", "Pa")].concat()
