@@ -72,7 +72,8 @@ impl BendingMoment {
     pub(crate) fn curve(&self) -> Result<Curve, BuildError> {
         let curve = Curve::through(&self.curvature, &self.moment, ["curvature", "moment"])?;
         if self.curvature[0] != 0.0 || self.moment[0] != 0.0 {
-            let message = "the table of the bending moment begins with a curvature of 0, where the moment is 0";
+            let message =
+                "the table of the bending moment begins with a curvature of 0, where the moment is 0";
             return Err(BuildError::at("curvature", message));
         }
         Ok(curve.odd())
@@ -104,12 +105,6 @@ impl Curve {
         }
         let slope = slopes(x, y);
         Ok(Curve { x: x.to_vec(), y: y.to_vec(), slope, area: Vec::new() }.integrated())
-    }
-
-    /// A straight line.
-    pub fn line(stiffness: f64) -> Self {
-        Curve { x: vec![0.0, 1.0], y: vec![0.0, stiffness], slope: vec![stiffness; 2], area: Vec::new() }
-            .integrated()
     }
 
     /// The same with a slope at 0 that makes the first piece odd.
@@ -256,7 +251,8 @@ mod tests {
             let [energy, by, again] = curve.by_square(kappa * kappa);
             assert!((energy - curve.at(kappa)[0]).abs() < 1e-12 && (by - 0.5 * moment / kappa).abs() < 1e-9);
             let e = 1e-5 * kappa * kappa;
-            let d = (curve.by_square(kappa * kappa + e)[1] - curve.by_square(kappa * kappa - e)[1]) / (2.0 * e);
+            let d =
+                (curve.by_square(kappa * kappa + e)[1] - curve.by_square(kappa * kappa - e)[1]) / (2.0 * e);
             assert!((d - again).abs() < 1e-6 * again.abs() + 1e-3, "{kappa}: {d} {again}");
         }
         // finite where the cable is straight

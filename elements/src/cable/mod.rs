@@ -9,6 +9,7 @@ mod bending_damping;
 mod chosen;
 mod damping;
 mod directed;
+mod elastic;
 mod element;
 pub mod flow;
 mod l1;
@@ -16,6 +17,7 @@ mod l1n;
 mod l2;
 mod l3;
 mod l4;
+mod law;
 mod layout;
 pub mod longitudinal;
 pub(crate) mod mesh;
@@ -50,6 +52,7 @@ pub use l1n::L1n;
 pub use l2::L2;
 pub use l3::L3;
 pub use l4::L4;
+pub use law::{AxialForce, BendingMoment};
 pub use mesh::{Grading, MeshSpec};
 pub use model::{
     CableModel, ChosenModels, Integration, LongitudinalModel, Models, Sink, TransverseModel, WithModels,

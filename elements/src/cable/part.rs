@@ -3,6 +3,7 @@
 use super::flow::change::{self, Snapshot};
 use super::flow::{self, push};
 use super::layout::Layout;
+use super::longitudinal::Longitudinal;
 use super::output::{Reading, read};
 use super::section::Section;
 use super::shape::{hermite, hermite_slope, natural, second};
@@ -25,6 +26,8 @@ pub struct CablePart {
     pub(crate) seats: Vec<(usize, usize)>,
     /// Unstretched arc length of each node [m].
     pub(crate) mesh: Vec<f64>,
+    /// The same with each place but once: both nodes of a splice are at one.
+    pub(crate) places: Vec<f64>,
     /// What its elements are made of.
     pub(crate) layout: Layout,
     pub(crate) stations: Arc<dyn Stations>,
@@ -102,7 +105,8 @@ impl CablePart {
     /// The elastic force that element `k` of length `l` transmits [N].
     fn transmits(&self, k: usize, l: f64, at: &At<'_>) -> Option<V3<f64>> {
         let (s, q) = (self.layout.section(k), self.dofs(k, at.q));
-        let params = CableParams { l, ea: s.ea, ei: s.ei.across, rho_a: s.mass };
+        let [ea, ei] = self.layout.stiffness(k);
+        let params = CableParams { l, ea, ei, rho_a: s.mass };
         let mut points: Option<Vec<f64>> = None;
         for p in self.prestrain.iter().filter(|p| p.element == k) {
             let left = p.left(at.t).0;
@@ -113,6 +117,10 @@ impl CablePart {
         let (strain, curvature) = (self.offset.0, if self.twisted.is_some() { 0.0 } else { self.offset.1 });
         let unstressed = Unstressed { shape, strain, curvature, points: points.as_deref() };
         let mut force = transmitted::force(self.model, &params, &q, unstressed).ok()?;
+        if let Some(elastic) = self.layout.elastic(k, l, self.model) {
+            let more = elastic.transmits(&q);
+            (0..3).for_each(|i| force[i] += more[i]);
+        }
         if let Some(twisted) = &self.twisted {
             let more = twisted.transmits(k, l, at.q, self.around(k));
             (0..3).for_each(|i| force[i] += more[i]);
@@ -162,7 +170,15 @@ impl CablePart {
         let s = self.layout.section(k);
         let params = CableParams { l, ea: s.ea, ei: s.ei.across, rho_a: s.mass };
         let rest = self.rest.as_ref().map(|r| &r[k]);
-        read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()
+        let mut r =
+            read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()?;
+        if let Some(force) = self.layout.force(k, xi, r.strain) {
+            r.tension = force * self.model.models().map_or(1.0, |m| m.longitudinal.lever(r.strain));
+        }
+        if let Some(moment) = self.layout.moment(k, xi, r.curvature) {
+            r.moment = moment;
+        }
+        Some(r)
     }
 
     /// What is left of the strain of element `k` that fades out.
@@ -409,26 +425,24 @@ impl Part for CablePart {
     }
 
     fn seats(&self) -> Vec<(usize, usize)> {
-        self.seats.clone()
+        self.layout.once(&self.seats)
     }
 
     fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
-        let (before, Some(old)) = (old.seats(), old.line().filter(|_| !self.carried)) else { return };
-        // both nodes of a splice are at the same place
-        if !self.layout.splices().is_empty() && old.mesh() == self.mesh {
-            for (&(from_q, from_v), &(to_q, to_v)) in before.iter().zip(&self.seats) {
-                q[to_q..to_q + 6].copy_from_slice(&at.q[from_q..from_q + 6]);
-                v[to_v..to_v + 6].copy_from_slice(&at.v[from_v..from_v + 6]);
-            }
-            return;
-        }
+        let Some(old) = old.line().filter(|_| !self.carried) else { return };
         for (k, &id) in self.nodes.iter().enumerate() {
             let node = &nodes[id.0 as usize];
-            if let Some((x, dx)) = old.slope(self.mesh[k], at.q, true) {
+            // the slope at the end of a section that is spliced to the next is that just before
+            let spliced = self.layout.splices().iter().any(|s| s.node == k);
+            let s = self.mesh[k] - if spliced { 1e-9 * self.length() } else { 0.0 };
+            let there = |x: &[f64], coordinates| {
+                Some((old.slope(self.mesh[k], x, coordinates)?.0, old.slope(s, x, coordinates)?.1))
+            };
+            if let Some((x, dx)) = there(at.q, true) {
                 q[node.q..node.q + 3].copy_from_slice(&x);
                 q[node.q + 3..node.q + 6].copy_from_slice(&dx);
             }
-            if let Some((x, dx)) = old.slope(self.mesh[k], at.v, false) {
+            if let Some((x, dx)) = there(at.v, false) {
                 v[node.v..node.v + 3].copy_from_slice(&x);
                 v[node.v + 3..node.v + 6].copy_from_slice(&dx);
             }
@@ -458,10 +472,13 @@ impl Line for CablePart {
     }
 
     fn mesh(&self) -> &[f64] {
-        &self.mesh
+        &self.places
     }
 
     fn mesh_now(&self, at: &At<'_>) -> Vec<f64> {
+        if self.line.is_none() {
+            return self.places.clone();
+        }
         let mesh = self.material(at.q);
         mesh.iter().map(|p| p - mesh[0]).collect()
     }

@@ -1,6 +1,7 @@
 //! What a cable is made of, and how that changes along it.
 
 use super::BendingStiffness;
+use super::law::{AxialForce, BendingMoment};
 use super::mesh::MeshSpec;
 use ropewalk_core::BuildError;
 use ropewalk_core::error::{not_negative, positive};
@@ -20,14 +21,25 @@ pub struct Section {
     /// Structural mass per unstretched length [kg/m]; gravity acts on it.
     #[serde(deserialize_with = "quantity::mass_per_length")]
     pub mass: f64,
-    /// Axial stiffness EA [N].
-    #[serde(deserialize_with = "quantity::axial_stiffness")]
+    /// Axial stiffness EA [N]; or give `axial_force`.
+    #[serde(default, deserialize_with = "quantity::axial_stiffness", skip_serializing_if = "is_nought")]
     pub ea: f64,
+    /// Axial force over strain, instead of `ea`: `{ strain = [0, 0.01, 0.03], force = ["0 kN", "10 kN", "60 kN"] }`. Between
+    /// the points the force follows a smooth curve that never falls, beyond them a straight line. Needs L4.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axial_force: Option<AxialForce>,
+    /// Whether it only pulls: chains and ropes don't resist being pressed together. Needs L4.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub tension_only: bool,
     /// Bending stiffness EI [N m²]. With 0, the first and last element keep 1 % of their weight times their length
     /// squared, so that free ends have a direction. Two numbers where it isn't the same in all directions, of a cable with
     /// torsion: about the `normal` of the section, and about the axis across it.
     #[serde(default)]
     pub ei: BendingStiffness,
+    /// Bending moment over curvature, instead of `ei`: `{ curvature = [0, 0.01, 0.1], moment = ["0 N m", "50 N m", "80 N m"] }`,
+    /// the same in all directions and without loss of energy. Needs T3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bending_moment: Option<BendingMoment>,
     /// Torsional stiffness GJ [N m²]. With it the cable can be twisted, and its ends are held against twisting where they are
     /// built in. Default: no torsion; but EI where the stress-free shape is curved.
     #[serde(
@@ -53,10 +65,11 @@ pub struct Section {
     /// Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
     #[serde(default, deserialize_with = "quantity::optional::area")]
     pub displaced: Option<f64>,
-    /// Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ ε̇)`.
+    /// Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ ε̇)`. With a table EA is its largest
+    /// slope here.
     #[serde(default, deserialize_with = "quantity::time")]
     pub axial_retardation_time: f64,
-    /// Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`.
+    /// Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`, with the largest slope of a table.
     #[serde(default, deserialize_with = "quantity::time")]
     pub bending_retardation_time: f64,
     /// Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ dφ'/dt)`.
@@ -74,7 +87,10 @@ impl Section {
         Section {
             mass,
             ea,
+            axial_force: None,
+            tension_only: false,
             ei: ei.into(),
+            bending_moment: None,
             gj: None,
             rotary_inertia: None,
             flooded: 0.0,
@@ -108,7 +124,26 @@ impl Section {
     /// Refuses numbers that no cable has.
     pub(super) fn check(&self) -> Result<(), BuildError> {
         positive("mass", self.mass)?;
-        positive("ea", self.ea)?;
+        let both = |field: &'static str, other: &str| {
+            Err(BuildError::at(
+                field,
+                format!("give `{other}` or `{field}`, not both: the table tells the stiffness"),
+            ))
+        };
+        match &self.axial_force {
+            Some(_) if self.ea != 0.0 => return both("axial_force", "ea"),
+            Some(table) => table.curve().map(|_| ())?,
+            None => positive("ea", self.ea).map(|_| ())?,
+        }
+        match &self.bending_moment {
+            Some(_) if self.ei.largest() != 0.0 => return both("bending_moment", "ei"),
+            Some(_) if self.gj.is_some() => {
+                let message = "a cable with torsion has bending stiffnesses, `ei`, and no table";
+                return Err(BuildError::at("bending_moment", message));
+            }
+            Some(table) => table.curve().map(|_| ())?,
+            None => {}
+        }
         positive("gj", self.gj.unwrap_or(1.0))?;
         for (name, x) in [
             ("ei", self.ei.about_normal),
@@ -140,6 +175,11 @@ pub struct SectionAlong {
     /// Its cross-section, or the name of one of the scene's `sections`.
     #[schemars(with = "NameOrSection")]
     pub section: Section,
+    /// The cross-section at its end, of one that changes from `section` to this, such as a bend stiffener. EA and EI change
+    /// linearly; all else (mass, diameter, …) too, in steps from element to element.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<NameOrSection>")]
+    pub end_section: Option<Section>,
     /// Number of its elements, of equal length. Default: its share of the cable's `elements`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elements: Option<usize>,

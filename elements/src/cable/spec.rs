@@ -381,8 +381,8 @@ fn stations(
 /// section follows another.
 fn breaks(mesh: &[f64], held: &[f64], layout: &Layout) -> Vec<usize> {
     let (last, near) = (mesh.len() - 1, 1e-9 * (mesh[mesh.len() - 1] - mesh[0]));
-    let changes = |k: usize| layout.section(k) != layout.section(k - 1);
-    let inner = (1..last).filter(|&k| changes(k) || held.iter().any(|s| (s - mesh[k]).abs() <= near));
+    let inner =
+        (1..last).filter(|&k| layout.changes_at(k) || held.iter().any(|s| (s - mesh[k]).abs() <= near));
     std::iter::once(0).chain(inner).chain([last]).collect()
 }
 
@@ -451,8 +451,13 @@ impl ElementSpec for CableSpec {
             let message = "what a winch feeds must be the same all along: give it one `section`";
             return Err(BuildError::at("sections", message));
         }
+        if feeds && layout.elastic(0, 1.0, CableModel::default()).is_some() {
+            let message =
+                "what a winch feeds has constant stiffness: give its section `ea` and `ei`, and no tables";
+            return Err(BuildError::at("section", message));
+        }
         if let Some(given) = &given {
-            (mesh, layout) = (given.nodes.clone(), Layout::uniform(&self.section, given.nodes.len() - 1));
+            (mesh, layout) = (given.nodes.clone(), Layout::uniform(&self.section, given.nodes.len() - 1)?);
         }
         if mesh.len() < 2 || (mesh[0] != 0.0 && !feeds) || layout.elements().any(|k| !(mesh[k + 1] > mesh[k]))
         {
@@ -510,8 +515,9 @@ impl ElementSpec for CableSpec {
             let (l, s) = (mesh[k + 1] - mesh[k], layout.section(k));
             // without tension a limp tip points anywhere: a little of the weight that hangs there straightens it
             let tip = s.ei.largest() == 0.0 && layout.is_tip(k);
-            let ei = if tip { TIP * (s.mass * gravity) * l.powi(3) } else { s.ei.across };
-            CableParams { l, ea: s.ea, ei, rho_a: s.mass + s.flooded }
+            let [ea, ei] = layout.stiffness(k);
+            let ei = if tip { TIP * (s.mass * gravity) * l.powi(3) } else { ei };
+            CableParams { l, ea, ei, rho_a: s.mass + s.flooded }
         };
         for k in 0..mesh.len() - 1 {
             let Some(line) = flows(k) else { continue };
@@ -522,6 +528,9 @@ impl ElementSpec for CableSpec {
         for k in layout.elements().filter(|&k| flows(k).is_none()) {
             let (on, params, s) = ([nodes[k], nodes[k + 1]], params(k), layout.section(k));
             push_cable(&mut pools, model, params, &on).map_err(BuildError::new)?;
+            if let Some(elastic) = layout.elastic(k, params.l, model) {
+                pools.push(elastic, &on);
+            }
             self.extras(&mut pools, model, params, &on, &shapes[k], s, twisted.is_some())?;
         }
         pools.result?;
@@ -553,6 +562,7 @@ impl ElementSpec for CableSpec {
             name: self.name.clone(),
             nodes,
             seats,
+            places: layout.once(&mesh),
             mesh,
             layout,
             stations,
