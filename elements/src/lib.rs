@@ -21,12 +21,14 @@
 //! # Ok::<(), ropewalk_scene::SceneError>(())
 //! ```
 
+mod attachments;
 pub mod cable;
 mod path;
 mod point_mass;
 pub mod rigid_body;
 pub mod rigid_chain;
 
+pub use attachments::AttachmentsSpec;
 pub use cable::{CableSpec, Section};
 pub use path::Path;
 pub use point_mass::{Across, PointMass, PointMassSpec};

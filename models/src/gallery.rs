@@ -12,6 +12,7 @@ macro_rules! scenes {
 /// All of them, by name.
 pub(crate) const ALL: &[Bundled] = scenes![
     "atwood",
+    "bend-stiffener",
     "bouncing-ball",
     "breaking-line",
     "buckling-column",

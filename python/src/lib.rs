@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyTuple};
 use ropewalk::core::modes::Mode;
 use ropewalk::report::{ProgressMode, Table};
-use ropewalk::scene::{LISTS, SECTIONS, registered};
+use ropewalk::scene::{SECTIONS, lists, registered};
 use ropewalk::studies::run::Manifest;
 use ropewalk::{ModesOptions, RunOptions, Status};
 use scene::{Source, raise};
@@ -180,7 +180,7 @@ fn schemas() -> String {
     let types = types.iter().map(|s| json!({"list": s.kind.list(), "type": s.name, "schema": (s.schema)()}));
     let sections = SECTIONS.iter().map(|(name, schema)| json!({"section": name, "schema": schema()}));
     let lists =
-        LISTS.iter().map(|(name, schema)| json!({"section": format!("{name}[]"), "schema": schema()}));
+        lists().into_iter().map(|(name, schema)| json!({"section": format!("{name}[]"), "schema": schema()}));
     serde_json::Value::Array(types.chain(sections).chain(lists).collect()).to_string()
 }
 

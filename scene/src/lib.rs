@@ -34,8 +34,8 @@ pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use scene_file::{Bundled, SceneFile, SceneText};
 pub use spec::{
-    ConstraintSpec, ControllerSpec, ElementSpec, ForceSpec, LISTS, MotionSpec, RecordSpec, SECTIONS,
-    SpecInfo, SpecKind, registered,
+    ConstraintSpec, ControllerSpec, ElementSpec, ForceSpec, ListInfo, MotionSpec, RecordSpec, SECTIONS,
+    SpecInfo, SpecKind, lists, registered,
 };
 pub use water::{Air, Level, Water, ball_below};
 

@@ -373,7 +373,7 @@ impl Scene {
         );
         b.set_inputs(inputs);
         for e in &self.elements {
-            b.pin(&e.markers());
+            b.pin(&e.pins().iter().collect::<Vec<_>>());
         }
         for c in &self.constraints {
             b.pin(&c.markers());

@@ -138,6 +138,7 @@ impl SceneFile {
 
     fn of(mut document: Document, name: String) -> Result<Self, Fault> {
         functions::name_types(&mut document);
+        document.name_sections()?;
         let d = &mut document;
         let scene = Scene {
             title: d.take("title")?.unwrap_or_default(),
@@ -211,8 +212,13 @@ impl SceneFile {
         let path = match (e.spec, field) {
             (Some((kind, k)), Some(field)) => {
                 let part = format!("{}[{k}]", kind.list());
-                // a field of a table inside the part, such as its section, is named without the table
-                self.inside(&part, field).unwrap_or(part)
+                let direct = format!("{part}.{field}");
+                if self.document.find(&direct).is_some() {
+                    direct
+                } else {
+                    // a field of a table inside the part, such as its section, is named without the table
+                    self.inside(&part, field).unwrap_or(part)
+                }
             }
             (Some((kind, k)), None) => format!("{}[{k}]", kind.list()),
             (None, Some(path)) => path.to_string(),

@@ -22,9 +22,13 @@ use std::sync::Arc;
 pub trait ElementSpec: Debug + Send + Sync {
     /// Name; the rest of the scene refers to the part by it.
     fn name(&self) -> &str;
-    /// Markers of other elements that it holds on to; a cable puts a node where one is.
+    /// Markers of other elements that it holds on to.
     fn markers(&self) -> Vec<&MarkerRef> {
         Vec::new()
+    }
+    /// The same, and others that it makes of its fields; a cable puts a node where one is.
+    fn pins(&self) -> Vec<MarkerRef> {
+        self.markers().into_iter().cloned().collect()
     }
     /// Adds its nodes and terms.
     fn build(&self, b: &mut Builder) -> Result<(), BuildError>;
@@ -163,14 +167,40 @@ pub const SECTIONS: [(&str, MakeSchema); 5] = [
     ("statics", TextsWithUnits::schema_for::<StaticsOptions>),
 ];
 
-/// Lists of a scene file whose entries are all of one type.
-pub const LISTS: [(&str, MakeSchema); 1] = [("inputs", TextsWithUnits::schema_for::<InputSpec>)];
+/// A list of a scene file whose entries are all of one type.
+pub struct ListInfo {
+    /// Its name in a scene file.
+    pub name: &'static str,
+    /// Fields, types and doc comments of an entry.
+    pub schema: MakeSchema,
+}
+
+inventory::collect!(ListInfo);
+
+crate::register_list!("inputs", InputSpec);
+
+/// Lists of a scene file whose entries are all of one type, by name.
+pub fn lists() -> Vec<(&'static str, MakeSchema)> {
+    let mut all: Vec<_> = inventory::iter::<ListInfo>.into_iter().map(|l| (l.name, l.schema)).collect();
+    all.sort_by_key(|l| l.0);
+    all
+}
 
 /// All registered types, by kind and name.
 pub fn registered() -> Vec<&'static SpecInfo> {
     let mut all: Vec<&SpecInfo> = inventory::iter::<SpecInfo>.into_iter().collect();
     all.sort_by_key(|s| (s.kind, s.name));
     all
+}
+
+/// Makes the type of a list's entries known to `describe`: `register_list!("inputs", InputSpec)`.
+#[macro_export]
+macro_rules! register_list {
+    ($name:literal, $type:ty) => {
+        $crate::inventory::submit! {
+            $crate::ListInfo { name: $name, schema: $crate::quantity::TextsWithUnits::schema_for::<$type> }
+        }
+    };
 }
 
 /// Makes a spec known to `list` and `describe`: `register_spec!(Force, "gravity", Gravity)`.

@@ -5,7 +5,7 @@ use super::words::{note_on, types_for};
 use super::{Exit, first_line, say, schema, wrapped};
 use ropewalk_models::Bundled;
 use ropewalk_scene::{
-    Document, Fault, Format, Kind, LISTS, Parameter, SECTIONS, SceneFile, SpecInfo, Value, did_you_mean,
+    Document, Fault, Format, Kind, Parameter, SECTIONS, SceneFile, SpecInfo, Value, did_you_mean, lists,
     quoted, registered,
 };
 pub use ropewalk_studies::Error;
@@ -35,7 +35,7 @@ pub(crate) fn explain(what: &str, bundled: &[Bundled]) -> Result<(String, Option
         let text = format!("[{name}]\n\n{}", schema::explain(&schema()));
         return Ok((text + &beside("", name, bundled), None));
     }
-    if !is_path && let Some((name, schema)) = LISTS.iter().find(|(name, _)| *name == what) {
+    if !is_path && let Some((name, schema)) = lists().into_iter().find(|(name, _)| *name == what) {
         let text = format!("[[{name}]]\n\n{}", schema::explain(&schema()));
         return Ok((text + &beside("", name, bundled), None));
     }
@@ -61,7 +61,8 @@ pub(crate) fn schemas(what: Option<&str>, bundled: &[Bundled]) -> Result<Exit, E
             add_example(&mut one, s.kind.list(), s.name, bundled);
             one
         });
-        let sections = SECTIONS.iter().chain(&LISTS).filter(|s| wanted(s.0)).map(|(name, schema)| {
+        let lists = lists();
+        let sections = SECTIONS.iter().chain(&lists).filter(|s| wanted(s.0)).map(|(name, schema)| {
             let mut one = json!({"section": name, "schema": schema()});
             add_example(&mut one, "", name, bundled);
             one
@@ -220,7 +221,7 @@ fn shown(value: &Value) -> String {
 fn unknown(what: &str, bundled: &[Bundled]) -> Fault {
     let mut names: Vec<&str> = bundled.iter().map(|b| b.name).collect();
     names.extend(registered().iter().map(|s| s.name));
-    names.extend(SECTIONS.iter().chain(&LISTS).map(|s| s.0));
+    names.extend(SECTIONS.iter().chain(&lists()).map(|s| s.0));
     let fault = Fault::new(format!("there is no scene, type or section {}", quoted(what)));
     match did_you_mean(what, &names) {
         Some(guess) => fault.with_help(guess),

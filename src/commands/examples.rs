@@ -98,7 +98,7 @@ mod tests {
     use super::*;
     use ropewalk_core::{BuildError, V3};
     use ropewalk_scene::functions::{Function, Parameters, Reads, Seen, Trouble, Written, register_function};
-    use ropewalk_scene::{LISTS, SECTIONS, SceneFile, registered};
+    use ropewalk_scene::{SECTIONS, SceneFile, lists, registered};
     use ropewalk_studies::simulate::simulate;
     use std::sync::Arc;
 
@@ -147,7 +147,7 @@ mod tests {
         for s in registered() {
             assert!(of(s.kind.list(), s.name).is_some(), "no example of {}", s.name);
         }
-        for (name, _) in SECTIONS.iter().chain(&LISTS) {
+        for (name, _) in SECTIONS.iter().chain(&lists()) {
             assert!(of("", name).is_some(), "no example of {name}");
         }
     }
@@ -155,7 +155,8 @@ mod tests {
     #[test]
     fn what_to_see_also_is_there() {
         let known = |name: &str| {
-            registered().iter().any(|s| s.name == name) || SECTIONS.iter().chain(&LISTS).any(|s| s.0 == name)
+            registered().iter().any(|s| s.name == name)
+                || SECTIONS.iter().chain(&lists()).any(|s| s.0 == name)
         };
         let without_contact = cfg!(not(feature = "contact"));
         for e in all() {

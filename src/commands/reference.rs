@@ -4,7 +4,7 @@ use super::describe::see_also;
 use super::{examples, schema};
 use ropewalk_models::Bundled;
 use ropewalk_scene::schemars::Schema;
-use ropewalk_scene::{LISTS, SECTIONS, SpecKind, registered};
+use ropewalk_scene::{SECTIONS, SpecKind, lists, registered};
 
 /// Lists and what their pages say first.
 const PAGES: [(SpecKind, &str, &str); 7] = [
@@ -33,7 +33,7 @@ pub(crate) fn pages(bundled: &[Bundled]) -> Vec<(String, String)> {
     }
     let about = "What a scene file has besides its lists of parts; all of it may be left out.";
     let mut page = format!("# Sections and inputs\n\n{about}\n\n{NOTE}\n");
-    for (name, schema) in SECTIONS.iter().chain(&LISTS) {
+    for (name, schema) in SECTIONS.iter().chain(&lists()) {
         page += &entry("", name, *schema, bundled);
     }
     all.push(("reference/sections.md".into(), page));

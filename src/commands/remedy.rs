@@ -2,7 +2,7 @@
 
 use ropewalk_core::integrator::StepError;
 use ropewalk_core::modes::ModesError;
-use ropewalk_scene::{Document, Fault, LISTS, SECTIONS};
+use ropewalk_scene::{Document, Fault, SECTIONS, lists};
 pub use ropewalk_studies::Error;
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub(crate) const FAILED: &str = "failures";
 /// The type or section that a fault of a scene is about.
 fn about(fault: &Fault) -> Option<String> {
     let head = fault.path.split(['.', '[']).next().filter(|head| !head.is_empty())?;
-    if SECTIONS.iter().chain(&LISTS).any(|s| s.0 == head) {
+    if SECTIONS.iter().chain(&lists()).any(|s| s.0 == head) {
         return Some(head.into());
     }
     // the part has to be looked up: the fault says where it stands, not what it is

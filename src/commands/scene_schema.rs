@@ -5,7 +5,7 @@
 use super::{Exit, say};
 use ropewalk_report::write_atomic;
 use ropewalk_scene::schemars::Schema;
-use ropewalk_scene::{LISTS, SECTIONS, registered};
+use ropewalk_scene::{SECTIONS, lists, registered};
 pub use ropewalk_studies::Error;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
@@ -84,7 +84,7 @@ pub(super) fn whole() -> Value {
         // any of them: where one field of a part is wrong, editors still know the others
         fields.insert(list.into(), json!({"description": about, "type": "array", "items": {"anyOf": types}}));
     }
-    for (list, make) in LISTS {
+    for (list, make) in lists() {
         let one = taken(make(), list, &mut definitions);
         let about = one.get("description").cloned().unwrap_or_default();
         definitions.insert(list.into(), one);

@@ -11,15 +11,15 @@ const WORDS: &[(&str, &[&str])] = &[
     ("body", &["rigid_body"]),
     ("buoy", &["point_mass", "rigid_body", "buoyancy"]),
     ("chain", &["rigid_chain", "cable"]),
-    ("clump", &["point_mass"]),
+    ("clump", &["attachments", "point_mass"]),
     ("current", &["water"]),
     ("damper", &["spring"]),
     ("drum", &["winch", "contact"]),
     ("encoder", &["payout", "length"]),
     ("fixed", &["weld", "clamp"]),
-    ("flow", &["internal_flow", "water"]),
-    ("float", &["point_mass", "buoyancy"]),
+    ("float", &["attachments", "point_mass", "buoyancy"]),
     ("floor", &["contact"]),
+    ("flow", &["internal_flow", "water"]),
     ("frame", &["rigid_body", "run", "turn"]),
     ("friction", &["contact"]),
     ("hinge", &["revolute"]),
@@ -82,8 +82,8 @@ const NOTES: &[(&str, &str)] = &[
     ),
     (
         "section",
-        "The cross-section of a cable is its table `section = { mass = …, ea = …, ei = … }`. Sections of a scene file are \
-         `run`, `solver`, `statics`, `water` and `air`.",
+        "The cross-section of a cable is its table `section = { mass = …, ea = …, ei = … }`, or the name of one of `[[sections]]`; \
+         `sections` gives it several. Sections of a scene file are `run`, `solver`, `statics`, `water` and `air`.",
     ),
     (
         "vessel",

@@ -2,9 +2,11 @@
 
 use super::flow::change::{self, Snapshot};
 use super::flow::{self, push};
+use super::layout::Layout;
+use super::longitudinal::Longitudinal;
 use super::output::{Reading, read};
+use super::section::Section;
 use super::shape::{hermite, hermite_slope, natural, second};
-use super::spec::Section;
 use super::transmitted::{self, Unstressed};
 use super::twisted::{self, Twisted};
 use super::{CableModel, CableParams};
@@ -24,7 +26,10 @@ pub struct CablePart {
     pub(crate) seats: Vec<(usize, usize)>,
     /// Unstretched arc length of each node [m].
     pub(crate) mesh: Vec<f64>,
-    pub(crate) section: Section,
+    /// The same with each place but once: both nodes of a splice are at one.
+    pub(crate) places: Vec<f64>,
+    /// What its elements are made of.
+    pub(crate) layout: Layout,
     pub(crate) stations: Arc<dyn Stations>,
     /// The nodes between which the force in the cable is smooth, ascending: its ends, and where something holds it.
     pub(crate) breaks: Vec<usize>,
@@ -71,10 +76,9 @@ impl CablePart {
 
     /// The points that are drawn: their elements, and the places inside them.
     fn drawn(&self) -> impl Iterator<Item = (usize, f64)> {
-        let elements = self.mesh.len() - 1;
-        let per = (200 / elements).clamp(1, 8);
+        let per = (200 / self.layout.elements().count()).clamp(1, 8);
         let of = move |k| (0..per).map(move |i| (k, i as f64 / per as f64));
-        (0..elements).flat_map(of).chain([(elements - 1, 1.0)])
+        self.layout.elements().flat_map(of).chain([(self.mesh.len() - 2, 1.0)])
     }
 
     /// The element at arc length `s` from the start, and the place inside it.
@@ -100,8 +104,9 @@ impl CablePart {
 
     /// The elastic force that element `k` of length `l` transmits [N].
     fn transmits(&self, k: usize, l: f64, at: &At<'_>) -> Option<V3<f64>> {
-        let (s, q) = (&self.section, self.dofs(k, at.q));
-        let params = CableParams { l, ea: s.ea, ei: s.ei.across, rho_a: s.mass };
+        let (s, q) = (self.layout.section(k), self.dofs(k, at.q));
+        let [ea, ei] = self.layout.stiffness(k);
+        let params = CableParams { l, ea, ei, rho_a: s.mass };
         let mut points: Option<Vec<f64>> = None;
         for p in self.prestrain.iter().filter(|p| p.element == k) {
             let left = p.left(at.t).0;
@@ -112,6 +117,10 @@ impl CablePart {
         let (strain, curvature) = (self.offset.0, if self.twisted.is_some() { 0.0 } else { self.offset.1 });
         let unstressed = Unstressed { shape, strain, curvature, points: points.as_deref() };
         let mut force = transmitted::force(self.model, &params, &q, unstressed).ok()?;
+        if let Some(elastic) = self.layout.elastic(k, l, self.model) {
+            let more = elastic.transmits(&q);
+            (0..3).for_each(|i| force[i] += more[i]);
+        }
         if let Some(twisted) = &self.twisted {
             let more = twisted.transmits(k, l, at.q, self.around(k));
             (0..3).for_each(|i| force[i] += more[i]);
@@ -154,14 +163,22 @@ impl CablePart {
     /// The tension in element `k` of length `l` at `xi` as its strain there has it [N].
     fn by_strain(&self, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<f64> {
         let r = self.reading(k, l, xi, at)?;
-        Some(r.tension - self.section.ea * (self.offset.0 + self.fading(k, xi, at.t)))
+        Some(r.tension - self.layout.section(k).ea * (self.offset.0 + self.fading(k, xi, at.t)))
     }
 
     fn reading(&self, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<Reading> {
-        let s = &self.section;
+        let s = self.layout.section(k);
         let params = CableParams { l, ea: s.ea, ei: s.ei.across, rho_a: s.mass };
         let rest = self.rest.as_ref().map(|r| &r[k]);
-        read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()
+        let mut r =
+            read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()?;
+        if let Some(force) = self.layout.force(k, xi, r.strain) {
+            r.tension = force * self.model.models().map_or(1.0, |m| m.longitudinal.lever(r.strain));
+        }
+        if let Some(moment) = self.layout.moment(k, xi, r.curvature) {
+            r.moment = moment;
+        }
+        Some(r)
     }
 
     /// What is left of the strain of element `k` that fades out.
@@ -206,7 +223,7 @@ impl CablePart {
                 moment[0].hypot(moment[1])
             }
             Some(_) => read,
-            None => read - self.section.ei.across * self.offset.1,
+            None => read - self.layout.section(k).ei.across * self.offset.1,
         }
     }
 
@@ -264,7 +281,7 @@ impl Part for CablePart {
         if self.line.is_some() { self.laid } else { self.mesh[self.mesh.len() - 1] }
     }
     fn mass(&self) -> f64 {
-        self.section.mass * self.length()
+        self.layout.mean(&self.mesh, |s| s.mass) * self.length()
     }
 
     fn marker(&self, spot: &Spot) -> Result<Marker, String> {
@@ -309,16 +326,17 @@ impl Part for CablePart {
 
     fn material_stations(&self) -> Option<Arc<dyn Stations>> {
         match &self.line {
-            Some(line) => push::stations(&self.all, line, &self.nodes, &self.section, true).ok(),
+            Some(line) => push::stations(&self.all, line, &self.nodes, self.layout.section(0), true).ok(),
             None => self.stations(),
         }
     }
 
     fn contact_spans(&self) -> Vec<ContactSpan> {
         let last = self.mesh.len() - 2;
-        let radius = 0.5 * self.section.diameter;
-        (0..=last)
+        self.layout
+            .elements()
             .map(|k| {
+                let radius = 0.5 * self.layout.section(k).diameter;
                 let ((q0, v0), (q1, v1)) = (self.seats[k], self.seats[k + 1]);
                 let l = self.mesh[k + 1] - self.mesh[k];
                 let line = SpanLine::Cubic { q: [q0, q0 + 3, q1, q1 + 3], v: [v0, v0 + 3, v1, v1 + 3], l };
@@ -329,17 +347,22 @@ impl Part for CablePart {
     }
 
     fn dead_load(&self, per: Per, load: V3<f64>) -> Option<Box<dyn Term>> {
-        let (what, density) = match per {
-            Per::Mass => ("weight", self.section.mass),
-            Per::Volume => ("buoyancy", self.section.displaced_area()),
+        let what = match per {
+            Per::Mass => "weight",
+            Per::Volume => "buoyancy",
         };
-        if density == 0.0 {
+        let density = |s: &Section| match per {
+            Per::Mass => s.mass,
+            Per::Volume => s.displaced_area(),
+        };
+        if self.layout.largest(density) == 0.0 {
             return None;
         }
         let flows = |k: usize| self.line.as_ref().is_some_and(|line| line.flows(k));
         let mut entries = Vec::new();
-        for k in (0..self.mesh.len() - 1).filter(|&k| !flows(k)) {
+        for k in self.layout.elements().filter(|&k| !flows(k)) {
             let l = self.mesh[k + 1] - self.mesh[k];
+            let density = density(self.layout.section(k));
             let share = [0.5 * l, l * l / 12.0, 0.5 * l, -l * l / 12.0];
             for (n, share) in share.iter().enumerate() {
                 let (q, v) = self.seats[k + n / 2];
@@ -355,20 +378,18 @@ impl Part for CablePart {
         }
         let dead = DeadLoad::new(format!("{}: {what}", self.name), entries).ok()?;
         let Some(line) = &self.line else { return Some(Box::new(dead)) };
-        let flowing = push::weight(&self.all, line, &self.nodes, load.map(|x| density * x))?;
+        let flowing =
+            push::weight(&self.all, line, &self.nodes, load.map(|x| density(self.layout.section(0)) * x))?;
         Some(Box::new(push::Weight { dead, flowing }))
     }
 
     fn tips(&self) -> Vec<Tip> {
-        let (last, diameter) = (self.nodes.len() - 1, self.section.diameter);
-        if diameter == 0.0 {
-            return Vec::new();
-        }
-        let tip = |k: usize| {
-            let marker = Marker::node(self.nodes[k]);
+        let last = self.nodes.len() - 1;
+        let tip = |(k, element): (usize, usize)| {
+            let (marker, diameter) = (Marker::node(self.nodes[k]), self.layout.section(element).diameter);
             Tip { marker, axis: [0.0; 3], diameter, first: k == 0, sheds: true }
         };
-        vec![tip(0), tip(last)]
+        [(0, 0), (last, last - 1)].map(tip).into_iter().filter(|tip| tip.diameter > 0.0).collect()
     }
 
     fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
@@ -404,18 +425,24 @@ impl Part for CablePart {
     }
 
     fn seats(&self) -> Vec<(usize, usize)> {
-        self.seats.clone()
+        self.layout.once(&self.seats)
     }
 
     fn carry(&self, nodes: &[Node], old: &dyn Part, at: &At<'_>, q: &mut [f64], v: &mut [f64]) {
         let Some(old) = old.line().filter(|_| !self.carried) else { return };
         for (k, &id) in self.nodes.iter().enumerate() {
             let node = &nodes[id.0 as usize];
-            if let Some((x, dx)) = old.slope(self.mesh[k], at.q, true) {
+            // the slope at the end of a section that is spliced to the next is that just before
+            let spliced = self.layout.splices().iter().any(|s| s.node == k);
+            let s = self.mesh[k] - if spliced { 1e-9 * self.length() } else { 0.0 };
+            let there = |x: &[f64], coordinates| {
+                Some((old.slope(self.mesh[k], x, coordinates)?.0, old.slope(s, x, coordinates)?.1))
+            };
+            if let Some((x, dx)) = there(at.q, true) {
                 q[node.q..node.q + 3].copy_from_slice(&x);
                 q[node.q + 3..node.q + 6].copy_from_slice(&dx);
             }
-            if let Some((x, dx)) = old.slope(self.mesh[k], at.v, false) {
+            if let Some((x, dx)) = there(at.v, false) {
                 v[node.v..node.v + 3].copy_from_slice(&x);
                 v[node.v + 3..node.v + 6].copy_from_slice(&dx);
             }
@@ -439,16 +466,19 @@ impl Part for CablePart {
 
 impl Line for CablePart {
     fn slender(&self) -> Slender {
-        let s = &self.section;
-        let element = self.laid / (self.mesh.len() - 1) as f64;
-        Slender { element, mass: s.mass + s.flooded, ea: s.ea, ei: s.ei.mean() }
+        let element = self.laid / self.layout.elements().count() as f64;
+        let mass = self.layout.mean(&self.mesh, |s| s.mass + s.flooded);
+        Slender { element, mass, ea: self.layout.largest(|s| s.ea), ei: self.layout.largest(|s| s.ei.mean()) }
     }
 
     fn mesh(&self) -> &[f64] {
-        &self.mesh
+        &self.places
     }
 
     fn mesh_now(&self, at: &At<'_>) -> Vec<f64> {
+        if self.line.is_none() {
+            return self.places.clone();
+        }
         let mesh = self.material(at.q);
         mesh.iter().map(|p| p - mesh[0]).collect()
     }

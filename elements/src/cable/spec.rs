@@ -3,14 +3,15 @@
 use super::damping::{push_axial_damping, push_bending_damping};
 use super::flow::Line;
 use super::flow::push::{self, Piece};
+use super::layout::Layout;
 use super::mesh::{MeshSpec, counted, even, pinned};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::CablePart;
 use super::rest::{Rest, push_rest};
-use super::stiffness::BendingStiffness;
+use super::section::{NameOrSection, Section, SectionAlong};
 use super::{CableParams, CableStations};
 use crate::path::{Corner, Path};
-use ropewalk_core::error::{finite, not_negative, positive};
+use ropewalk_core::error::{finite, positive};
 use ropewalk_core::{
     BuildError, Element, Feed, MovingBoundary, Node, NodeId, NodeKind, StationPool, Stations, V3, dot,
 };
@@ -19,105 +20,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What a cable is made of. Every number stands for itself: nothing is derived from a diameter unless it is left out.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Section {
-    /// Structural mass per unstretched length [kg/m]; gravity acts on it.
-    #[serde(deserialize_with = "quantity::mass_per_length")]
-    pub mass: f64,
-    /// Axial stiffness EA [N].
-    #[serde(deserialize_with = "quantity::axial_stiffness")]
-    pub ea: f64,
-    /// Bending stiffness EI [N m²]. With 0, the first and last element keep 1 % of their weight times their length
-    /// squared, so that free ends have a direction. Two numbers where it isn't the same in all directions, of a cable with
-    /// torsion: about the `normal` of the section, and about the axis across it.
-    #[serde(default)]
-    pub ei: BendingStiffness,
-    /// Torsional stiffness GJ [N m²]. With it the cable can be twisted, and its ends are held against twisting where they are
-    /// built in. Default: no torsion; but EI where the stress-free shape is curved.
-    #[serde(
-        default,
-        deserialize_with = "quantity::optional::bending_stiffness",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub gj: Option<f64>,
-    /// Polar moment of inertia of the section, per length [kg m], of a cable with torsion. Default: that of a solid round
-    /// bar, `mass diameter²/8`.
-    #[serde(
-        default,
-        deserialize_with = "quantity::optional::inertia_per_length",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub rotary_inertia: Option<f64>,
-    /// Mass of the water inside [kg/m]. It moves with the part and has no weight in water.
-    #[serde(default, deserialize_with = "quantity::mass_per_length")]
-    pub flooded: f64,
-    /// Hydrodynamic diameter, for drag and added mass [m].
-    #[serde(default, deserialize_with = "quantity::length")]
-    pub diameter: f64,
-    /// Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
-    #[serde(default, deserialize_with = "quantity::optional::area")]
-    pub displaced: Option<f64>,
-    /// Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ ε̇)`.
-    #[serde(default, deserialize_with = "quantity::time")]
-    pub axial_retardation_time: f64,
-    /// Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`.
-    #[serde(default, deserialize_with = "quantity::time")]
-    pub bending_retardation_time: f64,
-    /// Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ dφ'/dt)`.
-    #[serde(default, deserialize_with = "quantity::time", skip_serializing_if = "is_nought")]
-    pub torsional_retardation_time: f64,
-    /// Whether the spin of a cable with torsion about its own axis turns it aside, as that of a top does: of shafts that turn
-    /// fast. Ropes don't notice.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub gyroscopic: bool,
-}
-
 /// Bending stiffness of the end elements of a cable that has none, in parts of their weight times the square of their length.
 const TIP: f64 = 0.01;
-
-impl Section {
-    /// A section with mass and stiffness only.
-    pub fn new(mass: f64, ea: f64, ei: f64) -> Self {
-        Section {
-            mass,
-            ea,
-            ei: ei.into(),
-            gj: None,
-            rotary_inertia: None,
-            flooded: 0.0,
-            diameter: 0.0,
-            displaced: None,
-            axial_retardation_time: 0.0,
-            bending_retardation_time: 0.0,
-            torsional_retardation_time: 0.0,
-            gyroscopic: false,
-        }
-    }
-    /// Displaced volume per length [m²].
-    pub fn displaced_area(&self) -> f64 {
-        self.displaced.unwrap_or(std::f64::consts::PI * self.diameter * self.diameter / 4.0)
-    }
-    fn check(&self) -> Result<(), BuildError> {
-        positive("mass", self.mass)?;
-        positive("ea", self.ea)?;
-        positive("gj", self.gj.unwrap_or(1.0))?;
-        for (name, x) in [
-            ("ei", self.ei.about_normal),
-            ("ei", self.ei.across),
-            ("flooded", self.flooded),
-            ("diameter", self.diameter),
-            ("displaced", self.displaced.unwrap_or(0.0)),
-            ("axial_retardation_time", self.axial_retardation_time),
-            ("bending_retardation_time", self.bending_retardation_time),
-            ("torsional_retardation_time", self.torsional_retardation_time),
-        ] {
-            not_negative(name, x)?;
-        }
-        Ok(())
-    }
-}
 
 /// The shape in which a cable is free of stress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -179,8 +83,16 @@ pub struct CableSpec {
     /// stays graded while a winch pays out there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshSpec>,
-    /// Cross-section.
+    /// Cross-section, or the name of one of the scene's `sections`: `section = "chain"`. Give `section` or `sections`.
+    #[serde(default, skip_serializing_if = "Section::is_missing")]
+    #[schemars(with = "NameOrSection")]
     pub section: Section,
+    /// Several sections one after the other, from start to end:
+    /// `[{ to = "200 m", section = "chain" }, { section = "wire" }]`. Sections that stretch differently are spliced: their
+    /// tangents agree, and where one of them has no bending stiffness it can turn freely. Weight, buoyancy, drag and contact
+    /// are those of the section at each place.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sections: Vec<SectionAlong>,
     /// Longitudinal stiffness model: L1, L1n, L2, L3 or L4.
     #[serde(default)]
     pub longitudinal: LongitudinalModel,
@@ -241,6 +153,7 @@ impl CableSpec {
             elements,
             mesh: None,
             section,
+            sections: Vec::new(),
             longitudinal: LongitudinalModel::default(),
             transverse: TransverseModel::default(),
             integration: Integration::default(),
@@ -268,7 +181,7 @@ impl CableSpec {
 
     /// The unstretched length of a cable that is laid along a path of this length.
     fn unstretched_length(&self, path: f64) -> Result<f64, BuildError> {
-        match (self.length, self.tension) {
+        match (self.length_of_sections()?, self.tension) {
             (Some(_), Some(_)) => {
                 let message = "give `length` or `tension`, not both: one follows from the other";
                 Err(BuildError::at("tension", message))
@@ -287,7 +200,7 @@ impl CableSpec {
     }
 
     /// Arc lengths of the nodes of a cable of this length, with one at each of these places.
-    fn divided(&self, length: f64, pins: &[f64]) -> Result<Vec<f64>, BuildError> {
+    pub(super) fn divided(&self, length: f64, pins: &[f64]) -> Result<Vec<f64>, BuildError> {
         match (&self.mesh, self.elements) {
             (Some(_), n) if n > 0 => {
                 let message = "give `elements` or `mesh`, not both: a mesh has its own number of elements";
@@ -422,9 +335,9 @@ impl CableSpec {
         params: CableParams,
         on: &[NodeId],
         shape: &[f64; 12],
+        s: &Section,
         twists: bool,
     ) -> Result<(), BuildError> {
-        let s = &self.section;
         // with torsion a curvature has a direction
         let kappa0 = if twists { 0.0 } else { self.curvature };
         if self.stress_free == StressFree::AsLaid {
@@ -451,11 +364,11 @@ fn stations(
     all: &[Node],
     mesh: &[f64],
     nodes: &[NodeId],
-    s: &Section,
+    layout: &Layout,
 ) -> Result<Arc<dyn Stations>, BuildError> {
     let mut stations = StationPool::<CableStations, 12, 12, 4>::new();
-    for k in 0..mesh.len() - 1 {
-        let (l, s0) = (mesh[k + 1] - mesh[k], mesh[k]);
+    for k in layout.elements() {
+        let (l, s0, s) = (mesh[k + 1] - mesh[k], mesh[k], layout.section(k));
         let element = CableStations { l, s0, diameter: s.diameter, area: s.displaced_area() };
         if !stations.push(all, element, &[nodes[k], nodes[k + 1]]) {
             return Err(BuildError::new("the stations of the cable don't fit its nodes"));
@@ -464,10 +377,12 @@ fn stations(
     Ok(Arc::new(stations))
 }
 
-/// The nodes at which the force in the cable may jump: its ends, and where something holds on to it.
-fn breaks(mesh: &[f64], held: &[f64]) -> Vec<usize> {
+/// The nodes at which the force in the cable may jump or bend: its ends, where something holds on to it, and where one
+/// section follows another.
+fn breaks(mesh: &[f64], held: &[f64], layout: &Layout) -> Vec<usize> {
     let (last, near) = (mesh.len() - 1, 1e-9 * (mesh[mesh.len() - 1] - mesh[0]));
-    let inner = (1..last).filter(|&k| held.iter().any(|s| (s - mesh[k]).abs() <= near));
+    let inner =
+        (1..last).filter(|&k| layout.changes_at(k) || held.iter().any(|s| (s - mesh[k]).abs() <= near));
     std::iter::once(0).chain(inner).chain([last]).collect()
 }
 
@@ -501,8 +416,7 @@ impl ElementSpec for CableSpec {
     }
 
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let s = &self.section;
-        s.check()?;
+        self.check_sections()?;
         finite("velocity", &self.velocity)?;
         finite("strain", &[self.strain])?;
         if !STRETCHES.contains(&(1.0 + self.strain)) {
@@ -529,12 +443,24 @@ impl ElementSpec for CableSpec {
         let concentrated = pins.clone();
         pins.extend(path.stops().map(|s| s / stretch));
         pins.sort_by(f64::total_cmp);
-        let divided = self.divided(length, &pins)?;
+        let (mut mesh, mut layout) = self.laid_out(length, &pins)?;
         let given = b.mesh(&self.name).cloned();
-        let mesh = given.as_ref().map_or(divided, |m| m.nodes.clone());
         let feeding = b.feeding(&self.name);
         let feeds = feeding.iter().any(Option::is_some);
-        if mesh.len() < 2 || (mesh[0] != 0.0 && !feeds) || mesh.windows(2).any(|w| !(w[1] > w[0])) {
+        if feeds && !self.sections.is_empty() {
+            let message = "what a winch feeds must be the same all along: give it one `section`";
+            return Err(BuildError::at("sections", message));
+        }
+        if feeds && layout.elastic(0, 1.0, CableModel::default()).is_some() {
+            let message =
+                "what a winch feeds has constant stiffness: give its section `ea` and `ei`, and no tables";
+            return Err(BuildError::at("section", message));
+        }
+        if let Some(given) = &given {
+            (mesh, layout) = (given.nodes.clone(), Layout::uniform(&self.section, given.nodes.len() - 1)?);
+        }
+        if mesh.len() < 2 || (mesh[0] != 0.0 && !feeds) || layout.elements().any(|k| !(mesh[k + 1] > mesh[k]))
+        {
             return Err(BuildError::new("a mesh must start at 0 and ascend"));
         }
 
@@ -584,30 +510,38 @@ impl ElementSpec for CableSpec {
             std::array::from_fn(|i| if i < 6 { all[a + i] } else { all[c + i - 6] })
         };
         let shapes: Vec<[f64; 12]> = (0..mesh.len() - 1).map(dofs).collect();
-        let weight = s.mass * dot(&b.gravity(), &b.gravity()).sqrt();
-        let last = mesh.len() - 2;
+        let gravity = dot(&b.gravity(), &b.gravity()).sqrt();
         let params = |k: usize| {
-            let l = mesh[k + 1] - mesh[k];
+            let (l, s) = (mesh[k + 1] - mesh[k], layout.section(k));
             // without tension a limp tip points anywhere: a little of the weight that hangs there straightens it
-            let tip = s.ei.largest() == 0.0 && (k == 0 || k == last);
-            let ei = if tip { TIP * weight * l.powi(3) } else { s.ei.across };
-            CableParams { l, ea: s.ea, ei, rho_a: s.mass + s.flooded }
+            let tip = s.ei.largest() == 0.0 && layout.is_tip(k);
+            let [ea, ei] = layout.stiffness(k);
+            let ei = if tip { TIP * (s.mass * gravity) * l.powi(3) } else { ei };
+            CableParams { l, ea, ei, rho_a: s.mass + s.flooded }
         };
         for k in 0..mesh.len() - 1 {
             let Some(line) = flows(k) else { continue };
             params(k).check().map_err(BuildError::new)?;
-            push::push(b, model, params(k), s, &Piece { line, k, on: [nodes[k], nodes[k + 1]] })?;
+            push::push(b, model, params(k), &self.section, &Piece { line, k, on: [nodes[k], nodes[k + 1]] })?;
         }
         let mut pools = Pools { builder: b, result: Ok(()) };
-        for k in (0..mesh.len() - 1).filter(|&k| flows(k).is_none()) {
-            let (on, params) = ([nodes[k], nodes[k + 1]], params(k));
+        for k in layout.elements().filter(|&k| flows(k).is_none()) {
+            let (on, params, s) = ([nodes[k], nodes[k + 1]], params(k), layout.section(k));
             push_cable(&mut pools, model, params, &on).map_err(BuildError::new)?;
-            self.extras(&mut pools, model, params, &on, &shapes[k], twisted.is_some())?;
+            if let Some(elastic) = layout.elastic(k, params.l, model) {
+                pools.push(elastic, &on);
+            }
+            self.extras(&mut pools, model, params, &on, &shapes[k], s, twisted.is_some())?;
         }
         pools.result?;
+        for splice in layout.splices() {
+            let name = format!("{}: splice at {} m", self.name, mesh[splice.node]);
+            let [_, _, _, x, y, z] = places[splice.node];
+            splice.join(b, name, &nodes, [x, y, z])?;
+        }
         let stations = match &line {
-            Some(line) => push::stations(b.nodes(), line, &nodes, s, false)?,
-            None => stations(b.nodes(), &mesh, &nodes, s)?,
+            Some(line) => push::stations(b.nodes(), line, &nodes, &self.section, false)?,
+            None => stations(b.nodes(), &mesh, &nodes, &layout)?,
         };
         if let Some(twisted) = &mut twisted {
             twisted.push(b, &mesh, &nodes)?;
@@ -617,19 +551,20 @@ impl ElementSpec for CableSpec {
             for strain in &prestrain {
                 let k = strain.element;
                 let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
-                push::fading(b, model, strain, s, &self.name, &piece)?;
+                push::fading(b, model, strain, &self.section, &self.name, &piece)?;
             }
         }
         b.part(Arc::new(CablePart {
-            breaks: breaks(&mesh, &concentrated),
+            breaks: breaks(&mesh, &concentrated, &layout),
             laid: length,
             carried: state.is_some(),
             prestrain,
             name: self.name.clone(),
             nodes,
             seats,
+            places: layout.once(&mesh),
             mesh,
-            section: s.clone(),
+            layout,
             stations,
             all: if line.is_some() { b.nodes().to_vec() } else { Vec::new() },
             line,

@@ -156,17 +156,14 @@ impl CableSpec {
 
     /// Refuses what only a cable with torsion can have.
     fn refuse_twist(&self) -> Result<(), BuildError> {
-        let s = &self.section;
-        let asked = [
-            ("section.ei", s.ei.has_direction()),
-            ("section.rotary_inertia", s.rotary_inertia.is_some()),
-            ("section.torsional_retardation_time", s.torsional_retardation_time != 0.0),
-            ("section.gyroscopic", s.gyroscopic),
+        let own = [
             ("normal", self.normal.is_some()),
             ("twist", self.twist != 0.0),
             ("laid_twist", self.laid_twist != 0.0),
         ];
-        let Some((field, _)) = asked.into_iter().find(|(_, asked)| *asked) else { return Ok(()) };
+        let own = own.into_iter().find(|(_, asked)| *asked).map(|(field, _)| field.to_string());
+        let asked = self.section.asks_for_torsion().map(|field| format!("section.{field}"));
+        let Some(field) = asked.or(own) else { return Ok(()) };
         let what = if field == "section.ei" { "two bending stiffnesses" } else { "this" };
         Err(BuildError::at(
             field,

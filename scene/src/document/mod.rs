@@ -4,8 +4,9 @@
 //!
 //! 1. `toml` or `json` parses the text into a tree of [`Value`]s that know where they were written ([`Span`]);
 //! 2. `parameters` replaces every `"$name"` by the parameter's value, `formula` calculates with them;
-//! 3. `deserialize` hands parts of the tree to serde, and turns whatever goes wrong into a [`Fault`];
-//! 4. `write` makes TOML of the tree again.
+//! 3. `library` puts sections in place of their names;
+//! 4. `deserialize` hands parts of the tree to serde, and turns whatever goes wrong into a [`Fault`];
+//! 5. `write` makes TOML of the tree again.
 //!
 //! [`migrate`](migrate()) rewrites the text of a scene of an older version; `moved` knows its names.
 //!
@@ -29,6 +30,7 @@ mod deserialize;
 mod fault;
 mod formula;
 mod json;
+mod library;
 mod migrate;
 mod moved;
 mod parameters;

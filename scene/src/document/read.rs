@@ -37,8 +37,8 @@ impl Format {
 /// Parts are taken by name; in the end [`finish`](Self::finish) refuses what nobody took.
 #[derive(Debug)]
 pub struct Document {
-    root: Value,
-    sources: Sources,
+    pub(super) root: Value,
+    pub(super) sources: Sources,
     parameters: Vec<Parameter>,
     /// Names that were asked for, in that order: those that a scene can have.
     asked: Vec<String>,
@@ -169,7 +169,7 @@ impl Document {
         }
     }
 
-    fn ask(&mut self, name: &str) {
+    pub(super) fn ask(&mut self, name: &str) {
         if !self.asked.iter().any(|a| a == name) {
             self.asked.push(name.to_string());
         }

@@ -6,7 +6,7 @@
 
 use ropewalk_core::integrator::{Scheme, Stepping};
 use ropewalk_elements::cable::{CableModel, Integration, LongitudinalModel, TransverseModel, legal};
-use ropewalk_scene::{Analysis, Fault, Kind, SceneFile, SceneText, Value, quantity};
+use ropewalk_scene::{Analysis, Fault, Kind, SceneFile, SceneText, Table, Value, quantity};
 use serde::{Deserialize, Serialize};
 
 /// One choice of everything that can be varied; what the scene doesn't have is none.
@@ -50,6 +50,16 @@ struct Changes {
     put: Vec<(String, String)>,
 }
 
+/// Where a part says how it is divided: in itself, and in each of its sections along a cable.
+fn divided<'v>(path: &str, part: &'v Table) -> Vec<(String, &'v Table)> {
+    let mut all = vec![(path.to_string(), part)];
+    if let Some(Kind::Array(sections)) = part.get("sections").map(|v| &v.kind) {
+        let own = sections.iter().enumerate().filter_map(|(i, v)| Some((i, v.as_table()?)));
+        all.extend(own.map(|(i, table)| (format!("{path}.sections[{i}]"), table)));
+    }
+    all
+}
+
 impl<'a> Axes<'a> {
     /// Looks at a scene with these parameters, each `name=value`.
     ///
@@ -63,17 +73,19 @@ impl<'a> Axes<'a> {
         if let Some(Kind::Array(list)) = elements {
             for (k, table) in list.iter().enumerate().filter_map(|(k, v)| Some((k, v.as_table()?))) {
                 let path = format!("elements[{k}]");
-                let graded = table.get("mesh").and_then(Value::as_table);
-                let divided =
-                    [(table.get("elements"), ""), (graded.and_then(|m| m.get("elements")), ".mesh")];
-                for (value, inside) in divided {
-                    if let Some(Kind::Integer(n)) = value.map(|v| &v.kind) {
-                        meshes.push((format!("{path}{inside}.elements"), u64::try_from(*n).unwrap_or(1)));
+                for (path, table) in divided(&path, table) {
+                    let graded = table.get("mesh").and_then(Value::as_table);
+                    let counts =
+                        [(table.get("elements"), ""), (graded.and_then(|m| m.get("elements")), ".mesh")];
+                    for (value, inside) in counts {
+                        if let Some(Kind::Integer(n)) = value.map(|v| &v.kind) {
+                            meshes.push((format!("{path}{inside}.elements"), u64::try_from(*n).unwrap_or(1)));
+                        }
                     }
-                }
-                for end in ["first", "last"] {
-                    if let Some(l) = graded.and_then(|m| m.get(end)).and_then(length) {
-                        ends.push((format!("{path}.mesh.{end}"), l));
+                    for end in ["first", "last"] {
+                        if let Some(l) = graded.and_then(|m| m.get(end)).and_then(length) {
+                            ends.push((format!("{path}.mesh.{end}"), l));
+                        }
                     }
                 }
                 if table.get("type").and_then(Value::as_str) == Some("cable") {

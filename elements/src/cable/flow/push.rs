@@ -7,7 +7,7 @@ use super::{FlowAxialDamping, FlowCable, FlowDamping, FlowEnd, FlowStations, Flo
 use crate::cable::longitudinal::Longitudinal;
 use crate::cable::model::{CableModel, LongitudinalModel, Models, WithModels, with_models};
 use crate::cable::quadrature::Rule;
-use crate::cable::spec::Section;
+use crate::cable::section::Section;
 use crate::cable::transverse::Transverse;
 use crate::cable::{AxialDamping, BendingDamping, CableParams};
 use ropewalk_core::{
