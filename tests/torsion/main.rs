@@ -1,6 +1,7 @@
 //! Cables with torsion against closed forms and geometrically exact rods of independent programs.
 
 mod dynamics;
+mod rope;
 mod statics;
 
 use ropewalk::{History, Scene, simulate};

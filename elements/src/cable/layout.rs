@@ -32,6 +32,8 @@ impl Made {
     /// Of a section that is the same all along it.
     fn of(section: &Section) -> Result<Self, BuildError> {
         let mut made = Made { section: section.clone(), stretching: None, bending: None };
+        // what is left of EA where the rope can turn; the rest comes with its torsion
+        made.section.ea -= section.gj.map_or(0.0, |gj| section.torque_tension.powi(2) / gj);
         if let Some(table) = &section.axial_force {
             let curve = table.curve()?;
             made.section.ea = curve.stiffness();
@@ -264,6 +266,7 @@ impl CableSpec {
         let nonlinear = [
             ("axial_force", s.axial_force.is_some(), self.longitudinal == LongitudinalModel::L4, "L4"),
             ("tension_only", s.tension_only, self.longitudinal == LongitudinalModel::L4, "L4"),
+            ("torque_tension", s.torque_tension != 0.0, self.longitudinal == LongitudinalModel::L4, "L4"),
             ("bending_moment", s.bending_moment.is_some(), self.transverse == TransverseModel::T3, "T3"),
         ];
         for (field, _, fits, needs) in nonlinear.into_iter().filter(|(_, is, ..)| *is) {

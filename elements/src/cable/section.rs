@@ -4,7 +4,7 @@ use super::BendingStiffness;
 use super::law::{AxialForce, BendingMoment};
 use super::mesh::MeshSpec;
 use ropewalk_core::BuildError;
-use ropewalk_core::error::{not_negative, positive};
+use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_scene::{quantity, register_list};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
@@ -48,6 +48,11 @@ pub struct Section {
         skip_serializing_if = "Option::is_none"
     )]
     pub gj: Option<f64>,
+    /// Coupling `C` of torque and tension in laid ropes and armoured cables [N m]: `N = EA ε + C φ'` and `M = C ε + GJ φ'`, with
+    /// `ea` measured while the ends can't turn. Positive of a right-hand lay: such a rope unlays when it is pulled. A torque
+    /// factor `c`, by which the torque of a held end is `c d T`, means `C = c d EA`. Needs L4.
+    #[serde(default, deserialize_with = "quantity::moment", skip_serializing_if = "is_nought")]
+    pub torque_tension: f64,
     /// Polar moment of inertia of the section, per length [kg m], of a cable with torsion. Default: that of a solid round
     /// bar, `mass diameter²/8`.
     #[serde(
@@ -92,6 +97,7 @@ impl Section {
             ei: ei.into(),
             bending_moment: None,
             gj: None,
+            torque_tension: 0.0,
             rotary_inertia: None,
             flooded: 0.0,
             diameter: 0.0,
@@ -114,6 +120,7 @@ impl Section {
     pub(super) fn asks_for_torsion(&self) -> Option<&'static str> {
         let asked = [
             ("gj", self.gj.is_some()),
+            ("torque_tension", self.torque_tension != 0.0),
             ("ei", self.ei.has_direction()),
             ("rotary_inertia", self.rotary_inertia.is_some()),
             ("torsional_retardation_time", self.torsional_retardation_time != 0.0),
@@ -145,6 +152,15 @@ impl Section {
             None => {}
         }
         positive("gj", self.gj.unwrap_or(1.0))?;
+        finite("torque_tension", &[self.torque_tension])?;
+        let (c, both) = (self.torque_tension, self.ea * self.gj.unwrap_or(0.0));
+        if c != 0.0 && self.gj.is_some() && !(c * c < both) {
+            let message = format!(
+                "a rope of this coupling would stretch or twist by itself: `torque_tension` must be below √(EA GJ) = {:.4} N m",
+                both.sqrt()
+            );
+            return Err(BuildError::at("torque_tension", message));
+        }
         for (name, x) in [
             ("ei", self.ei.about_normal),
             ("ei", self.ei.across),

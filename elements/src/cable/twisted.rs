@@ -5,6 +5,7 @@ use super::quadrature::{MOST, Point, Quadrature, Rule};
 use super::rest::STRAIGHT;
 use super::shape::{combine, natural, second};
 use super::spin::SpinInertia;
+use super::torque_tension::TorqueTension;
 use super::torsion::{Torsion, TorsionDamping, TorsionParams};
 use super::{BendingStiffness, CableSpec, Integration, StressFree, TransverseModel};
 use ropewalk_core::error::{finite, positive};
@@ -27,6 +28,10 @@ pub(crate) struct Twisted {
     integration: Integration,
     /// Twist of each element when free of stress [rad].
     twist0: Vec<f64>,
+    /// Torque and tension of a laid rope: `C/GJ` [1/m], where the strain is taken, its mean in each element when free of stress.
+    lay: f64,
+    points: &'static [Point],
+    strain0: Vec<f64>,
     /// The nodes without twist, in whose shape the cable is free of stress if `as_laid`.
     straight: Vec<Laid>,
     as_laid: bool,
@@ -129,7 +134,16 @@ impl CableSpec {
             let own = if as_laid { Torsion::twist(&pair(&element(&straight, k)), l) } else { 0.0 };
             own + self.twist * l
         };
+        let points = self.integration.axial().points();
+        let strain0 = |k: usize| {
+            let l = mesh[k + 1] - mesh[k];
+            let own = || TorqueTension::mean_strain(&pair(&element(&straight, k)), l, points);
+            self.strain + if as_laid { own() } else { 0.0 }
+        };
         let twisted = Twisted {
+            lay: s.torque_tension / gj,
+            points,
+            strain0: (0..mesh.len() - 1).map(strain0).collect(),
             gj,
             eta_gj: s.torsional_retardation_time * gj,
             rho_j,
@@ -150,6 +164,11 @@ impl CableSpec {
                 self.transverse
             );
             return Err(BuildError::at("transverse", message));
+        }
+        if twisted.directed && twisted.lay != 0.0 {
+            let message = "a cable whose bending has a direction can't couple torque and tension: leave `torque_tension` out, or \
+                           let it be straight when free of stress, with one `ei`";
+            return Err(BuildError::at("section.torque_tension", message));
         }
         Ok(Some((twisted, nodes)))
     }
@@ -225,7 +244,10 @@ impl Twisted {
         for k in 0..mesh.len() - 1 {
             let on = [nodes[k], nodes[k + 1]];
             let l = mesh[k + 1] - mesh[k];
-            b.element(Torsion::new(self.params(k, l)), &on)?;
+            match self.coupled(k, l) {
+                Some(coupled) => b.element(coupled, &on)?,
+                None => b.element(Torsion::new(self.params(k, l)), &on)?,
+            }
             if self.eta_gj > 0.0 {
                 b.element(TorsionDamping { l, eta_gj: self.eta_gj }, &on)?;
             }
@@ -244,6 +266,13 @@ impl Twisted {
 
     fn params(&self, k: usize, l: f64) -> TorsionParams {
         TorsionParams { l, gj: self.gj, rho_j: self.rho_j, twist0: self.twist0[k] }
+    }
+
+    /// Element `k` of a rope that turns when it is pulled.
+    fn coupled(&self, k: usize, l: f64) -> Option<TorqueTension> {
+        let Twisted { lay, points, .. } = *self;
+        let params = self.params(k, l);
+        (lay != 0.0).then(|| TorqueTension { params, lay, strain0: self.strain0[k], points })
     }
 
     fn bending(&self, k: usize, l: f64) -> Directed {
@@ -280,7 +309,14 @@ impl Twisted {
         let x: [f64; 21] = self.gather(k, q, seats, false);
         let mut twist = Share::<f64, 14>::zero();
         let local = Local { q: pair(&x), v: [0.0; 14], a: [0.0; 14], last: [0.0; 14], relaxed: None };
-        Torsion::add::<f64, false>(&self.params(k, l), &local, &w, &mut twist);
+        match self.coupled(k, l) {
+            Some(own) => {
+                let lanes =
+                    TorqueTension::lanes::<f64>(&ropewalk_core::Batch::of(std::slice::from_ref(&own)));
+                TorqueTension::add::<f64, false>(&lanes, &local, &w, &mut twist);
+            }
+            None => Torsion::add::<f64, false>(&self.params(k, l), &local, &w, &mut twist),
+        }
         let mut bent = Share::<f64, 15>::zero();
         if self.directed {
             let local = Local { q: x, v: [0.0; 15], a: [0.0; 15], last: [0.0; 15], relaxed: None };
@@ -293,8 +329,13 @@ impl Twisted {
 
     /// Twist of element `k` per length [rad/m], and the moment that it transmits [N m].
     pub(super) fn twist(&self, k: usize, l: f64, q: &[f64], seats: [usize; 2]) -> [f64; 2] {
-        let twist = Torsion::twist(&pair(&self.gather(k, q, seats, false)), l);
-        [twist / l, self.gj * (twist - self.twist0[k]) / l]
+        let x = pair(&self.gather(k, q, seats, false));
+        let twist = Torsion::twist(&x, l);
+        let pulled = match self.coupled(k, l) {
+            Some(own) => own.lay * l * (TorqueTension::mean_strain(&x, l, own.points) - own.strain0),
+            None => 0.0,
+        };
+        [twist / l, self.gj * (twist + pulled - self.twist0[k]) / l]
     }
 
     /// Curvature about both directors at a point of element `k` [1/m], and the moments [N m].

@@ -4,9 +4,9 @@ use ropewalk_core::model::twist::{carried, relabel};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::testing::{check_tangent, dense};
 use ropewalk_core::{At, Element, Node, NodeId, NodeKind, Pool, Term, V3, Weights, Width, dot, retract};
-use ropewalk_elements::cable::quadrature::{Gauss2, Quadrature};
+use ropewalk_elements::cable::quadrature::{Gauss2, Lobatto3, Quadrature};
 use ropewalk_elements::cable::{
-    Directed, DirectedParams, SpinInertia, Torsion, TorsionDamping, TorsionParams,
+    Directed, DirectedParams, SpinInertia, TorqueTension, Torsion, TorsionDamping, TorsionParams,
 };
 use serde_json::Value;
 
@@ -125,11 +125,14 @@ fn noise(seed: u64, n: usize) -> Vec<f64> {
 /// Every kind of element with torsion.
 fn terms() -> Vec<(&'static str, Box<dyn Term>)> {
     let torsion = Torsion::new(TorsionParams { l: L, gj: 0.8, rho_j: 0.3, twist0: 0.4 });
+    let coupled =
+        TorqueTension { params: torsion.params, lay: 1.7, strain0: 0.02, points: Lobatto3.points() };
     let damping = TorsionDamping { l: L, eta_gj: 0.6 };
     let params = DirectedParams { l: L, ei_d: 2.3, ei_e: 0.9, gj: 0.8, eta_gj: 0.05, rho_j: 0.3 };
     let kappa0 = [[0.7, -0.4], [0.2, 0.5], [0.0; 2], [0.0; 2], [0.0; 2]];
     vec![
         ("torsion", Box::new(pool(torsion, &BOTH))),
+        ("torque and tension", Box::new(pool(coupled, &BOTH))),
         ("damping", Box::new(pool(damping, &BOTH))),
         ("spin", Box::new(pool(SpinInertia { l: L, rho_j: 0.3 }, &BOTH))),
         ("directed", Box::new(pool(Directed::new(params, kappa0, Gauss2), &ALL))),
