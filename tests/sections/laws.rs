@@ -42,13 +42,13 @@ fn table(x: &str, y: &str, n: usize, to: f64, of: impl Fn(f64) -> f64) -> String
 
 #[test]
 fn a_beam_that_tapers_bends_as_the_integral_of_its_moment() {
-    let (length, force) = (2.0, 1e-3);
+    let (length, force): (f64, f64) = (2.0, 1e-3);
     for [a, b] in [[100.0, 20.0], [20.0, 100.0], [50.0, 49.0]] {
         // δ = F ∫ (L-x)²/EI dx
-        let c = (b - a) / length;
+        let c: f64 = (b - a) / length;
         let exact = force / c.powi(3) * (b * b * f64::ln(b / a) - 2.0 * b * (b - a) + 0.5 * (b * b - a * a));
         let mut errors = Vec::new();
-        for n in [4, 8, 16] {
+        for n in [8, 16, 32] {
             let made_of = format!(
                 "elements = {n}\nsections = [{{ section = {{ mass = 1, ea = 1e6, ei = {a} }}, end_section = {{ mass = 1, ea = \
                  1e6, ei = {b} }} }}]"
@@ -59,28 +59,31 @@ fn a_beam_that_tapers_bends_as_the_integral_of_its_moment() {
             let moment = last(&h, "m") / (force * 0.7 * length) - 1.0;
             assert!(moment.abs() < 2e-2, "{moment:e}");
         }
-        println!("EI {a} to {b}: {errors:.1e?}");
-        assert!(errors[2] < 2e-6 && (errors[2] < 1e-8 || errors[1] / errors[2] > 8.0), "{errors:?}");
+        println!("EI {a} to {b}: {errors:?}");
+        assert!(errors[2] < 2e-6 && (errors[2] < 1e-8 || errors[1] / errors[2] > 12.0), "{errors:?}");
     }
 }
 
 #[test]
 fn a_rod_that_tapers_stretches_as_the_integral_of_its_strain() {
-    let (length, force, [a, b]) = (3.0, 40.0, [1e4, 2e3]);
+    let (length, force, [a, b]): (f64, f64, [f64; 2]) = (3.0, 40.0, [1e4, 2e3]);
     let exact = force * length * f64::ln(b / a) / (b - a);
-    let made_of = format!(
-        "elements = 12\nsections = [{{ section = {{ mass = 1, ea = {a}, ei = 1 }}, end_section = {{ mass = 1, ea = {b}, ei = 1 }} }}]"
-    );
     let tension = |s: f64| {
         format!(
             "[[records]]\ntype = \"along\"\nof = \"beam\"\nwhat = \"tension\"\nat = {s}\nname = \"t{s}\"\n"
         )
     };
-    let h = run(&beam(length, &made_of, &(pull([force, 0.0, 0.0]) + &tension(0.4) + &tension(2.9))));
-    let stretched = last(&h, "beam.end.x") - length;
-    println!("stretch {:.1e}, tension {:.1e}", stretched / exact - 1.0, last(&h, "t0.4") / force - 1.0);
-    assert!((stretched / exact - 1.0).abs() < 1e-6);
-    assert!((last(&h, "t0.4") / force - 1.0).abs() < 1e-8 && (last(&h, "t2.9") / force - 1.0).abs() < 1e-8);
+    let errors = [12, 24].map(|n| {
+        let made_of = format!(
+            "elements = {n}\nsections = [{{ section = {{ mass = 1, ea = {a}, ei = 1 }}, end_section = {{ mass = 1, ea = {b}, ei = 1 \
+             }} }}]"
+        );
+        let h = run(&beam(length, &made_of, &(pull([force, 0.0, 0.0]) + &tension(0.4) + &tension(2.9))));
+        assert!((last(&h, "t0.4") / force - 1.0).abs() < 1e-8 && (last(&h, "t2.9") / force - 1.0).abs() < 1e-8);
+        ((last(&h, "beam.end.x") - length) / exact - 1.0).abs()
+    });
+    println!("stretch {errors:?}");
+    assert!(errors[1] < 2e-6 && errors[0] / errors[1] > 12.0, "{errors:?}");
 }
 
 #[test]
@@ -155,7 +158,7 @@ fn a_rope_that_only_pulls_does_not_push() {
         of = "rope"
         what = "tension"
         at = "50 %"
-        name = "t"
+        name = "pull"
         [[records]]
         type = "position"
         of = "rope@25%"
@@ -164,9 +167,9 @@ fn a_rope_that_only_pulls_does_not_push() {
         )
     };
     let (slack, stiff) = (run(&text(true)), run(&text(false)));
-    assert_eq!(last(&slack, "t"), 0.0);
+    assert_eq!(last(&slack, "pull"), 0.0);
     assert!((last(&slack, "p.x") - 0.25).abs() < 1e-12);
-    assert!((last(&stiff, "t") + 1e4 * (1.0 - 1.0 / 1.05)).abs() < 1e-6);
+    assert!((last(&stiff, "pull") + 1e4 * (1.0 - 1.0 / 1.05)).abs() < 1e-6);
 }
 
 /// A short line of sections with all that there is, bent and stretched.
@@ -210,7 +213,7 @@ fn tangents_and_forces_are_derivatives_of_the_energy() {
     state.v.iter_mut().for_each(|v| *v = random());
     let at = At { relaxed: None, ..state.at() };
     let elastic: Vec<_> = model.terms().iter().filter(|t| t.label().starts_with("elasticity")).collect();
-    assert!(elastic.len() >= 2, "{:?}", model.terms().iter().map(|t| t.label()).collect::<Vec<_>>());
+    assert!(!elastic.is_empty(), "{:?}", model.terms().iter().map(|t| t.label()).collect::<Vec<_>>());
     for term in elastic {
         for width in [Width::One, Width::Four] {
             let worst = check_tangent(term.as_ref(), &nodes, &at, width);

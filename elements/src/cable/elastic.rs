@@ -1,19 +1,19 @@
 //! Elasticity that changes along an element or isn't proportional to the strain: EA and EI that go linearly from one end to
 //! the other, tables, ropes that don't push.
 //!
-//! Such an element has the [`Cable`](super::Cable) for its mass, with no stiffness in what is told here. It is rare beside
-//! the others: one kernel serves all stiffness models, one element at a time.
+//! Such an element has the [`Cable`](super::Cable) for its mass, without stiffness. It is rare beside the others: one kernel
+//! serves all stiffness models, one element at a time.
 
 use super::T1;
 use super::element::CableParams;
 use super::law::Curve;
 use super::longitudinal::{Longitudinal, Strain};
-use super::model::ChosenModels;
+use super::model::{ChosenModels, Models};
 use super::quadrature::{Quadrature, Rule};
 use super::reduced::Reduced;
 use super::relaxed::capped;
 use super::shape::{Natural, natural};
-use super::transverse::Curve as Bend;
+use super::transverse::{Curve as Bend, Transverse};
 use ropewalk_core::{Batch, Element, Energy, Local, Real, Relaxation, Share, Weights};
 use std::sync::Arc;
 
@@ -75,10 +75,10 @@ impl Bending {
 pub(crate) struct Elastic {
     /// Length, and the largest stiffnesses.
     pub params: CableParams,
-    /// How it stretches, if that is told here.
-    pub stretching: Option<Stretching>,
-    /// How it bends, if that is told here.
-    pub bending: Option<Bending>,
+    /// How it stretches.
+    pub stretching: Stretching,
+    /// How it bends.
+    pub bending: Bending,
     /// Strain measures and quadrature.
     pub models: ChosenModels,
 }
@@ -89,11 +89,11 @@ impl Elastic {
     #[inline(always)]
     fn stretch<R: Real, const TANGENT: bool>(
         &self,
-        law: &Stretching,
         q: &Natural<R>,
         x: &Local<R, 12, 12>,
         out: &mut Reduced<R>,
     ) {
+        let law = &self.stretching;
         let (model, l) = (self.models.longitudinal, self.params.l);
         let part = |ramp: f64, how: &Relaxation| capped(&self.params, ramp, how.load) / self.params.ea;
         let [now, before] =
@@ -127,14 +127,9 @@ impl Elastic {
 
     /// Adds the bending force, and with `TANGENT` its derivative.
     #[inline(always)]
-    fn bend<R: Real, const TANGENT: bool>(
-        &self,
-        law: &Bending,
-        q: &Natural<R>,
-        x: &Local<R, 12, 12>,
-        out: &mut Reduced<R>,
-    ) {
+    fn bend<R: Real, const TANGENT: bool>(&self, q: &Natural<R>, x: &Local<R, 12, 12>, out: &mut Reduced<R>) {
         let (il, l) = (R::of(1.0 / self.params.l), self.params.l);
+        let law = &self.bending;
         let positive = x.relaxed.as_ref().is_some_and(|how| how.floor.is_some());
         for at in self.models.rule.bending().points() {
             let bend = Bend::new(self.models.transverse, q, at, il);
@@ -167,13 +162,8 @@ impl Element<12, 12> for Elastic {
     const WIDE: bool = false;
 
     fn label(&self) -> String {
-        let m = &self.models;
-        let parts = [
-            self.stretching.as_ref().map(|_| m.longitudinal.label()),
-            self.bending.as_ref().map(|_| super::transverse::Transverse::label(m.transverse)),
-        ];
-        let parts: Vec<&str> = parts.into_iter().flatten().collect();
-        format!("elasticity {} {}", parts.join("+"), m.rule.label())
+        let Models { longitudinal, transverse, rule } = self.models;
+        format!("elasticity {}+{} {}", longitudinal.label(), transverse.label(), rule.label())
     }
     #[inline(always)]
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Elastic {
@@ -189,12 +179,8 @@ impl Element<12, 12> for Elastic {
         let il = R::of(1.0 / p.params.l);
         let q = natural(&x.q, il);
         let mut local = Reduced::zero();
-        if let Some(law) = &p.stretching {
-            p.stretch::<R, TANGENT>(law, &q, x, &mut local);
-        }
-        if let Some(law) = &p.bending {
-            p.bend::<R, TANGENT>(law, &q, x, &mut local);
-        }
+        p.stretch::<R, TANGENT>(&q, x, &mut local);
+        p.bend::<R, TANGENT>(&q, x, &mut local);
         local.spread_force::<false>(il, out);
         if TANGENT {
             local.spread_tangent::<false>(il, R::of(w.q), out);
@@ -205,17 +191,13 @@ impl Element<12, 12> for Elastic {
         let (il, l) = (R::of(1.0 / p.params.l), p.params.l);
         let q = natural(&x.q, il);
         let mut potential = R::zero();
-        if let Some(law) = &p.stretching {
-            for at in p.models.points() {
-                let eps = p.models.longitudinal.strain(&q, at).eps();
-                potential += eps.map(|eps| l * at.w * law.at(at.xi, eps)[0]);
-            }
+        for at in p.models.points() {
+            let eps = p.models.longitudinal.strain(&q, at).eps();
+            potential += eps.map(|eps| l * at.w * p.stretching.at(at.xi, eps)[0]);
         }
-        if let Some(law) = &p.bending {
-            for at in p.models.rule.bending().points() {
-                let square = Bend::new(p.models.transverse, &q, at, il).square.value;
-                potential += square.map(|z| l * at.w * law.by_square(at.xi, z)[0]);
-            }
+        for at in p.models.rule.bending().points() {
+            let square = Bend::new(p.models.transverse, &q, at, il).square.value;
+            potential += square.map(|z| l * at.w * p.bending.by_square(at.xi, z)[0]);
         }
         Energy { kinetic: R::zero(), potential }
     }

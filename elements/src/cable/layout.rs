@@ -24,29 +24,31 @@ struct Made {
     /// Its section: the mean of one that changes along it, with the largest slopes of tables for EA and EI.
     section: Section,
     /// How it stretches and bends, where that isn't told by EA and EI.
-    stretching: Option<Stretching>,
-    bending: Option<Bending>,
+    elastic: Option<(Stretching, Bending)>,
 }
 
 impl Made {
     /// Of a section that is the same all along it.
     fn of(section: &Section) -> Result<Self, BuildError> {
-        let mut made = Made { section: section.clone(), stretching: None, bending: None };
+        let mut made = Made { section: section.clone(), elastic: None };
         // what is left of EA where the rope can turn; the rest comes with its torsion
         made.section.ea -= section.gj.map_or(0.0, |gj| section.torque_tension.powi(2) / gj);
-        if let Some(table) = &section.axial_force {
-            let curve = table.curve()?;
-            made.section.ea = curve.stiffness();
-            let (table, tension_only) = (Some(Arc::new(curve)), section.tension_only);
-            made.stretching = Some(Stretching { ends: [1.0; 2], table, tension_only });
-        } else if section.tension_only {
-            made.stretching = Some(Stretching { ends: [section.ea; 2], table: None, tension_only: true });
+        let Section { axial_force, bending_moment, tension_only, .. } = section;
+        let axial_force = axial_force.as_ref().map(|table| table.curve()).transpose()?;
+        let bending_moment = bending_moment.as_ref().map(|table| table.curve()).transpose()?;
+        if axial_force.is_none() && bending_moment.is_none() && !tension_only {
+            return Ok(made);
         }
-        if let Some(table) = &section.bending_moment {
-            let curve = table.curve()?;
-            made.section.ei = curve.stiffness().into();
-            made.bending = Some(Bending { ends: [1.0; 2], table: Some(Arc::new(curve)) });
+        let (mut ea, mut ei) = ([made.section.ea; 2], [section.ei.across; 2]);
+        if let Some(curve) = &axial_force {
+            (made.section.ea, ea) = (curve.stiffness(), [1.0; 2]);
         }
+        if let Some(curve) = &bending_moment {
+            (made.section.ei, ei) = (curve.stiffness().into(), [1.0; 2]);
+        }
+        let (axial_force, tension_only) = (axial_force.map(Arc::new), *tension_only);
+        let stretching = Stretching { ends: ea, table: axial_force, tension_only };
+        made.elastic = Some((stretching, Bending { ends: ei, table: bending_moment.map(Arc::new) }));
         Ok(made)
     }
 
@@ -64,13 +66,9 @@ impl Made {
             bending_retardation_time: mean(linear(|s| s.bending_retardation_time)),
             ..Section::new(0.0, mean(ea), mean(ei))
         };
-        let changes = |[a, b]: [f64; 2]| a != b;
         let stretching = Stretching { ends: ea, table: None, tension_only: a.tension_only };
-        Made {
-            section,
-            stretching: (changes(ea) || a.tension_only).then_some(stretching),
-            bending: changes(ei).then_some(Bending { ends: ei, table: None }),
-        }
+        let plain = ea[0] == ea[1] && ei[0] == ei[1] && !a.tension_only;
+        Made { section, elastic: (!plain).then_some((stretching, Bending { ends: ei, table: None })) }
     }
 }
 
@@ -119,32 +117,26 @@ impl Layout {
 
     /// EA and EI of element `k` as far as they tell how it stretches and bends; else 0.
     pub fn stiffness(&self, k: usize) -> [f64; 2] {
-        let made = &self.made[self.of[k]];
-        [
-            if made.stretching.is_some() { 0.0 } else { made.section.ea },
-            if made.bending.is_some() { 0.0 } else { made.section.ei.across },
-        ]
+        let Made { section, elastic } = &self.made[self.of[k]];
+        if elastic.is_some() { [0.0; 2] } else { [section.ea, section.ei.across] }
     }
 
     /// How element `k` of length `l` stretches and bends, where EA and EI don't tell it.
     pub fn elastic(&self, k: usize, l: f64, model: CableModel) -> Option<Elastic> {
-        let Made { section, stretching, bending } = &self.made[self.of[k]];
-        if stretching.is_none() && bending.is_none() {
-            return None;
-        }
+        let Made { section, elastic } = &self.made[self.of[k]];
+        let (stretching, bending) = elastic.clone()?;
         let params = CableParams { l, ea: section.ea, ei: section.ei.across, rho_a: 0.0 };
-        let (stretching, bending) = (stretching.clone(), bending.clone());
         Some(Elastic { params, stretching, bending, models: model.models().ok()? })
     }
 
     /// The force in element `k` at a place and strain, where that isn't `EA ε` [N].
     pub fn force(&self, k: usize, xi: f64, eps: f64) -> Option<f64> {
-        Some(self.made[self.of[k]].stretching.as_ref()?.at(xi, eps)[1])
+        Some(self.made[self.of[k]].elastic.as_ref()?.0.at(xi, eps)[1])
     }
 
     /// The bending moment of element `k` at a place and curvature, where that isn't `EI κ` [N m].
     pub fn moment(&self, k: usize, xi: f64, kappa: f64) -> Option<f64> {
-        Some(self.made[self.of[k]].bending.as_ref()?.moment(xi, kappa))
+        Some(self.made[self.of[k]].elastic.as_ref()?.1.moment(xi, kappa))
     }
 
     /// Whether another section begins at node `k`, or one ends there that is spliced.
@@ -190,14 +182,15 @@ impl Layout {
 }
 
 /// The splice between two sections; none where they can share a node.
-fn splice(a: &Section, b: &Section, node: usize) -> Option<Splice> {
+fn splice(a: &Section, along: &SectionAlong, node: usize) -> Option<Splice> {
+    let b = &along.section;
     let limp = [a, b].map(|s| s.ei.largest() == 0.0 && s.bending_moment.is_none());
     let stretches = |s: &Section| (s.ea, s.axial_force.clone(), s.tension_only, s.axial_retardation_time);
     let alike = stretches(a) == stretches(b);
-    if alike && limp[0] == limp[1] {
+    if alike && limp[0] == limp[1] && !along.hinged {
         return None;
     }
-    Some(Splice { node, hinged: limp[0] || limp[1] })
+    Some(Splice { node, hinged: limp[0] || limp[1] || along.hinged })
 }
 
 /// The same error, of a field of one of several sections.
@@ -378,7 +371,7 @@ impl CableSpec {
         let mut before: Option<&Section> = None;
         for (along, nodes) in self.sections.iter().zip(nodes) {
             let start = mesh[mesh.len() - 1];
-            if let Some(splice) = before.and_then(|before| splice(before, &along.section, mesh.len() - 1)) {
+            if let Some(splice) = before.and_then(|before| splice(before, along, mesh.len() - 1)) {
                 layout.splices.push(splice);
                 layout.of.push(layout.made.len() - 1);
                 mesh.push(start);

@@ -196,6 +196,10 @@ pub struct SectionAlong {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<NameOrSection>")]
     pub end_section: Option<Section>,
+    /// Whether it can turn freely against the section before, as at a shackle: with a weight or a float there a line has a
+    /// corner. Sections that differ in EA, one of which has no bending stiffness, always can.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub hinged: bool,
     /// Number of its elements, of equal length. Default: its share of the cable's `elements`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elements: Option<usize>,
