@@ -279,7 +279,9 @@ fn a_process_reads_inputs_that_controllers_or_programs_set() {
     assert!(session.set_input("sped", 1.0).unwrap_err().to_string().contains("the inputs are `speed`"));
     assert!(session.snapshot().unwrap_err().to_string().contains("keeps no state"));
     let mut session = Session::start(file, Watch::default()).unwrap_or_else(|e| panic!("{e}"));
-    assert!(session.set_input("speed", 1.0).unwrap_err().to_string().contains("set by the controller `speed`"));
+    assert!(
+        session.set_input("speed", 1.0).unwrap_err().to_string().contains("set by the controller `speed`")
+    );
     let wrong = drawn(&controller.replace("c.speed.drawn", "c.speed.draw")).build().unwrap_err();
     assert!(wrong.to_string().contains("`c.speed.drawn`"), "{wrong}");
     let wrong = drawn(&controller.replace("0.5 *", "(0 / 0) *"));

@@ -286,7 +286,10 @@ impl Part for CablePart {
                     None if *s >= 0.0 && *s <= self.length() => {
                         let next = self.mesh.partition_point(|x| x < s).clamp(1, self.mesh.len() - 1);
                         let [a, b] = [self.mesh[next - 1], self.mesh[next]];
-                        Err(format!("no node of `{}` is at {s} m; the nearest are at {a} m and {b} m", self.name))
+                        Err(format!(
+                            "no node of `{}` is at {s} m; the nearest are at {a} m and {b} m",
+                            self.name
+                        ))
                     }
                     None => Err(format!("{s} m is not on the cable; it has {}", self.places())),
                 }
