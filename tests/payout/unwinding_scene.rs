@@ -282,7 +282,7 @@ fn a_process_reads_inputs_that_controllers_or_programs_set() {
     assert!(
         session.set_input("speed", 1.0).unwrap_err().to_string().contains("set by the controller `speed`")
     );
-    let wrong = drawn(&controller.replace("c.speed.drawn", "c.speed.draw")).build().unwrap_err();
+    let wrong = drawn(&controller.replace("c.speed.drawn", "c.speed.draw")).build().err().expect("refused");
     assert!(wrong.to_string().contains("`c.speed.drawn`"), "{wrong}");
     let wrong = drawn(&controller.replace("0.5 *", "(0 / 0) *"));
     let history = simulate(wrong.scene());
