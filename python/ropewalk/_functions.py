@@ -7,6 +7,8 @@ import inspect
 import json
 import threading
 import traceback
+import weakref
+from collections import deque
 from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Any, TypeVar, overload
@@ -25,6 +27,11 @@ BESIDES = ("s", "diameter")
 
 _lock = threading.Lock()
 _registered: dict[str, Callback] = {}
+"""Those that `function` has made known: for good."""
+_held: dict[str, weakref.ref[Callback]] = {}
+"""Those that scenes hold: as long as one does."""
+_gone: deque[str] = deque()
+"""Names of held functions that nobody holds any more, until they are forgotten."""
 
 
 @overload
@@ -50,8 +57,8 @@ def function(name: Any, /) -> Any:
 
     Derivatives are differences, and only taken for what a function asks for. This is slow, and to try things out. What it
     raises ends the run with a `FunctionError`, whose `__cause__` it is; numbers that aren't finite end it too if smaller
-    steps don't help. Functions stay registered, and in this process: the command line doesn't know them, nor do workers
-    elsewhere that don't register them by themselves.
+    steps don't help. What is made known here stays so, and in this process: the command line doesn't know it, nor do workers
+    elsewhere that don't register it by themselves. A function that a scene holds is forgotten with the scene.
     """
     if isinstance(name, str):
 
@@ -67,29 +74,79 @@ def function(name: Any, /) -> Any:
 
 
 def _register(name: str, f: Callback) -> None:
-    binding = Binding(name, f)
+    binding = Binding(name, f, lambda: f)
     with _lock:
+        _held.pop(name, None)
         _registered[name] = f
         _native.register(name, binding)
+    _clean()
 
 
-def name_of(f: Callback) -> str:
-    """The name of a function in scenes; it is registered if it isn't yet."""
-    with _lock:
-        for name, known in _registered.items():
+class Held(dict[str, Callback]):
+    """The functions of a scene by their names: what keeps them known. A copy of the scene holds the same ones, one that was
+    sent to another process none."""
+
+    def __deepcopy__(self, _: Any) -> Held:
+        return Held(self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Held, ()
+
+    def name_of(self, f: Callback) -> str:
+        """The name of a function in scenes; it is known from here on, as long as this or another one holds it."""
+        _clean()
+        for name, known in _known():
             if known is f:
+                self[name] = f
                 return name
         own = getattr(f, "__name__", type(f).__name__).replace("<lambda>", "lambda")
-        name, k = own, 1
-        while name in _registered:
-            name, k = f"{own}-{k + 1}", k + 1
-    _register(name, f)
-    return name
+        try:
+            held = weakref.ref(f)
+        except TypeError:
+            raise TypeError(f"{f!r} can't be held by a scene: write a function in Python around it") from None
+        binding = Binding(own, f, held)
+        with _lock:
+            name, k = own, 1
+            while name in _registered or name in _held:
+                name, k = f"{own}-{k + 1}", k + 1
+            binding.name = name
+            _held[name] = held
+            _native.register(name, binding)
+        weakref.finalize(f, _forget, name).atexit = False
+        self[name] = f
+        return name
+
+
+def _known() -> list[tuple[str, Callback]]:
+    """All functions of this process."""
+    with _lock:
+        held = [(name, f()) for name, f in _held.items()]
+        return [*_registered.items(), *((name, f) for name, f in held if f is not None)]
+
+
+def _forget(name: str) -> None:
+    """Nobody holds the function of this name any more. Python may say so at any moment, even while another is registered."""
+    _gone.append(name)
+    _clean()
+
+
+def _clean() -> None:
+    """Forgets what is gone, unless the lists are in use: then it is done with the next one."""
+    while _gone and _lock.acquire(blocking=False):
+        try:
+            name = _gone.popleft() if _gone else ""
+            held = _held.get(name)
+            if held is not None and held() is None:
+                del _held[name]
+                _native.forget(name)
+        finally:
+            _lock.release()
 
 
 def meanings(text: str) -> dict[str, list[str]]:
     """What tells the functions that a scene names from others of these names."""
-    return {name: meaning(f) for name, f in sorted(_registered.items()) if f'"{name}"' in text or f"'{name}'" in text}
+    named = {name: f for name, f in _known() if f'"{name}"' in text or f"'{name}'" in text}
+    return {name: meaning(f) for name, f in sorted(named.items())}
 
 
 def meaning(f: Callback | None) -> list[str]:
@@ -107,8 +164,9 @@ def meaning(f: Callback | None) -> list[str]:
 class Binding:
     """A function that waits for its parameters."""
 
-    def __init__(self, name: str, f: Callback) -> None:
-        self.name, self.f = name, f
+    def __init__(self, name: str, f: Callback, found: Callable[[], Callback | None]) -> None:
+        """`found` gives the function as long as it is there."""
+        self.name, self.found = name, found
         try:
             arguments = inspect.signature(f).parameters.values()
         except (TypeError, ValueError):
@@ -129,7 +187,10 @@ class Binding:
         for a in own:
             if a not in given and not self.arguments[a]:
                 raise ValueError(f"the function `{self.name}` needs the parameter `{a}`")
-        return Bound(self.f, [a for a in self.arguments if a in (*STATE, *BESIDES)], given)
+        f = self.found()
+        if f is None:
+            raise ValueError(f"the function `{self.name}` is gone with the scene that held it")
+        return Bound(f, [a for a in self.arguments if a in (*STATE, *BESIDES)], given)
 
 
 def _si(value: Any) -> Any:

@@ -10,7 +10,7 @@ from typing import Any, Union
 import numpy as np
 
 from ._errors import SceneError
-from ._functions import name_of
+from ._functions import Held
 from ._native import Source
 from ._part import Part
 from ._parts import Parts
@@ -43,6 +43,7 @@ class Scene(Parts):
         """`gravity` is the acceleration [m/s²], by default 9.81 downwards; it acts where there is a `gravity()`. Files
         that the scene names are looked for in `folder`."""
         self._scene: dict[str, Any] = {}
+        self._functions = Held()
         if title:
             self._scene["title"] = title
         if description:
@@ -53,7 +54,7 @@ class Scene(Parts):
 
     def parameter(self, name: str, default: Any, description: str = "") -> str:
         """Declares a parameter, which runs and sweeps may set, and returns what stands for it in the scene."""
-        entry = {"default": plain(default)} | ({"description": description} if description else {})
+        entry = {"default": plain(default, self._functions)} | ({"description": description} if description else {})
         self._scene.setdefault("parameters", {})[name] = entry
         return f"${name}"
 
@@ -65,17 +66,17 @@ class Scene(Parts):
         return self._add(list, type, named | fields)
 
     def _add(self, list: str, type: str, fields: Mapping[str, Any]) -> Part:
-        given = {key: plain(value) for key, value in fields.items() if value is not None}
+        given = {key: plain(value, self._functions) for key, value in fields.items() if value is not None}
         self._scene.setdefault(list, []).append({"type": type} | given)
         return Part(str(given.get("name", type)))
 
     def _append(self, list: str, fields: Mapping[str, Any]) -> Part:
-        given = {key: plain(value) for key, value in fields.items() if value is not None}
+        given = {key: plain(value, self._functions) for key, value in fields.items() if value is not None}
         self._scene.setdefault(list, []).append(given)
         return Part(str(given.get("name", list)))
 
     def _set(self, section: str, fields: Mapping[str, Any]) -> None:
-        given = {key: plain(value) for key, value in fields.items() if value is not None}
+        given = {key: plain(value, self._functions) for key, value in fields.items() if value is not None}
         self._scene.setdefault(section, {}).update(given)
 
     def to_dict(self) -> dict[str, Any]:
@@ -95,20 +96,20 @@ AnyScene = Union[str, "os.PathLike[str]", Mapping[str, Any], Scene]
 """A bundled name, the path of a .toml or .json file, a dict, or a `Scene`."""
 
 
-def plain(value: Any) -> Any:
-    """A value as JSON has it."""
+def plain(value: Any, functions: Held | None = None) -> Any:
+    """A value as JSON has it; `functions` keep what it holds of them, which else has to be held by the value."""
     if isinstance(value, Part):
         return str(value)
     if isinstance(value, np.ndarray):
         return value.tolist()
     if callable(value) and not isinstance(value, type):
-        return name_of(value)
+        return (Held() if functions is None else functions).name_of(value)
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, Mapping):
-        return {str(key): plain(entry) for key, entry in value.items()}
+        return {str(key): plain(entry, functions) for key, entry in value.items()}
     if isinstance(value, (list, tuple, range)):
-        return [plain(entry) for entry in value]
+        return [plain(entry, functions) for entry in value]
     return value
 
 

@@ -8,7 +8,7 @@ use ropewalk::Error;
 use ropewalk::core::broken::Broken;
 use ropewalk::core::{BuildError, Station, V3};
 use ropewalk::scene::functions::{
-    Displaced, Function, Parameters, Reads, Seen, Trouble, Written, register_function,
+    Displaced, Function, Parameters, Reads, Seen, Trouble, Written, forget_function, register_function,
 };
 use std::sync::Arc;
 
@@ -29,6 +29,12 @@ struct Bound {
 #[pyfunction]
 pub fn register(name: &str, bind: Py<PyAny>) {
     register_function(name, Arc::new(Unbound(bind)));
+}
+
+/// Forgets it again; what was bound stays as it is.
+#[pyfunction]
+pub fn forget(name: &str) {
+    forget_function(name);
 }
 
 impl Written for Unbound {

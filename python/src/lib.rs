@@ -209,6 +209,7 @@ fn _native(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(studies::certify, m)?)?;
     m.add_function(wrap_pyfunction!(studies::samples, m)?)?;
     m.add_function(wrap_pyfunction!(functions::register, m)?)?;
+    m.add_function(wrap_pyfunction!(functions::forget, m)?)?;
     m.add_function(wrap_pyfunction!(export_fmu, m)?)?;
     m.add_function(wrap_pyfunction!(si, m)?)?;
     m.add_function(wrap_pyfunction!(bundled, m)?)?;

@@ -91,7 +91,7 @@ impl Simulation {
     /// Steps of the solver so far, and those that were repeated with a smaller one.
     #[getter]
     fn steps(&self, py: Python<'_>) -> (u64, u64) {
-        let counts = self.lock(py).simulation().work.counts;
+        let counts = self.lock(py).counts();
         (counts.steps, counts.rejected)
     }
     /// Names and units of the columns.
@@ -116,7 +116,7 @@ impl Simulation {
             let [least, most] = i.limits();
             (i.name().to_string(), i.unit().to_string(), i.value(session.t()), least, most)
         };
-        session.simulation().inputs().iter().map(describe).collect()
+        session.inputs().iter().map(describe).collect()
     }
     /// Sets an input from here on.
     fn set_input(&self, py: Python<'_>, name: &str, value: f64) -> PyResult<()> {

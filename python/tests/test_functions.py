@@ -1,11 +1,15 @@
 """Forces and motions written in Python, against the built-in types that do the same."""
 
+import copy
+import gc
+import json
 import pickle
 import subprocess
 import sys
 import threading
 import time
 import traceback
+import weakref
 
 import numpy as np
 import pytest
@@ -276,3 +280,82 @@ def test_a_sweep_tells_functions_of_one_name_apart(tmp_path):
 
     first = sweep(1.0)
     assert (sweep(1.0) == first).all() and (sweep(2.0) != first).all()
+
+
+class Big:
+    """Something that one wants to get rid of."""
+
+
+def held(pull) -> rw.Scene:
+    return bob(lambda scene, mass: scene.function(function=pull, marker=mass, name="pull"))
+
+
+def test_a_function_is_forgotten_with_what_holds_it():
+    def make(thing):
+        def pull(position):
+            return -10.0 * position if thing else [0, 0, 0]
+
+        return pull
+
+    finals, gone = set(), []
+    for k in range(20):
+        thing = Big()
+        gone.append(weakref.ref(thing))
+        scene = held(make(thing))
+        other = copy.deepcopy(scene)
+        del scene, thing
+        gc.collect()
+        # the copy holds it still, by its own name: that of the one before is free again
+        assert gone[-1]() is not None and '"function": "pull"' in json.dumps(other.to_dict())
+        sim = rw.Simulation(other).advance(0.1)
+        finals.add(rw.run(other).final["bob.z"])
+        del other
+        # a simulation keeps what it was built with
+        finals.add(sim.advance(to=1.5)["bob"][2])
+        del sim
+        gc.collect()
+    assert all(thing() is None for thing in gone) and len(finals) <= 2
+    with pytest.raises(rw.SceneError, match="no function `pull` in this process"):
+        rw.run(bob(lambda scene, mass: scene.add("forces", "function", function="pull", marker=mass)))
+    # of a dict the dict holds it; a method is held as well
+    class Puller(Big):
+        def pull(self, position):
+            return -10.0 * position
+
+    puller = Puller()
+    gone.append(weakref.ref(puller))
+    data = held(puller.pull).to_dict()
+    del data["forces"][-1]
+    data["forces"].append({"type": "function", "function": puller.pull, "marker": "bob"})
+    assert rw.run(data).final["bob.z"] in finals
+    del data, puller
+    gc.collect()
+    assert gone[-1]() is None
+    # a scene that was sent elsewhere has the names alone
+    scene = held(make(Big()))
+    assert pickle.loads(pickle.dumps(scene)).to_dict() == scene.to_dict()
+
+
+def test_functions_that_come_and_go_in_threads_are_not_mixed_up():
+    def one(factor: float) -> None:
+        for _ in range(5):
+            scene = held(lambda position: -factor * position)
+            assert rw.run(scene).final["bob.z"] == expected[factor]
+            del scene
+
+    factors = [5.0, 10.0, 20.0]
+    expected = {factor: rw.run(held(lambda position: -factor * position)).final["bob.z"] for factor in factors}
+    failed = []
+
+    def guarded(factor: float) -> None:
+        try:
+            one(factor)
+        except BaseException as e:
+            failed.append(e)
+
+    threads = [threading.Thread(target=guarded, args=[factor]) for factor in factors]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failed, failed

@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 ROOT = Path(__file__).parents[2]
-FOLDERS = ["models/gallery", "models/scenes", "examples/control", "verification", "book/src"]
+FOLDERS = ["models/gallery", "models/scenes", "examples/control", "studies/verification", "book/src"]
 # one case of the verification has a motion of its own, which nobody else is to use; book.toml is no scene
 SCENES = sorted(path for folder in FOLDERS for path in (ROOT / folder).rglob("*.toml") if "driven_rod" not in path.name)
 WRONG = {

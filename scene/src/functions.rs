@@ -105,7 +105,15 @@ static ALL: RwLock<BTreeMap<String, Arc<dyn Written>>> = RwLock::new(BTreeMap::n
 
 /// Makes a function known to the scenes of this process, in place of another one of this name.
 pub fn register_function(name: &str, function: Arc<dyn Written>) {
-    ALL.write().unwrap_or_else(PoisonError::into_inner).insert(name.to_string(), function);
+    let former = ALL.write().unwrap_or_else(PoisonError::into_inner).insert(name.to_string(), function);
+    // dropped behind the lock: it may be the last of a program's objects, whose end calls back
+    drop(former);
+}
+
+/// Makes a function unknown again. Scenes that were built with it keep it, but those whose mesh changes build anew.
+pub fn forget_function(name: &str) {
+    let former = ALL.write().unwrap_or_else(PoisonError::into_inner).remove(name);
+    drop(former);
 }
 
 /// The names of all functions of this process.

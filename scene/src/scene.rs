@@ -4,7 +4,7 @@ use crate::builder::Builder;
 use crate::controllers;
 use crate::inputs::{InputSpec, Inputs};
 use crate::motions::build_all;
-use crate::process::{Process, ProcessSpec, Surroundings};
+use crate::process::{Process, ProcessSpec, Steered, Surroundings};
 use crate::spec::{ConstraintSpec, ControllerSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
 use crate::water::{Air, Water};
 use ropewalk_core::integrator::Options;
@@ -303,16 +303,14 @@ impl Scene {
         let of = |kind, k| move |error| SceneError { spec: Some((kind, k)), error };
         let whole = |error: BuildError| SceneError { spec: None, error };
         let Some(spec) = self.processes.first() else { return Ok(None) };
-        let message = "a process is a problem of its own: a scene holds one, and no elements, constraints, forces, \
-                       records, inputs or controllers beside it";
+        let message = "a process is a problem of its own: a scene holds one, and no elements, constraints, forces or \
+                       records beside it";
         let others = [
             (SpecKind::Process, self.processes.len() - 1, 1),
             (SpecKind::Element, self.elements.len(), 0),
             (SpecKind::Constraint, self.constraints.len(), 0),
             (SpecKind::Force, self.forces.len(), 0),
             (SpecKind::Record, self.records.len(), 0),
-            (SpecKind::Input, self.inputs.len(), 0),
-            (SpecKind::Controller, self.controllers.len(), 0),
         ];
         if let Some((kind, _, k)) = others.into_iter().find(|(_, count, _)| *count > 0) {
             return Err(of(kind, k)(BuildError::new(message)));
@@ -323,12 +321,22 @@ impl Scene {
         }
         self.check_world().map_err(whole)?;
         self.run.check().map_err(whole)?;
-        let motions = build_all(&self.motions, &Inputs::default(), self.run.duration)
-            .map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
-        let (gravity, mut water) = (self.gravity, self.water.clone());
-        water.as_mut().map_or(Ok(()), |water| water.bind(&Inputs::default())).map_err(whole)?;
-        let around = Surroundings { gravity, water, motions, duration: self.run.duration };
-        spec.build(&around).map(Some).map_err(of(SpecKind::Process, 0))
+        let inputs = Inputs::build(&self.inputs).map_err(|(k, e)| of(SpecKind::Input, k)(e))?;
+        let duration = self.run.duration;
+        let motions =
+            build_all(&self.motions, &inputs, duration).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
+        let (gravity, mut water, all) = (self.gravity, self.water.clone(), inputs.all().to_vec());
+        water.as_mut().map_or(Ok(()), |water| water.bind(&inputs)).map_err(whole)?;
+        let around = Surroundings { gravity, water, motions, inputs, duration };
+        let process = spec.build(&around).map_err(of(SpecKind::Process, 0))?;
+        if all.is_empty() && self.controllers.is_empty() {
+            return Ok(Some(process));
+        }
+        let steered = Steered::new(process, (spec.name(), spec.channels()), all, |model, records| {
+            controllers::build_all(&self.controllers, model, records, duration)
+        });
+        let steered = steered.map_err(|(k, e)| of(SpecKind::Controller, k)(e))?;
+        Ok(Some(Box::new(steered)))
     }
 
     /// Builds the model.

@@ -156,7 +156,7 @@ impl Reference {
 
 /// The references of a case of the verification suite, which itself runs it in one way.
 pub fn case(name: &str) -> Vec<Reference> {
-    let all = data(&format!("../../verification/{name}.json"));
+    let all = data(&format!("../../studies/verification/{name}.json"));
     let runs = all["runs"].as_array().expect("runs");
     let quantities = runs.iter().flat_map(|r| r["quantities"].as_array().expect("quantities"));
     quantities.map(|q| serde_json::from_value(q.clone()).expect(name)).collect()

@@ -202,3 +202,77 @@ fn dynamic_positioning_holds_place_and_heading() {
     assert!((last("sway") + 30e3).abs() < 600.0, "{}", last("sway"));
     assert!((last("yaw") + 600e3).abs() < 12e3, "{}", last("yaw"));
 }
+
+#[test]
+fn steps_get_over_the_kinks_of_a_winch_that_is_controlled() {
+    let text = |tolerance: f64| {
+        format!(
+            r#"
+            [run]
+            duration = "3 s"
+            [solver]
+            stepping = {{ controlled = {{ tolerance = {tolerance:e} }} }}
+            [[inputs]]
+            name = "hoist"
+            unit = "m/s"
+            min = -1
+            max = 1
+            join = "linear"
+            [[controllers]]
+            type = "expression"
+            input = "hoist"
+            value = "rope.start.vz - (-8 m - load.z) / 1 s"
+            every = "0.1 s"
+            [[elements]]
+            type = "cable"
+            name = "rope"
+            points = [[0, 0, 0], [0, 0, "-8 m"]]
+            tension = "4.95 kN"
+            elements = 4
+            section = {{ mass = "1 kg/m", ea = "2 MN", ei = "1 N m^2", axial_retardation_time = "10 ms" }}
+            [[elements]]
+            type = "point_mass"
+            name = "load"
+            marker = "rope.end"
+            mass = "500 kg"
+            [[motions]]
+            type = "harmonic"
+            name = "waves"
+            amplitude = [0, 0, "0.5 m"]
+            frequency = "0.1 Hz"
+            [[constraints]]
+            type = "driving"
+            name = "boom"
+            marker = "rope.start"
+            motion = "waves"
+            [[constraints]]
+            type = "winch"
+            name = "winch"
+            marker = "rope.start"
+            speed = {{ input = "hoist" }}
+            [[forces]]
+            type = "gravity"
+            [[records]]
+            type = "position"
+            of = "load"
+            [[records]]
+            type = "velocity"
+            of = "rope.start"
+            "#
+        )
+    };
+    let run = |tolerance: f64| {
+        let mut s = started(&scene(&text(tolerance)));
+        s.advance(3.0, 1.0, &mut ()).unwrap_or_else(|e| panic!("{e}"));
+        let counts = s.work.counts;
+        println!("tolerance {tolerance:e}: {counts:?}, imbalance {:e} J", s.audit.imbalance());
+        (counts.steps + counts.rejected, s.audit.imbalance().abs())
+    };
+    // thirty kinks, each of which takes shorter steps, and no collapse: tens of thousands of them once
+    for (tolerance, most, lost) in [(1e-4, 100, 2.0), (1e-5, 400, 0.8), (1e-6, 600, 0.2), (1e-8, 8000, 0.02)]
+    {
+        let (tries, imbalance) = run(tolerance);
+        assert!(tries < most, "{tries}");
+        assert!(imbalance < lost, "{imbalance} J");
+    }
+}

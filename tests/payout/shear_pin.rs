@@ -4,9 +4,10 @@ use crate::program::run;
 use ropewalk::{History, RunOptions, SceneFile, bundled, simulate};
 use ropewalk_constraints::motion::{SpeedTableSpec, StraightSpec};
 use ropewalk_constraints::{BreakSpec, DrivingSpec, SphericalSpec};
+use ropewalk_core::Spot;
 use ropewalk_core::integrator::{Options, Stepping};
 use ropewalk_elements::rigid_chain::LinkSection;
-use ropewalk_elements::{PointMassSpec, RigidChainSpec};
+use ropewalk_elements::{CableSpec, PointMassSpec, RigidChainSpec, Section};
 use ropewalk_forces::{DragSpec, GravitySpec, LatchSpec};
 use ropewalk_scene::records::{DrivingCheckSpec, EnergySpec, ReactionPart, ReactionSpec, ReleasedSpec};
 use ropewalk_scene::{Scene, Water};
@@ -352,6 +353,24 @@ fn bad_latches_are_refused_with_the_remedy() {
         let message = told(change);
         assert!(message.contains(words), "{message}");
     }
+}
+
+#[test]
+fn a_latch_between_the_nodes_of_a_cable_puts_one_there() {
+    let mut scene = Scene::new();
+    scene
+        .element(CableSpec::straight("line", [0.0; 3], [3.0, 0.0, 0.0], 4, Section::new(1.0, 1e5, 1.0)))
+        .constraint(SphericalSpec::pin("hook", "line.start"))
+        .force(LatchSpec::new("tape", &["line@33%", "line@2.5m"], 1e4, 10.0, 20.0));
+    let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
+    let (line, q) = (model.part("line").expect("line"), model.state().q);
+    for s in [0.99, 2.5] {
+        let marker = line.marker(&Spot::Along(s)).unwrap_or_else(|e| panic!("{e}"));
+        assert!((marker.place(model.nodes(), &q, |_| 0.0).x[0] - s).abs() < 1e-12, "{s}");
+    }
+    // what nothing holds has no node, and what is said is where the others are
+    let told = line.marker(&Spot::Along(2.6)).expect_err("no node");
+    assert_eq!(told, "no node of `line` is at 2.6 m; the nearest are at 2.5 m and 3 m");
 }
 
 #[test]

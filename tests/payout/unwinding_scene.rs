@@ -1,7 +1,7 @@
 //! A process in a scene: the bundled `unwinding-paper`, and what is wrong with others.
 
 use ropewalk::scene::Format;
-use ropewalk::{SceneFile, bundled, simulate};
+use ropewalk::{SceneFile, Session, Watch, bundled, simulate};
 
 fn open(overrides: &[&str]) -> SceneFile {
     let overrides: Vec<String> = overrides.iter().map(ToString::to_string).collect();
@@ -206,4 +206,85 @@ fn what_is_wrong_is_said_with_its_place() {
             }
         }
     }
+}
+
+/// A process whose cable is drawn at the speed of an input.
+fn drawn(controllers: &str) -> SceneFile {
+    let text = format!(
+        r#"
+        [run]
+        duration = "50 ms"
+        output = "10 ms"
+        [[inputs]]
+        name = "speed"
+        unit = "m/s"
+        max = 5
+        join = "linear"
+        {controllers}
+        [[motions]]
+        type = "input"
+        name = "draw"
+        speed = "speed"
+        [[processes]]
+        type = "unwound_cable"
+        name = "c"
+        mass = "1 g/m"
+        motion = "draw"
+        rule = {{ tension = {{ tension = "1 N" }} }}
+        package = {{ radius = "60 mm", length = "0.1 m", diameter = "1 mm", origin = [0, 0, "0.1 m"] }}
+        "#
+    );
+    SceneFile::parse(&text, "drawn", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn a_process_reads_inputs_that_controllers_or_programs_set() {
+    // each speed from the one that is seen: u' = u/2 + 0.1 m/s, reached an interval later
+    let controller = r#"
+        [[controllers]]
+        type = "expression"
+        input = "speed"
+        value = "0.5 * c.speed.drawn + 0.1 m/s"
+        every = "10 ms"
+        "#;
+    let file = drawn(controller);
+    let history = simulate(file.scene()).unwrap_or_else(|e| panic!("{e}"));
+    let speed = history.column("c.speed.drawn").expect("speed");
+    let set = [0.1, 0.15, 0.175, 0.1875, 0.19375];
+    assert_eq!(speed.len(), 6);
+    for (k, (u, wanted)) in speed.iter().zip([0.0].iter().chain(&set)).enumerate() {
+        assert!((u - wanted).abs() < 1e-12, "{k}: {u} {wanted}");
+    }
+    // the way is the integral of the speed, in straight pieces, and it is drawn off the package or the free cable
+    let way: f64 = speed.windows(2).map(|u| 0.005 * (u[0] + u[1])).sum();
+    let free = history.column("c.length.free").expect("free length");
+    let peeled = history.last("c.length.peeled").expect("peeled");
+    assert!((peeled - way - (free[5] - free[0])).abs() < 1e-9, "{peeled} {way}");
+
+    // the same from outside, to the last bit
+    let mut session = Session::start(drawn(""), Watch::default()).unwrap_or_else(|e| panic!("{e}"));
+    for (k, u) in set.into_iter().enumerate() {
+        session.set_input("speed", u).unwrap_or_else(|e| panic!("{e}"));
+        session.advance((k + 1) as f64 * 0.01).unwrap_or_else(|e| panic!("{e}"));
+        for name in ["c.speed.drawn", "c.length.free", "c.tension.lift"] {
+            let there = history.column(name).expect(name)[k + 1];
+            let off = (session.value(name).unwrap_or_else(|e| panic!("{e}")) - there).abs();
+            assert!(off <= 1e-9 * there.abs(), "{name}: {off:e} of {there}");
+        }
+    }
+    assert_eq!((session.t(), session.inputs().len()), (0.05, 1));
+    assert!(session.counts().steps > 50 && session.simulation().is_none());
+    // what can't be is said
+    assert!(session.set_input("speed", 6.0).unwrap_err().to_string().contains("its limits are"));
+    assert!(session.set_input("sped", 1.0).unwrap_err().to_string().contains("the inputs are `speed`"));
+    assert!(session.snapshot().unwrap_err().to_string().contains("keeps no state"));
+    let mut session = Session::start(file, Watch::default()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(
+        session.set_input("speed", 1.0).unwrap_err().to_string().contains("set by the controller `speed`")
+    );
+    let wrong = drawn(&controller.replace("c.speed.drawn", "c.speed.draw")).build().err().expect("refused");
+    assert!(wrong.to_string().contains("`c.speed.drawn`"), "{wrong}");
+    let wrong = drawn(&controller.replace("0.5 *", "(0 / 0) *"));
+    let history = simulate(wrong.scene());
+    assert!(history.err().is_some_and(|e| e.to_string().contains("sets `speed` to what is no number")));
 }

@@ -69,7 +69,7 @@ fn a_twisted_rod_gives_way_at_the_critical_moment() {
 /// A curved cantilever that is loaded out of its plane.
 #[test]
 fn a_bend_of_45_degrees_is_bent_out_of_its_plane() {
-    let text = include_str!("../../verification/bend45_cantilever.toml");
+    let text = include_str!("../../studies/verification/bend45_cantilever.toml");
     let tip = |gj: f64, force: f64, n: usize| {
         let text = text.replace("elements = 16", &format!("elements = {n}"));
         place(&run(&text, &[format!("gj={gj}"), format!("force={force}")]), "bend.end")
@@ -89,7 +89,7 @@ fn a_bend_of_45_degrees_is_bent_out_of_its_plane() {
 /// A strip loaded at an angle to its principal axes bends about both and twists.
 #[test]
 fn the_princeton_beam_bends_about_both_axes_and_twists() {
-    let text = include_str!("../../verification/princeton_beam.toml");
+    let text = include_str!("../../studies/verification/princeton_beam.toml");
     for (load, angles, most) in
         [(8.896, &[0, 15, 30, 45, 60, 75, 90][..], 2e-6), (13.345, &[0, 45, 90][..], 6e-6)]
     {

@@ -252,8 +252,9 @@ impl Input {
         Err(InputError::Outside { name, unit, value, least, most })
     }
 
-    /// Sets it at time `t`; whether it jumps there.
-    pub(crate) fn set(&self, t: f64, value: f64) -> bool {
+    /// Sets it at time `t` [s], and says whether it jumps there. Whoever moves a model by hand does so between steps; a
+    /// [`Simulation`](crate::Simulation) has `set_input`, which knows what a jump asks for.
+    pub fn set(&self, t: f64, value: f64) -> bool {
         let mut course = self.course.write().unwrap_or_else(PoisonError::into_inner);
         match self.join {
             Hold::Linear | Hold::Smooth => {
@@ -271,8 +272,8 @@ impl Input {
         }
     }
 
-    /// Begins to go where it is to be at time `end`, if it was set.
-    pub(crate) fn depart(&self, t: f64, end: f64) {
+    /// Begins to go where it is to be at time `end` [s], if it was set and doesn't jump.
+    pub fn depart(&self, t: f64, end: f64) {
         let mut course = self.course.write().unwrap_or_else(PoisonError::into_inner);
         if !(end > t) {
             return;

@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::error::BuildError;
+use crate::model::Model;
 use crate::model::input::{Input, InputError};
 use crate::model::term::Energy;
 use crate::simulation::record::Sample;
@@ -17,6 +18,37 @@ pub(super) struct Controlling {
     memory: Vec<f64>,
 }
 
+impl Model {
+    /// The number of the input of this name.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn input_number(&self, name: &str) -> Result<usize, InputError> {
+        let inputs = self.inputs();
+        inputs.iter().position(|i| i.name() == name).ok_or_else(|| {
+            let known: Vec<String> = inputs.iter().map(|i| format!("`{}`", i.name())).collect();
+            let known = if known.is_empty() { "none".into() } else { known.join(", ") };
+            InputError::Unknown { name: name.into(), known }
+        })
+    }
+
+    /// The numbers of inputs that are to be set from outside, with their values [SI].
+    ///
+    /// # Errors
+    /// As [`Simulation::set_input`].
+    pub fn inputs_to_set(&self, values: &[(&str, f64)]) -> Result<Vec<(usize, f64)>, InputError> {
+        let one = |&(name, value): &(&str, f64)| {
+            let k = self.input_number(name)?;
+            self.inputs()[k].check(value)?;
+            match self.controls().iter().find(|c| c.input() == k) {
+                None => Ok((k, value)),
+                Some(c) => Err(InputError::Controlled { name: name.into(), controller: c.name().into() }),
+            }
+        };
+        values.iter().map(one).collect()
+    }
+}
+
 impl Simulation {
     /// The inputs of the scene, in its order.
     pub fn inputs(&self) -> &[Arc<Input>] {
@@ -28,7 +60,7 @@ impl Simulation {
     /// # Errors
     /// There is none of this name.
     pub fn input(&self, name: &str) -> Result<f64, InputError> {
-        Ok(self.model.inputs()[self.number(name)?].value(self.state.t))
+        Ok(self.model.inputs()[self.model.input_number(name)?].value(self.state.t))
     }
 
     /// Sets an input from here on, in SI units: one that holds jumps now, one that is joined by lines reaches the value at
@@ -57,26 +89,9 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::set_input`].
     pub fn set_inputs(&mut self, values: &[(&str, f64)]) -> Result<(), InputError> {
-        let numbers = values.iter().map(|(name, value)| {
-            let k = self.number(name)?;
-            self.model.inputs()[k].check(*value)?;
-            match self.model.controls().iter().find(|c| c.input() == k) {
-                None => Ok((k, *value)),
-                Some(c) => Err(InputError::Controlled { name: (*name).into(), controller: c.name().into() }),
-            }
-        });
-        let numbers = numbers.collect::<Result<Vec<_>, InputError>>()?;
+        let numbers = self.model.inputs_to_set(values)?;
         self.put(&numbers);
         Ok(())
-    }
-
-    fn number(&self, name: &str) -> Result<usize, InputError> {
-        let inputs = self.model.inputs();
-        inputs.iter().position(|i| i.name() == name).ok_or_else(|| {
-            let known: Vec<String> = inputs.iter().map(|i| format!("`{}`", i.name())).collect();
-            let known = if known.is_empty() { "none".into() } else { known.join(", ") };
-            InputError::Unknown { name: name.into(), known }
-        })
     }
 
     /// Sets inputs by their numbers. What a jump changes of potential energies is work done from outside.
@@ -184,7 +199,7 @@ impl Simulation {
 }
 
 /// Whether the controllers of a model act at instants that pass, on inputs that there are.
-pub(super) fn check(model: &crate::model::Model) -> Result<(), StepError> {
+pub(super) fn check(model: &Model) -> Result<(), StepError> {
     let fits = |every: f64, input: usize| every > 0.0 && every.is_finite() && input < model.inputs().len();
     match model.controls().iter().find(|c| !fits(c.every(), c.input())) {
         None => Ok(()),
@@ -199,6 +214,6 @@ pub(super) fn check(model: &crate::model::Model) -> Result<(), StepError> {
 }
 
 /// What the controllers of a model remember at the start.
-pub(super) fn at_start(model: &crate::model::Model) -> Vec<Controlling> {
+pub(super) fn at_start(model: &Model) -> Vec<Controlling> {
     model.controls().iter().map(|c| Controlling { next: 0, memory: vec![0.0; c.memory()] }).collect()
 }

@@ -301,7 +301,12 @@ impl Part for CablePart {
                 match k {
                     Some(k) => Ok(Marker::node(self.nodes[k])),
                     None if *s >= 0.0 && *s <= self.length() => {
-                        Err(format!("no node of the cable is at {s} m: its mesh was given without one there"))
+                        let next = self.mesh.partition_point(|x| x < s).clamp(1, self.mesh.len() - 1);
+                        let [a, b] = [self.mesh[next - 1], self.mesh[next]];
+                        Err(format!(
+                            "no node of `{}` is at {s} m; the nearest are at {a} m and {b} m",
+                            self.name
+                        ))
                     }
                     None => Err(format!("{s} m is not on the cable; it has {}", self.places())),
                 }

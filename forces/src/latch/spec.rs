@@ -23,8 +23,9 @@ fn fade() -> f64 {
 pub struct LatchSpec {
     /// Name; the reports of releases use it.
     pub name: String,
-    /// What it holds: parts (every node or link of them) and single markers.
-    pub on: Vec<String>,
+    /// What it holds: parts (every node or link of them) and single markers. A cable puts a node where a marker is.
+    #[schemars(with = "Vec<String>")]
+    pub on: Vec<MarkerRef>,
     /// Marker on the rigid body that carries the seats. Default: fixed in space.
     #[serde(default)]
     pub to: Option<MarkerRef>,
@@ -71,7 +72,7 @@ impl LatchSpec {
     pub fn new(name: &str, on: &[&str], stiffness: f64, damping: f64, force: f64) -> Self {
         LatchSpec {
             name: name.into(),
-            on: on.iter().map(|s| s.to_string()).collect(),
+            on: on.iter().map(|&name| name.into()).collect(),
             to: None,
             stiffness,
             damping,
@@ -88,14 +89,15 @@ impl LatchSpec {
         let mut points = Vec::new();
         for name in &self.on {
             // a part as a whole, or else a marker
-            if let Ok(found) = b.parts(std::slice::from_ref(name))
+            if let MarkerRef::Name(name) = name
+                && let Ok(found) = b.parts(std::slice::from_ref(name))
                 && let Some((_, part)) = found.first()
                 && !part.seats().is_empty()
             {
                 points.extend(part.seats().into_iter().map(|(q, v)| Held::Moves { q, v }));
                 continue;
             }
-            let marker = b.marker("on", &MarkerRef::Name(name.clone()))?;
+            let marker = b.marker("on", name)?;
             points.push(Held::new(b.nodes(), &marker, &self.name)?);
         }
         Ok(points)
@@ -125,7 +127,7 @@ fn unit(field: &str, d: V3<f64>) -> Result<V3<f64>, BuildError> {
 #[typetag::serde(name = "latch")]
 impl ForceSpec for LatchSpec {
     fn markers(&self) -> Vec<&MarkerRef> {
-        self.to.iter().collect()
+        self.to.iter().chain(&self.on).collect()
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         positive("stiffness", self.stiffness)?;

@@ -252,9 +252,9 @@ impl Started {
     pub(crate) fn done(self) -> Done {
         match self {
             Started::Statics(done) => *done,
-            Started::Process(process, done) => Done { counts: counts(process.counts()), ..*done },
+            Started::Process(process, done) => Done { counts: process.counts().into(), ..*done },
             Started::Dynamics(s, ..) => {
-                let counts = counts(s.work.counts);
+                let counts = s.work.counts.into();
                 let (critical, remarks) = (Vec::new(), Vec::new());
                 let (model, state, audit) = (s.model, s.state, s.audit);
                 let watch = Watch::default();
@@ -281,12 +281,14 @@ fn through(process: &mut dyn Process, scene: &Scene, recorder: &mut Recorder<'_>
     Ok(End::Done)
 }
 
-fn counts(c: ropewalk_core::integrator::Counts) -> Counts {
-    Counts {
-        steps: c.steps,
-        rejected: c.rejected,
-        newton_iterations: c.newton_iterations,
-        factorizations: c.factorizations,
+impl From<ropewalk_core::integrator::Counts> for Counts {
+    fn from(c: ropewalk_core::integrator::Counts) -> Self {
+        Counts {
+            steps: c.steps,
+            rejected: c.rejected,
+            newton_iterations: c.newton_iterations,
+            factorizations: c.factorizations,
+        }
     }
 }
 

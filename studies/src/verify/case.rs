@@ -230,7 +230,7 @@ mod tests {
 
     #[test]
     fn the_files_of_the_folder_are_those_of_the_suite() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../verification");
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/verification");
         let mut there: Vec<String> = std::fs::read_dir(folder)
             .unwrap()
             .map(|f| f.unwrap().file_name().into_string().unwrap())

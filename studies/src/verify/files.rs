@@ -1,9 +1,9 @@
 //! The files of the suite, compiled into the program.
 
-/// `verification/NAME` with this ending, under its name.
+/// `studies/verification/NAME` with this ending, under its name.
 macro_rules! files {
     ($ending:literal: $($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../../../verification/", $name, $ending)))),*]
+        &[$(($name, include_str!(concat!("../../verification/", $name, $ending)))),*]
     };
 }
 

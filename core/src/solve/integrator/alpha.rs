@@ -38,6 +38,8 @@ const TURNING: f64 = 0.1;
 const MOST_TURNING: f64 = 100.0;
 /// Largest rotation of a body in a fixed step [rad]: from a quarter turn on a driven joint may end on another branch.
 const MOST_TURN: f64 = 1.5;
+/// A step so much smaller than another one has a much smaller error, or it isn't that of the step.
+const SHRUNK: f64 = 0.1;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
@@ -438,6 +440,8 @@ impl Integrator for Alpha {
         }
         let mut steps = StepController::new(&LAW, self.options.stepping, self.limits, &state.control, h_max);
         let mut remedies = Remedies::default();
+        // step and error of the first try that was rejected for its error
+        let mut rejected = None;
         loop {
             let h = steps.h;
             let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
@@ -451,6 +455,14 @@ impl Integrator for Alpha {
                     work.counts.rejected += 1;
                     if !steps.too_large(error, iterations, by) {
                         return Err(too_strict(model, state.t, steps.h, work));
+                    }
+                    let [first, largest] = *rejected.get_or_insert([h, error]);
+                    let stays = h <= SHRUNK * first && error > largest * (h / first).sqrt();
+                    if stays && h <= SHRUNK * state.control.h_last && model.multipliers() > 0 {
+                        // not the error of this step: velocities meet the constraints to the order of a longer one
+                        let internal = state.internal.clone();
+                        anew(model, state, work, self, steps.h, true)?;
+                        state.internal = internal;
                     }
                     continue;
                 }

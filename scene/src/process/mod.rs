@@ -1,9 +1,14 @@
 //! Processes: problems that bring equations of their own and step themselves through time.
 
+mod steered;
+
+pub(crate) use steered::Steered;
+
+use crate::inputs::Inputs;
 use crate::motions::no_motion;
 use crate::water::Water;
 use ropewalk_core::integrator::Counts;
-use ropewalk_core::{BuildError, Column, Motion, Solid, V3};
+use ropewalk_core::{BuildError, Column, Input, InputError, Motion, Solid, V3};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -17,6 +22,8 @@ pub struct Surroundings {
     pub water: Option<Water>,
     /// Motions, by name.
     pub motions: BTreeMap<String, Arc<dyn Motion>>,
+    /// Inputs, for numbers of its own. Motions and the current read them already.
+    pub inputs: Inputs,
     /// Length of the run [s].
     pub duration: f64,
 }
@@ -88,4 +95,17 @@ pub trait Process: Send {
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }
+    /// The inputs of its scene. The scene sees to them: a process of one's own need not.
+    fn inputs(&self) -> &[Arc<Input>] {
+        &[]
+    }
+    /// Sets an input from here on, in SI units, as [`Simulation::set_input`](ropewalk_core::Simulation::set_input) does.
+    ///
+    /// # Errors
+    /// There is no such input, the value is outside of its limits, or a controller of the scene sets it.
+    fn set_input(&mut self, name: &str, _value: f64) -> Result<(), InputError> {
+        Err(InputError::Unknown { name: name.into(), known: "none".into() })
+    }
+    /// Lets inputs that don't jump set out for where they are to be at time `end` [s], though it may come there in pieces.
+    fn depart(&mut self, _end: f64) {}
 }
