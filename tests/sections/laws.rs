@@ -108,13 +108,13 @@ fn a_rope_that_stiffens_hangs_as_the_integral_of_its_strain() {
 
 #[test]
 fn a_pipe_that_slips_bends_into_the_circle_of_its_moment() {
-    // M = M₀ tanh(κ/κ₀)
+    // M = M₀ tanh(κ/κ₀); beyond a quarter of a circle a couple that is fixed in space turns the beam out of its plane
     let (most, by, length) = (80.0, 0.4, 3.0);
     let moment = table("curvature", "moment", 301, 1.5, |kappa| most * (kappa / by).tanh());
-    for couple in [20.0, 70.0] {
+    for couple in [20.0, 60.0] {
         let made_of = format!("elements = 24\nsection = {{ mass = 1, ea = 1e6, bending_moment = {moment} }}");
         let rest = format!(
-            "statics = {{ steps = 8 }}\n[[forces]]\ntype = \"point_moment\"\nmarker = \"beam.end\"\nmoment = [0, {couple}, 0]\n\
+            "statics = {{ steps = 8 }}\n[[forces]]\ntype = \"point_moment\"\nmarker = \"beam.end\"\nmoment = [0, {couple}, 0]\ntime = {{ ramp = {{ from = 0, to = 1, t0 = 0, t1 = 1 }} }}\n\
              [[records]]\ntype = \"along\"\nof = \"beam\"\nwhat = \"moment\"\nat = \"40 %\"\nname = \"m\"\n"
         );
         // the options of statics stand above all sections
@@ -176,7 +176,7 @@ fn a_rope_that_only_pulls_does_not_push() {
 fn lively(rest: &str) -> String {
     let mut text = String::from(
         r#"
-        run = { duration = 1.0, output = 0.01 }
+        run = { duration = 0.4, output = 0.01 }
         solver = { stepping = { controlled = { tolerance = 1e-7 } }, scheme = "radau-iia-5" }
         [[elements]]
         type = "cable"
@@ -250,8 +250,8 @@ fn tangents_and_forces_are_derivatives_of_the_energy() {
 #[test]
 fn a_line_of_tables_keeps_its_energy() {
     let scene = scene(&lively(""));
-    let mut s = Simulation::new(scene.build().expect("model"), &scene.solver, 1.0).expect("start");
-    s.advance(1.0, f64::INFINITY, &mut ()).expect("run");
+    let mut s = Simulation::new(scene.build().expect("model"), &scene.solver, 0.4).expect("start");
+    s.advance(0.4, f64::INFINITY, &mut ()).expect("run");
     let missed = s.audit.imbalance() / s.audit.scale;
     println!("energy {missed:.1e} of {:.3} J", s.audit.scale);
     assert!(missed.abs() < 1e-5, "{missed:e}");

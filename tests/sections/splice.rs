@@ -101,7 +101,7 @@ fn falling(ea: [f64; 2], ei: [f64; 2], duration: f64) -> String {
     format!(
         r#"
         run = {{ duration = {duration}, output = 0.02 }}
-        solver = {{ stepping = {{ controlled = {{ tolerance = 1e-6 }} }} }}
+        solver = {{ stepping = {{ controlled = {{ tolerance = 1e-5 }} }} }}
         [[elements]]
         type = "cable"
         name = "line"
@@ -167,4 +167,43 @@ fn a_splice_of_nearly_equal_sections_is_as_none() {
         println!("{c}: {apart:.1e}");
         assert!(apart < 1e-4, "{c}: {apart:e}");
     }
+}
+
+#[test]
+fn sections_of_files_are_read_with_those_of_the_scene() {
+    let folder = std::env::temp_dir().join(format!("sections-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("folder");
+    let file = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("written");
+        path.display().to_string()
+    };
+    let wires = file("wires.toml", "[[sections]]\nname = \"wire\"\nmass = 2\nea = \"40 MN\"\n");
+    let odd = file("odd.toml", "[[sections]]\nname = \"odd\"\nmass = 2\nea = 1\n[run]\nduration = 1\n");
+    let text = |sections: &str, section: &str| {
+        format!(
+            "{sections}\n[[elements]]\ntype = \"cable\"\nname = \"line\"\npoints = [[0, 0, 0], [4, 0, 0]]\nelements = 4\n\
+             section = {section}\n"
+        )
+    };
+    let asks = |path: &str| format!("[[sections]]\nfile = {path:?}");
+    let own = "[[sections]]\nname = \"wire\"\nmass = 1\nea = 1";
+    let model = scene(&text(&asks(&wires), "\"wire\"")).build().expect("model");
+    assert!((model.part("line").expect("line").mass() - 8.0).abs() < 1e-12);
+    let none = folder.join("none.toml").display().to_string();
+    for (sections, section, message) in [
+        (asks(&wires), "\"rope\"", "there is no section `rope`"),
+        (asks(&none), "\"wire\"", "there is no file"),
+        (asks(&odd), "\"odd\"", "holds nothing but `[[sections]]`, not `run`"),
+        (format!("{}\n{own}", asks(&wires)), "\"wire\"", "two sections named `wire`"),
+        (format!("{}\nmass = 1", asks(&wires)), "\"wire\"", "a file of sections stands alone"),
+        ("[[sections]]\nmass = 1".into(), "\"wire\"", "this section has no name"),
+        ("[sections]\nmass = 1".into(), "\"wire\"", "`sections` is a list"),
+        ("[[sections]]\nname = \"wire\"\nmass = 1\nee = 1".into(), "\"wire\"", "unknown field `ee`"),
+    ] {
+        let fault = SceneFile::parse(&text(&sections, section), "x", Format::Toml, &[]).err();
+        let fault = fault.unwrap_or_else(|| panic!("{sections}"));
+        assert!(fault.message.contains(message) && fault.place.is_some(), "{sections}: {fault}");
+    }
+    std::fs::remove_dir_all(&folder).expect("removed");
 }

@@ -183,10 +183,10 @@ fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
     if n == 2 {
         return vec![d[0]; 2];
     }
-    // the slope at an end, of the parabola through three points as far as that is monotone
+    // the slope at an end, of the parabola through three points as far as that is monotone and something is left beyond
     let end = |h0: f64, h1: f64, d0: f64, d1: f64| {
         let slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
-        slope.clamp(0.0, 3.0 * d0)
+        slope.clamp(0.5 * d0, 3.0 * d0)
     };
     let inner = |k: usize| {
         let (a, b) = (d[k - 1], d[k]);

@@ -83,7 +83,8 @@ pub struct CableSpec {
     /// stays graded while a winch pays out there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshSpec>,
-    /// Cross-section, or the name of one of the scene's `sections`: `section = "chain"`. Give `section` or `sections`.
+    /// Cross-section, `{ mass = …, ea = …, ei = … }`, with the fields that `ropewalk describe sections` tells; or the name of one
+    /// of the scene's `sections`: `section = "chain"`. Give `section` or `sections`.
     #[serde(default, skip_serializing_if = "Section::is_missing")]
     #[schemars(with = "NameOrSection")]
     pub section: Section,
