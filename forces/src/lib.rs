@@ -27,6 +27,7 @@ mod bushing;
 pub mod contact;
 mod drag;
 mod drag_coefficient;
+mod froude_krylov;
 mod function;
 mod gravity;
 mod latch;
@@ -48,6 +49,7 @@ pub use drag::{
     choo_casarella_ct_over_mu,
 };
 pub use drag_coefficient::DragCoefficientSpec;
+pub use froude_krylov::FroudeKrylov;
 pub use function::{FunctionForce, FunctionLoad, FunctionSpec, Scales};
 pub use gravity::GravitySpec;
 pub use latch::{Floor, FloorSpec, Latch, LatchSpec, Seat};
