@@ -2,6 +2,7 @@
 
 use crate::motion::csv::{self, Wanted};
 use crate::pair::{kind as kind_of, pair};
+use ropewalk_core::error::not_negative;
 use ropewalk_core::reach::Knots;
 use ropewalk_core::{
     BuildError, EndSlope, Interpolation, Jet, Join, Model, Motion, Moving, NodeKind, Place, Related, Relation, RowKind,
@@ -12,14 +13,14 @@ use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
 use ropewalk_sea::{MOTIONS, Responses, VesselResponse};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Moves a rigid body as a vessel, in all six degrees of freedom: by its responses to the waves of the scene (`rao`), or by a table
 /// of its motions over time (`file`).
 ///
-/// The marker is the vessel's reference point, and the body starts as it lies in still water. Surge, sway and heave are
+/// The marker is the vessel's reference point, and the body starts at rest as it lies in still water: let the waves rise (`ramp`). Surge, sway and heave are
 /// along the axes of the mean heading (x ahead, y to port, z up), then yaw, pitch (bow down) and roll (port up) turn it: `R = Rz(heading +
 /// yaw) Ry(pitch) Rx(roll)`. The reaction is what it takes to move it. What is fastened to the body's points moves along.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -36,9 +37,13 @@ pub struct VesselSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rao: Option<RaoSpec>,
     /// CSV file with the columns `t`, and any of `surge`, `sway`, `heave` (in m), `roll`, `pitch`, `yaw` (in rad unless their
-    /// headings say deg): joined by natural cubic splines, from the first row on.
+    /// headings say deg): joined by cubic splines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// Time from t = 0 in which the motions of a `file` grow from nothing, as `(1 - cos πt/ramp)/2` [s]. Responses to waves grow
+    /// with the waves.
+    #[serde(default, deserialize_with = "quantity::time")]
+    pub ramp: f64,
 }
 register_spec!(Constraint, "vessel", VesselSpec);
 
@@ -106,19 +111,29 @@ type Six = [[f64; 3]; MOTIONS];
 /// Where the six motions come from.
 enum Source {
     Waves { response: VesselResponse, period: f64 },
-    Table { curves: Vec<Interpolation>, knots: Vec<Knots>, range: (f64, f64) },
+    Table { curves: Vec<Interpolation>, knots: Vec<Knots>, range: (f64, f64), ramp: f64 },
 }
 
 impl Source {
     fn at(&self, t: f64) -> Six {
         match self {
             Source::Waves { response, .. } => response.at(t),
-            Source::Table { curves, range, .. } => std::array::from_fn(|k| {
+            Source::Table { curves, range, ramp, .. } => std::array::from_fn(|k| {
                 let [_, x, v, a] = curves[k].at(t.clamp(range.0, range.1));
-                [x, v, a]
+                risen(*ramp, t, [x, v, a])
             }),
         }
     }
+}
+
+/// A motion that grows from nothing.
+fn risen(ramp: f64, t: f64, [x, v, a]: [f64; 3]) -> [f64; 3] {
+    if t >= ramp {
+        return [x, v, a];
+    }
+    let (w, (sin, cos)) = (PI / ramp, (PI * t.max(0.0) / ramp).sin_cos());
+    let (r, dr, ddr) = (0.5 * (1.0 - cos), 0.5 * w * sin, 0.5 * w * w * cos);
+    [r * x, r * v + dr * x, r * a + 2.0 * dr * v + ddr * x]
 }
 
 /// The motions of a vessel about where it lies in still water.
@@ -184,7 +199,9 @@ impl Motion for Course {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(match &self.source {
             Source::Waves { period, .. } => reach::period(*period, h),
-            Source::Table { knots, .. } => knots.iter().fold(h, |h, knots| knots.reach(t, h)),
+            Source::Table { knots, ramp, .. } => {
+                knots.iter().fold(reach::rise(0.0, *ramp, t, h), |h, knots| knots.reach(t, h))
+            }
         })
     }
 }
@@ -213,6 +230,10 @@ impl Relation for Steered {
 impl VesselSpec {
     fn source(&self, b: &Builder, place: &V3<f64>) -> Result<Source, BuildError> {
         match (&self.rao, &self.file) {
+            (Some(_), None) if self.ramp != 0.0 => {
+                let message = "responses grow with the waves: give [water.waves] the `ramp`";
+                Err(BuildError::at("ramp", message))
+            }
             (Some(rao), None) => {
                 let responses = rao.responses()?;
                 let sea = b.water().ok().and_then(|water| water.sea.clone()).ok_or_else(|| {
@@ -223,7 +244,10 @@ impl VesselSpec {
                 let response = VesselResponse::new(waves, &responses, [place[0], place[1]], self.heading);
                 Ok(Source::Waves { response, period: TAU / waves.fastest() })
             }
-            (None, Some(file)) => table(file).map_err(|e| BuildError::at("file", e)),
+            (None, Some(file)) => {
+                let ramp = not_negative("ramp", self.ramp)?;
+                table(file, ramp).map_err(|e| BuildError::at("file", e))
+            }
             (Some(_), Some(_)) => Err(BuildError::at("file", "give either a `rao` or a `file`")),
             (None, None) => Err(BuildError::new("a vessel needs a `rao`, or a `file` of its motions")),
         }
@@ -231,7 +255,7 @@ impl VesselSpec {
 }
 
 /// Six motions out of a CSV file.
-fn table(path: &str) -> Result<Source, String> {
+fn table(path: &str, ramp: f64) -> Result<Source, String> {
     let length = |name| Wanted { name, kind: &kind::LENGTH, needed: false };
     let angle = |name| Wanted { name, kind: &kind::ANGLE, needed: false };
     let wanted = [
@@ -253,11 +277,13 @@ fn table(path: &str) -> Result<Source, String> {
     let t: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     let curve = |k: usize| {
         let values: Vec<f64> = rows.iter().map(|row| row[k + 1]).collect();
-        Interpolation::new(&t, &values, Join::Cubic, [EndSlope::Natural; 2])
+        // at rest before the first row, unless it grows from nothing anyway
+        let start = if ramp > 0.0 { EndSlope::Smooth } else { EndSlope::Given(0.0) };
+        Interpolation::new(&t, &values, Join::Cubic, [start, EndSlope::Smooth])
     };
     let curves: Vec<Interpolation> = (0..MOTIONS).map(curve).collect();
     let knots = curves.iter().map(|curve| Knots::halfway(&t, |t| [curve.at(t)[1], 0.0, 0.0])).collect();
-    Ok(Source::Table { curves, knots, range: (t[0], last[0]) })
+    Ok(Source::Table { curves, knots, range: (t[0], last[0]), ramp })
 }
 
 #[typetag::serde(name = "vessel")]

@@ -16,8 +16,6 @@ pub struct Sea {
     waves: Waves,
     /// Height of the surface without waves [m].
     level: f64,
-    /// Velocity of the current that carries the waves [m/s]; nothing unless they are told to feel it.
-    drift: [f64; 2],
     about: String,
     memory: Mutex<Memory>,
 }
@@ -116,8 +114,9 @@ impl Sea {
         let depth = spec.depth.unwrap_or(f64::INFINITY);
         let mut waves = Waves::new(&all, depth, g, spec.stretching.into()).map_err(of)?;
         waves = waves.with_ramp(spec.ramp).map_err(of)?;
-        let drift = if spec.doppler { [drift[0], drift[1]] } else { [0.0; 2] };
-        waves = waves.on_current(drift).map_err(of)?;
+        if spec.doppler {
+            waves = waves.on_current([drift[0], drift[1]]).map_err(of)?;
+        }
         let (lattice, how) = Self::lattice(spec, &waves)?;
         let [slowest, fastest] = all.iter().fold([f64::INFINITY, 0.0_f64], |[slow, fast], w| {
             [w.omega.min(slow), w.omega.max(fast)]
@@ -132,7 +131,7 @@ impl Sea {
         );
         let nowhere = ([u64::MAX; 4], Here::default());
         let memory = Mutex::new(Memory { lattice, latest: vec![nowhere; PLACES] });
-        Ok(Sea { waves, level, drift, about, memory })
+        Ok(Sea { waves, level, about, memory })
     }
 
     /// The table that stands for many waves, if there is to be one, and how the sum is found in words.
@@ -215,11 +214,7 @@ impl Sea {
         let u = [0, 1, 2].map(|i| along(&by_x[i], R::each(|l| here[l].flow.velocity[i])));
         let acceleration =
             [0, 1, 2].map(|i| along(&acceleration_by_x[i], R::each(|l| here[l].flow.acceleration[i])));
-        let drift = [R::of(self.drift[0]), R::of(self.drift[1])];
-        let rate = [0, 1, 2].map(|i| {
-            let carried: R = gradient[i][0].fma(drift[0], gradient[i][1] * drift[1]);
-            acceleration[i] + R::each(|l| here[l].flow.lifted[i]) - carried
-        });
+        let rate = [0, 1, 2].map(|i| along(&acceleration_by_x[i], R::each(|l| here[l].flow.rate[i])));
         let by_t = [0, 1, 2].map(|i| rate[i] + R::each(|l| here[l].by_t[i]));
         let slope = [0, 1].map(|i| R::each(|l| here[l].flow.slope[i]));
         let elevation = R::each(|l| here[l].flow.elevation);
@@ -282,6 +277,8 @@ fn off(waves: &Waves, lattice: &mut Lattice) -> f64 {
         let place = [between(-50.0, 50.0) * length, between(-50.0, 50.0) * length];
         let down = between(-1.0, 0.0) * length.min(waves.depth());
         let t = between(0.0, 1000.0) * TAU / waves.fastest() + 1e3;
+        // below the surface, or below still water where the column isn't stretched
+        let down = down + waves.elevation(place[0], place[1], t).0.min(0.0);
         let (there, still) = ([place[0], place[1], down], [place[0], place[1], 0.0]);
         let (a, b, top) = (waves.at(there, t), lattice.at(there, t), waves.at(still, t));
         let apart: f64 = (0..3).map(|i| (a.velocity[i] - b.velocity[i]).powi(2)).sum();

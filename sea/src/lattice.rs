@@ -139,7 +139,7 @@ impl Lattice {
             // of what drifting adds to the acceleration the change from place to place is left out
             (flow.gradient, flow.acceleration_gradient) = (rows(1), rows(4));
         }
-        flow.rise(risen, rising, by_z, by_eta);
+        flow.rise([risen, rising], [by_z, by_eta], self.waves.current);
         flow
     }
 

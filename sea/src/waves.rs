@@ -42,9 +42,9 @@ pub struct Flow {
     pub velocity: [f64; 3],
     /// `∂u/∂t` [m/s²]; of waves on a current as one sees it who drifts with it.
     pub acceleration: [f64; 3],
-    /// What the stretching of the column, as the surface rises, adds to `∂u/∂t`; by convention it isn't part of the acceleration
-    /// [m/s²].
-    pub lifted: [f64; 3],
+    /// What the velocity changes by with time at a fixed place [m/s²]: other than the acceleration, it counts how the column is
+    /// stretched as the surface rises.
+    pub rate: [f64; 3],
     /// `∂u_i/∂x_j` [1/s], stretching included.
     pub gradient: [[f64; 3]; 3],
     /// What the acceleration changes by from place to place [1/s²], stretching included.
@@ -78,6 +78,8 @@ pub struct Waves {
     pub(crate) stretching: Stretching,
     /// Time in which they rise from nothing [s].
     ramp: f64,
+    /// The current that carries them [m/s].
+    pub(crate) current: [f64; 2],
 }
 
 /// The least share of the depth that is taken to be left under a trough.
@@ -110,7 +112,7 @@ impl Waves {
             })
         };
         let all = waves.iter().map(component).collect::<Result<_, _>>()?;
-        Ok(Waves { all, depth, g, stretching, ramp: 0.0 })
+        Ok(Waves { all, depth, g, stretching, ramp: 0.0, current: [0.0; 2] })
     }
 
     /// Lets them rise from nothing in a time [s].
@@ -142,6 +144,7 @@ impl Waves {
             })?;
             (c.k, c.sigma) = (k, c.omega - k * along);
         }
+        self.current = current;
         Ok(self)
     }
 
@@ -260,7 +263,7 @@ impl Waves {
         }
         let [risen, rising] = self.risen(t);
         flow.pressure *= risen;
-        flow.rise(risen, rising, by_z, by_eta);
+        flow.rise([risen, rising], [by_z, by_eta], self.current);
         flow
     }
 }
@@ -278,13 +281,14 @@ fn add_gradient(g: &mut [[f64; 3]; 3], [cx, cy]: [f64; 2], along: f64, up: f64) 
 impl Flow {
     /// Makes the motion of linear theory at the stretched height, before the waves have risen, that at the place itself;
     /// the surface is known already.
-    pub(crate) fn rise(&mut self, risen: f64, rising: f64, by_z: f64, by_eta: f64) {
+    pub(crate) fn rise(&mut self, [risen, rising]: [f64; 2], [by_z, by_eta]: [f64; 2], current: [f64; 2]) {
         for (a, u) in self.acceleration.iter_mut().zip(&self.velocity) {
             *a = risen * *a + rising * u;
         }
         self.velocity = self.velocity.map(|u| risen * u);
-        for (lifted, of_u) in self.lifted.iter_mut().zip(&self.gradient) {
-            *lifted = risen * of_u[2] * by_eta * self.rising;
+        for ((rate, a), by) in self.rate.iter_mut().zip(&self.acceleration).zip(&self.gradient) {
+            let carried = by[0] * current[0] + by[1] * current[1];
+            *rate = a + risen * (by[2] * by_eta * self.rising - carried);
         }
         for (of_a, of_u) in self.acceleration_gradient.iter_mut().zip(&mut self.gradient) {
             for row in [&mut *of_a, &mut *of_u] {
@@ -311,8 +315,8 @@ impl Component {
         if depth.is_infinite() {
             return [down; 3];
         }
-        let back = (-self.k * (z + 2.0 * depth)).exp();
-        let bed = (-2.0 * self.k * depth).exp();
-        [(down + back) / (1.0 - bed), (down - back) / (1.0 - bed), (down + back) / (1.0 + bed)]
+        // 1 - exp(-2k(z + h)) and 1 - exp(-2kh), also where both are nearly nothing
+        let (here, whole) = (-(-2.0 * self.k * (z + depth)).exp_m1(), -(-2.0 * self.k * depth).exp_m1());
+        [down * (2.0 - here) / whole, down * here / whole, down * (2.0 - here) / (2.0 - whole)]
     }
 }

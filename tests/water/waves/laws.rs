@@ -186,8 +186,9 @@ fn with_the_energy_of_the_water_derivatives_lack_the_curvature_of_the_flow_alone
                     let bend: [V3<f64>; 3] =
                         [0, 1, 2].map(|i| [0, 1, 2].map(|j| (after[i][j] - before[i][j]) / (2.0 * e)));
                     let pushed = across([0, 1, 2].map(|i| dot(&bend[i], &at.v)));
-                    // drifting adds the gradient to the acceleration as well
-                    let carried = across([0, 1, 2].map(|i| if doppler { 0.5 * bend[i][0] + 0.1 * bend[i][1] } else { 0.0 }));
+                    // who drifts sees the gradient in the acceleration as well
+                    let seen = |i: usize| if doppler { 0.5 * bend[i][0] + 0.1 * bend[i][1] } else { 0.0 };
+                    let carried = across([0, 1, 2].map(seen));
                     for i in 0..3 {
                         let mut left = 0.0;
                         if k == 0 {
@@ -218,15 +219,6 @@ fn work_and_energy_balance() {
             for above in HEIGHTS {
                 for course in courses(&sea, t, above) {
                     let wet = surface.clone();
-                    if std::env::var("LOOK").is_ok() {
-                        println!("{stretching:?} {doppler} {t} {above}: drag {:.1e} energy {:.1e} morison {:.1e} fk {:.1e} {:.1e} buoyancy {:.1e}",
-                            left(&Wetted::below(wet.clone(), drag(&sea)), &course, t, e),
-                            left(&Wetted::below(wet.clone(), mass(&sea, Theory::Energy)), &course, t, e),
-                            left(&Wetted::below(wet.clone(), mass(&sea, Theory::Morison)), &course, t, e),
-                            left(&Wetted::below(wet.clone(), pressure(&sea, Theory::Energy)), &course, t, e),
-                            left(&Wetted::below(wet.clone(), pressure(&sea, Theory::Morison)), &course, t, e),
-                            left(&Buoyancy { specific_weight: 1e4, surface: wet.clone(), couple: true }, &course, t, e));
-                    }
                     worst = worst.max(left(&Wetted::below(wet.clone(), drag(&sea)), &course, t, e));
                     for theory in [Theory::Energy, Theory::Morison] {
                         worst = worst.max(left(&Wetted::below(wet.clone(), mass(&sea, theory)), &course, t, e));

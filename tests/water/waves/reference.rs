@@ -115,7 +115,7 @@ fn a_pile_in_waves_has_the_force_of_morison() {
 /// A cylinder at an angle in waves and a current, deep enough to be wet.
 #[test]
 fn an_inclined_cylinder_in_waves_and_current_has_the_force_of_morison() {
-    const COUNT: usize = 4;
+    const COUNT: usize = 16;
     for case in rows(&read("morison_inclined"), "cases") {
         let c = &case["case"];
         let [h, height, period, beta, d, ca, cn, ct] =
@@ -158,7 +158,7 @@ fn an_inclined_cylinder_in_waves_and_current_has_the_force_of_morison() {
             (0..3).fold(worst, |worst, i| worst.max((force[i][k] - list(&row["F"])[i]).abs() / most))
         });
         println!("inclined cylinder, {beta} deg: off by {worst:.1e}");
-        assert!(worst < 1e-6, "{worst:e}");
+        assert!(worst < 1e-5, "{worst:e}");
     }
 }
 

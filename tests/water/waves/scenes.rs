@@ -58,6 +58,7 @@ fn what_is_as_heavy_as_water_goes_with_it() {
             "#
         )
     };
+    let mut wrong = Vec::new();
     for stretching in ["wheeler", "constant"] {
         for (solver, near) in [("", 3e-3), ("scheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-11 } }", 1e-7)] {
             let text = format!(
@@ -121,10 +122,13 @@ fn what_is_as_heavy_as_water_goes_with_it() {
                     worst.max((last(&h, &format!("{name}.{axis}")) - x).abs())
                 });
                 println!("{stretching}: {name} is {off:.1e} m from the water");
-                assert!(off < near, "{off:e}");
+                if !(off < near) {
+                    wrong.push(format!("{stretching}: {name} by {off:e} m"));
+                }
             }
         }
     }
+    assert!(wrong.is_empty(), "{wrong:?}");
 }
 
 /// A floating line, a spar and a buoy in a sea, moored.

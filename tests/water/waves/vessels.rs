@@ -165,18 +165,20 @@ fn points_of_a_vessel_move_as_in_the_reference() {
                 for i in 0..3 {
                     assert!((x[i] + arm[i] - list(&found["x"])[i]).abs() < 1e-8);
                     assert!((v[i] + speed[i] - list(&found["v"])[i]).abs() < 1e-8);
-                    assert!((a[i] + push[i] - list(&found["a"])[i]).abs() < 1e-8);
+                    // the reference has accelerations by differences
+                    assert!((a[i] + push[i] - list(&found["a"])[i]).abs() < 3e-8);
                 }
             }
         }
     }
 }
 
-/// In a run the body is where the constraint has it, by default settings, and what it takes is its inertia and weight.
+/// In a run the body is where the constraint has it, and what moves it gives it its energy.
 #[test]
 fn a_body_follows_its_course() {
     let case = &read("vessel_rao")["cases"][1]["case"];
-    let text = vessel(case, "").replace(
+    let solver = "[solver]\nscheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-8 } }";
+    let text = vessel(case, solver).replace(
         "components",
         "ramp = 20\n        components",
     ) + "[[records]]\ntype = \"position\"\nof = \"ship.bow\"\n[[records]]\ntype = \"energy\"\n";
@@ -186,7 +188,7 @@ fn a_body_follows_its_course() {
     let imbalance = h.column("energy.imbalance").expect("energy").iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let most = h.column("energy.kinetic").expect("energy").iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     println!("imbalance {imbalance:.1e} J of {most:.1e} J");
-    assert!(imbalance < 1e-2 * most);
+    assert!(imbalance < 1e-5 * most);
     assert_eq!(model.multipliers(), 6);
 }
 
