@@ -31,6 +31,7 @@ mod prismatic;
 mod revolute;
 mod spherical;
 mod universal;
+mod vessel;
 mod weld;
 pub mod winch;
 
@@ -48,6 +49,7 @@ pub use prismatic::{
 pub use revolute::{RevoluteSpec, revolute};
 pub use spherical::{SphericalSpec, spherical};
 pub use universal::{PerpendicularSpec, UniversalSpec, perpendicular, universal};
+pub use vessel::{RaoSpec, VesselSpec};
 pub use weld::{WeldSpec, weld};
 pub use winch::{EyeletSpec, LiftOffSpec, WinchSpec};
 

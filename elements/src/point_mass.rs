@@ -4,9 +4,11 @@ use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::held::{Held, MOST};
 use ropewalk_core::{
     Assembly, At, Attitude, BuildError, ContactPoint, DeadEntry, DeadLoad, DeadPull, Energy, Marker, Node,
-    NodeId, NodeKind, Part, Pattern, Per, Power, Solid, Spot, Surface, Term, V3, dot,
+    NodeId, NodeKind, Part, Pattern, Per, Power, Solid, Spot, Surface, Term, Timed, V3, dot,
 };
-use ropewalk_scene::{Builder, Current, ElementSpec, MarkerRef, ball_below, quantity, register_spec};
+use ropewalk_scene::{
+    Builder, Current, ElementSpec, MarkerRef, Sea, Swell, ball_below, quantity, register_spec,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -15,7 +17,8 @@ use std::sync::Arc;
 /// A point mass on a node or at a point of a rigid body, with added mass and drag that are the same in all directions.
 ///
 /// Use it for: sinkers, buoys, tow bodies, clump weights. Inertia is `(m + m_a) a` of its point, drag
-/// `-½ ρ CdA |v - u| (v - u)`; on a body beside its centre of mass both turn it. Weight and buoyancy are dead loads, see
+/// `-½ ρ CdA |v - u| (v - u)`; on a body beside its centre of mass both turn it. Waves push with `(ρ V + m_a) Du/Dt`, the
+/// acceleration of the water along its path (Taylor, 1928): what is as heavy as water goes with it. Weight and buoyancy are dead loads, see
 /// [`DeadPull`]. As with added mass after Morison the water's kinetic energy isn't counted: added mass takes and gives
 /// power.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +35,8 @@ pub struct PointMass {
     pub drag_area: f64,
     /// Velocity of the fluid.
     pub current: Current,
+    /// Waves, whose velocity adds to it, and the volume that feels their pressure [m³].
+    pub sea: Option<(Arc<Sea>, f64)>,
     /// The surface of the fluid, if it has one.
     pub surface: Option<Across>,
     /// Where it is.
@@ -41,7 +46,7 @@ pub struct PointMass {
 /// A ball that may lie across the surface of a fluid: drag and added mass go by the share of its volume below.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Across {
-    /// Height of the surface [m].
+    /// Height of the surface without waves [m].
     pub level: f64,
     /// Radius of the ball [m].
     pub radius: f64,
@@ -69,6 +74,7 @@ impl PointMass {
             density,
             drag_area,
             current: Current::Still,
+            sea: None,
             surface: None,
             held,
         })
@@ -110,17 +116,35 @@ impl PointMass {
         })
     }
 
+    /// The waves at its place.
+    fn swell(&self, at: &At<'_>) -> Option<Swell<f64>> {
+        self.sea.as_ref().map(|(sea, _)| sea.at(at.t, &self.held.x(at)))
+    }
+
     /// The share of it in the fluid, and what it changes by with height [1/m].
-    fn share(&self, at: &At<'_>) -> (f64, f64) {
-        self.surface.map_or((1.0, 0.0), |s| ball_below(s.level, self.held.x(at)[2], s.radius))
+    fn share(&self, at: &At<'_>, swell: Option<&Swell<f64>>) -> (f64, f64) {
+        let z = self.held.x(at)[2] - swell.map_or(0.0, |swell| swell.elevation);
+        self.surface.map_or((1.0, 0.0), |s| ball_below(s.level, z, s.radius))
     }
 
     /// Velocity relative to the water, its magnitude, the current's gradient, and `½ ρ CdA`.
-    fn flow(&self, at: &At<'_>) -> (V3<f64>, f64, V3<f64>, f64) {
+    fn flow(&self, at: &At<'_>, swell: Option<&Swell<f64>>) -> (V3<f64>, f64, V3<f64>, f64) {
         let (u, du) = self.current.at(self.held.x(at)[2]);
         let own = self.held.velocity(at);
-        let v: V3<f64> = std::array::from_fn(|i| own[i] - u[i]);
+        let mut v: V3<f64> = std::array::from_fn(|i| own[i] - u[i]);
+        if let Some(swell) = swell {
+            (0..3).for_each(|i| v[i] -= swell.u[i]);
+        }
         (v, dot(&v, &v).sqrt(), du, 0.5 * self.density * self.drag_area)
+    }
+
+    /// The force of waves if all of it is in the water, and what that changes by with the place, but for the change of the
+    /// gradient of velocity.
+    fn pushed(&self, at: &At<'_>, swell: Option<&Swell<f64>>) -> (V3<f64>, [V3<f64>; 3]) {
+        let (Some(swell), Some((_, volume))) = (swell, &self.sea) else { return ([0.0; 3], [[0.0; 3]; 3]) };
+        let mass = self.density * volume + self.added_mass;
+        let (a, by_x) = swell.along_path(&self.current, self.held.x(at)[2]);
+        (a.map(|a| mass * a), by_x.map(|row| row.map(|x| mass * x)))
     }
 }
 
@@ -136,14 +160,19 @@ impl Term for PointMass {
         let turns = matches!(self.held, Held::Beside { .. });
         let drags = self.density * self.drag_area > 0.0;
         let emerges = self.surface.is_some() && (drags || self.added_mass > 0.0);
-        !turns && !emerges && (self.current.is_uniform() || !drags)
+        !turns && !emerges && self.sea.is_none() && (self.current.is_uniform() || !drags)
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        let (v, speed, du, whole) = self.flow(at);
-        let (share, by_z) = self.share(at);
+        let swell = self.swell(at);
+        let (v, speed, du, whole) = self.flow(at, swell.as_ref());
+        let (share, by_z) = self.share(at, swell.as_ref());
+        let (pushed, pushed_by) = self.pushed(at, swell.as_ref());
         let (inertia, c) = (self.mass + share * self.added_mass, share * whole);
         let (motion, swing) = (self.held.motion(at), self.held.acceleration(at));
-        let force: V3<f64> = std::array::from_fn(|i| inertia * swing.a[i] + c * speed * v[i]);
+        let mut force: V3<f64> = std::array::from_fn(|i| inertia * swing.a[i] + c * speed * v[i]);
+        if swell.is_some() {
+            (0..3).for_each(|i| force[i] -= share * pushed[i]);
+        }
         for k in 0..motion.n {
             out.add(motion.dof[k], motion.carry(k, &force));
         }
@@ -158,15 +187,24 @@ impl Term for PointMass {
         };
         let shear = damping(&du);
         // what more of it in the fluid adds
-        let met: V3<f64> =
+        let mut met: V3<f64> =
             std::array::from_fn(|i| by_z * (self.added_mass * swing.a[i] + whole * speed * v[i]));
+        (0..3).for_each(|i| met[i] -= by_z * pushed[i]);
+        // what waves change by from place to place
+        let waves = |x: &V3<f64>| -> V3<f64> {
+            let Some(swell) = &swell else { return [0.0; 3] };
+            let drag = damping(&swell.by_x.map(|row| dot(&row, x)));
+            let risen = swell.slope[0] * x[0] + swell.slope[1] * x[1];
+            std::array::from_fn(|i| -drag[i] - share * dot(&pushed_by[i], x) - met[i] * risen)
+        };
         let by: [V3<f64>; MOST] = std::array::from_fn(|k| {
             let (x, turn) = (&motion.by_q[k], damping(&motion.v_by_q[k]));
-            let rate = damping(x);
+            let (rate, waved) = (damping(x), waves(x));
             std::array::from_fn(|i| {
                 w.a * inertia * x[i]
                     + w.v * (rate[i] + inertia * swing.by_v[k][i])
                     + w.q * (turn[i] + inertia * swing.by_q[k][i] + (met[i] - shear[i]) * x[2])
+                    + w.q * waved[i]
             })
         });
         // the force stays in space while the body turns under it
@@ -181,8 +219,10 @@ impl Term for PointMass {
         Energy { kinetic: 0.5 * self.mass * dot(&v, &v), ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let (relative, speed, _, whole) = self.flow(at);
-        let share = self.share(at).0;
+        let swell = self.swell(at);
+        let (relative, speed, _, whole) = self.flow(at, swell.as_ref());
+        let share = self.share(at, swell.as_ref()).0;
+        let pushed = self.pushed(at, swell.as_ref()).0;
         let c = share * whole;
         let (v, a) = (self.held.velocity(at), self.held.acceleration(at).a);
         let dissipated = c * speed * speed * speed;
@@ -190,9 +230,18 @@ impl Term for PointMass {
         let drag = -c * speed * dot(&relative, &v);
         Power {
             dissipated,
-            supplied: drag + dissipated - share * self.added_mass * dot(&a, &v),
+            supplied: drag + dissipated - share * self.added_mass * dot(&a, &v) + share * dot(&pushed, &v),
             carried: 0.0,
         }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        self.sea.as_ref().map(|_| self as &dyn Timed)
+    }
+}
+
+impl Timed for PointMass {
+    fn reach(&self, _t: f64, h: f64) -> Option<f64> {
+        Some(self.sea.as_ref().map_or(h, |(sea, _)| sea.reach(h)))
     }
 }
 
@@ -210,7 +259,7 @@ pub struct PointMassSpec {
     /// Mass [kg].
     #[serde(deserialize_with = "quantity::mass")]
     pub mass: f64,
-    /// Displaced volume, for buoyancy [m³].
+    /// Displaced volume, for buoyancy and the pressure of waves [m³].
     #[serde(default, deserialize_with = "quantity::volume")]
     pub volume: f64,
     /// Added mass in water, the same in all directions [kg].
@@ -283,9 +332,11 @@ impl ElementSpec for PointMassSpec {
             return Err(BuildError::at("marker", "a mass needs a marker on a part, or a position"));
         };
         let mut mass = PointMass::new(&self.name, b.nodes(), &marker, self.mass)?;
-        if self.added_mass > 0.0 || self.drag_area > 0.0 {
+        let waves = self.volume > 0.0 && b.water().is_ok_and(|water| water.sea.is_some());
+        if self.added_mass > 0.0 || self.drag_area > 0.0 || waves {
             let water = b.water()?.clone();
             mass = mass.in_fluid(water.density, self.added_mass, self.drag_area, water.current()?)?;
+            mass.sea = water.sea.clone().map(|sea| (sea, self.volume));
             mass.surface = water.level.map(|level| Across { level, radius: self.radius(water.density) });
         }
         let (seat, held) = (b.nodes()[node.0 as usize], mass.held);

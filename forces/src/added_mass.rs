@@ -1,14 +1,15 @@
 //! Added mass: the water that a slender body pushes aside.
 
 use crate::buoyancy::surface;
-use crate::drag::free_tips;
-use crate::{BluntEnd, FeedingEnd, Surface, Wetted, at_tip};
+use crate::drag::{add, free_tips, less_product, velocity};
+use crate::{BluntEnd, FeedingEnd, FroudeKrylov, Surface, Wetted, at_tip};
 use ropewalk_core::error::not_negative;
 use ropewalk_core::{BuildError, Gives, Law, Load, Part, Power, Real, Station, V3, dot, scaled};
-use ropewalk_scene::{Builder, Current, ForceSpec, quantity, register_spec};
+use ropewalk_scene::{Builder, Current, ForceSpec, Sea, Swell, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// What the water that a body pushes aside answers with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -32,7 +33,9 @@ pub enum Theory {
 /// `f = -m_a [P a - (w·t) θ - (θ·n) t]` and `g = -m_a (w·t)/λ n`, conjugate to `r'`;
 ///
 /// [`Theory::Morison`] leaves `f = -m_a P a`. How the current changes from place to place acts through `u` alone: what
-/// a shear does to the added mass itself is outside the theory. `d` is the hydrodynamic diameter of the station, so a
+/// a shear does to the added mass itself is outside the theory. Waves, whose flow is a potential's, are within: with their
+/// gradient `G` and rate `u_t`, `a` becomes `a - u_t - G v`, and `f` has `-m_a Gᵀ n` besides; after Morison `a` becomes
+/// `a - u_t`, as most codes have it. `d` is the hydrodynamic diameter of the station, so a
 /// hollow or flooded section is counted by its outside. Use it beside [`Drag`](crate::Drag). With the energy the water's
 /// share is part of the kinetic energy; without, its power `f·v` is given by the water to the body.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +46,8 @@ pub struct AddedMass {
     pub coefficient: f64,
     /// Velocity of the fluid.
     pub current: Current,
+    /// Waves, whose velocity adds to it.
+    pub sea: Option<Arc<Sea>>,
     /// What the water answers with.
     pub theory: Theory,
 }
@@ -55,7 +60,7 @@ impl AddedMass {
     pub fn new(density: f64, coefficient: f64) -> Result<Self, BuildError> {
         not_negative("density of the fluid", density)?;
         not_negative("added mass coefficient", coefficient)?;
-        Ok(AddedMass { density, coefficient, current: Current::Still, theory: Theory::Energy })
+        Ok(AddedMass { density, coefficient, current: Current::Still, sea: None, theory: Theory::Energy })
     }
 
     /// The same in a current.
@@ -65,6 +70,12 @@ impl AddedMass {
     pub fn in_current(self, current: Current) -> Result<Self, BuildError> {
         current.check()?;
         Ok(AddedMass { current, ..self })
+    }
+
+    /// The same in waves.
+    #[must_use]
+    pub fn in_waves(self, sea: Option<Arc<Sea>>) -> Self {
+        AddedMass { sea, ..self }
     }
 
     /// The same by another theory.
@@ -79,13 +90,34 @@ impl AddedMass {
         R::of(self.coefficient * self.density * PI / 4.0) * diameter * diameter
     }
 
+    /// Velocity of the fluid at a place [m/s].
     #[inline(always)]
-    fn inertia<R: Real, const TANGENT: bool>(&self, at: &Station<R>, out: &mut Load<R>) {
+    pub(crate) fn fluid<R: Real>(&self, t: f64, x: &V3<R>) -> V3<R> {
+        velocity(&self.current, self.sea.as_deref(), t, x)
+    }
+
+    /// The answer to the acceleration relative to the water.
+    #[inline(always)]
+    fn inertia<R: Real, const TANGENT: bool>(
+        &self,
+        at: &Station<R>,
+        swell: Option<&Swell<R>>,
+        out: &mut Load<R>,
+    ) {
         let mass = self.mass(at.diameter);
         let inverse = R::of(1.0) / dot(&at.slope, &at.slope).sqrt();
         let t = scaled(inverse, &at.slope);
-        let axial = dot(&at.a, &t);
-        let mut normal = at.a;
+        let mut a = at.a;
+        if let Some(swell) = swell {
+            for i in 0..3 {
+                a[i] -= match self.theory {
+                    Theory::Morison => swell.acceleration[i],
+                    Theory::Energy => swell.rate[i] + dot(&swell.gradient[i], &at.v),
+                };
+            }
+        }
+        let axial = dot(&a, &t);
+        let mut normal = a;
         for i in 0..3 {
             normal[i] -= axial * t[i];
             out.f[i] -= mass * normal[i];
@@ -100,15 +132,30 @@ impl AddedMass {
                     out.d_slope[i][j] += turn * axial.fma(p, t[i] * normal[j]);
                 }
             }
+            if let Some(swell) = swell {
+                let across = across(-mass, &t);
+                less_product(&mut out.d_x, &across, &swell.acceleration_by_x);
+                if self.theory == Theory::Energy {
+                    less_product(&mut out.d_v, &across, &swell.gradient);
+                }
+            }
         }
     }
 
     #[inline(always)]
-    fn flow<R: Real, const TANGENT: bool>(&self, at: &Station<R>, out: &mut Load<R>) {
+    fn flow<R: Real, const TANGENT: bool>(
+        &self,
+        at: &Station<R>,
+        swell: Option<&Swell<R>>,
+        out: &mut Load<R>,
+    ) {
         let mass = self.mass(at.diameter);
         let inverse = R::of(1.0) / dot(&at.slope, &at.slope).sqrt();
         let t = scaled(inverse, &at.slope);
-        let (u, du) = self.current.at(at.x[2]);
+        let (mut u, du) = self.current.at(at.x[2]);
+        if let Some(swell) = swell {
+            add(&mut u, &swell.u);
+        }
         let mut w = at.v;
         for i in 0..3 {
             w[i] -= u[i];
@@ -124,6 +171,13 @@ impl AddedMass {
         for i in 0..3 {
             out.f[i] += mass * along.fma(theta[i], both * t[i]);
             out.g[i] -= per * along * n[i];
+        }
+        // what the gradient takes from the flow across
+        let taken = swell.map(|swell| transposed(mass, &swell.gradient));
+        if let Some(taken) = &taken {
+            for i in 0..3 {
+                out.f[i] -= dot(&taken[i], &n);
+            }
         }
         if !TANGENT {
             return;
@@ -145,6 +199,20 @@ impl AddedMass {
                 out.g_slope[i][j] -= per * inverse * (normal - along * t[i].fma(n[j], n[i] * t[j]));
             }
         }
+        if let (Some(swell), Some(taken)) = (swell, &taken) {
+            let across = across(R::of(1.0), &t);
+            for i in 0..3 {
+                let lean = dot(&taken[i], &t);
+                for j in 0..3 {
+                    out.d_slope[i][j] += inverse * along.fma(dot(&taken[i], &across[j]), lean * n[j]);
+                    by_w[i][j] -= dot(&taken[i], &across[j]);
+                    out.d_v[i][j] -= dot(&taken[i], &across[j]);
+                }
+            }
+            // how the gradient itself changes is left out: iterations don't need it
+            less_product(&mut out.d_x, &by_w, &swell.by_x);
+            less_product(&mut out.g_x, &g_by_w, &swell.by_x);
+        }
         if !self.current.is_uniform() {
             // the current changes with height alone
             for i in 0..3 {
@@ -154,21 +222,52 @@ impl AddedMass {
         }
     }
 
-    /// `n`, the part of the velocity relative to the water that is across the axis, and the gradient of the current.
+    /// The velocity of the water and that relative to it, whose part across the axis is `n`.
     #[inline(always)]
-    fn across<R: Real>(&self, at: &Station<R>) -> [V3<R>; 3] {
-        let (u, du) = self.current.at(at.x[2]);
+    fn relative<R: Real>(&self, t: f64, at: &Station<R>) -> Relative<R> {
+        let u = self.fluid(t, &at.x);
         let square = dot(&at.slope, &at.slope);
-        let mut n = at.v;
+        let mut w = at.v;
         for i in 0..3 {
-            n[i] -= u[i];
+            w[i] -= u[i];
         }
-        let along = dot(&n, &at.slope) / square;
+        let (along, mut n) = (dot(&w, &at.slope) / square, w);
         for i in 0..3 {
             n[i] -= along * at.slope[i];
         }
-        [n, u, du]
+        Relative { u, w, n }
     }
+}
+
+/// How a station moves relative to the water.
+struct Relative<R> {
+    u: V3<R>,
+    w: V3<R>,
+    n: V3<R>,
+}
+
+/// `factor (I - t tᵀ)`
+#[inline(always)]
+fn across<R: Real>(factor: R, t: &V3<R>) -> [V3<R>; 3] {
+    let mut p = [[R::zero(); 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            let tt = t[i] * t[j];
+            p[i][j] = factor * if i == j { R::of(1.0) - tt } else { -tt };
+        }
+    }
+    p
+}
+
+#[inline(always)]
+fn transposed<R: Real>(factor: R, m: &[V3<R>; 3]) -> [V3<R>; 3] {
+    let mut out = *m;
+    for i in 0..3 {
+        for j in 0..3 {
+            out[i][j] = factor * m[j][i];
+        }
+    }
+    out
 }
 
 impl Law for AddedMass {
@@ -184,38 +283,54 @@ impl Law for AddedMass {
     }
     fn gives(&self) -> Gives {
         match self.theory {
-            Theory::Energy => Gives { x: !self.current.is_uniform(), ..Gives::ALL },
-            Theory::Morison => Gives { slope: true, a: true, ..Gives::NOTHING },
+            Theory::Energy => Gives { x: self.sea.is_some() || !self.current.is_uniform(), ..Gives::ALL },
+            Theory::Morison => Gives { x: self.sea.is_some(), slope: true, a: true, ..Gives::NOTHING },
         }
+    }
+    fn timed(&self) -> bool {
+        self.sea.is_some()
+    }
+    fn reach(&self, _t: f64, h: f64) -> Option<f64> {
+        Some(self.sea.as_ref().map_or(h, |sea| sea.reach(h)))
     }
 
     #[inline(always)]
-    fn load<R: Real, const TANGENT: bool>(&self, _t: f64, at: &Station<R>, out: &mut Load<R>) {
-        self.inertia::<R, TANGENT>(at, out);
+    fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
+        let swell = self.sea.as_ref().map(|sea| sea.at(t, &at.x));
+        self.inertia::<R, TANGENT>(at, swell.as_ref(), out);
         if self.theory == Theory::Energy {
-            self.flow::<R, TANGENT>(at, out);
+            self.flow::<R, TANGENT>(at, swell.as_ref(), out);
         }
     }
 
     #[inline(always)]
-    fn power<R: Real>(&self, _t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
+    fn power<R: Real>(&self, t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
         let supplied = match self.theory {
             Theory::Morison => dot(&load.f, &at.v),
             // what a body takes along in a shear isn't part of the theory: nor is its energy
             Theory::Energy => {
-                let [n, u, du] = self.across(at);
-                dot(&load.f, &u) - self.mass(at.diameter) * at.v[2] * dot(&n, &du)
+                let (Relative { u, w, n }, (_, du)) = (self.relative(t, at), self.current.at(at.x[2]));
+                let mut met = at.v[2] * dot(&n, &du);
+                if let Some(sea) = &self.sea {
+                    let Swell { gradient, by_x, by_t, rate, .. } = sea.at(t, &at.x);
+                    for i in 0..3 {
+                        met += n[i] * dot(&gradient[i], &w);
+                        // above the surface the water has the velocity that it has at the surface
+                        met += n[i] * (dot(&by_x[i], &at.v) - dot(&gradient[i], &at.v) + by_t[i] - rate[i]);
+                    }
+                }
+                dot(&load.f, &u) - self.mass(at.diameter) * met
             }
         };
         Power { supplied, ..Power::zero() }
     }
 
     #[inline(always)]
-    fn kinetic<R: Real>(&self, _t: f64, at: &Station<R>) -> R {
+    fn kinetic<R: Real>(&self, t: f64, at: &Station<R>) -> R {
         match self.theory {
             Theory::Morison => R::zero(),
             Theory::Energy => {
-                let [n, _, _] = self.across(at);
+                let n = self.relative(t, at).n;
                 R::of(0.5) * self.mass(at.diameter) * dot(&n, &n)
             }
         }
@@ -226,11 +341,13 @@ fn one() -> f64 {
     1.0
 }
 
-/// Added mass of cables and hulls: inertia of the water, and its forces in flow along the body.
+/// Added mass of cables and hulls: inertia of the water, and its forces in flow along the body. In waves also the force of their
+/// pressure on the volume displaced (Froude-Krylov), in all directions.
 ///
 /// It follows from the kinetic energy of the water: a hull at an angle to the flow has Munk's moment, and flow along
 /// a cable acts like compression and can cause flutter. `theory = "morison"` keeps the inertia only, for comparison
-/// with codes that have no more.
+/// with codes that have no more. In waves `morison` takes the acceleration of the water at a fixed place, as most codes do;
+/// otherwise it is that along the path of the water, and a line as heavy as water goes with it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AddedMassSpec {
@@ -266,17 +383,24 @@ impl ForceSpec for AddedMassSpec {
         let surface = surface(b)?;
         let water = b.water()?;
         let law = AddedMass::new(water.density, self.ca)?.in_current(water.current()?)?;
+        let law = law.in_waves(water.sea.clone());
         let theory = self.theory.unwrap_or_default();
         for numbered in b.parts(&self.on)? {
             b.acts_once("added_mass", &numbered)?;
             if theory == Theory::Energy {
-                self.add_ends(b, numbered.1.as_ref(), &law, surface);
+                self.add_ends(b, numbered.1.as_ref(), &law, surface.as_ref());
             }
         }
         let law = law.by(theory);
         match surface {
             None => b.load(&self.on, law),
-            Some(surface) => b.load(&self.on, Wetted::below(surface, law)),
+            Some(surface) => {
+                if let Some(sea) = law.sea.clone() {
+                    let waves = FroudeKrylov { density: law.density, current: law.current.clone(), sea, theory };
+                    b.load(&self.on, Wetted::below(surface.clone(), waves))?;
+                }
+                b.load(&self.on, Wetted::below(surface, law))
+            }
         }
     }
 }
@@ -284,9 +408,10 @@ impl ForceSpec for AddedMassSpec {
 impl AddedMassSpec {
     /// Water leaves at the ends of a cable or a chain that nothing holds. Hulls of single bodies keep what it has, as
     /// Kirchhoff's equations have it. Where an end feeds, more or less of the cable has water beside it.
-    fn add_ends(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass, surface: Option<Surface>) {
+    fn add_ends(&self, b: &mut Builder, part: &dyn Part, law: &AddedMass, surface: Option<&Surface>) {
         for tip in free_tips(b, part).into_iter().filter(|tip| tip.sheds) {
             let (added_mass, taper) = (law.clone(), self.tail);
+            let surface = surface.cloned();
             let end = BluntEnd { added_mass, diameter: tip.diameter, taper, first: tip.first, surface };
             if let Some(term) = at_tip(end, part.name(), b.nodes(), &tip) {
                 b.term(term);
@@ -296,7 +421,7 @@ impl AddedMassSpec {
         for (end, name) in [(0, "start"), (1, "end")] {
             if let Some(boundary) = part.boundary(end).filter(|_| diameter > 0.0) {
                 let label = format!("{}: water at its {name}", part.name());
-                let added_mass = law.clone();
+                let (added_mass, surface) = (law.clone(), surface.cloned());
                 b.term(Box::new(FeedingEnd { label, added_mass, diameter, surface, boundary }));
             }
         }

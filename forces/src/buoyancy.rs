@@ -1,13 +1,13 @@
-//! Buoyancy at the surface of water at rest: a potential, so that energy is kept.
+//! Buoyancy at the surface of water: at rest a potential, so that energy is kept.
 
 use crate::Surface;
 use crate::gravity::dead_loads;
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::held::{Held, Pull, pull};
 use ropewalk_core::{
-    Assembly, At, BuildError, Energy, Gives, Law, Load, Pattern, Per, Power, Real, Station, Term, V3,
+    Assembly, At, BuildError, Energy, Gives, Law, Load, Pattern, Per, Power, Real, Station, Term, Timed, V3,
 };
-use ropewalk_scene::{Builder, ForceSpec, register_spec};
+use ropewalk_scene::{Builder, ForceSpec, Swell, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -15,7 +15,8 @@ use std::f64::consts::PI;
 /// Buoyancy of a slender body that may lie across the surface, `ρ g A φ` per length upwards.
 ///
 /// Its potential is `ρ g A W` per length, see [`Surface::wet`]: besides lifting it rights a body whose waterplane tilts. All
-/// under water it is the buoyancy of the whole volume.
+/// under water it is the buoyancy of the whole volume. Waves change the potential, and so give and take energy, by how they
+/// raise the surface; their pressure is another law, [`FroudeKrylov`](crate::FroudeKrylov).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Buoyancy {
     /// `ρ g` [N/m³].
@@ -34,9 +35,16 @@ impl Law for Buoyancy {
     fn gives(&self) -> Gives {
         Gives { x: true, slope: true, couple: self.couple, ..Gives::NOTHING }
     }
+    fn timed(&self) -> bool {
+        self.surface.sea.is_some()
+    }
+    fn reach(&self, _t: f64, h: f64) -> Option<f64> {
+        Some(self.surface.reach(h))
+    }
     #[inline(always)]
-    fn load<R: Real, const TANGENT: bool>(&self, _t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let (wet, k) = (self.surface.wet(at), R::of(self.specific_weight) * at.area);
+    fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
+        let swell = self.surface.swell(t, &at.x);
+        let (wet, k) = (self.surface.wet(at, swell.as_ref()), R::of(self.specific_weight) * at.area);
         out.f[2] += k * wet.share;
         for i in 0..3 {
             if self.couple {
@@ -58,16 +66,32 @@ impl Law for Buoyancy {
                 }
             }
         }
+        let Some(swell) = swell else { return };
+        for j in 0..2 {
+            let by_x = k * swell.slope[j];
+            out.d_x[2][j] -= by_x * wet.share_by_z;
+            if self.couple {
+                for i in 0..3 {
+                    out.g_x[i][j] -= by_x * wet.share_by_slope[i];
+                }
+            }
+        }
     }
     #[inline(always)]
-    fn power<R: Real>(&self, _t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
-        let supplied = if self.couple { R::zero() } else { load.f[2] * at.v[2] };
+    fn power<R: Real>(&self, t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
+        let supplied = match self.surface.swell(t, &at.x) {
+            _ if !self.couple => load.f[2] * at.v[2],
+            None => R::zero(),
+            // what lies deeper under a surface that has risen has more potential energy
+            Some(swell) => load.f[2] * swell.rise(&at.v),
+        };
         Power { supplied, ..Power::zero() }
     }
     #[inline(always)]
-    fn potential<R: Real>(&self, _t: f64, at: &Station<R>) -> R {
+    fn potential<R: Real>(&self, t: f64, at: &Station<R>) -> R {
         if self.couple {
-            R::of(self.specific_weight) * at.area * self.surface.wet(at).depth
+            let swell = self.surface.swell(t, &at.x);
+            R::of(self.specific_weight) * at.area * self.surface.wet(at, swell.as_ref()).depth
         } else {
             R::zero()
         }
@@ -113,7 +137,11 @@ impl Float {
 
     /// Wet share, and what it changes by with height.
     fn share(&self, at: &At<'_>) -> (f64, f64) {
-        self.surface.ball(self.held.x(at)[2], ball_radius(self.volume))
+        self.surface.ball(at.t, &self.held.x(at), ball_radius(self.volume))
+    }
+    /// The waves around it.
+    fn swell(&self, at: &At<'_>) -> Option<Swell<f64>> {
+        self.surface.swell(at.t, &self.held.x(at))
     }
 }
 
@@ -125,7 +153,7 @@ impl Term for Float {
         p.clique(self.held.dofs());
     }
     fn symmetric(&self) -> bool {
-        !matches!(self.held, Held::Beside { .. })
+        !matches!(self.held, Held::Beside { .. }) && self.surface.sea.is_none()
     }
     fn is_load(&self) -> bool {
         true
@@ -134,21 +162,40 @@ impl Term for Float {
         let (lift, (share, by_z)) = (self.specific_weight * self.volume, self.share(at));
         let mut force = Pull { f: [0.0, 0.0, lift * share], ..Pull::default() };
         force.by_x[2][2] = lift * by_z;
+        if let Some(swell) = self.swell(at) {
+            (force.by_x[2][0], force.by_x[2][1]) = (-lift * by_z * swell.slope[0], -lift * by_z * swell.slope[1]);
+        }
         pull(&[Held::Ground([0.0; 3]), self.held], at, &force, 0, out);
     }
     fn energy(&self, at: &At<'_>) -> Energy {
         let r = ball_radius(self.volume);
-        let s = self.surface.level - self.held.x(at)[2];
+        let risen = self.swell(at).map_or(0.0, |swell| swell.elevation);
+        let s = self.surface.level + risen - self.held.x(at)[2];
         let u = (s / r).clamp(-1.0, 1.0);
         // ∫ (½ + ¾ u - ¼ u³) du, from where the ball is dry; below the surface it grows by the depth
         let mean = 0.5 * u + 0.375 * u * u - 0.0625 * u.powi(4) + 0.1875 + (s / r - u).max(0.0);
         Energy { potential: self.specific_weight * self.volume * r * mean, ..Energy::default() }
     }
+    fn power(&self, at: &At<'_>) -> Power {
+        let lift = self.specific_weight * self.volume * self.share(at).0;
+        let rise = self.swell(at).map_or(0.0, |swell| swell.rise(&self.held.velocity(at)));
+        Power { supplied: lift * rise, ..Power::default() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        self.surface.sea.as_ref().map(|_| self as &dyn Timed)
+    }
+}
+
+impl Timed for Float {
+    fn reach(&self, _t: f64, h: f64) -> Option<f64> {
+        Some(self.surface.reach(h))
+    }
 }
 
 /// Buoyancy of the displaced volume; if the water has a `level`, of the volume under water.
 ///
-/// At the surface, cables, hulls and chains are cylinders; other bodies and point masses are spheres.
+/// At the surface, cables, hulls and chains are cylinders; other bodies and point masses are spheres. In waves it is that
+/// below the surface at each instant; what the pressure of the waves adds comes with `added_mass`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BuoyancySpec {
@@ -183,7 +230,7 @@ impl BuoyancySpec {
             match part.ball() {
                 Some((held, volume)) => {
                     let label = format!("{}: buoyancy", part.name());
-                    b.term(Box::new(Float::new(label, held, volume, lift[2], surface)?));
+                    b.term(Box::new(Float::new(label, held, volume, lift[2], surface.clone())?));
                 }
                 None => slender.push(part.name().to_string()),
             }
@@ -195,7 +242,7 @@ impl BuoyancySpec {
             slender.iter().map(|name| b.feeding(name).iter().all(Option::is_none)).collect();
         b.load_by(&slender, |part| {
             let couple = slender.iter().zip(&stiff).any(|(name, stiff)| *stiff && name == part.name());
-            Buoyancy { specific_weight: lift[2], surface, couple }
+            Buoyancy { specific_weight: lift[2], surface: surface.clone(), couple }
         })
     }
 }
@@ -213,5 +260,5 @@ pub(crate) fn surface(b: &Builder) -> Result<Option<Surface>, BuildError> {
         );
         return Err(BuildError::at("gravity", message));
     }
-    Ok(Some(Surface { level }))
+    Ok(Some(Surface { level, sea: b.water()?.sea.clone() }))
 }

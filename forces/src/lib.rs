@@ -27,6 +27,7 @@ mod bushing;
 pub mod contact;
 mod drag;
 mod drag_coefficient;
+mod froude_krylov;
 mod function;
 mod gravity;
 mod internal_flow;
@@ -49,6 +50,7 @@ pub use drag::{
     choo_casarella_ct_over_mu,
 };
 pub use drag_coefficient::DragCoefficientSpec;
+pub use froude_krylov::FroudeKrylov;
 pub use function::{FunctionForce, FunctionLoad, FunctionSpec, Scales};
 pub use gravity::GravitySpec;
 pub use internal_flow::{Bore, InternalFlow, InternalFlowSpec, WallTensionSpec};

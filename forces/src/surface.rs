@@ -1,20 +1,24 @@
-//! The surface of water at rest, and how it cuts slender bodies and balls.
+//! The surface of water, and how it cuts slender bodies and balls.
 //!
 //! A slender body is a stack of discs across its axis, of radius `r`. A disc whose middle lies at depth `s` is wet by
 //! `φ(s/w)` of its area, `w = r √(1 - t_z²)` being half of its height; a station's cell from depth `s_a` to `s_b` by the
 //! mean of that, which its integrals give exactly: `W = (Y(s_a) - Y(s_b)) / (s_a - s_b)` with `∂²Y/∂s² = φ`. `ρ g A W` is
 //! the potential of buoyancy per length: its share `∂W/∂s` lifts, and what `W` changes by with the slope is the couple
-//! of a tilted waterplane.
+//! of a tilted waterplane. In waves the surface over a station's cell is taken as level, at the height that it has at the
+//! station.
 
 use ropewalk_core::{Real, Station, V3, dot};
-use ropewalk_scene::ball_below;
+use ropewalk_scene::{Sea, Swell, ball_below};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-/// The surface of water at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The surface of water.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// Its height [m].
+    /// Its height where it is still [m].
     pub level: f64,
+    /// The waves on it.
+    pub sea: Option<Arc<Sea>>,
 }
 
 /// How a station's cell lies in the water.
@@ -43,9 +47,26 @@ const LEVEL: f64 = 0.02;
 const MOST: usize = 8;
 
 impl Surface {
-    /// How a station's cell lies in the water.
+    /// That of still water at a height [m].
+    pub const fn still(level: f64) -> Self {
+        Surface { level, sea: None }
+    }
+
+    /// Its waves at a place, if it has some.
     #[inline(always)]
-    pub fn wet<R: Real>(&self, at: &Station<R>) -> Wet<R> {
+    pub fn swell<R: Real>(&self, t: f64, x: &V3<R>) -> Option<Swell<R>> {
+        self.sea.as_ref().map(|sea| sea.at(t, x))
+    }
+
+    /// How much of a step `h` follows it, as [`Law::reach`](ropewalk_core::Law::reach).
+    pub(crate) fn reach(&self, h: f64) -> f64 {
+        self.sea.as_ref().map_or(h, |sea| sea.reach(h))
+    }
+
+    /// How a station's cell lies in the water, whose waves are those of [`Surface::swell`] there.
+    #[inline(always)]
+    pub fn wet<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> Wet<R> {
+        let risen = swell.map_or(R::zero(), |swell| swell.elevation);
         let mut cells = [Wet::dry(); MOST];
         for (lane, cell) in cells.iter_mut().enumerate().take(R::LANES) {
             let radius = match at.area.lane(lane) {
@@ -54,7 +75,7 @@ impl Surface {
             };
             let before = at.before.lane(lane);
             *cell = Cell {
-                s: self.level - at.x[2].lane(lane),
+                s: self.level + risen.lane(lane) - at.x[2].lane(lane),
                 slope: [at.slope[0].lane(lane), at.slope[1].lane(lane), at.slope[2].lane(lane)],
                 before,
                 behind: at.weight.lane(lane) - before,
@@ -75,9 +96,21 @@ impl Surface {
         }
     }
 
-    /// Share of a ball's volume that is wet, and what it changes by with height [1/m]; `z` is its middle.
-    pub fn ball<R: Real>(&self, z: R, radius: f64) -> (R, R) {
-        ball_below(self.level, z, radius)
+    /// Share of a ball's volume that is wet, and what it changes by with height [1/m]; `x` is its middle.
+    pub fn ball<R: Real>(&self, t: f64, x: &V3<R>, radius: f64) -> (R, R) {
+        match self.swell(t, x) {
+            None => ball_below(self.level, x[2], radius),
+            Some(swell) => ball_below(self.level, x[2] - swell.elevation, radius),
+        }
+    }
+}
+
+impl<R: Real> Wet<R> {
+    /// How fast the share changes as the station and the surface move [1/s].
+    #[inline(always)]
+    pub(crate) fn share_rate(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> R {
+        let still = self.share_by_z.fma(at.v[2], dot(&self.share_by_slope, &at.slope_rate));
+        swell.map_or(still, |swell| still - self.share_by_z * swell.rise(&at.v))
     }
 }
 

@@ -1,7 +1,8 @@
 //! Loads of water on bodies that may lie across its surface.
 
-use crate::Surface;
-use ropewalk_core::{Gives, Law, Load, Power, Real, Station, V3, dot};
+use crate::{Surface, Wet};
+use ropewalk_core::{Gives, Law, Load, Power, Real, Station, V3};
+use ropewalk_scene::Swell;
 
 /// A law of a fluid, by the share of each station that is in it: of water below a surface, or of air above.
 ///
@@ -28,15 +29,17 @@ impl<L: Law> Wetted<L> {
         Wetted { law, surface, above: true }
     }
 
-    /// The share in the fluid, and what it changes by with height and slope.
+    /// How much of a station is in the fluid, in place of how much is wet; and the waves there.
     #[inline(always)]
-    fn share<R: Real>(&self, at: &Station<R>) -> (R, R, V3<R>) {
-        let wet = self.surface.wet(at);
+    fn share<R: Real>(&self, t: f64, at: &Station<R>) -> (Wet<R>, Option<Swell<R>>) {
+        let swell = self.surface.swell(t, &at.x);
+        let mut wet = self.surface.wet(at, swell.as_ref());
         if self.above {
-            (R::of(1.0) - wet.share, -wet.share_by_z, wet.share_by_slope.map(|x| -x))
-        } else {
-            (wet.share, wet.share_by_z, wet.share_by_slope)
+            wet.share = R::of(1.0) - wet.share;
+            wet.share_by_z = -wet.share_by_z;
+            wet.share_by_slope = wet.share_by_slope.map(|x| -x);
         }
+        (wet, swell)
     }
 
     #[inline(always)]
@@ -62,10 +65,11 @@ impl<L: Law> Law for Wetted<L> {
         if self.above { format!("{} in air", self.law.label()) } else { self.law.label() }
     }
     fn timed(&self) -> bool {
-        self.law.timed()
+        self.law.timed() || self.surface.sea.is_some()
     }
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        self.law.reach(t, h)
+        let h = self.surface.reach(h);
+        if self.law.timed() { self.law.reach(t, h) } else { Some(h) }
     }
     fn follows_material(&self) -> bool {
         self.law.follows_material()
@@ -76,7 +80,8 @@ impl<L: Law> Law for Wetted<L> {
 
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let (share, by_z, by_slope) = self.share(at);
+        let (wet, swell) = self.share(t, at);
+        let (share, by_z, by_slope) = (wet.share, wet.share_by_z, wet.share_by_slope);
         let whole = self.whole::<R, TANGENT>(t, at);
         for i in 0..3 {
             out.f[i] = share.fma(whole.f[i], out.f[i]);
@@ -101,13 +106,22 @@ impl<L: Law> Law for Wetted<L> {
                 out.g_slope[i][j] += whole.g[i] * by_slope[j];
             }
         }
+        let Some(swell) = swell else { return };
+        for i in 0..3 {
+            for j in 0..2 {
+                let by_x = by_z * swell.slope[j];
+                out.d_x[i][j] -= whole.f[i] * by_x;
+                out.g_x[i][j] -= whole.g[i] * by_x;
+            }
+        }
     }
 
     #[inline(always)]
     fn power<R: Real>(&self, t: f64, at: &Station<R>, _: &Load<R>) -> Power<R> {
-        let (share, by_z, by_slope) = self.share(at);
+        let (wet, swell) = self.share(t, at);
+        let share = wet.share;
         let power = self.law.power(t, at, &self.whole::<R, false>(t, at));
-        let met = by_z.fma(at.v[2], dot(&by_slope, &at.slope_rate)) * self.law.kinetic(t, at);
+        let met = wet.share_rate(at, swell.as_ref()) * self.law.kinetic(t, at);
         Power {
             dissipated: share * power.dissipated,
             supplied: share.fma(power.supplied, met),
@@ -117,15 +131,15 @@ impl<L: Law> Law for Wetted<L> {
 
     #[inline(always)]
     fn kinetic<R: Real>(&self, t: f64, at: &Station<R>) -> R {
-        self.share(at).0 * self.law.kinetic(t, at)
+        self.share(t, at).0.share * self.law.kinetic(t, at)
     }
 
     #[inline(always)]
     fn potential<R: Real>(&self, t: f64, at: &Station<R>) -> R {
-        self.share(at).0 * self.law.potential(t, at)
+        self.share(t, at).0.share * self.law.potential(t, at)
     }
 
-    fn local(&self, quantity: &str, at: &Station<f64>) -> Option<f64> {
-        self.law.local(quantity, at).filter(|_| self.share(at).0 > 0.5)
+    fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64> {
+        self.law.local(quantity, t, at).filter(|_| self.share(t, at).0.share > 0.5)
     }
 }

@@ -39,6 +39,7 @@ pub(crate) const ALL: &[Bundled] = scenes![
     "helix-spring",
     "hockle",
     "moored-float",
+    "mooring",
     "mooring-line",
     "munk-moment",
     "net",

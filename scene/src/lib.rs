@@ -17,8 +17,10 @@ mod process;
 pub mod records;
 mod scene;
 mod scene_file;
+mod sea;
 pub mod spec;
 mod water;
+mod waves;
 
 pub use builder::{Builder, Numbered};
 pub use controllers::{Bound, Channels};
@@ -33,11 +35,16 @@ pub use process::{Channel, Process, ProcessSpec, Surroundings};
 pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use scene_file::{Bundled, SceneFile, SceneText};
+pub use sea::{Sea, Swell};
 pub use spec::{
     ConstraintSpec, ControllerSpec, ElementSpec, ForceSpec, ListInfo, MotionSpec, RecordSpec, SECTIONS,
     SpecInfo, SpecKind, lists, registered,
 };
 pub use water::{Air, Level, Water, ball_below};
+pub use waves::{
+    Evaluation, Jonswap, PiersonMoskowitz, RegularWave, SpreadingSpec, WaveComponent, WaveSampling, WaveStretching, WavesSpec,
+    WhiteSea,
+};
 
 #[doc(hidden)]
 pub use inventory;

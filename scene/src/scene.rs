@@ -292,7 +292,22 @@ impl Scene {
     fn check_world(&self) -> Result<(), BuildError> {
         ropewalk_core::error::finite("gravity", &self.gravity)?;
         self.water.as_ref().map_or(Ok(()), Water::check)?;
+        self.check_rest()?;
         self.air.as_ref().map_or(Ok(()), |air| air.check(self.water.as_ref()))
+    }
+
+    /// Waves have no equilibrium: what is in one begins in still water.
+    fn check_rest(&self) -> Result<(), BuildError> {
+        let Some(waves) = self.water.as_ref().and_then(|water| water.waves.as_ref()) else { return Ok(()) };
+        if self.run.analysis == Analysis::Statics {
+            let message = "there is no equilibrium in waves: leave [water.waves] out, or run in time";
+            return Err(BuildError::at("water.waves", message));
+        }
+        if self.run.from_equilibrium && !(waves.ramp > 0.0) {
+            let message = "an equilibrium is in still water: let the waves rise from it, such as `ramp = \"60 s\"`";
+            return Err(BuildError::at("water.waves", message));
+        }
+        Ok(())
     }
 
     /// The process of the scene at its start, if it is one of a process.
@@ -326,7 +341,11 @@ impl Scene {
         let motions =
             build_all(&self.motions, &inputs, duration).map_err(|(k, e)| of(SpecKind::Motion, k)(e))?;
         let (gravity, mut water, all) = (self.gravity, self.water.clone(), inputs.all().to_vec());
-        water.as_mut().map_or(Ok(()), |water| water.bind(&inputs)).map_err(whole)?;
+        if water.as_ref().is_some_and(|water| water.waves.is_some()) {
+            let message = "a process has water without waves: leave [water.waves] out";
+            return Err(whole(BuildError::at("water.waves", message)));
+        }
+        water.as_mut().map_or(Ok(()), |water| water.bind(&inputs, gravity)).map_err(whole)?;
         let around = Surroundings { gravity, water, motions, inputs, duration };
         let process = spec.build(&around).map_err(of(SpecKind::Process, 0))?;
         if all.is_empty() && self.controllers.is_empty() {
@@ -369,7 +388,7 @@ impl Scene {
         self.check_world().map_err(whole)?;
         let inputs = Inputs::build(&self.inputs).map_err(|(k, e)| of(SpecKind::Input, k)(e))?;
         let (mut water, mut air) = (self.water.clone(), self.air.clone());
-        water.as_mut().map_or(Ok(()), |water| water.bind(&inputs)).map_err(whole)?;
+        water.as_mut().map_or(Ok(()), |water| water.bind(&inputs, self.gravity)).map_err(whole)?;
         air.as_mut().map_or(Ok(()), |air| air.bind(&inputs)).map_err(whole)?;
         b.set_world(self.gravity, water, air);
         for (part, mesh) in plan {

@@ -2,10 +2,13 @@
 
 use crate::current::Current;
 use crate::inputs::Inputs;
+use crate::sea::Sea;
+use crate::waves::WavesSpec;
 use ropewalk_core::error::{finite, not_negative, positive};
-use ropewalk_core::{BuildError, Hold, Real, Signal};
+use ropewalk_core::{BuildError, Hold, Real, Signal, V3};
 use ropewalk_quantity::{Kind, Setting, kind};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// The water around a scene. Drag, buoyancy and added mass need it.
 ///
@@ -34,6 +37,9 @@ pub struct Water {
     /// Factor of the profile; an input that it reads needs `join = "hold"`.
     #[serde(deserialize_with = "ropewalk_quantity::setting::number")]
     pub profile_factor: Setting,
+    /// Waves on the water, whose `level` is then the surface when it is still. Default: still water.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub waves: Option<WavesSpec>,
     /// What `current` reads, in a model that is being built.
     #[serde(skip)]
     #[doc(hidden)]
@@ -42,6 +48,10 @@ pub struct Water {
     #[serde(skip)]
     #[doc(hidden)]
     pub factor: Option<Signal>,
+    /// The waves, in a model that is being built.
+    #[serde(skip)]
+    #[doc(hidden)]
+    pub sea: Option<Arc<Sea>>,
 }
 
 /// Velocity of the water, or the air, at one height.
@@ -65,15 +75,18 @@ impl Default for Water {
             current: [0.0; 3].map(Setting::from),
             profile: Vec::new(),
             profile_factor: 1.0.into(),
+            waves: None,
             bound: None,
             factor: None,
+            sea: None,
         }
     }
 }
 
 impl Water {
-    /// Binds the current to the inputs of a scene.
-    pub(crate) fn bind(&mut self, inputs: &Inputs) -> Result<(), BuildError> {
+    /// Binds the current to the inputs of a scene, and raises the waves under its gravity.
+    pub(crate) fn bind(&mut self, inputs: &Inputs, gravity: V3<f64>) -> Result<(), BuildError> {
+        self.sea = self.raised(gravity)?;
         self.bound = bound("current", &self.current, inputs).map_err(|e| e.of("water.current"))?;
         let factor = held("profile_factor", &self.profile_factor, inputs, &kind::NUMBER);
         self.factor = Some(factor.map_err(|e| e.of("water.profile_factor"))?);
@@ -89,6 +102,29 @@ impl Water {
             (&self.profile, &self.profile_factor, &self.factor),
             "[water] has both `current` and `profile`: give one of them",
         )
+    }
+    /// Its waves under the gravity of a scene [m/s²], if it has some.
+    ///
+    /// # Errors
+    /// No surface, gravity that isn't across it; what is wrong with the waves.
+    pub fn raised(&self, gravity: V3<f64>) -> Result<Option<Arc<Sea>>, BuildError> {
+        let Some(waves) = &self.waves else { return Ok(None) };
+        let at = |field: &str, message: String| Err(BuildError::at(field, message));
+        let Some(level) = self.level else {
+            let message = "waves need a surface: give the water its `level`, such as `level = 0`";
+            return at("water.waves", message.into());
+        };
+        let [x, y, g] = gravity;
+        if x != 0.0 || y != 0.0 || !(g < 0.0) {
+            let message = format!("waves need gravity that points down, along -z, and it is {gravity:?} m/s²");
+            return at("gravity", message);
+        }
+        if waves.doppler && self.current.iter().any(|u| u.number().is_none()) {
+            let message = "waves can't feel a current that an input sets: leave `doppler` out";
+            return at("water.waves.doppler", message.into());
+        }
+        let (drift, _) = self.current()?.at(level);
+        Sea::new(waves, level, -g, drift).map(|sea| Some(Arc::new(sea)))
     }
     /// What is wrong with the numbers, if anything.
     pub fn check(&self) -> Result<(), BuildError> {

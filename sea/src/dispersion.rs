@@ -10,7 +10,7 @@ pub fn wavenumber(omega: f64, depth: f64, g: f64) -> f64 {
         return deep;
     }
     let a = deep * depth;
-    let mut x = if a < 40.0 { a / (1.0 - (-a.powf(1.25)).exp()).powf(0.4) } else { a };
+    let mut x = if a < 40.0 { a / (-(-a.powf(1.25)).exp_m1()).powf(0.4) } else { a };
     for _ in 0..20 {
         let t = x.tanh();
         let dx = (x * t - a) / (t + x * (1.0 - t * t));

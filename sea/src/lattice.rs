@@ -7,7 +7,7 @@
 //! free of divergence, `u_z = w_x`, `w_z = -u_x`, six sums make all that is needed of velocities at a corner, and six that
 //! of accelerations.
 
-use crate::waves::{Flow, Stretching, Waves, stretch};
+use crate::waves::{Flow, Stretching, Waves};
 use std::collections::HashMap;
 
 /// A line of the table is this part of the shortest wave away from the next.
@@ -28,6 +28,8 @@ type Corner = [f64; 12];
 /// A line of the table at one instant.
 #[derive(Clone, Debug)]
 struct Column {
+    /// Numbers of line and instant.
+    key: (i64, i64),
     /// Elevation, its slope, and the time derivatives of both.
     surface: [f64; 4],
     corners: Vec<Option<Corner>>,
@@ -45,7 +47,9 @@ pub struct Lattice {
     time: f64,
     /// Heights [m], descending from the highest.
     heights: Vec<f64>,
-    columns: HashMap<(i64, i64), Column>,
+    columns: Vec<Column>,
+    /// Where those are of a line and an instant.
+    places: HashMap<(i64, i64), usize>,
 }
 
 impl Lattice {
@@ -79,7 +83,8 @@ impl Lattice {
             along: ALONG * length / finer,
             time,
             heights,
-            columns: HashMap::new(),
+            columns: Vec::new(),
+            places: HashMap::new(),
             waves,
         })
     }
@@ -102,76 +107,75 @@ impl Lattice {
         let (across, late) = (place - i, instant - n);
         let (i, n) = (i as i64, n as i64);
         if self.columns.len() > MOST {
-            self.columns.retain(|key, _| key.1 == n || key.1 == n + 1);
+            self.forget(n);
         }
-        for key in [(i, n), (i + 1, n), (i, n + 1), (i + 1, n + 1)] {
-            if !self.columns.contains_key(&key) {
-                let column = self.column(key);
-                self.columns.insert(key, column);
-            }
-        }
+        let around = [(i, n), (i + 1, n), (i, n + 1), (i + 1, n + 1)].map(|key| self.column(key));
         let [risen, rising] = self.waves.risen(t);
-        let (elevation, steep) = self.surface([i, n], across, late);
-        let (elevation, steep) = (risen * elevation, risen * steep);
-        let slope = self.way.map(|w| steep * w);
-        let (up, by_z, by_eta) = self.waves.stretched(z, elevation);
-        let mut flow = Flow { elevation, slope, ..Flow::default() };
+        let [elevation, steep, rate] = self.surface(around, across, late);
+        let mut flow = Flow {
+            elevation: risen * elevation,
+            slope: self.way.map(|w| risen * steep * w),
+            rising: risen * rate + rising * elevation,
+            ..Flow::default()
+        };
+        let (up, by_z, by_eta) = self.waves.stretched(z, flow.elevation);
         // below the last height nothing moves
         let below = self.heights.partition_point(|h| *h > up);
         let j = below.clamp(1, self.heights.len() - 1) - 1;
         if below < self.heights.len() || self.waves.depth().is_finite() {
-            let (u, w) = self.inside([i, n], j, across, late, up);
+            let (u, w) = self.inside(around, j, across, late, up);
             let [cx, cy] = self.way;
             // as one sees it who drifts with the current
             let (du, dw) = (u[3] + self.current * u[1], w[3] + self.current * w[1]);
             flow.velocity = [u[0] * cx, u[0] * cy, w[0]];
             flow.acceleration = [du * cx, du * cy, dw];
-            flow.gradient = [
-                [u[1] * cx * cx, u[1] * cx * cy, u[2] * cx],
-                [u[1] * cx * cy, u[1] * cy * cy, u[2] * cy],
-                [w[1] * cx, w[1] * cy, w[2]],
-            ];
+            let rows = |k: usize| {
+                [
+                    [u[k] * cx * cx, u[k] * cx * cy, u[k + 1] * cx],
+                    [u[k] * cx * cy, u[k] * cy * cy, u[k + 1] * cy],
+                    [w[k] * cx, w[k] * cy, w[k + 1]],
+                ]
+            };
+            // of what drifting adds to the acceleration the change from place to place is left out
+            (flow.gradient, flow.acceleration_gradient) = (rows(1), rows(4));
         }
-        for (a, u) in flow.acceleration.iter_mut().zip(&flow.velocity) {
-            *a = risen * *a + rising * u;
-        }
-        flow.velocity = flow.velocity.map(|u| risen * u);
-        stretch(&mut flow, risen, by_z, by_eta);
+        flow.rise([risen, rising], [by_z, by_eta], self.waves.current);
         flow
     }
 
-    /// Elevation and slope before the waves have risen, between two columns and two instants.
-    fn surface(&self, [i, n]: [i64; 2], across: f64, late: f64) -> (f64, f64) {
-        let h = hermite(late);
-        let blend = |i: i64| {
-            let (a, b) = (&self.columns[&(i, n)].surface, &self.columns[&(i, n + 1)].surface);
-            let at = |k: usize| {
-                h[0] * a[k] + h[1] * self.time * a[k + 2] + h[2] * b[k] + h[3] * self.time * b[k + 2]
-            };
-            [at(0), at(1)]
+    /// Elevation, slope and rate before the waves have risen, between two columns at each of two instants.
+    fn surface(&self, around: [usize; 4], across: f64, late: f64) -> [f64; 3] {
+        let (h, dh, tau) = (hermite(late), slopes(late), self.time);
+        let blend = |i: usize| {
+            let [a, b] = [around[i], around[i + 2]].map(|k| &self.columns[k].surface);
+            let at = |k: usize| h[0] * a[k] + h[1] * tau * a[k + 2] + h[2] * b[k] + h[3] * tau * b[k + 2];
+            let rate = |k: usize| (dh[0] * a[k] + dh[2] * b[k]) / tau + dh[1] * a[k + 2] + dh[3] * b[k + 2];
+            [at(0), at(1), rate(0), rate(1)]
         };
-        let (a, b, h, dh) = (blend(i), blend(i + 1), hermite(across), slopes(across));
-        let value = h[0] * a[0] + h[1] * self.along * a[1] + h[2] * b[0] + h[3] * self.along * b[1];
+        let (a, b, h, dh) = (blend(0), blend(1), hermite(across), slopes(across));
+        let value = |k: usize| {
+            h[0] * a[k] + h[1] * self.along * a[k + 1] + h[2] * b[k] + h[3] * self.along * b[k + 1]
+        };
         let slope = (dh[0] * a[0] + dh[2] * b[0]) / self.along + dh[1] * a[1] + dh[3] * b[1];
-        (value, slope)
+        [value(0), slope, value(2)]
     }
 
-    /// Velocity along the waves and upwards, each with its derivatives along and upwards and its rate, at a height in the
-    /// cell below height `j`.
+    /// Velocity along the waves and upwards, each with its derivatives along and upwards, and then the same of their rates,
+    /// at a height in the cell below height `j`.
     fn inside(
         &mut self,
-        [i, n]: [i64; 2],
+        around: [usize; 4],
         j: usize,
         across: f64,
         late: f64,
         up: f64,
-    ) -> ([f64; 4], [f64; 4]) {
+    ) -> ([f64; 6], [f64; 6]) {
         let (h, dh, tau) = (hermite(late), slopes(late), self.time);
         // the four corners at this instant: of each its velocities and their rates
         let mut corners = [[[0.0; 6]; 2]; 4];
         for (k, corner) in corners.iter_mut().enumerate() {
-            let (i, j) = (i + (k % 2) as i64, j + k / 2);
-            let (a, b) = (self.corner((i, n), j), self.corner((i, n + 1), j));
+            let (i, j) = (k % 2, j + k / 2);
+            let (a, b) = (self.corner(around[i], j), self.corner(around[i + 2], j));
             for m in 0..6 {
                 let (a, da, b, db) = (a[m], a[m + 6], b[m], b[m + 6]);
                 corner[0][m] = h[0] * a + h[1] * tau * da + h[2] * b + h[3] * tau * db;
@@ -181,7 +185,7 @@ impl Lattice {
         let (top, height) = (self.heights[j], self.heights[j] - self.heights[j + 1]);
         let depth = (top - up) / height;
         let (hx, dx, hz, dz) = (hermite(across), slopes(across), hermite(depth), slopes(depth));
-        let (mut u, mut w) = ([0.0; 4], [0.0; 4]);
+        let (mut u, mut w) = ([0.0; 6], [0.0; 6]);
         for (k, corner) in corners.iter().enumerate() {
             let (x, z) = (2 * (k % 2), 2 * (k / 2));
             // heights count downwards
@@ -190,30 +194,24 @@ impl Lattice {
             let sum = |f: [f64; 4], x: &[f64; 2], z: &[f64; 2]| {
                 z[0] * (x[0] * f[0] + x[1] * f[1]) + z[1] * (x[0] * f[2] + x[1] * f[3])
             };
-            for (rate, now) in corner.iter().enumerate() {
-                let [a, ax, axx, b, bx, bxx] = *now;
+            for (rate, [a, ax, axx, b, bx, bxx]) in corner.iter().enumerate() {
                 // value, by x, by z, by both: u_z = w_x, u_xz = w_xx, w_z = -u_x, w_xz = -u_xx
-                let (fu, fw) = ([a, ax, bx, bxx], [b, bx, -ax, -axx]);
-                if rate == 1 {
-                    u[3] += sum(fu, &fx, &fz);
-                    w[3] += sum(fw, &fx, &fz);
-                } else {
-                    for (to, f) in [(&mut u, fu), (&mut w, fw)] {
-                        to[0] += sum(f, &fx, &fz);
-                        to[1] += sum(f, &gx, &fz);
-                        to[2] += sum(f, &fx, &gz);
-                    }
+                for (to, f) in [(&mut u, [*a, *ax, *bx, *bxx]), (&mut w, [*b, *bx, -ax, -axx])] {
+                    to[3 * rate] += sum(f, &fx, &fz);
+                    to[3 * rate + 1] += sum(f, &gx, &fz);
+                    to[3 * rate + 2] += sum(f, &fx, &gz);
                 }
             }
         }
         (u, w)
     }
 
-    fn corner(&mut self, key: (i64, i64), j: usize) -> Corner {
-        if let Some(corner) = self.columns[&key].corners[j] {
+    fn corner(&mut self, column: usize, j: usize) -> Corner {
+        if let Some(corner) = self.columns[column].corners[j] {
             return corner;
         }
-        let (x, t, z) = (key.0 as f64 * self.along, key.1 as f64 * self.time, self.heights[j]);
+        let (i, n) = self.columns[column].key;
+        let (x, t, z) = (i as f64 * self.along, n as f64 * self.time, self.heights[j]);
         let mut sums = [0.0; 12];
         for c in &self.waves.all {
             let (sin, cos) = (c.k * x - c.omega * t + c.phase).sin_cos();
@@ -235,13 +233,21 @@ impl Lattice {
             ];
             sums.iter_mut().zip(own).for_each(|(sum, x)| *sum += x);
         }
-        if let Some(column) = self.columns.get_mut(&key) {
-            column.corners[j] = Some(sums);
-        }
+        self.columns[column].corners[j] = Some(sums);
         sums
     }
 
-    fn column(&self, (i, n): (i64, i64)) -> Column {
+    /// Forgets all but the columns of an instant and the next one.
+    fn forget(&mut self, n: i64) {
+        self.columns.retain(|column| column.key.1 == n || column.key.1 == n + 1);
+        self.places = self.columns.iter().enumerate().map(|(k, column)| (column.key, k)).collect();
+    }
+
+    /// The number of a column, which is made if there is none.
+    fn column(&mut self, (i, n): (i64, i64)) -> usize {
+        if let Some(place) = self.places.get(&(i, n)) {
+            return *place;
+        }
         let (x, t) = (i as f64 * self.along, n as f64 * self.time);
         let mut surface = [0.0; 4];
         for c in &self.waves.all {
@@ -249,7 +255,9 @@ impl Lattice {
             let own = [c.a * cos, -c.a * c.k * sin, c.a * c.omega * sin, c.a * c.k * c.omega * cos];
             surface.iter_mut().zip(own).for_each(|(sum, x)| *sum += x);
         }
-        Column { surface, corners: vec![None; self.heights.len()] }
+        self.columns.push(Column { key: (i, n), surface, corners: vec![None; self.heights.len()] });
+        self.places.insert((i, n), self.columns.len() - 1);
+        self.columns.len() - 1
     }
 }
 

@@ -3,7 +3,8 @@
 //! - [`wavenumber`]: how long waves of a frequency are;
 //! - [`Spectrum`] and [`Sampling`]: sea states as sums of regular waves, the same on every machine for the same seed;
 //! - [`Waves`]: elevation, velocity, acceleration and their gradients at a place and a time, as sums over all waves;
-//! - [`Lattice`]: the same from a table that is filled where it is looked at, for many waves at once.
+//! - [`Lattice`]: the same from a table that is filled where it is looked at, for many waves at once;
+//! - [`Responses`] and [`VesselResponse`]: the motions of a vessel by response amplitudes.
 //!
 //! Axes: `z` upwards, still water at `z = 0`, the bed at `-depth`. Directions are those that waves travel towards, in
 //! radians from `x` to `y`. All units are SI.
@@ -24,6 +25,7 @@ mod dispersion;
 mod error;
 mod lattice;
 mod random;
+mod response;
 mod sampling;
 mod spectrum;
 mod waves;
@@ -32,6 +34,7 @@ pub use dispersion::{group_velocity, wavenumber, wavenumber_on_current};
 pub use error::SeaError;
 pub use lattice::Lattice;
 pub use random::SplitMix64;
+pub use response::{MOTIONS, Responses, VesselResponse};
 pub use sampling::{Sampling, Spreading, sample};
 pub use spectrum::Spectrum;
 pub use waves::{Flow, Regular, Stretching, Waves};

@@ -36,12 +36,19 @@ pub struct Flow {
     pub elevation: f64,
     /// `∂η/∂x` and `∂η/∂y`.
     pub slope: [f64; 2],
+    /// `∂η/∂t` [m/s].
+    pub rising: f64,
     /// Velocity [m/s].
     pub velocity: [f64; 3],
     /// `∂u/∂t` [m/s²]; of waves on a current as one sees it who drifts with it.
     pub acceleration: [f64; 3],
+    /// What the velocity changes by with time at a fixed place [m/s²]: other than the acceleration, it counts how the column is
+    /// stretched as the surface rises.
+    pub rate: [f64; 3],
     /// `∂u_i/∂x_j` [1/s], stretching included.
     pub gradient: [[f64; 3]; 3],
+    /// What the acceleration changes by from place to place [1/s²], stretching included.
+    pub acceleration_gradient: [[f64; 3]; 3],
     /// Pressure by the waves over the density of water [m²/s²].
     pub pressure: f64,
 }
@@ -71,6 +78,8 @@ pub struct Waves {
     pub(crate) stretching: Stretching,
     /// Time in which they rise from nothing [s].
     ramp: f64,
+    /// The current that carries them [m/s].
+    pub(crate) current: [f64; 2],
 }
 
 /// The least share of the depth that is taken to be left under a trough.
@@ -103,7 +112,7 @@ impl Waves {
             })
         };
         let all = waves.iter().map(component).collect::<Result<_, _>>()?;
-        Ok(Waves { all, depth, g, stretching, ramp: 0.0 })
+        Ok(Waves { all, depth, g, stretching, ramp: 0.0, current: [0.0; 2] })
     }
 
     /// Lets them rise from nothing in a time [s].
@@ -135,12 +144,17 @@ impl Waves {
             })?;
             (c.k, c.sigma) = (k, c.omega - k * along);
         }
+        self.current = current;
         Ok(self)
     }
 
     /// Depth of the water [m].
     pub fn depth(&self) -> f64 {
         self.depth
+    }
+    /// Time in which they rise from nothing [s].
+    pub fn ramp(&self) -> f64 {
+        self.ramp
     }
     /// Number of waves.
     pub fn len(&self) -> usize {
@@ -182,16 +196,28 @@ impl Waves {
 
     /// Elevation above still water [m], and its slopes.
     pub fn elevation(&self, x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
-        let [risen, _] = self.risen(t);
-        let (mut eta, mut slope) = (0.0, [0.0; 2]);
+        let surface = self.surface(x, y, t);
+        (surface.elevation, surface.slope)
+    }
+
+    /// A flow of which only the surface is known.
+    fn surface(&self, x: f64, y: f64, t: f64) -> Flow {
+        let [risen, rising] = self.risen(t);
+        let (mut eta, mut slope, mut rate) = (0.0, [0.0; 2], 0.0);
         for c in &self.all {
             let (sin, cos) = c.angle(x, y, t).sin_cos();
             eta += c.a * cos;
+            rate += c.a * c.omega * sin;
             let steep = -c.a * c.k * sin;
             slope[0] += steep * c.way[0];
             slope[1] += steep * c.way[1];
         }
-        (risen * eta, slope.map(|s| risen * s))
+        Flow {
+            elevation: risen * eta,
+            slope: slope.map(|s| risen * s),
+            rising: risen * rate + rising * eta,
+            ..Flow::default()
+        }
     }
 
     /// The height at which linear theory is asked for what happens at `z` [m], and its derivatives by `z` and by the
@@ -217,50 +243,64 @@ impl Waves {
 
     /// The motion of the water at a place, which should be in it, and a time: the sum over all waves.
     pub fn at(&self, [x, y, z]: [f64; 3], t: f64) -> Flow {
-        let (elevation, slope) = self.elevation(x, y, t);
-        let (up, by_z, by_eta) = self.stretched(z, elevation);
-        let [risen, rising] = self.risen(t);
-        let mut flow = Flow { elevation, slope, ..Flow::default() };
+        let mut flow = self.surface(x, y, t);
+        let (up, by_z, by_eta) = self.stretched(z, flow.elevation);
         for c in &self.all {
             let (sin, cos) = c.angle(x, y, t).sin_cos();
             let [ch, sh, p] = c.depths(up, self.depth);
             let (u, w) = (c.a * c.sigma * ch, c.a * c.sigma * sh);
             let [cx, cy] = c.way;
-            let along = [u * cos, -u * c.k * sin, w * c.k * cos];
-            flow.velocity[0] += along[0] * cx;
-            flow.velocity[1] += along[0] * cy;
+            flow.velocity[0] += u * cos * cx;
+            flow.velocity[1] += u * cos * cy;
             flow.velocity[2] += w * sin;
             flow.acceleration[0] += u * c.sigma * sin * cx;
             flow.acceleration[1] += u * c.sigma * sin * cy;
             flow.acceleration[2] -= w * c.sigma * cos;
             flow.pressure += self.g * c.a * p * cos;
-            let g = &mut flow.gradient;
-            g[0][0] += along[1] * cx * cx;
-            g[0][1] += along[1] * cx * cy;
-            g[1][1] += along[1] * cy * cy;
-            g[0][2] += along[2] * cx;
-            g[1][2] += along[2] * cy;
-            g[2][2] += u * c.k * sin;
+            add_gradient(&mut flow.gradient, c.way, -u * c.k * sin, w * c.k * cos);
+            let k = c.k * c.sigma;
+            add_gradient(&mut flow.acceleration_gradient, c.way, u * k * cos, w * k * sin);
         }
-        let g = &mut flow.gradient;
-        (g[1][0], g[2][0], g[2][1]) = (g[0][1], g[0][2], g[1][2]);
-        for (a, u) in flow.acceleration.iter_mut().zip(&flow.velocity) {
-            *a = risen * *a + rising * u;
-        }
-        flow.velocity = flow.velocity.map(|u| risen * u);
+        let [risen, rising] = self.risen(t);
         flow.pressure *= risen;
-        stretch(&mut flow, risen, by_z, by_eta);
+        flow.rise([risen, rising], [by_z, by_eta], self.current);
         flow
     }
 }
 
-/// Makes the gradient of linear theory at the stretched height, before the waves have risen, that at the place itself.
-pub(crate) fn stretch(flow: &mut Flow, risen: f64, by_z: f64, by_eta: f64) {
-    for row in &mut flow.gradient {
-        let up = risen * row[2];
-        row[0] = risen * row[0] + up * by_eta * flow.slope[0];
-        row[1] = risen * row[1] + up * by_eta * flow.slope[1];
-        row[2] = up * by_z;
+/// Adds the gradient of a field without sources and vortices, of which it is known how the part along a direction changes
+/// along it and upwards.
+fn add_gradient(g: &mut [[f64; 3]; 3], [cx, cy]: [f64; 2], along: f64, up: f64) {
+    let rows =
+        [[along * cx * cx, along * cx * cy, up * cx], [along * cx * cy, along * cy * cy, up * cy], [up * cx, up * cy, -along]];
+    for (row, more) in g.iter_mut().zip(rows) {
+        row.iter_mut().zip(more).for_each(|(x, more)| *x += more);
+    }
+}
+
+impl Flow {
+    /// Makes the motion of linear theory at the stretched height, before the waves have risen, that at the place itself;
+    /// the surface is known already.
+    pub(crate) fn rise(&mut self, [risen, rising]: [f64; 2], [by_z, by_eta]: [f64; 2], current: [f64; 2]) {
+        for (a, u) in self.acceleration.iter_mut().zip(&self.velocity) {
+            *a = risen * *a + rising * u;
+        }
+        self.velocity = self.velocity.map(|u| risen * u);
+        for ((rate, a), by) in self.rate.iter_mut().zip(&self.acceleration).zip(&self.gradient) {
+            let carried = by[0] * current[0] + by[1] * current[1];
+            *rate = a + risen * (by[2] * by_eta * self.rising - carried);
+        }
+        for (of_a, of_u) in self.acceleration_gradient.iter_mut().zip(&mut self.gradient) {
+            for row in [&mut *of_a, &mut *of_u] {
+                row[0] += row[2] * by_eta * self.slope[0];
+                row[1] += row[2] * by_eta * self.slope[1];
+                row[2] *= by_z;
+            }
+            for (a, u) in of_a.iter_mut().zip(of_u) {
+                *a = risen * *a + rising * *u;
+                *u *= risen;
+            }
+        }
     }
 }
 
@@ -275,8 +315,8 @@ impl Component {
         if depth.is_infinite() {
             return [down; 3];
         }
-        let back = (-self.k * (z + 2.0 * depth)).exp();
-        let bed = (-2.0 * self.k * depth).exp();
-        [(down + back) / (1.0 - bed), (down - back) / (1.0 - bed), (down + back) / (1.0 + bed)]
+        // 1 - exp(-2k(z + h)) and 1 - exp(-2kh), also where both are nearly nothing
+        let (here, whole) = (-(-2.0 * self.k * (z + depth)).exp_m1(), -(-2.0 * self.k * depth).exp_m1());
+        [down * (2.0 - here) / whole, down * here / whole, down * (2.0 - here) / (2.0 - whole)]
     }
 }

@@ -7,4 +7,5 @@ mod afloat;
 mod fluid;
 mod one_world;
 mod towing;
+mod waves;
 mod whirling;

@@ -31,7 +31,7 @@ fn cells(line: &str) -> Vec<Cell> {
 }
 
 /// A column that is looked for.
-pub(super) struct Wanted<'a> {
+pub(crate) struct Wanted<'a> {
     pub name: &'a str,
     pub kind: &'a quantity::Kind,
     /// Whether it must be there; one that isn't holds zeros.
@@ -39,7 +39,7 @@ pub(super) struct Wanted<'a> {
 }
 
 /// What was read.
-pub(super) struct Columns<const N: usize> {
+pub(crate) struct Columns<const N: usize> {
     pub rows: Vec<[f64; N]>,
     /// The line of each row, counted from 1.
     pub lines: Vec<usize>,
@@ -55,7 +55,7 @@ pub(super) struct Columns<const N: usize> {
 /// # Errors
 /// The file can't be read; a column is missing or there twice; a line has more or fewer cells than the first, or one that
 /// is no number. With file, line and column.
-pub(super) fn columns<const N: usize>(
+pub(crate) fn columns<const N: usize>(
     path: &str,
     wanted: [Wanted<'_>; N],
     example: &str,

@@ -5,7 +5,7 @@
 //! from the first moment on).
 
 mod circle;
-mod csv;
+pub(crate) mod csv;
 mod driven;
 pub(crate) mod function;
 mod harmonic;

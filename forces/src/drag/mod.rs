@@ -11,8 +11,9 @@ pub use spec::{DragLaw, DragSpec};
 
 use ropewalk_core::error::{need, not_negative};
 use ropewalk_core::{BuildError, Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
-use ropewalk_scene::Current;
+use ropewalk_scene::{Current, Sea};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// What [`Law::local`] calls the coefficient of the flow across; NaN in flow so slow that it is of no use.
 pub(crate) const COEFFICIENT: &str = "drag coefficient across";
@@ -61,6 +62,8 @@ pub struct Drag {
     pub tangential: TangentialLaw,
     /// Velocity of the fluid.
     pub current: Current,
+    /// Waves, whose velocity adds to it.
+    pub sea: Option<Arc<Sea>>,
     /// Which length the forces are per.
     pub per: PerLength,
     /// Where `Cn(Re)` jumps (+1.75 % at `Re` = 1, -1.09 % at 30), goes over smoothly within this part of the edge
@@ -85,6 +88,7 @@ impl Drag {
             normal,
             tangential,
             current: Current::Still,
+            sea: None,
             per: PerLength::Unstretched,
             blend: None,
         };
@@ -114,6 +118,12 @@ impl Drag {
             return Err(BuildError::at("blend", message));
         }
         self.current.check()
+    }
+
+    /// Velocity of the fluid at a place [m/s].
+    #[inline(always)]
+    fn velocity<R: Real>(&self, t: f64, x: &V3<R>) -> V3<R> {
+        velocity(&self.current, self.sea.as_deref(), t, x)
     }
 
     /// Resistance `k` of the normal flow, `f_n = -k v_n`, and `s dk/ds` by the speed `s = |v_n|`.
@@ -158,6 +168,33 @@ impl Drag {
     }
 }
 
+/// Velocity of water that has a current and waves [m/s].
+#[inline(always)]
+pub(crate) fn velocity<R: Real>(current: &Current, sea: Option<&Sea>, t: f64, x: &V3<R>) -> V3<R> {
+    let (mut u, _) = current.at(x[2]);
+    if let Some(sea) = sea {
+        add(&mut u, &sea.at(t, x).u);
+    }
+    u
+}
+
+#[inline(always)]
+pub(crate) fn add<R: Real>(to: &mut V3<R>, x: &V3<R>) {
+    for i in 0..3 {
+        to[i] += x[i];
+    }
+}
+
+/// Takes the product of two matrices off another one.
+#[inline(always)]
+pub(crate) fn less_product<R: Real>(from: &mut [V3<R>; 3], a: &[V3<R>; 3], b: &[V3<R>; 3]) {
+    for i in 0..3 {
+        for j in 0..3 {
+            from[i][j] -= a[i][0].fma(b[0][j], a[i][1].fma(b[1][j], a[i][2] * b[2][j]));
+        }
+    }
+}
+
 /// Cube root of a number that isn't negative: a third of the exponent for a start, then Halley's method, which triples
 /// the digits at each step.
 #[inline(always)]
@@ -181,13 +218,24 @@ impl Law for Drag {
         "drag".into()
     }
     fn gives(&self) -> Gives {
-        Gives { x: !self.current.is_uniform(), slope: true, v: true, ..Gives::NOTHING }
+        let x = self.sea.is_some() || !self.current.is_uniform();
+        Gives { x, slope: true, v: true, ..Gives::NOTHING }
+    }
+    fn timed(&self) -> bool {
+        self.sea.is_some()
+    }
+    fn reach(&self, _t: f64, h: f64) -> Option<f64> {
+        Some(self.sea.as_ref().map_or(h, |sea| sea.reach(h)))
     }
 
     #[inline(always)]
-    fn load<R: Real, const TANGENT: bool>(&self, _t: f64, at: &Station<R>, out: &mut Load<R>) {
+    fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let one = R::of(1.0);
-        let (u, du) = self.current.at(at.x[2]);
+        let (mut u, du) = self.current.at(at.x[2]);
+        let swell = self.sea.as_ref().map(|sea| sea.at(t, &at.x));
+        if let Some(swell) = &swell {
+            add(&mut u, &swell.u);
+        }
         let v = [at.v[0] - u[0], at.v[1] - u[1], at.v[2] - u[2]];
         let stretch = dot(&at.slope, &at.slope).sqrt();
         let per_stretch = one / stretch;
@@ -233,13 +281,16 @@ impl Law for Drag {
                 out.d_x[i][2] -= dot(&dv[i], &du);
             }
         }
+        if let Some(swell) = &swell {
+            less_product(&mut out.d_x, &dv, &swell.by_x);
+        }
     }
 
-    fn local(&self, quantity: &str, at: &Station<f64>) -> Option<f64> {
+    fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64> {
         (quantity == COEFFICIENT).then(|| match self.normal {
             NormalLaw::Constant(cn) => cn,
             NormalLaw::ChooCasarella => {
-                let (u, _) = self.current.at(at.x[2]);
+                let u = self.velocity(t, &at.x);
                 let v: V3<f64> = [0, 1, 2].map(|i| at.v[i] - u[i]);
                 let along = dot(&v, &at.slope) / dot(&at.slope, &at.slope);
                 let across: V3<f64> = [0, 1, 2].map(|i| v[i] - along * at.slope[i]);
@@ -252,8 +303,8 @@ impl Law for Drag {
 
     /// What the fluid takes by friction, `-f·(v - u)`, is dissipated; what it carries along, `f·u`, is supplied.
     #[inline(always)]
-    fn power<R: Real>(&self, _t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
-        let (u, _) = self.current.at(at.x[2]);
+    fn power<R: Real>(&self, t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
+        let u = self.velocity(t, &at.x);
         let supplied = dot(&load.f, &u);
         Power { dissipated: supplied - dot(&load.f, &at.v), supplied, carried: R::zero() }
     }

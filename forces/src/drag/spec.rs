@@ -5,9 +5,10 @@ use crate::buoyancy::surface;
 use crate::{EndDrag, Surface, Wetted, at_tip};
 use ropewalk_core::error::not_negative;
 use ropewalk_core::{BuildError, Part, Tip};
-use ropewalk_scene::{Builder, Current, ForceSpec, Water, quantity, register_spec};
+use ropewalk_scene::{Builder, Current, ForceSpec, Sea, Water, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Law of drag across or along a cable.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,7 +30,8 @@ fn tangential_coefficient() -> f64 {
     0.01
 }
 
-/// Drag of water (and air, if the scene has it) on cables and hulls, with one law across and one along.
+/// Drag of water (and air, if the scene has it) on cables and hulls, with one law across and one along. In waves it goes by the
+/// velocity relative to current and waves together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DragSpec {
@@ -83,10 +85,16 @@ impl DragSpec {
     /// # Errors
     /// Numbers that make no sense.
     pub fn law(&self, water: &Water) -> Result<Drag, BuildError> {
-        self.law_in(water.density, water.viscosity, water.current()?)
+        self.law_in(water.density, water.viscosity, water.current()?, water.sea.clone())
     }
 
-    fn law_in(&self, density: f64, viscosity: f64, current: Current) -> Result<Drag, BuildError> {
+    fn law_in(
+        &self,
+        density: f64,
+        viscosity: f64,
+        current: Current,
+        sea: Option<Arc<Sea>>,
+    ) -> Result<Drag, BuildError> {
         not_negative("cn", self.cn)?;
         not_negative("ct", self.ct)?;
         let normal = match self.normal {
@@ -98,7 +106,7 @@ impl DragSpec {
             DragLaw::ChooCasarella => TangentialLaw::ChooCasarella,
         };
         let mut drag = Drag::new(density, viscosity, normal, tangential)?;
-        drag.current = current;
+        (drag.current, drag.sea) = (current, sea);
         drag.per = if self.stretched { PerLength::Stretched } else { PerLength::Unstretched };
         drag.blend = self.blend;
         drag.check()?;
@@ -124,9 +132,14 @@ impl DragSpec {
         }
         for (_, part) in b.parts(&self.on)? {
             for tip in free_tips(b, part.as_ref()) {
-                let (density, current) = (fluid.density, fluid.current.clone());
-                let end =
-                    EndDrag { density, current, coefficient: self.end, diameter: tip.diameter, surface };
+                let end = EndDrag {
+                    density: fluid.density,
+                    current: fluid.current.clone(),
+                    sea: fluid.sea.clone(),
+                    coefficient: self.end,
+                    diameter: tip.diameter,
+                    surface: surface.clone(),
+                };
                 if let Some(term) = at_tip(end, part.name(), b.nodes(), &tip) {
                     b.term(term);
                 }
@@ -140,7 +153,7 @@ impl DragSpec {
 impl ForceSpec for DragSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let air = match b.air() {
-            Some(air) => Some(self.law_in(air.density, air.viscosity, air.wind()?)?),
+            Some(air) => Some(self.law_in(air.density, air.viscosity, air.wind()?, None)?),
             None => None,
         };
         // a scene in the air alone has no water
@@ -149,11 +162,11 @@ impl ForceSpec for DragSpec {
             return b.load(&self.on, air.clone());
         }
         let (water, surface) = (self.law(b.water()?)?, surface(b)?);
-        self.add_ends(b, &water, surface.map(|s| (s, false)))?;
+        self.add_ends(b, &water, surface.clone().map(|s| (s, false)))?;
         let Some(surface) = surface else { return b.load(&self.on, water) };
-        b.load(&self.on, Wetted::below(surface, water))?;
+        b.load(&self.on, Wetted::below(surface.clone(), water))?;
         let Some(air) = air else { return Ok(()) };
-        self.add_ends(b, &air, Some((surface, true)))?;
+        self.add_ends(b, &air, Some((surface.clone(), true)))?;
         b.load(&self.on, Wetted::above(surface, air))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{AddedMass, Surface};
 use ropewalk_core::held::three;
-use ropewalk_core::{Assembly, At, Dual, MovingBoundary, Pattern, Power, Real, Term, V3, dot};
+use ropewalk_core::{Assembly, At, Dual, MovingBoundary, Pattern, Power, Real, Term, Timed, V3, dot};
 
 /// What the energy of the water beside a cable asks at an end through which material flows.
 ///
@@ -22,9 +22,9 @@ pub struct FeedingEnd {
     pub boundary: MovingBoundary,
 }
 
-/// How an end moves: height, velocity, slope, rate of the material coordinate.
+/// How an end moves: place, velocity, slope, rate of the material coordinate.
 struct End<R> {
-    z: R,
+    x: V3<R>,
     v: V3<R>,
     slope: V3<R>,
     rate: R,
@@ -34,7 +34,7 @@ impl FeedingEnd {
     fn end(&self, at: &At<'_>) -> End<f64> {
         let f = &self.boundary;
         End {
-            z: at.q[f.end_q + 2],
+            x: three(at.q, f.end_q),
             v: three(at.v, f.end_v),
             slope: three(at.q, f.end_q + 3),
             rate: at.v[f.v],
@@ -42,9 +42,10 @@ impl FeedingEnd {
     }
 
     /// `m_a` and `n`, over single numbers.
-    fn across<R: Real>(&self, end: &End<R>) -> (R, V3<R>) {
-        let (u, _) = self.added_mass.current.at(end.z);
-        let wet = self.surface.map_or(R::of(1.0), |surface| surface.ball(end.z, 0.5 * self.diameter).0);
+    fn across<R: Real>(&self, t: f64, end: &End<R>) -> (R, V3<R>) {
+        let u = self.added_mass.fluid(t, &end.x);
+        let wet =
+            self.surface.as_ref().map_or(R::of(1.0), |surface| surface.ball(t, &end.x, 0.5 * self.diameter).0);
         let w: V3<R> = std::array::from_fn(|i| end.v[i] - u[i]);
         let along = dot(&w, &end.slope) / dot(&end.slope, &end.slope);
         let n = std::array::from_fn(|i| w[i] - along * end.slope[i]);
@@ -52,8 +53,8 @@ impl FeedingEnd {
     }
 
     /// The force on the node, and that on the boundary, over single numbers.
-    fn force<R: Real>(&self, end: &End<R>) -> [R; 4] {
-        let (mass, n) = self.across(end);
+    fn force<R: Real>(&self, t: f64, end: &End<R>) -> [R; 4] {
+        let (mass, n) = self.across(t, end);
         // the sign of a boundary is -1 at the start
         let sign = R::of(-self.boundary.sign) * mass;
         let f = n.map(|n| sign * end.rate * n);
@@ -77,7 +78,7 @@ impl Term for FeedingEnd {
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let (f, end) = (&self.boundary, self.end(at));
-        let force = self.force(&end);
+        let force = self.force(at.t, &end);
         for i in 0..3 {
             out.add(f.end_v + i, -force[i]);
         }
@@ -89,12 +90,12 @@ impl Term for FeedingEnd {
         let by: [[f64; 4]; 7] = std::array::from_fn(|j| {
             let d = |here: bool, weight: f64| if here { weight } else { 0.0 };
             let moved = End {
-                z: Dual::new(end.z, d(j == 2, w.q)),
+                x: std::array::from_fn(|i| Dual::new(end.x[i], d(j == i, w.q))),
                 v: std::array::from_fn(|i| Dual::new(end.v[i], d(j == i, w.v))),
                 slope: std::array::from_fn(|i| Dual::new(end.slope[i], d(j == 3 + i, w.q))),
                 rate: Dual::new(end.rate, d(j == 6, w.v)),
             };
-            self.force(&moved).map(|f| f.eps)
+            self.force(at.t, &moved).map(|f| f.eps)
         });
         out.add_block(0, 7, |i, j| match i {
             0..3 => -by[j][i],
@@ -104,8 +105,17 @@ impl Term for FeedingEnd {
     }
     fn power(&self, at: &At<'_>) -> Power {
         let end = self.end(at);
-        let (mass, n) = self.across(&end);
-        let (u, _) = self.added_mass.current.at(end.z);
+        let (mass, n) = self.across(at.t, &end);
+        let u = self.added_mass.fluid(at.t, &end.x);
         Power { supplied: -self.boundary.sign * end.rate * mass * dot(&n, &u), ..Power::default() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        self.added_mass.sea.as_ref().map(|_| self as &dyn Timed)
+    }
+}
+
+impl Timed for FeedingEnd {
+    fn reach(&self, _t: f64, h: f64) -> Option<f64> {
+        Some(self.added_mass.sea.as_ref().map_or(h, |sea| sea.reach(h)))
     }
 }

@@ -10,17 +10,19 @@ pub use wake::BluntEnd;
 
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{cross, matrix, times};
-use ropewalk_core::{Assembly, At, Dual, Node, NodeKind, Pattern, Power, Real, Term, Tip, V3, dot};
-use ropewalk_scene::Current;
+use ropewalk_core::{Assembly, At, Dual, Node, NodeKind, Pattern, Power, Real, Term, Timed, Tip, V3, dot};
+use ropewalk_scene::Sea;
 
 /// A force of a fluid on an end of a slender body, by how the end moves; it takes energy from the motion relative to the fluid.
 pub trait TipLaw: Send + Sync + 'static {
     /// What it is called in manifests and profiles.
     fn label(&self) -> &'static str;
-    /// Velocity of the fluid.
-    fn current(&self) -> &Current;
-    /// The force on the end at height `z`, with velocity `v` and the slope of the axis there; over single numbers.
-    fn force<R: Real>(&self, z: R, v: &V3<R>, slope: &V3<R>) -> V3<R>;
+    /// The waves of the fluid, if it has some.
+    fn sea(&self) -> Option<&Sea>;
+    /// Velocity of the fluid at a place [m/s].
+    fn fluid<R: Real>(&self, t: f64, x: &V3<R>) -> V3<R>;
+    /// The force on the end at `x`, with velocity `v` and the slope of the axis there; over single numbers.
+    fn force<R: Real>(&self, t: f64, x: &V3<R>, v: &V3<R>, slope: &V3<R>) -> V3<R>;
 }
 
 /// A [`TipLaw`] on a part of a model.
@@ -60,13 +62,13 @@ impl<L: TipLaw> AtTip<L> {
         }
     }
     fn force(&self, at: &At<'_>) -> V3<f64> {
-        self.law.force(self.held.x(at)[2], &self.held.velocity(at), &self.slope(at))
+        self.law.force(at.t, &self.held.x(at), &self.held.velocity(at), &self.slope(at))
     }
-    /// How the force changes with height, velocity and slope.
-    fn by(&self, at: &At<'_>, dz: f64, dv: &V3<f64>, ds: &V3<f64>) -> V3<f64> {
-        let (v, s) = (self.held.velocity(at), self.slope(at));
+    /// How the force changes with place, velocity and slope.
+    fn by(&self, at: &At<'_>, dx: &V3<f64>, dv: &V3<f64>, ds: &V3<f64>) -> V3<f64> {
+        let (x, v, s) = (self.held.x(at), self.held.velocity(at), self.slope(at));
         let both = |x: &V3<f64>, d: &V3<f64>| std::array::from_fn(|i| Dual::new(x[i], d[i]));
-        self.law.force(Dual::new(self.held.x(at)[2], dz), &both(&v, dv), &both(&s, ds)).map(|f| f.eps)
+        self.law.force(at.t, &both(&x, dx), &both(&v, dv), &both(&s, ds)).map(|f| f.eps)
     }
 }
 
@@ -117,7 +119,7 @@ impl<L: TipLaw> Term for AtTip<L> {
             }
             let (x, turn) = if k < motion.n { (motion.by_q[k], motion.v_by_q[k]) } else { (nought, nought) };
             let dv = std::array::from_fn(|i| w.v * x[i] + w.q * turn[i]);
-            self.by(at, w.q * x[2], &dv, &ds.map(|d| w.q * d))
+            self.by(at, &x.map(|x| w.q * x), &dv, &ds.map(|d| w.q * d))
         });
         let turning = motion.turning(&force);
         out.add_block(0, 6, |i, j| {
@@ -130,8 +132,17 @@ impl<L: TipLaw> Term for AtTip<L> {
     }
     fn power(&self, at: &At<'_>) -> Power {
         let (f, v) = (self.force(at), self.held.velocity(at));
-        let (u, _) = self.law.current().at(self.held.x(at)[2]);
+        let u = self.law.fluid(at.t, &self.held.x(at));
         let supplied = dot(&f, &u);
         Power { dissipated: supplied - dot(&f, &v), supplied, carried: 0.0 }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        self.law.sea().map(|_| self as &dyn Timed)
+    }
+}
+
+impl<L: TipLaw> Timed for AtTip<L> {
+    fn reach(&self, _t: f64, h: f64) -> Option<f64> {
+        Some(self.law.sea().map_or(h, |sea| sea.reach(h)))
     }
 }

@@ -3,7 +3,7 @@
 use super::TipLaw;
 use crate::{AddedMass, Surface};
 use ropewalk_core::{Real, V3, dot, scaled};
-use ropewalk_scene::Current;
+use ropewalk_scene::Sea;
 
 /// Water that leaves a blunt end takes momentum along (Lighthill 1971).
 ///
@@ -32,11 +32,14 @@ impl TipLaw for BluntEnd {
     fn label(&self) -> &'static str {
         "wake of a blunt end"
     }
-    fn current(&self) -> &Current {
-        &self.added_mass.current
+    fn sea(&self) -> Option<&Sea> {
+        self.added_mass.sea.as_deref()
     }
-    fn force<R: Real>(&self, z: R, v: &V3<R>, slope: &V3<R>) -> V3<R> {
-        let (u, _) = self.added_mass.current.at(z);
+    fn fluid<R: Real>(&self, t: f64, x: &V3<R>) -> V3<R> {
+        self.added_mass.fluid(t, x)
+    }
+    fn force<R: Real>(&self, t: f64, x: &V3<R>, v: &V3<R>, slope: &V3<R>) -> V3<R> {
+        let u = self.fluid(t, x);
         let w: V3<R> = std::array::from_fn(|i| v[i] - u[i]);
         let inverse = R::of(1.0) / dot(slope, slope).sqrt();
         let out = scaled(if self.first { -inverse } else { inverse }, slope);
@@ -46,7 +49,7 @@ impl TipLaw for BluntEnd {
             return [R::zero(); 3];
         }
         let speed = square.sqrt();
-        let wet = self.surface.map_or(R::of(1.0), |surface| surface.ball(z, 0.5 * self.diameter).0);
+        let wet = self.surface.as_ref().map_or(R::of(1.0), |surface| surface.ball(t, x, 0.5 * self.diameter).0);
         let per = wet * R::of(1.0 - self.taper) * self.added_mass.mass(R::of(self.diameter)) * inverse;
         let n: V3<R> = std::array::from_fn(|i| w[i] - along * out[i]);
         let pull = R::of(0.5) * dot(&n, &n) * (-along / speed);

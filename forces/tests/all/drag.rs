@@ -290,7 +290,7 @@ fn ends_take_energy_from_the_flow() {
         };
         let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 6], internal: &[], relaxed: None };
         let z = Held::new(nodes, &marker, "end").unwrap().x(&at)[2];
-        let surface = (k % 5 < 2).then_some(Surface { level: z + r.number(0.08) });
+        let surface = (k % 5 < 2).then_some(Surface::still(z + r.number(0.08)));
         let (diameter, first, axis) = (0.2, k % 2 == 0, [0.6, 0.0, -0.8]);
         let tip = Tip { marker, axis, diameter, first, sheds: true };
         let term = if k % 4 < 2 {
@@ -299,7 +299,7 @@ fn ends_take_energy_from_the_flow() {
         } else {
             let surface = surface.map(|s| (s, k % 8 < 4));
             at_tip(
-                EndDrag { density: 1025.0, current, coefficient: 0.4, diameter, surface },
+                EndDrag { density: 1025.0, current, sea: None, coefficient: 0.4, diameter, surface },
                 "part",
                 nodes,
                 &tip,

@@ -7,13 +7,14 @@ use ropewalk_forces::{AddedMass, Buoyancy, Drag, NormalLaw, Surface, TangentialL
 use ropewalk_scene::Current;
 use std::f64::consts::PI;
 
-const SURFACE: Surface = Surface { level: 0.3 };
+const SURFACE: Surface = Surface::still(LEVEL);
+const LEVEL: f64 = 0.3;
 
 /// A station of a cylinder of 0.2 m whose cell of 0.25 m lies near the surface.
 fn station(r: &mut Random, depth: f64, slope: V3<f64>) -> Station<f64> {
     let radius = 0.1;
     Station {
-        x: [0.4, -0.7, SURFACE.level - depth],
+        x: [0.4, -0.7, LEVEL - depth],
         v: r.vector(2.0),
         a: r.vector(3.0),
         slope,
@@ -47,7 +48,7 @@ fn by_slices(at: &Station<f64>) -> (f64, f64) {
     let (mut volume, mut depth) = (0.0, 0.0);
     for i in 0..N {
         let along = ((i as f64 + 0.5) / N as f64) * at.weight - at.before;
-        let middle = SURFACE.level - at.x[2] - along * at.slope[2];
+        let middle = LEVEL - at.x[2] - along * at.slope[2];
         for j in 0..N {
             // chords of the disc along its steepest line
             let angle = PI * (j as f64 + 0.5) / N as f64;
@@ -69,7 +70,7 @@ fn the_wet_share_is_that_of_a_cylinder() {
     for slope in slopes() {
         for depth in [-0.35, -0.09, -0.03, 0.0, 0.02, 0.07, 0.2] {
             let at = station(&mut r, depth, slope);
-            let wet = SURFACE.wet(&at);
+            let wet = SURFACE.wet(&at, None);
             let (volume, moment) = by_slices(&at);
             let whole = at.area * at.weight;
             assert!(
@@ -96,7 +97,7 @@ fn the_share_and_the_couple_are_derivatives_of_the_depth() {
     for slope in slopes() {
         for depth in [-0.12, -0.03, 0.0, 0.02, 0.07] {
             let at = station(&mut r, depth, slope);
-            let wet = SURFACE.wet(&at);
+            let wet = SURFACE.wet(&at, None);
             let moved = |i: usize, h: f64| {
                 let mut at = at;
                 if i < 3 {
@@ -104,7 +105,7 @@ fn the_share_and_the_couple_are_derivatives_of_the_depth() {
                 } else {
                     at.x[2] += h
                 }
-                SURFACE.wet(&at)
+                SURFACE.wet(&at, None)
             };
             let by = |i: usize, f: &dyn Fn(&ropewalk_forces::Wet<f64>) -> f64| {
                 (f(&moved(i, h)) - f(&moved(i, -h))) / (2.0 * h)

@@ -72,16 +72,22 @@ fn gradients_and_accelerations_are_those_of_differences() {
                     for i in 0..3 {
                         let slope = (b.velocity[i] - a.velocity[i]) / (2.0 * e);
                         assert!((slope - flow.gradient[i][j]).abs() < 1e-9, "{name}: {i} {j} {slope}");
+                        let slope = (b.acceleration[i] - a.acceleration[i]) / (2.0 * e);
+                        let exact = flow.acceleration_gradient[i][j];
+                        assert!((slope - exact).abs() < 1e-8, "{name}: of the acceleration {i} {j} {slope} {exact}");
                     }
                     if j < 2 {
                         close((b.elevation - a.elevation) / (2.0 * e), flow.slope[j], 1e-9);
                     }
                 }
-                if stretching != Stretching::Wheeler {
-                    // with Wheeler's stretching the rate of the stretched height is left out
-                    let [a, b] = [-e, e].map(|e| waves.at(x, t + e).velocity);
-                    (0..3).for_each(|i| close((b[i] - a[i]) / (2.0 * e), flow.acceleration[i], 1e-9));
-                }
+                let [a, b] = [-e, e].map(|e| waves.elevation(x[0], x[1], t + e).0);
+                close((b - a) / (2.0 * e), flow.rising, 1e-9);
+                let [a, b] = [-e, e].map(|e| waves.at(x, t + e).velocity);
+                (0..3).for_each(|i| {
+                    close((b[i] - a[i]) / (2.0 * e), flow.rate[i], 1e-9);
+                });
+                // only Wheeler's column is stretched as the surface rises
+                assert_eq!(flow.rate == flow.acceleration, stretching != Stretching::Wheeler);
             }
         }
     }
@@ -134,6 +140,8 @@ fn who_drifts_with_the_current_sees_waves_on_water_at_rest() {
         for i in 0..3 {
             close(a.velocity[i], b.velocity[i], 1e-10);
             close(a.acceleration[i], b.acceleration[i], 1e-10);
+            let carried = a.gradient[i][0] * drift[0] + a.gradient[i][1] * drift[1];
+            close(a.rate[i], b.acceleration[i] - carried, 1e-10);
         }
         close(a.pressure, b.pressure, 1e-9);
     }

@@ -69,6 +69,28 @@ fn half_the_distances_leave_a_sixteenth_of_the_error() {
 }
 
 #[test]
+fn its_gradients_are_those_of_its_own_values() {
+    let mut lattice = Lattice::new(sea(80.0, Stretching::Wheeler), 1.0).expect("one direction");
+    let (x, t, e) = ([31.7, 4.0, -3.1], 41.3, 1e-5);
+    let flow = lattice.at(x, t);
+    for j in 0..3 {
+        let [a, b] = [-e, e].map(|e| {
+            let mut x = x;
+            x[j] += e;
+            lattice.at(x, t)
+        });
+        for i in 0..3 {
+            let by = |a: f64, b: f64| (b - a) / (2.0 * e);
+            assert!((by(a.velocity[i], b.velocity[i]) - flow.gradient[i][j]).abs() < 1e-8);
+            let rate = by(a.acceleration[i], b.acceleration[i]);
+            assert!((rate - flow.acceleration_gradient[i][j]).abs() < 1e-8, "{i} {j} {rate}");
+        }
+    }
+    let [a, b] = [-e, e].map(|e| lattice.at(x, t + e).elevation);
+    assert!(((b - a) / (2.0 * e) - flow.rising).abs() < 1e-8);
+}
+
+#[test]
 fn it_is_filled_only_where_it_is_looked_at() {
     let waves = sea(80.0, Stretching::Wheeler);
     let mut lattice = Lattice::new(waves, 1.0).expect("one direction");

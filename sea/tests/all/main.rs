@@ -2,5 +2,6 @@
 
 mod kinematics;
 mod lattice;
+mod response;
 mod states;
 mod table;

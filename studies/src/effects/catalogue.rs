@@ -16,6 +16,8 @@ pub(super) enum Edit {
     StillWater,
     /// Water everywhere, and so no air.
     NoSurface,
+    /// Still water.
+    NoWaves,
     /// No air.
     NoAir,
     /// No balance of energy.
@@ -74,7 +76,12 @@ pub(super) fn edited(scene: &Scene, edits: &[Edit]) -> Result<Scene, String> {
             Edit::NoSurface => {
                 new.air = None;
                 if let Some(water) = &mut new.water {
-                    water.level = None;
+                    (water.level, water.waves) = (None, None);
+                }
+            }
+            Edit::NoWaves => {
+                if let Some(water) = &mut new.water {
+                    water.waves = None;
                 }
             }
             Edit::NoAir => new.air = None,
@@ -188,6 +195,9 @@ pub(super) fn present(scene: &Scene) -> Vec<Candidate> {
     }
     if scene.water.as_ref().is_some_and(|w| !w.current.iter().all(|u| u.is(0.0)) || !w.profile.is_empty()) {
         push("current".into(), Edit::StillWater);
+    }
+    if scene.water.as_ref().is_some_and(|w| w.waves.is_some()) {
+        push("waves".into(), Edit::NoWaves);
     }
     if scene.water.as_ref().is_some_and(|w| w.level.is_some()) {
         push("surface of the water".into(), Edit::NoSurface);

@@ -87,9 +87,11 @@ impl Manifest {
     }
 }
 
-/// What the constraints of a scene have to say of themselves.
+/// What the constraints and the waves of a scene have to say of themselves.
 pub(super) fn notes(scene: &Scene, model: &Model) -> Vec<String> {
-    scene.constraints.iter().flat_map(|c| c.notes(model)).collect()
+    let sea = scene.water.as_ref().and_then(|water| water.raised(scene.gravity).ok().flatten());
+    let waves = sea.into_iter().map(|sea| sea.about().to_string());
+    scene.constraints.iter().flat_map(|c| c.notes(model)).chain(waves).collect()
 }
 
 impl fmt::Display for Manifest {

@@ -144,7 +144,7 @@ pub(super) trait ErasedLaw: Send + Sync {
     fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power;
     /// The kinetic and potential energy of the stations in the first `lanes` lanes of a batch.
     fn energy(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Energy;
-    fn local(&self, quantity: &str, at: &Station<f64>) -> Option<f64>;
+    fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64>;
     fn timed(&self) -> bool;
     fn reach(&self, t: f64, h: f64) -> Option<f64>;
 }
@@ -219,8 +219,8 @@ impl<L: Law> ErasedLaw for L {
         run(width, EnergyOf { law: self, t, x, lanes, out: &mut out });
         out
     }
-    fn local(&self, quantity: &str, at: &Station<f64>) -> Option<f64> {
-        Law::local(self, quantity, at)
+    fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64> {
+        Law::local(self, quantity, t, at)
     }
     fn timed(&self) -> bool {
         Law::timed(self)

@@ -154,7 +154,7 @@ pub trait Law: Send + Sync + 'static {
     }
     /// A quantity of its own there, such as a coefficient that depends on the flow; `None` if it has none of this name. NaN
     /// where it means nothing.
-    fn local(&self, _quantity: &str, _at: &Station<f64>) -> Option<f64> {
+    fn local(&self, _quantity: &str, _t: f64, _at: &Station<f64>) -> Option<f64> {
         None
     }
 }
@@ -293,7 +293,7 @@ impl Shows for FieldTerm {
         self.stations.each(at, &mut |station| {
             let side = usize::from(station.s > s);
             let nearer = beside[side].is_none_or(|(there, _)| (station.s - s).abs() < (there - s).abs());
-            if let Some(c) = self.laws.0.iter().find_map(|l| l.local(quantity, station)).filter(|_| nearer) {
+            if let Some(c) = self.laws.0.iter().find_map(|l| l.local(quantity, at.t, station)).filter(|_| nearer) {
                 beside[side] = Some((station.s, c));
             }
         });

@@ -1,0 +1,301 @@
+//! The motion of the water in waves, as drag, inertia and buoyancy ask for it.
+
+use crate::current::Current;
+use crate::waves::{Evaluation, WavesSpec};
+use ropewalk_core::{BuildError, Real, V3, dot, reach};
+use ropewalk_sea::{Flow, Lattice, SplitMix64, Waves};
+use std::f64::consts::TAU;
+use std::fmt;
+use std::sync::{Mutex, PoisonError};
+
+/// Waves on the water of a scene, beside its [`Current`]: the two add up.
+///
+/// Many laws ask for the motion at the same stations, so that the latest answers are kept. What it answers depends on
+/// place and time alone.
+pub struct Sea {
+    waves: Waves,
+    /// Height of the surface without waves [m].
+    level: f64,
+    about: String,
+    memory: Mutex<Memory>,
+}
+
+/// What was found lately, and the table that stands for many waves.
+struct Memory {
+    lattice: Option<Lattice>,
+    latest: Vec<([u64; 4], Here)>,
+}
+
+/// Number of places that are remembered, a power of two.
+const PLACES: usize = 2048;
+/// As many lanes as the widest carrier has.
+const MOST: usize = 8;
+/// Up to so many waves are summed up unless asked otherwise.
+const FEW: usize = 8;
+/// Places at which a table is compared with the sum.
+const PROBES: usize = 200;
+/// How much finer than at first a table may become.
+const FINEST: f64 = 4.0;
+
+/// The motion at a place, and what it changes by from place to place; at the surface above it.
+#[derive(Clone, Copy, Default)]
+struct Here {
+    flow: Flow,
+    /// What the rise of the surface adds to the rate above it.
+    by_t: [f64; 3],
+    by_x: [[f64; 3]; 3],
+    acceleration_by_x: [[f64; 3]; 3],
+}
+
+/// The motion of the water in waves at a place, over lanes. Above the surface it is that at the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Swell<R> {
+    /// Velocity [m/s].
+    pub u: V3<R>,
+    /// What it changes by with the place [1/s].
+    pub by_x: [V3<R>; 3],
+    /// What it changes by with time at a fixed place [m/s²].
+    pub by_t: V3<R>,
+    /// `∂u/∂t` in the water; other than `by_t` above the surface [m/s²].
+    pub rate: V3<R>,
+    /// `G_ij = ∂u_i/∂x_j` in the water; other than `by_x` above the surface [1/s].
+    pub gradient: [V3<R>; 3],
+    /// The acceleration that Morison's equation takes: `∂u/∂t` as one sees it who drifts with the current that carries the waves,
+    /// without what the stretching of the column adds [m/s²].
+    pub acceleration: V3<R>,
+    /// What it changes by with the place, and the rate nearly so [1/s²].
+    pub acceleration_by_x: [V3<R>; 3],
+    /// Elevation `η` of the surface above its level [m].
+    pub elevation: R,
+    /// `∂η/∂x` and `∂η/∂y`.
+    pub slope: [R; 2],
+    /// `∂η/∂t` [m/s].
+    pub rising: R,
+}
+
+impl<R: Real> Swell<R> {
+    /// How fast the surface rises where one moves with velocity `v`: `∂η/∂t + v·∇η` [m/s].
+    #[inline(always)]
+    pub fn rise(&self, v: &V3<R>) -> R {
+        self.slope[0].fma(v[0], self.slope[1].fma(v[1], self.rising))
+    }
+
+    /// Acceleration of the water along its path, `∂u/∂t + G u` with the velocity of waves and current at height `z` [m/s²];
+    /// and what it changes by with the place, but for the change of `G`.
+    #[inline(always)]
+    pub fn along_path(&self, current: &Current, z: R) -> (V3<R>, [V3<R>; 3]) {
+        let (mut u, du) = current.at(z);
+        for i in 0..3 {
+            u[i] += self.u[i];
+        }
+        let (mut a, mut by_x) = (self.rate, self.acceleration_by_x);
+        for i in 0..3 {
+            a[i] += dot(&self.gradient[i], &u);
+            for j in 0..3 {
+                for k in 0..3 {
+                    by_x[i][j] += self.gradient[i][k] * self.by_x[k][j];
+                }
+            }
+            by_x[i][2] += dot(&self.gradient[i], &du);
+        }
+        (a, by_x)
+    }
+}
+
+impl Sea {
+    /// The sea of a spec: under gravity `g` [m/s²], with its surface at `level` [m] when it is still. `drift` is the velocity of
+    /// the current there [m/s], which the waves may be told to feel.
+    ///
+    /// # Errors
+    /// Numbers that make no sense; a table that can't be as exact as asked for.
+    pub fn new(spec: &WavesSpec, level: f64, g: f64, drift: V3<f64>) -> Result<Self, BuildError> {
+        let of = |e: ropewalk_sea::SeaError| spec.fault(e);
+        let all = spec.components()?;
+        let depth = spec.depth.unwrap_or(f64::INFINITY);
+        let mut waves = Waves::new(&all, depth, g, spec.stretching.into()).map_err(of)?;
+        waves = waves.with_ramp(spec.ramp).map_err(of)?;
+        if spec.doppler {
+            waves = waves.on_current([drift[0], drift[1]]).map_err(of)?;
+        }
+        let (lattice, how) = Self::lattice(spec, &waves)?;
+        let [slowest, fastest] = all.iter().fold([f64::INFINITY, 0.0_f64], |[slow, fast], w| {
+            [w.omega.min(slow), w.omega.max(fast)]
+        });
+        let about = format!(
+            "waves: {} of {:.3} to {:.3} s, significant height {:.4} m, in water {}; {how}",
+            all.len(),
+            TAU / fastest,
+            TAU / slowest,
+            4.0 * waves.deviation(),
+            spec.depth.map_or_else(|| "of any depth".into(), |h| format!("{h} m deep")),
+        );
+        let nowhere = ([u64::MAX; 4], Here::default());
+        let memory = Mutex::new(Memory { lattice, latest: vec![nowhere; PLACES] });
+        Ok(Sea { waves, level, about, memory })
+    }
+
+    /// The table that stands for many waves, if there is to be one, and how the sum is found in words.
+    fn lattice(spec: &WavesSpec, waves: &Waves) -> Result<(Option<Lattice>, String), BuildError> {
+        let at = |field: &str, message: String| BuildError::at(format!("water.waves.{field}"), message);
+        let exact = || Ok((None, "summed exactly".to_string()));
+        match spec.evaluation {
+            Some(Evaluation::Exact) => return exact(),
+            None if waves.len() <= FEW => return exact(),
+            _ => {}
+        }
+        let mut finer = 1.0;
+        loop {
+            let Some(mut lattice) = Lattice::new(waves.clone(), finer) else {
+                return match spec.evaluation {
+                    None => exact(),
+                    Some(_) => {
+                        let message = "a lattice is for waves of one direction: take `evaluation = \"exact\"`, or no \
+                                       `spreading`";
+                        Err(at("evaluation", message.into()))
+                    }
+                };
+            };
+            let error = off(waves, &mut lattice);
+            if error <= spec.lattice_error {
+                // without what was looked at
+                let lattice = Lattice::new(waves.clone(), finer);
+                let how = format!("from a lattice, whose velocities are off by {error:.1e} of their deviation at most");
+                return Ok((lattice, how));
+            }
+            finer *= 1.5;
+            if finer > FINEST {
+                let message = format!(
+                    "the finest lattice is off by {error:.1e}: take `evaluation = \"exact\"`, or a larger \
+                     `lattice_error` than {:e}",
+                    spec.lattice_error
+                );
+                return Err(at("lattice_error", message));
+            }
+        }
+    }
+
+    /// Its waves.
+    pub fn waves(&self) -> &Waves {
+        &self.waves
+    }
+
+    /// What it is like, in a sentence.
+    pub fn about(&self) -> &str {
+        &self.about
+    }
+
+    /// How much of a step `h` [s] may be taken that follows the shortest of its waves.
+    pub fn reach(&self, h: f64) -> f64 {
+        reach::period(TAU / self.waves.fastest(), h)
+    }
+
+    /// The motion of the water at time `t` [s] at places.
+    #[inline(always)]
+    pub fn at<R: Real>(&self, t: f64, x: &V3<R>) -> Swell<R> {
+        let mut here = [Here::default(); MOST];
+        let places: [V3<f64>; MOST] = std::array::from_fn(|lane| {
+            let lane = lane.min(R::LANES - 1);
+            [x[0].lane(lane), x[1].lane(lane), x[2].lane(lane)]
+        });
+        self.find(t, &places[..R::LANES], &mut here);
+        let off = [
+            x[0] - R::each(|l| places[l][0]),
+            x[1] - R::each(|l| places[l][1]),
+            x[2] - R::each(|l| places[l][2]),
+        ];
+        let matrix = |of: &dyn Fn(&Here) -> &[[f64; 3]; 3]| -> [V3<R>; 3] {
+            [0, 1, 2].map(|i| [0, 1, 2].map(|j| R::each(|l| of(&here[l])[i][j])))
+        };
+        let by_x = matrix(&|h| &h.by_x);
+        let acceleration_by_x = matrix(&|h| &h.acceleration_by_x);
+        let gradient = matrix(&|h| &h.flow.gradient);
+        // numbers that know their derivative get it from here; of all others the distance is nothing
+        let along = |rows: &V3<R>, value: R| rows[0].fma(off[0], rows[1].fma(off[1], rows[2].fma(off[2], value)));
+        let u = [0, 1, 2].map(|i| along(&by_x[i], R::each(|l| here[l].flow.velocity[i])));
+        let acceleration =
+            [0, 1, 2].map(|i| along(&acceleration_by_x[i], R::each(|l| here[l].flow.acceleration[i])));
+        let rate = [0, 1, 2].map(|i| along(&acceleration_by_x[i], R::each(|l| here[l].flow.rate[i])));
+        let by_t = [0, 1, 2].map(|i| rate[i] + R::each(|l| here[l].by_t[i]));
+        let slope = [0, 1].map(|i| R::each(|l| here[l].flow.slope[i]));
+        let elevation = R::each(|l| here[l].flow.elevation);
+        let elevation = slope[0].fma(off[0], slope[1].fma(off[1], elevation));
+        let rising = R::each(|l| here[l].flow.rising);
+        Swell { u, by_x, by_t, rate, gradient, acceleration, acceleration_by_x, elevation, slope, rising }
+    }
+
+    /// The motion at some places, from what is remembered or anew.
+    #[inline(never)]
+    fn find(&self, t: f64, places: &[V3<f64>], out: &mut [Here; MOST]) {
+        let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+        for (x, out) in places.iter().zip(out) {
+            let key = [x[0].to_bits(), x[1].to_bits(), x[2].to_bits(), t.to_bits()];
+            let mixed = key.iter().fold(0_u64, |mixed, k| (mixed ^ k).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
+            let slot = (mixed >> 40) as usize % PLACES;
+            if memory.latest[slot].0 != key {
+                let here = self.anew(memory.lattice.as_mut(), *x, t);
+                memory.latest[slot] = (key, here);
+            }
+            *out = memory.latest[slot].1;
+        }
+    }
+
+    fn anew(&self, lattice: Option<&mut Lattice>, [x, y, z]: V3<f64>, t: f64) -> Here {
+        let up = z - self.level;
+        let (flow, above) = match lattice {
+            Some(lattice) => at_most(up, |up| lattice.at([x, y, up], t)),
+            None => at_most(up, |up| self.waves.at([x, y, up], t)),
+        };
+        let (mut by_x, mut acceleration_by_x) = (flow.gradient, flow.acceleration_gradient);
+        let mut by_t = [0.0; 3];
+        if above {
+            // there it follows the surface, and doesn't change with height
+            by_t = flow.gradient.map(|row| row[2] * flow.rising);
+            for row in by_x.iter_mut().chain(&mut acceleration_by_x) {
+                row[0] += row[2] * flow.slope[0];
+                row[1] += row[2] * flow.slope[1];
+                row[2] = 0.0;
+            }
+        }
+        Here { flow, by_t, by_x, acceleration_by_x }
+    }
+}
+
+/// The motion at a height above still water, or that at the surface where that is lower; and whether it is.
+fn at_most(up: f64, mut at: impl FnMut(f64) -> Flow) -> (Flow, bool) {
+    let flow = at(up);
+    if up > flow.elevation { (at(flow.elevation), true) } else { (flow, false) }
+}
+
+/// The largest difference of velocities between a table and the sum, in parts of their deviation at still water, at places
+/// down to where short waves end.
+fn off(waves: &Waves, lattice: &mut Lattice) -> f64 {
+    let mut random = SplitMix64::new(1);
+    let (mut worst, mut square) = (0.0_f64, 0.0);
+    let length = TAU / waves.shortest();
+    for _ in 0..PROBES {
+        let mut between = |a: f64, b: f64| a + (b - a) * random.unit();
+        let place = [between(-50.0, 50.0) * length, between(-50.0, 50.0) * length];
+        let down = between(-1.0, 0.0) * length.min(waves.depth());
+        let t = between(0.0, 1000.0) * TAU / waves.fastest() + 1e3;
+        // below the surface, or below still water where the column isn't stretched
+        let down = down + waves.elevation(place[0], place[1], t).0.min(0.0);
+        let (there, still) = ([place[0], place[1], down], [place[0], place[1], 0.0]);
+        let (a, b, top) = (waves.at(there, t), lattice.at(there, t), waves.at(still, t));
+        let apart: f64 = (0..3).map(|i| (a.velocity[i] - b.velocity[i]).powi(2)).sum();
+        worst = worst.max(apart.sqrt());
+        square += top.velocity.iter().map(|u| u * u).sum::<f64>() / PROBES as f64;
+    }
+    if square > 0.0 { worst / square.sqrt() } else { 0.0 }
+}
+
+impl fmt::Debug for Sea {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.about)
+    }
+}
+
+impl PartialEq for Sea {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}

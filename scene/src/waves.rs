@@ -1,0 +1,307 @@
+//! `[water.waves]`: a sea state, and how its motion is found.
+
+use ropewalk_core::BuildError;
+use ropewalk_core::error::positive;
+use ropewalk_sea::{Regular, Sampling, SeaError, Spectrum, Spreading, Stretching, sample};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Waves on the water, by linear (Airy) theory.
+///
+/// Give one of `regular`, `jonswap`, `pierson_moskowitz`, `white` and `components`. The water's `level` is the surface without
+/// waves. Waves and current add up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct WavesSpec {
+    /// One regular wave.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regular: Option<RegularWave>,
+    /// A wind sea with a sharp peak.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jonswap: Option<Jonswap>,
+    /// A fully developed wind sea: JONSWAP with `gamma = 1`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pierson_moskowitz: Option<PiersonMoskowitz>,
+    /// The same energy at all frequencies of a band, for tests of response.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub white: Option<WhiteSea>,
+    /// Regular waves, one by one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub components: Vec<WaveComponent>,
+    /// Direction that the waves travel towards, the mean if they spread: from x to y [rad].
+    #[serde(deserialize_with = "ropewalk_quantity::angle")]
+    pub direction: f64,
+    /// How directions spread about the mean. Default: all waves have the same direction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spreading: Option<SpreadingSpec>,
+    /// Number of regular waves that make a spectrum.
+    pub count: usize,
+    /// How their frequencies are chosen.
+    pub sampling: WaveSampling,
+    /// Seed of their random phases: the same seed gives the same sea on every machine.
+    pub seed: u64,
+    /// Depth of the water [m]. Default: deep water.
+    #[serde(deserialize_with = "ropewalk_quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    pub depth: Option<f64>,
+    /// Time from t = 0 in which the waves rise from still water, as `(1 - cos πt/ramp)/2` [s].
+    #[serde(deserialize_with = "ropewalk_quantity::time")]
+    pub ramp: f64,
+    /// What linear theory, which ends at still water, says between there and the surface.
+    pub stretching: WaveStretching,
+    /// Whether the current carries the waves: their periods are those seen from a fixed place, and their lengths change. Default:
+    /// waves as in water at rest, and current, are added.
+    pub doppler: bool,
+    /// `exact`, the sum over all waves, or `lattice`, a table of it. Default: `lattice` for more than 8 waves of one direction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evaluation: Option<Evaluation>,
+    /// Largest error of velocities from the lattice, in parts of their standard deviation at still water; checked when the scene
+    /// is built.
+    #[serde(deserialize_with = "ropewalk_quantity::number")]
+    pub lattice_error: f64,
+}
+
+impl Default for WavesSpec {
+    fn default() -> Self {
+        WavesSpec {
+            regular: None,
+            jonswap: None,
+            pierson_moskowitz: None,
+            white: None,
+            components: Vec::new(),
+            direction: 0.0,
+            spreading: None,
+            count: 200,
+            sampling: WaveSampling::EqualEnergy,
+            seed: 1,
+            depth: None,
+            ramp: 0.0,
+            stretching: WaveStretching::Wheeler,
+            doppler: false,
+            evaluation: None,
+            lattice_error: 1e-3,
+        }
+    }
+}
+
+/// One regular wave. With phase 0 a crest is at the origin at t = 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegularWave {
+    /// Height from trough to crest [m].
+    #[serde(deserialize_with = "ropewalk_quantity::length")]
+    pub height: f64,
+    /// Period [s].
+    #[serde(deserialize_with = "ropewalk_quantity::time")]
+    pub period: f64,
+    /// Phase at the origin at t = 0 [rad].
+    #[serde(default, deserialize_with = "ropewalk_quantity::angle")]
+    pub phase: f64,
+}
+
+fn gamma() -> f64 {
+    3.3
+}
+
+/// Spectrum of a growing wind sea (Hasselmann et al., 1973), scaled so that the significant height is exact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Jonswap {
+    /// Significant height, four times the standard deviation of the elevation [m].
+    #[serde(deserialize_with = "ropewalk_quantity::length")]
+    pub hs: f64,
+    /// Peak period [s].
+    #[serde(deserialize_with = "ropewalk_quantity::time")]
+    pub tp: f64,
+    /// Peakedness.
+    #[serde(default = "gamma", deserialize_with = "ropewalk_quantity::number")]
+    pub gamma: f64,
+}
+
+/// Spectrum of a fully developed wind sea (Pierson and Moskowitz, 1964).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PiersonMoskowitz {
+    /// Significant height [m].
+    #[serde(deserialize_with = "ropewalk_quantity::length")]
+    pub hs: f64,
+    /// Peak period [s].
+    #[serde(deserialize_with = "ropewalk_quantity::time")]
+    pub tp: f64,
+}
+
+/// White noise in a band.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WhiteSea {
+    /// Significant height [m].
+    #[serde(deserialize_with = "ropewalk_quantity::length")]
+    pub hs: f64,
+    /// Lowest angular frequency [rad/s].
+    #[serde(deserialize_with = "ropewalk_quantity::angular_velocity")]
+    pub from: f64,
+    /// Highest angular frequency [rad/s].
+    #[serde(deserialize_with = "ropewalk_quantity::angular_velocity")]
+    pub to: f64,
+}
+
+/// One of many regular waves: `a cos(k (x cos β + y sin β) - 2π t/T + φ)`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WaveComponent {
+    /// Amplitude, half of the height [m].
+    #[serde(deserialize_with = "ropewalk_quantity::length")]
+    pub amplitude: f64,
+    /// Period [s].
+    #[serde(deserialize_with = "ropewalk_quantity::time")]
+    pub period: f64,
+    /// Phase at the origin at t = 0: 0 is a crest [rad].
+    #[serde(default, deserialize_with = "ropewalk_quantity::angle")]
+    pub phase: f64,
+    /// Direction that it travels towards, from x to y [rad]. Default: that of all.
+    #[serde(
+        default,
+        deserialize_with = "ropewalk_quantity::optional::angle",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub direction: Option<f64>,
+}
+
+/// Directions by `cos^{2s}` of half the angle to the mean (Longuet-Higgins, Cartwright and Smith, 1963).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpreadingSpec {
+    /// Exponent: the larger, the narrower.
+    #[serde(deserialize_with = "ropewalk_quantity::number")]
+    pub s: f64,
+    /// Number of directions, of equal energy each.
+    pub directions: usize,
+}
+
+/// How the frequencies of a spectrum are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum WaveSampling {
+    /// At the median energy of bins of equal energy: all amplitudes are equal, and nothing repeats.
+    EqualEnergy,
+    /// At random in bins of equal width: more waves in the tail of the spectrum.
+    Jitter,
+}
+
+/// How linear theory goes on above still water.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum WaveStretching {
+    /// The column of water is stretched to the surface (Wheeler, 1970).
+    Wheeler,
+    /// Above still water the motion is that at still water.
+    Constant,
+    /// The formulas as they are: short waves grow without bound in crests. For verification.
+    None,
+}
+
+impl From<WaveStretching> for Stretching {
+    fn from(stretching: WaveStretching) -> Self {
+        match stretching {
+            WaveStretching::Wheeler => Stretching::Wheeler,
+            WaveStretching::Constant => Stretching::Constant,
+            WaveStretching::None => Stretching::None,
+        }
+    }
+}
+
+/// How the sum over all waves is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Evaluation {
+    /// Wave by wave.
+    Exact,
+    /// Between places and instants of a table, which is filled as the run goes on.
+    Lattice,
+}
+
+impl WavesSpec {
+    /// The table of the spec that the sea state is in.
+    fn state(&self) -> &'static str {
+        match () {
+            () if self.jonswap.is_some() => "jonswap",
+            () if self.pierson_moskowitz.is_some() => "pierson_moskowitz",
+            () if self.white.is_some() => "white",
+            () if self.regular.is_some() => "regular",
+            () => "components",
+        }
+    }
+
+    /// An error of the sea as one of the scene.
+    pub(crate) fn fault(&self, error: SeaError) -> BuildError {
+        let field = match error.field {
+            "hs" | "tp" | "gamma" | "from" | "to" => format!("{}.{}", self.state(), error.field),
+            "amplitude" | "omega" | "phase" => self.state().into(),
+            "s" | "directions" => format!("spreading.{}", error.field),
+            "components" => "count".into(),
+            other => other.into(),
+        };
+        BuildError::at(format!("water.waves.{field}"), error.message)
+    }
+
+    /// Whether there is one sea state, and what belongs to it alone.
+    fn check(&self) -> Result<(), BuildError> {
+        let at = |field: &str, message: String| BuildError::at(format!("water.waves{field}"), message);
+        let given = [
+            self.regular.is_some(),
+            self.jonswap.is_some(),
+            self.pierson_moskowitz.is_some(),
+            self.white.is_some(),
+            !self.components.is_empty(),
+        ];
+        let number = given.iter().filter(|given| **given).count();
+        if number != 1 {
+            let message = format!(
+                "[water.waves] has {}: give one of `regular`, `jonswap`, `pierson_moskowitz`, `white` and `components`",
+                if number == 0 { "no sea state" } else { "more than one sea state" }
+            );
+            return Err(at("", message));
+        }
+        let single = self.regular.is_some() || !self.components.is_empty();
+        if single && self.spreading.is_some() {
+            let message = "`spreading` is for spectra: give each of the `components` its `direction`";
+            return Err(at(".spreading", message.into()));
+        }
+        positive("lattice_error", self.lattice_error).map_err(|e| e.of("water.waves.lattice_error"))?;
+        Ok(())
+    }
+
+    /// The regular waves that make it.
+    ///
+    /// # Errors
+    /// No sea state or more than one; numbers that make no sense.
+    pub fn components(&self) -> Result<Vec<Regular>, BuildError> {
+        self.check()?;
+        let omega = |period: f64| positive("period", period).map(|t| TAU / t);
+        if let Some(wave) = self.regular {
+            let of = |e: BuildError| e.of("water.waves.regular.period");
+            let (amplitude, omega) = (0.5 * wave.height, omega(wave.period).map_err(of)?);
+            return Ok(vec![Regular { amplitude, omega, phase: wave.phase, direction: self.direction }]);
+        }
+        if !self.components.is_empty() {
+            let one = |w: &WaveComponent| {
+                let omega = omega(w.period).map_err(|e| e.of("water.waves.components"))?;
+                let direction = w.direction.unwrap_or(self.direction);
+                Ok(Regular { amplitude: w.amplitude, omega, phase: w.phase, direction })
+            };
+            return self.components.iter().map(one).collect();
+        }
+        let spectrum = match (self.jonswap, self.pierson_moskowitz, self.white) {
+            (Some(Jonswap { hs, tp, gamma }), ..) => Spectrum::Jonswap { hs, tp, gamma },
+            (_, Some(PiersonMoskowitz { hs, tp }), _) => Spectrum::Jonswap { hs, tp, gamma: 1.0 },
+            (.., Some(WhiteSea { hs, from, to })) => Spectrum::White { hs, from, to },
+            _ => return Ok(Vec::new()),
+        };
+        let sampling = match self.sampling {
+            WaveSampling::EqualEnergy => Sampling::EqualEnergy,
+            WaveSampling::Jitter => Sampling::Jitter,
+        };
+        let spreading = self.spreading.map(|s| Spreading { s: s.s, directions: s.directions });
+        sample(&spectrum, self.count, self.seed, sampling, self.direction, spreading).map_err(|e| self.fault(e))
+    }
+}
