@@ -26,7 +26,7 @@ pub struct CablePart {
     pub(crate) seats: Vec<(usize, usize)>,
     /// Unstretched arc length of each node [m].
     pub(crate) mesh: Vec<f64>,
-    /// The same with each place but once: both nodes of a splice are at one.
+    /// The same with each place but once, as others know the mesh: both nodes of a splice are at one.
     pub(crate) places: Vec<f64>,
     /// What its elements are made of.
     pub(crate) layout: Layout,
@@ -476,6 +476,8 @@ impl Line for CablePart {
         Slender { element, mass, ea: self.layout.largest(|s| s.ea), ei: self.layout.largest(|s| s.ei.mean()) }
     }
 
+    // others know a splice as one node
+    #[allow(clippy::misnamed_getters)]
     fn mesh(&self) -> &[f64] {
         &self.places
     }

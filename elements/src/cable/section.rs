@@ -214,7 +214,7 @@ pub struct SectionAlong {
 #[allow(dead_code)]
 pub(super) enum NameOrSection {
     /// The section itself.
-    Section(Section),
+    Section(Box<Section>),
     /// The name of one of the scene's `sections`.
     Name(String),
 }

@@ -5,7 +5,8 @@ use crate::signals::rate;
 use crate::time::TimeFunction;
 use ropewalk_core::held::three;
 use ropewalk_core::{
-    Assembly, At, BuildError, Energy, Part, Pattern, Power, Shows, Signal, Term, Timed, V3, Weights, dot,
+    Assembly, At, BuildError, ContactSpan, Energy, Part, Pattern, Power, Shows, Signal, SpanLine, Term,
+    Timed, V3, Weights, dot,
 };
 
 /// Number of coordinates of an element: position and slope of its two nodes.
@@ -112,13 +113,17 @@ impl InternalFlow {
                 format!("the length of `{name}` changes: a flow needs a cable whose ends don't feed");
             return Err(BuildError::new(message));
         }
-        let (seats, mesh, rule) = (part.seats(), line.mesh(), line.axial_rule());
-        let piece = |(seats, s): (&[(usize, usize)], &[f64])| {
-            let length = s[1] - s[0];
-            let (q, v) = ([seats[0].0, seats[1].0], [seats[0].1, seats[1].1]);
-            Piece { q, v, length, stretch: stretch(length, &rule) }
+        let rule = line.axial_rule();
+        let piece = |span: &ContactSpan| match span.line {
+            SpanLine::Cubic { q, v, l } => {
+                Some(Piece { q: [q[0], q[2]], v: [v[0], v[2]], length: l, stretch: stretch(l, &rule) })
+            }
+            _ => None,
         };
-        let pieces = seats.windows(2).zip(mesh.windows(2)).map(piece).collect();
+        let pieces: Vec<Piece> = part.contact_spans().iter().filter_map(piece).collect();
+        if pieces.is_empty() {
+            return Err(BuildError::new(format!("`{name}` isn't a cable, and nothing flows through it")));
+        }
         Ok(InternalFlow {
             mass,
             speed,
@@ -150,18 +155,16 @@ impl InternalFlow {
         [of(&|i, j| m[i][j]), coriolis, centrifugal]
     }
 
-    /// The ends through which fluid passes: piece, node, sign of the thrust, and the jet's speed over that of the flow.
+    /// The ends through which fluid passes, those of two sections that are joined too: piece, node, sign of the thrust, and the
+    /// jet's speed over that of the flow.
     fn ends(&self, u: f64) -> impl Iterator<Item = (usize, usize, f64, f64)> {
         let last = self.pieces.len() - 1;
-        let of = if self.closed { 0 } else { 2 };
         // the nozzle is where the fluid leaves
-        let outlet = usize::from(u >= 0.0);
-        let jet = self.nozzle;
-        let all = [(0, 0, -1.0), (last, 1, 1.0)];
-        all.into_iter()
-            .take(of)
-            .enumerate()
-            .map(move |(end, (piece, node, sign))| (piece, node, sign, if end == outlet { jet } else { 1.0 }))
+        let [first, outlet] = if u >= 0.0 { [1.0, self.nozzle] } else { [self.nozzle, 1.0] };
+        let outer =
+            [(0, 0, -1.0, first), (last, 1, 1.0, outlet)].into_iter().take(if self.closed { 0 } else { 2 });
+        let joined = (0..last).filter(|&k| self.pieces[k].q[1] != self.pieces[k + 1].q[0]);
+        outer.chain(joined.flat_map(|k| [(k, 1, 1.0, 1.0), (k + 1, 0, -1.0, 1.0)]))
     }
 }
 
