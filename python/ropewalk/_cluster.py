@@ -4,8 +4,10 @@ scheduler was lost."""
 from __future__ import annotations
 
 import asyncio
+import collections
 import contextlib
 import functools
+import itertools
 import signal
 import sys
 import threading
@@ -40,7 +42,8 @@ def each(
     """Calls `work` with all items, `batch` at a time or as many as seems fit, on the workers of a `distributed.Client`, and
     `done` here with each result.
 
-    What a worker had begun when it was lost is done by another one. If the scheduler is lost, it may come back with
+    What a worker had begun when it was lost is done by another one; what several workers in a row were lost with is tried
+    again in halves, `retries` times. If the scheduler is lost, it may come back with
     workers within `patience` seconds, `retries` times: what had no result by then is begun anew.
     """
     if batch is None:
@@ -61,21 +64,35 @@ def _submit(
     """Those that have no result because the scheduler was lost."""
     from concurrent.futures import CancelledError
 
-    from distributed import as_completed
+    from distributed import KilledWorker, as_completed
     from distributed.comm.core import CommClosedError
 
     # asyncio's is another one
     lost_errors = (CancelledError, asyncio.CancelledError, CommClosedError, ConnectionError, TimeoutError)
     left = dict(enumerate(batches))
-    waiting = iter(list(left.items()))
+    waiting = collections.deque(left)
     going: dict[Any, int] = {}
+    numbers = itertools.count()
+    # how often the scheduler gave up a batch since several workers in a row were lost with it
+    given_up = dict.fromkeys(left, 0)
 
     def submit() -> Any:
-        for k, some in waiting:
-            future = client.submit(work, some, retries=retries, pure=False)
-            going[future] = k
-            return future
-        return None
+        if not waiting:
+            return None
+        k = waiting.popleft()
+        future = client.submit(work, left[k], retries=retries, pure=False)
+        going[future] = k
+        return future
+
+    def again(k: int) -> None:
+        """In halves, so that what kills a worker, if it isn't chance, stands alone in the end."""
+        some, times = left.pop(k), given_up.pop(k) + 1
+        middle = (len(some) + 1) // 2
+        for half in (some[:middle], some[middle:]):
+            if half:
+                new = len(batches) + next(numbers)
+                left[new], given_up[new] = half, times
+                waiting.append(new)
 
     try:
         try:
@@ -85,12 +102,15 @@ def _submit(
             for future in completed:
                 if future.status in ("cancelled", "lost"):
                     return list(left.values())
-                done(future.result())
-                del left[going.pop(future)]
+                k = going.pop(future)
+                if isinstance(future.exception(), KilledWorker) and given_up[k] < retries:
+                    again(k)
+                else:
+                    done(future.result())
+                    del left[k]
                 # the scheduler forgets it, so that its memory stays as it is
                 future.release()
-                more = submit()
-                if more is not None:
+                while len(going) < ahead and (more := submit()) is not None:
                     completed.add(more)
         except lost_errors:
             pass
