@@ -25,9 +25,9 @@ pub struct CablePart {
     /// First coordinate and first velocity of each node.
     pub(crate) seats: Vec<(usize, usize)>,
     /// Unstretched arc length of each node [m].
+    pub(crate) along: Vec<f64>,
+    /// The same with each place but once: as others know the mesh: both nodes of a splice are at one.
     pub(crate) mesh: Vec<f64>,
-    /// The same with each place but once, as others know the mesh: both nodes of a splice are at one.
-    pub(crate) places: Vec<f64>,
     /// What its elements are made of.
     pub(crate) layout: Layout,
     pub(crate) stations: Arc<dyn Stations>,
@@ -69,8 +69,8 @@ impl CablePart {
     /// Material coordinates of the nodes [m].
     fn material(&self, q: &[f64]) -> Cow<'_, [f64]> {
         match &self.line {
-            None => Cow::Borrowed(&self.mesh),
-            Some(line) => Cow::Owned((0..self.mesh.len()).map(|k| line.p(k, q)).collect()),
+            None => Cow::Borrowed(&self.along),
+            Some(line) => Cow::Owned((0..self.along.len()).map(|k| line.p(k, q)).collect()),
         }
     }
 
@@ -78,7 +78,7 @@ impl CablePart {
     fn drawn(&self) -> impl Iterator<Item = (usize, f64)> {
         let per = (200 / self.layout.elements().count()).clamp(1, 8);
         let of = move |k| (0..per).map(move |i| (k, i as f64 / per as f64));
-        self.layout.elements().flat_map(of).chain([(self.mesh.len() - 2, 1.0)])
+        self.layout.elements().flat_map(of).chain([(self.along.len() - 2, 1.0)])
     }
 
     /// The element at arc length `s` from the start, and the place inside it.
@@ -194,7 +194,7 @@ impl CablePart {
     /// The state of a line, node by node.
     fn snapshot(&self, line: &flow::Line, at: &At<'_>) -> Result<Snapshot, String> {
         let three = |x: &[f64], i: usize| [x[i], x[i + 1], x[i + 2]];
-        let nodes = 0..self.mesh.len();
+        let nodes = 0..self.along.len();
         let mut snapshot = Snapshot {
             p: nodes.clone().map(|k| line.p(k, at.q)).collect(),
             pd: nodes.clone().map(|k| line.rate(k, at.v)).collect(),
@@ -204,7 +204,7 @@ impl CablePart {
             sd: self.seats.iter().map(|s| three(at.v, s.1 + 3)).collect(),
             stress: Vec::new(),
         };
-        for k in 0..self.mesh.len() - 1 {
+        for k in 0..self.along.len() - 1 {
             let mut stress = change::strains(self.model, &snapshot.dofs(k), snapshot.l(k))?;
             for p in self.prestrain.iter().filter(|p| p.element == k) {
                 let left = p.left(at.t).0;
@@ -240,7 +240,7 @@ impl CablePart {
             Quantity::Torque => twisted.twist(k, l, at.q, self.around(k))[1],
             Quantity::Angle => {
                 let own = |k: usize, part: f64| {
-                    let l = self.mesh[k + 1] - self.mesh[k];
+                    let l = self.along[k + 1] - self.along[k];
                     part * l * twisted.twist(k, l, at.q, self.around(k))[0]
                 };
                 (0..k).map(|k| own(k, 1.0)).sum::<f64>() + own(k, xi)
@@ -252,7 +252,7 @@ impl CablePart {
 
     /// Second derivative of the curve at an end of element `k`: at its start, or at its end.
     fn bend(&self, k: usize, at_start: bool, q: &[f64]) -> Option<V3<f64>> {
-        if k + 1 >= self.mesh.len() {
+        if k + 1 >= self.along.len() {
             return None;
         }
         let mesh = self.material(q);
@@ -278,10 +278,10 @@ impl Part for CablePart {
     }
     fn length(&self) -> f64 {
         // tolerances go by it, so that it doesn't change with the mesh
-        if self.line.is_some() { self.laid } else { self.mesh[self.mesh.len() - 1] }
+        if self.line.is_some() { self.laid } else { self.along[self.along.len() - 1] }
     }
     fn mass(&self) -> f64 {
-        self.layout.mean(&self.mesh, |s| s.mass) * self.length()
+        self.layout.mean(&self.along, |s| s.mass) * self.length()
     }
 
     fn marker(&self, spot: &Spot) -> Result<Marker, String> {
@@ -297,7 +297,7 @@ impl Part for CablePart {
             )),
             Spot::Share(s) => self.marker(&Spot::Along(s * self.length())),
             Spot::Along(s) => {
-                let k = self.mesh.iter().position(|x| (x - s).abs() <= 1e-9 * self.length());
+                let k = self.along.iter().position(|x| (x - s).abs() <= 1e-9 * self.length());
                 match k {
                     Some(k) => Ok(Marker::node(self.nodes[k])),
                     None if *s >= 0.0 && *s <= self.length() => {
@@ -316,10 +316,10 @@ impl Part for CablePart {
 
     fn watched(&self, spot: &Spot) -> Result<Marker, String> {
         if let (Some(_), Spot::Share(share)) = (&self.line, spot) {
-            let (from, to) = (self.mesh[0], self.mesh[self.mesh.len() - 1]);
+            let (from, to) = (self.along[0], self.along[self.along.len() - 1]);
             let s = from + share * (to - from);
             let evenly = self.line.as_ref().is_some_and(|line| line.zone == [false; 2]);
-            let k = self.mesh.iter().position(|x| evenly && (x - s).abs() <= 1e-9 * (to - from));
+            let k = self.along.iter().position(|x| evenly && (x - s).abs() <= 1e-9 * (to - from));
             return k.map(|k| Marker::node(self.nodes[k])).ok_or_else(|| "there is no node".into());
         }
         self.marker(spot)
@@ -337,16 +337,16 @@ impl Part for CablePart {
     }
 
     fn contact_spans(&self) -> Vec<ContactSpan> {
-        let last = self.mesh.len() - 2;
+        let last = self.along.len() - 2;
         self.layout
             .elements()
             .map(|k| {
                 let radius = 0.5 * self.layout.section(k).diameter;
                 let ((q0, v0), (q1, v1)) = (self.seats[k], self.seats[k + 1]);
-                let l = self.mesh[k + 1] - self.mesh[k];
+                let l = self.along[k + 1] - self.along[k];
                 let line = SpanLine::Cubic { q: [q0, q0 + 3, q1, q1 + 3], v: [v0, v0 + 3, v1, v1 + 3], l };
                 let flow = self.line.as_ref().filter(|line| line.flows(k)).map(|line| line.span(k));
-                ContactSpan { line, radius, length: l, s: self.mesh[k], tips: [k == 0, k == last], flow }
+                ContactSpan { line, radius, length: l, s: self.along[k], tips: [k == 0, k == last], flow }
             })
             .collect()
     }
@@ -366,7 +366,7 @@ impl Part for CablePart {
         let flows = |k: usize| self.line.as_ref().is_some_and(|line| line.flows(k));
         let mut entries = Vec::new();
         for k in self.layout.elements().filter(|&k| !flows(k)) {
-            let l = self.mesh[k + 1] - self.mesh[k];
+            let l = self.along[k + 1] - self.along[k];
             let density = density(self.layout.section(k));
             let share = [0.5 * l, l * l / 12.0, 0.5 * l, -l * l / 12.0];
             for (n, share) in share.iter().enumerate() {
@@ -423,10 +423,10 @@ impl Part for CablePart {
             return Some(format!("what is fed at its {}", ["start", "end"][*end]));
         }
         if let Some(k) = self.twisted.as_ref().and_then(|twisted| twisted.bubble(node)) {
-            return Some(format!("twist within the element at {:.4} m", self.mesh[k]));
+            return Some(format!("twist within the element at {:.4} m", self.along[k]));
         }
         let k = self.nodes.iter().position(|&n| n == node)?;
-        Some(format!("at {:.4} m", self.mesh[k]))
+        Some(format!("at {:.4} m", self.along[k]))
     }
 
     fn seats(&self) -> Vec<(usize, usize)> {
@@ -439,9 +439,9 @@ impl Part for CablePart {
             let node = &nodes[id.0 as usize];
             // the slope at the end of a section that is spliced to the next is that just before
             let spliced = self.layout.splices().iter().any(|s| s.node == k);
-            let s = self.mesh[k] - if spliced { 1e-9 * self.length() } else { 0.0 };
+            let s = self.along[k] - if spliced { 1e-9 * self.length() } else { 0.0 };
             let there = |x: &[f64], coordinates| {
-                Some((old.slope(self.mesh[k], x, coordinates)?.0, old.slope(s, x, coordinates)?.1))
+                Some((old.slope(self.along[k], x, coordinates)?.0, old.slope(s, x, coordinates)?.1))
             };
             if let Some((x, dx)) = there(at.q, true) {
                 q[node.q..node.q + 3].copy_from_slice(&x);
@@ -452,7 +452,7 @@ impl Part for CablePart {
                 v[node.v + 3..node.v + 6].copy_from_slice(&dx);
             }
         }
-        for (s, &(own_q, own_v)) in self.mesh.iter().zip(&self.seats).filter(|_| self.twisted.is_some()) {
+        for (s, &(own_q, own_v)) in self.along.iter().zip(&self.seats).filter(|_| self.twisted.is_some()) {
             let three = |i: usize| [q[own_q + i], q[own_q + i + 1], q[own_q + i + 2]];
             if let Some((d, angle)) = old.looks(*s, at.q) {
                 let node = twisted::node_at(&three(0), &three(3), &d, angle);
@@ -472,19 +472,17 @@ impl Part for CablePart {
 impl Line for CablePart {
     fn slender(&self) -> Slender {
         let element = self.laid / self.layout.elements().count() as f64;
-        let mass = self.layout.mean(&self.mesh, |s| s.mass + s.flooded);
+        let mass = self.layout.mean(&self.along, |s| s.mass + s.flooded);
         Slender { element, mass, ea: self.layout.largest(|s| s.ea), ei: self.layout.largest(|s| s.ei.mean()) }
     }
 
-    // others know a splice as one node
-    #[allow(clippy::misnamed_getters)]
     fn mesh(&self) -> &[f64] {
-        &self.places
+        &self.mesh
     }
 
     fn mesh_now(&self, at: &At<'_>) -> Vec<f64> {
         if self.line.is_none() {
-            return self.places.clone();
+            return self.mesh.clone();
         }
         let mesh = self.material(at.q);
         mesh.iter().map(|p| p - mesh[0]).collect()
@@ -499,7 +497,7 @@ impl Line for CablePart {
     fn length_now(&self, at: &At<'_>) -> f64 {
         match &self.line {
             None => self.length(),
-            Some(line) => line.p(self.mesh.len() - 1, at.q) - line.p(0, at.q),
+            Some(line) => line.p(self.along.len() - 1, at.q) - line.p(0, at.q),
         }
     }
 
@@ -538,7 +536,7 @@ impl Line for CablePart {
         let tangents: Vec<V3<f64>> = self.seats.iter().map(|s| tangent(&q[s.0..])).collect();
         for (k, &(at, _)) in self.seats.iter().enumerate() {
             for i in 0..3 {
-                q[at + i] = from[i] + way[i] * self.mesh[k] / self.length();
+                q[at + i] = from[i] + way[i] * self.along[k] / self.length();
                 q[at + 3 + i] = way[i] / self.length();
             }
         }
@@ -553,10 +551,10 @@ impl Line for CablePart {
     }
 
     fn looks(&self, s: f64, q: &[f64]) -> Option<(V3<f64>, f64)> {
-        let (twisted, (k, l, xi)) = (self.twisted.as_ref()?, Self::locate(&self.mesh, s)?);
+        let (twisted, (k, l, xi)) = (self.twisted.as_ref()?, Self::locate(&self.along, s)?);
         let before: f64 = (0..k)
             .map(|k| {
-                let l = self.mesh[k + 1] - self.mesh[k];
+                let l = self.along[k + 1] - self.along[k];
                 l * twisted.twist(k, l, q, self.around(k))[0]
             })
             .sum();
@@ -566,7 +564,7 @@ impl Line for CablePart {
     }
 
     fn slope(&self, s: f64, x: &[f64], coordinates: bool) -> Option<(V3<f64>, V3<f64>)> {
-        let (k, l, xi) = Self::locate(&self.mesh, s)?;
+        let (k, l, xi) = Self::locate(&self.along, s)?;
         let e = if coordinates { self.dofs(k, x) } else { self.velocities(k, x) };
         Some((interpolate(hermite::<f64>(xi, l), &e), interpolate(hermite_slope::<f64>(xi, 1.0 / l), &e)))
     }
@@ -584,7 +582,7 @@ impl Line for CablePart {
         if self.carried {
             return;
         }
-        let before: Vec<f64> = (0..self.mesh.len()).map(|k| line.rate(k, v)).collect();
+        let before: Vec<f64> = (0..self.along.len()).map(|k| line.rate(k, v)).collect();
         v[boundary.v] = rate;
         for (k, before) in before.into_iter().enumerate() {
             let change = line.rate(k, v) - before;
@@ -608,13 +606,13 @@ impl Line for CablePart {
 
     fn riding(&self, end: usize) -> f64 {
         let Some(line) = &self.line else { return 0.0 };
-        let (k, last) = (line.grows(end), self.mesh.len() - 1);
-        if end == 0 { self.mesh[k] - self.mesh[0] } else { self.mesh[last] - self.mesh[k + 1] }
+        let (k, last) = (line.grows(end), self.along.len() - 1);
+        if end == 0 { self.along[k] - self.along[0] } else { self.along[last] - self.along[k + 1] }
     }
 
     fn remesh(&self, what: Change, at: &At<'_>) -> Result<Option<Mesh>, String> {
         let Some(line) = &self.line else { return Ok(None) };
-        let (mut new, last) = (self.snapshot(line, at)?, self.mesh.len() - 1);
+        let (mut new, last) = (self.snapshot(line, at)?, self.along.len() - 1);
         // elements whose strain goes on fading, by their new numbers, and those that are new
         let mut fading: Vec<Prestrain> =
             self.prestrain.iter().filter(|p| p.left(at.t).0 > 0.0).cloned().collect();
