@@ -62,9 +62,9 @@ pub struct RaoSpec {
     /// Angular frequencies, ascending [rad/s]. Beyond them responses are those at the ends.
     #[serde(deserialize_with = "quantity::list::angular_velocity")]
     pub omegas: Vec<f64>,
-    /// For each direction and frequency: surge, sway, heave [m/m], roll, pitch, yaw [deg/m].
+    /// For each direction and frequency, per metre of wave amplitude: surge, sway, heave in metres, roll, pitch, yaw in degrees.
     pub amplitude: Vec<Vec<[f64; MOTIONS]>>,
-    /// For each direction and frequency the lag of each motion behind the crest [deg].
+    /// For each direction and frequency the lag of each motion behind the crest in degrees.
     pub lag: Vec<Vec<[f64; MOTIONS]>>,
 }
 

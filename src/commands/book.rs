@@ -69,7 +69,7 @@ const INCLUDED: &[Text] = files![
     "first-steps.in/line.toml",
     "flexible-arm.in/arm.toml",
     "joints.in/segments.toml",
-    "mooring.in/mooring.toml",
+    "mooring.in/chain.toml",
     "towed-line.in/steady.toml",
     "towed-line.in/tow.toml",
     "../../CONTRIBUTING.md",

@@ -43,7 +43,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("sensor", &["position", "reaction", "along"]),
     ("shaft", &["cable", "rigid_body"]),
     ("sheave", &["contact", "eyelet"]),
-    ("ship", &["driving", "rigid_body"]),
+    ("ship", &["vessel", "driving", "rigid_body"]),
     ("slider", &["prismatic"]),
     ("spool", &["winch", "lift_off"]),
     ("string", &["cable"]),
@@ -57,7 +57,6 @@ const WORDS: &[(&str, &[&str])] = &[
     ("torsion", &["cable", "point_moment", "along"]),
     ("twist", &["cable", "along"]),
     ("umbilical", &["cable"]),
-    ("vessel", &["driving", "rigid_body"]),
     ("weight", &["gravity", "point_mass"]),
     ("wind", &["air", "drag"]),
     ("wire", &["cable"]),
@@ -84,11 +83,6 @@ const NOTES: &[(&str, &str)] = &[
         "section",
         "The cross-section of a cable is its table `section = { mass = …, ea = …, ei = … }`, or the name of one of `[[sections]]`; \
          `sections` gives it several. Sections of a scene file are `run`, `solver`, `statics`, `water` and `air`.",
-    ),
-    (
-        "vessel",
-        "A vessel that moves as prescribed is a motion, and `driving` takes a marker along; one that is moved by its lines \
-         is a `rigid_body`.",
     ),
 ];
 

