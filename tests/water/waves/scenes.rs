@@ -2,7 +2,6 @@
 
 use super::{refused, run, scene};
 use ropewalk::History;
-use ropewalk_core::Term;
 use ropewalk_scene::Sea;
 use std::f64::consts::PI;
 use std::sync::Arc;
