@@ -112,7 +112,7 @@ const TIMES: [f64; 3] = [7.0, 33.0, 51.7];
 const HEIGHTS: [f64; 6] = [1.0, 0.07, -0.02, -0.16, -1.0, -6.0];
 
 /// A field with what it is tried with.
-type Tried = (Field, [V3<f64>; 3], [V3<f64>; 3]);
+type Tried = (fn(&mut Station<f64>) -> &mut V3<f64>, [V3<f64>; 3], [V3<f64>; 3]);
 
 #[test]
 fn laws_in_waves_have_their_derivatives() {
@@ -162,7 +162,6 @@ fn with_the_energy_of_the_water_derivatives_lack_the_curvature_of_the_flow_alone
                 law.load::<f64, false>(t, &at, &mut load);
                 [load.f, load.g]
             };
-            type Field = fn(&mut Station<f64>) -> &mut V3<f64>;
             let nought = [[0.0; 3]; 3];
             let fields: [Tried; 5] = [
                 (|s| &mut s.x, load.d_x, load.g_x),
