@@ -39,7 +39,7 @@ const MOST_TURNING: f64 = 100.0;
 /// Largest rotation of a body in a fixed step [rad]: from a quarter turn on a driven joint may end on another branch.
 const MOST_TURN: f64 = 1.5;
 /// A step so much smaller than another one has a much smaller error, or it isn't that of the step.
-const SHRUNK: f64 = 0.1;
+const SHRUNK: f64 = 0.01;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
