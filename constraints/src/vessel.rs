@@ -5,8 +5,8 @@ use crate::pair::{kind as kind_of, pair};
 use ropewalk_core::error::not_negative;
 use ropewalk_core::reach::Knots;
 use ropewalk_core::{
-    BuildError, EndSlope, Interpolation, Jet, Join, Model, Motion, Moving, NodeKind, Place, Related, Relation, RowKind,
-    V3, lift, reach,
+    BuildError, EndSlope, Interpolation, Jet, Join, Model, Motion, Moving, NodeKind, Place, Related,
+    Relation, RowKind, V3, lift, reach,
 };
 use ropewalk_scene::quantity::{self, kind};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
@@ -71,7 +71,8 @@ pub struct RaoSpec {
 impl RaoSpec {
     fn responses(&self) -> Result<Responses, BuildError> {
         let metres = |k: usize| k < 3;
-        let amplitude: Vec<Vec<[f64; MOTIONS]>> = each(&self.amplitude, |k, a| if metres(k) { a } else { a.to_radians() });
+        let amplitude: Vec<Vec<[f64; MOTIONS]>> =
+            each(&self.amplitude, |k, a| if metres(k) { a } else { a.to_radians() });
         let lag = each(&self.lag, |_, lag| lag.to_radians());
         Responses::new(self.headings.clone(), self.omegas.clone(), &amplitude, &lag)
             .map_err(|e| BuildError::at(format!("rao.{}", e.field), e.message))
@@ -164,7 +165,8 @@ impl Course {
             heave + self.place[2],
         ];
         let yaw = yaw + self.heading;
-        let ([sr, cr], [sp, cp], [sy, cy]) = ([roll.sin(), roll.cos()], [pitch.sin(), pitch.cos()], [yaw.sin(), yaw.cos()]);
+        let ([sr, cr], [sp, cp], [sy, cy]) =
+            ([roll.sin(), roll.cos()], [pitch.sin(), pitch.cos()], [yaw.sin(), yaw.cos()]);
         let axes = [
             [cy * cp, sy * cp, -sp],
             [cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr],
@@ -176,7 +178,10 @@ impl Course {
 
 impl fmt::Debug for Course {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Course").field("place", &self.place).field("heading", &self.heading).finish_non_exhaustive()
+        f.debug_struct("Course")
+            .field("place", &self.place)
+            .field("heading", &self.heading)
+            .finish_non_exhaustive()
     }
 }
 
@@ -185,9 +190,8 @@ impl Motion for Course {
     fn at(&self, t: f64) -> Moving {
         let six = self.six(t);
         let (sin, cos) = self.heading.sin_cos();
-        let turned = |k: usize| {
-            [six[0][k] * cos - six[1][k] * sin, six[0][k] * sin + six[1][k] * cos, six[2][k]]
-        };
+        let turned =
+            |k: usize| [six[0][k] * cos - six[1][k] * sin, six[0][k] * sin + six[1][k] * cos, six[2][k]];
         Moving { x: turned(0), v: turned(1), a: turned(2) }
     }
     fn range(&self) -> (f64, f64) {
@@ -237,7 +241,8 @@ impl VesselSpec {
             (Some(rao), None) => {
                 let responses = rao.responses()?;
                 let sea = b.water().ok().and_then(|water| water.sea.clone()).ok_or_else(|| {
-                    let message = "responses are to waves, and the scene has none: add [water.waves], or take a `file`";
+                    let message =
+                        "responses are to waves, and the scene has none: add [water.waves], or take a `file`";
                     BuildError::at("rao", message)
                 })?;
                 let waves = sea.waves();
@@ -267,7 +272,8 @@ fn table(path: &str, ramp: f64) -> Result<Source, String> {
         angle("pitch"),
         angle("yaw"),
     ];
-    let csv::Columns { rows, lines, .. } = csv::columns(path, wanted, "t [s],surge [m],heave [m],pitch [deg]")?;
+    let csv::Columns { rows, lines, .. } =
+        csv::columns(path, wanted, "t [s],surge [m],heave [m],pitch [deg]")?;
     let Some(last) = rows.last().filter(|_| rows.len() > 1) else {
         return Err(format!("{path}: a vessel's motion needs two rows at least"));
     };

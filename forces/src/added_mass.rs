@@ -396,7 +396,8 @@ impl ForceSpec for AddedMassSpec {
             None => b.load(&self.on, law),
             Some(surface) => {
                 if let Some(sea) = law.sea.clone() {
-                    let waves = FroudeKrylov { density: law.density, current: law.current.clone(), sea, theory };
+                    let waves =
+                        FroudeKrylov { density: law.density, current: law.current.clone(), sea, theory };
                     b.load(&self.on, Wetted::below(surface.clone(), waves))?;
                 }
                 b.load(&self.on, Wetted::below(surface, law))

@@ -163,7 +163,8 @@ impl Term for Float {
         let mut force = Pull { f: [0.0, 0.0, lift * share], ..Pull::default() };
         force.by_x[2][2] = lift * by_z;
         if let Some(swell) = self.swell(at) {
-            (force.by_x[2][0], force.by_x[2][1]) = (-lift * by_z * swell.slope[0], -lift * by_z * swell.slope[1]);
+            (force.by_x[2][0], force.by_x[2][1]) =
+                (-lift * by_z * swell.slope[0], -lift * by_z * swell.slope[1]);
         }
         pull(&[Held::Ground([0.0; 3]), self.held], at, &force, 0, out);
     }

@@ -304,7 +304,8 @@ impl Scene {
             return Err(BuildError::at("water.waves", message));
         }
         if self.run.from_equilibrium && !(waves.ramp > 0.0) {
-            let message = "an equilibrium is in still water: let the waves rise from it, such as `ramp = \"60 s\"`";
+            let message =
+                "an equilibrium is in still water: let the waves rise from it, such as `ramp = \"60 s\"`";
             return Err(BuildError::at("water.waves", message));
         }
         Ok(())

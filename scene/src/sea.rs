@@ -118,16 +118,16 @@ impl Sea {
             waves = waves.on_current([drift[0], drift[1]]).map_err(of)?;
         }
         let (lattice, how) = Self::lattice(spec, &waves)?;
-        let [slowest, fastest] = all.iter().fold([f64::INFINITY, 0.0_f64], |[slow, fast], w| {
-            [w.omega.min(slow), w.omega.max(fast)]
-        });
+        let [slowest, fastest] = all
+            .iter()
+            .fold([f64::INFINITY, 0.0_f64], |[slow, fast], w| [w.omega.min(slow), w.omega.max(fast)]);
         let about = format!(
             "waves: {} of {:.3} to {:.3} s, significant height {:.4} m, in water {}; {how}",
             all.len(),
             TAU / fastest,
             TAU / slowest,
             4.0 * waves.deviation(),
-            spec.depth.map_or_else(|| "of any depth".into(), |h| format!("{h} m deep")),
+            spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
         let nowhere = ([u64::MAX; 4], Here::default());
         let memory = Mutex::new(Memory { lattice, latest: vec![nowhere; PLACES] });
@@ -159,7 +159,9 @@ impl Sea {
             if error <= spec.lattice_error {
                 // without what was looked at
                 let lattice = Lattice::new(waves.clone(), finer);
-                let how = format!("from a lattice, whose velocities are off by {error:.1e} of their deviation at most");
+                let how = format!(
+                    "from a lattice, whose velocities are off by {error:.1e} of their deviation at most"
+                );
                 return Ok((lattice, how));
             }
             finer *= 1.5;
@@ -210,7 +212,8 @@ impl Sea {
         let acceleration_by_x = matrix(&|h| &h.acceleration_by_x);
         let gradient = matrix(&|h| &h.flow.gradient);
         // numbers that know their derivative get it from here; of all others the distance is nothing
-        let along = |rows: &V3<R>, value: R| rows[0].fma(off[0], rows[1].fma(off[1], rows[2].fma(off[2], value)));
+        let along =
+            |rows: &V3<R>, value: R| rows[0].fma(off[0], rows[1].fma(off[1], rows[2].fma(off[2], value)));
         let u = [0, 1, 2].map(|i| along(&by_x[i], R::each(|l| here[l].flow.velocity[i])));
         let acceleration =
             [0, 1, 2].map(|i| along(&acceleration_by_x[i], R::each(|l| here[l].flow.acceleration[i])));
@@ -229,7 +232,9 @@ impl Sea {
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
         for (x, out) in places.iter().zip(out) {
             let key = [x[0].to_bits(), x[1].to_bits(), x[2].to_bits(), t.to_bits()];
-            let mixed = key.iter().fold(0_u64, |mixed, k| (mixed ^ k).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
+            let mixed = key
+                .iter()
+                .fold(0_u64, |mixed, k| (mixed ^ k).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
             let slot = (mixed >> 40) as usize % PLACES;
             if memory.latest[slot].0 != key {
                 let here = self.anew(memory.lattice.as_mut(), *x, t);

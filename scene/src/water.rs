@@ -116,7 +116,8 @@ impl Water {
         };
         let [x, y, g] = gravity;
         if x != 0.0 || y != 0.0 || !(g < 0.0) {
-            let message = format!("waves need gravity that points down, along -z, and it is {gravity:?} m/s²");
+            let message =
+                format!("waves need gravity that points down, along -z, and it is {gravity:?} m/s²");
             return at("gravity", message);
         }
         if waves.doppler && self.current.iter().any(|u| u.number().is_none()) {

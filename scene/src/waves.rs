@@ -42,7 +42,10 @@ pub struct WavesSpec {
     /// Seed of their random phases: the same seed gives the same sea on every machine.
     pub seed: u64,
     /// Depth of the water [m]. Default: deep water.
-    #[serde(deserialize_with = "ropewalk_quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        deserialize_with = "ropewalk_quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub depth: Option<f64>,
     /// Time from t = 0 in which the waves rise from still water, as `(1 - cos πt/ramp)/2` [s].
     #[serde(deserialize_with = "ropewalk_quantity::time")]
@@ -302,6 +305,7 @@ impl WavesSpec {
             WaveSampling::Jitter => Sampling::Jitter,
         };
         let spreading = self.spreading.map(|s| Spreading { s: s.s, directions: s.directions });
-        sample(&spectrum, self.count, self.seed, sampling, self.direction, spreading).map_err(|e| self.fault(e))
+        sample(&spectrum, self.count, self.seed, sampling, self.direction, spreading)
+            .map_err(|e| self.fault(e))
     }
 }

@@ -271,8 +271,11 @@ impl Waves {
 /// Adds the gradient of a field without sources and vortices, of which it is known how the part along a direction changes
 /// along it and upwards.
 fn add_gradient(g: &mut [[f64; 3]; 3], [cx, cy]: [f64; 2], along: f64, up: f64) {
-    let rows =
-        [[along * cx * cx, along * cx * cy, up * cx], [along * cx * cy, along * cy * cy, up * cy], [up * cx, up * cy, -along]];
+    let rows = [
+        [along * cx * cx, along * cx * cy, up * cx],
+        [along * cx * cy, along * cy * cy, up * cy],
+        [up * cx, up * cy, -along],
+    ];
     for (row, more) in g.iter_mut().zip(rows) {
         row.iter_mut().zip(more).for_each(|(x, more)| *x += more);
     }

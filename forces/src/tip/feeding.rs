@@ -44,8 +44,10 @@ impl FeedingEnd {
     /// `m_a` and `n`, over single numbers.
     fn across<R: Real>(&self, t: f64, end: &End<R>) -> (R, V3<R>) {
         let u = self.added_mass.fluid(t, &end.x);
-        let wet =
-            self.surface.as_ref().map_or(R::of(1.0), |surface| surface.ball(t, &end.x, 0.5 * self.diameter).0);
+        let wet = self
+            .surface
+            .as_ref()
+            .map_or(R::of(1.0), |surface| surface.ball(t, &end.x, 0.5 * self.diameter).0);
         let w: V3<R> = std::array::from_fn(|i| end.v[i] - u[i]);
         let along = dot(&w, &end.slope) / dot(&end.slope, &end.slope);
         let n = std::array::from_fn(|i| w[i] - along * end.slope[i]);

@@ -49,7 +49,8 @@ impl TipLaw for BluntEnd {
             return [R::zero(); 3];
         }
         let speed = square.sqrt();
-        let wet = self.surface.as_ref().map_or(R::of(1.0), |surface| surface.ball(t, x, 0.5 * self.diameter).0);
+        let wet =
+            self.surface.as_ref().map_or(R::of(1.0), |surface| surface.ball(t, x, 0.5 * self.diameter).0);
         let per = wet * R::of(1.0 - self.taper) * self.added_mass.mass(R::of(self.diameter)) * inverse;
         let n: V3<R> = std::array::from_fn(|i| w[i] - along * out[i]);
         let pull = R::of(0.5) * dot(&n, &n) * (-along / speed);

@@ -74,7 +74,10 @@ fn gradients_and_accelerations_are_those_of_differences() {
                         assert!((slope - flow.gradient[i][j]).abs() < 1e-9, "{name}: {i} {j} {slope}");
                         let slope = (b.acceleration[i] - a.acceleration[i]) / (2.0 * e);
                         let exact = flow.acceleration_gradient[i][j];
-                        assert!((slope - exact).abs() < 1e-8, "{name}: of the acceleration {i} {j} {slope} {exact}");
+                        assert!(
+                            (slope - exact).abs() < 1e-8,
+                            "{name}: of the acceleration {i} {j} {slope} {exact}"
+                        );
                     }
                     if j < 2 {
                         close((b.elevation - a.elevation) / (2.0 * e), flow.slope[j], 1e-9);

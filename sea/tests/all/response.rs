@@ -35,7 +35,12 @@ fn waves(case: &Value) -> Waves {
 
 fn vessel(case: &Value, waves: &Waves) -> VesselResponse {
     let place = list(&case["reference"]);
-    VesselResponse::new(waves, &responses(case), [place[0], place[1]], number(&case["heading_deg"]).to_radians())
+    VesselResponse::new(
+        waves,
+        &responses(case),
+        [place[0], place[1]],
+        number(&case["heading_deg"]).to_radians(),
+    )
 }
 
 #[test]

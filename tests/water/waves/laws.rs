@@ -2,7 +2,9 @@
 
 use ropewalk_core::testing::check_law;
 use ropewalk_core::{Law, Load, Station, V3, dot};
-use ropewalk_forces::{AddedMass, Buoyancy, Drag, FroudeKrylov, NormalLaw, Surface, TangentialLaw, Theory, Wetted};
+use ropewalk_forces::{
+    AddedMass, Buoyancy, Drag, FroudeKrylov, NormalLaw, Surface, TangentialLaw, Theory, Wetted,
+};
 use ropewalk_scene::{Current, Evaluation, Sea, WaveComponent, WaveStretching, WavesSpec};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -35,7 +37,8 @@ fn table(spec: WavesSpec) -> Arc<Sea> {
 }
 
 fn drag(sea: &Arc<Sea>) -> Drag {
-    let law = Drag::new(1025.0, 1e-3, NormalLaw::Constant(1.2), TangentialLaw::Quadratic(0.05)).expect("drag");
+    let law =
+        Drag::new(1025.0, 1e-3, NormalLaw::Constant(1.2), TangentialLaw::Quadratic(0.05)).expect("drag");
     Drag { sea: Some(sea.clone()), current: shear(), ..law }
 }
 
@@ -192,11 +195,18 @@ fn with_the_energy_of_the_water_derivatives_lack_the_curvature_of_the_flow_alone
                     for i in 0..3 {
                         let mut left = 0.0;
                         if k == 0 {
-                            left = m * (pushed[i] - carried[i] - (0..3).map(|l| bend[l][i] * n[l]).sum::<f64>());
-                            largest = largest.max(left.abs() / of_f.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs())));
+                            left =
+                                m * (pushed[i] - carried[i] - (0..3).map(|l| bend[l][i] * n[l]).sum::<f64>());
+                            largest = largest.max(
+                                left.abs() / of_f.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs())),
+                            );
                         }
                         let by = (b[0][i] - a[0][i]) / (2.0 * e);
-                        assert!((by - of_f[i][j] - left).abs() < 1e-3, "{k} {i} {j}: {by} {} {left}", of_f[i][j]);
+                        assert!(
+                            (by - of_f[i][j] - left).abs() < 1e-3,
+                            "{k} {i} {j}: {by} {} {left}",
+                            of_f[i][j]
+                        );
                         let by = (b[1][i] - a[1][i]) / (2.0 * e);
                         assert!((by - of_g[i][j]).abs() < 1e-3, "{k} {i} {j}: {by} {}", of_g[i][j]);
                     }
@@ -221,8 +231,14 @@ fn work_and_energy_balance() {
                     let wet = surface.clone();
                     worst = worst.max(left(&Wetted::below(wet.clone(), drag(&sea)), &course, t, e));
                     for theory in [Theory::Energy, Theory::Morison] {
-                        worst = worst.max(left(&Wetted::below(wet.clone(), mass(&sea, theory)), &course, t, e));
-                        worst = worst.max(left(&Wetted::below(wet.clone(), pressure(&sea, theory)), &course, t, e));
+                        worst =
+                            worst.max(left(&Wetted::below(wet.clone(), mass(&sea, theory)), &course, t, e));
+                        worst = worst.max(left(
+                            &Wetted::below(wet.clone(), pressure(&sea, theory)),
+                            &course,
+                            t,
+                            e,
+                        ));
                     }
                     let law = Buoyancy { specific_weight: 1e4, surface: wet, couple: true };
                     worst = worst.max(left(&law, &course, t, e));

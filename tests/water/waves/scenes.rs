@@ -60,7 +60,9 @@ fn what_is_as_heavy_as_water_goes_with_it() {
     };
     let mut wrong = Vec::new();
     for stretching in ["wheeler", "constant"] {
-        for (solver, near) in [("", 1e-3), ("scheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-9 } }", 1e-7)] {
+        for (solver, near) in
+            [("", 1e-3), ("scheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-9 } }", 1e-7)]
+        {
             let text = format!(
                 r#"
                 {}
@@ -120,9 +122,10 @@ fn what_is_as_heavy_as_water_goes_with_it() {
             let h = run(&text);
             let particle = drifted(&sea(&text), [0.0, 0.0, 1.0 - depth], 15.0);
             for name in ["line.end", "tube.com", "ball"] {
-                let off = ["x", "z"].iter().zip([particle[0], particle[2]]).fold(0.0_f64, |worst, (axis, x)| {
-                    worst.max((last(&h, &format!("{name}.{axis}")) - x).abs())
-                });
+                let off =
+                    ["x", "z"].iter().zip([particle[0], particle[2]]).fold(0.0_f64, |worst, (axis, x)| {
+                        worst.max((last(&h, &format!("{name}.{axis}")) - x).abs())
+                    });
                 println!("{stretching}: {name} is {off:.1e} m from the water");
                 if !(off < near) {
                     wrong.push(format!("{stretching}: {name} by {off:e} m"));
@@ -255,10 +258,8 @@ fn a_turned_scene_and_one_in_other_units_run_alike() {
         let [x, y, z] = ["x", "y", "z"].map(|axis| last(&own, &format!("{name}.{axis}")));
         let of = |h: &History| ["x", "y", "z"].map(|axis| last(h, &format!("{name}.{axis}")));
         let apart = |a: [f64; 3], b: [f64; 3]| (0..3).fold(0.0_f64, |m, i| m.max((a[i] - b[i]).abs()));
-        let off = [
-            apart(of(&turned), [cos * x - sin * y, sin * x + cos * y, z]),
-            apart(of(&feet), [x, y, z]),
-        ];
+        let off =
+            [apart(of(&turned), [cos * x - sin * y, sin * x + cos * y, z]), apart(of(&feet), [x, y, z])];
         println!("{name}: turned by {:.1e} m, in kilometres by {:.1e} m", off[0], off[1]);
         assert!(off[0] < 1e-2 && off[1] < 1e-3, "{off:?}");
     }
@@ -334,7 +335,10 @@ fn still_water_has_no_terms_of_waves() {
         let (before, after) = text.split_once("[water.waves]").expect("waves");
         let rest = after.split_once("[[elements]]").expect("elements").1;
         let model = scene(&format!("{before}{waves}[[elements]]{rest}")).build().expect("a model");
-        (model.terms().iter().map(|t| t.label()).collect::<Vec<_>>(), model.terms().iter().filter(|t| t.timed().is_some()).count())
+        (
+            model.terms().iter().map(|t| t.label()).collect::<Vec<_>>(),
+            model.terms().iter().filter(|t| t.timed().is_some()).count(),
+        )
     };
     let (still, timed) = labels("");
     assert_eq!(timed, 0);
@@ -355,14 +359,24 @@ fn seas_that_make_no_sense_are_refused_by_name() {
     for (level, waves, more, said) in [
         ("", jonswap, "", "give the water its `level`"),
         ("level = 0", "", "", "has no sea state"),
-        ("level = 0", "jonswap = { hs = 2, tp = 8 }\nregular = { height = 1, period = 5 }", "", "more than one sea state"),
+        (
+            "level = 0",
+            "jonswap = { hs = 2, tp = 8 }\nregular = { height = 1, period = 5 }",
+            "",
+            "more than one sea state",
+        ),
         ("level = 0", "jonswap = { hs = -2, tp = 8 }", "", "`hs` must be above 0"),
         ("level = 0", "jonswap = { hs = 2, tp = 8, gamma = 90 }", "", "`gamma` must be between"),
         ("level = 0", "regular = { height = 1, period = 0 }", "", "`period` must be positive"),
         ("level = 0", &format!("{jonswap}\ndepth = 0"), "", "`depth` must be above 0"),
         ("level = 0", &format!("{jonswap}\nramp = -1"), "", "`ramp` must not be negative"),
         ("level = 0", &format!("{jonswap}\ncount = 0"), "", "at least one component"),
-        ("level = 0", &format!("{jonswap}\nspreading = {{ s = 4, directions = 0 }}"), "", "`directions` must be between"),
+        (
+            "level = 0",
+            &format!("{jonswap}\nspreading = {{ s = 4, directions = 0 }}"),
+            "",
+            "`directions` must be between",
+        ),
         (
             "level = 0",
             &format!("{jonswap}\nspreading = {{ s = 4, directions = 5 }}\nevaluation = \"lattice\""),
@@ -370,7 +384,12 @@ fn seas_that_make_no_sense_are_refused_by_name() {
             "a lattice is for waves of one direction",
         ),
         ("level = 0", &format!("{jonswap}\nlattice_error = 1e-9"), "", "the finest lattice is off by"),
-        ("level = 0\ncurrent = [-5, 0, 0]", &format!("{jonswap}\ndoppler = true"), "", "can't advance against a current"),
+        (
+            "level = 0\ncurrent = [-5, 0, 0]",
+            &format!("{jonswap}\ndoppler = true"),
+            "",
+            "can't advance against a current",
+        ),
         ("level = 0", jonswap, "gravity = [0, 0, 0]", "waves need gravity that points down"),
         ("level = 0", jonswap, "[run]\nanalysis = \"statics\"", "there is no equilibrium in waves"),
         ("level = 0", jonswap, "[run]\nfrom_equilibrium = true", "let the waves rise from it"),

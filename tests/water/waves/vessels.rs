@@ -178,10 +178,8 @@ fn points_of_a_vessel_move_as_in_the_reference() {
 fn a_body_follows_its_course() {
     let case = &read("vessel_rao")["cases"][1]["case"];
     let solver = "[solver]\nscheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-8 } }";
-    let text = vessel(case, solver).replace(
-        "components",
-        "ramp = 20\n        components",
-    ) + "[[records]]\ntype = \"position\"\nof = \"ship.bow\"\n[[records]]\ntype = \"energy\"\n";
+    let text = vessel(case, solver).replace("components", "ramp = 20\n        components")
+        + "[[records]]\ntype = \"position\"\nof = \"ship.bow\"\n[[records]]\ntype = \"energy\"\n";
     let h = run(&text);
     let model = scene(&text).build().expect("a model");
     assert!(h.warnings.is_empty(), "{:?}", h.warnings);
@@ -220,9 +218,15 @@ fn a_table_moves_a_vessel() {
     for (file, said) in [
         ("", "needs a `rao`, or a `file`"),
         ("file = \"nowhere.csv\"", "can't read nowhere.csv"),
-        ("rao = { headings = [0], omegas = [1], amplitude = [[[1, 0, 0, 0, 0, 0]]], lag = [[[0, 0, 0, 0, 0, 0]]] }", "the scene has none"),
+        (
+            "rao = { headings = [0], omegas = [1], amplitude = [[[1, 0, 0, 0, 0, 0]]], lag = [[[0, 0, 0, 0, 0, 0]]] }",
+            "the scene has none",
+        ),
         ("rao = { headings = [0], omegas = [1, 0.5], amplitude = [], lag = [] }", "ascend"),
-        ("rao = { headings = [0], omegas = [1], amplitude = [], lag = [] }", "needs a row for each of 1 headings"),
+        (
+            "rao = { headings = [0], omegas = [1], amplitude = [], lag = [] }",
+            "needs a row for each of 1 headings",
+        ),
     ] {
         let error = refused(&text(file));
         assert!(error.contains(said), "{said}: {error}");

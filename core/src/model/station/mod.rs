@@ -293,7 +293,9 @@ impl Shows for FieldTerm {
         self.stations.each(at, &mut |station| {
             let side = usize::from(station.s > s);
             let nearer = beside[side].is_none_or(|(there, _)| (station.s - s).abs() < (there - s).abs());
-            if let Some(c) = self.laws.0.iter().find_map(|l| l.local(quantity, at.t, station)).filter(|_| nearer) {
+            if let Some(c) =
+                self.laws.0.iter().find_map(|l| l.local(quantity, at.t, station)).filter(|_| nearer)
+            {
                 beside[side] = Some((station.s, c));
             }
         });
