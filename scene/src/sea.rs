@@ -127,7 +127,7 @@ impl Sea {
             TAU / fastest,
             TAU / slowest,
             4.0 * waves.deviation(),
-            spec.depth.map_or_else(|| "of any depth".into(), |h| format!("{h} m deep")),
+            spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
         let nowhere = ([u64::MAX; 4], Here::default());
         let memory = Mutex::new(Memory { lattice, latest: vec![nowhere; PLACES] });
