@@ -39,7 +39,7 @@ const MOST_TURNING: f64 = 100.0;
 /// Largest rotation of a body in a fixed step [rad]: from a quarter turn on a driven joint may end on another branch.
 const MOST_TURN: f64 = 1.5;
 /// A step so much smaller than another one has a much smaller error, or it isn't that of the step.
-const SHRUNK: f64 = 0.01;
+const SHRUNK: f64 = 0.1;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
@@ -458,8 +458,10 @@ impl Integrator for Alpha {
                     }
                     let [first, largest] = *rejected.get_or_insert([h, error]);
                     let stays = h <= SHRUNK * first && error > largest * (h / first).sqrt();
-                    if stays && h <= SHRUNK * state.control.h_last && model.multipliers() > 0 {
-                        // not the error of this step: velocities meet the constraints to the order of a longer one
+                    let kinked = !model.inputs().is_empty() && model.multipliers() > 0;
+                    if stays && kinked && h <= SHRUNK * state.control.h_last {
+                        // not the error of this step: behind the kink of an input velocities meet the constraints to the
+                        // order of the longer step before it
                         let internal = state.internal.clone();
                         anew(model, state, work, self, steps.h, true)?;
                         state.internal = internal;
