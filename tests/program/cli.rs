@@ -331,11 +331,11 @@ fn describe_explains_scenes_types_and_sections() {
     let hose = describe("hose-turn");
     assert!(hose.contains("speed = 25 kn") && hose.contains("radius = 25 m"), "{hose}");
     let cable = describe("cable");
-    for line in
-        ["type = \"cable\"", "number in kg/m, or text with a unit, required", "default \"locking-free\""]
-    {
+    for line in ["type = \"cable\"", "ropewalk describe sections", "default \"locking-free\""] {
         assert!(cable.contains(line), "no {line} in\n{cable}");
     }
+    let sections = describe("sections");
+    assert!(sections.contains("number in kg/m, or text with a unit"), "{sections}");
     let solver = describe("solver");
     assert!(solver.contains("default { controlled = { tolerance = 0.0001 } }"), "{solver}");
     let water = describe("water");
