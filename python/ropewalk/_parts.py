@@ -28,11 +28,50 @@ class Parts:
     def _set(self, section: str, fields: Mapping[str, Any]) -> None:
         raise NotImplementedError
 
+    def attachments(
+        self,
+        *,
+        name: str,
+        on: str,
+        at: Number,
+        mass: Number,
+        spacing: Number | None = None,
+        count: Integer | None = None,
+        volume: Number | None = None,
+        added_mass: Number | None = None,
+        drag_area: Number | None = None,
+    ) -> Part:
+        """Clump weights, floats or other compact bodies on a cable, one or many at a regular spacing. The cable has a
+        node at each.
+
+        Each is a `point_mass` of the name of the whole with a number: `floats1`, `floats2`, …
+
+        name: Name; the rest of the scene refers to each by it and its number, from 1.
+        on: The cable that carries them, which must stand above in the scene.
+        at: Unstretched length from the start of the cable to the first of them [m].
+        mass: Mass of each [kg].
+        spacing: Unstretched length from each to the next [m].
+        count: How many there are. Default 1.
+        volume: Displaced volume of each, for buoyancy [m³]. Default 0.0.
+        added_mass: Added mass of each in water, the same in all directions [kg]. Default 0.0.
+        drag_area: Drag coefficient times area of each [m²]. Default 0.0.
+        """
+        return self._add("elements", "attachments", {
+            "name": name,
+            "on": on,
+            "at": at,
+            "mass": mass,
+            "spacing": spacing,
+            "count": count,
+            "volume": volume,
+            "added_mass": added_mass,
+            "drag_area": drag_area,
+        })
+
     def cable(
         self,
         *,
         name: str,
-        section: Mapping[str, Any],
         points: Sequence[Sequence[Number]] | None = None,
         radius: Number | None = None,
         curve: Sequence[Sequence[Number]] | None = None,
@@ -42,6 +81,8 @@ class Parts:
         tension: Number | None = None,
         elements: Integer | None = None,
         mesh: Union[Mapping[str, Any], Sequence[Number]] | None = None,
+        section: Union[Mapping[str, Any], str] | None = None,
+        sections: Sequence[Mapping[str, Any]] | None = None,
         longitudinal: Literal['L1', 'L1n', 'L2', 'L3', 'L4'] | None = None,
         transverse: Literal['T1', 'T2', 'T3'] | None = None,
         integration: Literal['full', 'locking-free'] | None = None,
@@ -60,28 +101,6 @@ class Parts:
         `name@12.5m`.
 
         name: Name; the rest of the scene refers to the part by it.
-        section: Cross-section.
-            mass: Structural mass per unstretched length [kg/m]; gravity acts on it. Required.
-            ea: Axial stiffness EA [N]. Required.
-            ei: Bending stiffness EI [N m²]. With 0, the first and last element keep 1 % of their weight times their
-                length squared, so that free ends have a direction. Two numbers where it isn't the same in all
-                directions, of a cable with torsion: about the `normal` of the section, and about the axis across it.
-                Default 0.0.
-            gj: Torsional stiffness GJ [N m²]. With it the cable can be twisted, and its ends are held against
-                twisting where they are built in. Default: no torsion; but EI where the stress-free shape is curved.
-            rotary_inertia: Polar moment of inertia of the section, per length [kg m], of a cable with torsion.
-                Default: that of a solid round bar, `mass diameter²/8`.
-            flooded: Mass of the water inside [kg/m]. It moves with the part and has no weight in water. Default 0.0.
-            diameter: Hydrodynamic diameter, for drag and added mass [m]. Default 0.0.
-            displaced: Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
-            axial_retardation_time: Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ
-                ε̇)`. Default 0.0.
-            bending_retardation_time: Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`.
-                Default 0.0.
-            torsional_retardation_time: Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ
-                dφ'/dt)`.
-            gyroscopic: Whether the spin of a cable with torsion about its own axis turns it aside, as that of a top
-                does: of shafts that turn fast. Ropes don't notice.
         points: Points of the path along which it is laid, from start to end [m], joined by straight lines. At
             corners, give a `radius`: a sharp corner would strain the cable.
         radius: Bend radius at the corners of `points` [m]. The arcs have elements of their own.
@@ -97,6 +116,43 @@ class Parts:
             towards the end, `first` towards the start, both towards both; or a list with the length of each, from
             start to end [m]. Where the direction is held, elements should be shorter than the bending layer
             `√(EI/T)`. A graded end stays graded while a winch pays out there.
+        section: Cross-section, `{ mass = …, ea = …, ei = … }`, with the fields that `ropewalk describe sections`
+            tells; or the name of one of the scene's `sections`: `section = "chain"`. Give `section` or `sections`.
+            mass: Structural mass per unstretched length [kg/m]; gravity acts on it. Required.
+            ea: Axial stiffness EA [N]; or give `axial_force`.
+            axial_force: Axial force over strain, instead of `ea`: `{ strain = [0, 0.01, 0.03], force = ["0 kN", "10
+                kN", "60 kN"] }`. Between the points the force follows a smooth curve that never falls, beyond them a
+                straight line. Needs L4.
+            tension_only: Whether it only pulls: chains and ropes don't resist being pressed together. Needs L4.
+            ei: Bending stiffness EI [N m²]. With 0, the first and last element keep 1 % of their weight times their
+                length squared, so that free ends have a direction. Two numbers where it isn't the same in all
+                directions, of a cable with torsion: about the `normal` of the section, and about the axis across it.
+                Default 0.0.
+            bending_moment: Bending moment over curvature, instead of `ei`: `{ curvature = [0, 0.01, 0.1], moment =
+                ["0 N m", "50 N m", "80 N m"] }`, the same in all directions and without loss of energy. Needs T3.
+            gj: Torsional stiffness GJ [N m²]. With it the cable can be twisted, and its ends are held against
+                twisting where they are built in. Default: no torsion; but EI where the stress-free shape is curved.
+            torque_tension: Coupling `C` of torque and tension in laid ropes and armoured cables [N m]: `N = EA ε + C
+                φ'` and `M = C ε + GJ φ'`, with `ea` measured while the ends can't turn. Positive of a right-hand lay:
+                such a rope unlays when it is pulled. A torque factor `c`, by which the torque of a held end is `c d
+                T`, means `C = c d EA`. Needs L4.
+            rotary_inertia: Polar moment of inertia of the section, per length [kg m], of a cable with torsion.
+                Default: that of a solid round bar, `mass diameter²/8`.
+            flooded: Mass of the water inside [kg/m]. It moves with the part and has no weight in water. Default 0.0.
+            diameter: Hydrodynamic diameter, for drag and added mass [m]. Default 0.0.
+            displaced: Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
+            axial_retardation_time: Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ
+                ε̇)`. With a table EA is its largest slope here. Default 0.0.
+            bending_retardation_time: Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`,
+                with the largest slope of a table. Default 0.0.
+            torsional_retardation_time: Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ
+                dφ'/dt)`.
+            gyroscopic: Whether the spin of a cable with torsion about its own axis turns it aside, as that of a top
+                does: of shafts that turn fast. Ropes don't notice.
+        sections: Several sections one after the other, from start to end: `[{ to = "200 m", section = "chain" }, {
+            section = "wire" }]`. Sections that stretch differently are spliced: their tangents agree, and where one
+            of them has no bending stiffness it can turn freely. Weight, buoyancy, drag and contact are those of the
+            section at each place.
         longitudinal: Longitudinal stiffness model: L1, L1n, L2, L3 or L4. Default L4.
         transverse: Transverse stiffness model: T1, T2 or T3; T2 and T3 go with L3 and L4 only. Default T3.
         integration: Quadrature of the pointwise models. Default locking-free.
@@ -115,7 +171,6 @@ class Parts:
         """
         return self._add("elements", "cable", {
             "name": name,
-            "section": section,
             "points": points,
             "radius": radius,
             "curve": curve,
@@ -125,6 +180,8 @@ class Parts:
             "tension": tension,
             "elements": elements,
             "mesh": mesh,
+            "section": section,
+            "sections": sections,
             "longitudinal": longitudinal,
             "transverse": transverse,
             "integration": integration,
@@ -156,7 +213,7 @@ class Parts:
         name: Name; the rest of the scene refers to the part by it.
         marker: Marker of an earlier element that carries it, such as `"hose.end"`, or its initial position [m].
         mass: Mass [kg].
-        volume: Displaced volume, for buoyancy [m³]. Default 0.0.
+        volume: Displaced volume, for buoyancy and the pressure of waves [m³]. Default 0.0.
         added_mass: Added mass in water, the same in all directions [kg]. Default 0.0.
         drag_area: Drag coefficient times area [m²]. Default 0.0.
         velocity: Initial velocity, of a free point only [m/s]. Default [0.0, 0.0, 0.0].
@@ -789,6 +846,49 @@ class Parts:
             "axis": axis,
         })
 
+    def vessel(
+        self,
+        *,
+        name: str,
+        marker: Union[Sequence[Number], str],
+        heading: Number | None = None,
+        rao: Mapping[str, Any] | None = None,
+        file: str | None = None,
+        ramp: Number | None = None,
+    ) -> Part:
+        """Moves a rigid body as a vessel, in all six degrees of freedom: by its responses to the waves of the scene
+        (`rao`), or by a table of its motions over time (`file`).
+
+        The marker is the vessel's reference point, and the body starts at rest as it lies in still water: let the
+        waves rise (`ramp`). Surge, sway and heave are along the axes of the mean heading (x ahead, y to port, z up),
+        then yaw, pitch (bow down) and roll (port up) turn it: `R = Rz(heading + yaw) Ry(pitch) Rx(roll)`. The
+        reaction is what it takes to move it. What is fastened to the body's points moves along.
+
+        name: Name; records of the reaction refer to it.
+        marker: Reference point, on a rigid body.
+        heading: Heading, from x to y [rad]. Default 0.0.
+        rao: Responses to waves; the scene needs `[water.waves]`.
+            headings: Directions that waves travel relative to the heading, ascending from 0 [rad]: 0 from astern, 90
+                deg towards port, 180 deg a head sea. Between them, and round from the last to the first, responses
+                are interpolated. Required.
+            omegas: Angular frequencies, ascending [rad/s]. Beyond them responses are those at the ends. Required.
+            amplitude: For each direction and frequency, per metre of wave amplitude: surge, sway, heave in metres,
+                roll, pitch, yaw in degrees. Required.
+            lag: For each direction and frequency the lag of each motion behind the crest in degrees. Required.
+        file: CSV file with the columns `t`, and any of `surge`, `sway`, `heave` (in m), `roll`, `pitch`, `yaw` (in
+            rad unless their headings say deg): joined by cubic splines.
+        ramp: Time from t = 0 in which the motions of a `file` grow from nothing, as `(1 - cos πt/ramp)/2` [s].
+            Responses to waves grow with the waves. Default 0.0.
+        """
+        return self._add("constraints", "vessel", {
+            "name": name,
+            "marker": marker,
+            "heading": heading,
+            "rao": rao,
+            "file": file,
+            "ramp": ramp,
+        })
+
     def weld(
         self,
         *,
@@ -901,11 +1001,14 @@ class Parts:
         tail: Number | None = None,
         on: Sequence[str] | None = None,
     ) -> Part:
-        """Added mass of cables and hulls: inertia of the water, and its forces in flow along the body.
+        """Added mass of cables and hulls: inertia of the water, and its forces in flow along the body. In waves also the
+        force of their pressure on the volume displaced (Froude-Krylov), in all directions.
 
         It follows from the kinetic energy of the water: a hull at an angle to the flow has Munk's moment, and flow
         along a cable acts like compression and can cause flutter. `theory = "morison"` keeps the inertia only, for
-        comparison with codes that have no more.
+        comparison with codes that have no more. In waves `morison` takes the acceleration of the water at a fixed
+        place, as most codes do; otherwise it is that along the path of the water, and a line as heavy as water goes
+        with it.
 
         ca: Coefficient: added mass over the mass of water in a cylinder of the hydrodynamic diameter. Default 1.0.
         theory: `energy` or `morison`. Default: `energy`.
@@ -927,7 +1030,8 @@ class Parts:
     ) -> Part:
         """Buoyancy of the displaced volume; if the water has a `level`, of the volume under water.
 
-        At the surface, cables, hulls and chains are cylinders; other bodies and point masses are spheres.
+        At the surface, cables, hulls and chains are cylinders; other bodies and point masses are spheres. In waves it
+        is that below the surface at each instant; what the pressure of the waves adds comes with `added_mass`.
 
         on: Parts it acts on. Default: all.
         """
@@ -1046,7 +1150,8 @@ class Parts:
         blend: Number | None = None,
         on: Sequence[str] | None = None,
     ) -> Part:
-        """Drag of water (and air, if the scene has it) on cables and hulls, with one law across and one along.
+        """Drag of water (and air, if the scene has it) on cables and hulls, with one law across and one along. In waves
+        it goes by the velocity relative to current and waves together.
 
         normal: Law across the cable. Default constant.
         tangential: Law along the cable. Default constant.
@@ -1114,6 +1219,57 @@ class Parts:
             "on": on,
         })
 
+    def internal_flow(
+        self,
+        *,
+        cable: str,
+        density: Number,
+        bore: Number,
+        speed: Union[Mapping[str, Any], Number],
+        time: Union[Literal['constant'], Mapping[str, Any]] | None = None,
+        nozzle: Number | None = None,
+        outlet_pressure: Number | None = None,
+        friction: Number | None = None,
+        closed: Boolean | None = None,
+        weight: Boolean | None = None,
+    ) -> Part:
+        """A fluid that flows through a cable: its mass, its weight, its Coriolis and centrifugal forces, and the thrust
+        where it enters and leaves. A pipe held at both ends buckles where it flows too fast, one with a free outlet
+        flutters.
+
+        The bore is full and keeps its volume however the cable is stretched. Then the tension of the cable is the
+        effective one, that of the wall less the inner pressure times the bore's area (plus the outer pressure times
+        the outer area): pressure and the fluid's friction by themselves move nothing. Damping of the cable isn't part
+        of it, nor is the fluid's mass in `section.mass`.
+
+        cable: The cable that it flows through. Its length must not change.
+        density: Density of the fluid [kg/m³].
+        bore: Inner diameter of the unstretched cable [m].
+        speed: Speed relative to the wall, towards the end of the cable [m/s]: the volume flow over the bore's area.
+            Negative: towards its start. An input needs `join = "smooth"` or `"linear"`, since a flow that jumps would
+            be a blow.
+        time: Factor of the speed as a function of time. Default constant.
+        nozzle: Diameter of the nozzle through which it leaves [m]. Default: that of the bore.
+        outlet_pressure: Pressure that it meets where it leaves, above that of the surroundings [Pa]; in a closed loop
+            that at the start. Only the record `wall_tension` asks for it. Default 0.0.
+        friction: Darcy's friction factor, about 0.02 in a smooth hose. Only the record `wall_tension` asks for it.
+            Default 0.0.
+        closed: Whether the cable's end leads into its start, so that nothing enters or leaves. Default False.
+        weight: Whether the fluid has weight, of the scene's `gravity`. Default True.
+        """
+        return self._add("forces", "internal_flow", {
+            "cable": cable,
+            "density": density,
+            "bore": bore,
+            "speed": speed,
+            "time": time,
+            "nozzle": nozzle,
+            "outlet_pressure": outlet_pressure,
+            "friction": friction,
+            "closed": closed,
+            "weight": weight,
+        })
+
     def latch(
         self,
         *,
@@ -1135,7 +1291,8 @@ class Parts:
         the releases.
 
         name: Name; the reports of releases use it.
-        on: What it holds: parts (every node or link of them) and single markers.
+        on: What it holds: parts (every node or link of them) and single markers. A cable puts a node where a marker
+            is.
         stiffness: Stiffness of a seat [N/m].
         force: Force of a seat at which the point is released [N].
         to: Marker on the rigid body that carries the seats. Default: fixed in space.
@@ -2048,6 +2205,33 @@ class Parts:
             "title": title,
         })
 
+    def wall_tension(
+        self,
+        *,
+        of: str,
+        at: Sequence[Number] | None = None,
+        name: str | None = None,
+        title: str | None = None,
+    ) -> Part:
+        """What the wall of a hose with an [internal flow](crate::InternalFlowSpec) carries, and the pressure in it:
+        columns `hose.wall_tension@50%` in N and `hose.pressure@50%` in Pa.
+
+        The tension of a cable is the effective one; that of the wall is larger by inner pressure times the bore's
+        area, less outer pressure times the outer one. Pressures are those above the air's. They come from the outlet,
+        with the fluid's weight, acceleration and friction; water presses from outside where it has a `level`.
+
+        of: The cable.
+        at: Where: as for `along`. Default: at both ends and in the middle. Default ['0 %', '50 %', '100 %'].
+        name: Name in results. Default: that of the cable.
+        title: Title of its plots. Default: the quantity.
+        """
+        return self._add("records", "wall_tension", {
+            "of": of,
+            "at": at,
+            "name": name,
+            "title": title,
+        })
+
     def expression(
         self,
         *,
@@ -2259,6 +2443,7 @@ class Parts:
         current: Sequence[Union[Mapping[str, Any], Number]] | None = None,
         profile: Sequence[Mapping[str, Any]] | None = None,
         profile_factor: Union[Mapping[str, Any], Number] | None = None,
+        waves: Mapping[str, Any] | None = None,
     ) -> None:
         """The water around a scene. Drag, buoyancy and added mass need it.
 
@@ -2269,6 +2454,28 @@ class Parts:
             0.0].
         profile: Current profile over height, instead of `current`: piecewise linear, constant beyond the ends.
         profile_factor: Factor of the profile; an input that it reads needs `join = "hold"`. Default 1.0.
+        waves: Waves on the water, whose `level` is then the surface when it is still. Default: still water.
+            regular: One regular wave.
+            jonswap: A wind sea with a sharp peak.
+            pierson_moskowitz: A fully developed wind sea: JONSWAP with `gamma = 1`.
+            white: The same energy at all frequencies of a band, for tests of response.
+            components: Regular waves, one by one.
+            direction: Direction that the waves travel towards, the mean if they spread: from x to y [rad]. Default
+                0.0.
+            spreading: How directions spread about the mean. Default: all waves have the same direction.
+            count: Number of regular waves that make a spectrum. Default 200.
+            sampling: How their frequencies are chosen. Default equal-energy.
+            seed: Seed of their random phases: the same seed gives the same sea on every machine. Default 1.
+            depth: Depth of the water [m]. Default: deep water.
+            ramp: Time from t = 0 in which the waves rise from still water, as `(1 - cos πt/ramp)/2` [s]. Default 0.0.
+            stretching: What linear theory, which ends at still water, says between there and the surface. Default
+                wheeler.
+            doppler: Whether the current carries the waves: their periods are those seen from a fixed place, and their
+                lengths change. Default: waves as in water at rest, and current, are added. Default False.
+            evaluation: `exact`, the sum over all waves, or `lattice`, a table of it. Default: `lattice` for more than
+                8 waves of one direction.
+            lattice_error: Largest error of velocities from the lattice, in parts of their standard deviation at still
+                water; checked when the scene is built. Default 0.001.
         """
         self._set("water", {
             "density": density,
@@ -2277,6 +2484,7 @@ class Parts:
             "current": current,
             "profile": profile,
             "profile_factor": profile_factor,
+            "waves": waves,
         })
 
     def set_air(
@@ -2475,4 +2683,87 @@ class Parts:
             "min": min,
             "max": max,
             "join": join,
+        })
+
+    def add_section(
+        self,
+        *,
+        name: str | None = None,
+        file: str | None = None,
+        mass: Number | None = None,
+        ea: Number | None = None,
+        axial_force: Mapping[str, Any] | None = None,
+        tension_only: Boolean | None = None,
+        ei: Union[Number, Sequence[Number]] | None = None,
+        bending_moment: Mapping[str, Any] | None = None,
+        gj: Number | None = None,
+        torque_tension: Number | None = None,
+        rotary_inertia: Number | None = None,
+        flooded: Number | None = None,
+        diameter: Number | None = None,
+        displaced: Number | None = None,
+        axial_retardation_time: Number | None = None,
+        bending_retardation_time: Number | None = None,
+        torsional_retardation_time: Number | None = None,
+        gyroscopic: Boolean | None = None,
+    ) -> Part:
+        """A library of sections with names, for cables of this scene. What a cable is made of is then a name: `section =
+        "chain"`. Sections of a file are read together with those of the scene.
+
+        name: Name, by which cables ask for it: `section = "chain"`.
+        file: Instead of all else: a `.toml` or `.json` file with more `[[sections]]`, relative to the scene.
+        mass: Structural mass per unstretched length [kg/m]; gravity acts on it.
+        ea: Axial stiffness EA [N]; or give `axial_force`.
+        axial_force: Axial force over strain, instead of `ea`: `{ strain = [0, 0.01, 0.03], force = ["0 kN", "10 kN",
+            "60 kN"] }`. Between the points the force follows a smooth curve that never falls, beyond them a straight
+            line. Needs L4.
+            strain: Engineering strains, ascending, 0 among them [1]. Required.
+            force: The force at each of them [N], 0 at strain 0; it mustn't fall. Required.
+        tension_only: Whether it only pulls: chains and ropes don't resist being pressed together. Needs L4.
+        ei: Bending stiffness EI [N m²]. With 0, the first and last element keep 1 % of their weight times their
+            length squared, so that free ends have a direction. Two numbers where it isn't the same in all directions,
+            of a cable with torsion: about the `normal` of the section, and about the axis across it. Default 0.0.
+        bending_moment: Bending moment over curvature, instead of `ei`: `{ curvature = [0, 0.01, 0.1], moment = ["0 N
+            m", "50 N m", "80 N m"] }`, the same in all directions and without loss of energy. Needs T3.
+            curvature: Curvatures from 0 on, ascending [1/m]. Required.
+            moment: The moment at each of them [N m], from 0 on; it mustn't fall. Required.
+        gj: Torsional stiffness GJ [N m²]. With it the cable can be twisted, and its ends are held against twisting
+            where they are built in. Default: no torsion; but EI where the stress-free shape is curved.
+        torque_tension: Coupling `C` of torque and tension in laid ropes and armoured cables [N m]: `N = EA ε + C φ'`
+            and `M = C ε + GJ φ'`, with `ea` measured while the ends can't turn. Positive of a right-hand lay: such a
+            rope unlays when it is pulled. A torque factor `c`, by which the torque of a held end is `c d T`, means `C
+            = c d EA`. Needs L4.
+        rotary_inertia: Polar moment of inertia of the section, per length [kg m], of a cable with torsion. Default:
+            that of a solid round bar, `mass diameter²/8`.
+        flooded: Mass of the water inside [kg/m]. It moves with the part and has no weight in water. Default 0.0.
+        diameter: Hydrodynamic diameter, for drag and added mass [m]. Default 0.0.
+        displaced: Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
+        axial_retardation_time: Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ ε̇)`.
+            With a table EA is its largest slope here. Default 0.0.
+        bending_retardation_time: Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`, with
+            the largest slope of a table. Default 0.0.
+        torsional_retardation_time: Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ
+            dφ'/dt)`.
+        gyroscopic: Whether the spin of a cable with torsion about its own axis turns it aside, as that of a top does:
+            of shafts that turn fast. Ropes don't notice.
+        """
+        return self._append("sections", {
+            "name": name,
+            "file": file,
+            "mass": mass,
+            "ea": ea,
+            "axial_force": axial_force,
+            "tension_only": tension_only,
+            "ei": ei,
+            "bending_moment": bending_moment,
+            "gj": gj,
+            "torque_tension": torque_tension,
+            "rotary_inertia": rotary_inertia,
+            "flooded": flooded,
+            "diameter": diameter,
+            "displaced": displaced,
+            "axial_retardation_time": axial_retardation_time,
+            "bending_retardation_time": bending_retardation_time,
+            "torsional_retardation_time": torsional_retardation_time,
+            "gyroscopic": gyroscopic,
         })
