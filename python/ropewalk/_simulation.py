@@ -56,11 +56,10 @@ class Simulation:
             return self
         if to is None or dt is not None:
             raise TypeError("give either a time step `dt` or a time `to`")
-        if not self._native.t <= to < math.inf:
-            raise SceneError(f"the simulation is at t = {self._native.t} s and can't go on to {to} s")
-        if to > self._duration:
+        if self._duration < to < math.inf:
             raise SceneError(f"the run ends at {self._duration} s, before {to} s\n  = help: raise the `duration` of [run]")
-        self._native.advance_to(to, False)
+        if to == math.inf or not self._native.advance_to(to, False):
+            raise SceneError(f"the simulation is at t = {self._native.t} s and can't go on to {to} s")
         return self
 
     def step(self) -> Simulation:

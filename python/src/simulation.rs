@@ -63,9 +63,13 @@ impl Simulation {
         raised.map_or(Ok(()), Err)
     }
 
-    /// Moves on to the time `t`, or by one step of the solver towards it.
-    fn advance_to(&self, py: Python<'_>, t: f64, once: bool) -> PyResult<()> {
-        self.detached(py, |session| advance(session, t, once))?.map_or(Ok(()), Err)
+    /// Moves on to the time `t`, or by one step of the solver towards it; not if that has passed.
+    fn advance_to(&self, py: Python<'_>, t: f64, once: bool) -> PyResult<bool> {
+        let act = |session: &mut Session| match session.t() <= t {
+            true => advance(session, t, once).map(Some),
+            false => Ok(None),
+        };
+        self.detached(py, act)?.map_or(Ok(false), |raised| raised.map_or(Ok(true), Err))
     }
 
     #[getter]

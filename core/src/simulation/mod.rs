@@ -221,7 +221,7 @@ impl Simulation {
             return Ok(End::Stopped { by: "observer".into() });
         }
         self.sampled.1 = 1;
-        self.go_on(end, interval, observer)
+        told(self.move_on(end, interval, observer))
     }
 
     /// As [`Simulation::advance`], but goes on with an advance that a checkpoint was taken of: with the same `end` and
@@ -230,11 +230,11 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn go_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
+        self.check_state()?;
         told(self.move_on(end, interval, observer))
     }
 
     fn move_on(&mut self, end: f64, interval: f64, observer: &mut dyn Observer) -> Result<End, StepError> {
-        self.check_state()?;
         self.check_times(end, interval)?;
         let start = self.sampled.0;
         self.depart(end);
