@@ -331,7 +331,7 @@ fn describe_explains_scenes_types_and_sections() {
     let hose = describe("hose-turn");
     assert!(hose.contains("speed = 25 kn") && hose.contains("radius = 25 m"), "{hose}");
     let cable = describe("cable");
-    for line in ["type = \"cable\"", "ropewalk describe sections", "default \"locking-free\""] {
+    for line in ["type = \"cable\"", "`{ mass = …, ea = …, ei = … }`", "default \"locking-free\""] {
         assert!(cable.contains(line), "no {line} in\n{cable}");
     }
     let sections = describe("sections");

@@ -12,7 +12,7 @@ fn ends() -> Vec<RecordPlace> {
     [0.0, 0.5, 1.0].map(RecordPlace::Share).to_vec()
 }
 
-/// What the wall of a hose with an [internal flow](crate::InternalFlowSpec) carries, and the pressure in it: columns
+/// What the wall of a hose with an `internal_flow` carries, and the pressure in it: columns
 /// `hose.wall_tension@50%` in N and `hose.pressure@50%` in Pa.
 ///
 /// The tension of a cable is the effective one; that of the wall is larger by inner pressure times the bore's area, less
