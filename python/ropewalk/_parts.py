@@ -2213,8 +2213,8 @@ class Parts:
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """What the wall of a hose with an [internal flow](crate::InternalFlowSpec) carries, and the pressure in it:
-        columns `hose.wall_tension@50%` in N and `hose.pressure@50%` in Pa.
+        """What the wall of a hose with an `internal_flow` carries, and the pressure in it: columns
+        `hose.wall_tension@50%` in N and `hose.pressure@50%` in Pa.
 
         The tension of a cable is the effective one; that of the wall is larger by inner pressure times the bore's
         area, less outer pressure times the outer one. Pressures are those above the air's. They come from the outlet,
