@@ -181,7 +181,7 @@ pub(crate) enum Command {
         ropewalk describe scene.toml            title, parameters, parts\n  \
         ropewalk describe cable                 fields with units and defaults\n  \
         ropewalk describe solver                also: water, run, statics, inputs\n  \
-        ropewalk describe mooring               the types that stand for a word of the field\n  \
+        ropewalk describe riser                 the types that stand for a word of the field\n  \
         ropewalk describe cable --json          the JSON schema and the example; without a name those of all types\n\n\
         `ropewalk book` has pages that show types in use, `ropewalk schema` is for editors.")]
     Describe {
