@@ -46,3 +46,22 @@ fn bad_functions_are_refused() {
     ];
     assert!(bad.iter().all(|f| f.check().is_err()));
 }
+
+#[test]
+fn rates_are_the_slopes_of_the_factors() {
+    let all = [
+        TimeFunction::Constant,
+        TimeFunction::Ramp { from: 0.4, to: 1.7, t0: 0.5, t1: 2.5 },
+        TimeFunction::table(vec![0.3, 1.1, 2.9], vec![1.0, -2.0, 0.5]),
+        TimeFunction::Triangle { t0: 0.2, peak: 1.4, t1: 2.6 },
+        TimeFunction::Harmonic { mean: 1.0, amplitude: 0.3, frequency: 0.7, phase: 0.4 },
+    ];
+    for f in &all {
+        // away from kinks, before, between and after them
+        for t in [0.1, 0.45, 0.9, 1.2, 1.9, 2.75, 3.5] {
+            let h = 1e-5;
+            let slope = (f.at(t + h) - f.at(t - h)) / (2.0 * h);
+            assert!((f.rate(t) - slope).abs() < 1e-8, "{f:?} at {t}: {} instead of {slope}", f.rate(t));
+        }
+    }
+}
