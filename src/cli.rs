@@ -46,6 +46,9 @@ use std::process::ExitCode;
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// How progress is shown: a bar on a terminal and lines elsewhere, or one of these, or nothing
+    #[arg(long, global = true, value_name = "HOW", env = "ROPEWALK_PROGRESS", default_value = "auto")]
+    pub(crate) progress: commands::Shown,
 }
 
 #[derive(Debug, Subcommand)]
@@ -366,6 +369,7 @@ pub fn exit_from(
             return if e.use_stderr() { Exit::Input as u8 } else { 0 };
         }
     };
+    commands::show(cli.progress);
     let done = match cli.command {
         Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
