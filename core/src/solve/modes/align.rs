@@ -48,7 +48,9 @@ fn turn(p: &Pencil, kinds: &[usize], all: &mut [Raw]) {
         .map(|z| weighed(p, z).iter().zip(kinds).map(|(y, k)| y * (1 + k) as f64).collect())
         .collect();
     let n = all.len();
-    let h = Mat::from_fn(n, n, |i, j| 0.5 * (product(&basis[i], &scaled[j]) + product(&basis[j], &scaled[i]).conj()));
+    let h = Mat::from_fn(n, n, |i, j| {
+        0.5 * (product(&basis[i], &scaled[j]) + product(&basis[j], &scaled[i]).conj())
+    });
     let Ok(eigen) = h.self_adjoint_eigen(Side::Lower) else { return };
     for (k, mode) in all.iter_mut().enumerate() {
         let mut x = vec![c64::new(0.0, 0.0); p.len()];
