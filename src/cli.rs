@@ -238,6 +238,13 @@ pub(crate) enum Command {
         ropewalk migrate scene.toml --out new.toml\n\n\
         Comments, order and layout stay as they are. A scene that uses the names of this version is not touched.")]
     Migrate(commands::migrate::MigrateArgs),
+    /// Make a scene of an input file of MoorDyn
+    #[command(after_help = "Examples:\n  \
+        ropewalk import lines.txt > scene.toml\n  \
+        ropewalk import lines.txt --out scene.toml\n\n\
+        Takes line types, points, lines, bodies, options, a current profile, wave components and a sea floor over, and says by\n\
+        name what it can't: rods, failures, control, stiffness by rate or load, lift.")]
+    Import(commands::import::ImportArgs),
     /// Write what a shell has to read to complete commands
     #[command(after_help = "Examples:\n  \
         ropewalk completions bash > ~/.local/share/bash-completion/completions/ropewalk\n  \
@@ -393,6 +400,7 @@ pub fn exit_from(
         Command::Bench(args) => commands::bench::bench(&args),
         Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
+        Command::Import(args) => commands::import::run(&args),
         Command::Migrate(args) => commands::migrate::run(&args),
         Command::ExportFmu(args) => commands::export_fmu::run(&args, bundled),
     };
