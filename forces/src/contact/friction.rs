@@ -196,7 +196,7 @@ impl Friction {
             let size = dot(&a, &a).sqrt();
             (size > 1e-6).then(|| along(1.0 / size, &a))
         });
-        let Grip { stiffness: k, damping: c } = *grip;
+        let Grip { stiffness: k, damping: c, .. } = *grip;
         let trial: V3<f64> = std::array::from_fn(|i| -k * e[i] - c * u[i]);
         let (g, by) = self.measure(&trial, axis.as_ref());
         let (elastic, _) = self.measure(&along(k, &e), axis.as_ref());
