@@ -110,6 +110,16 @@ pub(crate) enum Command {
         Beyond one machine: --plan lists the runs and prints what a batch array has to call, --part 3/40 computes a share\n\
         into the folder, which all machines have to see, and the command without both collects them into the same table.")]
     Sweep(SweepArgs),
+    /// Moments, waves, spectra and fatigue of what a run has recorded
+    #[command(after_help = "Examples:\n  \
+        ropewalk statistics runs/mooring --from '100 s'\n  \
+        ropewalk statistics runs/mooring --of fairlead.magnitude --fatigue 316,3 --strength 5e6\n  \
+        ropewalk statistics runs/riser --of stress --fatigue 1.6e12,3,1e7,5\n\n\
+        tables/statistics.csv in the folder holds mean, deviation, extremes, crossings of the mean and the significant range;\n\
+        tables/spectrum-*.csv and plots/spectrum-*.svg the spectra (Welch: Hann's window, pieces over each other by half);\n\
+        with --fatigue cycles by rainflow counting (ASTM E1049), Miner's damage and the range that does the same at 1 Hz.\n\
+        Range graphs along a line are asked for by `ranges` in [run]; extremes over seeds by `sweep --extremes`.")]
+    Statistics(commands::statistics::StatisticsArgs),
     /// Make the figures and tables of a paper, a report or a thesis, each by its number
     #[command(after_help = "Examples:\n  \
         ropewalk atlas thesis --list            what there is\n  \
@@ -328,6 +338,9 @@ pub(crate) struct SweepArgs {
     /// Last part of a run that mean, least and largest are taken over, and that tells whether last values are steady
     #[arg(long, value_name = "SHARE", default_value = "10 %")]
     pub(crate) over: Over,
+    /// Tell of the extremes of every record over the first parameter, which is a seed: `--vary seed=1:10:1 --extremes`
+    #[arg(long)]
+    pub(crate) extremes: bool,
     /// Say nothing but errors and warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -383,6 +396,7 @@ pub fn exit_from(
         Command::Plot(args) => commands::plot::plot(&args),
         Command::View(args) => commands::view::view(&args),
         Command::Sweep(args) => commands::sweep::sweep(&args, bundled),
+        Command::Statistics(args) => commands::statistics::statistics(&args),
         Command::Atlas(args) => commands::atlas::atlas(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
         Command::Linearise(args) => commands::linearise::linearise(&args, bundled),

@@ -25,6 +25,7 @@ pub(crate) mod scene_schema;
 mod schema;
 mod serve;
 pub(crate) mod shared;
+pub(crate) mod statistics;
 pub(crate) mod sweep;
 pub(crate) mod variants;
 pub(crate) mod verify;
