@@ -245,6 +245,13 @@ pub(crate) enum Command {
         ropewalk migrate scene.toml --out new.toml\n\n\
         Comments, order and layout stay as they are. A scene that uses the names of this version is not touched.")]
     Migrate(commands::migrate::MigrateArgs),
+    /// Write a scene from an input file of another code: MoorDyn, version 2
+    #[command(after_help = "Examples:\n  \
+        ropewalk import lines.txt > mooring.toml\n  \
+        ropewalk import lines.txt --out mooring.toml\n\n\
+        Line types, points, lines, the bed and tensions are taken over, with the line of the deck beside each; rods, bodies, files\n\
+        of waves and currents, and stiffness by tables are refused by name. Notes say what was left out.")]
+    Import(commands::import::ImportArgs),
     /// Write what a shell has to read to complete commands
     #[command(after_help = "Examples:\n  \
         ropewalk completions bash > ~/.local/share/bash-completion/completions/ropewalk\n  \
@@ -404,6 +411,7 @@ pub fn exit_from(
         Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
         Command::Migrate(args) => commands::migrate::run(&args),
+        Command::Import(args) => commands::import::run(&args),
         Command::ExportFmu(args) => commands::export_fmu::run(&args, bundled),
     };
     match done {

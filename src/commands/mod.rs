@@ -10,6 +10,7 @@ pub(crate) mod describe;
 pub(crate) mod effects;
 mod examples;
 pub(crate) mod export_fmu;
+pub(crate) mod import;
 pub(crate) mod linearise;
 pub(crate) mod list;
 pub(crate) mod migrate;

@@ -48,7 +48,11 @@ fn line(case: &Value, elements: usize, stiffness: f64, equilibrium: &str) -> Str
         );
         s += length;
         if load(k) != 0.0 {
-            let _ = writeln!(loads, "[[forces]]\ntype = \"point_force\"\nmarker = \"line@{s}\"\nforce = [0, 0, {}]", -load(k));
+            let _ = writeln!(
+                loads,
+                "[[forces]]\ntype = \"point_force\"\nmarker = \"line@{s}\"\nforce = [0, 0, {}]",
+                -load(k)
+            );
         }
     }
     let slope = number(&case["bed_slope_deg"]).to_radians();
@@ -119,5 +123,84 @@ fn lines_come_to_lie_as_their_catenaries_from_two_end_points() {
         );
         assert!((fairlead / right[0] - 1.0).abs() < 1e-3, "{}", case["name"]);
         assert!((anchor - right[1]).abs() < 5e-3 * right[0], "{}", case["name"]);
+    }
+}
+
+/// A line that lies and is pulled along its bed: the load rises and falls along the path of a statics run.
+fn dragged(case: &Value, elements: usize) -> String {
+    let q = &case["section"];
+    let [length, weight, ea] = ["L", "w", "EA"].map(|f| number(&q[f]));
+    let (pull, mu) = (number(&case["pull"]), number(&case["mu"]));
+    let slope = number(&case["bed_slope_deg"]).to_radians();
+    let stiffness = 1e7;
+    let up = 0.5 * D - weight * slope.cos() / (stiffness * D);
+    let normal = [-slope.sin(), slope.cos()];
+    let along = [slope.cos(), slope.sin()];
+    let [from, to] =
+        [0.0, length].map(|s| [s * along[0] + up * normal[0], 0.0, s * along[1] + up * normal[1]]);
+    let force = along.map(|c| c * pull);
+    // the load rises to the pull and falls to half of it; a little of it holds the line straight before friction does
+    format!(
+        r#"
+        run = {{ analysis = "statics", duration = 2 }}
+        statics = {{ steps = 20 }}
+        [[elements]]
+        type = "cable"
+        name = "line"
+        points = [{from:?}, {to:?}]
+        elements = {elements}
+        section = {{ mass = {:e}, ea = {ea:e}, diameter = {D} }}
+        [[constraints]]
+        type = "spherical"
+        name = "anchor"
+        marker = "line.start"
+        [[forces]]
+        type = "gravity"
+        [[forces]]
+        type = "bed"
+        slope = {slope}
+        stiffness = {stiffness:e}
+        friction = {{ mu = {mu}, equilibrium = "laid" }}
+        [[forces]]
+        type = "point_force"
+        marker = "line.end"
+        force = [{}, 0, {}]
+        time = {{ table = {{ t = [0, 1, 2], value = [0.002, 1, 0.5] }} }}
+        [[records]]
+        type = "position"
+        of = "line.end"
+        [[records]]
+        type = "reaction"
+        of = "anchor"
+        what = "magnitude"
+        "#,
+        weight / G,
+        force[0],
+        force[1],
+    )
+}
+
+#[test]
+fn a_line_dragged_along_its_bed_stretches_and_lets_go_as_the_closed_form() {
+    for case in reference(include_str!("../data/sea/grounded_friction.json")) {
+        if number(&case["bed_slope_deg"]) != 0.0 {
+            // without load it slides off before friction takes hold
+            continue;
+        }
+        let h = run(&dragged(&case, 40));
+        let (t, x) = (h.times(), h.column("line.end.x").expect("column"));
+        let moved = |at: f64| {
+            let k = t.iter().position(|t| (t - at).abs() < 1e-9).expect("row");
+            x[k] - x[0]
+        };
+        let right = number(&case["end_displacement"]);
+        println!("{}: {} instead of {right}", case["name"], moved(1.0));
+        assert!((moved(1.0) / right - 1.0).abs() < 0.01);
+        for back in case["unload_to"].as_array().into_iter().flatten() {
+            let share = number(&back["pull"]) / number(&case["pull"]);
+            let (found, right) = (moved(3.0 - 2.0 * share), number(&back["end_displacement"]));
+            println!("{} back to {share}: {found} instead of {right}", case["name"]);
+            assert!((found / right - 1.0).abs() < 0.01);
+        }
     }
 }

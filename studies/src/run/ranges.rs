@@ -83,7 +83,8 @@ impl Range {
             return Err(BuildError::at("of", format!("`{of}` is a {}, not a line", part.kind())));
         };
         if line.boundary(0).is_some() || line.boundary(1).is_some() {
-            let message = format!("`{of}` feeds: its places move along the material, so that it has no range graph");
+            let message =
+                format!("`{of}` feeds: its places move along the material, so that it has no range graph");
             return Err(BuildError::at("of", message));
         }
         let to = spec.to.unwrap_or(duration);
@@ -92,7 +93,8 @@ impl Range {
             return Err(BuildError::at("from", message));
         }
         let mesh = line.mesh();
-        let places = mesh.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).chain(mesh.last().copied()).collect();
+        let places =
+            mesh.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).chain(mesh.last().copied()).collect();
         let name = spec.name.clone().unwrap_or_else(|| of.to_string());
         Ok(Range { of: of.into(), name, window: [spec.from, to], places, courses: Vec::new(), before: None })
     }
