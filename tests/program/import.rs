@@ -10,9 +10,9 @@ fn a_deck_of_moordyn_becomes_a_scene_that_runs() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("deck.txt"), DECK).unwrap();
     let said = run(folder.path(), &["import", "deck.txt", "--out", "scene.toml"]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(said.code, Some(0), "{}", said.stderr);
     for note in ["dtM, TmaxIC left out", "point 3 is coupled", "outputs left out: L1N5px"] {
-        assert!(said.err.contains(note), "{note} isn't in {}", said.err);
+        assert!(said.stderr.contains(note), "{note} isn't in {}", said.stderr);
     }
     let scene = fs::read_to_string(folder.path().join("scene.toml")).unwrap();
     // the ratio of a segment of 8.75 m: ζ l √(m/EA)
@@ -20,7 +20,7 @@ fn a_deck_of_moordyn_becomes_a_scene_that_runs() {
     fs::write(folder.path().join("scene.toml"), scene.replace("duration = \"60 s\"", "duration = \"0.2 s\""))
         .unwrap();
     let ran = run(folder.path(), &["run", "scene.toml", "--out", "out", "--no-report", "--no-plots"]);
-    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     let history = fs::read_to_string(folder.path().join("out/history.csv")).unwrap();
     let cell = |name: &str| -> f64 {
         let mut lines = history.lines();

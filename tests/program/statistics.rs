@@ -90,7 +90,7 @@ fn a_run_tells_its_statistics_and_its_ranges() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("sea.toml"), SCENE).unwrap();
     let ran = run(folder.path(), &["run", "sea.toml", "--out", "out", "--no-report"]);
-    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     let out = folder.path().join("out");
     // the range of the middle holds what the history shows of it, and a little more between its rows
     let (range, history) = (table(&out.join("tables/range-line.csv")), table(&out.join("history.csv")));
@@ -113,7 +113,7 @@ fn a_run_tells_its_statistics_and_its_ranges() {
         folder.path(),
         &["statistics", "out", "--from", "5 s", "--of", "right", "--fatigue", "316,3", "--strength", "1e5"],
     );
-    assert_eq!(told.code, 0, "{}", told.err);
+    assert_eq!(told.code, Some(0), "{}", told.stderr);
     let all = table(&out.join("tables/statistics.csv"));
     let pull: Vec<f64> = t
         .iter()
@@ -147,8 +147,8 @@ fn seeds_tell_extremes_with_their_intervals() {
     .unwrap();
     let said =
         run(folder.path(), &["sweep", "sea.toml", "--vary", "seed=1:6:1", "--extremes", "--out", "seas"]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.contains("most probable") && said.out.contains("6 runs"), "{}", said.out);
+    assert_eq!(said.code, Some(0), "{}", said.stderr);
+    assert!(said.stdout.contains("most probable") && said.stdout.contains("6 runs"), "{}", said.stdout);
     let all = table(&folder.path().join("seas/tables/extremes.csv"));
     let (low, best, high) =
         (column(&all, "95 % from")[0], column(&all, "most probable")[0], column(&all, "95 % to")[0]);

@@ -408,8 +408,7 @@ fn without_friction(model: &Model) -> Option<String> {
     (!rough.is_empty()).then(|| {
         format!(
             "the equilibrium is that without the friction of {}: with it there are many, and which one is reached depends on \
-             the way there. From here on in time friction holds what it can. `friction = {{ mu = …, equilibrium = \"pulled\" }}` \
-             brakes lines that were pulled tight",
+             the way there. From here on in time friction holds what it can",
             rough.join(", ")
         )
     })
