@@ -46,6 +46,9 @@ use std::process::ExitCode;
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// How progress is shown: a bar on a terminal and lines elsewhere, or one of these, or nothing
+    #[arg(long, global = true, value_name = "HOW", env = "ROPEWALK_PROGRESS", default_value = "auto")]
+    pub(crate) progress: commands::Shown,
 }
 
 #[derive(Debug, Subcommand)]
@@ -245,12 +248,12 @@ pub(crate) enum Command {
         ropewalk migrate scene.toml --out new.toml\n\n\
         Comments, order and layout stay as they are. A scene that uses the names of this version is not touched.")]
     Migrate(commands::migrate::MigrateArgs),
-    /// Write a scene from an input file of another code: MoorDyn, version 2
+    /// Make a scene of an input file of MoorDyn
     #[command(after_help = "Examples:\n  \
-        ropewalk import lines.txt > mooring.toml\n  \
-        ropewalk import lines.txt --out mooring.toml\n\n\
-        Line types, points, lines, the bed and tensions are taken over, with the line of the deck beside each; rods, bodies, files\n\
-        of waves and currents, and stiffness by tables are refused by name. Notes say what was left out.")]
+        ropewalk import lines.txt > scene.toml\n  \
+        ropewalk import lines.txt --out scene.toml\n\n\
+        Takes line types, points, lines, bodies, options, a current profile, wave components and a sea floor over, and says by\n\
+        name what it can't: rods, failures, control, stiffness by rate or load, lift.")]
     Import(commands::import::ImportArgs),
     /// Write what a shell has to read to complete commands
     #[command(after_help = "Examples:\n  \
@@ -386,6 +389,7 @@ pub fn exit_from(
             return if e.use_stderr() { Exit::Input as u8 } else { 0 };
         }
     };
+    commands::show(cli.progress);
     let done = match cli.command {
         Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
@@ -410,8 +414,8 @@ pub fn exit_from(
         Command::Bench(args) => commands::bench::bench(&args),
         Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
-        Command::Migrate(args) => commands::migrate::run(&args),
         Command::Import(args) => commands::import::run(&args),
+        Command::Migrate(args) => commands::migrate::run(&args),
         Command::ExportFmu(args) => commands::export_fmu::run(&args, bundled),
     };
     match done {

@@ -32,9 +32,11 @@ pub(crate) mod verify;
 pub(crate) mod view;
 mod words;
 
+use clap::ValueEnum;
 use ropewalk_report::{Interrupt, ProgressMode};
 use std::fmt::Display;
 use std::io::Write;
+use std::sync::{Mutex, PoisonError};
 
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,9 +87,31 @@ pub(crate) fn interrupted(what: impl Display) -> Exit {
     Exit::Interrupted
 }
 
+/// What `--progress` can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Shown {
+    Auto,
+    Bar,
+    Lines,
+    None,
+}
+
+/// What the command line says of progress.
+static SHOWN: Mutex<ProgressMode> = Mutex::new(ProgressMode::Auto);
+
+pub(crate) fn show(how: Shown) {
+    *SHOWN.lock().unwrap_or_else(PoisonError::into_inner) = match how {
+        Shown::Auto => ProgressMode::Auto,
+        Shown::Bar => ProgressMode::Bar,
+        Shown::Lines => ProgressMode::Lines,
+        Shown::None => ProgressMode::Quiet,
+    };
+}
+
 /// How progress is shown.
 pub(crate) fn progress(quiet: bool) -> ProgressMode {
-    if quiet { ProgressMode::Quiet } else { ProgressMode::Auto }
+    let shown = || *SHOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if quiet { ProgressMode::Quiet } else { shown() }
 }
 
 /// Breaks a text into lines of at most 96 characters, each behind `indent`; paragraphs stay apart, and those set in by
