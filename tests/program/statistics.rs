@@ -4,9 +4,9 @@ use crate::program::run;
 use std::fs;
 use std::path::Path;
 
-/// A mass on a spring in tow of a harmonic force that beats: a string of which ends and middle are known.
+/// A slack line just below a short sea.
 const SCENE: &str = r#"
-title = "A chain in short waves"
+title = "A line in short waves"
 
 [parameters]
 seed = { default = 1, description = "of the sea" }
@@ -14,6 +14,7 @@ seed = { default = 1, description = "of the sea" }
 [run]
 duration = "20 s"
 output = "0.1 s"
+from_equilibrium = true
 
 [[run.ranges]]
 of = "line"
@@ -27,6 +28,7 @@ level = 0
 jonswap = { hs = "0.5 m", tp = "4 s" }
 count = 20
 seed = "$seed"
+ramp = "2 s"
 
 [[elements]]
 type = "cable"
@@ -105,7 +107,9 @@ fn a_run_tells_its_statistics_and_its_ranges() {
     let deviation = (seen.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / seen.len() as f64).sqrt();
     let of = |name: &str| column(&range, name)[middle];
     let wide = high - low;
-    assert!((of("z.least") - low).abs() < 0.02 * wide && (of("z.largest") - high).abs() < 0.02 * wide);
+    // between rows there may be a little more
+    let beyond = |x: f64| (-1e-9..0.05 * wide).contains(&x);
+    assert!(beyond(low - of("z.least")) && beyond(of("z.largest") - high), "{low} {high}");
     assert!((of("z.mean") - mean).abs() < 0.02 * wide && (of("z.deviation") - deviation).abs() < 0.02 * wide);
     assert!(out.join("plots/range-line-tension.svg").is_file());
 
@@ -155,7 +159,7 @@ fn seeds_tell_extremes_with_their_intervals() {
     assert!(low < best && best < high, "{low} {best} {high}");
     // the same by hand from the table of the runs
     let runs = table(&folder.path().join("seas/table.csv"));
-    let mut largest = column(&runs, "right.magnitude [N] max");
+    let mut largest = column(&runs, "max right.magnitude");
     largest.sort_by(f64::total_cmp);
     let n = largest.len() as f64;
     let mean = largest.iter().sum::<f64>() / n;
