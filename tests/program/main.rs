@@ -11,5 +11,6 @@ mod import;
 mod migrate;
 mod pages;
 mod plugin;
+mod statistics;
 mod stopping;
 mod verification;
