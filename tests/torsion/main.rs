@@ -1,6 +1,8 @@
 //! Cables with torsion against closed forms and geometrically exact rods of independent programs.
 
+mod closed;
 mod dynamics;
+mod joints;
 mod rope;
 mod statics;
 

@@ -79,7 +79,7 @@ fn most_bent(shapes: &[[f64; 12]], mesh: &[f64]) -> Option<(V3<f64>, usize)> {
     most.1
 }
 
-/// Directors at the nodes of a cable, free of twist along it, from one that looks like `normal` at node `k`.
+/// Directors at the nodes of a cable, carried from node to node, from one that looks like `normal` at node `k`.
 fn directors(tangents: &[V3<f64>], normal: &V3<f64>, k: usize) -> Vec<V3<f64>> {
     let mut all = vec![[0.0; 3]; tangents.len()];
     all[k] = across(normal, &tangents[k]);
@@ -90,6 +90,17 @@ fn directors(tangents: &[V3<f64>], normal: &V3<f64>, k: usize) -> Vec<V3<f64>> {
         all[i] = across(&carried(&all[i + 1], &tangents[i + 1], &tangents[i]), &tangents[i]);
     }
     all
+}
+
+/// Angles of the nodes at which elements between them have no twist: from node to node directors are carried along great
+/// circles, while the tangent of the cable takes another way.
+fn untwisting(nodes: &[Laid], mesh: &[f64], from: usize) -> Vec<f64> {
+    let mut angles = vec![0.0; nodes.len()];
+    for k in 0..nodes.len() - 1 {
+        angles[k + 1] = angles[k] - Torsion::twist(&pair(&element(nodes, k)), mesh[k + 1] - mesh[k]);
+    }
+    let there = angles[from];
+    angles.iter().map(|a| a - there).collect()
 }
 
 impl CableSpec {
@@ -127,8 +138,10 @@ impl CableSpec {
             let x = &places[k];
             laid(&[x[0], x[1], x[2]], &[x[3], x[4], x[5]], &u[k], theta)
         };
-        let straight: Vec<Laid> = (0..mesh.len()).map(|k| node(k, 0.0)).collect();
-        let nodes = (0..mesh.len()).map(|k| node(k, self.laid_twist * mesh[k])).collect();
+        let bare: Vec<Laid> = (0..mesh.len()).map(|k| node(k, 0.0)).collect();
+        let untwist = untwisting(&bare, mesh, from);
+        let straight: Vec<Laid> = (0..mesh.len()).map(|k| node(k, untwist[k])).collect();
+        let nodes = (0..mesh.len()).map(|k| node(k, untwist[k] + self.laid_twist * mesh[k])).collect();
         let twist0 = |k: usize| {
             let l = mesh[k + 1] - mesh[k];
             let own = if as_laid { Torsion::twist(&pair(&element(&straight, k)), l) } else { 0.0 };
