@@ -3,7 +3,9 @@
 mod closed;
 mod dynamics;
 mod joints;
+mod models;
 mod rope;
+mod sections;
 mod statics;
 
 use ropewalk::{History, Scene, simulate};
