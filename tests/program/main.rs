@@ -7,6 +7,7 @@ mod bad_input;
 mod checkpoint;
 mod cli;
 mod examples;
+mod import;
 mod migrate;
 mod pages;
 mod plugin;
