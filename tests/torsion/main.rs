@@ -2,6 +2,8 @@
 
 mod closed;
 mod dynamics;
+#[cfg(feature = "contact")]
+mod hockle;
 mod joints;
 mod models;
 mod rope;
