@@ -1,8 +1,8 @@
 //! The energy of the water that slender bodies push aside.
 
-use ropewalk::scene::Format;
 use faer::prelude::Solve;
 use faer::{Mat, c64};
+use ropewalk::scene::Format;
 use ropewalk::{About, History, LineariseOptions, ModesOptions, SceneFile, linearise, modes, simulate};
 use ropewalk_core::{At, Model, System};
 

@@ -59,7 +59,7 @@ struct Point<'a> {
 }
 
 /// What an option stands for in a scene, if anything.
-const IGNORED: [&str; 24] = [
+const IGNORED: [&str; 26] = [
     "dtm",
     "dt",
     "cfl",
@@ -83,6 +83,8 @@ const IGNORED: [&str; 24] = [
     "disableouttime",
     "fricdamp",
     "statdynfricscale",
+    "inertialf",
+    "inertialf_rampt",
     "unifycurrentgrid",
 ];
 const KNOWN: [&str; 14] = [
@@ -140,8 +142,14 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
         let _ = write!(
             out,
             "\n# {}\n[[sections]]\nname = \"{section}\"\nmass = {:?}\nea = {:?}\nei = {:?}\ndiameter = {:?}\n\
-             axial_retardation_time = {time:?}\n",
-            kind.row.line, kind.mass, kind.ea, kind.ei, kind.diameter
+             axial_retardation_time = {time:?}\n{}",
+            kind.row.line,
+            kind.mass,
+            kind.ea,
+            kind.ei,
+            kind.diameter,
+            // as segments there
+            if kind.ei == 0.0 { "tension_only = true\n" } else { "" }
         );
     }
     for line in &lines {
