@@ -142,7 +142,7 @@ fn what_has_no_counterpart_is_refused_where_it_stands() {
     refused("kBot", "kBed", "the option `kBed` has no counterpart");
     refused("320     WtrDpth", "3 WaveKin\n320 WtrDpth", "waves of this kind");
     refused("320     WtrDpth", "1 Currents\n320 WtrDpth", "current_profile.txt`, which the deck needs");
-    refused("902.2    20", "", "this row ends before its unstretched length");
+    refused("902.2    20      -", "", "this row ends before its unstretched length");
     refused(
         "--------- OPTIONS",
         "--- RODS ---\nID\n(#)\n1 can\n--- OPTIONS",
