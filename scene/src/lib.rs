@@ -42,8 +42,8 @@ pub use spec::{
 };
 pub use water::{Air, Level, Water, ball_below};
 pub use waves::{
-    Evaluation, Jonswap, PiersonMoskowitz, RegularWave, SpreadingSpec, WaveComponent, WaveSampling,
-    WaveStretching, WavesSpec, WhiteSea,
+    Evaluation, Jonswap, MeasuredSea, PiersonMoskowitz, RegularWave, SpreadingSpec, WaveComponent,
+    WaveSampling, WaveStretching, WavesSpec, WhiteSea,
 };
 
 #[doc(hidden)]

@@ -1,15 +1,18 @@
 //! `[water.waves]`: a sea state, and how its motion is found.
 
+use crate::file;
 use ropewalk_core::BuildError;
 use ropewalk_core::error::positive;
-use ropewalk_sea::{Regular, Sampling, SeaError, Spectrum, Spreading, Stretching, sample};
+use ropewalk_sea::{Regular, Sampling, SeaError, Spectrum, Spreading, Stretching, measured, sample};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::io::Read;
+use std::path::PathBuf;
 
 /// Waves on the water, by linear (Airy) theory.
 ///
-/// Give one of `regular`, `jonswap`, `pierson_moskowitz`, `white` and `components`. The water's `level` is the surface without
+/// Give one of `regular`, `jonswap`, `pierson_moskowitz`, `white`, `components` and `measured`. The water's `level` is the surface without
 /// waves. Waves and current add up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -29,6 +32,9 @@ pub struct WavesSpec {
     /// Regular waves, one by one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub components: Vec<WaveComponent>,
+    /// A sea as it was measured: the waves of a record of its elevation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<MeasuredSea>,
     /// Direction that the waves travel towards, the mean if they spread: from x to y [rad].
     #[serde(deserialize_with = "ropewalk_quantity::angle")]
     pub direction: f64,
@@ -72,6 +78,7 @@ impl Default for WavesSpec {
             pierson_moskowitz: None,
             white: None,
             components: Vec::new(),
+            measured: None,
             direction: 0.0,
             spreading: None,
             count: 200,
@@ -170,6 +177,60 @@ pub struct WaveComponent {
     pub direction: Option<f64>,
 }
 
+fn shortest() -> f64 {
+    2.0
+}
+
+/// A record of the elevation at the origin, from t = 0 on. Waves travel in one direction; the record repeats after its length.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeasuredSea {
+    /// A CSV file with rows `t, elevation` [s, m] at equal intervals; its path is relative to the scene file.
+    pub file: PathBuf,
+    /// Shorter waves are left out [s].
+    #[serde(default = "shortest", deserialize_with = "ropewalk_quantity::time")]
+    pub shortest: f64,
+}
+
+impl MeasuredSea {
+    /// The elevations, and their interval.
+    fn read(&self) -> Result<(Vec<f64>, f64), String> {
+        let mut text = String::new();
+        file::open(&self.file)?.read_to_string(&mut text).map_err(|e| e.to_string())?;
+        let mut rows: Vec<[f64; 2]> = Vec::new();
+        for (k, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+            let cells: Vec<Option<f64>> = line.split(',').map(|c| c.trim().parse().ok()).collect();
+            match cells[..] {
+                [Some(t), Some(x)] => rows.push([t, x]),
+                _ if rows.is_empty() && cells.iter().all(Option::is_none) => {}
+                _ => return Err(format!("line {} isn't `t, elevation`: two numbers, in s and m", k + 1)),
+            }
+        }
+        let &[[first, _], .., [last, _]] = &rows[..] else {
+            return Err("it holds fewer than two rows".into());
+        };
+        let dt = (last - first) / (rows.len() - 1) as f64;
+        let even = |(k, row): (usize, &[f64; 2])| (row[0] - first - dt * k as f64).abs() <= 1e-3 * dt;
+        if !(dt > 0.0 && rows.iter().enumerate().all(even)) {
+            return Err("its rows aren't at equal intervals of time".into());
+        }
+        Ok((rows.iter().map(|row| row[1]).collect(), dt))
+    }
+
+    fn waves(&self, direction: f64) -> Result<Vec<Regular>, BuildError> {
+        let wrong = |why: String| {
+            let message = format!("record `{}`: {why}", self.file.display());
+            BuildError::at("water.waves.measured.file", message)
+        };
+        let (elevation, dt) = self.read().map_err(wrong)?;
+        measured(&elevation, dt, self.shortest, direction).map_err(|e| match e.field {
+            "shortest" => BuildError::at("water.waves.measured.shortest", e.message),
+            "direction" => BuildError::at("water.waves.direction", e.message),
+            _ => wrong(e.message),
+        })
+    }
+}
+
 /// Directions by `cos^{2s}` of half the angle to the mean (Longuet-Higgins, Cartwright and Smith, 1963).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -256,16 +317,18 @@ impl WavesSpec {
             self.pierson_moskowitz.is_some(),
             self.white.is_some(),
             !self.components.is_empty(),
+            self.measured.is_some(),
         ];
         let number = given.iter().filter(|given| **given).count();
         if number != 1 {
             let message = format!(
-                "[water.waves] has {}: give one of `regular`, `jonswap`, `pierson_moskowitz`, `white` and `components`",
+                "[water.waves] has {}: give one of `regular`, `jonswap`, `pierson_moskowitz`, `white`, `components` and \
+                 `measured`",
                 if number == 0 { "no sea state" } else { "more than one sea state" }
             );
             return Err(at("", message));
         }
-        let single = self.regular.is_some() || !self.components.is_empty();
+        let single = self.regular.is_some() || !self.components.is_empty() || self.measured.is_some();
         if single && self.spreading.is_some() {
             let message = "`spreading` is for spectra: give each of the `components` its `direction`";
             return Err(at(".spreading", message.into()));
@@ -293,6 +356,9 @@ impl WavesSpec {
                 Ok(Regular { amplitude: w.amplitude, omega, phase: w.phase, direction })
             };
             return self.components.iter().map(one).collect();
+        }
+        if let Some(record) = &self.measured {
+            return record.waves(self.direction);
         }
         let spectrum = match (self.jonswap, self.pierson_moskowitz, self.white) {
             (Some(Jonswap { hs, tp, gamma }), ..) => Spectrum::Jonswap { hs, tp, gamma },

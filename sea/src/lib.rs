@@ -24,6 +24,7 @@
 mod dispersion;
 mod error;
 mod lattice;
+mod measured;
 mod random;
 mod response;
 mod sampling;
@@ -33,6 +34,7 @@ mod waves;
 pub use dispersion::{group_velocity, wavenumber, wavenumber_on_current};
 pub use error::SeaError;
 pub use lattice::Lattice;
+pub use measured::measured;
 pub use random::SplitMix64;
 pub use response::{MOTIONS, Responses, VesselResponse};
 pub use sampling::{Sampling, Spreading, sample};

@@ -151,7 +151,7 @@ fn table(courses: &[Course<'_>], life: Option<&Life>) -> Told {
     .to_vec();
     if let Some(life) = life {
         headings.extend(["cycles", "damage", "damage a year"].map(String::from));
-        headings.push(format!("range at 1 Hz, m = {}", life.m));
+        headings.push(format!("range at 1 Hz (m = {})", life.m));
     }
     let mut csv = Csv::new(&headings);
     let mut rows = Vec::new();

@@ -154,8 +154,11 @@ fn seeds_tell_extremes_with_their_intervals() {
     assert_eq!(said.code, Some(0), "{}", said.stderr);
     assert!(said.stdout.contains("most probable") && said.stdout.contains("6 runs"), "{}", said.stdout);
     let all = table(&folder.path().join("seas/tables/extremes.csv"));
-    let (low, best, high) =
-        (column(&all, "95 % from")[0], column(&all, "most probable")[0], column(&all, "95 % to")[0]);
+    let (low, best, high) = (
+        column(&all, "most probable 2.5 %")[0],
+        column(&all, "most probable")[0],
+        column(&all, "most probable 97.5 %")[0],
+    );
     assert!(low < best && best < high, "{low} {best} {high}");
     // the same by hand from the table of the runs
     let runs = table(&folder.path().join("seas/table.csv"));

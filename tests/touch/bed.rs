@@ -1,7 +1,6 @@
 //! The sea floor: lines of catenaries that come to lie on it, with the friction that a pull has used up or that the ground takes
 //! hold with; heights on a grid; where lines touch down.
 
-use super::friction::near;
 use ropewalk::scene::{Format, SceneFile};
 use ropewalk::{History, simulate};
 use serde_json::Value;

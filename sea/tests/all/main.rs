@@ -2,6 +2,7 @@
 
 mod kinematics;
 mod lattice;
+mod measured;
 mod response;
 mod states;
 mod table;

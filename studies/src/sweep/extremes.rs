@@ -136,11 +136,11 @@ fn table(all: &[Extreme]) -> String {
         "location",
         "scale",
         "most probable",
-        "95 % from",
-        "95 % to",
+        "most probable 2.5 %",
+        "most probable 97.5 %",
         "once in ten runs",
-        "95 % from ",
-        "95 % to ",
+        "once in ten runs 2.5 %",
+        "once in ten runs 97.5 %",
     ]);
     for x in all {
         csv.cell(&x.heading).cell(&x.line).cell(x.what());

@@ -1,6 +1,7 @@
 //! Waves: laws against differences and balances, reference sets, scenes.
 
 mod laws;
+mod measured;
 mod reference;
 mod scenes;
 mod vessels;
