@@ -206,7 +206,7 @@ impl ConstraintSpec for WinchSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        (!self.idle()).then_some((&self.marker, Feed { element: self.element_length, unstrained: false }))
+        (!self.idle()).then(|| (&self.marker, Feed { element: self.element_length, ..Feed::default() }))
     }
     fn notes(&self, model: &Model) -> Vec<String> {
         let (Some(speed), MarkerRef::Name(marker)) =

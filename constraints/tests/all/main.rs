@@ -4,4 +4,5 @@ mod function;
 mod joints;
 mod motions;
 mod package;
+mod reeving;
 mod winch;

@@ -13,5 +13,6 @@ mod point_mass;
 mod pools;
 mod rigid_body;
 mod rigid_chain;
+mod route;
 mod torsion;
 mod transmitted;
