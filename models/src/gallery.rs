@@ -12,6 +12,7 @@ macro_rules! scenes {
 /// All of them, by name.
 pub(crate) const ALL: &[Bundled] = scenes![
     "atwood",
+    "atwood-wheel",
     "bend-stiffener",
     "bouncing-ball",
     "breaking-line",
@@ -23,6 +24,7 @@ pub(crate) const ALL: &[Bundled] = scenes![
     "clump-weights",
     "conical-pendulum",
     "constant-tension-winch",
+    "crane",
     "crane-trolley",
     "current-profile",
     "double-pendulum",

@@ -86,6 +86,9 @@ pub(super) struct Sheave {
     pub solid: Solid,
 }
 
+/// Stiffness that keeps a free wheel in an equilibrium, as a share of `EA R`.
+const STILL: f64 = 1e-6;
+
 /// Most unknowns of a groove: two points, two material coordinates, a body, the angle of the wheel.
 const MOST: usize = 15;
 
@@ -272,6 +275,11 @@ impl Term for Sheave {
                 for i in 0..dofs.len() {
                     block[i][j] = column[i].eps;
                 }
+            }
+            // in an equilibrium nothing turns a wheel: a share of the stiffness of its arc keeps the angle where it is
+            if let Some(i) = self.angle.as_ref().map(|_| dofs.len() - 1).filter(|_| w.v == 0.0 && w.a == 0.0) {
+                let arc = &groove.arc;
+                block[i][i] += w.q * STILL * arc.strand.ea * arc.radius;
             }
             out.add_square(k, &block);
         }
