@@ -46,6 +46,9 @@ use std::process::ExitCode;
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// How progress is shown: a bar on a terminal and lines elsewhere, or one of these, or nothing
+    #[arg(long, global = true, value_name = "HOW", env = "ROPEWALK_PROGRESS", default_value = "auto")]
+    pub(crate) progress: commands::Shown,
 }
 
 #[derive(Debug, Subcommand)]
@@ -107,6 +110,16 @@ pub(crate) enum Command {
         Beyond one machine: --plan lists the runs and prints what a batch array has to call, --part 3/40 computes a share\n\
         into the folder, which all machines have to see, and the command without both collects them into the same table.")]
     Sweep(SweepArgs),
+    /// Moments, waves, spectra and fatigue of what a run has recorded
+    #[command(after_help = "Examples:\n  \
+        ropewalk statistics runs/mooring --from '100 s'\n  \
+        ropewalk statistics runs/mooring --of fairlead.magnitude --fatigue 316,3 --strength 5e6\n  \
+        ropewalk statistics runs/riser --of stress --fatigue 1.6e12,3,1e7,5\n\n\
+        tables/statistics.csv in the folder holds mean, deviation, extremes, crossings of the mean and the significant range;\n\
+        tables/spectrum-*.csv and plots/spectrum-*.svg the spectra (Welch: Hann's window, pieces over each other by half);\n\
+        with --fatigue cycles by rainflow counting (ASTM E1049), Miner's damage and the range that does the same at 1 Hz.\n\
+        Range graphs along a line are asked for by `ranges` in [run]; extremes over seeds by `sweep --extremes`.")]
+    Statistics(commands::statistics::StatisticsArgs),
     /// Make the figures and tables of a paper, a report or a thesis, each by its number
     #[command(after_help = "Examples:\n  \
         ropewalk atlas thesis --list            what there is\n  \
@@ -235,6 +248,13 @@ pub(crate) enum Command {
         ropewalk migrate scene.toml --out new.toml\n\n\
         Comments, order and layout stay as they are. A scene that uses the names of this version is not touched.")]
     Migrate(commands::migrate::MigrateArgs),
+    /// Make a scene of an input file of MoorDyn
+    #[command(after_help = "Examples:\n  \
+        ropewalk import lines.txt > scene.toml\n  \
+        ropewalk import lines.txt --out scene.toml\n\n\
+        Takes line types, points, lines, bodies, options, a current profile, wave components and a sea floor over, and says by\n\
+        name what it can't: rods, failures, control, stiffness by rate or load, lift.")]
+    Import(commands::import::ImportArgs),
     /// Write what a shell has to read to complete commands
     #[command(after_help = "Examples:\n  \
         ropewalk completions bash > ~/.local/share/bash-completion/completions/ropewalk\n  \
@@ -318,6 +338,9 @@ pub(crate) struct SweepArgs {
     /// Last part of a run that mean, least and largest are taken over, and that tells whether last values are steady
     #[arg(long, value_name = "SHARE", default_value = "10 %")]
     pub(crate) over: Over,
+    /// Tell of the extremes of every record over the first parameter, which is a seed: `--vary seed=1:10:1 --extremes`
+    #[arg(long)]
+    pub(crate) extremes: bool,
     /// Say nothing but errors and warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -366,12 +389,14 @@ pub fn exit_from(
             return if e.use_stderr() { Exit::Input as u8 } else { 0 };
         }
     };
+    commands::show(cli.progress);
     let done = match cli.command {
         Command::Run(args) => commands::run::run(&args, bundled),
         Command::Resume { folder, checkpoint, quiet } => commands::resume::resume(folder, checkpoint, quiet),
         Command::Plot(args) => commands::plot::plot(&args),
         Command::View(args) => commands::view::view(&args),
         Command::Sweep(args) => commands::sweep::sweep(&args, bundled),
+        Command::Statistics(args) => commands::statistics::statistics(&args),
         Command::Atlas(args) => commands::atlas::atlas(args, bundled),
         Command::Modes(args) => commands::modes::modes(&args, bundled),
         Command::Linearise(args) => commands::linearise::linearise(&args, bundled),
@@ -389,6 +414,7 @@ pub fn exit_from(
         Command::Bench(args) => commands::bench::bench(&args),
         Command::Variants(args) => commands::variants::variants(&args),
         Command::Check { scene } => commands::check::check(&scene, bundled),
+        Command::Import(args) => commands::import::run(&args),
         Command::Migrate(args) => commands::migrate::run(&args),
         Command::ExportFmu(args) => commands::export_fmu::run(&args, bundled),
     };

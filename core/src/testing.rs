@@ -288,6 +288,7 @@ fn spread<R: Real>(at: &Station<f64>) -> Station<R> {
         s: R::of(at.s),
         weight: R::of(at.weight),
         before: R::of(at.before),
+        element: R::of(at.element),
         diameter: R::of(at.diameter),
         area: R::of(at.area),
     }
@@ -372,6 +373,7 @@ mod tests {
             s: 0.0,
             weight: 1.0,
             before: 0.5,
+            element: 2.0,
             diameter: 1.0,
             area: 1.0,
         };

@@ -45,22 +45,22 @@ impl Law for Buoyancy {
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let swell = self.surface.swell(t, &at.x);
         let (wet, k) = (self.surface.wet(at, swell.as_ref()), R::of(self.specific_weight) * at.area);
-        out.f[2] += k * wet.share;
+        out.f[2] += k * wet.lift;
         for i in 0..3 {
             if self.couple {
                 out.g[i] -= k * wet.depth_by_slope[i];
             }
             if TANGENT {
-                out.d_slope[2][i] += k * wet.share_by_slope[i];
+                out.d_slope[2][i] += k * wet.lift_by_slope[i];
             }
         }
         if !TANGENT {
             return;
         }
-        out.d_x[2][2] += k * wet.share_by_z;
+        out.d_x[2][2] += k * wet.lift_by_z;
         if self.couple {
             for i in 0..3 {
-                out.g_x[i][2] += k * wet.share_by_slope[i];
+                out.g_x[i][2] += k * wet.lift_by_slope[i];
                 for j in 0..3 {
                     out.g_slope[i][j] -= k * wet.depth_by_slopes[i][j];
                 }
@@ -69,10 +69,10 @@ impl Law for Buoyancy {
         let Some(swell) = swell else { return };
         for j in 0..2 {
             let by_x = k * swell.slope[j];
-            out.d_x[2][j] -= by_x * wet.share_by_z;
+            out.d_x[2][j] -= by_x * wet.lift_by_z;
             if self.couple {
                 for i in 0..3 {
-                    out.g_x[i][j] -= by_x * wet.share_by_slope[i];
+                    out.g_x[i][j] -= by_x * wet.lift_by_slope[i];
                 }
             }
         }

@@ -4,7 +4,9 @@
 //! `φ(s/w)` of its area, `w = r √(1 - t_z²)` being half of its height; a station's cell from depth `s_a` to `s_b` by the
 //! mean of that, which its integrals give exactly: `W = (Y(s_a) - Y(s_b)) / (s_a - s_b)` with `∂²Y/∂s² = φ`. `ρ g A W` is
 //! the potential of buoyancy per length: its share `∂W/∂s` lifts, and what `W` changes by with the slope is the couple
-//! of a tilted waterplane. In waves the surface over a station's cell is taken as level, at the height that it has at the
+//! of a tilted waterplane. Cells aren't centred on their stations: a cable's cell that lies deep has the depth of its
+//! station for `W`, as else its couple, which cancels between elements alone, would turn the ends of a cable. In waves the
+//! surface over a station's cell is taken as level, at the height that it has at the
 //! station.
 
 use ropewalk_core::{Real, Station, V3, dot};
@@ -24,12 +26,18 @@ pub struct Surface {
 /// How a station's cell lies in the water.
 #[derive(Clone, Copy, Debug)]
 pub struct Wet<R> {
-    /// `W`, the mean over the cell of the depth of what is wet [m].
+    /// `W`, the mean over the cell of the depth of what is wet [m]; deep down the depth of the station.
     pub depth: R,
     /// `∂W/∂r'` [m].
     pub depth_by_slope: V3<R>,
     /// `∂²W/∂r'²` [m].
     pub depth_by_slopes: [V3<R>; 3],
+    /// `∂W/∂s`, the share of its weight in water that lifts it.
+    pub lift: R,
+    /// By height [1/m].
+    pub lift_by_z: R,
+    /// By slope.
+    pub lift_by_slope: V3<R>,
     /// Share of its volume that is wet.
     pub share: R,
     /// By height [1/m].
@@ -43,6 +51,9 @@ const UPRIGHT: f64 = 0.01;
 /// Cells whose ends differ in depth by less, in parts of `w`, are integrated by two points: the difference of the integrals
 /// would be rounding.
 const LEVEL: f64 = 0.02;
+/// At a depth of so many lengths of its element a cell counts as centred on its station: over less, the blend would be felt
+/// in the stiffness of a waterplane.
+const DEEP: f64 = 3.0;
 /// As many lanes as the widest carrier has.
 const MOST: usize = 8;
 
@@ -79,6 +90,7 @@ impl Surface {
                 slope: [at.slope[0].lane(lane), at.slope[1].lane(lane), at.slope[2].lane(lane)],
                 before,
                 behind: at.weight.lane(lane) - before,
+                element: at.element.lane(lane),
                 radius,
             }
             .wet();
@@ -90,6 +102,9 @@ impl Surface {
             depth: R::each(|lane| cells[lane].depth),
             depth_by_slope: vector(&|c| c.depth_by_slope),
             depth_by_slopes: [0, 1, 2].map(|i| vector(&|c| c.depth_by_slopes[i])),
+            lift: R::each(|lane| cells[lane].lift),
+            lift_by_z: R::each(|lane| cells[lane].lift_by_z),
+            lift_by_slope: vector(&|c| c.lift_by_slope),
             share: R::each(|lane| cells[lane].share),
             share_by_z: R::each(|lane| cells[lane].share_by_z),
             share_by_slope: vector(&|c| c.share_by_slope),
@@ -120,6 +135,9 @@ impl Wet<f64> {
             depth: 0.0,
             depth_by_slope: [0.0; 3],
             depth_by_slopes: [[0.0; 3]; 3],
+            lift: 0.0,
+            lift_by_z: 0.0,
+            lift_by_slope: [0.0; 3],
             share: 0.0,
             share_by_z: 0.0,
             share_by_slope: [0.0; 3],
@@ -133,6 +151,7 @@ struct Cell {
     slope: V3<f64>,
     before: f64,
     behind: f64,
+    element: f64,
     radius: f64,
 }
 
@@ -143,16 +162,24 @@ impl Cell {
         if ends[0].max(ends[1]) <= -self.radius {
             return Wet::dry();
         }
-        if ends[0].min(ends[1]) >= self.radius {
-            let lever = 0.5 * (self.before - self.behind);
-            return Wet {
-                depth: self.s + lever * rise,
-                depth_by_slope: [0.0, 0.0, lever],
-                share: 1.0,
-                ..Wet::dry()
-            };
+        let lever = 0.5 * (self.before - self.behind);
+        let mut wet = if ends[0].min(ends[1]) >= self.radius {
+            let depth = self.s + lever * rise;
+            Wet { depth, depth_by_slope: [0.0, 0.0, lever], lift: 1.0, share: 1.0, ..Wet::dry() }
+        } else {
+            self.cut(ends)
+        };
+        if self.element == 0.0 {
+            return wet;
         }
-        self.cut(ends)
+        let deep = DEEP * self.element + 2.0 * self.radius;
+        let [centred, by_s, by_s_s] = smooth(self.s / deep, deep);
+        wet.depth -= lever * rise * centred;
+        wet.depth_by_slope[2] -= lever * centred;
+        wet.lift -= lever * rise * by_s;
+        wet.lift_by_z += lever * rise * by_s_s;
+        wet.lift_by_slope[2] -= lever * by_s;
+        wet
     }
 
     /// A cell that the surface cuts.
@@ -182,15 +209,36 @@ impl Cell {
                 + m.ww * dw[i] * dw[j]
                 + m.w * ddw
         };
+        let (share, share_by_z) = (m.a + m.b, -s_s);
+        let share_by_slope = std::array::from_fn(|i| s_rise * up(i) + s_w * dw[i]);
         Wet {
             depth: m.value,
             depth_by_slope: std::array::from_fn(|i| by_rise * up(i) + m.w * dw[i]),
             depth_by_slopes: std::array::from_fn(|i| std::array::from_fn(|j| second(i, j))),
-            share: m.a + m.b,
-            share_by_z: -s_s,
-            share_by_slope: std::array::from_fn(|i| s_rise * up(i) + s_w * dw[i]),
+            lift: share,
+            lift_by_z: share_by_z,
+            lift_by_slope: share_by_slope,
+            share,
+            share_by_z,
+            share_by_slope,
         }
     }
+}
+
+/// A step from 0 at `u = 0` to 1 at `u = 1` with two steady derivatives, and these by `u width`.
+fn smooth(u: f64, width: f64) -> [f64; 3] {
+    if u <= 0.0 {
+        return [0.0; 3];
+    }
+    if u >= 1.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let rest = 1.0 - u;
+    [
+        u * u * u * (10.0 + u * (6.0 * u - 15.0)),
+        30.0 * u * u * rest * rest / width,
+        60.0 * u * rest * (1.0 - 2.0 * u) / (width * width),
+    ]
 }
 
 /// `e_z`

@@ -143,10 +143,14 @@ def _clean() -> None:
             _lock.release()
 
 
+def named(text: str) -> dict[str, Callback]:
+    """The functions that a scene names."""
+    return {name: f for name, f in sorted(_known(), key=lambda known: known[0]) if f'"{name}"' in text or f"'{name}'" in text}
+
+
 def meanings(text: str) -> dict[str, list[str]]:
     """What tells the functions that a scene names from others of these names."""
-    named = {name: f for name, f in _known() if f'"{name}"' in text or f"'{name}'" in text}
-    return {name: meaning(f) for name, f in sorted(named.items())}
+    return {name: meaning(f) for name, f in named(text).items()}
 
 
 def meaning(f: Callback | None) -> list[str]:
@@ -187,10 +191,7 @@ class Binding:
         for a in own:
             if a not in given and not self.arguments[a]:
                 raise ValueError(f"the function `{self.name}` needs the parameter `{a}`")
-        f = self.found()
-        if f is None:
-            raise ValueError(f"the function `{self.name}` is gone with the scene that held it")
-        return Bound(f, [a for a in self.arguments if a in (*STATE, *BESIDES)], given)
+        return Bound(self, [a for a in self.arguments if a in (*STATE, *BESIDES)], given)
 
 
 def _si(value: Any) -> Any:
@@ -204,17 +205,25 @@ def _si(value: Any) -> Any:
 
 
 class Bound:
-    """A function with its parameters; what it gets and gives are bytes of numbers."""
+    """A function with its parameters; what it gets and gives are bytes of numbers. It doesn't keep the function: who runs
+    the scene does, so that Python sees where a function refers to what it is part of, and frees both."""
 
-    def __init__(self, f: Callback, asks: list[str], given: Mapping[str, Any]) -> None:
-        self.f, self.asks, self.given = f, asks, dict(given)
+    def __init__(self, binding: Binding, asks: list[str], given: Mapping[str, Any]) -> None:
+        self.binding, self.asks, self.given = binding, asks, dict(given)
         self.reads = [name in asks for name in STATE]
+        self.function()
+
+    def function(self) -> Callback:
+        f = self.binding.found()
+        if f is None:
+            raise ValueError(f"the function `{self.binding.name}` is gone with the scene that held it")
+        return f
 
     def _call(self, **state: Any) -> Any:
         for name in self.asks:
             if name not in state:
                 raise TypeError(f"there is no `{name}` here: this function sees {', '.join(state)}")
-        return self.f(**{name: state[name] for name in self.asks}, **self.given)
+        return self.function()(**{name: state[name] for name in self.asks}, **self.given)
 
     def force(self, t: float, state: bytes) -> bytes:
         x = np.frombuffer(state)

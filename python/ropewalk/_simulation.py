@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _native
 from ._errors import SceneError
+from ._functions import named
 from ._run import Array
 from ._scene import AnyScene, overrides, source
 
@@ -38,7 +39,9 @@ class Simulation:
 
     def __init__(self, scene: AnyScene, **parameters: Any) -> None:
         """Builds the scene and brings it to its start; keywords are parameters of the scene."""
-        self._native = _native.Simulation(source(scene), overrides(parameters))
+        text, given = source(scene), overrides(parameters)
+        self._functions = named("\n".join([text.text, *given]))
+        self._native = _native.Simulation(text, given)
         columns = self._native.columns()
         self._index = {name: k for k, (name, _) in enumerate(columns)}
         self.units = dict(columns)

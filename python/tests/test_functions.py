@@ -336,6 +336,25 @@ def test_a_function_is_forgotten_with_what_holds_it():
     assert pickle.loads(pickle.dumps(scene)).to_dict() == scene.to_dict()
 
 
+def test_a_function_that_refers_to_its_own_simulation_goes_with_it():
+    def run() -> tuple[weakref.ref, weakref.ref]:
+        mine: list[rw.Simulation] = []
+
+        def pull(t, position):
+            return -10.0 * (position if not mine or mine[0].t >= 0.0 else 0.0 * position)
+
+        sim = rw.Simulation(held(pull))
+        # the scene is gone: the simulation alone keeps the function
+        gc.collect()
+        assert sim.advance(0.1)["bob"].shape == (3,)
+        mine.append(sim)
+        return weakref.ref(sim), weakref.ref(pull)
+
+    gone = run()
+    gc.collect()
+    assert all(thing() is None for thing in gone)
+
+
 def test_functions_that_come_and_go_in_threads_are_not_mixed_up():
     def one(factor: float) -> None:
         for _ in range(5):

@@ -335,6 +335,8 @@ kinds! {
     FORCE_PER_LENGTH force_per_length: "a force per length", (1, 0, -2, 0), "N/m", "20 N/m";
     PRESSURE pressure: "a pressure", (1, -1, -2, 0), "Pa", "210 GPa";
     STIFFNESS_PER_LENGTH stiffness_per_length: "a stiffness per length", (1, -1, -2, 0), "N/m^2", "2 MN/m^2";
+    STIFFNESS_PER_AREA stiffness_per_area: "a stiffness per area", (1, -2, -2, 0), "N/m^3", "100 kN/m^3";
+    DAMPING_PER_AREA damping_per_area: "a damping per area", (1, -2, -1, 0), "N s/m^3", "10 kN s/m^3";
     VISCOSITY viscosity: "a viscosity", (1, -1, -1, 0), "Pa s", "1.2e-3 Pa s";
     MOMENT moment: "a moment", (1, 2, -2, 0), "N m", "15 kN m";
     POWER power: "a power", (1, 2, -3, 0), "W", "30 kW";

@@ -60,6 +60,32 @@ pub struct Run {
     pub shape_titles: ShapeTitles,
     /// Tables of a few columns of the history, each a CSV file of its own.
     pub tables: Vec<TableSpec>,
+    /// Range graphs of lines: between what tension, curvature and the like were along them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub ranges: Vec<RangeSpec>,
+}
+
+/// A range graph: least, mean and largest value of tension, curvature, bending moment, declination and position along a line
+/// over a time, with deviations and the instants of extremes. Every accepted step counts, however rarely the history has a
+/// row. Results are `tables/range-LINE.csv` and `plots/range-LINE-tension.svg` and so on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RangeSpec {
+    /// The cable.
+    pub of: String,
+    /// From what time on [s].
+    #[serde(default, deserialize_with = "ropewalk_quantity::time")]
+    pub from: f64,
+    /// Up to what time [s]. Default: the end of the run.
+    #[serde(
+        default,
+        deserialize_with = "ropewalk_quantity::optional::time",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub to: Option<f64>,
+    /// Name in results. Default: that of the cable.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
 }
 
 /// Titles of the pictures of shapes.
@@ -109,6 +135,7 @@ impl Default for Run {
             field_snapshots: 361,
             shape_titles: ShapeTitles::default(),
             tables: Vec::new(),
+            ranges: Vec::new(),
         }
     }
 }

@@ -10,6 +10,7 @@ pub(crate) mod describe;
 pub(crate) mod effects;
 mod examples;
 pub(crate) mod export_fmu;
+pub(crate) mod import;
 pub(crate) mod linearise;
 pub(crate) mod list;
 pub(crate) mod migrate;
@@ -24,15 +25,18 @@ pub(crate) mod scene_schema;
 mod schema;
 mod serve;
 pub(crate) mod shared;
+pub(crate) mod statistics;
 pub(crate) mod sweep;
 pub(crate) mod variants;
 pub(crate) mod verify;
 pub(crate) mod view;
 mod words;
 
+use clap::ValueEnum;
 use ropewalk_report::{Interrupt, ProgressMode};
 use std::fmt::Display;
 use std::io::Write;
+use std::sync::{Mutex, PoisonError};
 
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,9 +87,31 @@ pub(crate) fn interrupted(what: impl Display) -> Exit {
     Exit::Interrupted
 }
 
+/// What `--progress` can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Shown {
+    Auto,
+    Bar,
+    Lines,
+    None,
+}
+
+/// What the command line says of progress.
+static SHOWN: Mutex<ProgressMode> = Mutex::new(ProgressMode::Auto);
+
+pub(crate) fn show(how: Shown) {
+    *SHOWN.lock().unwrap_or_else(PoisonError::into_inner) = match how {
+        Shown::Auto => ProgressMode::Auto,
+        Shown::Bar => ProgressMode::Bar,
+        Shown::Lines => ProgressMode::Lines,
+        Shown::None => ProgressMode::Quiet,
+    };
+}
+
 /// How progress is shown.
 pub(crate) fn progress(quiet: bool) -> ProgressMode {
-    if quiet { ProgressMode::Quiet } else { ProgressMode::Auto }
+    let shown = || *SHOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if quiet { ProgressMode::Quiet } else { shown() }
 }
 
 /// Breaks a text into lines of at most 96 characters, each behind `indent`; paragraphs stay apart, and those set in by

@@ -27,6 +27,7 @@ impl SweepArgs {
             watch,
             report: self.report,
             over: self.over,
+            extremes: self.extremes,
         }
     }
 
@@ -48,6 +49,7 @@ impl SweepArgs {
         }
         option("--out", place(folder));
         words.extend(self.latin.then(|| "--latin".to_string()));
+        words.extend(self.extremes.then(|| "--extremes".to_string()));
         words
     }
 }

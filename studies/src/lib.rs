@@ -2,7 +2,7 @@
 //!
 //! [`run`] runs a scene into a folder, [`simulate`] into memory. On these stand [`sweep`] (parameters varied), [`cost`]
 //! (what accuracy costs in time), [`effects`] (what each effect of a scene changes), [`certificate`] (how far results can
-//! be trusted), [`modes`], [`linearise`], [`variants`], [`verify`], [`bench`] and [`atlas`].
+//! be trusted), [`statistics`] (what a long run says), [`modes`], [`linearise`], [`variants`], [`verify`], [`bench`] and [`atlas`].
 
 pub mod atlas;
 pub mod bench;
@@ -17,6 +17,7 @@ pub mod modes;
 pub mod run;
 mod session;
 pub mod simulate;
+pub mod statistics;
 pub mod study;
 pub mod sweep;
 pub mod variants;

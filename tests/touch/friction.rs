@@ -40,7 +40,7 @@ fn run(scene: &Scene, (scheme, stepping): &(Scheme, Stepping), duration: f64) ->
 }
 
 #[track_caller]
-fn near(got: f64, wanted: f64, relative: f64) {
+pub(super) fn near(got: f64, wanted: f64, relative: f64) {
     println!("{got} instead of {wanted}: {:.1e}", got / wanted - 1.0);
     assert!((got / wanted - 1.0).abs() < relative, "{got} instead of {wanted}");
 }

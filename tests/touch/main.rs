@@ -3,6 +3,7 @@
 #[path = "../common/scenes.rs"]
 mod common;
 
+mod bed;
 mod contact;
 mod contact_along;
 mod feeding_contact;

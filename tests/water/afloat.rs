@@ -107,6 +107,86 @@ fn spar(angle: f64, more: &str) -> String {
 }
 const SPAR: f64 = 500.0;
 
+/// A limp line as heavy as the water stays where it is: what lifts its slopes comes of whole elements.
+#[test]
+fn a_neutral_line_stays() {
+    let mass = 1025.0 * PI * 1e-4;
+    let h = run(&format!(
+        r#"
+        [run]
+        duration = "20 s"
+        [water]
+        level = 0
+        [[elements]]
+        type = "cable"
+        name = "line"
+        points = [[0, 0, -5], [3, 0, -9]]
+        elements = 10
+        section = {{ mass = {mass}, ea = "50 kN", diameter = "20 mm", axial_retardation_time = "0.4 ms" }}
+        [[constraints]]
+        type = "spherical"
+        name = "hook"
+        marker = "line.start"
+        {WEIGHT}
+        [[forces]]
+        type = "drag"
+        [[records]]
+        type = "position"
+        of = "line.end"
+        "#
+    ));
+    let end = [h.last("line.end.x").expect("a row"), h.last("line.end.z").expect("a row")];
+    assert!((end[0] - 3.0).hypot(end[1] + 9.0) < 1e-6, "{end:?}");
+}
+
+/// A pole made of a cable floats upright with the draught of its weight, wherever the surface cuts its elements.
+#[test]
+fn a_pole_has_the_draught_of_its_weight() {
+    let area = PI * 0.0025;
+    for draught in [2.1, 2.35, 2.6, 2.85] {
+        let ballast = 1000.0 * area * draught - 3.0 * 4.0;
+        let h = run(&format!(
+            r#"
+            [run]
+            analysis = "statics"
+            [water]
+            density = 1000
+            level = 0
+            [[elements]]
+            type = "cable"
+            name = "pole"
+            points = [[0, 0, -2.5], [0, 0, 1.5]]
+            elements = 4
+            section = {{ mass = 3, ea = "1 GN", ei = "1 MN m^2", diameter = 0.1 }}
+            [[elements]]
+            type = "point_mass"
+            name = "ballast"
+            marker = "pole.start"
+            mass = {ballast}
+            [[constraints]]
+            type = "point_on_line"
+            name = "lower"
+            marker = "pole.start"
+            axis = [0, 0, 1]
+            to = [0, 0, 0]
+            [[constraints]]
+            type = "point_on_line"
+            name = "upper"
+            marker = "pole.end"
+            axis = [0, 0, 1]
+            to = [0, 0, 0]
+            {WEIGHT}
+            [[records]]
+            type = "position"
+            of = "pole.start"
+            "#
+        ));
+        let found = -h.last("pole.start.z").expect("a row");
+        println!("draught {found:.6} for {draught}");
+        assert!((found - draught).abs() < 2e-3, "{found} for {draught}");
+    }
+}
+
 /// Upright: draught, heave and pitch by the waterplane and the metacentric height.
 #[test]
 fn an_upright_cylinder_floats_as_in_the_books() {

@@ -48,6 +48,23 @@ test("distances change as fast as points move away, and their sign on the surfac
   near(distance({ type: "tube", radius: 1, half: 2 }, [1, 0, 5]), 3);
 });
 
+test("a mesh is as far away as the box that it is made of, inside and outside, and an open one has no inside", () => {
+  const half: V3 = [1, 2, 0.5];
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((k) => [0, 1, 2].map((i) => ((k >> i) & 1 ? half[i]! : -half[i]!)));
+  const sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  const halves = (all: number[][]) => Uint32Array.from(all.flatMap(([a, b, c, d]) => [a!, b!, c!, a!, c!, d!]));
+  const mesh: Solid = { type: "mesh", points: Float32Array.from(corners), triangles: halves(sides) };
+  let seed = 5;
+  const random = () => ((seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0) / 2 ** 32 - 0.5) * 6;
+  for (let k = 0; k < 200; k++) {
+    const p: V3 = [random(), random(), random()];
+    near(distance(mesh, p), distance({ type: "box", half }, p), 1e-6);
+  }
+  const lid: Solid = { type: "mesh", points: Float32Array.from(corners), triangles: halves([sides[1]!]) };
+  near(distance(lid, [0, 0, 0.3]), 0.2);
+  near(distance(lid, [0, 0, 0.7]), 0.2);
+});
+
 test("clearances are from the surface of the line to what is nearest, also of bodies that turn", () => {
   const of = line([0, 0, 3, 4, 0, 3, 10, 0, 3]);
   const half = Math.SQRT1_2;

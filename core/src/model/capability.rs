@@ -39,6 +39,11 @@ pub trait Remembers {
     /// Brings what it remembers up to date at a state that was accepted: `memory` is all of the internal variables, as they
     /// were at the start of the step, and `at` has none.
     fn remember(&self, at: &At<'_>, memory: &mut [f64]);
+    /// Whether it takes part in equilibria. `None` if they are found as if it weren't there; else whether it remembers each
+    /// equilibrium along a path, as it does accepted steps in time.
+    fn at_rest(&self) -> Option<bool> {
+        None
+    }
 }
 
 /// Couples unknowns that depend on the state, such as those of lines that come near each other: all that it may couple

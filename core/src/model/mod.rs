@@ -38,7 +38,7 @@ pub mod twist;
 
 use crate::algebra::lane::Width;
 use crate::error::BuildError;
-use crate::model::capability::{Foresees, Timed};
+use crate::model::capability::{Foresees, Remembers, Timed};
 use crate::model::constraint::{Constraint, RowKind};
 use crate::model::controller::Controller;
 use crate::model::event::Event;
@@ -438,11 +438,21 @@ impl Model {
 
     /// Lets terms remember what a state that was accepted has changed.
     pub(crate) fn remember(&self, state: &mut State) {
+        self.remember_if(state, |_| true);
+    }
+
+    /// The same of an equilibrium, for those terms that take part in it so.
+    pub(crate) fn remember_rest(&self, state: &mut State) {
+        self.remember_if(state, |term| term.at_rest() == Some(true));
+    }
+
+    fn remember_if(&self, state: &mut State, which: impl Fn(&dyn Remembers) -> bool) {
         if self.remembering.is_empty() {
             return;
         }
         let mut memory = std::mem::take(&mut state.internal);
-        for term in self.remembering.iter().filter_map(|&k| self.terms[k].remembers()) {
+        let all = self.remembering.iter().filter_map(|&k| self.terms[k].remembers());
+        for term in all.filter(|term| which(*term)) {
             term.remember(&state.at(), &mut memory);
         }
         state.internal = memory;

@@ -70,6 +70,7 @@ impl StationElement<12, 12, 4> for CableStations {
             s: R::of(at.xi).fma(p.l, p.s0),
             weight: R::of(at.w) * p.l,
             before: R::of(BEFORE[k]) * p.l,
+            element: p.l,
             diameter: p.diameter,
             area: p.area,
         }

@@ -94,6 +94,7 @@ impl StationElement<7, 6, 4> for Hull {
             s: R::of(GAUSS[k].0).fma(p.length, p.s0),
             weight: R::of(GAUSS[k].1) * p.length,
             before: R::of(GAUSS[k].0 - GAUSS[..k].iter().map(|g| g.1).sum::<f64>()) * p.length,
+            element: R::zero(),
             diameter: p.diameter,
             area: p.area,
         }

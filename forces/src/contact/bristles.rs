@@ -34,7 +34,7 @@ impl Contact {
                 What::Span(_) => CELLS,
             };
             let share = 1.0 / cells as f64;
-            let grip = Grip { stiffness: share * grip.stiffness, damping: share * grip.damping };
+            let grip = Grip { stiffness: share * grip.stiffness, damping: share * grip.damping, ..*grip };
             group.bristles = Some(Bristles { grip, at, cells });
             at += MEMORY * cells;
         }
@@ -117,6 +117,10 @@ impl Contact {
             if !pressed.settle() {
                 continue;
             }
+            if self.brakes(at.internal) {
+                self.add_braked(group, cell, pressed, (frame, at), out, block);
+                continue;
+            }
             let Some(Bristle { held, pair, mut hold }) =
                 self.bristle(group, cell, pressed, frame, at, at.internal)
             else {
@@ -152,7 +156,7 @@ impl Contact {
     }
 
     /// How each cell of a group is pressed.
-    fn press(&self, group: &Group, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) -> [Pressed; CELLS] {
+    pub(super) fn press(&self, group: &Group, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) -> [Pressed; CELLS] {
         let mut cells = [Pressed::NONE; CELLS];
         group.gather(&self.fixed, frame, at, scratch);
         for ball in &scratch.balls {
@@ -186,6 +190,7 @@ impl Contact {
     /// where they touch.
     pub(super) fn move_anchors(&self, at: &At<'_>, memory: &mut [f64]) {
         let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
+        let brakes = self.brakes(memory);
         for group in &self.groups {
             let Some(bristles) = group.bristles else { continue };
             let mut cells = self.press(group, &frame, at, &mut scratch);
@@ -195,7 +200,10 @@ impl Contact {
                     memory[own] = 0.0;
                     continue;
                 }
-                let stretch = self.bristle(group, cell, pressed, &frame, at, memory).map(|b| b.hold.stretch);
+                let stretch = match brakes {
+                    true => self.braked_stretch(group, cell, pressed, &frame, at),
+                    false => self.bristle(group, cell, pressed, &frame, at, memory).map(|b| b.hold.stretch),
+                };
                 let held = group.station(cell);
                 let s = self.fixed.place(&frame, &held.x(at));
                 if let Some(turn) = self.turn(&held, at) {
@@ -205,6 +213,9 @@ impl Contact {
                 memory[own] = 1.0;
                 (0..3).for_each(|i| memory[own + 1 + i] = s[i] - stretch[i]);
             }
+        }
+        if let Some(begun) = self.begun {
+            memory[begun] = 1.0;
         }
     }
 }

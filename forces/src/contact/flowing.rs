@@ -86,7 +86,7 @@ impl Flowing {
             Some(Ball { held: line.beyond(end, self.span.radius), ..tip })
         };
         let span = Span { line, length: l, k: self.k * l, tips: [tip(0), tip(1)], ..self.span.clone() };
-        Group { what: What::Span(Box::new(span)), bristles: None }
+        Group { what: What::Span(Box::new(span)), bristles: None, place: None }
     }
 
     /// The piece as it is at a state.

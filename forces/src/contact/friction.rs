@@ -28,12 +28,30 @@ pub struct Friction {
     /// thickness, and less where that would smear out slip along a cable.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub elastic_slip: Option<f64>,
+    /// What it does at equilibria, which aren't unique with it.
+    #[serde(default)]
+    pub equilibrium: AtRest,
+}
+
+/// What dry friction does at equilibria.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AtRest {
+    /// Nothing: they are those without friction. In time it holds from there on.
+    #[default]
+    None,
+    /// It takes hold where the first equilibrium of a load path lies, which is one without friction, and holds what it can as the
+    /// load changes: a line that was laid and then pulled.
+    Laid,
+    /// It brakes each cable in full against being pulled by its higher end: a line that was laid under more tension than it has
+    /// now. The tension on the ground falls by `μ` times the weight per length, down to nothing.
+    Pulled,
 }
 
 impl Friction {
     /// The same in all directions.
     pub fn new(mu: f64) -> Self {
-        Friction { mu, across: None, elastic_slip: None }
+        Friction { mu, across: None, elastic_slip: None, equilibrium: AtRest::None }
     }
 
     pub(crate) fn check(&self) -> Result<(), BuildError> {
@@ -62,6 +80,25 @@ pub struct Grip {
     pub stiffness: f64,
     /// Their damping while they hold [N s/m].
     pub damping: f64,
+    /// How a cable is braked at equilibria, if it is.
+    pub brake: Option<Brake>,
+}
+
+/// Friction that is used up by the pull on one end of a cable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Brake {
+    /// 1 where the end is pulled, -1 where the start is.
+    pub way: f64,
+    /// Axial strain from which on friction is used up: below, the line hardly pulls any more.
+    pub strain: f64,
+}
+
+impl Brake {
+    /// The part of friction that a strain uses up, along the line, and its slope: rises as a parabola to its top.
+    pub(crate) fn share(&self, strain: f64) -> (f64, f64) {
+        let u = (strain / self.strain).clamp(-1.0, 1.0);
+        (-self.way * u * (2.0 - u.abs()), -self.way * 2.0 * (1.0 - u.abs()) / self.strain)
+    }
 }
 
 /// Cells on each slender piece.
@@ -159,7 +196,7 @@ impl Friction {
             let size = dot(&a, &a).sqrt();
             (size > 1e-6).then(|| along(1.0 / size, &a))
         });
-        let Grip { stiffness: k, damping: c } = *grip;
+        let Grip { stiffness: k, damping: c, .. } = *grip;
         let trial: V3<f64> = std::array::from_fn(|i| -k * e[i] - c * u[i]);
         let (g, by) = self.measure(&trial, axis.as_ref());
         let (elastic, _) = self.measure(&along(k, &e), axis.as_ref());

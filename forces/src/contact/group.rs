@@ -5,6 +5,7 @@ use super::search::{Cubic, Look, Search, gauss};
 use super::seat::{Fixed, Frame};
 use ropewalk_core::held::Held;
 use ropewalk_core::{At, SpanLine};
+use std::sync::Arc;
 
 /// A ball that can touch.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +24,16 @@ pub(crate) struct Group {
     pub what: What,
     /// Its bristles, one for each cell.
     pub bristles: Option<Bristles>,
+    /// Where it is on its part, if that is slender.
+    pub place: Option<Place>,
+}
+
+/// Where a slender piece begins.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    pub part: Arc<str>,
+    /// Unstretched arc length [m].
+    pub s: f64,
 }
 
 #[derive(Clone, Debug)]

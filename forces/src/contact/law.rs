@@ -2,7 +2,7 @@
 
 use super::friction::Friction;
 use ropewalk_core::BuildError;
-use ropewalk_core::error::not_negative;
+use ropewalk_core::error::{not_negative, positive};
 use ropewalk_scene::quantity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -40,6 +40,16 @@ pub enum Damping {
         /// Condition that ends the contact.
         #[serde(default)]
         until: Leaving,
+    },
+    /// `F = F_e + k τ ḋ` while it goes in, `F_e` while it comes out: soil that is pressed away and doesn't pull. The damper
+    /// takes hold over a depth, so that the force doesn't jump.
+    Approach {
+        /// Retardation time `τ`, the damping over the stiffness [s].
+        #[serde(deserialize_with = "quantity::time")]
+        retardation_time: f64,
+        /// Depth from which on it damps in full [m].
+        #[serde(deserialize_with = "quantity::length")]
+        over: f64,
     },
 }
 
@@ -88,6 +98,10 @@ impl ContactLaw {
             Damping::HuntCrossley(x) | Damping::KelvinVoigt { retardation_time: x, .. } => {
                 not_negative("damping", x)?;
             }
+            Damping::Approach { retardation_time, over } => {
+                not_negative("damping", retardation_time)?;
+                positive("damping", over)?;
+            }
         }
         self.friction.map_or(Ok(()), |f| f.check())
     }
@@ -131,6 +145,17 @@ impl ContactLaw {
                     return released;
                 }
                 Normal { force, by_depth: stiff, by_rate: k * time, elastic }
+            }
+            Damping::Approach { retardation_time: time, over } => {
+                if !(rate > 0.0) {
+                    return Normal { force: elastic, by_depth: stiff, by_rate: 0.0, elastic };
+                }
+                // rises as a parabola to its top
+                let u = (depth / over).min(1.0);
+                let (share, slope) = (u * (2.0 - u), 2.0 * (1.0 - u) / over);
+                let c = k * time;
+                let force = elastic + c * share * rate;
+                Normal { force, by_depth: stiff + c * slope * rate, by_rate: c * share, elastic }
             }
         }
     }

@@ -6,12 +6,15 @@
 //! into the equations of motion.
 
 mod ahead;
+mod bed;
 mod block;
+mod braked;
 mod bristles;
 mod file;
 mod flowing;
 mod friction;
 mod group;
+mod heights;
 mod law;
 mod lines;
 mod mesh;
@@ -23,7 +26,9 @@ mod term;
 mod touch;
 
 pub use file::read;
-pub use friction::{Friction, Grip};
+pub use bed::{BedSpec, GridSpec};
+pub use friction::{AtRest, Brake, Friction, Grip};
+pub use heights::Heights;
 pub use law::{ContactLaw, Damping, Leaving};
 pub use lines::{ClearanceSpec, Deepest, LineContact, LineContactSpec, Touching, nearest_points};
 pub use mesh::{MOST_TRIANGLES, Mesh, Soup};

@@ -1,5 +1,6 @@
 //! Shapes that points touch: distance, normal and curvature in closed form; meshes by their triangles.
 
+use super::heights::Heights;
 use super::mesh::Mesh;
 use ropewalk_core::rotation::{around, cross};
 use ropewalk_core::{Surface, V3, dot};
@@ -36,6 +37,8 @@ pub enum Shape {
     },
     /// A surface of triangles.
     Mesh(Arc<Mesh>),
+    /// All below heights on a grid.
+    Heights(Arc<Heights>),
 }
 
 /// How far a point is from a surface, and how the surface lies there.
@@ -113,6 +116,7 @@ impl Shape {
             }
             Shape::Cuboid { half } => cuboid(x, half, reach),
             Shape::Mesh(mesh) => mesh.gap(x, reach),
+            Shape::Heights(heights) => heights.gap(x, reach),
         }
     }
 
@@ -128,6 +132,10 @@ impl Shape {
                 let (corners, triangles) = mesh.surface();
                 Surface::Triangles { corners, triangles }
             }
+            Shape::Heights(ref heights) => {
+                let (corners, triangles) = heights.surface();
+                Surface::Triangles { corners, triangles }
+            }
         }
     }
 
@@ -135,6 +143,7 @@ impl Shape {
     pub(crate) fn at_least(&self, x: &V3<f64>) -> Option<Gap> {
         match self {
             Shape::Mesh(mesh) => mesh.at_least(x),
+            Shape::Heights(heights) => heights.at_least(x),
             shape => shape.gap(x, f64::INFINITY),
         }
     }
@@ -147,6 +156,7 @@ impl Shape {
             Shape::Plane | Shape::Ball { .. } | Shape::Cylinder { .. } | Shape::Cuboid { .. } => 0.0,
             Shape::Tube { .. } => 1.0 / (x[0].hypot(x[1]) - way).max(0.0),
             Shape::Mesh(mesh) => mesh.hollow(x, way, reach),
+            Shape::Heights(heights) => heights.hollow(reach),
         }
     }
 
@@ -155,7 +165,7 @@ impl Shape {
     pub(crate) fn points(&self, length: f64, linear: bool) -> usize {
         match self {
             Shape::Plane if linear => 4,
-            Shape::Plane => 6,
+            Shape::Plane | Shape::Heights(_) => 6,
             Shape::Ball { radius } | Shape::Cylinder { radius, .. } | Shape::Tube { radius, .. } => {
                 if length > *radius { 8 } else { 6 }
             }
@@ -165,7 +175,11 @@ impl Shape {
 
     /// Whether another part of the surface can come nearer than the nearest one now by going along it.
     pub(crate) fn concave(&self) -> bool {
-        matches!(self, Shape::Mesh(mesh) if !mesh.convex())
+        match self {
+            Shape::Mesh(mesh) => !mesh.convex(),
+            Shape::Heights(_) => true,
+            _ => false,
+        }
     }
 }
 

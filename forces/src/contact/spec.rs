@@ -1,7 +1,7 @@
 //! What a scene says about contact.
 
 use super::file::read;
-use super::friction::{Friction, Grip};
+use super::friction::{AtRest, Brake, Friction, Grip};
 use super::law::{ContactLaw, Damping};
 use super::mesh::Mesh;
 use super::shape::Shape;
@@ -146,8 +146,8 @@ pub struct ContactSpec {
     /// Damping law along the normal.
     #[serde(default)]
     pub damping: Damping,
-    /// Dry friction: a coefficient, or `{ mu, across, elastic_slip }`. Equilibria are computed without it, since with
-    /// friction they are not unique.
+    /// Dry friction: a coefficient, or `{ mu, across, elastic_slip, equilibrium }`. Equilibria are computed without it, since
+    /// with friction they are not unique, unless `equilibrium` is `laid` or `pulled`.
     #[serde(default, deserialize_with = "dry")]
     #[schemars(with = "Option<Dry>")]
     pub friction: Option<Friction>,
@@ -163,19 +163,19 @@ register_spec!(Force, "contact", ContactSpec);
     untagged,
     expecting = "friction is a coefficient, or `{ mu = 0.3, across = 0.2, elastic_slip = \"0.1 mm\" }`"
 )]
-enum Dry {
+pub(super) enum Dry {
     Coefficient(#[serde(deserialize_with = "quantity::number")] f64),
     Friction(Friction),
 }
 
-fn dry<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Option<Friction>, D::Error> {
+pub(super) fn dry<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Option<Friction>, D::Error> {
     Ok(Some(match Dry::deserialize(d)? {
         Dry::Coefficient(mu) => Friction::new(mu),
         Dry::Friction(friction) => friction,
     }))
 }
 
-fn origin() -> MarkerRef {
+pub(super) fn origin() -> MarkerRef {
     MarkerRef::Point([0.0; 3])
 }
 
@@ -205,7 +205,12 @@ impl ContactSpec {
     }
 
     /// What touches, each with what it is called in messages.
-    fn touching(&self, b: &Builder, own_seat: Option<(usize, usize)>) -> Result<Touching, BuildError> {
+    fn touching(
+        &self,
+        b: &Builder,
+        own_seat: Option<(usize, usize)>,
+        stiffness: &Stiffness,
+    ) -> Result<Touching, BuildError> {
         let mut all = Touching::default();
         if !self.on.is_empty() || self.points.is_empty() {
             for (_, part) in b.parts(&self.on)? {
@@ -279,21 +284,21 @@ impl ContactSpec {
         }
         for (name, p) in &mut all.points {
             self.give_size(name, &mut p.radius)?;
-            needs(name, "by a single point", "stiffness", self.stiffness)?;
+            needs(name, "by a single point", "stiffness", stiffness.of_point(p.radius))?;
         }
         for (name, s) in &mut all.spans {
             let name = format!("`{name}`");
             self.give_size(&name, &mut s.radius)?;
-            needs(&name, "along its length", "stiffness_per_length", self.stiffness_per_length)?;
+            needs(&name, "along its length", "stiffness_per_length", stiffness.of_length(s.radius))?;
         }
         Ok(all)
     }
 
     /// How stiff the friction of each point and slender piece is: so that it gives way by the elastic slip under its
     /// weight, no softer than the contact itself, and so stiff that slip along a cable begins where it should.
-    fn grips(&self, friction: &Friction, all: &Touching, gravity: f64) -> Vec<Grip> {
-        let points = all.points.iter().map(|p| (p.1.radius, self.stiffness)).zip(&all.weights);
-        let spans = all.spans.iter().map(|(_, s)| (s.radius, self.stiffness_per_length * s.length));
+    fn grips(&self, friction: &Friction, all: &Touching, gravity: f64, how: &Stiffness) -> Vec<Grip> {
+        let points = all.points.iter().map(|p| (p.1.radius, how.of_point(p.1.radius))).zip(&all.weights);
+        let spans = all.spans.iter().map(|(_, s)| (s.radius, how.of_length(s.radius) * s.length));
         let grip = |((radius, k), w): ((f64, f64), &Weight)| {
             let slip = friction.elastic_slip.unwrap_or(SLIP * 2.0 * radius);
             let held = friction.mu * w.mass * gravity / slip;
@@ -306,9 +311,16 @@ impl ContactSpec {
                 }
             };
             let stiffness = if stiffness > 0.0 { stiffness } else { k * slip.powf(self.exponent - 1.0) };
-            Grip { stiffness, damping: 2.0 * RATIO * (stiffness * w.mass).sqrt() }
+            Grip { stiffness, damping: 2.0 * RATIO * (stiffness * w.mass).sqrt(), brake: None }
         };
         points.chain(spans.zip(&all.span_weights)).map(grip).collect()
+    }
+
+    /// The smallest radius of what touches [m].
+    pub(super) fn thinnest(&self, b: &Builder) -> Result<f64, BuildError> {
+        let all = self.touching(b, None, &Stiffness { point: 1.0, per_length: 1.0, end: None, area: None })?;
+        let radii = all.points.iter().map(|p| p.1.radius).chain(all.spans.iter().map(|s| s.1.radius));
+        Ok(radii.fold(f64::INFINITY, f64::min))
     }
 
     fn give_size(&self, name: &str, radius: &mut f64) -> Result<(), BuildError> {
@@ -386,6 +398,35 @@ impl Touching {
     }
     fn len(&self) -> usize {
         self.points.len() + self.spans.len()
+    }
+
+    /// How the friction of each point and slender piece is used up at equilibria: by the pull on that end of its cable which is
+    /// farther away from the shape at the start.
+    fn brakes(
+        &self,
+        friction: &Friction,
+        contact: &Contact,
+        q: &[f64],
+        gravity: f64,
+    ) -> Result<Vec<Option<Brake>>, BuildError> {
+        let still = vec![0.0; q.len()];
+        let at = At { t: 0.0, q, v: &still, a: &still, internal: &[], relaxed: None };
+        let mut all = vec![None; self.points.len()];
+        for ((name, span), w) in self.spans.iter().zip(&self.span_weights) {
+            let away = |s: f64| contact.clearance(name, s, &at);
+            let (Some(start), Some(end), SpanLine::Cubic { .. }) = (away(0.0), away(w.whole), span.line) else {
+                let message = format!(
+                    "`{name}` is no cable of which both ends can touch: friction that a pull uses up is known of cables alone. \
+                     Leave it out by `on`, or take `equilibrium = \"laid\"`"
+                );
+                return Err(BuildError::at("friction", message));
+            };
+            // as much as friction takes up on one element
+            let strain = 2.0 * friction.mu * w.mass * gravity / w.ea;
+            let way = if end >= start { 1.0 } else { -1.0 };
+            all.push((strain > 0.0 && strain.is_finite()).then_some(Brake { way, strain }));
+        }
+        Ok(all)
     }
 }
 
@@ -475,30 +516,55 @@ impl ForceSpec for ContactSpec {
             Marker::Ground { point, .. } => Marker::Ground { point, axes },
             Marker::Node { node, point, .. } => Marker::Node { node, point, axes },
         };
+        let stiffness = Stiffness {
+            point: self.stiffness,
+            per_length: self.stiffness_per_length,
+            end: self.end_stiffness,
+            area: None,
+        };
+        self.place(b, shape, &marker, &stiffness)
+    }
+}
+
+impl ContactSpec {
+    /// Puts the contact with a shape in its place.
+    pub(super) fn place(
+        &self,
+        b: &mut Builder,
+        shape: Shape,
+        marker: &Marker,
+        stiffness: &Stiffness,
+    ) -> Result<(), BuildError> {
         let carrier = marker.on().map(|n| b.nodes()[n.0 as usize]);
         if carrier.is_some_and(|n| n.kind != NodeKind::Frame) {
             return Err(BuildError::at("marker", "a shape can only be on the ground or on a rigid body"));
         }
         let own = carrier.map(|n| (n.q, n.v));
-        let touching = self.touching(b, own)?;
+        let touching = self.touching(b, own, stiffness)?;
         let points: Vec<ContactPoint> = touching.points.iter().map(|p| p.1).collect();
         let spans: Vec<ContactSpan> = touching.spans.iter().map(|s| s.1).collect();
-        let stiffness = Stiffness {
-            point: self.stiffness,
-            per_length: self.stiffness_per_length,
-            end: self.end_stiffness,
-        };
         let all = (&points[..], &spans[..]);
-        let contact = Contact::new(&self.name, b.nodes(), shape, &marker, all, stiffness, self.law())?;
+        let contact = Contact::new(&self.name, b.nodes(), shape, marker, all, *stiffness, self.law())?;
+        let parts: Vec<String> = touching.spans.iter().map(|s| s.0.clone()).collect();
+        let contact = contact.with_places(&parts, &spans);
         if self.overlap == Overlap::Refuse {
             self.check_overlap(b, &contact, &touching)?;
         }
         let contact = match self.law().friction {
             Some(friction) => {
+                let pulled = friction.equilibrium == AtRest::Pulled;
                 let size = Contact::memory(points.len(), spans.len());
-                let memory = b.memory(&format!("{}: friction", self.name), size);
+                let memory = b.memory(&format!("{}: friction", self.name), size + usize::from(pulled));
                 let gravity = dot(&b.gravity(), &b.gravity()).sqrt();
-                contact.with_grips(&self.grips(&friction, &touching, gravity), memory)
+                let grips = self.grips(&friction, &touching, gravity, stiffness);
+                let contact = contact.with_grips(&grips, memory);
+                match pulled {
+                    true => {
+                        let brakes = touching.brakes(&friction, &contact, b.coordinates(), gravity)?;
+                        contact.with_brakes(&brakes, memory + size)
+                    }
+                    false => contact,
+                }
             }
             None => contact,
         };

@@ -2,8 +2,8 @@
 
 use super::block::{Block, MOST, Slopes, weights};
 use super::flowing::Flowing;
-use super::friction::{CELLS, Pressed};
-use super::group::{Ball, Group, Scratch, Span, What};
+use super::friction::{AtRest, CELLS, Pressed};
+use super::group::{Ball, Group, Place, Scratch, Span, What};
 use super::law::ContactLaw;
 use super::search::{Depth, Search};
 use super::seat::{Fixed, Frame, Seat, minus, rotation};
@@ -39,6 +39,8 @@ pub struct Contact {
     pub(super) groups: Vec<Group>,
     /// Pieces of cables that feed.
     flowing: Vec<Flowing>,
+    /// Where the memory says that time runs, if friction is used up at equilibria.
+    pub(super) begun: Option<usize>,
 }
 
 /// How stiff a contact is, with an exponent `p` other than 1 at a depth of 1 m.
@@ -50,6 +52,19 @@ pub struct Stiffness {
     pub per_length: f64,
     /// Of the tip of what is slender [N/m^p]; if none is told, that of a length as long as it is thick.
     pub end: Option<f64>,
+    /// Instead of these, per area of what lies on a plane, as thick as it is [N/m^p/m²].
+    pub area: Option<f64>,
+}
+
+impl Stiffness {
+    /// Of a ball of this radius.
+    pub(super) fn of_point(&self, radius: f64) -> f64 {
+        self.area.map_or(self.point, |k| k * std::f64::consts::PI * radius * radius)
+    }
+    /// Per length of what is slender with this radius.
+    pub(super) fn of_length(&self, radius: f64) -> f64 {
+        self.area.map_or(self.per_length, |k| k * 2.0 * radius)
+    }
 }
 
 impl Contact {
@@ -87,12 +102,12 @@ impl Contact {
         let mut groups = Vec::with_capacity(points.len() + spans.len());
         let mut flowing = Vec::new();
         for p in points {
-            let (radius, k) = (positive("radius", p.radius)?, positive("stiffness", stiffness.point)?);
+            let (radius, k) = (positive("radius", p.radius)?, positive("stiffness", stiffness.of_point(p.radius))?);
             groups.push(What::Ball(Ball { held: p.held, radius, k, cell: 0 }));
         }
         for s in spans {
             let radius = positive("radius", s.radius)?;
-            let per_length = positive("stiffness_per_length", stiffness.per_length)?;
+            let per_length = positive("stiffness_per_length", stiffness.of_length(radius))?;
             let end = match stiffness.end {
                 None => per_length * 2.0 * radius,
                 Some(k) => k,
@@ -114,14 +129,25 @@ impl Contact {
                 Some(flow) => flowing.extend(Flowing::new(flow, span)),
             }
         }
-        let groups: Vec<Group> = groups.into_iter().map(|what| Group { what, bristles: None }).collect();
+        let groups: Vec<Group> = groups.into_iter().map(|what| Group { what, bristles: None, place: None }).collect();
         for group in &groups {
             let own = matches!((seat, group.held()), (Seat::Body { v, .. }, Held::Beside { v: w, .. } | Held::Moves { v: w, .. }) if v == w);
             need(!own, || format!("{label}: a body can't touch a shape of its own"))?;
         }
         let fixed = Fixed { shape, seat, origin, axes };
-        let per_length = stiffness.per_length * spans.iter().map(|s| s.length).sum::<f64>();
-        Ok(Contact { label, law, fixed, per_length, groups, flowing })
+        let per_length = spans.iter().map(|s| stiffness.of_length(s.radius) * s.length).sum();
+        Ok(Contact { label, law, fixed, per_length, groups, flowing, begun: None })
+    }
+
+    /// Says where the slender pieces are on parts of these names, one for each in the order of [`Contact::new`]; what material
+    /// flows through comes last there and has no place.
+    #[must_use]
+    pub fn with_places(mut self, parts: &[String], spans: &[ContactSpan]) -> Self {
+        let slender = self.groups.iter_mut().filter(|g| matches!(g.what, What::Span(_)));
+        for (group, (part, span)) in slender.zip(parts.iter().zip(spans)) {
+            group.place = Some(Place { part: part.as_str().into(), s: span.s });
+        }
+        self
     }
 
     /// How deep each point and then each slender piece is at a state [m]; `None` where it doesn't touch.
@@ -417,6 +443,13 @@ impl Remembers for Contact {
     fn remember(&self, at: &At<'_>, memory: &mut [f64]) {
         self.move_anchors(at, memory);
     }
+    fn at_rest(&self) -> Option<bool> {
+        match self.law.friction?.equilibrium {
+            AtRest::None => None,
+            AtRest::Laid => Some(true),
+            AtRest::Pulled => Some(false),
+        }
+    }
 }
 
 impl Foresees for Contact {
@@ -468,6 +501,10 @@ impl Shows for Contact {
             length += scratch.found.iter().map(|[a, b]| now.l * (b - a)).sum::<f64>();
         }
         let (mut slipping, mut all) = (0.0, 0.0);
+        self.each_braked(at, |f| {
+            let f = times(&frame.r, f);
+            (0..3).for_each(|i| sum[i] += f[i]);
+        });
         self.each_bristle(at, |hold, pressed| {
             let f = times(&frame.r, &hold.f);
             (0..3).for_each(|i| sum[i] += f[i]);
@@ -491,5 +528,8 @@ impl Shows for Contact {
     }
     fn remark(&self, at: &At<'_>) -> Option<String> {
         self.coarse(at)
+    }
+    fn local(&self, quantity: &str, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
+        if quantity == "clearance" { self.clearance(part, s, at) } else { None }
     }
 }

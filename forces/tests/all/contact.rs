@@ -244,7 +244,7 @@ fn power_and_energy_add_up_to_what_the_force_does() {
 fn rough(way: f64, mut see: impl FnMut(&Contact, &Numbers, &[f64], &str)) {
     let friction = Friction { across: Some(0.25), ..Friction::new(0.4) };
     let law = ContactLaw { friction: Some(friction), ..ContactLaw::default() };
-    let grip = Grip { stiffness: 1e3, damping: 10.0 };
+    let grip = Grip { stiffness: 1e3, damping: 10.0, brake: None };
     let mut r = Random(41);
     scenes(law, |contact, s, what| {
         let contact = contact.clone().with_grips(&[grip], 0);

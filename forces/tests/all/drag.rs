@@ -23,6 +23,7 @@ fn station(r: &mut Random, speed: f64) -> Station<f64> {
         s: 0.5,
         weight: 0.1,
         before: 0.04,
+        element: 0.2,
         diameter: 0.023,
         area: 4e-4,
     }

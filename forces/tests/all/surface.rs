@@ -22,6 +22,7 @@ fn station(r: &mut Random, depth: f64, slope: V3<f64>) -> Station<f64> {
         s: 0.5,
         weight: 0.25,
         before: 0.09,
+        element: 0.8,
         diameter: 2.0 * radius,
         area: PI * radius * radius,
     }

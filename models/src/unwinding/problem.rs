@@ -206,6 +206,7 @@ impl Unwinding {
             s: 0.0,
             weight: 1.0,
             before: 0.5,
+            element: 0.0,
             diameter: d,
             area,
         }

@@ -15,8 +15,10 @@ mod extremes;
 mod fatigue;
 mod moments;
 mod rainflow;
+mod spectrum;
 
 pub use extremes::{Gumbel, Interval, expected_maximum, most_probable_maximum, quantile_of_maximum};
-pub use fatigue::{dirlik, narrow_band};
+pub use fatigue::{Life, dirlik, narrow_band};
 pub use moments::{Crossings, Moments};
+pub use spectrum::Spectrum;
 pub use rainflow::{Cycle, damage, equivalent_range, rainflow, total};

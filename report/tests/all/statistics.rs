@@ -1,8 +1,8 @@
 //! Moments, cycles and extremes against published examples and values that were computed elsewhere.
 
 use ropewalk_report::statistics::{
-    Crossings, Gumbel, Moments, damage, dirlik, equivalent_range, expected_maximum, most_probable_maximum,
-    narrow_band, quantile_of_maximum, rainflow, total,
+    Crossings, Cycle, Gumbel, Life, Moments, Spectrum, damage, dirlik, equivalent_range, expected_maximum,
+    most_probable_maximum, narrow_band, quantile_of_maximum, rainflow, total,
 };
 use serde_json::Value;
 
@@ -128,4 +128,59 @@ fn extremes_follow_their_distributions() {
     }
     assert_eq!(Gumbel::by_l_moments(&[1.0]), None);
     assert_eq!(Gumbel::by_moments(&[1.0, f64::NAN]), None);
+}
+
+#[test]
+fn spectra_by_welch_are_those_of_another_program() {
+    // scipy.signal.welch
+    for case in reference()["series"].as_array().expect("list") {
+        let (record, dt) = series(&case["series"]);
+        let welch = &case["welch"];
+        let length = welch["nperseg"].as_u64().expect("length") as usize;
+        let s = Spectrum::welch(&record, dt, length).expect("spectrum");
+        let largest = s.densities.iter().fold(0.0_f64, |a, b| a.max(*b));
+        for (f, p) in list(&welch["f"]).iter().zip(list(&welch["P"])) {
+            let k = s.frequencies.iter().position(|x| (x - f).abs() < 1e-9).expect("frequency");
+            assert!((s.densities[k] - p).abs() < 1e-12 * largest, "{} instead of {p}", s.densities[k]);
+        }
+        close(s.moment(0), &welch["integral"], 1e-9);
+        close(s.peak(), &welch["peak_f"], 1e-12);
+    }
+}
+
+#[test]
+fn a_narrow_band_does_the_damage_of_its_closed_form() {
+    // a harmonic whose amplitude is Rayleigh-distributed: cycle by cycle
+    let (sigma, m, n) = (2.0, 3.0, 20_000);
+    let per_cycle = 24;
+    let mut record = Vec::new();
+    for k in 0..n {
+        // amplitudes at equal steps of their probability, in an order that mixes them
+        let p = ((k * 7919) % n) as f64 / n as f64 + 0.5 / n as f64;
+        let amplitude = sigma * (-2.0 * (1.0 - p).ln()).sqrt();
+        record.extend((0..per_cycle).map(|i| amplitude * (std::f64::consts::TAU * f64::from(i) / f64::from(per_cycle)).sin()));
+    }
+    let cycles = rainflow(&record);
+    let sum: f64 = cycles.iter().map(|c| c.count * c.range.powf(m)).sum::<f64>() / f64::from(n);
+    let closed = narrow_band(sigma, 1.0, m);
+    // neighbouring amplitudes differ: ranges from the crest of one to the trough of the next even out
+    assert!((sum / closed - 1.0).abs() < 0.15, "{sum} instead of {closed}");
+    let life = Life { strength: 50.0, k: 1e3, m, beyond: None, mean_load: false };
+    let damage = damage(&cycles, |c| life.cycles(c));
+    assert!((damage / (sum * f64::from(n) / (1e3 * 50f64.powf(m))) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn lives_bend_and_mind_the_mean() {
+    let plain = Life { strength: 100.0, k: 10.0, m: 3.0, beyond: None, mean_load: false };
+    let of = |life: &Life, range: f64, mean: f64| life.cycles(&Cycle { range, mean, count: 1.0 });
+    assert!((of(&plain, 10.0, 50.0) - 1e4).abs() < 1e-8);
+    // about half of the strength every range counts twice
+    let goodman = Life { mean_load: true, ..plain };
+    assert!((of(&goodman, 10.0, 50.0) - of(&plain, 20.0, 0.0)).abs() < 1e-8);
+    assert_eq!(of(&goodman, 1.0, 100.0), 0.0);
+    // beyond the knee, 8 times less range is 8^5 times more life
+    let bent = Life { beyond: Some((1e4, 5.0)), ..plain };
+    assert!((of(&bent, 1.25, 0.0) / (1e4 * 8f64.powi(5)) - 1.0).abs() < 1e-12);
+    assert_eq!(of(&bent, 20.0, 0.0), of(&plain, 20.0, 0.0));
 }

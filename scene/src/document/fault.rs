@@ -2,6 +2,7 @@
 
 use super::source::{Place, Sources, Span};
 use std::fmt;
+use std::ops::Range;
 
 /// One thing that is wrong with a scene, and where.
 ///
@@ -33,6 +34,14 @@ impl Fault {
     /// A fault of the scene as a whole.
     pub fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), help: None, path: String::new(), place: None, notes: Vec::new() }
+    }
+
+    /// A fault at some bytes of a text of this name that isn't a scene.
+    #[must_use]
+    pub fn in_text(message: impl Into<String>, name: &str, text: &str, bytes: Range<usize>) -> Self {
+        let mut sources = Sources::default();
+        let source = sources.add(name, text);
+        Self::at(message, Span::new(source, bytes), &sources)
     }
 
     pub(super) fn at(message: impl Into<String>, span: Span, sources: &Sources) -> Self {

@@ -1,5 +1,5 @@
 //! The records that come with Ropewalk: motion of a point and turning of a body, tension and the like along a cable, its length,
-//! reaction of a constraint and how well it follows its motion, force of a contact or spring, what has let go, inputs, momentum
+//! reaction of a constraint and how well it follows its motion, force of a contact or spring, where a line comes to lie, what has let go, inputs, momentum
 //! and balance of energy.
 //!
 //! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
@@ -16,6 +16,7 @@ mod payout;
 mod place;
 mod reaction;
 mod released;
+mod touchdown;
 mod turning;
 
 pub use along::AlongSpec;
@@ -30,6 +31,7 @@ pub use payout::PayoutSpec;
 pub use place::{SpaceAxis, Station as RecordPlace, off, part};
 pub use reaction::{ReactionPart, ReactionSpec};
 pub use released::ReleasedSpec;
+pub use touchdown::TouchdownSpec;
 pub use turning::{AngularVelocitySpec, OrientationSpec, SeenFrom};
 
 /// `` `a`, `b` ``, or what is said instead if there is nothing.

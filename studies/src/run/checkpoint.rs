@@ -3,6 +3,7 @@
 //! The file is replaced as a whole, so that there is always one that can be read. It holds the simulation and everything
 //! recorded so far, with every bit of every number, behind a line that says which program wrote it.
 
+use super::ranges::Range;
 use super::recorder::Recorder;
 use super::shapes::Shape;
 use super::steps::StepCourse;
@@ -63,6 +64,7 @@ pub(crate) struct Saved<'a> {
     pub course: Cow<'a, Option<StepCourse>>,
     pub events: Cow<'a, [Happened]>,
     pub remeshed: Cow<'a, [Remeshed]>,
+    pub ranges: Cow<'a, [Range]>,
     pub warnings: Cow<'a, [String]>,
     pub flutter: f64,
     pub cpu_s: f64,
@@ -143,6 +145,7 @@ impl Saver {
             course: Cow::Borrowed(&recorder.course),
             events: Cow::Borrowed(&recorder.events),
             remeshed: Cow::Borrowed(&recorder.remeshed),
+            ranges: Cow::Borrowed(&recorder.ranges),
             warnings: Cow::Borrowed(&self.warnings),
             flutter: self.flutter,
             cpu_s: self.before.cpu_s + elapsed.cpu_s,

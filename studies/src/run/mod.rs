@@ -9,6 +9,7 @@ mod manifest;
 mod page;
 mod pictures;
 mod prepare;
+mod ranges;
 mod recorder;
 mod report;
 mod scenery;
@@ -108,6 +109,10 @@ pub(crate) fn run_showing(
     if let Err(message) = tables::check(scene, &recorder.table) {
         return Err(file.document().fault_at("run.tables", message).into());
     }
+    recorder.ranges = match ranges::all(scene, &model) {
+        Ok(ranges) => ranges,
+        Err(e) => return Err(file.document().fault_at("run.ranges", e.message).into()),
+    };
     if let Some(name) = &options.follow {
         recorder.follow(name)?;
     }
@@ -267,7 +272,10 @@ impl Job<'_> {
         }
         shapes::write(&folder, &recorder.table.columns[0], &recorder.kept.shapes)
             .unwrap_or_else(|e| warn(&e.to_string()));
-        let tables = tables::write(&folder, &recorder, &mut warn);
+        let mut tables = tables::write(&folder, &recorder, &mut warn);
+        let (ranges, drawn) = ranges::write(&folder, &recorder.ranges, leaves.plots, &mut warn);
+        tables.extend(ranges);
+        pictures.extend(drawn);
         let field = recorder.kept.field();
         if let Some(field) = &field {
             leave::write_field(&folder, leaves, field, &mut warn);

@@ -3,6 +3,7 @@
 use super::checkpoint::{Saved, Saver};
 use super::kept::Kept;
 use super::leave::Leaves;
+use super::ranges::Range;
 use super::shapes::{Line, Shape};
 use super::start::Started;
 use super::steps::StepCourse;
@@ -67,6 +68,8 @@ pub struct Recorder<'a> {
     pub events: Vec<Happened>,
     /// How the mesh has changed.
     pub remeshed: Vec<Remeshed>,
+    /// Range graphs of lines.
+    pub ranges: Vec<Range>,
     /// Where checkpoints go, if any are wanted.
     pub saver: Option<Saver>,
     /// Where warnings go while the run goes on.
@@ -135,6 +138,7 @@ impl<'a> Recorder<'a> {
             stop: None,
             events: Vec::new(),
             remeshed: Vec::new(),
+            ranges: Vec::new(),
             saver: None,
             warnings: Warnings::default(),
             layers: None,
@@ -185,6 +189,7 @@ impl<'a> Recorder<'a> {
         self.course = self.course.take().map(|_| saved.course.clone().into_owned().unwrap_or_default());
         self.events = saved.events.clone().into_owned();
         self.remeshed = saved.remeshed.clone().into_owned();
+        self.ranges = saved.ranges.clone().into_owned();
         Ok(())
     }
 
@@ -320,6 +325,7 @@ impl Observer for Recorder<'_> {
         }
         let bound = self.bind(model);
         self.go_on(bound)?;
+        self.range(model, &state.at());
         self.look_for_end()
     }
     fn needs_forces(&self) -> bool {
@@ -350,6 +356,9 @@ impl Observer for Recorder<'_> {
     }
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         let begin = self.spent.map(|_| Instant::now());
+        if sample.at.t == 0.0 {
+            self.range(sample.model, &sample.at);
+        }
         let risen = self.surfacing.as_mut().map(|s| s.look(sample.model, &sample.at));
         risen.into_iter().flatten().for_each(|text| self.warn(&text));
         let recorded = self.record(sample);

@@ -6,7 +6,9 @@ use super::summary::{Counts, CriticalLoad, Ending, ProfileEntry};
 use crate::error::{Error, caught};
 use ropewalk_core::integrator::{Limit, StepError, StepReport, Stepping};
 use ropewalk_core::statics::{Critical, Statics};
-use ropewalk_core::{Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit};
+use ropewalk_core::{
+    Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Term, Unfit,
+};
 use ropewalk_report::Watch;
 use ropewalk_scene::{Analysis, Fault, Process, Scene, SceneFile};
 use std::ops::ControlFlow;
@@ -400,12 +402,14 @@ fn no_memory(source: SolveError) -> Error {
 
 /// What to say of an equilibrium that dry friction takes no part in.
 fn without_friction(model: &Model) -> Option<String> {
-    let rough = model.terms().iter().filter(|t| t.remembers().is_some()).map(|t| format!("`{}`", t.label()));
+    let without = |t: &&Arc<dyn Term>| t.remembers().is_some_and(|r| r.at_rest().is_none());
+    let rough = model.terms().iter().filter(without).map(|t| format!("`{}`", t.label()));
     let rough: Vec<String> = rough.collect();
     (!rough.is_empty()).then(|| {
         format!(
             "the equilibrium is that without the friction of {}: with it there are many, and which one is reached depends on \
-             the way there. From here on in time friction holds what it can",
+             the way there. From here on in time friction holds what it can. `friction = {{ mu = …, equilibrium = \"pulled\" }}` \
+             brakes lines that were pulled tight",
             rough.join(", ")
         )
     })

@@ -4,6 +4,7 @@
 //! again computes only what is missing there. Several processes may share the runs ([`plan`], [`share`]).
 
 mod axis;
+mod extremes;
 mod finals;
 mod grid;
 mod manifest;
@@ -23,7 +24,7 @@ use crate::error::Error;
 use crate::run::Status;
 use crate::study::{Runner, StudyFolder, lock};
 use results::{Results, Row};
-use ropewalk_report::{ProgressMode, RunFolder, Stopwatch, Watch};
+use ropewalk_report::{ProgressMode, RunFolder, Sheet, Stopwatch, Watch};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -44,6 +45,8 @@ pub struct SweepOptions {
     pub report: Report,
     /// … and over which last part of it.
     pub over: Over,
+    /// Whether to tell of extremes over the first parameter, a seed.
+    pub extremes: bool,
 }
 
 /// How a sweep ended.
@@ -84,6 +87,10 @@ pub fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome, Error>
     let mut warn = |text: &str| progress.say(&format!("warning: {text}"));
     let pictures = pictures::draw(&folder, grid, &axes, &results, options.report, &mut warn);
     let tables = finals::write(&folder, grid, &axes, &results, options.report, &mut warn);
+    let extremes = match options.extremes {
+        true => extremes::write(&folder, grid, &results, &mut warn),
+        false => Vec::new(),
+    };
     let names: Vec<String> = (0..grid.len()).map(|k| grid.name(k).to_string()).collect();
     page::write(&folder, &results, &names, (options.report, options.over))
         .unwrap_or_else(|e| progress.say(&format!("warning: {e}")));
@@ -93,7 +100,10 @@ pub fn sweep(grid: &Grid, options: &SweepOptions) -> Result<SweepOutcome, Error>
     let count = |of: fn(Status) -> bool| results.rows().filter(|(_, row)| of(row.status)).count();
     let (failed, complete) = (count(Status::is_failure), count(Status::is_complete));
     let (wall_s, reported) = (stopwatch.elapsed().wall_s, (options.report, options.over));
-    let report = report::report(&results, &folder, wall_s, grid.len(), reported, [tables, pictures]);
+    let mut report = report::report(&results, &folder, wall_s, grid.len(), reported, [tables, pictures]);
+    let mut more = Sheet::default();
+    more.entries("extremes", extremes);
+    report += &more.to_string();
     let runs = (grid.len(), complete);
     Ok(SweepOutcome { interrupted, failed, runs, folder: folder.path().to_path_buf(), report })
 }

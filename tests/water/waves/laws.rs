@@ -75,6 +75,7 @@ impl Course {
             s: 2.0,
             weight: 0.5,
             before: 0.2,
+            element: 1.4,
             diameter: 0.3,
             area: PI * 0.0225,
         }

@@ -1,16 +1,17 @@
 // What follows from the places of a line's points: angle and clearance, computed when they are first looked at.
 
+import { Vector3 } from "three";
+import { Faces } from "./mesh.ts";
 import { turned, type Pose } from "./motion.ts";
 import type { Field, Line, Quantity, Shape, Solid, V3 } from "./run.ts";
 
 /** Adds what can be derived to the quantities of all lines. */
 export function derive(field: Field): void {
   const obstacles = around(field);
-  const meshes = [...field.shapes, ...field.bodies.flatMap((b) => b.shapes)].some((s) => s.solid.type === "mesh");
   for (const line of field.lines) {
     if (line.quantities.some((q) => q.name === "displacement")) continue;
     line.quantities.push(lazy("angle to the horizontal", "°", () => angles(line)));
-    if (obstacles.length > 0) line.quantities.push(lazy(meshes ? "clearance, but of meshes" : "clearance", "m", () => clearances(field, line, obstacles)));
+    if (obstacles.length > 0) line.quantities.push(lazy("clearance", "m", () => clearances(field, line, obstacles)));
   }
 }
 
@@ -41,9 +42,8 @@ interface Obstacle {
 }
 
 function around(field: Field): Obstacle[] {
-  const solid = (shape: Shape) => shape.solid.type !== "mesh";
-  const ground: Obstacle[] = field.shapes.filter(solid).map((shape) => ({ shape, body: null }));
-  const carried: Obstacle[] = field.bodies.flatMap((body) => body.shapes.filter(solid).map((shape) => ({ shape, body })));
+  const ground: Obstacle[] = field.shapes.map((shape) => ({ shape, body: null }));
+  const carried: Obstacle[] = field.bodies.flatMap((body) => body.shapes.map((shape) => ({ shape, body })));
   const bed: Obstacle[] = field.bed === null ? [] : [{
     shape: { name: "bed", solid: { type: "plane" }, pose: { position: [0, 0, field.bed - field.origin[2]], orientation: [1, 0, 0, 0] } }, body: null,
   }];
@@ -95,6 +95,15 @@ export function distance(solid: Solid, [x, y, z]: V3): number {
     case "box":
       return outside([x, y, z].map((v, i) => Math.abs(v) - solid.half[i]!));
     case "mesh":
-      return NaN;
+      return faces(solid).distance(new Vector3(x, y, z));
   }
+}
+
+const known = new WeakMap<Solid, Faces>();
+
+/** The faces of a mesh, which are made once. */
+function faces(solid: Solid & { type: "mesh" }): Faces {
+  let made = known.get(solid);
+  if (!made) known.set(solid, (made = new Faces(solid.points, solid.triangles)));
+  return made;
 }

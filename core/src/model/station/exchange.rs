@@ -7,7 +7,7 @@ use crate::model::term::{Energy, Power};
 use std::cell::RefCell;
 
 /// How many numbers make a station, and a load.
-pub(super) const STATION: usize = 20;
+pub(super) const STATION: usize = 21;
 pub(super) const LOAD: usize = 78;
 /// Where the derivatives stand in a load.
 const D_X: usize = 3;
@@ -63,7 +63,7 @@ impl<R: Real> Station<R> {
         put(row, 6, &self.a);
         put(row, 9, &self.slope);
         put(row, 12, &self.slope_rate);
-        put(row, 15, &[self.s, self.weight, self.before, self.diameter, self.area]);
+        put(row, 15, &[self.s, self.weight, self.before, self.element, self.diameter, self.area]);
     }
     #[inline(always)]
     pub(super) fn read(row: &[f64]) -> Self {
@@ -76,8 +76,9 @@ impl<R: Real> Station<R> {
             s: number(row, 15),
             weight: number(row, 16),
             before: number(row, 17),
-            diameter: number(row, 18),
-            area: number(row, 19),
+            element: number(row, 18),
+            diameter: number(row, 19),
+            area: number(row, 20),
         }
     }
 }

@@ -36,6 +36,8 @@ pub struct Station<R> {
     pub weight: R,
     /// How much of its cell lies before it, towards the body's start [m].
     pub before: R,
+    /// Unstretched length of the flexible element that it belongs to [m]; 0 of what is rigid.
+    pub element: R,
     /// Hydrodynamic diameter [m].
     pub diameter: R,
     /// Area of the displaced volume per length [m²].

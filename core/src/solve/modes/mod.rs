@@ -4,6 +4,7 @@
 //! and of the forces of constraints, in a turning frame with Coriolis and centrifugal forces. Multipliers stay in the
 //! equations, so motions meet the constraints and no spurious modes come of them.
 
+mod align;
 mod buckling;
 mod krylov;
 mod outcome;
@@ -17,7 +18,7 @@ use crate::model::motion::SteadyFrame;
 use crate::model::state::{At, State};
 use crate::solve::statics::{Linear, Statics, StaticsOptions};
 pub use outcome::{Critical, Mode, Modes, ModesError, OnLook};
-use outcome::{Found, Watch, direction, finish};
+use outcome::{Found, Watch, finish};
 use pencil::Pencil;
 use std::ops::ControlFlow;
 
@@ -121,21 +122,15 @@ pub fn modes(
     refuse_moving(model, &rest)?;
     let mut pencil = Pencil::new(model, &state.internal, statics.linearise(&rest))?;
     let mut watch = Watch(look);
-    let found = if pencil.damped || !pencil.symmetric {
-        quadratic::find(&mut pencil, count, &mut watch)?
+    let kinds = align::kinds(model, &pencil);
+    let mut found = if pencil.damped || !pencil.symmetric {
+        quadratic::find(&mut pencil, count, &kinds, &mut watch)?
     } else {
-        let mut kinds = vec![0; pencil.len()];
-        for node in model.nodes() {
-            for (i, dof) in node.dofs().enumerate() {
-                kinds[pencil.structure().position[dof]] = direction(node, i).unwrap_or(0);
-            }
-        }
         undamped::find(&mut pencil, count, &kinds, &mut watch)?
     };
     if found.modes.is_empty() {
         return Err(ModesError::Held);
     }
-    let mut found = found;
     let all = std::mem::take(&mut found.modes);
     let mut modes: Vec<Mode> = all.into_iter().map(|raw| finish(model, &pencil, raw)).collect();
     // in the order found, but rigid ones first
@@ -165,7 +160,9 @@ pub(crate) fn slowest(
     count: usize,
 ) -> Result<Vec<Mode>, ModesError> {
     let mut pencil = Pencil::new(model, internal, linear)?;
-    let found = quadratic::find(&mut pencil, count, &mut Watch(&mut |_, _, _| ControlFlow::Continue(())))?;
+    let kinds = align::kinds(model, &pencil);
+    let mut watch = Watch(&mut |_, _, _| ControlFlow::Continue(()));
+    let found = quadratic::find(&mut pencil, count, &kinds, &mut watch)?;
     Ok(found.modes.into_iter().map(|raw| finish(model, &pencil, raw)).collect())
 }
 

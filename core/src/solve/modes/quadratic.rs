@@ -1,6 +1,7 @@
 //! `(λ² M + λ C + K) x + Gᵀμ = 0`, `G x = 0`: with damping or in a frame that turns, by the shift-inverted Arnoldi method
 //! for displacements and velocities together.
 
+use super::align::{align, in_phase};
 use super::krylov::{Arnoldi, Operator, Ritz, dot};
 use super::outcome::{Found, ModesError, Raw, Watch};
 use super::pencil::Pencil;
@@ -56,8 +57,14 @@ impl Operator for Inverse<'_> {
 
 const STARTS: usize = 4;
 
-/// The `count` modes with the smallest `|λ|`, or all if there are fewer.
-pub(super) fn find(p: &mut Pencil, count: usize, watch: &mut Watch<'_>) -> Result<Found, ModesError> {
+/// The `count` modes with the smallest `|λ|`, or all if there are fewer. `kinds` says of each unknown along which
+/// direction it moves.
+pub(super) fn find(
+    p: &mut Pencil,
+    count: usize,
+    kinds: &[usize],
+    watch: &mut Watch<'_>,
+) -> Result<Found, ModesError> {
     let weight = shift(p)?;
     let sigma = 0.5 * weight.sqrt();
     p.factor(sigma, sigma * sigma).map_err(ModesError::Solver)?;
@@ -101,7 +108,8 @@ pub(super) fn find(p: &mut Pencil, count: usize, watch: &mut Watch<'_>) -> Resul
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
         next_look = space.turns() + 2 * STARTS;
     };
-    let modes = collect(op.p, &all, &space, count, [sigma, weight.sqrt()])?;
+    let mut modes = collect(op.p, &all, &space, count, [sigma, weight.sqrt()])?;
+    align(op.p, kinds, &mut modes, 1e-8);
     let of = closed.then_some(modes.len());
     Ok(Found { modes, missing: None, of })
 }
@@ -166,18 +174,8 @@ fn raw(p: &mut Pencil, rate: [f64; 2], scale: f64, vector: [Vec<f64>; 2]) -> Res
     let half = |x: &Vec<f64>| if x.is_empty() { vec![0.0; n] } else { x[..n].to_vec() };
     // 1/θ with θ in the upper half plane lies in the lower one: the conjugate belongs to what is reported
     let (re, im): (Vec<f64>, Vec<f64>) = (half(&vector[0]), half(&vector[1]).iter().map(|x| -x).collect());
+    let [a, b] = in_phase(p, [re, im]);
     let mut y = vec![0.0; n];
-    let mut product = |a: &[f64], b: &[f64]| {
-        p.mass(b, &mut y);
-        dot(a, &y)
-    };
-    let (rr, ii, ri) = (product(&re, &re), product(&im, &im), product(&re, &im));
-    let mass = rr + ii;
-    let turn = 0.5 * (2.0 * ri).atan2(rr - ii);
-    let (cos, sin) = (turn.cos() / mass.sqrt(), turn.sin() / mass.sqrt());
-    let both = || re.iter().zip(&im);
-    let a: Vec<f64> = both().map(|(r, i)| cos * r + sin * i).collect();
-    let b: Vec<f64> = both().map(|(r, i)| cos * i - sin * r).collect();
     // rounding moves a double zero by its root
     let [(k_a, n_a), (k_b, n_b)] = [p.energy(&a), p.energy(&b)];
     // entries that cancel leave more than their own rounding: what would swing slower than a zero rate is free too

@@ -1,10 +1,10 @@
 //! `(K - ω² M) x + Gᵀμ = 0`, `G x = 0`: without forces that depend on velocity, by the shift-inverted Lanczos method.
 
+use super::align::align;
 use super::krylov::{Arnoldi, Operator, Ritz, dot};
 use super::outcome::{Found, ModesError, Raw, Watch};
 use super::pencil::Pencil;
 use crate::solve::linear::SolveError;
-use faer::{Mat, Side};
 
 /// `(K + m M)⁻¹ M`, in the inner product of the mass, with the shift `m`.
 struct Inverse<'a>(&'a mut Pencil, f64);
@@ -139,7 +139,7 @@ pub(super) fn find(
     let take = taken.min(count);
     let modes = ritz[..take].iter().map(|r| raw(p, space.vector(&r.vector)[0].clone()));
     let mut modes = modes.collect::<Result<Vec<_>, _>>()?;
-    align(p, kinds, &mut modes);
+    align(p, kinds, &mut modes, 5e-7);
     let of = closed.then_some(all);
     Ok(Found { modes, missing, of })
 }
@@ -195,51 +195,4 @@ fn raw(p: &mut Pencil, x: Vec<f64>) -> Result<Raw, ModesError> {
     p.mass(&left, &mut weighed);
     let residual = (dot(&left, &weighed).max(0.0) / mass).sqrt();
     Ok(Raw { rate, rigid, shape: [x, Vec::new()], residual })
-}
-
-/// Turns shapes of the same frequency so that each moves along one direction as far as possible.
-fn align(p: &Pencil, kinds: &[usize], all: &mut [Raw]) {
-    let square = |m: &Raw| m.rate[1] * m.rate[1] - m.rate[0] * m.rate[0];
-    let mut first = 0;
-    while first < all.len() {
-        let alike = |m: &Raw| match (m.rigid, all[first].rigid) {
-            (false, false) => (square(m) - square(&all[first])).abs() <= 1e-6 * square(&all[first]).abs(),
-            (a, b) => a && b,
-        };
-        let end = (first + 1..all.len()).find(|&k| !alike(&all[k])).unwrap_or(all.len());
-        if end - first > 1 {
-            turn(p, kinds, &mut all[first..end]);
-        }
-        first = end;
-    }
-}
-
-/// Diagonalises the energy weighted by direction.
-fn turn(p: &Pencil, kinds: &[usize], all: &mut [Raw]) {
-    let n = all.len();
-    let mut y = vec![0.0; p.len()];
-    let scaled: Vec<Vec<f64>> = all
-        .iter()
-        .map(|m| {
-            p.mass(&m.shape[0], &mut y);
-            y.iter().zip(kinds).map(|(y, k)| y * (1 + k) as f64).collect()
-        })
-        .collect();
-    let h = Mat::from_fn(n, n, |i, j| {
-        0.5 * (dot(&all[i].shape[0], &scaled[j]) + dot(&all[j].shape[0], &scaled[i]))
-    });
-    let Ok(eigen) = h.self_adjoint_eigen(Side::Lower) else { return };
-    let turned: Vec<Vec<f64>> = (0..n)
-        .map(|k| {
-            let mut x = vec![0.0; p.len()];
-            for (i, m) in all.iter().enumerate() {
-                let part = eigen.U()[(i, k)];
-                x.iter_mut().zip(&m.shape[0]).for_each(|(x, s)| *x += part * s);
-            }
-            x
-        })
-        .collect();
-    for (m, x) in all.iter_mut().zip(turned) {
-        m.shape[0] = x;
-    }
 }

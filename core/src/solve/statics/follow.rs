@@ -20,6 +20,7 @@ impl Statics<'_> {
         let before = state.clone();
         let found = self.seek(state, cold)?;
         self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
+        self.model.remember_rest(state);
         Ok(found)
     }
 
@@ -135,6 +136,7 @@ impl Statics<'_> {
                     } else if self.leapt(&before, state) {
                         self.go_round(&before, state, &mut sum)?;
                     }
+                    self.model.remember_rest(state);
                     h *= 2.0;
                     continue;
                 }

@@ -123,6 +123,7 @@ macro_rules! stations {
                     s: R::of(at.xi).fma(g.l, g.p),
                     weight: R::of(at.w) * g.l,
                     before: R::of(BEFORE[k]) * g.l,
+                    element: g.l,
                     diameter: p.diameter,
                     area: p.area,
                 }
