@@ -4,5 +4,4 @@ mod function;
 mod joints;
 mod motions;
 mod package;
-mod reeving;
 mod winch;

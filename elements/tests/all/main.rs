@@ -13,6 +13,5 @@ mod point_mass;
 mod pools;
 mod rigid_body;
 mod rigid_chain;
-mod route;
 mod torsion;
 mod transmitted;

@@ -4,7 +4,7 @@ use super::{listed, named};
 use crate::marker::split_marker;
 use crate::register_spec;
 use crate::spec::RecordSpec;
-use ropewalk_core::{BuildError, Column, Model, MovingBoundary, Record, Sample, Spot};
+use ropewalk_core::{BuildError, Column, Model, MovingBoundary, Part, Record, Sample, Spot};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
