@@ -79,13 +79,17 @@ fn taken(arc: &Arc, t: f64, steady: bool) -> f64 {
 #[test]
 fn what_an_arc_takes_it_stores_or_turns_into_heat() {
     for grip in [Grip::Slides(0.0), Grip::Slides(0.4), Grip::Turns(0.8)] {
-        for (steady, tolerance) in [(true, 1e-6), (false, 1e-2)] {
+        // with a stretch that changes, the motion along the arc is linear but for its own rate: 2e-3 of tension and speed
+        for (steady, tolerance) in [(true, 1e-6), (false, 2e-3)] {
             let (arc, t) = (arc(grip), 0.05);
             let energy = |t: f64| eval(&arc, t, steady).1.energy.iter().sum::<f64>();
             let stored = difference(|h| vec![energy(t + h)])[0];
             let lost = eval(&arc, t, steady).1.dissipated;
             assert!(grip == Grip::Slides(0.0) || lost > 0.0);
-            assert_relative_eq!(taken(&arc, t, steady), stored + lost, max_relative = tolerance);
+            let scale = eval(&arc, t, steady).1.tension;
+            assert!(scale > 100.0);
+            let off = (taken(&arc, t, steady) - stored - lost).abs() / scale;
+            assert!(off < tolerance, "{grip:?}, steady {steady}: {off}");
         }
     }
 }
@@ -124,7 +128,11 @@ fn sliding_at_a_speed_follows_the_capstan_equation_to_the_last_digit() {
         let presses = instant.beside[1] - instant.lift[1];
         assert_relative_eq!(presses / (100.0 - instant.lift[0]), (mu * wrap).exp(), max_relative = 1e-9);
         // the axle carries T1 + T2 - 2 m v²
-        assert_relative_eq!(instant.axle[2], -(100.0 + instant.beside[1] - 2.0 * instant.lift[0]), max_relative = 1e-9);
+        assert_relative_eq!(
+            instant.axle[2],
+            -(100.0 + instant.beside[1] - 2.0 * instant.lift[0]),
+            max_relative = 1e-9
+        );
     }
 }
 

@@ -117,7 +117,12 @@ pub fn direction<S: Jet>(x: S, x0: f64) -> S {
 
 impl Arc {
     /// Evaluates all of it; `stored` is the unstretched length for material coordinates of 0.
-    pub fn eval<S: Jet>(&self, stored: f64, ends: &[End<S>; 2], wheel: &Wheel<S>) -> (Residual<S>, Instant<S>) {
+    pub fn eval<S: Jet>(
+        &self,
+        stored: f64,
+        ends: &[End<S>; 2],
+        wheel: &Wheel<S>,
+    ) -> (Residual<S>, Instant<S>) {
         let Strand { mass, ea, ei, damping, .. } = self.strand;
         let (radius, [c, cd, cdd], a) = (self.radius, &wheel.c, &wheel.axis);
         let e = ends.each_ref().map(|end| minus(&end.r[0], c).map(|x| x / radius));
@@ -173,9 +178,7 @@ impl Arc {
         };
         let across = cross(a, &middle);
         let half = [minus(&f[0], &across), minus(&across, &f[1])];
-        let lift = [0, 1].map(|k| {
-            (mean * mean - along(&h, &half[k]) * 2.0 / wrap * radius) * mass / stretch
-        });
+        let lift = [0, 1].map(|k| (mean * mean - along(&h, &half[k]) * 2.0 / wrap * radius) * mass / stretch);
         let mut friction = [S::zero(); 2];
         let mut axle_friction = S::zero();
         let mut moving = S::zero();
@@ -226,7 +229,8 @@ impl Arc {
         let place: V3<S> = std::array::from_fn(|i| c[i] + (f[0][i] - f[1][i]) * radius / wrap);
         let weight = place.iter().zip(&self.gravity).fold(S::zero(), |sum, (x, g)| sum + *x * *g);
         let excess = wrap * radius - length;
-        let potential = excess * excess * ea / (length * 2.0) + wrap * wrap * ei / (length * 2.0) - m * weight;
+        let potential =
+            excess * excess * ea / (length * 2.0) + wrap * wrap * ei / (length * 2.0) - m * weight;
         let instant = Instant {
             wrap,
             length,

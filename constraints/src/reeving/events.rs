@@ -38,7 +38,9 @@ impl Event for Watch {
             What::Leaves => format!("the cable leaves `{name}`: its wrap has fallen to {LEAVES} rad"),
             What::Whole => format!("the cable has wrapped all round `{name}` and would cross itself"),
             What::Slack => format!("the cable is slack on `{name}`; it is kept in its groove"),
-            What::Flung => format!("the cable runs so fast that it lifts off from `{name}`; it is kept in its groove"),
+            What::Flung => {
+                format!("the cable runs so fast that it lifts off from `{name}`; it is kept in its groove")
+            }
         }
     }
     fn value(&self, _: &Model, state: &State) -> f64 {

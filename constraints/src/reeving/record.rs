@@ -67,8 +67,7 @@ impl RecordSpec for SheaveRecordSpec {
             return Err(BuildError::at("of", message));
         };
         let name = named(&self.name, || of.to_string());
-        let columns =
-            columns.iter().map(|c| Column::new(format!("{name}.{}", c.name), &c.unit)).collect();
+        let columns = columns.iter().map(|c| Column::new(format!("{name}.{}", c.name), &c.unit)).collect();
         Ok(Box::new(SheaveRecord { term: *term, name, of: of.to_string(), columns }))
     }
 }

@@ -59,7 +59,10 @@ impl ConstraintSpec for RingSpec {
         let passages = b.passages(&self.name);
         let [passage] = passages.as_slice() else {
             let message = match passages.len() {
-                0 => format!("no cable runs through `{0}`: name it in the `route` of one, as `{{ through = \"{0}\" }}`", self.name),
+                0 => format!(
+                    "no cable runs through `{0}`: name it in the `route` of one, as `{{ through = \"{0}\" }}`",
+                    self.name
+                ),
                 n => format!("{n} cables run through `{}`: give each a ring of its own", self.name),
             };
             return Err(BuildError::at("name", message));

@@ -4,8 +4,8 @@ use super::arc::{Arc, End, Grip, Instant, Residual, Wheel};
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Column, Energy, Jet, Marker, MovingBoundary, Node, NodeKind, Pattern, Power, Shows,
-    Signal, Solid, Term, Timed, V3,
+    Assembly, At, BuildError, Column, Energy, Jet, Marker, MovingBoundary, Node, NodeKind, Pattern, Power,
+    Shows, Signal, Solid, Term, Timed, V3,
 };
 
 /// What carries a wheel: a point and an axis of space, of a point, or of a rigid body.
@@ -87,7 +87,7 @@ pub(super) struct Sheave {
 }
 
 /// Stiffness that keeps a free wheel in an equilibrium, as a share of `EA R`.
-const STILL: f64 = 1e-6;
+const STILL: f64 = 1e-9;
 
 /// Most unknowns of a groove: two points, two material coordinates, a body, the angle of the wheel.
 const MOST: usize = 15;
@@ -277,7 +277,8 @@ impl Term for Sheave {
                 }
             }
             // in an equilibrium nothing turns a wheel: a share of the stiffness of its arc keeps the angle where it is
-            if let Some(i) = self.angle.as_ref().map(|_| dofs.len() - 1).filter(|_| w.v == 0.0 && w.a == 0.0) {
+            if let Some(i) = self.angle.as_ref().map(|_| dofs.len() - 1).filter(|_| w.v == 0.0 && w.a == 0.0)
+            {
                 let arc = &groove.arc;
                 block[i][i] += w.q * STILL * arc.strand.ea * arc.radius;
             }

@@ -46,7 +46,11 @@ pub struct SheaveSpec {
     pub spacing: f64,
     /// Coefficient of friction between cable and groove, in a V-groove divided by the sine of half its angle. Needs
     /// `inertia`, or `locked`. Default: none.
-    #[serde(default, deserialize_with = "quantity::optional::number", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::number",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub friction: Option<f64>,
     /// Moment of inertia of the wheel about its axis; its mass belongs to what carries it [kg m²].
     #[serde(default, deserialize_with = "quantity::inertia", skip_serializing_if = "is_nought")]
@@ -57,7 +61,11 @@ pub struct SheaveSpec {
     /// Ratio of the tensions before and behind it that half a turn leaves, from 0 to 1: friction of the bearing and
     /// stiffness of the cable together, as in tables of cranes; typically 0.98 on roller bearings. Instead of the other
     /// ways to lose power.
-    #[serde(default, deserialize_with = "quantity::optional::number", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::number",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub efficiency: Option<f64>,
     /// What resists the spin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -175,7 +183,13 @@ impl SheaveSpec {
     }
 
     /// One of its wheels, with the cables that pass it.
-    fn wheel(&self, b: &mut Builder, name: &str, passages: &[Passage], beside: f64) -> Result<(), BuildError> {
+    fn wheel(
+        &self,
+        b: &mut Builder,
+        name: &str,
+        passages: &[Passage],
+        beside: f64,
+    ) -> Result<(), BuildError> {
         let axis = unit("axis", self.axis)?;
         let marker = b.marker("marker", &self.marker)?.with_axes(b.nodes(), b.coordinates(), around(axis));
         let marker = aside(marker, beside);

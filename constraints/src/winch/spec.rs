@@ -241,7 +241,8 @@ impl ConstraintSpec for WinchSpec {
         let part = b.feeding_part(&self.marker)?;
         let whole = part.length();
         if self.final_length.is_some() && part.name().contains('.') {
-            let message = "a cable with a route goes on behind the span at this winch: give `payout` or `stop`";
+            let message =
+                "a cable with a route goes on behind the span at this winch: give `payout` or `stop`";
             return Err(BuildError::at("final_length", message));
         }
         if self.idle() {

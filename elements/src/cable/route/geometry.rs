@@ -85,7 +85,11 @@ struct Placed {
 
 impl Placed {
     fn touch(&self, x: &V3<f64>, arrives: bool) -> Option<V3<f64>> {
-        if self.radius == 0.0 { Some(self.centre) } else { touch(&self.centre, &self.axis, self.radius, x, arrives) }
+        if self.radius == 0.0 {
+            Some(self.centre)
+        } else {
+            touch(&self.centre, &self.axis, self.radius, x, arrives)
+        }
     }
 }
 
@@ -143,10 +147,8 @@ fn tangent(from: &Placed, to: &Placed) -> Option<[V3<f64>; 2]> {
 pub fn lay(stops: &[Stop]) -> Result<Vec<Turn>, Fault> {
     let placed: Vec<[Placed; 2]> = stops.iter().map(Stop::placed).collect();
     // the tangent between each pair of neighbours, for both ways round each
-    let tangents: Vec<[[Option<[V3<f64>; 2]>; 2]; 2]> = placed
-        .windows(2)
-        .map(|w| [0, 1].map(|a| [0, 1].map(|b| tangent(&w[0][a], &w[1][b]))))
-        .collect();
+    let tangents: Vec<[[Option<[V3<f64>; 2]>; 2]; 2]> =
+        placed.windows(2).map(|w| [0, 1].map(|a| [0, 1].map(|b| tangent(&w[0][a], &w[1][b])))).collect();
     // least length up to stop k + 1 with these ways round stops k and k + 1, and the way round the stop before
     let mut least = vec![[[(f64::INFINITY, 0); 2]; 2]; tangents.len()];
     let length = |x: &[V3<f64>; 2]| size(&minus(&x[1], &x[0]));

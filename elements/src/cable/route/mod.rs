@@ -61,7 +61,8 @@ impl CableSpec {
     /// Refuses what a cable with a route can't have.
     fn check_route(&self, b: &Builder) -> Result<(), BuildError> {
         let own = "the route says where the cable is laid: leave it out";
-        let straight = "a cable that runs over wheels is straight and unstretched when free of stress: leave it out";
+        let straight =
+            "a cable that runs over wheels is straight and unstretched when free of stress: leave it out";
         let alike = "a cable that runs over wheels is the same all along: give it one `section`";
         let torsion = "a cable that runs over wheels has no torsion: leave it out";
         let refused = [
@@ -109,7 +110,9 @@ impl CableSpec {
             let guide = b.guide(name).map_err(|e| e.of(format!("route[{k}]")))?;
             let ring = matches!(waypoint, Waypoint::Through(_));
             match (ring, guide.radius > 0.0) {
-                (true, true) => return at(k, format!("`{name}` is a sheave: run `over`, `under` or `round` it")),
+                (true, true) => {
+                    return at(k, format!("`{name}` is a sheave: run `over`, `under` or `round` it"));
+                }
                 (false, false) => return at(k, format!("`{name}` is a ring: run `through` it")),
                 _ => {}
             }

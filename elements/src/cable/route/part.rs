@@ -21,7 +21,9 @@ impl RoutePart {
 
     fn places(&self) -> String {
         let (name, last) = (&self.name, self.spans.len());
-        format!("`{name}.start`, `{name}.end`, and those of its spans, `{name}.1.start` to `{name}.{last}.end`")
+        format!(
+            "`{name}.start`, `{name}.end`, and those of its spans, `{name}.1.start` to `{name}.{last}.end`"
+        )
     }
 }
 
