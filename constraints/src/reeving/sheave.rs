@@ -198,16 +198,16 @@ impl Sheave {
             let pressed = instant.tension - (instant.lift[0] + instant.lift[1]) * 0.5;
             let pressed = pressed * (instant.wrap * 0.5).sin() * 2.0;
             let resists = groove.arc.moment(own_spin, pressed);
-            instant.dissipated = instant.dissipated + resists * own_spin;
+            instant.dissipated += resists * own_spin;
             if k == 0 {
                 let spin = own_spin + carried;
-                about = about + (own_rate + carried_rate) * angle.inertia;
+                about += (own_rate + carried_rate) * angle.inertia;
                 let momentum = own.map(|a| a * spin * angle.inertia);
                 body = cross(&omega, &momentum);
-                instant.energy[0] = instant.energy[0] + spin * spin * (0.5 * angle.inertia);
-                out[8 + size] = out[8 + size] - angle.torque.at(at.t);
+                instant.energy[0] += spin * spin * (0.5 * angle.inertia);
+                out[8 + size] -= angle.torque.at(at.t);
             }
-            out[8 + size] = out[8 + size] + about + resists;
+            out[8 + size] += about + resists;
         }
         if size == 6 {
             let lever = cross(&arm, &transposed_times(&turn, &centre));
