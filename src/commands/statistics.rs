@@ -40,8 +40,10 @@ pub(crate) struct StatisticsArgs {
 impl StatisticsArgs {
     fn life(&self) -> Result<Option<Life>, Fault> {
         let Some(text) = &self.fatigue else { return Ok(None) };
-        let numbers: Vec<Option<f64>> =
-            text.split(',').map(|x| x.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite())).collect();
+        let numbers: Vec<Option<f64>> = text
+            .split(',')
+            .map(|x| x.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()))
+            .collect();
         if !(self.strength > 0.0 && self.strength.is_finite()) {
             return Err(Fault::new(format!("`--strength` must be positive, not {}", self.strength)));
         }
@@ -49,8 +51,11 @@ impl StatisticsArgs {
             [Some(k), Some(m)] => (k, m, None),
             [Some(k), Some(m), Some(knee), Some(second)] => (k, m, Some((knee, second))),
             _ => {
-                let wrong = format!("`--fatigue {text}` isn't two or four positive numbers: K,m or K,m,N2,m2");
-                return Err(Fault::new(wrong).with_help("for studless chain, API RP 2SK has `--fatigue 316,3`"));
+                let wrong =
+                    format!("`--fatigue {text}` isn't two or four positive numbers: K,m or K,m,N2,m2");
+                return Err(
+                    Fault::new(wrong).with_help("for studless chain, API RP 2SK has `--fatigue 316,3`")
+                );
             }
         };
         Ok(Some(Life { strength: self.strength, k, m, beyond, mean_load: self.mean_load }))

@@ -6,7 +6,6 @@ const WORDS: &[(&str, &[&str])] = &[
     ("ball-joint", &["spherical"]),
     ("bar", &["cable", "rigid_body", "distance"]),
     ("beam", &["cable"]),
-    ("bed", &["contact"]),
     ("bend-stiffener", &["cable"]),
     ("body", &["rigid_body"]),
     ("buoy", &["point_mass", "rigid_body", "buoyancy"]),
@@ -18,7 +17,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("encoder", &["payout", "length"]),
     ("fixed", &["weld", "clamp"]),
     ("float", &["attachments", "point_mass", "buoyancy"]),
-    ("floor", &["contact"]),
+    ("floor", &["bed", "contact"]),
     ("flow", &["internal_flow", "water"]),
     ("frame", &["rigid_body", "run", "turn"]),
     ("friction", &["contact"]),
@@ -40,7 +39,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("riser", &["cable"]),
     ("rod", &["cable", "distance"]),
     ("rope", &["cable"]),
-    ("seabed", &["contact"]),
+    ("seabed", &["bed", "touchdown"]),
     ("section", &["cable"]),
     ("sensor", &["position", "reaction", "along"]),
     ("shaft", &["cable", "rigid_body"]),
@@ -79,7 +78,7 @@ const NOTES: &[(&str, &str)] = &[
     ),
     (
         "mooring",
-        "A mooring is a cable that hangs from a fairlead to an anchor, on a seabed that is a `contact` with a plane. \
+        "A mooring is a cable that hangs from a fairlead to an anchor, on a `bed`. \
          `from_equilibrium = true` in `[run]` starts it at rest: `ropewalk book mooring`.",
     ),
     (
@@ -122,7 +121,8 @@ mod tests {
             for one in *see {
                 // contact is a feature
                 assert!(
-                    types.contains(one) || (*one == "contact" && cfg!(not(feature = "contact"))),
+                    types.contains(one)
+                        || (["bed", "contact"].contains(one) && cfg!(not(feature = "contact"))),
                     "{word}: no {one}"
                 );
             }

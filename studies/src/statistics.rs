@@ -1,8 +1,12 @@
 //! Statistics of a run that is done: moments, waves, spectra and fatigue of its records, from its history.
 
 use crate::error::Error;
-use ropewalk_report::statistics::{Crossings, Life, Moments, Spectrum, damage, equivalent_range, rainflow, total};
-use ropewalk_report::{Column, Csv, LinePlot, OutputError, RunFolder, Series, Sheet, TERMINAL, Table, number, write_atomic};
+use ropewalk_report::statistics::{
+    Crossings, Life, Moments, Spectrum, damage, equivalent_range, rainflow, total,
+};
+use ropewalk_report::{
+    Column, Csv, LinePlot, OutputError, RunFolder, Series, Sheet, TERMINAL, Table, number, write_atomic,
+};
 use ropewalk_scene::{Fault, did_you_mean};
 use std::path::Path;
 
@@ -89,7 +93,8 @@ pub fn statistics(source: &Path, options: &StatisticsOptions) -> Result<String, 
             cycles(&folder, course)?;
         }
     }
-    let mut sheet = Sheet::new(format!("Statistics of {} from {} s to {} s", source.display(), window[0], window[1]));
+    let mut sheet =
+        Sheet::new(format!("Statistics of {} from {} s to {} s", source.display(), window[0], window[1]));
     sheet.table_within(TERMINAL, &table.headings, &table.rows);
     sheet.entries("warning", told);
     sheet.entry("tables", format!("{}/tables/statistics.csv, spectrum-*.csv", source.display()));
@@ -131,7 +136,16 @@ struct Told {
 
 fn table(courses: &[Course<'_>], life: Option<&Life>) -> Told {
     let mut headings: Vec<String> = [
-        "record", "mean", "deviation", "least", "largest", "skewness", "kurtosis", "crossings", "period [s]", "significant range",
+        "record",
+        "mean",
+        "deviation",
+        "least",
+        "largest",
+        "skewness",
+        "kurtosis",
+        "crossings",
+        "period [s]",
+        "significant range",
     ]
     .map(String::from)
     .to_vec();
@@ -170,7 +184,9 @@ fn table(courses: &[Course<'_>], life: Option<&Life>) -> Told {
         csv.cell(&name);
         values.iter().for_each(|x| _ = csv.number_or_none(*x));
         csv.end();
-        rows.push(std::iter::once(name).chain(values.iter().map(|x| x.map_or(String::new(), number))).collect());
+        rows.push(
+            std::iter::once(name).chain(values.iter().map(|x| x.map_or(String::new(), number))).collect(),
+        );
     }
     Told { csv: csv.text(), headings, rows }
 }
@@ -210,7 +226,11 @@ fn cycles(folder: &RunFolder, course: &Course<'_>) -> Result<(), OutputError> {
         ..Column::new(name, unit)
     };
     let table = Table {
-        columns: vec![column("range", unit, |c| c.range), column("mean", unit, |c| c.mean), column("count", "", |c| c.count)],
+        columns: vec![
+            column("range", unit, |c| c.range),
+            column("mean", unit, |c| c.mean),
+            column("count", "", |c| c.count),
+        ],
     };
     table.write(&folder.table_file(&format!("cycles-{}", course.column.name))?)
 }
@@ -221,7 +241,10 @@ mod tests {
 
     #[test]
     fn rows_of_events_do_not_disturb_a_course() {
-        let t: Vec<f64> = (0..100).map(|k| 0.1 * f64::from(k)).flat_map(|t| if (t - 3.0).abs() < 1e-9 { vec![t, t + 0.03] } else { vec![t] }).collect();
+        let t: Vec<f64> = (0..100)
+            .map(|k| 0.1 * f64::from(k))
+            .flat_map(|t| if (t - 3.0).abs() < 1e-9 { vec![t, t + 0.03] } else { vec![t] })
+            .collect();
         let column = Column { values: t.iter().map(|t| 2.0 * t + 1.0).collect(), ..Column::new("x", "m") };
         let c = course(&t, &column, [1.0, 8.0]).expect("course");
         assert!((c.dt - 0.1).abs() < 1e-9 && c.values.len() == 71);

@@ -1,7 +1,9 @@
 //! The energy of the water that slender bodies push aside.
 
+use faer::prelude::Solve;
+use faer::{Mat, c64};
 use ropewalk::scene::Format;
-use ropewalk::{History, ModesOptions, SceneFile, modes, simulate};
+use ropewalk::{About, History, LineariseOptions, ModesOptions, SceneFile, linearise, modes, simulate};
 use ropewalk_core::{At, Model, System};
 
 fn scene(text: &str) -> SceneFile {
@@ -309,6 +311,77 @@ fn cylinders_in_axial_flow_lose_stability_where_they_should() {
         let below = growth(ends, beta, 0.995 * critical, tail);
         let above = growth(ends, beta, 1.005 * critical, tail);
         assert!(below < 1e-4 && above > 1e-2, "{ends}: {below} below and {above} above {critical}");
+    }
+}
+
+/// A long limp line in flow along it, between pins: the largest growth of any wave [1/s], by Bloch's theorem from the
+/// equations of a node in its middle.
+fn limp(theory: &str, tension: f64, speed: f64) -> f64 {
+    let (mass, water, ea) = (0.861f64, 0.4259f64, 1e9);
+    let diameter = (4.0 * water / (std::f64::consts::PI * 1025.0)).sqrt();
+    let text = format!(
+        r#"
+        [water]
+        density = 1025
+        current = [{speed}, 0, 0]
+        [[elements]]
+        type = "cable"
+        name = "line"
+        points = [[0, 0, 0], [8, 0, 0]]
+        tension = {tension}
+        elements = 8
+        section = {{ mass = {mass}, ea = {ea}, diameter = {diameter} }}
+        [[forces]]
+        type = "added_mass"
+        theory = "{theory}"
+        [[constraints]]
+        type = "spherical"
+        name = "first"
+        marker = "line.start"
+        [[constraints]]
+        type = "spherical"
+        name = "last"
+        marker = "line.end"
+        "#
+    );
+    let options = LineariseOptions { about: About::Start, ..LineariseOptions::default() };
+    let l = linearise(scene(&text).scene(), &options).unwrap_or_else(|e| panic!("{e}"));
+    // across the line: position and slope along y, of the node in the middle and its neighbours
+    let seat = |node: usize, slope: usize| 6 * node + 1 + 3 * slope;
+    let [m, c, k] = [&l.mass, &l.damping, &l.stiffness].map(|a| a.to_dense());
+    let wave = |matrix: &Mat<f64>, phase: f64, i: usize, j: usize| {
+        (3..=5).fold(c64::new(0.0, 0.0), |sum, node| {
+            let turn = phase * (node as f64 - 4.0);
+            sum + matrix[(seat(4, i), seat(node, j))] * c64::new(turn.cos(), turn.sin())
+        })
+    };
+    // of waves that elements resolve
+    (1..=20).fold(f64::NEG_INFINITY, |most, step| {
+        let phase = f64::from(step) / 20.0;
+        let [m, c, k] = [&m, &c, &k].map(|a| Mat::from_fn(2, 2, |i, j| wave(a, phase, i, j)));
+        let lu = m.partial_piv_lu();
+        let (k, c) = (lu.solve(&k), lu.solve(&c));
+        let a = Mat::from_fn(4, 4, |i, j| match (i < 2, j < 2) {
+            (true, false) if i == j - 2 => c64::new(1.0, 0.0),
+            (true, _) => c64::new(0.0, 0.0),
+            (false, true) => -k[(i - 2, j)],
+            (false, false) => -c[(i - 2, j - 2)],
+        });
+        let values = a.eigenvalues().expect("eigenvalues");
+        values.iter().fold(most, |most: f64, value| if value.re <= most { most } else { value.re })
+    })
+}
+
+/// Waves on a limp line in flow `U` along it grow below the tension `m m_a/(m + m_a) U²`; Morison's inertia alone lets none
+/// grow.
+#[test]
+fn a_limp_line_in_flow_along_it_needs_tension() {
+    for speed in [5.0, 12.86111] {
+        let critical = 0.861 * 0.4259 / (0.861 + 0.4259) * speed * speed;
+        let (below, above) = (limp("energy", 0.99 * critical, speed), limp("energy", 1.01 * critical, speed));
+        println!("{speed} m/s: {below:.3e} below {critical:.3} N, {above:.3e} above");
+        assert!(below > 0.1 && above < 1e-2, "{below} {above}");
+        assert!(limp("morison", 0.1 * critical, speed) < 1e-3);
     }
 }
 

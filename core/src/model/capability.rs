@@ -39,10 +39,14 @@ pub trait Remembers {
     /// Brings what it remembers up to date at a state that was accepted: `memory` is all of the internal variables, as they
     /// were at the start of the step, and `at` has none.
     fn remember(&self, at: &At<'_>, memory: &mut [f64]);
-    /// Whether it takes part in equilibria. `None` if they are found as if it weren't there; else whether it remembers each
-    /// equilibrium along a path, as it does accepted steps in time.
-    fn at_rest(&self) -> Option<bool> {
-        None
+    /// Whether it takes part in equilibria. If not, they are found as if it weren't there, and it begins to remember with time.
+    fn rests(&self) -> bool {
+        false
+    }
+    /// Brings what it remembers up to date at an equilibrium, if it takes part in those; whether the equilibrium is another one
+    /// now and has to be found anew.
+    fn settle(&self, _at: &At<'_>, _memory: &mut [f64]) -> bool {
+        false
     }
 }
 

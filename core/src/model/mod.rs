@@ -438,24 +438,32 @@ impl Model {
 
     /// Lets terms remember what a state that was accepted has changed.
     pub(crate) fn remember(&self, state: &mut State) {
-        self.remember_if(state, |_| true);
+        self.let_remember(state, |term, at, memory| {
+            term.remember(at, memory);
+            false
+        });
     }
 
-    /// The same of an equilibrium, for those terms that take part in it so.
-    pub(crate) fn remember_rest(&self, state: &mut State) {
-        self.remember_if(state, |term| term.at_rest() == Some(true));
+    /// The same of an equilibrium; whether it is another one now.
+    pub(crate) fn settle(&self, state: &mut State) -> bool {
+        self.let_remember(state, |term, at, memory| term.settle(at, memory))
     }
 
-    fn remember_if(&self, state: &mut State, which: impl Fn(&dyn Remembers) -> bool) {
+    fn let_remember(
+        &self,
+        state: &mut State,
+        mut how: impl FnMut(&dyn Remembers, &At<'_>, &mut [f64]) -> bool,
+    ) -> bool {
         if self.remembering.is_empty() {
-            return;
+            return false;
         }
         let mut memory = std::mem::take(&mut state.internal);
-        let all = self.remembering.iter().filter_map(|&k| self.terms[k].remembers());
-        for term in all.filter(|term| which(*term)) {
-            term.remember(&state.at(), &mut memory);
+        let mut any = false;
+        for term in self.remembering.iter().filter_map(|&k| self.terms[k].remembers()) {
+            any |= how(term, &state.at(), &mut memory);
         }
         state.internal = memory;
+        any
     }
 
     /// What has gone where it can't have gone in a step.

@@ -1,11 +1,11 @@
 //! `type = "bed"`: the sea floor.
 
+use super::friction::Friction;
 use super::heights::Heights;
 use super::law::Damping;
 use super::shape::Shape;
 use super::spec::{ContactSpec, Dry, Overlap, ShapeSpec, dry};
 use super::term::Stiffness;
-use super::friction::Friction;
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::rotation::{IDENTITY, around};
 use ropewalk_core::{BuildError, Marker, V3};
@@ -74,7 +74,11 @@ pub struct BedSpec {
     #[schemars(with = "Option<Dry>")]
     pub friction: Option<Friction>,
     /// Contact radius of the parts [m]. Default: half of the diameter of the cable or hull.
-    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub radius: Option<f64>,
 }
 register_spec!(Force, "bed", BedSpec);
@@ -117,7 +121,10 @@ impl BedSpec {
         let point = self.point;
         if let Some(grid) = &self.grid {
             if self.slope != 0.0 {
-                return Err(BuildError::at("slope", "a bed with a `grid` has its own slopes: leave `slope` out"));
+                return Err(BuildError::at(
+                    "slope",
+                    "a bed with a `grid` has its own slopes: leave `slope` out",
+                ));
             }
             let heights = match &grid.file {
                 Some(_) if !(grid.x.is_empty() && grid.y.is_empty() && grid.z.is_empty()) => {

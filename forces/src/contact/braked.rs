@@ -1,23 +1,30 @@
 //! Friction at equilibria that a pull on a line has used up.
 //!
 //! Along what lies on the ground the friction is `-μ N t` of the normal force `N` and the tangent `t`: fully mobilised, as behind
-//! a line that was pulled tight. Where hardly any tension is left it fades with the strain, so that no ground pushes a line.
-//! When time begins to run, the bristles take over exactly this force.
+//! a line that was pulled tight. Where hardly any tension is left it fades with the strain to what holds the line on a slope and
+//! where it lay sideways, so that no ground pushes a line. When time begins to run, the bristles take over exactly this force.
 
-use super::block::{Block, MOST};
-use super::friction::{Brake, Friction, Pressed};
+use super::block::{Block, MOST, Slopes};
+use super::friction::{Brake, Friction, MEMORY, Pressed};
 use super::group::{Bristles, Group, Scratch, What};
-use super::seat::{Frame, Seat};
+use super::seat::{Frame, Seat, minus};
 use super::term::Contact;
-use ropewalk_core::held::Held;
-use ropewalk_core::rotation::transposed_times;
+use super::touch::Touch;
+use ropewalk_core::held::{Held, delta, three};
+use ropewalk_core::rotation::{M3, transposed_times};
 use ropewalk_core::{Assembly, At, SpanLine, V3, dot};
 
-/// The force on a cell, and its derivatives by the normal force and by the slope of the line.
+/// What the memory says of the time before it runs: equilibria without friction, and with it; then it runs.
+const LAID: f64 = 0.0;
+const BRAKED: f64 = 1.0;
+const RUNS: f64 = 2.0;
+
+/// The force on a cell, and its derivatives by the normal force, by the slope of the line and by its place.
 struct Braked {
     f: V3<f64>,
     by_normal: V3<f64>,
-    by_slope: [V3<f64>; 3],
+    by_slope: M3,
+    by_place: M3,
     /// By how much each vector of the nodes is in the slope.
     weights: [f64; 4],
 }
@@ -30,36 +37,97 @@ fn slope_weights(xi: f64, l: f64) -> [f64; 4] {
 }
 
 impl Contact {
-    /// Whether equilibria are looked for, with a friction that a pull uses up: time hasn't begun to run.
-    pub(super) fn brakes(&self, memory: &[f64]) -> bool {
-        self.begun.is_some_and(|begun| memory.get(begun).is_some_and(|b| *b == 0.0))
+    fn is_at(&self, memory: &[f64], phase: f64) -> bool {
+        self.begun.is_some_and(|begun| memory.get(begun) == Some(&phase))
     }
 
-    fn braked(&self, friction: &Friction, group: &Group, cell: usize, pressed: &Pressed, frame: &Frame, at: &At<'_>) -> Option<Braked> {
-        let (What::Span(span), Some(Bristles { grip, cells, .. })) = (&group.what, &group.bristles) else {
+    /// Whether equilibria are looked for, with a friction that a pull uses up.
+    pub(super) fn brakes(&self, memory: &[f64]) -> bool {
+        self.is_at(memory, BRAKED)
+    }
+
+    /// Says that time runs, if anybody asks.
+    pub(super) fn begin(&self, memory: &mut [f64]) {
+        if let Some(begun) = self.begun {
+            memory[begun] = RUNS;
+        }
+    }
+
+    /// Takes up an equilibrium: the first is one without friction, from where on it brakes. Whether it was that.
+    pub(super) fn begin_to_brake(&self, at: &At<'_>, memory: &mut [f64]) -> bool {
+        let Some(begun) = self.begun else { return false };
+        let first = self.is_at(memory, LAID);
+        let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
+        for group in &self.groups {
+            let Some(bristles) = group.bristles else { continue };
+            let mut cells = self.press(group, &frame, at, &mut scratch);
+            for (cell, pressed) in cells[..bristles.cells].iter_mut().enumerate() {
+                let own = bristles.at + MEMORY * cell;
+                memory[own] = f64::from(u8::from(pressed.settle()));
+                let place = self.fixed.place(&frame, &group.station(cell).x(at));
+                memory[own + 1..own + 4].copy_from_slice(&place);
+            }
+        }
+        memory[begun] = BRAKED;
+        first
+    }
+
+    fn braked(
+        &self,
+        friction: &Friction,
+        group: &Group,
+        cell: usize,
+        pressed: &Pressed,
+        (frame, at): (&Frame, &At<'_>),
+        memory: &[f64],
+    ) -> Option<Braked> {
+        let (What::Span(span), Some(Bristles { grip, cells, at: first })) = (&group.what, &group.bristles)
+        else {
             return None;
         };
         let (brake, SpanLine::Cubic { q, l, .. }) = (grip.brake?, span.line) else { return None };
+        let own = memory.get(first + MEMORY * cell..)?.get(..MEMORY)?;
         let weights = slope_weights((cell as f64 + 0.5) / *cells as f64, l);
         let slope: V3<f64> = std::array::from_fn(|i| (0..4).map(|a| weights[a] * at.q[q[a] + i]).sum());
-        let stretch = dot(&slope, &slope).sqrt();
-        let t = slope.map(|x| x / stretch);
-        let (share, rise) = brake.share(stretch - 1.0);
-        let most = friction.mu * pressed.normal;
         let seen = |x: &V3<f64>| match self.fixed.seat {
             Seat::Ground => *x,
             Seat::Body { .. } => transposed_times(&frame.r, x),
         };
-        // a column for each component of the slope: what is along it strains, what is across turns
-        let by_slope = std::array::from_fn(|j| {
-            let column = std::array::from_fn(|i| {
-                let turn = if i == j { 1.0 } else { 0.0 } - t[i] * t[j];
-                most * (rise * t[i] * t[j] + share / stretch * turn)
-            });
-            seen(&column)
+        let stretch = dot(&slope, &slope).sqrt();
+        let (t, n) = (seen(&slope).map(|x| x / stretch), pressed.n);
+        let (share, rise) = brake.share(stretch - 1.0);
+        // what of its weight a slack line would slide down by
+        let up = seen(&brake.up);
+        let (rises, steep) = (dot(&n, &up).max(0.1), dot(&t, &up));
+        let hold = (steep / rises).clamp(-friction.mu, friction.mu);
+        let holds = hold.abs() < friction.mu;
+        let most = -brake.way * friction.mu - hold;
+        // sideways it lies where it lay, as far as tension doesn't straighten it
+        let side = friction.mu / l;
+        let loose = 1.0 - share.abs();
+        let off = minus(&self.fixed.place(frame, &group.station(cell).x(at)), &three(own, 1));
+        let across = |x: &V3<f64>| -> V3<f64> {
+            let (along, normal) = (dot(x, &t), dot(x, &n));
+            std::array::from_fn(|i| x[i] - along * t[i] - normal * n[i])
+        };
+        let aside = across(&off).map(|x| if own[0] == 0.0 { 0.0 } else { side * x });
+        let pull = hold + most * share;
+        let by_normal: V3<f64> = std::array::from_fn(|i| pull * t[i] - loose * aside[i]);
+        let force = pressed.normal;
+        // rows by components of the slope: what is along it strains, what is across turns
+        let by_slope: M3 = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let turn = (delta(i, j) - t[i] * t[j]) / stretch;
+                let tilt = if holds { (up[j] - steep * t[j]) / (rises * stretch) } else { 0.0 };
+                let strain = (most * t[i] + share.signum() * aside[i]) * rise * t[j];
+                force * (pull * turn + (1.0 - share) * t[i] * tilt + strain)
+            })
         });
-        let f = seen(&t.map(|t| most * share * t));
-        Some(Braked { f, by_normal: f.map(|f| f / pressed.normal), by_slope, weights })
+        let by_place: M3 = std::array::from_fn(|i| {
+            let row = across(&std::array::from_fn(|j| delta(i, j)));
+            row.map(|x| if own[0] == 0.0 { 0.0 } else { -force * loose * side * x })
+        });
+        Some(Braked { f: by_normal.map(|f| force * f), by_normal, by_slope, by_place, weights })
     }
 
     /// Adds the force on a cell.
@@ -73,21 +141,24 @@ impl Contact {
         block: &mut Block,
     ) {
         let Some(friction) = &self.law.friction else { return };
-        let Some(braked) = self.braked(friction, group, cell, pressed, frame, at) else { return };
+        let Some(braked) = self.braked(friction, group, cell, pressed, (frame, at), at.internal) else {
+            return;
+        };
         let held = group.station(cell);
         let pair = self.pair(&held, group.radius(), frame, at);
         let spread = |f: &V3<f64>| self.spread(&held, &pair, &pressed.n, f);
-        for (i, f) in spread(&braked.f).iter().enumerate().filter(|(_, f)| **f != 0.0) {
-            block.add(i, -f);
-        }
+        let touch = Touch::at_point(pressed.n, braked.f);
+        let slopes = || Slopes { by_s: [[0.0; 3]; 3], by_x: braked.by_place, by_u: [[0.0; 3]; 3] };
+        self.add_force(&held, &pair, &touch, slopes, out.wants_tangent().then(|| out.weights()), block);
         if !out.wants_tangent() {
             return;
         }
         block.add_outer(&spread(&braked.by_normal), &pressed.by);
-        for (j, column) in braked.by_slope.iter().enumerate() {
+        for j in 0..3 {
+            let column: V3<f64> = std::array::from_fn(|i| braked.by_slope[i][j]);
             let mut by = [0.0; MOST];
             (0..4).for_each(|a| by[3 * a + j] = out.weights().q * braked.weights[a]);
-            block.add_outer(&spread(column), &by);
+            block.add_outer(&spread(&column), &by);
         }
     }
 
@@ -100,7 +171,8 @@ impl Contact {
             let mut cells = self.press(group, &frame, at, &mut scratch);
             for (cell, pressed) in cells[..bristles.cells].iter_mut().enumerate() {
                 if pressed.settle()
-                    && let Some(braked) = self.braked(friction, group, cell, pressed, &frame, at)
+                    && let Some(braked) =
+                        self.braked(friction, group, cell, pressed, (&frame, at), at.internal)
                 {
                     see(&braked.f);
                 }
@@ -114,16 +186,16 @@ impl Contact {
         group: &Group,
         cell: usize,
         pressed: &Pressed,
-        frame: &Frame,
-        at: &At<'_>,
+        (frame, at): (&Frame, &At<'_>),
+        memory: &[f64],
     ) -> Option<V3<f64>> {
-        let braked = self.braked(self.law.friction.as_ref()?, group, cell, pressed, frame, at)?;
+        let braked = self.braked(self.law.friction.as_ref()?, group, cell, pressed, (frame, at), memory)?;
         let stiffness = group.bristles.as_ref()?.grip.stiffness;
         let normal = dot(&braked.f, &pressed.n);
         Some(std::array::from_fn(|i| (normal * pressed.n[i] - braked.f[i]) / stiffness))
     }
 
-    /// Lets friction brake the cables at equilibria; `begun` is the place in the memory that says that time runs.
+    /// Lets friction brake the cables at equilibria; `begun` is the place in the memory that says whether time runs.
     #[must_use]
     pub fn with_brakes(mut self, brakes: &[Option<Brake>], begun: usize) -> Self {
         for (group, brake) in self.groups.iter_mut().zip(brakes) {

@@ -156,7 +156,13 @@ impl Contact {
     }
 
     /// How each cell of a group is pressed.
-    pub(super) fn press(&self, group: &Group, frame: &Frame, at: &At<'_>, scratch: &mut Scratch) -> [Pressed; CELLS] {
+    pub(super) fn press(
+        &self,
+        group: &Group,
+        frame: &Frame,
+        at: &At<'_>,
+        scratch: &mut Scratch,
+    ) -> [Pressed; CELLS] {
         let mut cells = [Pressed::NONE; CELLS];
         group.gather(&self.fixed, frame, at, scratch);
         for ball in &scratch.balls {
@@ -169,7 +175,7 @@ impl Contact {
 
     /// Sees each bristle that holds, with the normal force on its cell.
     pub(super) fn each_bristle(&self, at: &At<'_>, mut see: impl FnMut(&Hold, f64)) {
-        if self.law.friction.is_none() {
+        if self.law.friction.is_none() || self.brakes(at.internal) {
             return;
         }
         let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
@@ -201,7 +207,7 @@ impl Contact {
                     continue;
                 }
                 let stretch = match brakes {
-                    true => self.braked_stretch(group, cell, pressed, &frame, at),
+                    true => self.braked_stretch(group, cell, pressed, (&frame, at), memory),
                     false => self.bristle(group, cell, pressed, &frame, at, memory).map(|b| b.hold.stretch),
                 };
                 let held = group.station(cell);
@@ -214,8 +220,6 @@ impl Contact {
                 (0..3).for_each(|i| memory[own + 1 + i] = s[i] - stretch[i]);
             }
         }
-        if let Some(begun) = self.begun {
-            memory[begun] = 1.0;
-        }
+        self.begin(memory);
     }
 }

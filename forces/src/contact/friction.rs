@@ -91,13 +91,15 @@ pub struct Brake {
     pub way: f64,
     /// Axial strain from which on friction is used up: below, the line hardly pulls any more.
     pub strain: f64,
+    /// The direction against gravity.
+    pub up: V3<f64>,
 }
 
 impl Brake {
-    /// The part of friction that a strain uses up, along the line, and its slope: rises as a parabola to its top.
+    /// The part of friction that a strain uses up, and its slope: rises as a parabola to its top.
     pub(crate) fn share(&self, strain: f64) -> (f64, f64) {
         let u = (strain / self.strain).clamp(-1.0, 1.0);
-        (-self.way * u * (2.0 - u.abs()), -self.way * 2.0 * (1.0 - u.abs()) / self.strain)
+        (u * (2.0 - u.abs()), 2.0 * (1.0 - u.abs()) / self.strain)
     }
 }
 

@@ -82,7 +82,8 @@ impl Heights {
             }
         }
         if x.len() * y.len() > MOST {
-            let message = format!("the grid has {} heights, more than {MOST}: thin it out", x.len() * y.len());
+            let message =
+                format!("the grid has {} heights, more than {MOST}: thin it out", x.len() * y.len());
             return Err(BuildError::new(message));
         }
         if z.len() != x.len() || z.iter().any(|row| row.len() != y.len()) {
@@ -121,9 +122,13 @@ impl Heights {
     pub fn read(path: &Path) -> Result<Self, BuildError> {
         let wrong = |why: String| BuildError::at("file", format!("grid `{}`: {why}", path.display()));
         let mut text = String::new();
-        file::open(path).and_then(|mut f| f.read_to_string(&mut text).map_err(|e| e.to_string())).map_err(wrong)?;
+        file::open(path)
+            .and_then(|mut f| f.read_to_string(&mut text).map_err(|e| e.to_string()))
+            .map_err(wrong)?;
         let mut rows: Vec<V3<f64>> = Vec::new();
-        for (k, line) in text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.trim().starts_with('#')) {
+        for (k, line) in
+            text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.trim().starts_with('#'))
+        {
             let cells: Vec<Result<f64, _>> = line.split(',').map(|c| c.trim().parse::<f64>()).collect();
             match cells[..] {
                 [Ok(x), Ok(y), Ok(z)] => rows.push([x, y, z]),
@@ -187,7 +192,8 @@ impl Heights {
             let [h, hx, hy, hxy] = self.corners[(i + a) * n + j + b];
             // derivatives by x and by y of each
             for (k, (dx, dy)) in [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)].into_iter().enumerate() {
-                let ([vx, sx], [vy, sy]) = ([px[dx][2 * a], px[dx][2 * a + 1]], [py[dy][2 * b], py[dy][2 * b + 1]]);
+                let ([vx, sx], [vy, sy]) =
+                    ([px[dx][2 * a], px[dx][2 * a + 1]], [py[dy][2 * b], py[dy][2 * b + 1]]);
                 sum[k] += vx * vy * h + sx * vy * hx + vx * sy * hy + sx * sy * hxy;
             }
         }

@@ -25,8 +25,8 @@ mod spec;
 mod term;
 mod touch;
 
-pub use file::read;
 pub use bed::{BedSpec, GridSpec};
+pub use file::read;
 pub use friction::{AtRest, Brake, Friction, Grip};
 pub use heights::Heights;
 pub use law::{ContactLaw, Damping, Leaving};

@@ -318,7 +318,8 @@ impl ContactSpec {
 
     /// The smallest radius of what touches [m].
     pub(super) fn thinnest(&self, b: &Builder) -> Result<f64, BuildError> {
-        let all = self.touching(b, None, &Stiffness { point: 1.0, per_length: 1.0, end: None, area: None })?;
+        let all =
+            self.touching(b, None, &Stiffness { point: 1.0, per_length: 1.0, end: None, area: None })?;
         let radii = all.points.iter().map(|p| p.1.radius).chain(all.spans.iter().map(|s| s.1.radius));
         Ok(radii.fold(f64::INFINITY, f64::min))
     }
@@ -407,14 +408,16 @@ impl Touching {
         friction: &Friction,
         contact: &Contact,
         q: &[f64],
-        gravity: f64,
+        down: V3<f64>,
     ) -> Result<Vec<Option<Brake>>, BuildError> {
+        let gravity = dot(&down, &down).sqrt();
         let still = vec![0.0; q.len()];
         let at = At { t: 0.0, q, v: &still, a: &still, internal: &[], relaxed: None };
         let mut all = vec![None; self.points.len()];
         for ((name, span), w) in self.spans.iter().zip(&self.span_weights) {
             let away = |s: f64| contact.clearance(name, s, &at);
-            let (Some(start), Some(end), SpanLine::Cubic { .. }) = (away(0.0), away(w.whole), span.line) else {
+            let (Some(start), Some(end), SpanLine::Cubic { .. }) = (away(0.0), away(w.whole), span.line)
+            else {
                 let message = format!(
                     "`{name}` is no cable of which both ends can touch: friction that a pull uses up is known of cables alone. \
                      Leave it out by `on`, or take `equilibrium = \"laid\"`"
@@ -424,7 +427,11 @@ impl Touching {
             // as much as friction takes up on one element
             let strain = 2.0 * friction.mu * w.mass * gravity / w.ea;
             let way = if end >= start { 1.0 } else { -1.0 };
-            all.push((strain > 0.0 && strain.is_finite()).then_some(Brake { way, strain }));
+            all.push((strain > 0.0 && strain.is_finite()).then_some(Brake {
+                way,
+                strain,
+                up: down.map(|g| -g / gravity),
+            }));
         }
         Ok(all)
     }
@@ -555,12 +562,13 @@ impl ContactSpec {
                 let pulled = friction.equilibrium == AtRest::Pulled;
                 let size = Contact::memory(points.len(), spans.len());
                 let memory = b.memory(&format!("{}: friction", self.name), size + usize::from(pulled));
-                let gravity = dot(&b.gravity(), &b.gravity()).sqrt();
+                let down = b.gravity();
+                let gravity = dot(&down, &down).sqrt();
                 let grips = self.grips(&friction, &touching, gravity, stiffness);
                 let contact = contact.with_grips(&grips, memory);
                 match pulled {
                     true => {
-                        let brakes = touching.brakes(&friction, &contact, b.coordinates(), gravity)?;
+                        let brakes = touching.brakes(&friction, &contact, b.coordinates(), down)?;
                         contact.with_brakes(&brakes, memory + size)
                     }
                     false => contact,

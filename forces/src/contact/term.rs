@@ -102,7 +102,8 @@ impl Contact {
         let mut groups = Vec::with_capacity(points.len() + spans.len());
         let mut flowing = Vec::new();
         for p in points {
-            let (radius, k) = (positive("radius", p.radius)?, positive("stiffness", stiffness.of_point(p.radius))?);
+            let (radius, k) =
+                (positive("radius", p.radius)?, positive("stiffness", stiffness.of_point(p.radius))?);
             groups.push(What::Ball(Ball { held: p.held, radius, k, cell: 0 }));
         }
         for s in spans {
@@ -129,7 +130,8 @@ impl Contact {
                 Some(flow) => flowing.extend(Flowing::new(flow, span)),
             }
         }
-        let groups: Vec<Group> = groups.into_iter().map(|what| Group { what, bristles: None, place: None }).collect();
+        let groups: Vec<Group> =
+            groups.into_iter().map(|what| Group { what, bristles: None, place: None }).collect();
         for group in &groups {
             let own = matches!((seat, group.held()), (Seat::Body { v, .. }, Held::Beside { v: w, .. } | Held::Moves { v: w, .. }) if v == w);
             need(!own, || format!("{label}: a body can't touch a shape of its own"))?;
@@ -443,12 +445,16 @@ impl Remembers for Contact {
     fn remember(&self, at: &At<'_>, memory: &mut [f64]) {
         self.move_anchors(at, memory);
     }
-    fn at_rest(&self) -> Option<bool> {
-        match self.law.friction?.equilibrium {
-            AtRest::None => None,
-            AtRest::Laid => Some(true),
-            AtRest::Pulled => Some(false),
+    fn rests(&self) -> bool {
+        self.law.friction.is_some_and(|f| f.equilibrium != AtRest::None)
+    }
+    fn settle(&self, at: &At<'_>, memory: &mut [f64]) -> bool {
+        match self.law.friction.map(|f| f.equilibrium) {
+            None | Some(AtRest::None) => return false,
+            Some(AtRest::Laid) => self.move_anchors(at, memory),
+            Some(AtRest::Pulled) => return self.begin_to_brake(at, memory),
         }
+        false
     }
 }
 

@@ -14,7 +14,7 @@ use ropewalk_forces::contact::{
 use std::sync::Arc;
 
 const RADIUS: f64 = 0.4;
-const STIFF: Stiffness = Stiffness { point: 80.0, per_length: 60.0, end: None };
+const STIFF: Stiffness = Stiffness { point: 80.0, per_length: 60.0, end: None, area: None };
 
 /// A point, two nodes of a cable, a body that touches and one that carries the shape.
 fn nodes() -> Vec<Node> {

@@ -1,6 +1,8 @@
 //! Forces against closed forms and differences.
 
 #[cfg(feature = "contact")]
+mod bed;
+#[cfg(feature = "contact")]
 mod contact;
 mod drag;
 mod functions;

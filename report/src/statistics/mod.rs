@@ -20,5 +20,5 @@ mod spectrum;
 pub use extremes::{Gumbel, Interval, expected_maximum, most_probable_maximum, quantile_of_maximum};
 pub use fatigue::{Life, dirlik, narrow_band};
 pub use moments::{Crossings, Moments};
-pub use spectrum::Spectrum;
 pub use rainflow::{Cycle, damage, equivalent_range, rainflow, total};
+pub use spectrum::Spectrum;

@@ -26,7 +26,8 @@ impl Spectrum {
         for from in (0..=record.len() - length).step_by(length / 2) {
             let piece = &record[from..from + length];
             let mean = piece.iter().sum::<f64>() / length as f64;
-            let mut x: Vec<[f64; 2]> = piece.iter().zip(&window).map(|(x, w)| [w * (x - mean), 0.0]).collect();
+            let mut x: Vec<[f64; 2]> =
+                piece.iter().zip(&window).map(|(x, w)| [w * (x - mean), 0.0]).collect();
             transform(&mut x);
             for (sum, [re, im]) in densities.iter_mut().zip(&x) {
                 *sum += re * re + im * im;

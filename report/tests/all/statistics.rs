@@ -158,7 +158,10 @@ fn a_narrow_band_does_the_damage_of_its_closed_form() {
         // amplitudes at equal steps of their probability, in an order that mixes them
         let p = ((k * 7919) % n) as f64 / n as f64 + 0.5 / n as f64;
         let amplitude = sigma * (-2.0 * (1.0 - p).ln()).sqrt();
-        record.extend((0..per_cycle).map(|i| amplitude * (std::f64::consts::TAU * f64::from(i) / f64::from(per_cycle)).sin()));
+        record.extend(
+            (0..per_cycle)
+                .map(|i| amplitude * (std::f64::consts::TAU * f64::from(i) / f64::from(per_cycle)).sin()),
+        );
     }
     let cycles = rainflow(&record);
     let sum: f64 = cycles.iter().map(|c| c.count * c.range.powf(m)).sum::<f64>() / f64::from(n);

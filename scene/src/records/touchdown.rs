@@ -84,10 +84,13 @@ impl Touchdown {
     /// By what angle an end of the line points up.
     fn uplift(&self, end: usize, at: &At<'_>) -> f64 {
         let mesh = self.part.mesh();
-        let (s, inner) = if end == 0 { (mesh[0], mesh[1]) } else { (mesh[mesh.len() - 1], mesh[mesh.len() - 2]) };
+        let (s, inner) =
+            if end == 0 { (mesh[0], mesh[1]) } else { (mesh[mesh.len() - 1], mesh[mesh.len() - 2]) };
         // a difference over a thousandth of an element stands for the tangent
         let near = s + 1e-3 * (inner - s);
-        let (Some((a, _)), Some((b, _))) = (self.part.point(s, at), self.part.point(near, at)) else { return f64::NAN };
+        let (Some((a, _)), Some((b, _))) = (self.part.point(s, at), self.part.point(near, at)) else {
+            return f64::NAN;
+        };
         (b[2] - a[2]).atan2((b[0] - a[0]).hypot(b[1] - a[1]))
     }
 }
@@ -101,7 +104,15 @@ impl Record for Touchdown {
     }
     fn columns(&self) -> Vec<Column> {
         let of = |(what, unit): (&str, &str)| Column::new(format!("{}.{what}", self.name), unit);
-        let all = [("s", "m"), ("x", "m"), ("y", "m"), ("z", "m"), ("grounded", "m"), ("uplift", "rad"), ("clearance", "m")];
+        let all = [
+            ("s", "m"),
+            ("x", "m"),
+            ("y", "m"),
+            ("z", "m"),
+            ("grounded", "m"),
+            ("uplift", "rad"),
+            ("clearance", "m"),
+        ];
         all.into_iter().map(of).collect()
     }
     fn sample(&self, sample: &Sample<'_>, out: &mut Vec<f64>) {
@@ -132,7 +143,8 @@ impl RecordSpec for TouchdownSpec {
             let shows = model.terms()[*k].shows();
             shows.is_some_and(|t| t.local("clearance", part.name(), 0.0, &state.at()).is_some())
         };
-        let named_so: Vec<usize> = (0..model.terms().len()).filter(|k| model.terms()[*k].label() == on).collect();
+        let named_so: Vec<usize> =
+            (0..model.terms().len()).filter(|k| model.terms()[*k].label() == on).collect();
         let Some(term) = named_so.iter().copied().find(tells) else {
             let message = match named_so.is_empty() {
                 true => format!("there is no bed or contact `{on}`"),

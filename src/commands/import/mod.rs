@@ -39,7 +39,7 @@ pub(crate) fn run(args: &ImportArgs) -> Result<Exit, Error> {
         Some(out) => {
             std::fs::write(out, &imported.text)
                 .map_err(|e| Fault::new(format!("`{}` can't be written: {e}", out.display())))?;
-            say(format!("{}: {} lines\n  ropewalk run {}", out.display(), deck.lines.len(), out.display()));
+            say(format!("{}: {} line(s)\n  ropewalk run {}", out.display(), deck.lines.len(), out.display()));
         }
     }
     Ok(Exit::Done)

@@ -59,7 +59,7 @@ struct Point<'a> {
 }
 
 /// What an option stands for in a scene, if anything.
-const IGNORED: [&str; 24] = [
+const IGNORED: [&str; 26] = [
     "dtm",
     "dt",
     "cfl",
@@ -83,6 +83,8 @@ const IGNORED: [&str; 24] = [
     "disableouttime",
     "fricdamp",
     "statdynfricscale",
+    "inertialf",
+    "inertialf_rampt",
     "unifycurrentgrid",
 ];
 const KNOWN: [&str; 14] = [
@@ -115,8 +117,7 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
         }
     }
     let density = deck.option_number(&["rho", "wtrdnsty"], 1025.0)?;
-    let types =
-        deck.types.iter().map(|row| line_type(deck, row, &mut notes)).collect::<Result<Vec<_>, _>>()?;
+    let types = deck.types.iter().map(|row| line_type(deck, row)).collect::<Result<Vec<_>, _>>()?;
     let points = deck.points.iter().map(|row| point(deck, row)).collect::<Result<Vec<_>, _>>()?;
     let mut sections = BTreeMap::new();
     let lines = deck
@@ -124,6 +125,13 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
         .iter()
         .map(|row| line(deck, row, &types, &points, &mut sections))
         .collect::<Result<Vec<_>, _>>()?;
+
+    for kind in types.iter().filter(|t| t.fluid[3] != 0.0 && lines.iter().any(|l| std::ptr::eq(l.kind, *t))) {
+        notes.push(format!(
+            "added mass along `{}` (CaAx = {}) is left out",
+            kind.row.words[0].text, kind.fluid[3]
+        ));
+    }
 
     let mut out = String::new();
     head(deck, name, density, folder, &mut out)?;
@@ -134,8 +142,14 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
         let _ = write!(
             out,
             "\n# {}\n[[sections]]\nname = \"{section}\"\nmass = {:?}\nea = {:?}\nei = {:?}\ndiameter = {:?}\n\
-             axial_retardation_time = {time:?}\n",
-            kind.row.line, kind.mass, kind.ea, kind.ei, kind.diameter
+             axial_retardation_time = {time:?}\n{}",
+            kind.row.line,
+            kind.mass,
+            kind.ea,
+            kind.ei,
+            kind.diameter,
+            // as segments there
+            if kind.ei == 0.0 { "tension_only = true\n" } else { "" }
         );
     }
     for line in &lines {
@@ -201,7 +215,10 @@ fn head(deck: &Deck<'_>, name: &str, density: f64, folder: &Path, out: &mut Stri
     match deck.option_number(&["wavekin"], 0.0)? {
         0.0 => {}
         7.0 => {
-            let _ = write!(out, "\n[water.waves]\ndepth = {depth:?}\ncomponents = [\n");
+            let _ = write!(
+                out,
+                "\n[water.waves]\ndepth = {depth:?}\nramp = 20.0                      # from the equilibrium in still water\ncomponents = [\n"
+            );
             for w in table(folder, "wave_frequencies.txt", 3, 0)? {
                 // the deck's sum is of |A| sin(ωt - kx + arg A), the scene's of cos(kx - ωt + φ)
                 let [omega, re, im] = [w[0], w[1], w[2]];
@@ -257,7 +274,7 @@ fn table(folder: &Path, file: &str, columns: usize, heads: usize) -> Result<Vec<
     Ok(rows)
 }
 
-fn line_type<'a>(deck: &Deck<'_>, row: &'a Row, notes: &mut Vec<String>) -> Result<LineType<'a>, Fault> {
+fn line_type<'a>(deck: &Deck<'_>, row: &'a Row) -> Result<LineType<'a>, Fault> {
     let number = |k, what| deck.number(row, k, what);
     for (k, what) in [(3, "stiffness EA"), (4, "damping BA"), (5, "bending stiffness EI")] {
         let word = deck.word(row, k, what)?;
@@ -275,9 +292,6 @@ fn line_type<'a>(deck: &Deck<'_>, row: &'a Row, notes: &mut Vec<String>) -> Resu
         return Err(fault.with_help("a lift coefficient of 0 goes"));
     }
     let fluid = [number(6, "drag coefficient Cd")?, number(7, "Ca")?, number(8, "CdAx")?, number(9, "CaAx")?];
-    if fluid[3] != 0.0 {
-        notes.push(format!("added mass along `{}` (CaAx = {}) is left out", row.words[0].text, fluid[3]));
-    }
     Ok(LineType {
         row,
         diameter: number(1, "diameter")?,

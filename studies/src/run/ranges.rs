@@ -83,7 +83,8 @@ impl Range {
             return Err(BuildError::at("of", format!("`{of}` is a {}, not a line", part.kind())));
         };
         if line.boundary(0).is_some() || line.boundary(1).is_some() {
-            let message = format!("`{of}` feeds: its places move along the material, so that it has no range graph");
+            let message =
+                format!("`{of}` feeds: its places move along the material, so that it has no range graph");
             return Err(BuildError::at("of", message));
         }
         let to = spec.to.unwrap_or(duration);
@@ -92,7 +93,8 @@ impl Range {
             return Err(BuildError::at("from", message));
         }
         let mesh = line.mesh();
-        let places = mesh.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).chain(mesh.last().copied()).collect();
+        let places =
+            mesh.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).chain(mesh.last().copied()).collect();
         let name = spec.name.clone().unwrap_or_else(|| of.to_string());
         Ok(Range { of: of.into(), name, window: [spec.from, to], places, courses: Vec::new(), before: None })
     }
@@ -112,32 +114,36 @@ impl Range {
         (0..=last).map(one).collect()
     }
 
-    /// Takes up an accepted state.
-    fn look(&mut self, model: &Model, at: &At<'_>) {
+    /// Takes up an accepted state, or a row of the history, which may lie within a step: its extremes count alone.
+    fn look(&mut self, model: &Model, at: &At<'_>, row: bool) {
         let Some(part) = model.part(&self.of) else { return };
         let [from, to] = self.window;
-        if self.courses.is_empty() {
-            let start = self.values(part.as_ref(), at);
-            self.courses = start.iter().map(|v| v.map(Course::at)).collect();
-        }
-        // an instant may be told twice: by a row and by a step
-        let again = self.before.as_ref().is_some_and(|(t, _)| *t == at.t);
-        if at.t < from || at.t > to * (1.0 + 1e-12) || again {
+        let inside = at.t >= from && at.t <= to * (1.0 + 1e-12);
+        if !inside && !self.courses.is_empty() {
             return;
         }
         let now = self.values(part.as_ref(), at);
+        if self.courses.is_empty() {
+            self.courses = now.iter().map(|v| v.map(Course::at)).collect();
+        }
+        if !inside {
+            return;
+        }
+        let first = self.before.is_none();
         let half = self.before.as_ref().map_or(0.0, |(t, _)| 0.5 * (at.t - t));
         for (k, courses) in self.courses.iter_mut().enumerate() {
             for (q, course) in courses.iter_mut().enumerate() {
-                // the trapezoidal rule
-                if let Some((_, before)) = &self.before {
-                    course.add(before[k][q], half);
-                }
-                course.add(now[k][q], half);
                 course.look(now[k][q], at.t);
+                // the trapezoidal rule
+                if let (false, Some((_, before))) = (row, &self.before) {
+                    course.add(before[k][q], half);
+                    course.add(now[k][q], half);
+                }
             }
         }
-        self.before = Some((at.t, now));
+        if !row || first {
+            self.before = Some((at.t, now));
+        }
     }
 
     fn table(&self) -> Table {
@@ -206,9 +212,9 @@ pub(crate) fn all(scene: &Scene, model: &Model) -> Result<Vec<Range>, BuildError
 }
 
 impl Recorder<'_> {
-    /// Range graphs take up an accepted state.
-    pub(super) fn range(&mut self, model: &Model, at: &At<'_>) {
-        self.ranges.iter_mut().for_each(|range| range.look(model, at));
+    /// Range graphs take up an accepted state, or a row of the history.
+    pub(super) fn range(&mut self, model: &Model, at: &At<'_>, row: bool) {
+        self.ranges.iter_mut().for_each(|range| range.look(model, at, row));
     }
 }
 

@@ -325,7 +325,7 @@ impl Observer for Recorder<'_> {
         }
         let bound = self.bind(model);
         self.go_on(bound)?;
-        self.range(model, &state.at());
+        self.range(model, &state.at(), false);
         self.look_for_end()
     }
     fn needs_forces(&self) -> bool {
@@ -356,9 +356,7 @@ impl Observer for Recorder<'_> {
     }
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         let begin = self.spent.map(|_| Instant::now());
-        if sample.at.t == 0.0 {
-            self.range(sample.model, &sample.at);
-        }
+        self.range(sample.model, &sample.at, true);
         let risen = self.surfacing.as_mut().map(|s| s.look(sample.model, &sample.at));
         risen.into_iter().flatten().for_each(|text| self.warn(&text));
         let recorded = self.record(sample);

@@ -402,14 +402,13 @@ fn no_memory(source: SolveError) -> Error {
 
 /// What to say of an equilibrium that dry friction takes no part in.
 fn without_friction(model: &Model) -> Option<String> {
-    let without = |t: &&Arc<dyn Term>| t.remembers().is_some_and(|r| r.at_rest().is_none());
+    let without = |t: &&Arc<dyn Term>| t.remembers().is_some_and(|r| !r.rests());
     let rough = model.terms().iter().filter(without).map(|t| format!("`{}`", t.label()));
     let rough: Vec<String> = rough.collect();
     (!rough.is_empty()).then(|| {
         format!(
             "the equilibrium is that without the friction of {}: with it there are many, and which one is reached depends on \
-             the way there. From here on in time friction holds what it can. `friction = {{ mu = …, equilibrium = \"pulled\" }}` \
-             brakes lines that were pulled tight",
+             the way there. From here on in time friction holds what it can",
             rough.join(", ")
         )
     })

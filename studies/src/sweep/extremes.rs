@@ -51,14 +51,18 @@ impl Extreme {
         sorted.sort_by(f64::total_cmp);
         let n = sorted.len() as f64;
         let variate = |p: f64| -(-p.ln()).ln();
-        let dots = sorted.iter().enumerate().map(|(k, x)| (variate((k as f64 + 0.56) / (n + 0.12)), self.side * x));
+        let dots =
+            sorted.iter().enumerate().map(|(k, x)| (variate((k as f64 + 0.56) / (n + 0.12)), self.side * x));
         let line = [0.02, 0.99].map(|p| (variate(p), self.side * self.gumbel.quantile(p)));
         let of = if self.line.is_empty() { String::new() } else { format!(", {}", self.line) };
         LinePlot {
             title: format!("Extremes of {}{of}: {} of each run", self.record, self.what()),
             x_label: "-ln(-ln P) [-]".into(),
             y_label: self.heading.clone(),
-            series: vec![Series::new("runs", dots.collect()).with_mark(Mark::Dots), Series::new("Gumbel", line.into())],
+            series: vec![
+                Series::new("runs", dots.collect()).with_mark(Mark::Dots),
+                Series::new("Gumbel", line.into()),
+            ],
             ..LinePlot::default()
         }
     }
@@ -92,7 +96,9 @@ pub(super) fn write(
         }
     }
     if all.is_empty() {
-        warn(&format!("extremes need {FEWEST} runs or more that differ in the first parameter alone, such as `seed=1:10:1`"));
+        warn(&format!(
+            "extremes need {FEWEST} runs or more that differ in the first parameter alone, such as `seed=1:10:1`"
+        ));
         return Vec::new();
     }
     let files = folder.files();
@@ -101,21 +107,40 @@ pub(super) fn write(
     written.unwrap_or_else(|e| warn(&e.to_string()));
     for x in &all {
         let line: String = x.line.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
-        let name = format!("extremes-{}-{}{}{line}", x.record, x.what(), if line.is_empty() { "" } else { "-" });
+        let name =
+            format!("extremes-{}-{}{}{line}", x.record, x.what(), if line.is_empty() { "" } else { "-" });
         files.draw(&name, |path| x.paper().write(path), warn);
     }
     let told = |x: &Extreme| {
         let of = if x.line.is_empty() { String::new() } else { format!(" ({})", x.line) };
-        let [p, q] = [&x.probable, &x.quantile].map(|i| format!("{} ({} … {})", number(i.value), number(i.low), number(i.high)));
-        format!("{} {}{of}: most probable {p}, once in ten runs {q}; {} runs", x.what(), x.heading, x.values.len())
+        let [p, q] = [&x.probable, &x.quantile]
+            .map(|i| format!("{} ({} … {})", number(i.value), number(i.low), number(i.high)));
+        format!(
+            "{} {}{of}: most probable {p}, once in ten runs {q}; {} runs",
+            x.what(),
+            x.heading,
+            x.values.len()
+        )
     };
     all.iter().map(told).collect()
 }
 
 fn table(all: &[Extreme]) -> String {
     let mut csv = Csv::new([
-        "record", "runs with", "extreme", "runs", "mean", "deviation", "location", "scale", "most probable", "95 % from", "95 % to",
-        "once in ten runs", "95 % from ", "95 % to ",
+        "record",
+        "runs with",
+        "extreme",
+        "runs",
+        "mean",
+        "deviation",
+        "location",
+        "scale",
+        "most probable",
+        "95 % from",
+        "95 % to",
+        "once in ten runs",
+        "95 % from ",
+        "95 % to ",
     ]);
     for x in all {
         csv.cell(&x.heading).cell(&x.line).cell(x.what());

@@ -20,7 +20,14 @@ impl Statics<'_> {
         let before = state.clone();
         let found = self.seek(state, cold)?;
         self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
-        self.model.remember_rest(state);
+        let mut found = found;
+        if self.model.settle(state) {
+            let more = self.search(state, false, false, true).or_else(|_| self.seek(state, true));
+            found.add(&more.inspect_err(|_| state.clone_from(&before))?);
+            self.model.settle(state);
+            // dry friction has no linear motion about it that could be told to swing ever wider
+            found.flutter = 0.0;
+        }
         Ok(found)
     }
 
@@ -136,7 +143,7 @@ impl Statics<'_> {
                     } else if self.leapt(&before, state) {
                         self.go_round(&before, state, &mut sum)?;
                     }
-                    self.model.remember_rest(state);
+                    self.model.settle(state);
                     h *= 2.0;
                     continue;
                 }

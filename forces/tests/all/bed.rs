@@ -1,0 +1,184 @@
+//! Beds: heights on a grid against brute force and differences, damping of what comes down, friction that a pull uses up.
+
+use crate::random::Random;
+use ropewalk_core::testing::check_tangent;
+use ropewalk_core::{At, ContactSpan, Marker, Node, NodeKind, Remembers, SpanLine, Term, V3, Width, dot};
+use ropewalk_forces::contact::{
+    AtRest, Brake, Contact, ContactLaw, Damping, Friction, Grip, Heights, Shape, Stiffness,
+};
+use std::sync::Arc;
+
+fn bumps(x: f64, y: f64) -> f64 {
+    0.6 * (0.4 * x).sin() + 0.5 * (0.3 * y + 0.5).cos() + 0.05 * x
+}
+
+fn grid(of: impl Fn(f64, f64) -> f64) -> Shape {
+    let lines: Vec<f64> = (0..21).map(|k| -10.0 + f64::from(k) + 0.2 * f64::from(k % 2)).collect();
+    let z: Vec<Vec<f64>> = lines.iter().map(|x| lines.iter().map(|y| of(*x, *y)).collect()).collect();
+    Shape::Heights(Arc::new(Heights::new(lines.clone(), lines, &z).expect("grid")))
+}
+
+#[test]
+fn a_plane_on_a_grid_is_a_plane_also_beyond_its_borders() {
+    let (a, b) = (0.3, -0.2);
+    let shape = grid(|x, y| a * x + b * y + 1.0);
+    let norm = (1.0 + a * a + b * b).sqrt();
+    for x in [[0.3, 0.7, 2.0], [5.5, -3.2, 0.1], [14.0, 2.0, 6.0], [-13.0, 15.0, -7.0]] {
+        let gap = shape.gap(&x, f64::INFINITY).expect("gap");
+        let right = (x[2] - a * x[0] - b * x[1] - 1.0) / norm;
+        assert!((gap.distance - right).abs() < 1e-12, "{x:?}: {} instead of {right}", gap.distance);
+        assert!((gap.normal[2] - 1.0 / norm).abs() < 1e-12);
+        assert!(gap.bends.iter().all(|(k, _)| k.abs() < 1e-12));
+    }
+}
+
+#[test]
+fn the_distance_of_heights_is_the_least_and_has_the_normal_and_curvature_as_derivatives() {
+    let shape = grid(bumps);
+    let far = |x: &V3<f64>| shape.gap(x, f64::INFINITY).expect("gap");
+    let mut r = Random(3);
+    for _ in 0..60 {
+        let mut x = r.vector(8.0);
+        x[2] = bumps(x[0], x[1]) + 0.6 * x[2] / 8.0;
+        let gap = far(&x);
+        // the foot of the perpendicular is on the surface, and nothing around it is nearer
+        let foot: V3<f64> = std::array::from_fn(|i| x[i] - gap.distance * gap.normal[i]);
+        assert!(far(&foot).distance.abs() < 1e-10);
+        let h = 1e-5;
+        for i in 0..3 {
+            let moved = |d: f64| {
+                let mut y = x;
+                y[i] += d;
+                far(&y)
+            };
+            let (up, down) = (moved(h), moved(-h));
+            let slope = (up.distance - down.distance) / (2.0 * h);
+            assert!((slope - gap.normal[i]).abs() < 1e-7, "{slope} instead of {}", gap.normal[i]);
+            let mut way = [0.0; 3];
+            way[i] = 1.0;
+            let turned = gap.turn(&way);
+            for j in 0..3 {
+                let turn = (up.normal[j] - down.normal[j]) / (2.0 * h);
+                // curvature is continuous but for the lines of the grid
+                assert!((turn - turned[j]).abs() < 2e-2, "{turn} instead of {}", turned[j]);
+            }
+        }
+        let least = (0..400)
+            .map(|k| {
+                let (a, b) = (0.05 * f64::from(k % 20 - 10), 0.05 * f64::from(k / 20 - 10));
+                let p = [foot[0] + a, foot[1] + b];
+                let up = [p[0], p[1], 50.0];
+                // the height there: where the vertical meets the surface
+                let z = (0..60).fold(up, |y, _| [y[0], y[1], y[2] - 0.7 * far(&y).distance])[2];
+                let d = [x[0] - p[0], x[1] - p[1], x[2] - z];
+                dot(&d, &d).sqrt()
+            })
+            .fold(f64::INFINITY, f64::min);
+        assert!(least >= gap.distance.abs() - 1e-6, "{least} is nearer than {}", gap.distance);
+    }
+}
+
+#[test]
+fn grids_that_make_no_surface_are_refused() {
+    let z = vec![vec![0.0; 2]; 3];
+    assert!(Heights::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0], &z).is_ok());
+    let said = |x: &[f64], y: &[f64], z: &[Vec<f64>]| {
+        Heights::new(x.to_vec(), y.to_vec(), z).expect_err("refused").message
+    };
+    assert!(said(&[0.0, 1.0, 1.0], &[0.0, 1.0], &z).contains("ascending"));
+    assert!(said(&[0.0, 1.0], &[0.0, 1.0], &z).contains("a row for each of the 2 lines `x`"));
+    assert!(said(&[0.0, 1.0, 2.0], &[0.0], &z).contains("two lines or more"));
+    let hole = vec![vec![0.0, f64::NAN], vec![0.0, 0.0], vec![0.0, 0.0]];
+    assert!(said(&[0.0, 1.0, 2.0], &[0.0, 1.0], &hole).contains("z"));
+}
+
+const L: f64 = 2.0;
+
+/// Two nodes of a cable that lies on a shape, a little bent and stretched.
+fn lying(shape: Shape, law: ContactLaw, stretch: f64) -> (Vec<Node>, Vec<f64>, Contact) {
+    let nodes: Vec<Node> = [0, 6].map(|k| Node { kind: NodeKind::Slope, q: k, v: k, shared: false }).to_vec();
+    let e = 1.0 + stretch;
+    let q = vec![0.0, 0.1, 0.02, e, 0.05, -0.01, L * e, 0.2, 0.03, e, 0.08, 0.02];
+    let line = SpanLine::Cubic { q: [0, 3, 6, 9], v: [0, 3, 6, 9], l: L };
+    let span = ContactSpan { line, radius: 0.1, length: L, s: 0.0, tips: [false; 2], flow: None };
+    let stiffness = Stiffness { point: 0.0, per_length: 0.0, end: Some(0.0), area: Some(5e3) };
+    let marker = Marker::Ground { point: [0.0; 3], axes: ropewalk_core::rotation::IDENTITY };
+    let contact =
+        Contact::new("bed", &nodes, shape, &marker, (&[], &[span]), stiffness, law).expect("contact");
+    (nodes, q, contact)
+}
+
+#[test]
+fn tangents_on_heights_and_of_damping_on_approach_are_exact() {
+    let law = ContactLaw {
+        damping: Damping::Approach { retardation_time: 0.3, over: 0.04 },
+        ..ContactLaw::default()
+    };
+    let hills = grid(|x, y| 0.02 * (0.5 * x).sin() + 0.01 * (0.4 * y).cos());
+    for (shape, most) in [(Shape::Plane, 1e-7), (hills, 1e-5)] {
+        for down in [-1.0, 1.0] {
+            let (nodes, q, contact) = lying(shape.clone(), law, 0.01);
+            let v: Vec<f64> = (0..12).map(|k| if k % 3 == 2 { -down * 0.4 } else { 0.1 }).collect();
+            let at = At { t: 0.0, q: &q, v: &v, a: &v, internal: &[], relaxed: None };
+            let error = check_tangent(&contact, &nodes, &at, Width::One);
+            println!("{shape:?} {down}: {error:.1e}");
+            assert!(error < most, "{shape:?}: {error:e}");
+            // what comes down is braked, what goes up isn't
+            assert_eq!(contact.power(&at).dissipated > 0.0, down > 0.0);
+        }
+    }
+}
+
+#[test]
+fn tangents_of_friction_that_a_pull_uses_up_are_exact() {
+    let friction = Friction { equilibrium: AtRest::Pulled, ..Friction::new(0.6) };
+    let law = ContactLaw { friction: Some(friction), ..ContactLaw::default() };
+    for (strain, way) in [(0.002, 1.0), (0.02, 1.0), (0.05, -1.0), (-0.005, 1.0)] {
+        for up in [[0.0, 0.0, 1.0], [-0.2, 0.1, 0.97]] {
+            let (nodes, q, contact) = lying(Shape::Plane, law, strain);
+            let grip = Grip { stiffness: 1e3, damping: 10.0, brake: None };
+            let size = Contact::memory(0, 1);
+            let contact =
+                contact.with_grips(&[grip], 0).with_brakes(&[Some(Brake { way, strain: 0.03, up })], size);
+            let mut memory = vec![0.0; size + 1];
+            let still = vec![0.0; 12];
+            // where it lay
+            let laid: Vec<f64> =
+                q.iter().enumerate().map(|(k, x)| if k == 1 || k == 7 { x - 0.02 } else { *x }).collect();
+            let at = At { t: 0.0, q: &laid, v: &still, a: &still, internal: &[], relaxed: None };
+            assert!(contact.settle(&at, &mut memory), "the first equilibrium is one without friction");
+            assert!(!contact.settle(&at, &mut memory.clone()));
+            let at = At { q: &q, internal: &memory, ..at };
+            let error = check_tangent(&contact, &nodes, &at, Width::One);
+            println!("{strain} {way} {up:?}: {error:.1e}");
+            // left out is how the line's direction turns that in which it lay sideways
+            assert!(error < 0.03, "{error:e}");
+        }
+    }
+}
+
+#[test]
+fn time_takes_over_the_friction_of_an_equilibrium() {
+    let friction = Friction { equilibrium: AtRest::Pulled, ..Friction::new(0.6) };
+    let law = ContactLaw { friction: Some(friction), ..ContactLaw::default() };
+    let (nodes, q, contact) = lying(Shape::Plane, law, 0.05);
+    let size = Contact::memory(0, 1);
+    let brake = Brake { way: 1.0, strain: 0.03, up: [0.0, 0.0, 1.0] };
+    let grip = Grip { stiffness: 1e4, damping: 0.0, brake: None };
+    let contact = contact.with_grips(&[grip], 0).with_brakes(&[Some(brake)], size);
+    let (mut memory, still) = (vec![0.0; size + 1], vec![0.0; 12]);
+    let at = At { t: 0.0, q: &q, v: &still, a: &still, internal: &[], relaxed: None };
+    let forces = |memory: &[f64]| {
+        let at = At { internal: memory, ..at };
+        ropewalk_core::testing::dense(&contact, &nodes, &at, Default::default(), Width::One).0
+    };
+    contact.settle(&at, &mut memory);
+    let before = forces(&memory);
+    contact.remember(&at, &mut memory);
+    let after = forces(&memory);
+    let size = before.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    for (a, b) in before.iter().zip(&after) {
+        // but for what isn't in the plane
+        assert!((a - b).abs() < 0.02 * size, "{a} becomes {b}");
+    }
+}

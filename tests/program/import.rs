@@ -1,0 +1,155 @@
+//! Decks of MoorDyn as scenes.
+
+use crate::program::run;
+use std::fs;
+use tempfile::TempDir;
+
+/// A folder of its own with files in it.
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (file, text) in files {
+        fs::write(folder.path().join(file), text).unwrap();
+    }
+    folder
+}
+
+/// The moorings of the OC3-Hywind spar: Jonkman, NREL/TP-500-47535 (2010), table 5-1.
+const SPAR: &str = "\
+----------- deck of a test -----------
+Moorings of a spar
+--------- LINE TYPES ---------
+TypeName  Diam   Mass/m   EA         BA/-zeta  EI  Cd   Ca   CdAx  CaAx
+(name)    (m)    (kg/m)   (N)        (N-s/-)   (-) (-)  (-)  (-)   (-)
+main      0.09   77.7066  384.243E6  -0.8      0   1.6  1.0  0.1   0.0
+--------- POINTS ---------
+ID  Type    X        Y        Z       Mass  Volume  CdA  Ca
+(#) (-)     (m)      (m)      (m)     (kg)  (m^3)   (m^2) (-)
+1   Fixed   853.87   0        -320.0  0     0       0    0
+2   Fixed   -426.94  739.47   -320.0  0     0       0    0     # an anchor
+4   Vessel  5.2      0.0      -70.0   0     0       0    0
+5   Vessel  -2.6     4.5      -70.0   0     0       0    0
+--------- LINES ---------
+ID  LineType AttachA AttachB UnstrLen NumSegs LineOutputs
+(#) (name)   (#)     (#)     (m)      (-)     (-)
+1   main     1       4       902.2    20      -
+2   main     2       5       902.2    40      p
+--------- OPTIONS ---------
+0.002   dtM       time step
+3.0e6   kBot      bottom stiffness
+3.0e5   cBot      bottom damping
+1025.0  WtrDnsty  water density
+320     WtrDpth   water depth
+--------- OUTPUTS ---------
+FairTen1 AnchTen1 Point4pz
+--------- need this line ---------
+";
+
+/// Tension at the upper end of an elastic line that partly lies on a level bed, by its closed form.
+fn catenary(span: f64, height: f64, length: f64, weight: f64, ea: f64) -> f64 {
+    let miss = |h: f64, v: f64| {
+        let along = length - v / weight + h / weight * (v / h).asinh() + h * length / ea;
+        let up = h / weight * ((1.0 + (v / h).powi(2)).sqrt() - 1.0) + v * v / (2.0 * ea * weight);
+        [along - span, up - height]
+    };
+    let (mut h, mut v) = (weight * length, 0.9 * weight * length);
+    for _ in 0..100 {
+        let [a, b] = miss(h, v);
+        let (dh, dv) = (1e-6 * h, 1e-6 * v);
+        let ([ah, bh], [av, bv]) = (miss(h + dh, v), miss(h, v + dv));
+        let [[aa, ab], [ba, bb]] = [[(ah - a) / dh, (av - a) / dv], [(bh - b) / dh, (bv - b) / dv]];
+        let det = aa * bb - ab * ba;
+        let step = [(bb * a - ab * b) / det, (aa * b - ba * a) / det];
+        (h, v) = ((h - step[0]).max(0.2 * h), (v - step[1]).clamp(0.2 * v, weight * length));
+    }
+    h.hypot(v)
+}
+
+#[test]
+fn the_moorings_of_a_spar_have_the_tension_of_their_catenary() {
+    let here = folder(&[("spar.txt", SPAR)]);
+    let made = run(here.path(), &["import", "spar.txt", "--out", "spar.toml"]);
+    assert!(made.stdout.contains("spar.toml: 2 line(s)"), "{}{}", made.stdout, made.stderr);
+    let text = fs::read_to_string(here.path().join("spar.toml")).unwrap();
+    // damping by the length of segments: two sections of one type
+    assert!(text.contains("name = \"main\"") && text.contains("name = \"main-2\""), "{text}");
+    fs::write(here.path().join("spar.toml"), text.replace("60 s", "1 s")).unwrap();
+    let out = run(here.path(), &["run", "spar.toml", "--no-report", "--no-plots"]).stdout;
+    let weight = 9.80665 * (77.7066 - 1025.0 * std::f64::consts::PI / 4.0 * 0.09f64.powi(2));
+    let wanted = catenary(853.87 - 5.2, 250.0, 902.2, weight, 384.243e6);
+    for name in ["FairTen1", "FairTen2"] {
+        let line = out.lines().find(|l| l.contains(name)).unwrap_or_else(|| panic!("{out}"));
+        let found: f64 = line.split_whitespace().rev().nth(1).unwrap().parse().unwrap();
+        assert!((found / wanted - 1.0).abs() < 1e-3, "{name}: {found} for {wanted}");
+    }
+    // 911 kN in the literature
+    assert!((wanted / 911e3 - 1.0).abs() < 1e-3, "{wanted}");
+}
+
+#[test]
+fn current_waves_floats_and_bodies_are_taken_over() {
+    let deck = SPAR
+        .replace("4   Vessel  5.2      0.0      -70.0   0 ", "4   Free    5.2      0.0      -70.0   2e4 ")
+        .replace("5   Vessel  -2.6     4.5", "5   Body1   0.0      0.5")
+        .replace(
+            "--------- POINTS",
+            "--------- BODIES ---------\nID At X Y Z r p y Mass CG I Volume CdA Ca\n(#)\n\
+             1 Free -2.6 4 -70 0 0 0 1e5 -1 1e6|1e6|2e5 120 0 0\n--------- POINTS",
+        )
+        .replace("320     WtrDpth", "1 Currents\n7 WaveKin\n320 WtrDpth");
+    let here = folder(&[
+        ("deck.txt", deck.as_str()),
+        ("current_profile.txt", "currents\n\nz ux uy uz\n-320 0 0 0\n0 1.5 0.5 0\n"),
+        // |A| sin(ωt + π/2) is a crest at t = 0
+        ("wave_frequencies.txt", "0.0 0.0 0.0\n0.4 0.0 5.0\n"),
+    ]);
+    let told = run(here.path(), &["import", "deck.txt"]);
+    assert_eq!(told.code, Some(0), "{}", told.stderr);
+    let text = told.stdout;
+    for part in [
+        "{ z = 0.0, velocity = [1.5, 0.5, 0.0] }",
+        "{ amplitude = 5.0, period = 15.707963267948966, phase = 0.0 }",
+        "points = { point5 = [0.0, 0.5, -70.0] }",
+        "inertia = [1000000.0, 1000000.0, 200000.0]",
+        "centre = [0.0, 0.0, -1.0]",
+        "mass = 20000.0",
+        "to = \"body1.point5\"",
+        "of = \"line1.end\"",
+    ] {
+        assert!(text.contains(part), "{part} isn't in\n{text}");
+    }
+}
+
+#[test]
+fn what_has_no_counterpart_is_refused_where_it_stands() {
+    let refused = |from: &str, to: &str, what: &str| {
+        assert!(SPAR.contains(from), "{from}");
+        let here = folder(&[("deck.txt", &SPAR.replacen(from, to, 1))]);
+        let told = run(here.path(), &["import", "deck.txt"]);
+        assert_eq!((told.code, told.stdout.as_str()), (Some(2), ""));
+        assert!(told.stderr.contains(what), "{what} isn't in\n{}", told.stderr);
+    };
+    refused("384.243E6", "1e8|2e8|0.4", "deck.txt:6:27");
+    refused("384.243E6", "much", "a stiffness EA that isn't one number");
+    refused(
+        "-0.8      0   1.6",
+        "-0.8      0   x",
+        "`x` is no number: the drag coefficient Cd is expected here",
+    );
+    refused("1   Fixed", "1   Turbine1", "a point of type `Turbine1` isn't taken over");
+    refused("1   main     1 ", "1   main     R1A ", "there is no point `R1A`");
+    refused("1   main     1 ", "1   chain    1 ", "there is no line type `chain`");
+    refused("AttachA AttachB UnstrLen", "UnstrLen NumSegs NodeA", "MoorDyn's version 1");
+    refused("kBot", "kBed", "the option `kBed` has no counterpart");
+    refused("320     WtrDpth", "3 WaveKin\n320 WtrDpth", "waves of this kind");
+    refused("320     WtrDpth", "1 Currents\n320 WtrDpth", "current_profile.txt`, which the deck needs");
+    refused("902.2    20      -", "", "this row ends before its unstretched length");
+    refused(
+        "--------- OPTIONS",
+        "--- RODS ---\nID\n(#)\n1 can\n--- OPTIONS",
+        "rods of a deck aren't taken over",
+    );
+    refused("--------- LINES", "--------- ROPES", "no section of a MoorDyn deck has this name");
+    let here = folder(&[("deck.txt", "nothing\n")]);
+    let told = run(here.path(), &["import", "deck.txt"]);
+    assert!(told.stderr.contains("has no lines: it isn't a MoorDyn deck"), "{}", told.stderr);
+}
