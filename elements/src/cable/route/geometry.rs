@@ -121,6 +121,9 @@ impl Stop {
     }
 }
 
+/// Straight lines from one stop to the next, for both ways round each; none where a wheel is in the way.
+type Tangents = [[Option<[V3<f64>; 2]>; 2]; 2];
+
 /// The straight line from one stop to the next: where it leaves and where it arrives.
 fn tangent(from: &Placed, to: &Placed) -> Option<[V3<f64>; 2]> {
     let (mut leaves, mut arrives) = (from.centre, to.centre);
@@ -147,7 +150,7 @@ fn tangent(from: &Placed, to: &Placed) -> Option<[V3<f64>; 2]> {
 pub fn lay(stops: &[Stop]) -> Result<Vec<Turn>, Fault> {
     let placed: Vec<[Placed; 2]> = stops.iter().map(Stop::placed).collect();
     // the tangent between each pair of neighbours, for both ways round each
-    let tangents: Vec<[[Option<[V3<f64>; 2]>; 2]; 2]> =
+    let tangents: Vec<Tangents> =
         placed.windows(2).map(|w| [0, 1].map(|a| [0, 1].map(|b| tangent(&w[0][a], &w[1][b])))).collect();
     // least length up to stop k + 1 with these ways round stops k and k + 1, and the way round the stop before
     let mut least = vec![[[(f64::INFINITY, 0); 2]; 2]; tangents.len()];
@@ -194,7 +197,7 @@ pub fn lay(stops: &[Stop]) -> Result<Vec<Turn>, Fault> {
 }
 
 /// Why no line reaches stop `k + 1`.
-fn fault(stops: &[Stop], tangents: &[[[Option<[V3<f64>; 2]>; 2]; 2]], k: usize) -> Fault {
+fn fault(stops: &[Stop], tangents: &[Tangents], k: usize) -> Fault {
     if tangents[k].iter().flatten().all(Option::is_none) {
         let wheel = |k: usize| matches!(stops[k], Stop::Wheel { .. });
         let stop = if wheel(k) { k } else { k + 1 };
