@@ -2,7 +2,7 @@
 
 use crate::drag::COEFFICIENT;
 use ropewalk_core::{At, BuildError, Column, Model, Part, Record, Sample, Term};
-use ropewalk_scene::records::{RecordPlace, named, off, part};
+use ropewalk_scene::records::{RecordPlace, check_places, named, part};
 use ropewalk_scene::{RecordSpec, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -85,14 +85,7 @@ impl RecordSpec for DragCoefficientSpec {
         let term = model.terms().iter().position(|t| knows(t.as_ref())).ok_or_else(|| {
             BuildError::at("of", format!("no drag acts on `{}`: add a force of type `drag`", part.name()))
         })?;
-        if self.at.is_empty() {
-            return Err(BuildError::at("at", "`at` must name one place at least"));
-        }
-        if let Some(s) =
-            self.at.iter().map(|p| p.on(part.length())).find(|s| !(0.0..=part.length()).contains(s))
-        {
-            return Err(off(part.as_ref(), "at", s));
-        }
+        check_places(part.as_ref(), &self.at)?;
         let name = named(&self.name, || format!("{}.cn", part.name()));
         let title = named(&self.title, || format!("Drag coefficient across {}", part.name()));
         Ok(Box::new(DragCoefficient { part, term, at: self.at.clone(), name, title }))

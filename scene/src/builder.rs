@@ -84,6 +84,7 @@ pub struct Builder {
     /// What acts on which part already and may do so only once.
     acting: HashSet<(&'static str, usize)>,
     gravity: Option<V3<f64>>,
+    statics: bool,
     switches: Switches,
     length: f64,
 }
@@ -541,6 +542,16 @@ impl Builder {
     /// The acceleration of gravity [m/s²].
     pub fn gravity(&self) -> V3<f64> {
         self.gravity.unwrap_or(GRAVITY)
+    }
+
+    /// Notes that the scene is a sequence of equilibria.
+    pub(crate) fn set_statics(&mut self, statics: bool) {
+        self.statics = statics;
+    }
+
+    /// Whether the scene is a sequence of equilibria, where time is a load factor: what changes with it changes slowly.
+    pub fn is_statics(&self) -> bool {
+        self.statics
     }
 
     /// Whether a constraint holds a marker; those of the scene are there before its forces.

@@ -419,6 +419,7 @@ impl Scene {
         water.as_mut().map_or(Ok(()), |water| water.bind(&inputs, self.gravity)).map_err(whole)?;
         air.as_mut().map_or(Ok(()), |air| air.bind(&inputs)).map_err(whole)?;
         b.set_world(self.gravity, water, air);
+        b.set_statics(self.run.analysis == Analysis::Statics);
         for (part, mesh) in plan {
             b.remesh(part, mesh.clone());
         }

@@ -173,6 +173,9 @@ fn stiffness_models_are_compared_by_what_they_are() {
         (best.locking - 1.0).abs() < 0.01 && best.asymmetry < 1e-8 && best.moment_strain < 1e-9,
         "{best:?}"
     );
+    // and that of the specification of torsion
+    let table = [5.7e-4, 3.6e-5, 2.2e-6];
+    assert!(best.helix.iter().zip(table).all(|(e, want)| (e / want - 1.0).abs() < 0.03), "{best:?}");
     let full = of(LongitudinalModel::L4, TransverseModel::T3, Integration::Full);
     assert!(full.locking > 5.0 && full.moment_strain > 1e-6, "{full:?}");
     let frozen = of(LongitudinalModel::L1n, TransverseModel::T1, Integration::Full);

@@ -320,6 +320,191 @@ fn the_wall_carries_what_friction_and_its_own_weight_ask_for() {
     }
 }
 
+/// A hose that hangs in water from 20 m below its surface, which is far enough for no element to feel it, open below: its wall, the pressure in it, and those to be.
+fn hanging(speed: f64, expected: impl Fn(f64) -> [f64; 2]) {
+    let text = format!(
+        r#"
+        [run]
+        analysis = "statics"
+        [water]
+        density = 1025
+        level = 20
+        [[elements]]
+        type = "cable"
+        name = "hose"
+        points = [[0, 0, 0], [0, 0, -4]]
+        elements = 4
+        section = {{ mass = 1.5, ea = 1e7, ei = 1, diameter = 0.03 }}
+        [[constraints]]
+        type = "clamp"
+        name = "top"
+        marker = "hose.start"
+        [[forces]]
+        type = "gravity"
+        [[forces]]
+        type = "buoyancy"
+        [[forces]]
+        type = "internal_flow"
+        cable = "hose"
+        density = 900
+        bore = 0.02
+        speed = {speed}
+        friction = 0.03
+        [[records]]
+        type = "wall_tension"
+        of = "hose"
+        at = ["start", "25 %", "end"]
+        "#
+    );
+    let history = ropewalk::simulate(&scene(&text)).unwrap_or_else(|e| panic!("{e}"));
+    for (at, share) in [(".start", 0.0), ("@25%", 0.25), (".end", 1.0)] {
+        let [wall, pressure] = expected(4.0 * share);
+        let found = ["wall_tension", "pressure"].map(|what| {
+            let name = format!("hose.{what}{at}");
+            history.last(&name).unwrap_or_else(|| panic!("no {name}"))
+        });
+        println!("{at}: {found:?}, exact {wall} N, {pressure} Pa");
+        assert!((found[0] - wall).abs() < 1e-4 * wall.abs().max(1.0), "{at}: {found:?}");
+        assert!((found[1] - pressure).abs() < 1e-3 * (1.0 + pressure.abs()), "{at}: {found:?}");
+    }
+}
+
+/// Areas of the bore and of the hose [m²], and the friction's gradient of the pressure over the density [m/s²].
+fn areas(u: f64) -> [f64; 3] {
+    let area = |d: f64| std::f64::consts::PI * d * d / 4.0;
+    [area(0.02), area(0.03), 0.03 * u * u / (2.0 * 0.02)]
+}
+
+#[test]
+fn water_presses_on_the_open_end_of_the_wall() {
+    // the wall hangs on itself and on the fluid's friction, and what it has of the water's pressure is that below its end
+    let [bore, outer, drag] = areas(3.0);
+    let below = 1025.0 * 9.81 * 24.0;
+    hanging(3.0, |s| {
+        let own = (1.5 * 9.81 + 900.0 * bore * drag) * (4.0 - s);
+        [own - below * (outer - bore), below + 900.0 * (drag - 9.81) * (4.0 - s)]
+    });
+}
+
+#[test]
+fn a_flow_upwards_is_pressed_in_below() {
+    // the outlet is above, in water of its own pressure: from there it rises with depth and friction
+    let [bore, outer, drag] = areas(3.0);
+    let outside = |s: f64| 1025.0 * 9.81 * (20.0 + s);
+    hanging(-3.0, |s| {
+        let pressure = outside(0.0) + 900.0 * (9.81 + drag) * s;
+        let effective = (1.5 + 900.0 * bore - 1025.0 * outer) * 9.81 * (4.0 - s);
+        [effective + pressure * bore - outside(s) * outer, pressure]
+    });
+}
+
+/// In a ring the centrifugal force of the fluid is a tension of m u² times the stretch: the stretch is 1/(1 - m u²/EA),
+/// whatever resists bending, since each piece of the wall turns as before.
+#[test]
+fn a_ring_is_stretched_by_what_runs_round_in_it() {
+    let n = 32;
+    let around = |k: usize| {
+        let (sin, cos) = (std::f64::consts::TAU * k as f64 / n as f64).sin_cos();
+        [cos, sin, 0.0]
+    };
+    let curve: Vec<[f64; 3]> = (0..=n).map(|k| around(k % n)).collect();
+    let end = |name: &str, more: &str| {
+        format!(
+            "[[constraints]]\ntype = \"spherical\"\nname = \"{name}\"\nmarker = \"ring.{name}\"\n{more}\n\
+             [[constraints]]\ntype = \"direction\"\nname = \"{name} along\"\nmarker = \"ring.{name}\"\n"
+        )
+    };
+    for (speed, time) in [
+        (5.0, ""),
+        (-5.0, ""),
+        // in statics the flow is steady at every load factor
+        (5.0, "time = { table = { t = [0, 1], value = [0, 1] } }"),
+    ] {
+        let text = format!(
+            r#"
+            [run]
+            analysis = "statics"
+            [[elements]]
+            type = "cable"
+            name = "ring"
+            curve = {curve:?}
+            start_direction = [0, 1, 0]
+            end_direction = [0, 1, 0]
+            elements = {n}
+            stress_free = "as-laid"
+            section = {{ mass = 1, ea = 200, ei = 1, gj = 1 }}
+            {}{}
+            [[forces]]
+            type = "internal_flow"
+            cable = "ring"
+            density = 100
+            bore = 0.1
+            speed = {speed}
+            closed = true
+            weight = false
+            {time}
+            [[records]]
+            type = "along"
+            of = "ring"
+            what = "strain"
+            at = "50 %"
+            [[records]]
+            type = "position"
+            of = "ring@50%"
+            "#,
+            end("start", ""),
+            end("end", "to = \"ring.start\""),
+        );
+        let history = ropewalk::simulate(&scene(&text)).unwrap_or_else(|e| panic!("{e}"));
+        let last = |name: &str| history.last(name).unwrap_or_else(|| panic!("no {name}"));
+        let mass = 100.0 * std::f64::consts::PI * 0.01 / 4.0;
+        let strain = 1.0 / (1.0 - mass * 25.0 / 200.0) - 1.0;
+        let found = last("ring@50%.strain");
+        assert!((found / strain - 1.0).abs() < 1e-6, "{speed} {time}: {found}, exact {strain}");
+        // opposite the point that is held
+        let across = 1.0 - last("ring@50%.x");
+        assert!((across / (2.0 * (1.0 + strain)) - 1.0).abs() < 1e-5, "{across}");
+    }
+}
+
+/// A pipe of two sections that stretch differently, and whose nodes don't share a slope where they meet.
+#[test]
+fn a_flow_goes_on_over_a_splice() {
+    let all = data("internal_flow.json");
+    let spliced = |beta: f64, u: f64, ends: &str| {
+        let whole = pipe(16, 1e6, beta, u, ends, "");
+        let mut spec = serde_json::to_value(&*whole.elements[0]).expect("a spec");
+        let fields = spec["cable"].as_object_mut().expect("fields");
+        let mut section = fields.remove("section").expect("a section");
+        let first = serde_json::json!({ "to": 0.5, "section": section });
+        section["ea"] = 2e6.into();
+        fields.insert("sections".into(), serde_json::json!([first, { "section": section }]));
+        let mut scene = whole.clone();
+        let spec: Box<dyn ropewalk_scene::ElementSpec> = serde_json::from_value(spec).expect("read again");
+        scene.elements[0] = spec.into();
+        scene
+    };
+    for (ends, name, tolerance) in
+        [("clamped-clamped", "clamped-clamped", 3e-4), ("clamped-free", "cantilever", 1e-3)]
+    {
+        for case in all[name].as_array().expect("cases") {
+            let (beta, u) = (number(&case["beta"]), number(&case["u"]));
+            let exact = [0, 1].map(|i| number(&case["lambda"][0][i]));
+            if exact[0] > 0.0 || exact[1] < 3.0 || u == 0.0 || u > 4.0 {
+                continue;
+            }
+            let (found, unstable) = spectrum(&spliced(beta, u, ends), 2);
+            let off = |f: &[f64; 2]| (f[0] - exact[0]).hypot(f[1] - exact[1]) / exact[0].hypot(exact[1]);
+            let off = found.iter().map(off).fold(f64::INFINITY, f64::min);
+            assert!(!unstable && off < tolerance, "{name}, β = {beta}, u = {u}: {off:e}, {found:?}");
+        }
+    }
+    for (share, unstable) in [(0.999, false), (1.001, true)] {
+        let u = share * std::f64::consts::TAU;
+        assert_eq!(spectrum(&spliced(0.3, u, "clamped-clamped"), 2).1, unstable, "{share}");
+    }
+}
+
 #[test]
 fn what_no_flow_can_be_is_refused_with_a_remedy() {
     let refused = |more: &str, change: &dyn Fn(String) -> String, says: &str| {

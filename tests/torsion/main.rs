@@ -1,7 +1,13 @@
 //! Cables with torsion against closed forms and geometrically exact rods of independent programs.
 
+mod closed;
 mod dynamics;
+#[cfg(feature = "contact")]
+mod hockle;
+mod joints;
+mod models;
 mod rope;
+mod sections;
 mod statics;
 
 use ropewalk::{History, Scene, simulate};

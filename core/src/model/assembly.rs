@@ -71,16 +71,23 @@ impl Model {
         bodies.map(|n| d[n.v + 3..n.v + 6].iter().map(|x| x * x).sum::<f64>()).fold(0.0, f64::max).sqrt()
     }
 
-    /// Whether these increments turn a section of a cable so far that its director can't follow.
-    pub(crate) fn flips(&self, q: &[f64], d: &[f64]) -> bool {
+    /// Why a cable can't be followed by these increments, if it can't: they turn a section so far that its director doesn't
+    /// know where to go, or bend an element so far that its twist can't be told.
+    pub(crate) fn flips(&self, q: &[f64], d: &[f64]) -> Option<&'static str> {
         let mut nodes = self.nodes.iter().filter(|n| !self.twisted.is_empty() && n.kind == NodeKind::Twist);
-        nodes.any(|n| twist::flips(&q[n.coords()], &d[n.dofs()]))
+        if nodes.any(|n| twist::flips(&q[n.coords()], &d[n.dofs()])) {
+            return Some("the direction of a cable with torsion turns round in one step");
+        }
+        self.twisted.iter().find_map(|(coordinates, dofs)| {
+            let (q, d) = (|k: usize| &q[coordinates[k]..], |k: usize| &d[dofs[k]..]);
+            (1..dofs.len()).find_map(|k| twist::loses_count([q(k - 1), q(k)], [d(k - 1), d(k)]))
+        })
     }
 
     /// Lays the reference directors of twisted lines anew where neighbours are far apart; the sections stay. To be called
     /// between steps, with no state from before in use.
     pub(crate) fn relabel(&self, q: &mut [f64]) {
-        for line in &self.twisted {
+        for (line, _) in &self.twisted {
             twist::relabel(q, line);
         }
     }

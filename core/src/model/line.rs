@@ -122,9 +122,10 @@ pub trait Line: Send + Sync {
     }
     /// Lays its nodes evenly along the straight line between its ends, as the start of another search for equilibrium.
     fn straighten(&self, _q: &mut [f64]) {}
-    /// Whether it can be twisted: its nodes are [`NodeKind::Twist`](crate::NodeKind).
-    fn twists(&self) -> bool {
-        false
+    /// First coordinate and velocity of its nodes, if it can be twisted and they are [`NodeKind::Twist`](crate::NodeKind): in
+    /// order along each piece of it, between splices.
+    fn twisted(&self) -> Vec<Vec<(usize, usize)>> {
+        Vec::new()
     }
     /// The first director of the section at a point of the mesh, and the turns it has been twisted by from the start of the
     /// line [rad]; `None` where sections don't know which way they look.

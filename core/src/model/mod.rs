@@ -90,8 +90,8 @@ pub struct Model {
     width: Width,
     /// Whether no node has an orientation, so that `q ⊕ d` is `q + d`.
     flat: bool,
-    /// First coordinate of each node of each line that can be twisted, in their order along it.
-    twisted: Vec<Vec<usize>>,
+    /// First coordinate and first velocity of each node of each line that can be twisted, in their order along it.
+    twisted: Vec<(Vec<usize>, Vec<usize>)>,
     /// Most elements along one part.
     finest: usize,
     /// The terms that see something ahead.
@@ -176,8 +176,8 @@ impl Model {
         };
         let symmetric = terms.iter().all(|t| t.symmetric()) && !constraints.iter().any(|c| turns(c.as_ref()));
         let flat = nodes.iter().all(|n| !n.kind.turns());
-        let lines = parts.iter().filter(|p| p.line().is_some_and(|line| line.twists()));
-        let twisted = lines.map(|p| p.seats().iter().map(|seat| seat.0).collect()).collect();
+        let pieces = parts.iter().filter_map(|p| p.line()).flat_map(|line| line.twisted());
+        let twisted = pieces.map(|piece| piece.into_iter().unzip()).collect();
         let positions = nodes.iter().filter(|n| n.kind.has_position()).flat_map(|n| &start.q[n.q..n.q + 3]);
         let farthest = positions.fold(length, |m, x| m.max(x.abs()));
         let finest = parts.iter().map(|p| p.mesh().len().saturating_sub(1)).max().unwrap_or(0);

@@ -22,6 +22,11 @@ pub const PREFIX: usize = 6;
 const LEAST: f64 = 0.1;
 /// Angle between neighbouring reference directors from which on a line is relabelled [rad].
 const RELABEL: f64 = 0.5;
+/// Most by which that angle may change from one accepted state to the next [rad]: a jump by a whole turn is more.
+const MOST_CHANGE: f64 = 2.0;
+/// What `1 + t₁·t₂` of the tangents of an element must not fall below, nor `1 + t₁·D + D·t₂ + t₁·t₂` with its chord `D`: where
+/// they vanish its twist leaps by whole turns.
+const LEAST_OPEN: [f64; 2] = [0.1, 0.2];
 
 fn three(q: &[f64], from: usize) -> V3<f64> {
     [q[from], q[from + 1], q[from + 2]]
@@ -151,6 +156,34 @@ pub(crate) fn flips(q: &[f64], d: &[f64]) -> bool {
     !(1.0 + dot(&tangent(q), &unit(&to)) >= LEAST)
 }
 
+/// Why the twist between two neighbouring nodes with these coordinates can't be told any more after these increments, if it
+/// can't.
+pub(crate) fn loses_count(q: [&[f64]; 2], d: [&[f64]; 2]) -> Option<&'static str> {
+    let mut moved = [[0.0; COORDINATES]; 2];
+    (0..2).for_each(|k| retract(q[k], d[k], &mut moved[k]));
+    if folds([&moved[0], &moved[1]]) {
+        return Some(FOLDS);
+    }
+    let angle = |q: [&[f64]; 2]| {
+        let [(t1, u1), (t2, u2)] = q.map(|q| (tangent(q), three(q, 6)));
+        between([&t1, &u1], [&t2, &u2])
+    };
+    let change = angle([&moved[0], &moved[1]]) - angle(q);
+    (!(change.abs() <= MOST_CHANGE)).then_some("a cable with torsion turns too far in one step")
+}
+
+/// What is wrong with an element that [`folds`].
+pub const FOLDS: &str = "an element of a cable with torsion is bent by nearly half a turn, so that its twist can't be told: take \
+                         more `elements`, and let the cable touch itself where it forms loops (`line_contact`)";
+
+/// Whether the element between two nodes with these coordinates is bent so far that its twist can't be told.
+pub fn folds(q: [&[f64]; 2]) -> bool {
+    let [t1, t2] = q.map(tangent);
+    let chord: V3<f64> = std::array::from_fn(|i| q[1][i] - q[0][i]);
+    let (chord, c) = (unit(&chord), dot(&t1, &t2));
+    !(1.0 + c >= LEAST_OPEN[0] && 1.0 + dot(&t1, &chord) + dot(&chord, &t2) + c >= LEAST_OPEN[1])
+}
+
 /// Turns the reference directors of a line of nodes, at these places in the coordinates, such that each is that of the
 /// one before carried along, and their angles back: the sections stay. Only where two neighbours are apart by more than
 /// half a radian, before the angle between them can leave (-π, π]; returns whether anything was to be done.
@@ -163,13 +196,16 @@ pub fn relabel(q: &mut [f64], line: &[usize]) -> bool {
     if !line.windows(2).any(|w| apart(q, w[0], w[1]).abs() > RELABEL) {
         return false;
     }
-    for w in line.windows(2) {
-        let m = apart(q, w[0], w[1]);
-        let (t, u) = reference(q, w[1]);
-        let (beside, (sin, cos)) = (cross(&t, &u), m.sin_cos());
+    let (mut before, mut turn) = (reference(q, line[0]), 0.0);
+    for &k in &line[1..] {
+        let (t, u) = reference(q, k);
+        // the angles add up along the line, beyond half a turn too
+        turn += between([&before.0, &before.1], [&t, &u]);
+        before = (t, u);
+        let (beside, (sin, cos)) = (cross(&t, &u), turn.sin_cos());
         let turned = across(&std::array::from_fn(|i| cos * u[i] - sin * beside[i]), &t);
-        q[w[1] + 6..w[1] + 9].copy_from_slice(&turned);
-        q[w[1] + 9] += m;
+        q[k + 6..k + 9].copy_from_slice(&turned);
+        q[k + 9] += turn;
     }
     true
 }
@@ -330,6 +366,29 @@ mod tests {
     }
 
     #[test]
+    fn twist_is_told_as_long_as_an_element_is_open() {
+        let node = |x: f64, angle: f64| {
+            laid(&[x, 0.0, 0.0], &[angle.cos(), angle.sin(), 0.0], &[0.0, 0.0, 1.0], 0.0)
+        };
+        // an arc, its middle along x
+        let bent = |angle: f64| [node(0.0, -0.5 * angle), node(1.0, 0.5 * angle)];
+        for (angle, is) in [(0.0, false), (2.0, false), (2.65, false), (2.75, true), (3.1, true)] {
+            let [a, b] = bent(angle);
+            assert_eq!(folds([&a, &b]), is, "{angle}");
+        }
+        let (a, still) = (node(0.0, 0.0), [0.0; 7]);
+        let mut turn = still;
+        let mut told = |b: [f64; 10], angle: f64| {
+            // the slope of a node that turns about z, and its section with it
+            turn[3] = angle.cos() - 1.0;
+            turn[4] = angle.sin();
+            loses_count([&a, &b], [&still, &turn])
+        };
+        assert_eq!((told(node(1.0, 0.0), 1.0), told(node(1.0, 0.0), 2.9)), (None, Some(FOLDS)));
+        assert!(told(node(1.0, 0.0), f64::NAN).is_some());
+    }
+
+    #[test]
     fn relabelling_changes_no_section() {
         // four nodes round a cone, each director turned by something
         let mut q: Vec<f64> = Vec::new();
@@ -346,6 +405,28 @@ mod tests {
         }
         assert!(!relabel(&mut q, &line));
         assert!(before[9] == q[9] && before[19] != q[19]);
+    }
+
+    /// Neighbours are never far apart, but the last director has turned round more than once against the first.
+    #[test]
+    fn relabelling_counts_whole_turns() {
+        let slope = [1.0, 0.0, 0.0];
+        let node = |k: usize| {
+            let (sin, cos) = (0.6 * k as f64).sin_cos();
+            laid(&[k as f64, 0.0, 0.0], &slope, &[0.0, cos, sin], 0.1 * k as f64)
+        };
+        let mut q: Vec<f64> = (0..20).flat_map(node).collect();
+        let line: Vec<usize> = (0..20).map(|k| 10 * k).collect();
+        let twist = |q: &[f64], k: usize| {
+            let mut d = [0.0; VELOCITIES];
+            difference(&q[10 * k..], &q[10 * k + 10..], &mut d);
+            d[6]
+        };
+        assert!(relabel(&mut q, &line));
+        for k in 0..19 {
+            assert!((twist(&q, k) - 0.7).abs() < 1e-13, "{k}: {}", twist(&q, k));
+        }
+        assert!((q[199] - 0.7 * 19.0).abs() < 1e-12, "{}", q[199]);
     }
 
     #[test]

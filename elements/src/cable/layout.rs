@@ -64,6 +64,13 @@ impl Made {
             diameter: mean(linear(|s| s.diameter)),
             axial_retardation_time: mean(linear(|s| s.axial_retardation_time)),
             bending_retardation_time: mean(linear(|s| s.bending_retardation_time)),
+            torsional_retardation_time: mean(linear(|s| s.torsional_retardation_time)),
+            gj: a.gj.and(b.gj).map(|_| as_one(linear(|s| s.gj.unwrap_or(0.0)))),
+            rotary_inertia: a
+                .rotary_inertia
+                .and(b.rotary_inertia)
+                .map(|_| mean(linear(|s| s.rotary_inertia.unwrap_or(0.0)))),
+            gyroscopic: a.gyroscopic,
             ..Section::new(0.0, mean(ea), mean(ei))
         };
         let stretching = Stretching { ends: ea, table: None, tension_only: a.tension_only };
@@ -74,6 +81,13 @@ impl Made {
 
 fn mean([a, b]: [f64; 2]) -> f64 {
     0.5 * (a + b)
+}
+
+/// The stiffness of a bar as a whole that changes linearly along it: the logarithmic mean.
+fn as_one([a, b]: [f64; 2]) -> f64 {
+    let off = b / a - 1.0;
+    // by its series where both are alike
+    if off.abs() < 1e-4 { a * (1.0 + off / 2.0 - off * off / 12.0) } else { a * off / off.ln_1p() }
 }
 
 /// What the elements of a cable are made of.
@@ -236,9 +250,32 @@ impl CableSpec {
                 return Err(BuildError::at("stress_free", message));
             }
         }
+        self.check_torsion_of_sections()?;
         if self.tension.is_some() {
             let message = "sections of different stiffness stretch differently: give `length`, or `to` of the last of them";
             return Err(BuildError::at("tension", message));
+        }
+        Ok(())
+    }
+
+    /// Checks that either all sections have torsion or none.
+    fn check_torsion_of_sections(&self) -> Result<(), BuildError> {
+        let ends =
+            |along: &'_ SectionAlong| [Some(along.section.gj), along.end_section.as_ref().map(|e| e.gj)];
+        let given = |along: &SectionAlong| ends(along).into_iter().flatten().any(|gj| gj.is_some());
+        let lacks = |along: &SectionAlong| ends(along).into_iter().flatten().any(|gj| gj.is_none());
+        if !self.sections.iter().any(given) {
+            return Ok(());
+        }
+        if let Some(i) = self.sections.iter().position(lacks) {
+            let message =
+                "other sections of this cable have torsion: give this one a torsional stiffness, `gj`, too";
+            return Err(BuildError::at(format!("sections[{i}].section"), message));
+        }
+        if self.curvature != 0.0 {
+            let message = "a cable of several sections with torsion is straight when free of stress: leave `curvature` out, or \
+                           make it several cables with welded ends";
+            return Err(BuildError::at("curvature", message));
         }
         Ok(())
     }
@@ -248,10 +285,18 @@ impl CableSpec {
         s.check()?;
         self.check_laws(s)?;
         let Some(field) = s.asks_for_torsion() else { return Ok(()) };
-        let message = format!(
-            "a cable of several sections has no torsion: leave `{field}` out, or make it several cables with welded ends"
-        );
-        Err(BuildError::at(field, message))
+        if let Some(field) = s.asks_for_direction() {
+            let message = format!(
+                "the sections of a cable bend alike to all sides and don't couple torque with tension: leave `{field}` out, or \
+                 make it several cables with welded ends"
+            );
+            return Err(BuildError::at(field, message));
+        }
+        if s.gj.is_none() {
+            let message = "this asks for torsion: give the section a torsional stiffness, `gj`";
+            return Err(BuildError::at(field, message));
+        }
+        Ok(())
     }
 
     /// Checks that tables go with the rest of the cable.
@@ -453,10 +498,17 @@ impl Splice {
         name: String,
         nodes: &[NodeId],
         direction: V3<f64>,
+        twists: bool,
     ) -> Result<(), BuildError> {
         let markers = [nodes[self.node], nodes[self.node + 1]].map(Marker::node);
+        let mut equations = Equation::coincide();
         if self.hinged {
-            return b.constraint(Joint::new(name, b.nodes(), markers, Equation::coincide())?);
+            return b.constraint(Joint::new(name, b.nodes(), markers, equations)?);
+        }
+        if twists {
+            // both sections look the same way as they are laid
+            equations.extend([(0, 1), (1, 2), (2, 0)].map(|(i, k)| Equation::normal(i, k)));
+            return b.constraint(Joint::new(name, b.nodes(), markers, equations)?);
         }
         let [across, _, along] = around(direction);
         b.constraint(Related::new(name, Tangents { along, across }, markers.to_vec()))

@@ -239,15 +239,21 @@ impl CablePart {
             Quantity::Twist => twisted.twist(k, l, at.q, self.around(k))[0],
             Quantity::Torque => twisted.twist(k, l, at.q, self.around(k))[1],
             Quantity::Angle => {
-                let own = |k: usize, part: f64| {
-                    let l = self.along[k + 1] - self.along[k];
-                    part * l * twisted.twist(k, l, at.q, self.around(k))[0]
-                };
-                (0..k).map(|k| own(k, 1.0)).sum::<f64>() + own(k, xi)
+                let whole = self.turns_before(k, twisted, at.q);
+                whole + xi * l * twisted.twist(k, l, at.q, self.around(k))[0]
             }
             Quantity::Spin => twisted::spin(at, [self.seats[k].1, self.seats[k + 1].1], xi),
             Quantity::Tension | Quantity::Strain | Quantity::Curvature | Quantity::Moment => return None,
         })
+    }
+
+    /// Angle by which the elements before element `k` are twisted in all [rad].
+    fn turns_before(&self, k: usize, twisted: &Twisted, q: &[f64]) -> f64 {
+        let own = |k: usize| {
+            let l = self.along[k + 1] - self.along[k];
+            l * twisted.twist(k, l, q, self.around(k))[0]
+        };
+        self.layout.elements().take_while(|before| *before < k).map(own).sum()
     }
 
     /// Second derivative of the curve at an end of element `k`: at its start, or at its end.
@@ -546,18 +552,18 @@ impl Line for CablePart {
         }
     }
 
-    fn twists(&self) -> bool {
-        self.twisted.is_some()
+    fn twisted(&self) -> Vec<Vec<(usize, usize)>> {
+        if self.twisted.is_none() {
+            return Vec::new();
+        }
+        let ends = self.layout.splices().iter().map(|s| s.node + 1).chain([self.seats.len()]);
+        let mut start = 0;
+        ends.map(|end| self.seats[std::mem::replace(&mut start, end)..end].to_vec()).collect()
     }
 
     fn looks(&self, s: f64, q: &[f64]) -> Option<(V3<f64>, f64)> {
         let (twisted, (k, l, xi)) = (self.twisted.as_ref()?, Self::locate(&self.along, s)?);
-        let before: f64 = (0..k)
-            .map(|k| {
-                let l = self.along[k + 1] - self.along[k];
-                l * twisted.twist(k, l, q, self.around(k))[0]
-            })
-            .sum();
+        let before = self.turns_before(k, twisted, q);
         let slope = interpolate(hermite_slope::<f64>(xi, 1.0 / l), &self.dofs(k, q));
         let (d, turn) = twisted.looks(k, [l, xi], &slope, q, self.around(k));
         Some((d, before + turn))

@@ -128,6 +128,11 @@ impl Section {
         ];
         asked.into_iter().find(|(_, asked)| *asked).map(|(field, _)| field)
     }
+    /// What of it bending with a direction or the lay of a rope asks for, if anything.
+    pub(super) fn asks_for_direction(&self) -> Option<&'static str> {
+        let asked = [("torque_tension", self.torque_tension != 0.0), ("ei", self.ei.has_direction())];
+        asked.into_iter().find(|(_, asked)| *asked).map(|(field, _)| field)
+    }
     /// Refuses numbers that no cable has.
     pub(super) fn check(&self) -> Result<(), BuildError> {
         positive("mass", self.mass)?;

@@ -498,7 +498,7 @@ impl ElementSpec for CableSpec {
                 [x[0], x[1], x[2], t[0] * stretch, t[1] * stretch, t[2] * stretch]
             })
             .collect();
-        let (mut twisted, laid) = self.twisted(&mesh, &places, feeds)?.unzip();
+        let (mut twisted, laid) = self.twisted(&mesh, &places, &layout, feeds)?.unzip();
         let mut nodes = Vec::with_capacity(mesh.len());
         let mut seats = Vec::with_capacity(mesh.len());
         let state = given.as_ref().and_then(|m| m.state.as_ref());
@@ -560,14 +560,14 @@ impl ElementSpec for CableSpec {
         for splice in layout.splices() {
             let name = format!("{}: splice at {} m", self.name, mesh[splice.node]);
             let [_, _, _, x, y, z] = places[splice.node];
-            splice.join(b, name, &nodes, [x, y, z])?;
+            splice.join(b, name, &nodes, [x, y, z], twisted.is_some())?;
         }
         let stations = match &line {
             Some(line) => push::stations(b.nodes(), line, &nodes, &self.section, false)?,
             None => stations(b.nodes(), &mesh, &nodes, &layout)?,
         };
         if let Some(twisted) = &mut twisted {
-            twisted.push(b, &mesh, &nodes)?;
+            twisted.push(b, &mesh, &nodes, &layout)?;
         }
         let prestrain = given.as_ref().map_or_else(Vec::new, |m| m.prestrain.clone());
         if let Some(line) = &line {

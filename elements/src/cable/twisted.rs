@@ -1,15 +1,17 @@
 //! A cable with torsion: how its sections are laid, what is added to its elements, and what can be observed of it.
 
 use super::directed::{Directed, DirectedParams, curvature};
+use super::layout::Layout;
 use super::quadrature::{MOST, Point, Quadrature, Rule};
 use super::rest::STRAIGHT;
+use super::section::Section;
 use super::shape::{combine, natural, second};
 use super::spin::SpinInertia;
 use super::torque_tension::TorqueTension;
 use super::torsion::{Torsion, TorsionDamping, TorsionParams};
 use super::{BendingStiffness, CableSpec, Integration, StressFree, TransverseModel};
 use ropewalk_core::error::{finite, positive};
-use ropewalk_core::model::twist::{across, carried, laid, section};
+use ropewalk_core::model::twist::{FOLDS, across, carried, folds, laid, section};
 use ropewalk_core::rotation::{IDENTITY, around, cross};
 use ropewalk_core::{At, BuildError, Element, Local, NodeId, NodeKind, Share, V3, Weights, dot};
 use ropewalk_scene::Builder;
@@ -19,12 +21,8 @@ type Laid = [f64; 10];
 
 /// The torsion of a cable.
 pub(crate) struct Twisted {
-    /// Torsional stiffness [N m²], its damping [N m² s], polar moment of inertia per length [kg m].
-    gj: f64,
-    eta_gj: f64,
-    rho_j: f64,
-    gyroscopic: bool,
-    ei: BendingStiffness,
+    /// What each element is made of.
+    bars: Vec<Bar>,
     integration: Integration,
     /// Twist of each element when free of stress [rad].
     twist0: Vec<f64>,
@@ -40,6 +38,44 @@ pub(crate) struct Twisted {
     /// Whether bending has a direction, and then the bubble of each element: node, coordinate and velocity.
     directed: bool,
     bubbles: Vec<(NodeId, usize, usize)>,
+}
+
+/// What an element with torsion is made of.
+#[derive(Clone, Copy)]
+struct Bar {
+    /// Torsional stiffness [N m²], its damping [N m² s], polar moment of inertia per length [kg m].
+    gj: f64,
+    eta_gj: f64,
+    rho_j: f64,
+    gyroscopic: bool,
+    ei: BendingStiffness,
+}
+
+impl Bar {
+    /// Of a section; `field` is where the scene has it.
+    fn of(s: &Section, field: &str) -> Result<Self, BuildError> {
+        let gj = positive("gj", s.gj.unwrap_or(s.ei.mean()))
+            .map_err(|e| BuildError::at(format!("{field}.gj"), e.message))?;
+        let rho_j = rotary_inertia(s).map_err(|e| e.of(format!("{field}.rotary_inertia")))?;
+        let eta_gj = s.torsional_retardation_time * gj;
+        Ok(Bar { gj, eta_gj, rho_j, gyroscopic: s.gyroscopic, ei: s.ei })
+    }
+}
+
+/// Polar moment of inertia per length [kg m]: that of a round bar, of the diameter of the cable or of the one that its
+/// stiffnesses have.
+fn rotary_inertia(s: &Section) -> Result<f64, BuildError> {
+    let mass = s.mass + s.flooded;
+    let round = match (s.rotary_inertia, s.diameter > 0.0) {
+        (Some(given), _) => given,
+        (None, true) => mass * s.diameter * s.diameter / 8.0,
+        (None, false) => 2.0 * mass * s.ei.mean() / s.ea,
+    };
+    positive("rotary_inertia", round).map_err(|_| {
+        let message = "a cable with torsion needs an inertia about its axis: give `rotary_inertia` [kg m], which must be \
+                       positive, or a `diameter`, of which a round bar has mass × diameter² / 8";
+        BuildError::at("rotary_inertia", message)
+    })
 }
 
 /// The nodes of an element as it is laid, with its bubble.
@@ -62,9 +98,9 @@ fn unit(x: &V3<f64>) -> V3<f64> {
 
 /// The normal of the plane in which a cable that is laid like this bends most, and the element where it does; `None` where
 /// it is straight.
-fn most_bent(shapes: &[[f64; 12]], mesh: &[f64]) -> Option<(V3<f64>, usize)> {
+fn most_bent(shapes: &[(usize, [f64; 12])], mesh: &[f64]) -> Option<(V3<f64>, usize)> {
     let mut most = (STRAIGHT, None);
-    for (k, shape) in shapes.iter().enumerate() {
+    for &(k, ref shape) in shapes {
         let l = mesh[k + 1] - mesh[k];
         let nat = natural(shape, 1.0 / l);
         for xi in [0.0, 0.5, 1.0] {
@@ -79,7 +115,7 @@ fn most_bent(shapes: &[[f64; 12]], mesh: &[f64]) -> Option<(V3<f64>, usize)> {
     most.1
 }
 
-/// Directors at the nodes of a cable, free of twist along it, from one that looks like `normal` at node `k`.
+/// Directors at the nodes of a cable, carried from node to node, from one that looks like `normal` at node `k`.
 fn directors(tangents: &[V3<f64>], normal: &V3<f64>, k: usize) -> Vec<V3<f64>> {
     let mut all = vec![[0.0; 3]; tangents.len()];
     all[k] = across(normal, &tangents[k]);
@@ -92,23 +128,40 @@ fn directors(tangents: &[V3<f64>], normal: &V3<f64>, k: usize) -> Vec<V3<f64>> {
     all
 }
 
+/// Angles of the nodes at which elements between them have no twist: from node to node directors are carried along great
+/// circles, while the tangent of the cable takes another way.
+fn untwisting(nodes: &[Laid], mesh: &[f64], elements: &[usize], from: usize) -> Vec<f64> {
+    let mut angles = vec![0.0; nodes.len()];
+    for k in 0..nodes.len() - 1 {
+        // between the two nodes of a splice there is nothing
+        let is = elements.binary_search(&k).is_ok();
+        let own = || Torsion::twist(&pair(&element(nodes, k)), mesh[k + 1] - mesh[k]);
+        angles[k + 1] = angles[k] - if is { own() } else { 0.0 };
+    }
+    let there = angles[from];
+    angles.iter().map(|a| a - there).collect()
+}
+
 impl CableSpec {
     /// The torsion of the cable, if it has any, and its nodes as they are laid: with these places and slopes.
     pub(super) fn twisted(
         &self,
         mesh: &[f64],
         places: &[[f64; 6]],
+        layout: &Layout,
         feeds: bool,
     ) -> Result<Option<(Twisted, Vec<Laid>)>, BuildError> {
         let s = &self.section;
+        let elements: Vec<usize> = layout.elements().collect();
         let shape = |k: usize| -> [f64; 12] {
             std::array::from_fn(|i| if i < 6 { places[k][i] } else { places[k + 1][i - 6] })
         };
-        let shapes: Vec<[f64; 12]> = (0..mesh.len() - 1).map(shape).collect();
+        let shapes: Vec<(usize, [f64; 12])> = elements.iter().map(|&k| (k, shape(k))).collect();
         let bent = most_bent(&shapes, mesh);
         let as_laid = self.stress_free == StressFree::AsLaid;
         let springy = as_laid && s.ei.largest() > 0.0 && bent.is_some();
-        if s.gj.is_none() && !springy {
+        let sections = self.sections.iter().any(|along| along.section.gj.is_some());
+        if s.gj.is_none() && !sections && !springy {
             self.refuse_twist()?;
             return Ok(None);
         }
@@ -117,9 +170,10 @@ impl CableSpec {
                            stress when straight";
             return Err(BuildError::at("section.gj", message));
         }
-        let gj = positive("gj", s.gj.unwrap_or(s.ei.mean()))
-            .map_err(|e| BuildError::at("section.gj", e.message))?;
-        let rho_j = self.rotary_inertia()?;
+        let bar = |k: usize| {
+            if sections { Bar::of(layout.section(k), "sections") } else { Bar::of(s, "section") }
+        };
+        let bars = (0..mesh.len() - 1).map(bar).collect::<Result<Vec<_>, _>>()?;
         let tangents: Vec<V3<f64>> = places.iter().map(|x| unit(&[x[3], x[4], x[5]])).collect();
         let (normal, from) = self.first_director(&tangents, bent)?;
         let u = directors(&tangents, &normal, from);
@@ -127,28 +181,29 @@ impl CableSpec {
             let x = &places[k];
             laid(&[x[0], x[1], x[2]], &[x[3], x[4], x[5]], &u[k], theta)
         };
-        let straight: Vec<Laid> = (0..mesh.len()).map(|k| node(k, 0.0)).collect();
-        let nodes = (0..mesh.len()).map(|k| node(k, self.laid_twist * mesh[k])).collect();
+        let bare: Vec<Laid> = (0..mesh.len()).map(|k| node(k, 0.0)).collect();
+        if elements.iter().any(|&k| folds([&bare[k], &bare[k + 1]])) {
+            return Err(BuildError::at("elements", FOLDS));
+        }
+        let untwist = untwisting(&bare, mesh, &elements, from);
+        let straight: Vec<Laid> = (0..mesh.len()).map(|k| node(k, untwist[k])).collect();
+        let nodes = (0..mesh.len()).map(|k| node(k, untwist[k] + self.laid_twist * mesh[k])).collect();
         let twist0 = |k: usize| {
             let l = mesh[k + 1] - mesh[k];
-            let own = if as_laid { Torsion::twist(&pair(&element(&straight, k)), l) } else { 0.0 };
+            let own = if as_laid && l > 0.0 { Torsion::twist(&pair(&element(&straight, k)), l) } else { 0.0 };
             own + self.twist * l
         };
         let points = self.integration.axial().points();
         let strain0 = |k: usize| {
             let l = mesh[k + 1] - mesh[k];
             let own = || TorqueTension::mean_strain(&pair(&element(&straight, k)), l, points);
-            self.strain + if as_laid { own() } else { 0.0 }
+            self.strain + if as_laid && l > 0.0 { own() } else { 0.0 }
         };
         let twisted = Twisted {
-            lay: s.torque_tension / gj,
+            lay: s.torque_tension / bars[0].gj,
             points,
             strain0: (0..mesh.len() - 1).map(strain0).collect(),
-            gj,
-            eta_gj: s.torsional_retardation_time * gj,
-            rho_j,
-            gyroscopic: s.gyroscopic,
-            ei: s.ei,
+            bars,
             integration: self.integration,
             twist0: (0..mesh.len() - 1).map(twist0).collect(),
             straight,
@@ -192,23 +247,6 @@ impl CableSpec {
         ))
     }
 
-    /// Polar moment of inertia per length [kg m]: that of a round bar, of the diameter of the cable or of the one that its
-    /// stiffnesses have.
-    fn rotary_inertia(&self) -> Result<f64, BuildError> {
-        let s = &self.section;
-        let mass = s.mass + s.flooded;
-        let round = match (s.rotary_inertia, s.diameter > 0.0) {
-            (Some(given), _) => given,
-            (None, true) => mass * s.diameter * s.diameter / 8.0,
-            (None, false) => 2.0 * mass * s.ei.mean() / s.ea,
-        };
-        positive("rotary_inertia", round).map_err(|_| {
-            let message = "a cable with torsion needs an inertia about its axis: give `rotary_inertia` [kg m], which must be \
-                           positive, or a `diameter`, of which a round bar has mass × diameter² / 8";
-            BuildError::at("section.rotary_inertia", message)
-        })
-    }
-
     /// The direction that the first director of the section has, and the node where.
     fn first_director(
         &self,
@@ -240,21 +278,29 @@ impl CableSpec {
 
 impl Twisted {
     /// Adds torsion, and bending with a direction, to a cable with these nodes.
-    pub(super) fn push(&mut self, b: &mut Builder, mesh: &[f64], nodes: &[NodeId]) -> Result<(), BuildError> {
-        for k in 0..mesh.len() - 1 {
+    pub(super) fn push(
+        &mut self,
+        b: &mut Builder,
+        mesh: &[f64],
+        nodes: &[NodeId],
+        layout: &Layout,
+    ) -> Result<(), BuildError> {
+        for k in layout.elements() {
+            let Bar { eta_gj, rho_j, gyroscopic, .. } = self.bars[k];
             let on = [nodes[k], nodes[k + 1]];
             let l = mesh[k + 1] - mesh[k];
             match self.coupled(k, l) {
                 Some(coupled) => b.element(coupled, &on)?,
                 None => b.element(Torsion::new(self.params(k, l)), &on)?,
             }
-            if self.eta_gj > 0.0 {
-                b.element(TorsionDamping { l, eta_gj: self.eta_gj }, &on)?;
+            if eta_gj > 0.0 {
+                b.element(TorsionDamping { l, eta_gj }, &on)?;
             }
-            if self.gyroscopic {
-                b.element(SpinInertia { l, rho_j: self.rho_j }, &on)?;
+            if gyroscopic {
+                b.element(SpinInertia { l, rho_j }, &on)?;
             }
         }
+        // those that have a direction are the same all along
         for k in (0..mesh.len() - 1).filter(|_| self.directed) {
             let bubble = b.node(NodeKind::Scalars(1), &[0.0], &[0.0])?;
             let own = b.nodes()[bubble.0 as usize];
@@ -265,7 +311,7 @@ impl Twisted {
     }
 
     fn params(&self, k: usize, l: f64) -> TorsionParams {
-        TorsionParams { l, gj: self.gj, rho_j: self.rho_j, twist0: self.twist0[k] }
+        TorsionParams { l, gj: self.bars[k].gj, rho_j: self.bars[k].rho_j, twist0: self.twist0[k] }
     }
 
     /// Element `k` of a rope that turns when it is pulled.
@@ -281,14 +327,8 @@ impl Twisted {
             kappa0 = Directed::curvature(&element(&self.straight, k), l, rule);
         }
         kappa0.iter_mut().take(rule.points().len()).for_each(|k| k[0] += self.curvature);
-        let params = DirectedParams {
-            l,
-            ei_d: self.ei.about_normal,
-            ei_e: self.ei.across,
-            gj: self.gj,
-            eta_gj: self.eta_gj,
-            rho_j: self.rho_j,
-        };
+        let Bar { gj, eta_gj, rho_j, ei, .. } = self.bars[k];
+        let params = DirectedParams { l, ei_d: ei.about_normal, ei_e: ei.across, gj, eta_gj, rho_j };
         Directed::new(params, kappa0, rule)
     }
 
@@ -335,7 +375,7 @@ impl Twisted {
             Some(own) => own.lay * l * (TorqueTension::mean_strain(&x, l, own.points) - own.strain0),
             None => 0.0,
         };
-        [twist / l, self.gj * (twist + pulled - self.twist0[k]) / l]
+        [twist / l, self.bars[k].gj * (twist + pulled - self.twist0[k]) / l]
     }
 
     /// Curvature about both directors at a point of element `k` [1/m], and the moments [N m].
@@ -344,7 +384,7 @@ impl Twisted {
         let now = curvature(&self.gather(k, q, seats, false), l, &at);
         let mut then = if self.as_laid { curvature(&element(&self.straight, k), l, &at) } else { [0.0; 2] };
         then[0] += self.curvature;
-        let ei = [self.ei.about_normal, self.ei.across];
+        let ei = [self.bars[k].ei.about_normal, self.bars[k].ei.across];
         [now, std::array::from_fn(|i| ei[i] * (now[i] - then[i]))]
     }
 

@@ -1,6 +1,6 @@
 //! Twist of single elements against an independent program, and the derivatives of what is made of it.
 
-use ropewalk_core::model::twist::{carried, relabel};
+use ropewalk_core::model::twist::{across, between, carried, relabel};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::testing::{check_tangent, dense};
 use ropewalk_core::{At, Element, Node, NodeId, NodeKind, Pool, Term, V3, Weights, Width, dot, retract};
@@ -256,6 +256,24 @@ fn twist_is_measured_against_directions_carried_without_spin() {
     println!("{errors:?}");
     assert!(errors[2] < 1e-5);
     assert!((errors[0] / errors[1]).log2() > 3.7 && (errors[1] / errors[2]).log2() > 3.8, "{errors:?}");
+}
+
+/// A section that is carried round a cone without spin comes back turned by the solid angle of its polygon.
+#[test]
+fn a_section_carried_round_a_cone_comes_back_turned_by_its_solid_angle() {
+    let all: Value = serde_json::from_str(include_str!("../data/torsion.json")).expect("torsion.json");
+    let reference = &all["holonomy"];
+    for (steps, exact) in list(&reference["steps"]).into_iter().zip(list(&reference["clamp_holonomy"])) {
+        let tangent = |k: i32| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / steps).sin_cos();
+            [0.6_f64.cos(), 0.6_f64.sin() * cos, 0.6_f64.sin() * sin]
+        };
+        let start = across(&[0.0, 0.0, 1.0], &tangent(0));
+        let end = (0..steps as i32).fold(start, |d, k| carried(&d, &tangent(k), &tangent(k + 1)));
+        // seen from the section that comes back
+        let turned = between([&tangent(0), &end], [&tangent(0), &start]);
+        assert!((turned - exact).abs() < 1e-6, "{steps}: {turned} {exact}");
+    }
 }
 
 #[test]

@@ -1,16 +1,22 @@
-//! A wrench between two frames on rigid bodies, with its exact tangent by forward differentiation.
+//! A wrench between two frames on rigid bodies or on sections of cables with torsion, with its exact tangent by forward
+//! differentiation.
 
 use num_dual::Dual64;
 use ropewalk_core::error::need;
-use ropewalk_core::held::find;
-use ropewalk_core::rotation::{cross, from_matrix, matrix, times, transposed_times};
-use ropewalk_core::{Assembly, At, BuildError, Jet, Marker, Node, NodeKind, V3};
+use ropewalk_core::held::{find, three};
+use ropewalk_core::model::twist;
+use ropewalk_core::rotation::{cross, from_matrix, matrix, skew, times, transposed_times};
+use ropewalk_core::{Assembly, At, BuildError, Jet, Marker, Node, NodeKind, V3, dot};
 
-/// A frame fixed in space or on a rigid body.
+/// Most unknowns that move two frames.
+const MOST: usize = 14;
+
+/// A frame fixed in space, on a rigid body, or on the section of a cable with torsion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mount {
-    /// First coordinate and velocity of the body; none in space.
+    /// First coordinate and velocity of the body or the section; none in space.
     body: Option<(usize, usize)>,
+    section: bool,
     /// Place and orientation of the frame on the body, or in space.
     point: V3<f64>,
     axes: [f64; 4],
@@ -30,7 +36,33 @@ pub(crate) struct Pose<S> {
     pub axes: [S; 4],
     /// Its body's own point.
     centre: V3<S>,
-    body: [S; 4],
+    turns: Turns<S>,
+}
+
+/// How a moment is seen by the unknowns that turn a frame.
+enum Turns<S> {
+    /// In the axes of a body with this orientation.
+    Body([S; 4]),
+    /// By the slope and the spin of a section with this slope.
+    Section(V3<S>),
+}
+
+impl<S: Jet> Turns<S> {
+    /// Generalised forces of a moment in space; the fourth is that on a spin.
+    fn carry(&self, moment: &V3<S>) -> [S; 4] {
+        match self {
+            Turns::Body(q) => {
+                let [x, y, z] = transposed_times(&matrix(q), moment);
+                [x, y, z, S::zero()]
+            }
+            Turns::Section(p) => {
+                let inverse = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt().recip();
+                let t = p.map(|p| p * inverse);
+                let [x, y, z] = cross(moment, &t).map(|x| x * inverse);
+                [x, y, z, moment[0] * t[0] + moment[1] * t[1] + moment[2] * t[2]]
+            }
+        }
+    }
 }
 
 /// A law that says what acts on the second frame.
@@ -55,15 +87,19 @@ impl Mount {
         let turned =
             |axes: &[V3<f64>; 3]| from_matrix(&std::array::from_fn(|i| std::array::from_fn(|j| axes[j][i])));
         match marker {
-            Marker::Ground { point, axes } => Ok(Mount { body: None, point: *point, axes: turned(axes) }),
+            Marker::Ground { point, axes } => {
+                Ok(Mount { body: None, section: false, point: *point, axes: turned(axes) })
+            }
             Marker::Node { node, point, axes } => {
                 let n = find(nodes, *node, what)?;
-                need(n.kind == NodeKind::Frame, || {
+                need(n.kind.turns(), || {
                     format!(
-                        "{what}: it needs rigid bodies or points in space, which have axes; use a `spring` on others"
+                        "{what}: it needs rigid bodies, cables with torsion (`section.gj`) or points in space, which have \
+                         axes; use a `spring` on others"
                     )
                 })?;
-                Ok(Mount { body: Some((n.q, n.v)), point: *point, axes: turned(axes) })
+                let section = n.kind == NodeKind::Twist;
+                Ok(Mount { body: Some((n.q, n.v)), section, point: *point, axes: turned(axes) })
             }
         }
     }
@@ -75,8 +111,12 @@ impl Mount {
         let Some((at, _)) = self.body else {
             let axes = self.axes.map(S::from);
             let one = [S::one(), S::zero(), S::zero(), S::zero()];
-            return Pose { x: of(&self.point), v: zero, omega: zero, axes, centre: zero, body: one };
+            let turns = Turns::Body(one);
+            return Pose { x: of(&self.point), v: zero, omega: zero, axes, centre: zero, turns };
         };
+        if self.section {
+            return self.on_section(&q[at..], d, v);
+        }
         let quaternion = [q[at + 3], q[at + 4], q[at + 5], q[at + 6]].map(S::from);
         // to first order, all that a first derivative needs
         let turn = [S::one(), d(3) * 0.5, d(4) * 0.5, d(5) * 0.5];
@@ -91,7 +131,45 @@ impl Mount {
             omega: times(&r, &spin),
             axes: quaternion_product(&body, &self.axes.map(S::from)),
             centre,
-            body,
+            turns: Turns::Body(body),
+        }
+    }
+
+    /// The same on the section of a node with the coordinates `q`.
+    fn on_section<S: Jet>(&self, q: &[f64], d: impl Fn(usize) -> S, v: impl Fn(usize) -> S) -> Pose<S> {
+        let (p, r) = (three(q, 3), twist::section(q));
+        let inverse = dot(&p, &p).sqrt().recip();
+        let t = p.map(|p| S::from(inverse * p));
+        // to first order: the smallest rotation of the tangent and the spin about it
+        let side = cross(&t, &[d(3), d(4), d(5)]);
+        let turn: V3<S> = std::array::from_fn(|i| side[i] * inverse + t[i] * d(6));
+        let half = turn.map(|x| x * 0.5);
+        let body = quaternion_product(&[S::one(), half[0], half[1], half[2]], &from_matrix(&r).map(S::from));
+        let moved = |i: usize| d(i) + q[i];
+        let slope = [moved(3), moved(4), moved(5)];
+        let size = (slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]).sqrt();
+        let tangent = slope.map(|p| p / size);
+        let swing = cross(&tangent, &[v(3), v(4), v(5)]);
+        let omega: V3<S> = std::array::from_fn(|i| swing[i] / size + tangent[i] * v(6));
+        let centre = [moved(0), moved(1), moved(2)];
+        let out = times(&matrix(&body), &self.point.map(S::from));
+        let around = cross(&omega, &out);
+        Pose {
+            x: std::array::from_fn(|i| centre[i] + out[i]),
+            v: std::array::from_fn(|i| v(i) + around[i]),
+            omega,
+            axes: quaternion_product(&body, &self.axes.map(S::from)),
+            centre,
+            turns: Turns::Section(slope),
+        }
+    }
+
+    /// How many unknowns move it.
+    fn size(&self) -> usize {
+        match (self.body, self.section) {
+            (None, _) => 0,
+            (_, false) => 6,
+            (_, true) => 7,
         }
     }
 }
@@ -108,11 +186,11 @@ impl Frames {
 
     /// The unknowns that it acts on.
     pub(crate) fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
-        self.0.iter().filter_map(|m| m.body).flat_map(|(_, v)| v..v + 6)
+        self.0.iter().filter_map(|m| m.body.map(|(_, v)| v..v + m.size())).flatten()
     }
 
     fn poses<S: Jet>(&self, at: &At<'_>, d: impl Fn(usize) -> S, v: impl Fn(usize) -> S) -> [Pose<S>; 2] {
-        let second = if self.0[0].body.is_some() { 6 } else { 0 };
+        let second = self.0[0].size();
         let first = self.0[0].pose(at.q, &d, &v);
         [first, self.0[1].pose(at.q, |i| d(second + i), |i| v(second + i))]
     }
@@ -130,7 +208,7 @@ impl Frames {
         at: &At<'_>,
         d: impl Fn(usize) -> S,
         v: impl Fn(usize) -> S,
-        out: &mut [S; 12],
+        out: &mut [S; MOST],
     ) {
         let pose = self.poses(at, d, v);
         let (force, moment) = law.wrench(&pose);
@@ -144,12 +222,11 @@ impl Frames {
             let arm = std::array::from_fn(|i| pose[1].x[i] - pose_k.centre[i]);
             let lever = cross(&arm, &force);
             let whole = std::array::from_fn(|i| moment[i] + lever[i]);
-            let own = transposed_times(&matrix(&pose_k.body), &whole);
-            for i in 0..3 {
-                out[row + i] = force[i] * sign;
-                out[row + 3 + i] = own[i] * sign;
+            let own = pose_k.turns.carry(&whole);
+            for i in 0..mount.size() {
+                out[row + i] = if i < 3 { force[i] } else { own[i - 3] } * sign;
             }
-            row += 6;
+            row += mount.size();
         }
     }
 
@@ -157,7 +234,7 @@ impl Frames {
     pub(crate) fn add(&self, law: &impl Wrench, at: &At<'_>, out: &mut Assembly<'_>) {
         let dofs: Vec<usize> = self.dofs().collect();
         let n = dofs.len();
-        let mut values = [0.0; 12];
+        let mut values = [0.0; MOST];
         self.residual(law, at, |_| 0.0, |i| at.v[dofs[i]], &mut values);
         for (dof, r) in dofs.iter().zip(values) {
             out.add(*dof, r);
@@ -166,8 +243,8 @@ impl Frames {
             return;
         }
         let w = out.weights();
-        let mut block = [[0.0; 12]; 12];
-        let mut column = [Dual64::from(0.0); 12];
+        let mut block = [[0.0; MOST]; MOST];
+        let mut column = [Dual64::from(0.0); MOST];
         for j in 0..n {
             let one = |i: usize| if i == j { 1.0 } else { 0.0 };
             let d = |i: usize| Dual64::new(0.0, w.q * one(i));
@@ -175,6 +252,22 @@ impl Frames {
             for i in 0..n {
                 block[i][j] = column[i].eps;
             }
+        }
+        let mut first = 0;
+        for mount in &self.0 {
+            if let (Some((q, _)), true) = (mount.body, mount.section) {
+                // what all tangents leave out: half of the torque times the tangent
+                let p = three(at.q, q + 3);
+                let square = dot(&p, &p);
+                let half = 0.5 * w.q * values[first + 6] / (square * square.sqrt());
+                let cut = skew(&p.map(|p| half * p));
+                for i in 0..3 {
+                    for j in 0..3 {
+                        block[first + 3 + i][first + 3 + j] -= cut[i][j];
+                    }
+                }
+            }
+            first += mount.size();
         }
         out.add_block(0, n, |i, j| block[i][j]);
     }

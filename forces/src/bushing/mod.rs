@@ -1,4 +1,4 @@
-//! Springs and dampers between the frames of two rigid bodies: bushings, and torsion springs.
+//! Springs and dampers between two frames, on rigid bodies and on cables with torsion: bushings, and torsion springs.
 
 mod frames;
 mod spec;

@@ -19,8 +19,8 @@ pub struct BushingSpec {
     pub name: String,
     /// The marker that is held.
     pub marker: MarkerRef,
-    /// The other marker, on a rigid body, or a point in space; its axes are those of the stiffnesses. Default: the
-    /// point where `marker` starts.
+    /// The other marker, on a rigid body or a cable with torsion, or a point in space; its axes are those of the
+    /// stiffnesses. Default: the point where `marker` starts.
     #[serde(default)]
     pub to: Option<MarkerRef>,
     /// Direction of the first axis in space at the start. Default, with `axis_y`: the axes of space.
@@ -106,16 +106,16 @@ impl ForceSpec for BushingSpec {
     }
 }
 
-/// A torsion spring and damper about an axis, used with a `revolute` joint. Angles up to half a turn from the
-/// stress-free angle are valid.
+/// A torsion spring and damper about an axis, used with a `revolute` joint, or at the end of a cable with torsion
+/// (`section.gj`), which may lie on a swivel. Angles up to half a turn from the stress-free angle are valid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationalSpringSpec {
     /// Name.
     pub name: String,
-    /// The marker, on a rigid body.
+    /// The marker, on a rigid body or a cable with torsion.
     pub marker: MarkerRef,
-    /// The other marker, on a rigid body. Default: space.
+    /// The other marker, on a rigid body or a cable with torsion. Default: space.
     #[serde(default)]
     pub to: Option<MarkerRef>,
     /// Direction of the axis in space at the start.

@@ -2,7 +2,7 @@
 
 use super::pressure::{PRESSURE, WALL};
 use ropewalk_core::{At, BuildError, Column, Model, Part, Quantity, Record, Sample, Term};
-use ropewalk_scene::records::{RecordPlace, named, off, part};
+use ropewalk_scene::records::{RecordPlace, check_places, named, part};
 use ropewalk_scene::{RecordSpec, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -90,14 +90,7 @@ impl RecordSpec for WallTensionSpec {
                 format!("nothing flows through `{}`: add a force of type `internal_flow`", part.name());
             BuildError::at("of", message)
         })?;
-        if self.at.is_empty() {
-            return Err(BuildError::at("at", "`at` must name one place at least"));
-        }
-        if let Some(s) =
-            self.at.iter().map(|p| p.on(part.length())).find(|s| !(0.0..=part.length()).contains(s))
-        {
-            return Err(off(part.as_ref(), "at", s));
-        }
+        check_places(part.as_ref(), &self.at)?;
         let name = named(&self.name, || part.name().to_string());
         let title = named(&self.title, || format!("Wall of {}", part.name()));
         Ok(Box::new(WallTension { part, term, at: self.at.clone(), name, title }))

@@ -110,6 +110,7 @@ impl ForceSpec for InternalFlowSpec {
             outlet: self.outlet_pressure,
             water: around.map(|(density, level)| [density * weight, level, outer]),
         });
+        flow.steady = b.is_statics();
         if self.weight {
             flow.gravity = b.gravity();
         }

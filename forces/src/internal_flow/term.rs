@@ -41,6 +41,8 @@ pub struct InternalFlow {
     pub nozzle: f64,
     /// Whether the outlet leads into the inlet, so that nothing enters or leaves.
     pub closed: bool,
+    /// Whether it counts as steady however its speed changes: in statics, where time is a load factor.
+    pub steady: bool,
     /// What pressures follow from, if they are to be known. They move nothing.
     pub bore: Option<Bore>,
     label: String,
@@ -131,6 +133,7 @@ impl InternalFlow {
             gravity: [0.0; 3],
             nozzle: 1.0,
             closed: false,
+            steady: false,
             bore: None,
             part: name.to_string(),
             label: format!("{name}: internal flow"),
@@ -141,7 +144,8 @@ impl InternalFlow {
     /// Speed and its rate.
     pub(super) fn flow(&self, t: f64) -> [f64; 2] {
         let (u, f) = (self.speed.at(t), self.time.at(t));
-        [u * f, rate(&self.speed, t) * f + u * self.time.rate(t)]
+        let faster = || rate(&self.speed, t) * f + u * self.time.rate(t);
+        [u * f, if self.steady { 0.0 } else { faster() }]
     }
 
     /// Weights of `v̇`, `v` and `q` in the residual of an element, each times the identity of space.

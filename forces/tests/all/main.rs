@@ -9,6 +9,7 @@ mod functions;
 #[cfg(feature = "contact")]
 mod lines;
 mod mounts;
+mod on_sections;
 mod random;
 mod surface;
 mod terms;

@@ -28,7 +28,7 @@ pub use length::LengthSpec;
 pub use momentum::MomentumSpec;
 pub use motion::{AccelerationSpec, PositionSpec, VelocitySpec};
 pub use payout::PayoutSpec;
-pub use place::{SpaceAxis, Station as RecordPlace, off, part};
+pub use place::{SpaceAxis, Station as RecordPlace, check_places, off, part};
 pub use reaction::{ReactionPart, ReactionSpec};
 pub use released::ReleasedSpec;
 pub use touchdown::TouchdownSpec;

@@ -158,6 +158,21 @@ fn percent<S: serde::Serializer>(share: &f64, s: S) -> Result<S::Ok, S::Error> {
     s.collect_str(&format_args!("{} %", 100.0 * share))
 }
 
+/// Checks the places of a record along a part: one at least, and all of them on the part as it is laid.
+///
+/// # Errors
+/// There is none, or one is beyond the part's ends; of the field `at`.
+pub fn check_places(part: &dyn Part, at: &[Station]) -> Result<(), BuildError> {
+    let length = part.length();
+    if at.is_empty() {
+        return Err(BuildError::at("at", "`at` must name one place at least"));
+    }
+    match at.iter().map(|place| place.on(length)).find(|s| !(0.0..=length).contains(s)) {
+        Some(s) => Err(off(part, "at", s)),
+        None => Ok(()),
+    }
+}
+
 impl Station {
     /// Its arc length on a part of this length [m].
     pub fn on(self, length: f64) -> f64 {

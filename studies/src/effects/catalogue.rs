@@ -24,6 +24,8 @@ pub(super) enum Edit {
     NoAudit,
     /// A field of an element, by pointer, with another value.
     Element(usize, String, Value),
+    /// An element with all of its fields anew.
+    Replace(usize, Value),
     /// Fields of a force with other values.
     Force(usize, Value),
     /// A force more.
@@ -44,10 +46,13 @@ pub(super) struct Candidate {
 pub(super) type Hint = (String, String);
 
 /// Fields of elements, or of their sections, that are an effect each; 0 switches it off.
-const FIELDS: [(&str, &str); 8] = [
+const FIELDS: [(&str, &str); 11] = [
     ("ei", "bending"),
     ("axial_retardation_time", "damping of stretching"),
     ("bending_retardation_time", "damping of bending"),
+    ("torsional_retardation_time", "damping of torsion"),
+    ("torque_tension", "torque by tension"),
+    ("laid_twist", "twist as laid"),
     ("joint_damping", "damping of joints"),
     ("flooded", "water inside"),
     ("added_mass", "added mass"),
@@ -90,6 +95,12 @@ pub(super) fn edited(scene: &Scene, edits: &[Edit]) -> Result<Scene, String> {
                 let mut spec = serde_json::to_value(&*new.elements[*k]).map_err(|e| e.to_string())?;
                 let fields = inner(&mut spec).ok_or("not a table")?;
                 *fields.pointer_mut(at).ok_or("no such field")? = value.clone();
+                let spec: Box<dyn ElementSpec> = serde_json::from_value(spec).map_err(|e| e.to_string())?;
+                new.elements[*k] = spec.into();
+            }
+            Edit::Replace(k, fields) => {
+                let mut spec = serde_json::to_value(&*new.elements[*k]).map_err(|e| e.to_string())?;
+                *inner(&mut spec).ok_or("not a table")? = fields.clone();
                 let spec: Box<dyn ElementSpec> = serde_json::from_value(spec).map_err(|e| e.to_string())?;
                 new.elements[*k] = spec.into();
             }
@@ -183,6 +194,11 @@ pub(super) fn present(scene: &Scene) -> Vec<Candidate> {
             }
         }
     }
+    for (k, element) in scene.elements.iter().enumerate() {
+        if let Some(untwisted) = untwisted(fields(&**element)) {
+            push(format!("torsion of {}", element.name()), Edit::Replace(k, untwisted));
+        }
+    }
     for (k, c) in scene.constraints.iter().enumerate() {
         if let Some((marker, _)) = c.feeds() {
             push(
@@ -209,6 +225,23 @@ pub(super) fn present(scene: &Scene) -> Vec<Candidate> {
         push("audit of energy".into(), Edit::NoAudit);
     }
     all
+}
+
+/// A cable with torsion that could do without: its fields without all that only torsion has.
+fn untwisted(mut of: Value) -> Option<Value> {
+    let straight = of["stress_free"] != "as-laid" && number(&of, "/curvature") == 0.0;
+    if number(&of, "/section/gj") == 0.0 || of["section"]["ei"].is_array() || !straight {
+        return None;
+    }
+    let section = of["section"].as_object_mut()?;
+    for field in ["gj", "rotary_inertia", "torsional_retardation_time", "gyroscopic", "torque_tension"] {
+        section.remove(field);
+    }
+    let whole = of.as_object_mut()?;
+    for field in ["normal", "twist", "laid_twist"] {
+        whole.remove(field);
+    }
+    Some(of)
 }
 
 /// The effects that a scene could have, with data that follow from it; and those of which it says too little.
@@ -252,6 +285,13 @@ pub(super) fn absent(scene: &Scene) -> (Vec<Candidate>, Vec<Hint>) {
         let text = "[[forces]]: type = \"contact\", name = \"ground\", shape = { plane = {} }, marker = [0, 0, -10], \
                     stiffness_per_length = 1e4";
         hint("contact", text.into());
+    }
+    for cable in scene.elements.iter().filter(|e| e.typetag_name() == "cable") {
+        let of = fields(&**cable);
+        if of["section"]["gj"].is_null() && number(&of, "/section/ei") > 0.0 {
+            let name = cable.name();
+            hint(&format!("torsion of {name}"), format!("`gj` in the section of `{name}`"));
+        }
     }
     (all, hints)
 }

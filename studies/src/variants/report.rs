@@ -1,7 +1,7 @@
 //! The findings as tables, for people and as CSV.
 
 use super::scaling::{MESHES, Row, deflection_error};
-use super::stiffness::{CANTILEVER, PENDULUM};
+use super::stiffness::{CANTILEVER, HELIX, PENDULUM};
 use super::{Form, Problem, Variants};
 use ropewalk_report::{Csv, Sheet, rough};
 
@@ -25,13 +25,14 @@ impl Variants {
 
     fn stiffness_table(&self, sheet: &mut Sheet) {
         sheet.line(
-            "stiffness models: µs per element; relative errors of a cantilever's deflection and of a pendulum's tip",
+            "stiffness models: µs per element; relative errors of a cantilever's deflection, of a pendulum's tip, and of the \
+             tip of a rod that is wound to a helix",
         );
         let mut headings = ["", "force", "tangent"].map(String::from).to_vec();
-        headings.extend(CANTILEVER.iter().chain(&PENDULUM).map(|n| format!("n = {n}")));
+        headings.extend(CANTILEVER.iter().chain(&PENDULUM).chain(&HELIX).map(|n| format!("n = {n}")));
         headings.extend(["locking", "energy", "asymm.", "strain"].map(String::from));
         let row = |s: &super::Stiffness| {
-            let errors = s.cantilever.iter().chain(&s.pendulum);
+            let errors = s.cantilever.iter().chain(&s.pendulum).chain(&s.helix);
             let others = [s.locking, s.energy, s.asymmetry, s.moment_strain];
             let mut row = vec![s.label.clone(), timed(s.force_us), timed(s.tangent_us)];
             row.extend(errors.chain(&others).map(|x| short(*x)));
@@ -105,8 +106,11 @@ impl Variants {
         let mut csv = Csv::new(["models", "quantity", "elements", "value"]);
         for s in &self.stiffness {
             let label = s.label.replace(',', ";");
-            let errors =
-                [("cantilever", &CANTILEVER[..], &s.cantilever), ("pendulum", &PENDULUM[..], &s.pendulum)];
+            let errors = [
+                ("cantilever", &CANTILEVER[..], &s.cantilever),
+                ("pendulum", &PENDULUM[..], &s.pendulum),
+                ("helix", &HELIX[..], &s.helix),
+            ];
             for (quantity, meshes, errors) in errors {
                 for (n, e) in meshes.iter().zip(errors) {
                     csv.cell(&label).cell(format!("error of the {quantity}")).cell(n.to_string());

@@ -11,12 +11,16 @@ use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, PointMomentSpec, TimeFunction};
 use ropewalk_scene::Scene;
 use serde::Serialize;
+use std::f64::consts::TAU;
 use std::time::Duration;
 
 /// Meshes of the cantilever.
 pub const CANTILEVER: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Meshes of the pendulum.
 pub const PENDULUM: [usize; 4] = [2, 4, 8, 16];
+
+/// Meshes of the helix.
+pub const HELIX: [usize; 3] = [8, 16, 32];
 
 /// Deflection of the tip under `F L²/EI = 3`, by integration of the elastica: without extension, and with
 /// `EA L²/EI = 1.6e5`, where the material stretches by Green's strain.
@@ -46,6 +50,9 @@ pub struct Stiffness {
     pub cantilever: Vec<f64>,
     /// How much larger the error of 8 elements becomes when `EA L²/EI` grows ten thousandfold: 1 without locking.
     pub locking: f64,
+    /// Error of the tip of a rod with torsion that a couple at its end, fixed in space, winds to one turn of a helix, in
+    /// parts of its length, by mesh: [`HELIX`]. NaN where there is no equilibrium.
+    pub helix: Vec<f64>,
     /// Error of the pendulum's tip at 0.4 s in parts of its length, by mesh: [`PENDULUM`]. Models with T1 or T2 are
     /// those of a slightly other material, which is 5e-5 away.
     pub pendulum: Vec<f64>,
@@ -107,6 +114,7 @@ pub fn measure(models: CableModel) -> Result<Stiffness, Error> {
         tangent_us: f64::NAN,
         locking: (deflection(8, SLENDEREST, ELASTICA) / errors[3]).abs(),
         cantilever: errors,
+        helix: HELIX.iter().map(|&n| helix(models, n).unwrap_or(f64::NAN)).collect(),
         pendulum,
         energy,
         asymmetry,
@@ -151,31 +159,16 @@ enum Load {
 /// A cantilever of 1 m and EI = 1 N m² under a force of 3 N or a moment of 1 N m: its largest strain and its tip.
 /// `None` where no equilibrium was found.
 fn cantilever(models: CableModel, n: usize, ea: f64, load: Load) -> Option<(f64, V3<f64>)> {
-    let grows = || TimeFunction::table(vec![0.0, 1.0], vec![0.0, 1.0]);
     let mut scene = Scene::new();
     scene
         .element(cable(models, n, 1.0, Section::new(1.0, ea, 1.0)))
         .constraint(SphericalSpec::pin("root", "rod.start"))
         .constraint(DirectionSpec::new("clamp", "rod.start"));
-    let marker = "rod.end".into();
     match load {
         Load::Force => scene.force(PointForceSpec::new("rod.end", [0.0, 3.0, 0.0], grows())),
-        Load::Moment => scene.force(PointMomentSpec {
-            marker,
-            local: false,
-            moment: [0.0, 0.0, 1.0].map(Into::into),
-            torque: None,
-            time: grows(),
-        }),
+        Load::Moment => scene.force(moment([0.0, 0.0, 1.0])),
     };
-    let model = scene.build().ok()?;
-    // what fails is told by NaN; whether the plane shape is stable out of its plane is another question
-    let options = StaticsOptions { stable: false, ..StaticsOptions::default() };
-    let mut statics = Statics::new(&model, &options).ok()?;
-    let mut state = model.state();
-    for k in 1..=10 {
-        statics.follow(&mut state, f64::from(k) / 10.0).ok()?;
-    }
+    let (model, state) = loaded(&scene, 10)?;
     let part = model.part("rod")?;
     let places = (0..=200).map(|k| f64::from(k) / 200.0);
     let strain = places.filter_map(|s| part.observe(Quantity::Strain, s, &state.at()));
@@ -183,6 +176,48 @@ fn cantilever(models: CableModel, n: usize, ea: f64, load: Load) -> Option<(f64,
         strain.fold(0.0, |a, e| if e.abs() > a || e.is_nan() { e.abs() } else { a }),
         tip(&model, &state, 1.0),
     ))
+}
+
+/// Grows from nothing to its full size over the load steps.
+fn grows() -> TimeFunction {
+    TimeFunction::table(vec![0.0, 1.0], vec![0.0, 1.0])
+}
+
+/// A moment at the free end that keeps its direction.
+fn moment(moment: V3<f64>) -> PointMomentSpec {
+    let moment = moment.map(Into::into);
+    PointMomentSpec { marker: "rod.end".into(), local: false, moment, torque: None, time: grows() }
+}
+
+/// The equilibrium under the whole load. `None` where none was found.
+fn loaded(scene: &Scene, steps: u32) -> Option<(Model, State)> {
+    let model = scene.build().ok()?;
+    // what fails is told by NaN; whether the shape is stable is another question
+    let options = StaticsOptions { stable: false, ..StaticsOptions::default() };
+    let mut statics = Statics::new(&model, &options).ok()?;
+    let mut state = model.state();
+    for k in 1..=steps {
+        statics.follow(&mut state, f64::from(k) / f64::from(steps)).ok()?;
+    }
+    drop(statics);
+    Some((model, state))
+}
+
+/// How far the tip of a helix is from the exact one (Kirchhoff 1859; Love 1927, art. 270): a rod of 1 m with
+/// `EA L²/EI = 1e5` and `GJ/EI = 0.7` under a couple of `2π EI/L` at its end, at an angle to it whose tangent is 3/4.
+fn helix(models: CableModel, n: usize) -> Option<f64> {
+    let mut section = Section::new(1.0, 1e5, 1.0);
+    section.gj = Some(0.7);
+    let mut scene = Scene::new();
+    scene
+        .element(cable(models, n, 1.0, section))
+        .constraint(SphericalSpec::pin("root", "rod.start"))
+        .constraint(DirectionSpec::new("clamp", "rod.start"))
+        .force(moment([0.8 * TAU, 0.0, 0.6 * TAU]));
+    let (model, state) = loaded(&scene, 40)?;
+    // the tip lies on the axis of the couple again after one turn
+    let (x, exact) = (tip(&model, &state, 1.0), [0.64, 0.0, 0.48]);
+    Some((0..3).map(|i| (x[i] - exact[i]).powi(2)).sum::<f64>().sqrt())
 }
 
 fn tip(model: &Model, state: &State, s: f64) -> V3<f64> {

@@ -1,7 +1,7 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
 use super::controller::{StepController, StepLaw};
-use super::convergence::{FLIPS, Failure, Rate};
+use super::convergence::{Failure, Rate};
 use super::forces::larger;
 use super::newton::Newton;
 use super::options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
@@ -282,8 +282,8 @@ impl Alpha {
         rate: Rate,
     ) -> Result<Attempt, StepError> {
         let bad = |why: &str| Ok(Attempt::Bad { why: why.into() });
-        if model.flips(&state.q, &work.trial.d) {
-            return bad(FLIPS);
+        if let Some(why) = model.flips(&state.q, &work.trial.d) {
+            return bad(why);
         }
         match self.options.stepping {
             Stepping::Fixed { .. } if !model.is_mechanism() => {

@@ -32,9 +32,6 @@ impl Failure {
     }
 }
 
-/// What is said of a step that turns a cable with torsion too far.
-pub(crate) const FLIPS: &str = "the direction of a cable with torsion turns round in one step";
-
 /// Below so many times the floor of rounding corrections wander instead of falling.
 const NOISE: f64 = 30.0;
 /// Largest expected rest that counts, in parts of the last correction: beyond, the iteration diverges.

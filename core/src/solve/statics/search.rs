@@ -152,7 +152,10 @@ impl Statics<'_> {
         if !size.is_finite() {
             return Err("the iteration left the finite numbers".into());
         }
-        while self.model.flips(&it.q, &d) {
+        for _ in 0..HALVED {
+            if self.model.flips(&it.q, &d).is_none() {
+                break;
+            }
             d.iter_mut().for_each(|d| *d *= 0.5);
         }
         let cut = self.stop_short(state, &it.q, &mut d);

@@ -11,7 +11,7 @@ pub(super) mod stages;
 mod tableau;
 
 use super::controller::{StepController, StepLaw};
-use super::convergence::{FLIPS, Failure, Rate};
+use super::convergence::{Failure, Rate};
 use super::forces::larger;
 use super::options::{Limits, Options, Stepping};
 use super::step::{Integrator, StepError, StepReport, linear, too_strict};
@@ -103,8 +103,8 @@ impl Radau {
             linear_constraints: !model.is_mechanism(),
         };
         let converged = newton.solve(work, s)?;
-        if model.flips(&state.q, &s.z[2]) {
-            return Err(Failure::newton(FLIPS));
+        if let Some(why) = model.flips(&state.q, &s.z[2]) {
+            return Err(Failure::newton(why));
         }
         let mut error = 0.0;
         if let Stepping::Controlled { .. } = self.options.stepping {
