@@ -28,6 +28,7 @@ pub mod motion;
 pub mod package;
 mod pair;
 mod prismatic;
+pub mod reeving;
 mod revolute;
 mod spherical;
 mod universal;
@@ -46,6 +47,7 @@ pub use prismatic::{
     CylindricalSpec, PointOnLineSpec, PointOnPlaneSpec, PrismaticSpec, cylindrical, point_on_line,
     point_on_plane, prismatic,
 };
+pub use reeving::{SheaveRecordSpec, SheaveSpec};
 pub use revolute::{RevoluteSpec, revolute};
 pub use spherical::{SphericalSpec, spherical};
 pub use universal::{PerpendicularSpec, UniversalSpec, perpendicular, universal};

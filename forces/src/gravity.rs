@@ -34,6 +34,9 @@ pub(crate) fn dead_loads(
 
 #[typetag::serde(name = "gravity")]
 impl ForceSpec for GravitySpec {
+    fn weighs(&self) -> Option<&[String]> {
+        Some(&self.on)
+    }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         dead_loads(b, "gravity", &self.on, Per::Mass, b.gravity())
     }

@@ -12,6 +12,7 @@ macro_rules! scenes {
 /// All of them, by name.
 pub(crate) const ALL: &[Bundled] = scenes![
     "atwood",
+    "atwood-wheel",
     "bend-stiffener",
     "bouncing-ball",
     "breaking-line",
@@ -32,6 +33,7 @@ pub(crate) const ALL: &[Bundled] = scenes![
     "falling-chain",
     "folded-whip",
     "four-bar",
+    "four-falls",
     "free-disc",
     "guyed-mast",
     "hanging-cable-modes",

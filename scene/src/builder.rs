@@ -3,6 +3,7 @@
 use crate::inputs::Inputs;
 use crate::marker::{MarkerRef, split_marker};
 use crate::motions::{Motions, no_motion};
+use crate::reeving::{Guide, Passage};
 use crate::scene::GRAVITY;
 use crate::water::{Air, Water};
 use ropewalk_core::error::finite;
@@ -23,6 +24,12 @@ fn end_of(marker: &MarkerRef) -> Result<(&str, usize), BuildError> {
     match split_marker(name).map_err(|e| BuildError::at("marker", format!("marker `{name}`: {e}")))? {
         (part, Spot::Named(end)) if end == "start" => Ok((part, 0)),
         (part, Spot::Named(end)) if end == "end" => Ok((part, 1)),
+        // of a span of a cable with a route
+        (_, Spot::Named(place)) if place.contains('.') => match name.rsplit_once('.') {
+            Some((span, "start")) => Ok((span, 0)),
+            Some((span, "end")) => Ok((span, 1)),
+            _ => Err(BuildError::at("marker", format!("{marker}: {ends}"))),
+        },
         _ => Err(BuildError::at("marker", format!("{marker}: {ends}"))),
     }
 }
@@ -64,6 +71,14 @@ pub struct Builder {
     meshes: HashMap<String, Mesh>,
     /// What flows through the ends of parts, at the start and at the end, and the constraint that says so.
     feeds: HashMap<String, [Option<(Feed, String)>; 2]>,
+    /// What cables can run over, by name.
+    guides: BTreeMap<String, Guide>,
+    /// Where they do.
+    passages: Vec<Passage>,
+    /// Cables with a route, whose spans are named `NAME.1`, `NAME.2`, …
+    routes: HashSet<String>,
+    /// The parts that have weight, all of them if one list is empty.
+    weighs: Vec<Vec<String>>,
     water: Option<Water>,
     air: Option<Air>,
     /// What acts on which part already and may do so only once.
@@ -211,7 +226,8 @@ impl Builder {
     /// Adds a named part.
     pub fn part(&mut self, part: Arc<dyn Part>) -> Result<(), BuildError> {
         let name = part.name();
-        if name.is_empty() || name.contains(['.', '@']) {
+        let span = name.rsplit_once('.').filter(|(route, _)| self.routes.contains(*route));
+        if name.is_empty() || span.map_or(name, |(_, number)| number).contains(['.', '@']) {
             return Err(BuildError::at(
                 "name",
                 format!("`{name}` can't be a name: it is empty or holds `.` or `@`"),
@@ -230,7 +246,18 @@ impl Builder {
         if names.is_empty() {
             return Ok(self.parts.iter().cloned().enumerate().collect());
         }
-        names.iter().map(|n| self.find(n, "on")).collect()
+        let mut all = Vec::new();
+        for name in names {
+            let (k, part) = self.find(name, "on")?;
+            for span in part.spans() {
+                all.push(self.find(span.name(), "on")?);
+            }
+            // what lies on wheels is no place for a load
+            if part.spans().is_empty() {
+                all.push((k, part));
+            }
+        }
+        Ok(all)
     }
 
     fn find(&self, name: &str, field: &'static str) -> Result<(usize, Arc<dyn Part>), BuildError> {
@@ -317,7 +344,7 @@ impl Builder {
     /// The marker isn't an end of a part that material flows through.
     pub fn boundary(&self, marker: &MarkerRef, remedy: &str) -> Result<MovingBoundary, BuildError> {
         let (name, end) = end_of(marker)?;
-        let (_, part) = self.find(name, "marker")?;
+        let part = self.end_part(name, end)?;
         part.boundary(end).ok_or_else(|| {
             let message = match part.slender() {
                 Some(_) => format!("nothing feeds at {marker}: {remedy}"),
@@ -335,13 +362,21 @@ impl Builder {
     /// # Errors
     /// As for [`Builder::boundary`].
     pub fn feeding_part(&self, marker: &MarkerRef) -> Result<Arc<dyn Part>, BuildError> {
-        Ok(self.find(end_of(marker)?.0, "marker")?.1)
+        let (name, end) = end_of(marker)?;
+        self.end_part(name, end)
+    }
+
+    /// The part at an end of a part: of a cable with a route, its first or last span.
+    fn end_part(&self, name: &str, end: usize) -> Result<Arc<dyn Part>, BuildError> {
+        let (_, part) = self.find(name, "marker")?;
+        let span = if end == 0 { part.spans().first() } else { part.spans().last() };
+        Ok(span.cloned().unwrap_or(part))
     }
 
     /// Starts the run with an end of a cable feeding at this rate of its material coordinate [m/s].
     pub fn start_feeding(&mut self, marker: &MarkerRef, rate: f64) -> Result<(), BuildError> {
         let (name, end) = end_of(marker)?;
-        let (_, part) = self.find(name, "marker")?;
+        let part = self.end_part(name, end)?;
         if let Some(line) = part.line() {
             line.start_feeding(end, rate, &self.start.q, &mut self.start.v);
         }
@@ -418,6 +453,75 @@ impl Builder {
         let mut least = f64::INFINITY;
         stations.each(&at, &mut |s| least = least.min(s.diameter));
         least
+    }
+
+    /// Notes what cables can run over.
+    ///
+    /// # Errors
+    /// Two of one name.
+    pub(crate) fn guides(&mut self, guides: Vec<Guide>) -> Result<(), BuildError> {
+        for guide in guides {
+            let name = guide.name.clone();
+            if self.guides.insert(name.clone(), guide).is_some() {
+                return Err(BuildError::at("name", format!("two guides of cables are named `{name}`")));
+            }
+        }
+        Ok(())
+    }
+
+    /// What a route runs over or through.
+    ///
+    /// # Errors
+    /// There is nothing of this name.
+    pub fn guide(&self, name: &str) -> Result<Guide, BuildError> {
+        self.guides.get(name).cloned().ok_or_else(|| {
+            let names: Vec<String> = self.guides.keys().map(|n| format!("`{n}`")).collect();
+            let names = if names.is_empty() { "none".into() } else { names.join(", ") };
+            let message = format!("there is no sheave or ring `{name}`; those of the scene are {names}");
+            BuildError::at("route", message)
+        })
+    }
+
+    /// Notes that a cable has a route, so that its spans can be named after it; material flows through all of their inner
+    /// ends.
+    ///
+    /// # Errors
+    /// Something else feeds at an end of a span.
+    pub fn route(&mut self, name: &str, spans: &[String]) -> Result<(), BuildError> {
+        if let Some(span) = spans.iter().find(|span| self.feeds.contains_key(*span)) {
+            let message = format!(
+                "`{span}` feeds at wheels and rings by itself: put a winch at `{name}.start` or `{name}.end`"
+            );
+            return Err(BuildError::at("route", message));
+        }
+        self.routes.insert(name.to_string());
+        let outer = self.feeds.get(name).cloned().unwrap_or_default();
+        let passing = Some((Feed { unstrained: true, passes: true, ..Feed::default() }, name.to_string()));
+        for (k, span) in spans.iter().enumerate() {
+            let first = if k == 0 { outer[0].clone() } else { passing.clone() };
+            let last = if k + 1 == spans.len() { outer[1].clone() } else { passing.clone() };
+            self.feeds.insert(span.clone(), [first, last]);
+        }
+        Ok(())
+    }
+
+    /// Notes that a cable passes a guide.
+    pub fn passage(&mut self, passage: Passage) {
+        self.passages.push(passage);
+    }
+
+    /// Where cables pass a guide.
+    pub fn passages(&self, guide: &str) -> Vec<Passage> {
+        self.passages.iter().filter(|p| p.guide == guide).cloned().collect()
+    }
+
+    pub(crate) fn weigh(&mut self, on: &[String]) {
+        self.weighs.push(on.to_vec());
+    }
+
+    /// Whether a force gives a part its weight.
+    pub fn weighs(&self, part: &str) -> bool {
+        self.weighs.iter().any(|on| on.is_empty() || on.iter().any(|name| name == part))
     }
 
     /// Notes that a force of this type acts on a part.

@@ -15,6 +15,7 @@ mod marker;
 mod motions;
 mod process;
 pub mod records;
+mod reeving;
 mod scene;
 mod scene_file;
 mod sea;
@@ -32,6 +33,7 @@ pub use document::{
 pub use inputs::{InputSpec, Inputs};
 pub use marker::{MarkerRef, split_marker};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};
+pub use reeving::{Guide, Passage, Strand};
 pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, RangeSpec, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use scene_file::{Bundled, SceneFile, SceneText};

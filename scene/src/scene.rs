@@ -442,6 +442,12 @@ impl Scene {
                 b.feed(c.name(), marker, feed).map_err(of(SpecKind::Constraint, k))?;
             }
         }
+        for (k, c) in self.constraints.iter().enumerate() {
+            b.guides(c.guides()).map_err(of(SpecKind::Constraint, k))?;
+        }
+        for on in self.forces.iter().filter_map(|f| f.weighs()) {
+            b.weigh(on);
+        }
         for (k, e) in self.elements.iter().enumerate() {
             e.build(&mut b).map_err(of(SpecKind::Element, k))?;
         }

@@ -8,6 +8,7 @@ use crate::builder::Builder;
 use crate::controllers::Channels;
 use crate::inputs::{InputSpec, Inputs};
 use crate::marker::MarkerRef;
+use crate::reeving::Guide;
 use crate::scene::Run;
 use crate::water::{Air, Water};
 use ropewalk_core::integrator::Options;
@@ -45,6 +46,10 @@ pub trait ConstraintSpec: Debug + Send + Sync {
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
         None
     }
+    /// What cables can run over by it.
+    fn guides(&self) -> Vec<Guide> {
+        Vec::new()
+    }
     /// What one should know about it, one sentence each, in the model that was built.
     fn notes(&self, _: &ropewalk_core::Model) -> Vec<String> {
         Vec::new()
@@ -59,6 +64,10 @@ pub trait ForceSpec: Debug + Send + Sync {
     /// The markers that it acts on; a cable puts a node where one is.
     fn markers(&self) -> Vec<&MarkerRef> {
         Vec::new()
+    }
+    /// The parts that it gives the scene's weight; an empty list means all of them.
+    fn weighs(&self) -> Option<&[String]> {
+        None
     }
     /// Adds its terms.
     fn build(&self, b: &mut Builder) -> Result<(), BuildError>;

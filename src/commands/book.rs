@@ -36,6 +36,7 @@ const PAGES: &[Text] = pages![
     "rust",
     "questions",
     "winch",
+    "reeving",
     "eyelet",
     "contact",
     "joints",

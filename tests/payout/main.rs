@@ -5,9 +5,12 @@ mod common;
 #[path = "../common/program.rs"]
 mod program;
 
+mod arc;
 mod births;
 mod eyelet;
 mod reeling;
+mod reeving;
+mod route;
 mod running;
 mod shear_pin;
 mod unwinding;

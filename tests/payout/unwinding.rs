@@ -101,7 +101,7 @@ struct RingSpec {
     spin: f64,
     climb: f64,
 }
-#[typetag::serde(name = "ring")]
+#[typetag::serde(name = "hoop")]
 impl ConstraintSpec for RingSpec {
     fn name(&self) -> &str {
         "ring"

@@ -218,7 +218,7 @@ impl ConstraintSpec for LiftOffSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        self.adhesion_energy.map(|_| (&self.marker, Feed { element: None, unstrained: true }))
+        self.adhesion_energy.map(|_| (&self.marker, Feed { unstrained: true, ..Feed::default() }))
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         let package = Arc::new(self.package.build()?);

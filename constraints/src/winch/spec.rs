@@ -206,7 +206,7 @@ impl ConstraintSpec for WinchSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        (!self.idle()).then_some((&self.marker, Feed { element: self.element_length, unstrained: false }))
+        (!self.idle()).then(|| (&self.marker, Feed { element: self.element_length, ..Feed::default() }))
     }
     fn notes(&self, model: &Model) -> Vec<String> {
         let (Some(speed), MarkerRef::Name(marker)) =
@@ -240,6 +240,11 @@ impl ConstraintSpec for WinchSpec {
         positive("slip_speed", self.slip_speed)?;
         let part = b.feeding_part(&self.marker)?;
         let whole = part.length();
+        if self.final_length.is_some() && part.name().contains('.') {
+            let message =
+                "a cable with a route goes on behind the span at this winch: give `payout` or `stop`";
+            return Err(BuildError::at("final_length", message));
+        }
         if self.idle() {
             // it adds nothing, but what is wrong with it is said all the same
             return self.drive(b, whole).map(drop);

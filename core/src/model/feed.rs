@@ -12,6 +12,8 @@ pub struct Feed {
     /// Whether what passes the end is free of strain energy outside, or what it has there is counted by others. Else it is
     /// strained outside as it is inside.
     pub unstrained: bool,
+    /// Whether the cable goes on behind the end, round a wheel or through a ring.
+    pub passes: bool,
 }
 
 /// An end of a cable that feeds: the material coordinate there is an unknown.

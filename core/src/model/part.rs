@@ -91,6 +91,10 @@ pub trait Part: Send + Sync {
     fn point(&self, _s: f64, _at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         None
     }
+    /// The parts that it is made of, from start to end, if it is a cable that runs over wheels or through rings.
+    fn spans(&self) -> &[Arc<dyn Part>] {
+        &[]
+    }
     /// What only a line is asked, if it is one.
     fn line(&self) -> Option<&dyn Line> {
         None

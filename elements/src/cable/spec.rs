@@ -8,6 +8,7 @@ use super::mesh::{MeshSpec, counted, even, pinned};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::CablePart;
 use super::rest::{Rest, push_rest};
+use super::route::Waypoint;
 use super::section::{NameOrSection, Section, SectionAlong};
 use super::{CableParams, CableStations};
 use crate::path::{Corner, Path};
@@ -64,6 +65,15 @@ pub struct CableSpec {
     /// Direction of `curve` at its end. Default: follows from the last points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_direction: Option<V3<f64>>,
+    /// What it runs over and through, from end to end, instead of `points`:
+    /// `[{ end = "drum" }, { over = "head" }, { under = "block" }, { end = "jib.anchor" }]`. Sheaves and rings are
+    /// constraints of their own. The cable is then several spans, `name.1`, `name.2`, …, each with `elements` elements, and
+    /// runs freely from one to the next; its shape at the start is the shortest taut line.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub route: Vec<Waypoint>,
+    /// Speed with which a cable with a `route` runs along it at the start, from its start to its end [m/s].
+    #[serde(default, deserialize_with = "quantity::speed", skip_serializing_if = "is_nought")]
+    pub speed: f64,
     /// Unstretched length [m]. Default: the length of the path. Another length is strained uniformly to fit the path.
     #[serde(default, deserialize_with = "quantity::optional::length")]
     pub length: Option<f64>,
@@ -147,6 +157,8 @@ impl CableSpec {
             points: vec![from, to],
             radius: None,
             curve: Vec::new(),
+            route: Vec::new(),
+            speed: 0.0,
             start_direction: None,
             end_direction: None,
             length: None,
@@ -181,7 +193,7 @@ impl CableSpec {
     }
 
     /// The unstretched length of a cable that is laid along a path of this length.
-    fn unstretched_length(&self, path: f64) -> Result<f64, BuildError> {
+    pub(super) fn unstretched_length(&self, path: f64) -> Result<f64, BuildError> {
         match (self.length_of_sections()?, self.tension) {
             (Some(_), Some(_)) => {
                 let message = "give `length` or `tension`, not both: one follows from the other";
@@ -418,6 +430,13 @@ impl ElementSpec for CableSpec {
 
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         self.check_sections()?;
+        if !self.route.is_empty() {
+            return self.build_route(b);
+        }
+        if self.speed != 0.0 {
+            let message = "a cable runs with a `speed` along a `route`; give `velocity`";
+            return Err(BuildError::at("speed", message));
+        }
         finite("velocity", &self.velocity)?;
         finite("strain", &[self.strain])?;
         if !STRETCHES.contains(&(1.0 + self.strain)) {
@@ -448,6 +467,8 @@ impl ElementSpec for CableSpec {
         let given = b.mesh(&self.name).cloned();
         let feeding = b.feeding(&self.name);
         let feeds = feeding.iter().any(Option::is_some);
+        // a wheel holds the direction of an end
+        let goes_on = feeding.map(|feed| feed.is_some_and(|feed| feed.passes));
         if feeds && !self.sections.is_empty() {
             let message = "what a winch feeds must be the same all along: give it one `section`";
             return Err(BuildError::at("sections", message));
@@ -515,7 +536,8 @@ impl ElementSpec for CableSpec {
         let params = |k: usize| {
             let (l, s) = (mesh[k + 1] - mesh[k], layout.section(k));
             // without tension a limp tip points anywhere: a little of the weight that hangs there straightens it
-            let tip = s.ei.largest() == 0.0 && layout.is_tip(k);
+            let held = (k == 0 && goes_on[0]) || (k + 2 == mesh.len() && goes_on[1]);
+            let tip = s.ei.largest() == 0.0 && layout.is_tip(k) && !held;
             let [ea, ei] = layout.stiffness(k);
             let ei = if tip { TIP * (s.mass * gravity) * l.powi(3) } else { ei };
             CableParams { l, ea, ei, rho_a: s.mass + s.flooded }

@@ -4,7 +4,7 @@ use super::{listed, named};
 use crate::marker::split_marker;
 use crate::register_spec;
 use crate::spec::RecordSpec;
-use ropewalk_core::{BuildError, Column, Model, MovingBoundary, Record, Sample, Spot};
+use ropewalk_core::{BuildError, Column, Model, MovingBoundary, Part, Record, Sample, Spot};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -62,6 +62,13 @@ impl Record for Payout {
     }
 }
 
+/// The boundary at an end of a part: of a cable with a route, of its first or last span.
+fn boundary(part: &dyn Part, end: usize) -> Option<MovingBoundary> {
+    let spans = part.spans();
+    let span = if end == 0 { spans.first() } else { spans.last() };
+    span.map_or(part, |span| span.as_ref()).boundary(end)
+}
+
 #[typetag::serde(name = "payout")]
 impl RecordSpec for PayoutSpec {
     fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
@@ -71,9 +78,12 @@ impl RecordSpec for PayoutSpec {
             Spot::Named(end) => ["start", "end"].iter().position(|e| e == end),
             _ => None,
         };
-        let Some(boundary) = end.and_then(|end| part.boundary(end)) else {
-            let ends = model.parts().iter().flat_map(|p| {
-                let ends = [(0, "start"), (1, "end")].into_iter().filter(|&(k, _)| p.boundary(k).is_some());
+        let Some(boundary) = end.and_then(|end| boundary(part.as_ref(), end)) else {
+            // spans of a cable with a route feed each other
+            let whole = model.parts().iter().filter(|p| !p.name().contains('.'));
+            let ends = whole.flat_map(|p| {
+                let feeds = |&(k, _): &(usize, &str)| boundary(p.as_ref(), k).is_some();
+                let ends = [(0, "start"), (1, "end")].into_iter().filter(feeds);
                 ends.map(|(_, end)| format!("{}.{end}", p.name()))
             });
             let ends: Vec<String> = ends.collect();

@@ -1,0 +1,255 @@
+//! What lies on a wheel between two spans of a cable: stiffness, inertia, weight, and friction on the groove.
+//!
+//! All of it is stated once over any carrier of derivatives. The unknowns are the two tangent points `r_e` (the end of the
+//! span before) and `r_s` (the start of the span behind), the material coordinates `P_e` and `P_s` there, and the wheel's
+//! centre, axis and spin. With `e = (r - c)/R` and `f = a × e`, the direction in which the cable runs, a tangential force
+//! `F` on the cable at one end acts as `F f` on the point, `-F f` on the centre and `-F λ` on the material coordinate,
+//! where `λ = R θ/A` is the stretch of the arc; `λ` and not the slope of the span, so that the speed of the cable along
+//! the groove is the rate of a function of the configuration.
+
+use ropewalk_core::rotation::cross;
+use ropewalk_core::{Jet, V3};
+use ropewalk_scene::Strand;
+use std::f64::consts::TAU;
+
+/// Wraps below this are those of a cable that has lost touch with its wheel [rad]: its range is from here to a whole turn.
+const LEAST: f64 = -1e-3;
+
+/// A moving end of the arc.
+#[derive(Clone, Copy, Debug)]
+pub struct End<S> {
+    /// Place, velocity and acceleration of the node in space.
+    pub r: [V3<S>; 3],
+    /// Material coordinate, its rate and its acceleration [m].
+    pub p: [S; 3],
+}
+
+/// The wheel.
+#[derive(Clone, Copy, Debug)]
+pub struct Wheel<S> {
+    /// Place, velocity and acceleration of the centre in space.
+    pub c: [V3<S>; 3],
+    /// Axis in space, a unit vector about which the cable turns by the right-hand rule.
+    pub axis: V3<S>,
+    /// Angular velocity of the groove about the axis, in space [rad/s].
+    pub spin: S,
+    /// The same of what carries the wheel.
+    pub carrier: S,
+}
+
+/// What makes the tension on both sides of a wheel different.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Grip {
+    /// The cable slides on the groove, with this coefficient of friction; 0 without.
+    Slides(f64),
+    /// The cable doesn't slide on the wheel, which turns with it: its moment of inertia over its radius squared [kg].
+    Turns(f64),
+}
+
+/// The numbers of an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    /// Radius to the middle of the cable [m].
+    pub radius: f64,
+    /// The cable.
+    pub strand: Strand,
+    /// Acceleration of gravity, of a cable that has weight [m/s²].
+    pub gravity: V3<f64>,
+    /// How cable and groove go together.
+    pub grip: Grip,
+    /// Speed of sliding below which friction fades [m/s].
+    pub slip_speed: f64,
+    /// Moment of friction in the bearing, of a wheel that turns with the cable: a constant part [N m], one by the force on
+    /// the axle [m], one by the spin [N m s].
+    pub bearing: [f64; 3],
+}
+
+/// Residuals: minus the generalised forces, and inertia.
+#[derive(Clone, Copy, Debug)]
+pub struct Residual<S> {
+    /// Of the two points.
+    pub r: [V3<S>; 2],
+    /// Of their material coordinates.
+    pub p: [S; 2],
+    /// Of the centre.
+    pub centre: V3<S>,
+    /// Moment about the axis on the groove.
+    pub groove: S,
+}
+
+/// What there is to know of an arc at an instant, for records, energy and power.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant<S> {
+    /// Angle of wrap [rad].
+    pub wrap: S,
+    /// Unstretched length on the wheel [m].
+    pub length: S,
+    /// Elastic tension [N].
+    pub tension: S,
+    /// Tension before and behind the wheel [N].
+    pub beside: [S; 2],
+    /// Speed of the cable along the groove in space, at both ends [m/s].
+    pub speed: [S; 2],
+    /// Tension that doesn't press on the groove, at both ends: of the speed, less what weight does [N].
+    pub lift: [S; 2],
+    /// Friction on the cable along the groove, at both ends [N].
+    pub friction: [S; 2],
+    /// Force of the cable on the axle [N].
+    pub axle: V3<S>,
+    /// Kinetic and potential energy [J].
+    pub energy: [S; 2],
+    /// Power that friction, bearing and damping turn into heat [W].
+    pub dissipated: S,
+}
+
+fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn minus<S: Jet>(a: &V3<S>, b: &V3<S>) -> V3<S> {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+/// `x / √(x² + x0²)`: the direction of sliding, rounded where it turns.
+pub fn direction<S: Jet>(x: S, x0: f64) -> S {
+    x / (x * x + x0 * x0).sqrt()
+}
+
+impl Arc {
+    /// Evaluates all of it; `stored` is the unstretched length for material coordinates of 0.
+    pub fn eval<S: Jet>(
+        &self,
+        stored: f64,
+        ends: &[End<S>; 2],
+        wheel: &Wheel<S>,
+    ) -> (Residual<S>, Instant<S>) {
+        let Strand { mass, ea, ei, damping, .. } = self.strand;
+        let (radius, [c, cd, cdd], a) = (self.radius, &wheel.c, &wheel.axis);
+        let e = ends.each_ref().map(|end| minus(&end.r[0], c).map(|x| x / radius));
+        let f = e.each_ref().map(|e| cross(a, e));
+        let wrap = along(a, &cross(&e[0], &e[1])).atan2(along(&e[0], &e[1]));
+        let wrap = if wrap.re() < LEAST { wrap + TAU } else { wrap };
+        let length = ends[1].p[0] - ends[0].p[0] + stored;
+        let stretch = wrap * radius / length;
+
+        // elastic: closed ends, since the energy goes on into the arc
+        let strained = (stretch - 1.0) * ea;
+        let tension = strained + wrap * ei / (length * radius);
+        let by_length = -(stretch * stretch - 1.0) * (0.5 * ea) - wrap * wrap * ei / (length * length * 2.0);
+        let mut out = Residual {
+            r: [f[0].map(|x| -(x * tension)), f[1].map(|x| x * tension)],
+            p: [-by_length, by_length],
+            centre: std::array::from_fn(|i| (f[0][i] - f[1][i]) * tension),
+            groove: S::zero(),
+        };
+
+        // speeds and accelerations of the material along the groove
+        let v = [0, 1].map(|k| along(&f[k], &minus(&ends[k].r[1], cd)) - stretch * ends[k].p[1]);
+        let rate = (v[1] - v[0]) / length;
+        let w = [0, 1].map(|k| {
+            let [_, pd, pdd] = ends[k].p;
+            along(&f[k], &minus(&ends[k].r[2], cdd)) - stretch * pdd - rate * pd * 2.0
+        });
+        let mean = (v[0] + v[1]) * 0.5;
+
+        // inertia and weight, the motion linear along the arc
+        let m = length * mass;
+        let h: V3<S> = std::array::from_fn(|i| cdd[i] - self.gravity[i]);
+        let turned = minus(&f[0], &f[1]).map(|x| x / (wrap * wrap));
+        let b: [V3<S>; 2] = [
+            std::array::from_fn(|i| turned[i] - e[0][i] / wrap),
+            std::array::from_fn(|i| e[1][i] / wrap - turned[i]),
+        ];
+        let mut inertia = [
+            m * (w[0] / 3.0 + w[1] / 6.0 + along(&h, &b[0])),
+            m * (w[0] / 6.0 + w[1] / 3.0 + along(&h, &b[1])),
+        ];
+        let square = (v[0] * v[0] + v[0] * v[1] + v[1] * v[1]) / 3.0;
+        let flux = square / (wrap * radius);
+        for i in 0..3 {
+            out.centre[i] += m * (h[i] + w[0] * b[0][i] + w[1] * b[1][i] + flux * (f[1][i] - f[0][i]));
+        }
+        // Kelvin-Voigt damping of the arc
+        let viscous = rate * damping;
+        // friction; what presses on the groove is less than the tension by that which turns the cable's momentum
+        let middle: V3<S> = {
+            let (sin, cos) = ((wrap * 0.5).sin(), (wrap * 0.5).cos());
+            std::array::from_fn(|i| e[0][i] * cos + f[0][i] * sin)
+        };
+        let across = cross(a, &middle);
+        let half = [minus(&f[0], &across), minus(&across, &f[1])];
+        let lift = [0, 1].map(|k| (mean * mean - along(&h, &half[k]) * 2.0 / wrap * radius) * mass / stretch);
+        let mut friction = [S::zero(); 2];
+        let mut axle_friction = S::zero();
+        let mut moving = S::zero();
+        match self.grip {
+            Grip::Slides(mu) => {
+                let rim = wheel.spin * radius;
+                for k in 0..2 {
+                    let presses = tension - lift[k];
+                    if mu > 0.0 && presses.re() > 0.0 {
+                        let sign = if k == 0 { 1.0 } else { -1.0 };
+                        let exponent = direction(rim - v[k], self.slip_speed) * wrap * (0.5 * mu * sign);
+                        friction[k] = presses * (exponent.exp() - 1.0) * sign;
+                    }
+                }
+                moving = rim * (friction[0] + friction[1]);
+            }
+            Grip::Turns(wheel_mass) => {
+                let spin = mean / radius - wheel.carrier;
+                let pressed = (tension - (lift[0] + lift[1]) * 0.5) * ((wrap * 0.5).sin() * 2.0);
+                let moment = self.moment(spin, pressed);
+                axle_friction = moment * spin;
+                for k in 0..2 {
+                    friction[k] = -moment / (2.0 * radius);
+                    inertia[k] += (w[0] + w[1]) * (0.25 * wheel_mass);
+                }
+            }
+        }
+        let push = [inertia[0] - friction[0] - viscous, inertia[1] - friction[1] + viscous];
+        for k in 0..2 {
+            for i in 0..3 {
+                out.r[k][i] += f[k][i] * push[k];
+                out.centre[i] -= f[k][i] * push[k];
+            }
+            out.p[k] -= stretch * push[k];
+        }
+        out.groove = (friction[0] + friction[1]) * radius;
+
+        let lost = match self.grip {
+            Grip::Slides(_) => moving - friction[0] * v[0] - friction[1] * v[1],
+            Grip::Turns(_) => axle_friction,
+        };
+        let wheel_energy = match self.grip {
+            Grip::Turns(mass) => mean * mean * (0.5 * mass),
+            Grip::Slides(_) => S::zero(),
+        };
+        let lean = |k: usize| along(cd, &b[k]) * v[k];
+        let kinetic = m * ((along(cd, cd) + square) * 0.5 + lean(0) + lean(1)) + wheel_energy;
+        let place: V3<S> = std::array::from_fn(|i| c[i] + (f[0][i] - f[1][i]) * radius / wrap);
+        let weight = place.iter().zip(&self.gravity).fold(S::zero(), |sum, (x, g)| sum + *x * *g);
+        let excess = wrap * radius - length;
+        let potential =
+            excess * excess * ea / (length * 2.0) + wrap * wrap * ei / (length * 2.0) - m * weight;
+        let instant = Instant {
+            wrap,
+            length,
+            tension,
+            beside: [tension - push[0], tension + push[1]],
+            speed: v,
+            lift,
+            friction,
+            axle: out.centre.map(|x| -x),
+            energy: [kinetic, potential],
+            dissipated: lost + viscous * rate * length,
+        };
+        (out, instant)
+    }
+
+    /// Moment with which the bearing resists a spin under a force on the axle [N m].
+    pub fn moment<S: Jet>(&self, spin: S, pressed: S) -> S {
+        let [constant, by_force, viscous] = self.bearing;
+        let pressed = if pressed.re() > 0.0 { pressed * by_force } else { S::zero() };
+        direction(spin, self.slip_speed / self.radius) * (pressed + constant) + spin * viscous
+    }
+}

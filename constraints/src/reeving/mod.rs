@@ -1,0 +1,20 @@
+//! Reeving: cables that run over wheels.
+//!
+//! A cable with a `route` is several spans whose inner ends feed; a [`SheaveSpec`] joins two of them. The point at which a
+//! span meets the wheel is held by a [`Tangent`]; what lies on the wheel is an [`Arc`], an elastic element with mass between the
+//! two material coordinates. Nothing is integrated along the wheel and no length is created or lost: what leaves one span
+//! is on the wheel or in the next.
+
+mod arc;
+mod events;
+mod record;
+mod ring;
+mod sheave;
+mod spec;
+mod tangent;
+
+pub use arc::{Arc, End, Grip, Instant, Residual, Wheel, direction};
+pub use record::SheaveRecordSpec;
+pub use ring::RingSpec;
+pub use spec::{BearingSpec, SheaveSpec};
+pub use tangent::Tangent;

@@ -1,0 +1,73 @@
+//! What a record shows of a sheave.
+
+use ropewalk_core::{BuildError, Column, Model, Record, Sample};
+use ropewalk_scene::records::named;
+use ropewalk_scene::{RecordSpec, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The cable on a sheave: columns `wheel.wrap` in rad, `.length`, the unstretched length that lies on it in m,
+/// `.in.tension` and `.out.tension` where the cable comes and goes in N, `.speed` along the groove and `.slip` against it in
+/// m/s, and `.axle_force` in N. Of a wheel with an angle of its own also `.angle` in rad and `.spin` in rad/s. Where several
+/// cables run over the wheel, `.1.wrap`, `.2.wrap` and so on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SheaveRecordSpec {
+    /// Name of the sheave; of several on one axle `NAME.1`.
+    pub of: String,
+    /// Name in results. Default: that of the sheave.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+register_spec!(Record, "sheave", SheaveRecordSpec);
+
+struct SheaveRecord {
+    term: usize,
+    name: String,
+    of: String,
+    columns: Vec<Column>,
+}
+
+impl Record for SheaveRecord {
+    fn title(&self) -> String {
+        format!("Sheave {}", self.of)
+    }
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+    fn columns(&self) -> Vec<Column> {
+        self.columns.clone()
+    }
+    fn needs_forces(&self) -> bool {
+        true
+    }
+    fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
+        if let Some(term) = s.model.terms()[self.term].shows() {
+            term.observe(&s.at, out);
+        }
+    }
+}
+
+#[typetag::serde(name = "sheave")]
+impl RecordSpec for SheaveRecordSpec {
+    fn build(&self, model: &Model) -> Result<Box<dyn Record>, BuildError> {
+        let of = self.of.trim();
+        let is_wheel = |columns: &[Column]| columns.iter().any(|c| c.name.ends_with("axle_force"));
+        let all: Vec<(usize, String, Vec<Column>)> = model
+            .terms()
+            .iter()
+            .enumerate()
+            .filter_map(|(k, t)| Some((k, t.label(), t.shows()?.columns())))
+            .filter(|(.., columns)| is_wheel(columns))
+            .collect();
+        let Some((term, _, columns)) = all.iter().find(|(_, label, _)| label == of) else {
+            let names: Vec<String> = all.iter().map(|(_, label, _)| format!("`{label}`")).collect();
+            let names = if names.is_empty() { "none".into() } else { names.join(", ") };
+            let message = format!("there is no sheave `{of}`; those of the scene are {names}");
+            return Err(BuildError::at("of", message));
+        };
+        let name = named(&self.name, || of.to_string());
+        let columns = columns.iter().map(|c| Column::new(format!("{name}.{}", c.name), &c.unit)).collect();
+        Ok(Box::new(SheaveRecord { term: *term, name, of: of.to_string(), columns }))
+    }
+}

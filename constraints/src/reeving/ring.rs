@@ -1,0 +1,257 @@
+//! `type = "ring"`: a small eyelet that a cable runs through somewhere on its way.
+
+use super::arc::direction;
+use super::events::Short;
+use num_dual::Dual64;
+use ropewalk_core::error::{not_negative, positive};
+use ropewalk_core::{
+    Assembly, At, BuildError, Column, Constraint, Equation, Jet, Joint, Marker, MovingBoundary, Node, NodeId,
+    Pattern, Power, RowKind, Shows, Term, V3,
+};
+use ropewalk_scene::{Builder, ConstraintSpec, Guide, MarkerRef, Strand, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A ring through which a cable runs that names it in its `route`: a shackle, a fairlead, a thimble, small beside the
+/// spans. For a wheel whose size counts take a `sheave`.
+///
+/// The cable turns sharply there; its bending stiffness doesn't resist that. With `friction` the tensions before and behind
+/// differ by the capstan equation with the angle of deflection.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RingSpec {
+    /// Name; routes and records refer to it.
+    pub name: String,
+    /// Where it is: a point in space, or of a part that stands above the cable in the scene.
+    pub marker: MarkerRef,
+    /// Coefficient of friction. Default: none.
+    #[serde(default, deserialize_with = "quantity::number", skip_serializing_if = "is_nought")]
+    pub friction: f64,
+    /// Speed of sliding below which friction fades, so that a held cable creeps at a part of it [m/s].
+    #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
+    pub slip_speed: f64,
+}
+register_spec!(Constraint, "ring", RingSpec);
+
+fn is_nought(x: &f64) -> bool {
+    *x == 0.0
+}
+
+fn slip_speed() -> f64 {
+    1e-3
+}
+
+#[typetag::serde(name = "ring")]
+impl ConstraintSpec for RingSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
+    }
+    fn guides(&self) -> Vec<Guide> {
+        let (name, marker) = (self.name.clone(), self.marker.clone());
+        vec![Guide { name, marker, beside: 0.0, axis: [0.0, 0.0, 1.0], radius: 0.0 }]
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        not_negative("friction", self.friction)?;
+        positive("slip_speed", self.slip_speed)?;
+        let passages = b.passages(&self.name);
+        let [passage] = passages.as_slice() else {
+            let message = match passages.len() {
+                0 => format!(
+                    "no cable runs through `{0}`: name it in the `route` of one, as `{{ through = \"{0}\" }}`",
+                    self.name
+                ),
+                n => format!("{n} cables run through `{}`: give each a ring of its own", self.name),
+            };
+            return Err(BuildError::at("name", message));
+        };
+        for (end, which) in passage.boundaries.iter().zip(["in", "out"]) {
+            let markers = [passage.marker, Marker::node(end.end)];
+            let name = format!("{}.{which}", self.name);
+            b.constraint(Joint::new(name, b.nodes(), markers, Equation::coincide())?)?;
+        }
+        let ends = passage.boundaries;
+        b.constraint(Joined { name: self.name.clone(), ends, nodes: [ends[0].node, ends[1].node] })?;
+        for span in &passage.spans {
+            let length = 0.05 * b.parts(std::slice::from_ref(span))?[0].1.length();
+            b.event(Short { span: span.clone(), length });
+        }
+        b.term(Box::new(Kink {
+            name: self.name.clone(),
+            ends,
+            strand: passage.strand,
+            friction: self.friction,
+            slip_speed: self.slip_speed,
+        }));
+        Ok(())
+    }
+}
+
+/// The same material is at the end of a span and at the start of the next.
+struct Joined {
+    name: String,
+    ends: [MovingBoundary; 2],
+    nodes: [NodeId; 2],
+}
+
+impl Constraint for Joined {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn rows(&self) -> &[RowKind] {
+        &[RowKind::Position]
+    }
+    fn markers(&self) -> &[Marker] {
+        &[]
+    }
+    fn nodes(&self) -> &[NodeId] {
+        &self.nodes
+    }
+    fn linear(&self) -> bool {
+        true
+    }
+    fn jacobian(&self, _: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
+        let moved = self.ends.map(|end| at.q[end.q] - end.home);
+        g[0] = moved[1] - moved[0];
+        jac[..2].copy_from_slice(&[-1.0, 1.0]);
+    }
+    fn geometric(&self, _: &[Node], _: &At<'_>, _: &[f64], h: &mut [f64]) {
+        h[..4].fill(0.0);
+    }
+    fn rates(&self, _: &[Node], _: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
+        (rate[0], bias[0]) = (0.0, 0.0);
+    }
+}
+
+/// What turns the momentum of a cable in a ring, and its friction there.
+struct Kink {
+    name: String,
+    ends: [MovingBoundary; 2],
+    strand: Strand,
+    friction: f64,
+    slip_speed: f64,
+}
+
+/// Residual: of both points, and of both material coordinates; with what records show.
+struct Turned<S> {
+    r: [V3<S>; 2],
+    p: [S; 2],
+    angle: S,
+    tension: [S; 2],
+    lost: S,
+}
+
+impl Kink {
+    /// With the slopes before and behind the ring, and the rate of the material coordinate there.
+    fn eval<S: Jet>(&self, slope: &[V3<S>; 2], rate: S) -> Turned<S> {
+        let Strand { mass, ea, .. } = self.strand;
+        let size = slope.each_ref().map(|s| (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]).sqrt());
+        let flux = rate * rate * mass;
+        let r = [slope[0].map(|s| -(s * flux)), slope[1].map(|s| s * flux)];
+        let mut p = [flux * size[0] * size[0] * 0.5, -(flux * size[1] * size[1] * 0.5)];
+        // the angle between the tangents, exact where it is small
+        let norm = |sign: f64| {
+            let x: V3<S> = std::array::from_fn(|i| slope[1][i] / size[1] + slope[0][i] / size[0] * sign);
+            (x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + 1e-300).sqrt()
+        };
+        let angle = norm(-1.0).atan2(norm(1.0)) * 2.0;
+        let before = (size[0] - 1.0) * ea;
+        // along the cable, from the span before to the one behind
+        let speed = -(rate * size[0]);
+        let presses = before - speed * speed * mass / size[0];
+        let mut friction = S::zero();
+        if self.friction > 0.0 && presses.re() > 0.0 {
+            let exponent = direction(speed, self.slip_speed) * angle * self.friction;
+            friction = presses * (exponent.exp() - 1.0);
+        }
+        let work = friction * ((before * 2.0 + friction) / (2.0 * ea) + 1.0);
+        p[0] -= work * 0.5;
+        p[1] -= work * 0.5;
+        let after = (size[1] - 1.0) * ea;
+        Turned { r, p, angle, tension: [before, after], lost: -(work * rate) }
+    }
+
+    fn now(&self, at: &At<'_>) -> Turned<f64> {
+        let slope = self.ends.map(|end| std::array::from_fn(|i| at.q[end.end_q + 3 + i]));
+        self.eval(&slope, self.rate(at))
+    }
+
+    /// Both material coordinates move alike; each is asked for its half.
+    fn rate(&self, at: &At<'_>) -> f64 {
+        0.5 * (at.v[self.ends[0].v] + at.v[self.ends[1].v])
+    }
+
+    /// Both points, both slopes, both material coordinates.
+    fn dofs(&self) -> [usize; 14] {
+        let [a, b] = self.ends;
+        std::array::from_fn(|i| match i {
+            0..6 => a.end_v + i,
+            6..12 => b.end_v + i - 6,
+            12 => a.v,
+            _ => b.v,
+        })
+    }
+}
+
+impl Term for Kink {
+    fn label(&self) -> String {
+        self.name.clone()
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        p.clique(self.dofs());
+    }
+    fn symmetric(&self) -> bool {
+        false
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        let (dofs, w) = (self.dofs(), out.weights());
+        let row = |i: usize, x: &Turned<f64>| match i {
+            0..3 => x.r[0][i],
+            6..9 => x.r[1][i - 6],
+            12 | 13 => x.p[i - 12],
+            _ => 0.0,
+        };
+        let now = self.now(at);
+        for (i, dof) in dofs.iter().enumerate() {
+            out.add(*dof, row(i, &now));
+        }
+        if !out.wants_tangent() {
+            return;
+        }
+        let mut block = [[0.0; 14]; 14];
+        for j in (3..6).chain(9..14) {
+            let one = |is: bool, w: f64| if is { w } else { 0.0 };
+            let slope = [0, 1].map(|end| {
+                std::array::from_fn(|i| {
+                    Dual64::new(at.q[self.ends[end].end_q + 3 + i], one(j == 6 * end + 3 + i, w.q))
+                })
+            });
+            let x = self.eval(&slope, Dual64::new(self.rate(at), one(j >= 12, 0.5 * w.v)));
+            for i in 0..3 {
+                (block[i][j], block[6 + i][j]) = (x.r[0][i].eps, x.r[1][i].eps);
+            }
+            (block[12][j], block[13][j]) = (x.p[0].eps, x.p[1].eps);
+        }
+        out.add_square(0, &block);
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        Power { dissipated: self.now(at).lost, ..Power::default() }
+    }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
+}
+
+impl Shows for Kink {
+    fn columns(&self) -> Vec<Column> {
+        let all = [("angle", "rad"), ("in.tension", "N"), ("out.tension", "N"), ("speed", "m/s")];
+        all.map(|(name, unit)| Column::new(name, unit)).to_vec()
+    }
+    fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
+        let x = self.now(at);
+        let stretch = 1.0 + x.tension[0] / self.strand.ea;
+        out.extend([x.angle, x.tension[0], x.tension[1], -self.rate(at) * stretch]);
+    }
+}

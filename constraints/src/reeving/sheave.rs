@@ -1,0 +1,345 @@
+//! A wheel that cables run over, as a term of a model.
+
+use super::arc::{Arc, End, Grip, Instant, Residual, Wheel};
+use num_dual::Dual64;
+use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
+use ropewalk_core::{
+    Assembly, At, BuildError, Column, Energy, Jet, Marker, MovingBoundary, Node, NodeKind, Pattern, Power,
+    Shows, Signal, Solid, Term, Timed, V3,
+};
+
+/// What carries a wheel: a point and an axis of space, of a point, or of a rigid body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Seat {
+    /// First coordinate and velocity of what carries it, and whether that has an orientation.
+    on: Option<(usize, usize, bool)>,
+    /// Place of the centre and axis, in the axes of what carries it.
+    point: V3<f64>,
+    axis: V3<f64>,
+}
+
+impl Seat {
+    /// Of a marker whose third axis is that of the wheel.
+    pub fn new(nodes: &[Node], marker: &Marker) -> Result<Self, BuildError> {
+        match marker {
+            Marker::Ground { point, axes } => Ok(Seat { on: None, point: *point, axis: axes[2] }),
+            Marker::Node { node, point, axes } => {
+                let n = &nodes[node.0 as usize];
+                let turns = match n.kind {
+                    NodeKind::Frame => true,
+                    NodeKind::Point => false,
+                    _ => {
+                        let message = "a sheave is on a rigid body, or at a point in space";
+                        return Err(BuildError::at("marker", message));
+                    }
+                };
+                let point = if turns { *point } else { [0.0; 3] };
+                Ok(Seat { on: Some((n.q, n.v, turns)), point, axis: axes[2] })
+            }
+        }
+    }
+
+    /// Number of velocities of what carries it.
+    fn size(&self) -> usize {
+        self.on.map_or(0, |(_, _, turns)| if turns { 6 } else { 3 })
+    }
+}
+
+/// One cable on the wheel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Groove {
+    /// Its numbers.
+    pub arc: Arc,
+    /// Unstretched length on the wheel where both material coordinates are 0 [m].
+    pub stored: f64,
+    /// The end of the span before, the start of the span behind.
+    pub ends: [MovingBoundary; 2],
+    /// Whether the axis of this cable is that of the wheel turned round.
+    pub back: bool,
+}
+
+impl Groove {
+    /// Of a cable that has this length on the wheel at the start.
+    pub fn new(arc: Arc, stored: f64, ends: [MovingBoundary; 2], back: bool) -> Self {
+        Groove { arc, stored: stored - ends[1].home + ends[0].home, ends, back }
+    }
+}
+
+/// The angle of a wheel that doesn't just turn with its cable.
+#[derive(Clone, Debug)]
+pub(super) struct Angle {
+    /// Place of the angle and of its rate.
+    pub place: (usize, usize),
+    /// Moment of inertia about the axis [kg m²].
+    pub inertia: f64,
+    /// Moment that drives it [N m].
+    pub torque: Signal,
+}
+
+/// A wheel with the cables on it.
+#[derive(Clone, Debug)]
+pub(super) struct Sheave {
+    pub name: String,
+    pub seat: Seat,
+    pub grooves: Vec<Groove>,
+    pub angle: Option<Angle>,
+    pub solid: Solid,
+}
+
+/// Stiffness that keeps a free wheel in an equilibrium, as a share of `EA R`.
+const STILL: f64 = 1e-9;
+
+/// Most unknowns of a groove: two points, two material coordinates, a body, the angle of the wheel.
+const MOST: usize = 15;
+
+/// Increments, velocities and accelerations of the unknowns of a groove.
+struct Local<S> {
+    d: [S; MOST],
+    v: [S; MOST],
+    a: [S; MOST],
+}
+
+/// Columns of records of a sheave.
+const COLUMNS: [(&str, &str); 7] = [
+    ("wrap", "rad"),
+    ("length", "m"),
+    ("in.tension", "N"),
+    ("out.tension", "N"),
+    ("speed", "m/s"),
+    ("slip", "m/s"),
+    ("axle_force", "N"),
+];
+
+impl Sheave {
+    /// The unknowns of a groove, in the order of [`Local`].
+    fn dofs(&self, groove: &Groove) -> Vec<usize> {
+        let mut dofs = Vec::with_capacity(MOST);
+        for end in &groove.ends {
+            dofs.extend(end.end_v..end.end_v + 3);
+            dofs.push(end.v);
+        }
+        dofs.extend(self.seat.on.into_iter().flat_map(|(_, v, _)| v..v + self.seat.size()));
+        dofs.extend(self.angle.as_ref().map(|angle| angle.place.1));
+        dofs
+    }
+
+    /// Residual of a groove's unknowns, that of the wheel's own inertia with the first.
+    fn eval<S: Jet>(&self, k: usize, at: &At<'_>, x: &Local<S>) -> ([S; MOST], Instant<S>) {
+        let groove = &self.grooves[k];
+        let zero = [S::zero(); 3];
+        let three = |x: &[S; MOST], i: usize| [x[i], x[i + 1], x[i + 2]];
+        let ends = [0, 1].map(|end| {
+            let (boundary, i) = (&groove.ends[end], 4 * end);
+            End {
+                r: [
+                    std::array::from_fn(|j| x.d[i + j] + at.q[boundary.end_q + j]),
+                    three(&x.v, i),
+                    three(&x.a, i),
+                ],
+                p: [x.d[i + 3] + at.q[boundary.q], x.v[i + 3], x.a[i + 3]],
+            }
+        });
+        let fixed = |x: &V3<f64>| x.map(S::from);
+        let (arm, own) = (fixed(&self.seat.point), fixed(&self.seat.axis));
+        let (mut turn, mut omega, mut alpha) = ([[S::zero(); 3]; 3], zero, zero);
+        let (c, axis) = match self.seat.on {
+            None => ([arm, zero, zero], own),
+            Some((q, _, false)) => {
+                let place = std::array::from_fn(|i| x.d[8 + i] + at.q[q + i]);
+                ([place, three(&x.v, 8), three(&x.a, 8)], own)
+            }
+            Some((q, _, true)) => {
+                let still = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
+                let small = three(&x.d, 11);
+                // to first order, all that a first derivative needs
+                turn = std::array::from_fn(|i| {
+                    let row = fixed(&still[i]);
+                    let more = cross(&row, &small);
+                    std::array::from_fn(|j| row[j] + more[j])
+                });
+                (omega, alpha) = (three(&x.v, 11), three(&x.a, 11));
+                let (swings, spins) = (cross(&omega, &arm), cross(&alpha, &arm));
+                let inwards = cross(&omega, &swings);
+                let [out, swing] = [times(&turn, &arm), times(&turn, &swings)];
+                let bend = times(&turn, &std::array::from_fn(|i| spins[i] + inwards[i]));
+                let place = std::array::from_fn(|i| x.d[8 + i] + at.q[q + i] + out[i]);
+                let velocity = std::array::from_fn(|i| x.v[8 + i] + swing[i]);
+                let acceleration = std::array::from_fn(|i| x.a[8 + i] + bend[i]);
+                ([place, velocity, acceleration], times(&turn, &own))
+            }
+        };
+        let size = self.seat.size();
+        let dot = |a: &V3<S>, b: &V3<S>| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (carried, carried_rate) = (dot(&omega, &own), dot(&alpha, &own));
+        let (own_spin, own_rate) = match &self.angle {
+            Some(_) => (x.v[8 + size], x.a[8 + size]),
+            None => (S::zero(), S::zero()),
+        };
+        let side = if groove.back { -1.0 } else { 1.0 };
+        let wheel = Wheel {
+            c,
+            axis: axis.map(|x| x * side),
+            spin: (own_spin + carried) * side,
+            carrier: carried * side,
+        };
+        let (Residual { r, p, centre, groove: moment }, mut instant) =
+            groove.arc.eval(groove.stored, &ends, &wheel);
+        let mut out = [S::zero(); MOST];
+        for end in 0..2 {
+            out[4 * end..4 * end + 3].copy_from_slice(&r[end]);
+            out[4 * end + 3] = p[end];
+        }
+        if size > 0 {
+            out[8..11].copy_from_slice(&centre);
+        }
+        let mut about = moment * side;
+        let mut body = zero;
+        if let Some(angle) = &self.angle {
+            let pressed = instant.tension - (instant.lift[0] + instant.lift[1]) * 0.5;
+            let pressed = pressed * (instant.wrap * 0.5).sin() * 2.0;
+            let resists = groove.arc.moment(own_spin, pressed);
+            instant.dissipated += resists * own_spin;
+            if k == 0 {
+                let spin = own_spin + carried;
+                about += (own_rate + carried_rate) * angle.inertia;
+                let momentum = own.map(|a| a * spin * angle.inertia);
+                body = cross(&omega, &momentum);
+                instant.energy[0] += spin * spin * (0.5 * angle.inertia);
+                out[8 + size] -= angle.torque.at(at.t);
+            }
+            out[8 + size] += about + resists;
+        }
+        if size == 6 {
+            let lever = cross(&arm, &transposed_times(&turn, &centre));
+            for i in 0..3 {
+                out[11 + i] = lever[i] + own[i] * about + body[i];
+            }
+        }
+        (out, instant)
+    }
+
+    fn local(&self, groove: &Groove, at: &At<'_>) -> Local<f64> {
+        let mut x = Local { d: [0.0; MOST], v: [0.0; MOST], a: [0.0; MOST] };
+        for (i, dof) in self.dofs(groove).into_iter().enumerate() {
+            (x.v[i], x.a[i]) = (at.v[dof], at.a[dof]);
+        }
+        x
+    }
+
+    /// What there is to know of a groove now.
+    pub fn instant(&self, k: usize, at: &At<'_>) -> Instant<f64> {
+        self.eval(k, at, &self.local(&self.grooves[k], at)).1
+    }
+
+    /// Speed of the groove at its bottom, as the cable runs [m/s].
+    fn rim(&self, groove: &Groove, at: &At<'_>) -> f64 {
+        let carried = match self.seat.on {
+            Some((_, v, true)) => (0..3).map(|i| at.v[v + 3 + i] * self.seat.axis[i]).sum(),
+            _ => 0.0,
+        };
+        let own = self.angle.as_ref().map_or(0.0, |angle| at.v[angle.place.1]);
+        (own + carried) * groove.arc.radius * if groove.back { -1.0 } else { 1.0 }
+    }
+}
+
+impl Term for Sheave {
+    fn label(&self) -> String {
+        self.name.clone()
+    }
+    fn pattern(&self, p: &mut Pattern) {
+        for groove in &self.grooves {
+            p.clique(self.dofs(groove));
+        }
+    }
+    fn symmetric(&self) -> bool {
+        false
+    }
+    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        let w = out.weights();
+        for (k, groove) in self.grooves.iter().enumerate() {
+            let (dofs, x) = (self.dofs(groove), self.local(groove, at));
+            let (residual, _) = self.eval(k, at, &x);
+            for (dof, r) in dofs.iter().zip(residual) {
+                out.add(*dof, r);
+            }
+            if !out.wants_tangent() {
+                continue;
+            }
+            let mut block = [[0.0; MOST]; MOST];
+            for j in 0..dofs.len() {
+                let towards = |x: &[f64; MOST], w: f64| -> [Dual64; MOST] {
+                    std::array::from_fn(|i| Dual64::new(x[i], if i == j { w } else { 0.0 }))
+                };
+                let x = Local { d: towards(&x.d, w.q), v: towards(&x.v, w.v), a: towards(&x.a, w.a) };
+                let (column, _) = self.eval(k, at, &x);
+                for i in 0..dofs.len() {
+                    block[i][j] = column[i].eps;
+                }
+            }
+            // in an equilibrium nothing turns a wheel: a share of the stiffness of its arc keeps the angle where it is
+            if let Some(i) = self.angle.as_ref().map(|_| dofs.len() - 1).filter(|_| w.v == 0.0 && w.a == 0.0)
+            {
+                let arc = &groove.arc;
+                block[i][i] += w.q * STILL * arc.strand.ea * arc.radius;
+            }
+            out.add_square(k, &block);
+        }
+    }
+    fn energy(&self, at: &At<'_>) -> Energy {
+        let mut sum = Energy::default();
+        for k in 0..self.grooves.len() {
+            let [kinetic, potential] = self.instant(k, at).energy;
+            sum += Energy { kinetic, potential };
+        }
+        sum
+    }
+    fn power(&self, at: &At<'_>) -> Power {
+        let dissipated = (0..self.grooves.len()).map(|k| self.instant(k, at).dissipated).sum();
+        let supplied = self.angle.as_ref().map_or(0.0, |a| a.torque.at(at.t) * at.v[a.place.1]);
+        Power { dissipated, supplied, ..Power::default() }
+    }
+    fn timed(&self) -> Option<&dyn Timed> {
+        let driven = self.angle.as_ref().is_some_and(|angle| !angle.torque.is_constant());
+        if driven { Some(self) } else { None }
+    }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
+}
+
+impl Timed for Sheave {
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.angle.as_ref().map_or(Some(h), |angle| Some(angle.torque.reach(t, h)))
+    }
+}
+
+impl Shows for Sheave {
+    fn columns(&self) -> Vec<Column> {
+        let prefix = |k: usize| if self.grooves.len() == 1 { String::new() } else { format!("{}.", k + 1) };
+        let of = |k: usize| COLUMNS.map(|(name, unit)| Column::new(format!("{}{name}", prefix(k)), unit));
+        let mut columns: Vec<Column> = (0..self.grooves.len()).flat_map(of).collect();
+        if self.angle.is_some() {
+            columns.push(Column::new("angle", "rad"));
+            columns.push(Column::new("spin", "rad/s"));
+        }
+        columns
+    }
+    fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
+        for (k, groove) in self.grooves.iter().enumerate() {
+            let x = self.instant(k, at);
+            let speed = 0.5 * (x.speed[0] + x.speed[1]);
+            let slip = match groove.arc.grip {
+                Grip::Slides(_) => speed - self.rim(groove, at),
+                Grip::Turns(_) => 0.0,
+            };
+            let axle = x.axle.iter().map(|f| f * f).sum::<f64>().sqrt();
+            out.extend([x.wrap, x.length, x.beside[0], x.beside[1], speed, slip, axle]);
+        }
+        if let Some(angle) = &self.angle {
+            out.extend([at.q[angle.place.0], at.v[angle.place.1]]);
+        }
+    }
+    fn solids(&self) -> Vec<Solid> {
+        vec![self.solid.clone()]
+    }
+}

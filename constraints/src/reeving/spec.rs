@@ -1,0 +1,318 @@
+//! `type = "sheave"`: what a scene says about a wheel that cables run over.
+
+use super::arc::{Arc, Grip};
+use super::events::{Short, Watch, What};
+use super::sheave::{Angle, Groove, Seat, Sheave};
+use super::tangent::Tangent;
+use crate::check::unit;
+use ropewalk_core::error::{not_negative, positive};
+use ropewalk_core::rotation::around;
+use ropewalk_core::{BuildError, Marker, NodeKind, Related, Signal, Solid, V3, dot};
+use ropewalk_scene::quantity::{Setting, kind};
+use ropewalk_scene::{Builder, ConstraintSpec, Guide, MarkerRef, Passage, quantity, register_spec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// More wheels than any block has.
+const MOST: usize = 100;
+
+/// A sheave: a wheel over which cables run that name it in their `route`.
+///
+/// The cable is tangent to it on both sides, wherever it comes from and goes to; what lies on it stretches, has mass and
+/// weight. Without friction the tension is the same on both sides, but for what weight and acceleration of the piece on the
+/// wheel do. With `friction` the cable sticks, creeps and slips on the groove by the capstan equation, and turns a wheel with
+/// `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable. `efficiency` is for tables of cranes.
+///
+/// Not known: several turns round it, torsion of the cable, a cable that leaves the wheel and comes back; runs end there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SheaveSpec {
+    /// Name; routes and records refer to it.
+    pub name: String,
+    /// Its centre: a point in space, or of a rigid body, which stands above the cable in the scene.
+    pub marker: MarkerRef,
+    /// Axis in space at the start; it turns with what carries the sheave. `round` goes about it by the right-hand rule;
+    /// for `over` and `under` its sign doesn't matter.
+    pub axis: V3<f64>,
+    /// Radius to the middle of the cable: that of the groove and half a diameter of the cable [m].
+    #[serde(deserialize_with = "quantity::length")]
+    pub radius: f64,
+    /// Number of sheaves side by side on one axle; routes name them `NAME.1`, `NAME.2`, …
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
+    /// Distance from each of them to the next, along the axis [m].
+    #[serde(default, deserialize_with = "quantity::length", skip_serializing_if = "is_nought")]
+    pub spacing: f64,
+    /// Coefficient of friction between cable and groove, in a V-groove divided by the sine of half its angle. Needs
+    /// `inertia`, or `locked`. Default: none.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::number",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub friction: Option<f64>,
+    /// Moment of inertia of the wheel about its axis; its mass belongs to what carries it [kg m²].
+    #[serde(default, deserialize_with = "quantity::inertia", skip_serializing_if = "is_nought")]
+    pub inertia: f64,
+    /// Whether the wheel can't turn, such as a bollard or a worn-out sheave. Goes with `friction`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub locked: bool,
+    /// Ratio of the tensions before and behind it that half a turn leaves, from 0 to 1: friction of the bearing and
+    /// stiffness of the cable together, as in tables of cranes; typically 0.98 on roller bearings. Instead of the other
+    /// ways to lose power.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::number",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub efficiency: Option<f64>,
+    /// What resists the spin.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bearing: Option<BearingSpec>,
+    /// Moment that drives a wheel with `friction` and `inertia`, about its axis [N m].
+    #[serde(default, deserialize_with = "quantity::setting::moment", skip_serializing_if = "is_no_torque")]
+    pub torque: Setting,
+    /// Speed of sliding below which friction fades, so that a held cable creeps at a part of it [m/s].
+    #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
+    pub slip_speed: f64,
+}
+register_spec!(Constraint, "sheave", SheaveSpec);
+
+/// Friction of a bearing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BearingSpec {
+    /// Coefficient of friction on its own radius, by the force of the cable on the axle.
+    #[serde(default, deserialize_with = "quantity::number")]
+    pub friction: f64,
+    /// Radius at which that acts [m].
+    #[serde(default, deserialize_with = "quantity::length")]
+    pub radius: f64,
+    /// Constant moment [N m].
+    #[serde(default, deserialize_with = "quantity::moment")]
+    pub torque: f64,
+    /// Moment by angular velocity [N m s/rad].
+    #[serde(default, deserialize_with = "quantity::rotational_damping")]
+    pub damping: f64,
+}
+
+fn is_nought(x: &f64) -> bool {
+    *x == 0.0
+}
+
+fn is_no_torque(x: &Setting) -> bool {
+    x.is(0.0)
+}
+
+fn slip_speed() -> f64 {
+    1e-3
+}
+
+/// Shortest length of a span, as a share of that at the start, and of the radius of its wheel.
+const SHORT: [f64; 2] = [0.05, 0.5];
+
+impl SheaveSpec {
+    /// Names of the wheels, and how far each is beside the marker.
+    fn wheels(&self) -> Vec<(String, f64)> {
+        let Some(count) = self.count else { return vec![(self.name.clone(), 0.0)] };
+        let count = count.clamp(1, MOST);
+        let beside = |k: usize| (k as f64 - 0.5 * (count as f64 - 1.0)) * self.spacing;
+        (0..count).map(|k| (format!("{}.{}", self.name, k + 1), beside(k))).collect()
+    }
+
+    fn bearing(&self) -> Result<[f64; 3], BuildError> {
+        let Some(b) = self.bearing else { return Ok([0.0; 3]) };
+        for (field, x) in
+            [("friction", b.friction), ("radius", b.radius), ("torque", b.torque), ("damping", b.damping)]
+        {
+            not_negative(field, x).map_err(|e| e.of(format!("bearing.{field}")))?;
+        }
+        Ok([b.torque, b.friction * b.radius, b.damping])
+    }
+
+    fn check(&self, wheels: &[Vec<Passage>]) -> Result<(), BuildError> {
+        positive("radius", self.radius)?;
+        unit("axis", self.axis)?;
+        not_negative("inertia", self.inertia)?;
+        positive("slip_speed", self.slip_speed)?;
+        not_negative("friction", self.friction.unwrap_or(0.0))?;
+        if self.count.is_some_and(|count| !(1..=MOST).contains(&count)) {
+            return Err(BuildError::at("count", format!("`count` must be between 1 and {MOST}")));
+        }
+        if self.efficiency.is_some_and(|eta| !(eta > 0.0 && eta <= 1.0)) {
+            return Err(BuildError::at("efficiency", "an efficiency is between 0 and 1"));
+        }
+        let losses = self.friction.is_some() || self.bearing.is_some() || self.inertia > 0.0 || self.locked;
+        let slides = self.friction.is_some_and(|mu| mu > 0.0);
+        let wrong = [
+            (
+                "efficiency",
+                self.efficiency.is_some() && losses,
+                "it tells all losses of the sheave: leave out `friction`, `bearing`, `inertia` and `locked`, or it",
+            ),
+            (
+                "friction",
+                slides && self.inertia == 0.0 && !self.locked,
+                "a wheel without inertia would just turn with the cable: give its `inertia`, or hold it by `locked = true`",
+            ),
+            ("locked", self.locked && !slides, "a wheel that can't turn matters only with `friction`"),
+            (
+                "locked",
+                self.locked && (self.inertia > 0.0 || self.bearing.is_some()),
+                "a wheel that can't turn has no use for `inertia` and `bearing`",
+            ),
+            (
+                "torque",
+                !self.torque.is(0.0) && (!slides || self.inertia == 0.0),
+                "a wheel is driven against its cable by `friction`, and needs an `inertia`",
+            ),
+        ];
+        if let Some((field, _, message)) = wrong.into_iter().find(|(_, is, _)| *is) {
+            return Err(BuildError::at(field, message));
+        }
+        if wheels.iter().all(Vec::is_empty) {
+            let message = format!(
+                "no cable runs over `{}`: name it in the `route` of one, as `{{ over = \"{}\" }}`",
+                self.name,
+                self.wheels()[0].0
+            );
+            return Err(BuildError::at("name", message));
+        }
+        Ok(())
+    }
+
+    /// One of its wheels, with the cables that pass it.
+    fn wheel(
+        &self,
+        b: &mut Builder,
+        name: &str,
+        passages: &[Passage],
+        beside: f64,
+    ) -> Result<(), BuildError> {
+        let axis = unit("axis", self.axis)?;
+        let marker = b.marker("marker", &self.marker)?.with_axes(b.nodes(), b.coordinates(), around(axis));
+        let marker = aside(marker, beside);
+        let seat = Seat::new(b.nodes(), &marker)?;
+        let bearing = self.bearing()?;
+        let slides = self.friction.filter(|mu| *mu > 0.0);
+        let turns = slides.is_none() && (self.inertia > 0.0 || self.bearing.is_some());
+        let grip = match (slides, self.efficiency) {
+            (Some(mu), _) => Grip::Slides(mu),
+            (None, Some(eta)) => Grip::Slides(-eta.ln() / PI),
+            (None, None) if turns => Grip::Turns(self.inertia / self.radius.powi(2)),
+            (None, None) => Grip::Slides(0.0),
+        };
+        let mut grooves = Vec::new();
+        for (k, passage) in passages.iter().enumerate() {
+            for (end, which) in passage.boundaries.iter().zip(["in", "out"]) {
+                let number = if k == 0 { String::new() } else { format!("{}.", k + 1) };
+                let tangent = Tangent { radius: self.radius };
+                let markers = vec![Marker::node(end.end), marker];
+                b.constraint(Related::new(format!("{name}.{number}{which}"), tangent, markers))?;
+            }
+            let (strand, gravity) = (passage.strand, b.gravity());
+            let share = |x: f64| if k == 0 { x } else { 0.0 };
+            let grip = match grip {
+                Grip::Turns(mass) => Grip::Turns(share(mass)),
+                slides => slides,
+            };
+            let arc = Arc {
+                radius: self.radius,
+                strand,
+                gravity: if strand.weighs { gravity } else { [0.0; 3] },
+                grip,
+                slip_speed: self.slip_speed,
+                bearing: [share(bearing[0]), bearing[1], share(bearing[2])],
+            };
+            let back = dot(&passage.axis, &axis) < 0.0;
+            grooves.push(Groove::new(arc, passage.stored, passage.boundaries, back));
+        }
+        if turns && passages.len() > 1 {
+            let message = format!(
+                "{} cables on `{name}` would be held together by a wheel that turns with them: give its `friction`",
+                passages.len()
+            );
+            return Err(BuildError::at("inertia", message));
+        }
+        let angle = match slides {
+            Some(_) if !self.locked => {
+                let node = b.node(NodeKind::Scalars(1), &[0.0], &[0.0])?;
+                b.share(node);
+                let own = b.nodes()[node.0 as usize];
+                let torque: Signal = b.signal("torque", &self.torque, &kind::MOMENT)?;
+                Some(Angle { place: (own.q, own.v), inertia: self.inertia, torque })
+            }
+            _ => None,
+        };
+        let spans = passages.iter().flat_map(|p| p.spans.clone());
+        let mut lengths = Vec::new();
+        for span in spans {
+            let length = b.parts(std::slice::from_ref(&span))?[0].1.length();
+            lengths.push((span, (SHORT[0] * length).max(SHORT[1] * self.radius).min(0.5 * length)));
+        }
+        let solid = drawn(name, &marker, b, self.radius);
+        let sheave = Sheave { name: name.into(), seat, grooves, angle, solid };
+        let shared = std::sync::Arc::new(sheave.clone());
+        for groove in 0..shared.grooves.len() {
+            for what in [What::Leaves, What::Whole, What::Slack, What::Flung] {
+                b.event(Watch { what, sheave: shared.clone(), groove });
+            }
+        }
+        for (span, length) in lengths {
+            b.event(Short { span, length });
+        }
+        b.term(Box::new(sheave));
+        Ok(())
+    }
+}
+
+/// A marker moved along its third axis.
+fn aside(marker: Marker, by: f64) -> Marker {
+    let moved = |point: V3<f64>, axis: &V3<f64>| std::array::from_fn(|i| point[i] + by * axis[i]);
+    match marker {
+        Marker::Ground { point, axes } => Marker::Ground { point: moved(point, &axes[2]), axes },
+        Marker::Node { node, point, axes } => Marker::Node { node, point: moved(point, &axes[2]), axes },
+    }
+}
+
+/// What it looks like: a disc up to the middle of the cable.
+fn drawn(name: &str, marker: &Marker, b: &Builder, radius: f64) -> Solid {
+    let (carrier, point, axis) = match marker {
+        Marker::Ground { point, axes } => (None, *point, axes[2]),
+        Marker::Node { node, point, axes } => (Some(b.nodes()[node.0 as usize].q), *point, axes[2]),
+    };
+    let ends = [-0.1, 0.1].map(|x| std::array::from_fn(|i| point[i] + x * radius * axis[i]));
+    Solid::between(name, carrier, ends, 2.0 * radius)
+}
+
+#[typetag::serde(name = "sheave")]
+impl ConstraintSpec for SheaveSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn markers(&self) -> Vec<&MarkerRef> {
+        vec![&self.marker]
+    }
+    fn guides(&self) -> Vec<Guide> {
+        let guide = |(name, beside)| Guide {
+            name,
+            marker: self.marker.clone(),
+            beside,
+            axis: self.axis,
+            radius: self.radius,
+        };
+        self.wheels().into_iter().map(guide).collect()
+    }
+    fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        let wheels = self.wheels();
+        let passages: Vec<Vec<Passage>> = wheels.iter().map(|(name, _)| b.passages(name)).collect();
+        self.check(&passages)?;
+        for ((name, beside), passages) in wheels.iter().zip(&passages) {
+            if !passages.is_empty() {
+                self.wheel(b, name, passages, *beside)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,254 @@
+//! Cables with a route: over wheels and through rings, from end to end.
+//!
+//! Such a cable is several spans, which are cables of their own whose inner ends feed, and a [`Passage`] between each two
+//! of them, whose equations the constraint of the wheel or ring makes.
+
+mod geometry;
+mod part;
+
+use geometry::Fault;
+pub use geometry::{Side, Stop, lay};
+
+use super::spec::CableSpec;
+use part::RoutePart;
+use ropewalk_core::error::finite;
+use ropewalk_core::{BuildError, Equation, Joint, Marker, Spot, V3, dot};
+use ropewalk_scene::{Builder, ElementSpec, Guide, MarkerRef, Passage, Strand};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// An entry of a route, in the order in which the cable comes by from its start.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Waypoint {
+    /// An end of the cable: a marker on a part, to which it is tied, or a point in space, where it is laid and left free.
+    End(MarkerRef),
+    /// Name of a sheave that the cable runs over: it lies on the upper side.
+    Over(String),
+    /// Name of a sheave that the cable runs under.
+    Under(String),
+    /// Name of a sheave about whose axis the cable turns by the right-hand rule, such as one with a vertical axis.
+    Round(String),
+    /// Name of a ring that the cable runs through.
+    Through(String),
+}
+
+impl Waypoint {
+    /// The name of its guide; none of an end.
+    fn guide(&self) -> Option<&str> {
+        match self {
+            Waypoint::End(_) => None,
+            Waypoint::Over(name)
+            | Waypoint::Under(name)
+            | Waypoint::Round(name)
+            | Waypoint::Through(name) => Some(name),
+        }
+    }
+}
+
+fn at<T>(k: usize, message: impl Into<String>) -> Result<T, BuildError> {
+    Err(BuildError::at(format!("route[{k}]"), message.into()))
+}
+
+/// Where the guides of a route are.
+struct Guided {
+    guide: Guide,
+    marker: Marker,
+}
+
+impl CableSpec {
+    /// Refuses what a cable with a route can't have.
+    fn check_route(&self, b: &Builder) -> Result<(), BuildError> {
+        let own = "the route says where the cable is laid: leave it out";
+        let straight =
+            "a cable that runs over wheels is straight and unstretched when free of stress: leave it out";
+        let alike = "a cable that runs over wheels is the same all along: give it one `section`";
+        let torsion = "a cable that runs over wheels has no torsion: leave it out";
+        let refused = [
+            ("points", !self.points.is_empty(), own),
+            ("curve", !self.curve.is_empty(), own),
+            ("radius", self.radius.is_some(), own),
+            ("velocity", self.velocity != [0.0; 3], "give `speed`, with which it runs along its route"),
+            ("mesh", self.mesh.is_some(), "give `elements`, the number of each span"),
+            ("sections", !self.sections.is_empty(), alike),
+            ("stress_free", self.stress_free != Default::default(), straight),
+            ("strain", self.strain != 0.0, straight),
+            ("curvature", self.curvature != 0.0, straight),
+            ("section", self.section.gj.is_some(), torsion),
+            ("normal", self.normal.is_some(), torsion),
+            ("twist", self.twist != 0.0, torsion),
+            ("laid_twist", self.laid_twist != 0.0, torsion),
+        ];
+        if let Some((field, _, message)) = refused.into_iter().find(|(_, is, _)| *is) {
+            return Err(BuildError::at(field, message));
+        }
+        if b.feeding(&self.name).iter().flatten().any(|feed| feed.element.is_some()) {
+            let message = format!(
+                "the spans of `{}` grow and shrink as a whole: leave `element_length` of its winch out",
+                self.name
+            );
+            return Err(BuildError::at("route", message));
+        }
+        let ends = |w: Option<&Waypoint>| matches!(w, Some(Waypoint::End(_)));
+        let inner = self.route.len().max(2) - 1;
+        if !ends(self.route.first()) || !ends(self.route.last()) || self.route.len() < 3 {
+            let message = "a route begins and ends with `end`, like [{ end = [0, 0, 0] }, { over = \"wheel\" }, \
+                           { end = \"load\" }]: a closed belt isn't known";
+            return Err(BuildError::at("route", message));
+        }
+        match (1..inner).find(|&k| ends(self.route.get(k))) {
+            Some(k) => at(k, "only the first and the last of a route are ends"),
+            None => Ok(()),
+        }
+    }
+
+    /// The guides of the route, in its order.
+    fn guided(&self, b: &Builder) -> Result<Vec<Option<Guided>>, BuildError> {
+        let one = |(k, waypoint): (usize, &Waypoint)| {
+            let Some(name) = waypoint.guide() else { return Ok(None) };
+            let guide = b.guide(name).map_err(|e| e.of(format!("route[{k}]")))?;
+            let ring = matches!(waypoint, Waypoint::Through(_));
+            match (ring, guide.radius > 0.0) {
+                (true, true) => {
+                    return at(k, format!("`{name}` is a sheave: run `over`, `under` or `round` it"));
+                }
+                (false, false) => return at(k, format!("`{name}` is a ring: run `through` it")),
+                _ => {}
+            }
+            let marker = b.marker("route", &guide.marker).map_err(|e| {
+                let message = format!("{}. What carries `{name}` stands above the cable", e.message);
+                BuildError::at(format!("route[{k}]"), message)
+            })?;
+            Ok(Some(Guided { guide, marker }))
+        };
+        self.route.iter().enumerate().map(one).collect()
+    }
+
+    /// The stops of the route as they are at the start.
+    fn stops(&self, b: &Builder, guided: &[Option<Guided>]) -> Result<Vec<Stop>, BuildError> {
+        let gravity = b.gravity();
+        let heavy = dot(&gravity, &gravity) > 0.0;
+        let up = if heavy { gravity.map(|g| -g) } else { [0.0, 0.0, 1.0] };
+        let one = |(k, (waypoint, guided)): (usize, (&Waypoint, &Option<Guided>))| {
+            let side = match waypoint {
+                Waypoint::End(marker) => {
+                    let marker = b.marker("route", marker).map_err(|e| e.of(format!("route[{k}]")))?;
+                    return Ok(Stop::Point(b.place(&marker).x));
+                }
+                Waypoint::Over(_) => Side::Towards(up),
+                Waypoint::Under(_) => Side::Towards(up.map(|x| -x)),
+                Waypoint::Round(_) | Waypoint::Through(_) => Side::About,
+            };
+            let Some(Guided { guide, marker }) = guided else { return at(k, "it leads nowhere") };
+            let place = b.place(marker).x;
+            let size = dot(&guide.axis, &guide.axis).sqrt();
+            if guide.radius == 0.0 {
+                return Ok(Stop::Point(place));
+            }
+            let axis = guide.axis.map(|x| x / size);
+            if let Side::Towards(up) = side
+                && dot(&axis, &up).abs() > 0.9 * dot(&up, &up).sqrt()
+            {
+                let message = format!(
+                    "the axis of `{}` is nearly vertical: say `round`, by the right-hand rule about its axis",
+                    guide.name
+                );
+                return at(k, message);
+            }
+            let centre = std::array::from_fn(|i| place[i] + guide.beside * axis[i]);
+            Ok(Stop::Wheel { centre, axis, radius: guide.radius, side })
+        };
+        self.route.iter().zip(guided).enumerate().map(one).collect()
+    }
+
+    /// Makes a cable with a route: its spans, and what is between them.
+    pub(super) fn build_route(&self, b: &mut Builder) -> Result<(), BuildError> {
+        self.check_route(b)?;
+        self.section.check()?;
+        finite("speed", &[self.speed])?;
+        let guided = self.guided(b)?;
+        let stops = self.stops(b, &guided)?;
+        let turns = lay(&stops).map_err(|Fault { stop, what }| {
+            let message = match self.route[stop].guide() {
+                Some(name) => format!("the cable can't run as its route says at `{name}`: {what}"),
+                None => what.to_string(),
+            };
+            BuildError::at(format!("route[{stop}]"), message)
+        })?;
+        let spans: Vec<[V3<f64>; 2]> = turns.windows(2).map(|w| [w[0].at[1], w[1].at[0]]).collect();
+        let way = |s: &[V3<f64>; 2]| -> V3<f64> { std::array::from_fn(|i| s[1][i] - s[0][i]) };
+        let lengths: Vec<f64> = spans.iter().map(|s| dot(&way(s), &way(s)).sqrt()).collect();
+        let radius = |k: usize| guided[k].as_ref().map_or(0.0, |g| g.guide.radius);
+        let arcs = turns.iter().enumerate().map(|(k, turn)| radius(k) * turn.wrap);
+        let path: f64 = lengths.iter().sum::<f64>() + arcs.sum::<f64>();
+        if let Some(k) = lengths.iter().position(|l| *l <= 1e-6 * path) {
+            return at(k, "nothing of the cable is free between this and what follows");
+        }
+        let stretch = path / self.unstretched_length(path)?;
+        let names: Vec<String> = (1..=spans.len()).map(|k| format!("{}.{k}", self.name)).collect();
+        b.route(&self.name, &names)?;
+        for ((name, span), length) in names.iter().zip(&spans).zip(&lengths) {
+            let along = way(span).map(|x| self.speed * x / length);
+            let span = CableSpec {
+                name: name.clone(),
+                points: span.to_vec(),
+                length: Some(length / stretch),
+                tension: None,
+                elements: self.elements.max(1),
+                velocity: along,
+                speed: 0.0,
+                route: Vec::new(),
+                ..self.clone()
+            };
+            span.build(b).map_err(|e| match e.field.as_deref() {
+                Some("length") if self.tension.is_some() => e.of("tension"),
+                _ => e,
+            })?;
+        }
+        let parts = names.iter().map(|name| Ok(b.parts(std::slice::from_ref(name))?[0].1.clone()));
+        let parts = parts.collect::<Result<Vec<_>, BuildError>>()?;
+        let mut passages = Vec::new();
+        for (k, turn) in turns.iter().enumerate() {
+            let Some(Guided { guide, marker }) = &guided[k] else { continue };
+            let (Some(end), Some(start)) = (parts[k - 1].boundary(1), parts[k].boundary(0)) else {
+                return at(k, "no material flows there");
+            };
+            let s = &self.section;
+            let passage = Passage {
+                guide: guide.name.clone(),
+                spans: [names[k - 1].clone(), names[k].clone()],
+                boundaries: [end, start],
+                marker: *marker,
+                axis: turn.axis,
+                radius: guide.radius,
+                stored: guide.radius * turn.wrap / stretch,
+                strand: Strand {
+                    mass: s.mass,
+                    ea: s.ea,
+                    ei: s.ei.across,
+                    damping: s.axial_retardation_time * s.ea,
+                    weighs: b.weighs(&self.name),
+                },
+            };
+            b.passage(passage.clone());
+            passages.push(passage);
+        }
+        // running along the route, it stands still in space at the wheels
+        let inner = (1..names.len()).flat_map(|k| [(k - 1, "end"), (k, "start")]);
+        for (k, end) in inner.filter(|_| self.speed != 0.0) {
+            b.start_feeding(&format!("{}.{end}", names[k]).as_str().into(), -self.speed / stretch)?;
+        }
+        for (end, k) in [(0, 0), (1, self.route.len() - 1)] {
+            let Waypoint::End(marker @ MarkerRef::Name(_)) = &self.route[k] else { continue };
+            let place = ["start", "end"][end];
+            let own = parts[if end == 0 { 0 } else { parts.len() - 1 }]
+                .marker(&Spot::Named(place.into()))
+                .map_err(BuildError::new)?;
+            let to = b.marker("route", marker).map_err(|e| e.of(format!("route[{k}]")))?;
+            let name = format!("{}.{place}", self.name);
+            b.constraint(Joint::new(name, b.nodes(), [to, own], Equation::coincide())?)?;
+        }
+        b.part(Arc::new(RoutePart::new(&self.name, parts, passages)))
+    }
+}
