@@ -70,7 +70,7 @@ fn the_wet_share_is_that_of_a_cylinder() {
     let mut r = Random(7);
     for slope in slopes() {
         for depth in [-0.35, -0.09, -0.03, 0.0, 0.02, 0.07, 0.2] {
-            let at = station(&mut r, depth, slope);
+            let at = Station { element: 0.0, ..station(&mut r, depth, slope) };
             let wet = SURFACE.wet(&at, None);
             let (volume, moment) = by_slices(&at);
             let whole = at.area * at.weight;
@@ -111,10 +111,12 @@ fn the_share_and_the_couple_are_derivatives_of_the_depth() {
             let by = |i: usize, f: &dyn Fn(&ropewalk_forces::Wet<f64>) -> f64| {
                 (f(&moved(i, h)) - f(&moved(i, -h))) / (2.0 * h)
             };
-            assert!((-wet.share - by(3, &|w| w.depth)).abs() < 1e-8);
+            assert!((-wet.lift - by(3, &|w| w.depth)).abs() < 1e-8);
+            assert!((wet.lift_by_z - by(3, &|w| w.lift)).abs() < 1e-4, "{slope:?} {depth}");
             assert!((wet.share_by_z - by(3, &|w| w.share)).abs() < 1e-4, "{slope:?} {depth}");
             for i in 0..3 {
                 assert!((wet.depth_by_slope[i] - by(i, &|w| w.depth)).abs() < 1e-8, "{slope:?} {depth}");
+                assert!((wet.lift_by_slope[i] - by(i, &|w| w.lift)).abs() < 1e-5, "{slope:?} {depth}");
                 assert!((wet.share_by_slope[i] - by(i, &|w| w.share)).abs() < 1e-5, "{slope:?} {depth}");
                 for j in 0..3 {
                     let exact = wet.depth_by_slopes[i][j];
@@ -125,6 +127,20 @@ fn the_share_and_the_couple_are_derivatives_of_the_depth() {
                 }
             }
         }
+    }
+}
+
+/// All under water a cell of a cable has the depth of its station, and no couple; one of a hull that of its own middle.
+#[test]
+fn deep_cells_lift_at_their_stations() {
+    let mut r = Random(5);
+    for slope in slopes() {
+        let at = station(&mut r, 4.0, slope);
+        let (cable, hull) = (SURFACE.wet(&at, None), SURFACE.wet(&Station { element: 0.0, ..at }, None));
+        assert_eq!((cable.lift, cable.share, cable.lift_by_z), (1.0, 1.0, 0.0));
+        assert!((cable.depth - 4.0).abs() < 1e-15 && cable.depth_by_slope.iter().all(|x| x.abs() < 1e-15));
+        let lever = 0.5 * (at.before - (at.weight - at.before));
+        assert!((hull.depth - 4.0 - lever * slope[2]).abs() < 1e-15);
     }
 }
 
