@@ -19,6 +19,11 @@ use std::sync::Arc;
 /// Depth over which damping takes hold, in parts of the smallest radius.
 const TAKES_HOLD: f64 = 0.1;
 
+/// Heights above the crossings of one line along x of a grid [m].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct HeightRow(#[serde(deserialize_with = "quantity::list::length")] pub Vec<f64>);
+
 /// Heights on a grid, in numbers or from a file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -33,7 +38,7 @@ pub struct GridSpec {
     #[serde(deserialize_with = "quantity::list::length")]
     pub y: Vec<f64>,
     /// Heights: for each `x` a row with one for each `y` [m].
-    pub z: Vec<Vec<f64>>,
+    pub z: Vec<HeightRow>,
 }
 
 /// The sea floor: a plane, level or sloping, or heights on a grid. It presses on cables all along where their surface is below it, on
@@ -131,7 +136,10 @@ impl BedSpec {
                     Err(BuildError::at("file", "give either a `file` or `x`, `y` and `z`"))
                 }
                 Some(file) => Heights::read(file),
-                None => Heights::new(grid.x.clone(), grid.y.clone(), &grid.z),
+                None => {
+                    let rows: Vec<Vec<f64>> = grid.z.iter().map(|row| row.0.clone()).collect();
+                    Heights::new(grid.x.clone(), grid.y.clone(), &rows)
+                }
             };
             let shape = Shape::Heights(Arc::new(heights.map_err(|e| e.of("grid"))?));
             return Ok((shape, Marker::Ground { point, axes: IDENTITY }));

@@ -25,7 +25,7 @@ mod spec;
 mod term;
 mod touch;
 
-pub use bed::{BedSpec, GridSpec};
+pub use bed::{BedSpec, GridSpec, HeightRow};
 pub use file::read;
 pub use friction::{AtRest, Brake, Friction, Grip};
 pub use heights::Heights;
