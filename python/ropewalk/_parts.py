@@ -77,6 +77,8 @@ class Parts:
         curve: Sequence[Sequence[Number]] | None = None,
         start_direction: Sequence[Number] | None = None,
         end_direction: Sequence[Number] | None = None,
+        route: Sequence[Mapping[str, Any]] | None = None,
+        speed: Number | None = None,
         length: Number | None = None,
         tension: Number | None = None,
         elements: Integer | None = None,
@@ -107,6 +109,11 @@ class Parts:
         curve: Points of a smooth path [m], instead of `points`: a cubic spline passes through them.
         start_direction: Direction of `curve` at its start. Default: follows from the first points.
         end_direction: Direction of `curve` at its end. Default: follows from the last points.
+        route: What it runs over and through, from end to end, instead of `points`: `[{ end = "drum" }, { over =
+            "head" }, { under = "block" }, { end = "jib.anchor" }]`. Sheaves and rings are constraints of their own.
+            The cable is then several spans, `name.1`, `name.2`, …, each with `elements` elements, and runs freely
+            from one to the next; its shape at the start is the shortest taut line.
+        speed: Speed with which a cable with a `route` runs along it at the start, from its start to its end [m/s].
         length: Unstretched length [m]. Default: the length of the path. Another length is strained uniformly to fit
             the path.
         tension: Initial tension [N], instead of `length`: the path is longer than the cable by the strain `tension /
@@ -176,6 +183,8 @@ class Parts:
             "curve": curve,
             "start_direction": start_direction,
             "end_direction": end_direction,
+            "route": route,
+            "speed": speed,
             "length": length,
             "tension": tension,
             "elements": elements,
@@ -750,6 +759,33 @@ class Parts:
             "to": to,
         })
 
+    def ring(
+        self,
+        *,
+        name: str,
+        marker: Union[Sequence[Number], str],
+        friction: Number | None = None,
+        slip_speed: Number | None = None,
+    ) -> Part:
+        """A ring through which a cable runs that names it in its `route`: a shackle, a fairlead, a thimble, small beside
+        the spans. For a wheel whose size counts take a `sheave`.
+
+        The cable turns sharply there; its bending stiffness doesn't resist that. With `friction` the tensions before
+        and behind differ by the capstan equation with the angle of deflection.
+
+        name: Name; routes and records refer to it.
+        marker: Where it is: a point in space, or of a part that stands above the cable in the scene.
+        friction: Coefficient of friction. Default: none.
+        slip_speed: Speed of sliding below which friction fades, so that a held cable creeps at a part of it [m/s].
+            Default 0.001.
+        """
+        return self._add("constraints", "ring", {
+            "name": name,
+            "marker": marker,
+            "friction": friction,
+            "slip_speed": slip_speed,
+        })
+
     def rotation(
         self,
         *,
@@ -773,6 +809,73 @@ class Parts:
             "axis": axis,
             "motion": motion,
             "to": to,
+        })
+
+    def sheave(
+        self,
+        *,
+        name: str,
+        marker: Union[Sequence[Number], str],
+        axis: Sequence[Number],
+        radius: Number,
+        count: Integer | None = None,
+        spacing: Number | None = None,
+        friction: Number | None = None,
+        inertia: Number | None = None,
+        locked: Boolean | None = None,
+        efficiency: Number | None = None,
+        bearing: Mapping[str, Any] | None = None,
+        torque: Union[Mapping[str, Any], Number] | None = None,
+        slip_speed: Number | None = None,
+    ) -> Part:
+        """A sheave: a wheel over which cables run that name it in their `route`.
+
+        The cable is tangent to it on both sides, wherever it comes from and goes to; what lies on it stretches, has
+        mass and weight. Without friction the tension is the same on both sides, but for what weight and acceleration
+        of the piece on the wheel do. With `friction` the cable sticks, creeps and slips on the groove by the capstan
+        equation, and turns a wheel with `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable.
+        `efficiency` is for tables of cranes.
+
+        Not known: several turns round it, torsion of the cable, a cable that leaves the wheel and comes back; runs
+        end there.
+
+        name: Name; routes and records refer to it.
+        marker: Its centre: a point in space, or of a rigid body, which stands above the cable in the scene.
+        axis: Axis in space at the start; it turns with what carries the sheave. `round` goes about it by the right-
+            hand rule; for `over` and `under` its sign doesn't matter.
+        radius: Radius to the middle of the cable: that of the groove and half a diameter of the cable [m].
+        count: Number of sheaves side by side on one axle; routes name them `NAME.1`, `NAME.2`, …
+        spacing: Distance from each of them to the next, along the axis [m].
+        friction: Coefficient of friction between cable and groove, in a V-groove divided by the sine of half its
+            angle. Needs `inertia`, or `locked`. Default: none.
+        inertia: Moment of inertia of the wheel about its axis; its mass belongs to what carries it [kg m²].
+        locked: Whether the wheel can't turn, such as a bollard or a worn-out sheave. Goes with `friction`.
+        efficiency: Ratio of the tensions before and behind it that half a turn leaves, from 0 to 1: friction of the
+            bearing and stiffness of the cable together, as in tables of cranes; typically 0.98 on roller bearings.
+            Instead of the other ways to lose power.
+        bearing: What resists the spin.
+            friction: Coefficient of friction on its own radius, by the force of the cable on the axle. Default 0.0.
+            radius: Radius at which that acts [m]. Default 0.0.
+            torque: Constant moment [N m]. Default 0.0.
+            damping: Moment by angular velocity [N m s/rad]. Default 0.0.
+        torque: Moment that drives a wheel with `friction` and `inertia`, about its axis [N m].
+        slip_speed: Speed of sliding below which friction fades, so that a held cable creeps at a part of it [m/s].
+            Default 0.001.
+        """
+        return self._add("constraints", "sheave", {
+            "name": name,
+            "marker": marker,
+            "axis": axis,
+            "radius": radius,
+            "count": count,
+            "spacing": spacing,
+            "friction": friction,
+            "inertia": inertia,
+            "locked": locked,
+            "efficiency": efficiency,
+            "bearing": bearing,
+            "torque": torque,
+            "slip_speed": slip_speed,
         })
 
     def slide(
@@ -1023,6 +1126,60 @@ class Parts:
             "on": on,
         })
 
+    def bed(
+        self,
+        *,
+        name: str | None = None,
+        on: Sequence[str] | None = None,
+        point: Sequence[Number] | None = None,
+        slope: Number | None = None,
+        rises: Sequence[Number] | None = None,
+        grid: Mapping[str, Any] | None = None,
+        stiffness: Number | None = None,
+        damping: Number | None = None,
+        friction: Union[Mapping[str, Any], Number] | None = None,
+        radius: Number | None = None,
+    ) -> Part:
+        """The sea floor: a plane, level or sloping, or heights on a grid. It presses on cables all along where their
+        surface is below it, on hulls and on point masses, brakes what comes down, and holds with dry friction, along
+        and across, without creep.
+
+        A cable lies with its axis half a diameter above the bed, less the sinkage `w/(stiffness d)` under its weight
+        `w` per length: a small part of the water depth keeps tensions right. Records of type `touchdown` show where a
+        line comes to lie.
+
+        name: Name. Default bed.
+        on: Parts that can lie on it. Default: all that have a size.
+        point: A point of the bed [m]; with a `grid`, what its lines and heights are counted from. Default: the
+            origin. Default [0.0, 0.0, 0.0].
+        slope: By what angle it slopes [rad].
+        rises: Horizontal direction in which it rises. Default [1.0, 0.0].
+        grid: Heights on a grid, instead of a plane.
+            file: A CSV file with a row `x, y, z` [m] for each crossing of the grid; its path is relative to the scene
+                file.
+            x: Lines of the grid along x, ascending [m].
+            y: Lines along y [m].
+            z: Heights: for each `x` a row with one for each `y` [m].
+        stiffness: Stiffness of the soil: pressure on the diameter of what lies on it, per depth [N/m³], such as `"100
+            kN/m^3"`. Default 1000000.0.
+        damping: Damping of what comes down, the same per speed [N s/m³]. What leaves isn't held back. Default 0.0.
+        friction: Dry friction: a coefficient, or `{ mu, across, elastic_slip, equilibrium }`. Equilibria are those
+            without it, unless `equilibrium` is `laid` or `pulled`.
+        radius: Contact radius of the parts [m]. Default: half of the diameter of the cable or hull.
+        """
+        return self._add("forces", "bed", {
+            "name": name,
+            "on": on,
+            "point": point,
+            "slope": slope,
+            "rises": rises,
+            "grid": grid,
+            "stiffness": stiffness,
+            "damping": damping,
+            "friction": friction,
+            "radius": radius,
+        })
+
     def buoyancy(
         self,
         *,
@@ -1057,8 +1214,8 @@ class Parts:
 
         name: Name.
         marker: The marker that is held.
-        to: The other marker, on a rigid body, or a point in space; its axes are those of the stiffnesses. Default:
-            the point where `marker` starts.
+        to: The other marker, on a rigid body or a cable with torsion, or a point in space; its axes are those of the
+            stiffnesses. Default: the point where `marker` starts.
         axis_x: Direction of the first axis in space at the start. Default, with `axis_y`: the axes of space.
         axis_y: Direction of the second axis in space at the start, at right angles to the first.
         stiffness: Stiffness along each axis [N/m]. Default [0.0, 0.0, 0.0].
@@ -1118,8 +1275,8 @@ class Parts:
             1, at a depth of 1 m. Default: that of a piece as long as its diameter.
         exponent: Exponent `p` of the elastic force `k d^p`. Default 1.0.
         damping: Damping law along the normal. Default none.
-        friction: Dry friction: a coefficient, or `{ mu, across, elastic_slip }`. Equilibria are computed without it,
-            since with friction they are not unique.
+        friction: Dry friction: a coefficient, or `{ mu, across, elastic_slip, equilibrium }`. Equilibria are computed
+            without it, since with friction they are not unique, unless `equilibrium` is `laid` or `pulled`.
         overlap: What to do with points that start deep in the shape. Default refuse.
         """
         return self._add("forces", "contact", {
@@ -1441,13 +1598,13 @@ class Parts:
         damping: Union[Mapping[str, Any], Number] | None = None,
         angle: Union[Mapping[str, Any], Number] | None = None,
     ) -> Part:
-        """A torsion spring and damper about an axis, used with a `revolute` joint. Angles up to half a turn from the
-        stress-free angle are valid.
+        """A torsion spring and damper about an axis, used with a `revolute` joint, or at the end of a cable with torsion
+        (`section.gj`), which may lie on a swivel. Angles up to half a turn from the stress-free angle are valid.
 
         name: Name.
-        marker: The marker, on a rigid body.
+        marker: The marker, on a rigid body or a cable with torsion.
         axis: Direction of the axis in space at the start.
-        to: The other marker, on a rigid body. Default: space.
+        to: The other marker, on a rigid body or a cable with torsion. Default: space.
         stiffness: Stiffness [N m/rad]. Default 0.0.
         damping: Damping [N m s/rad]. Default 0.0.
         angle: Angle without moment, from the initial position [rad]. Default 0.0.
@@ -2186,6 +2343,48 @@ class Parts:
             "title": title,
         })
 
+    def sheave_record(
+        self,
+        *,
+        of: str,
+        name: str | None = None,
+    ) -> Part:
+        """The cable on a sheave: columns `wheel.wrap` in rad, `.length`, the unstretched length that lies on it in m,
+        `.in.tension` and `.out.tension` where the cable comes and goes in N, `.speed` along the groove and `.slip`
+        against it in m/s, and `.axle_force` in N. Of a wheel with an angle of its own also `.angle` in rad and
+        `.spin` in rad/s. Where several cables run over the wheel, `.1.wrap`, `.2.wrap` and so on.
+
+        of: Name of the sheave; of several on one axle `NAME.1`.
+        name: Name in results. Default: that of the sheave.
+        """
+        return self._add("records", "sheave", {
+            "of": of,
+            "name": name,
+        })
+
+    def touchdown(
+        self,
+        *,
+        of: str,
+        on: str,
+        name: str | None = None,
+    ) -> Part:
+        """Where a cable lies on a bed or another shape: columns `line.touchdown.s`, the unstretched arc length from its
+        start at which it leaves the ground towards its higher end, in m, with `.x`, `.y` and `.z`, its axis there;
+        `.grounded`, the length that lies, in m; `.uplift`, the angle in rad by which its lower end points up from the
+        horizontal; and `.clearance`, its least distance from the ground in m, negative where it is pressed in. A
+        cable that doesn't lie anywhere has no place: those columns are NaN.
+
+        of: The cable.
+        on: The bed or the contact.
+        name: Name in results. Default: that of the cable.
+        """
+        return self._add("records", "touchdown", {
+            "of": of,
+            "on": on,
+            "name": name,
+        })
+
     def velocity(
         self,
         *,
@@ -2460,6 +2659,7 @@ class Parts:
             pierson_moskowitz: A fully developed wind sea: JONSWAP with `gamma = 1`.
             white: The same energy at all frequencies of a band, for tests of response.
             components: Regular waves, one by one.
+            measured: A sea as it was measured: the waves of a record of its elevation.
             direction: Direction that the waves travel towards, the mean if they spread: from x to y [rad]. Default
                 0.0.
             spreading: How directions spread about the mean. Default: all waves have the same direction.
@@ -2527,6 +2727,7 @@ class Parts:
         field_snapshots: Integer | None = None,
         shape_titles: Mapping[str, Any] | None = None,
         tables: Sequence[Mapping[str, Any]] | None = None,
+        ranges: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
         """Analysis, duration and output.
 
@@ -2553,6 +2754,7 @@ class Parts:
             space: In space, seen obliquely from above; drawn only if it has a title.
             radial: z over the distance from the z axis; drawn only if it has a title.
         tables: Tables of a few columns of the history, each a CSV file of its own.
+        ranges: Range graphs of lines: between what tension, curvature and the like were along them.
         """
         self._set("run", {
             "analysis": analysis,
@@ -2565,6 +2767,7 @@ class Parts:
             "field_snapshots": field_snapshots,
             "shape_titles": shape_titles,
             "tables": tables,
+            "ranges": ranges,
         })
 
     def set_solver(

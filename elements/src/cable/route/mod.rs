@@ -108,12 +108,26 @@ impl CableSpec {
         let one = |(k, waypoint): (usize, &Waypoint)| {
             let Some(name) = waypoint.guide() else { return Ok(None) };
             let guide = b.guide(name).map_err(|e| e.of(format!("route[{k}]")))?;
+            if !(guide.radius >= 0.0 && guide.radius.is_finite()) {
+                return at(
+                    k,
+                    format!("the `radius` of `{name}` is a positive length, not {} m", guide.radius),
+                );
+            }
+            if !(dot(&guide.axis, &guide.axis) > 0.0) {
+                return at(
+                    k,
+                    format!("the `axis` of `{name}` is a direction, such as [0, 1, 0]: it needs a length"),
+                );
+            }
             let ring = matches!(waypoint, Waypoint::Through(_));
             match (ring, guide.radius > 0.0) {
                 (true, true) => {
                     return at(k, format!("`{name}` is a sheave: run `over`, `under` or `round` it"));
                 }
-                (false, false) => return at(k, format!("`{name}` is a ring: run `through` it")),
+                (false, false) => {
+                    return at(k, format!("`{name}` has no radius, as a ring: run `through` it"));
+                }
                 _ => {}
             }
             let marker = b.marker("route", &guide.marker).map_err(|e| {
