@@ -1,6 +1,7 @@
 """The notebooks run from top to bottom, and are kept without outputs."""
 
 import json
+import signal
 import sys
 from pathlib import Path
 
@@ -26,7 +27,10 @@ def test_a_notebook_runs(path, tmp_path, monkeypatch):
     (kernel / "kernel.json").write_text(json.dumps({"argv": argv, "display_name": "here", "language": "python"}))
     monkeypatch.setenv("JUPYTER_PATH", str(tmp_path))
     client = nbclient.NotebookClient(book, timeout=120, resources={"metadata": {"path": str(tmp_path)}})
+    # the client leaves a handler of its own where signals were ignored
+    handler = signal.getsignal(signal.SIGINT)
     client.execute()
+    signal.signal(signal.SIGINT, handler)
     shown = json.dumps([cell.get("outputs") for cell in book.cells])
     assert "Traceback" not in shown
 
