@@ -1,7 +1,11 @@
 //! `ropewalk import DECK`
 
+mod body;
 mod deck;
+mod joints;
+mod parts;
 mod scene;
+mod water;
 
 use super::{Exit, say, warn};
 use deck::Deck;

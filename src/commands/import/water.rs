@@ -1,0 +1,204 @@
+//! The run, the water, its bed and what it does to lines.
+
+use super::deck::Deck;
+use super::parts::Line;
+use ropewalk_scene::Fault;
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// The run, gravity and the water.
+pub(super) fn head(
+    deck: &Deck<'_>,
+    name: &str,
+    density: f64,
+    folder: &Path,
+    out: &mut String,
+) -> Result<(), Fault> {
+    let g = deck.option_number(&["g", "gravity"], 9.80665)?;
+    let output = deck.option_number(&["dtout"], 0.0)?;
+    let output = if output > 0.0 { output } else { 0.1 };
+    let depth = deck.option_number(&["wtrdpth"], 0.0)?;
+    let title = deck.title.replace(['"', '\\'], "'");
+    let _ = write!(
+        out,
+        "# {name}, a MoorDyn deck, as a scene.\ntitle = \"{title}\"\ngravity = [0, 0, {:?}]\n\n[run]\n\
+         # the deck doesn't say how long\nduration = \"60 s\"\noutput = {output:?}\nfrom_equilibrium = true\n\n[water]\n\
+         density = {density:?}\nlevel = 0\n",
+        0.0 - g
+    );
+    match deck.option_number(&["currents"], 0.0)? {
+        0.0 => {}
+        1.0 => {
+            let profile = table(folder, "current_profile.txt", 4, 3)?;
+            out.push_str("profile = [\n");
+            for z in profile {
+                let _ = writeln!(
+                    out,
+                    "    {{ z = {:?}, velocity = [{:?}, {:?}, {:?}] }},",
+                    z[0], z[1], z[2], z[3]
+                );
+            }
+            out.push_str("]\n");
+        }
+        _ => {
+            return Err(unknown(
+                deck,
+                "currents",
+                "currents of this kind aren't taken over: only 0 and 1, a profile over depth, are",
+            ));
+        }
+    }
+    match deck.option_number(&["wavekin"], 0.0)? {
+        0.0 => {}
+        7.0 => {
+            let _ = write!(
+                out,
+                "\n[water.waves]\ndepth = {depth:?}\nramp = 20.0                      # from the equilibrium in still water\ncomponents = [\n"
+            );
+            for w in table(folder, "wave_frequencies.txt", 3, 0)? {
+                // the deck's sum is of |A| sin(ωt - kx + arg A), the scene's of cos(kx - ωt + φ)
+                let [omega, re, im] = [w[0], w[1], w[2]];
+                let (amplitude, phase) = (re.hypot(im), FRAC_PI_2 - im.atan2(re));
+                if omega > 0.0 && amplitude > 0.0 {
+                    let _ = writeln!(
+                        out,
+                        "    {{ amplitude = {amplitude:?}, period = {:?}, phase = {phase:?} }},",
+                        TAU / omega
+                    );
+                }
+            }
+            out.push_str("]\n");
+        }
+        _ => {
+            return Err(unknown(
+                deck,
+                "wavekin",
+                "waves of this kind aren't taken over: only 0 and 7, a sum of components, are",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// An option with a value that has no counterpart.
+fn unknown(deck: &Deck<'_>, option: &str, message: &str) -> Fault {
+    let word = deck.option(&[option]).and_then(|row| row.words.first());
+    word.map_or_else(|| Fault::new(message), |word| deck.word_fault(message, word))
+}
+
+/// Rows of numbers of a file beside the deck.
+fn table(folder: &Path, file: &str, columns: usize, heads: usize) -> Result<Vec<Vec<f64>>, Fault> {
+    let path = folder.join(file);
+    let shown = path.display().to_string();
+    let text = std::fs::read_to_string(&path)
+        .map_err(|e| Fault::new(format!("`{shown}`, which the deck needs, can't be read: {e}")))?;
+    let mut start = 0;
+    let mut rows = Vec::new();
+    for (k, line) in text.split_inclusive('\n').enumerate() {
+        let bytes = start..start + line.trim_end().len();
+        start += line.len();
+        if k < heads || line.trim().is_empty() {
+            continue;
+        }
+        let row: Option<Vec<f64>> =
+            line.split_whitespace().map(|x| x.parse().ok().filter(|x: &f64| x.is_finite())).collect();
+        let Some(row) = row.filter(|row| row.len() >= columns) else {
+            return Err(Fault::in_text(format!("{columns} numbers are expected here"), &shown, &text, bytes));
+        };
+        rows.push(row);
+    }
+    Ok(rows)
+}
+
+/// Gravity, water and the bed.
+pub(super) fn forces(
+    deck: &Deck<'_>,
+    lines: &[Line<'_>],
+    folder: &Path,
+    out: &mut String,
+) -> Result<(), Fault> {
+    out.push_str("\n[[forces]]\ntype = \"gravity\"\n\n[[forces]]\ntype = \"buoyancy\"\n");
+    let kinds = |same: &dyn Fn(&Line<'_>) -> Vec<u64>| {
+        let mut groups: Vec<(Vec<u64>, Vec<&Line<'_>>)> = Vec::new();
+        for l in lines {
+            let key = same(l);
+            match groups.iter_mut().find(|(k, _)| *k == key) {
+                Some((_, all)) => all.push(l),
+                None => groups.push((key, vec![l])),
+            }
+        }
+        groups.into_iter().map(|(_, all)| all).collect::<Vec<_>>()
+    };
+    let names =
+        |all: &[&Line<'_>]| all.iter().map(|l| format!("\"{}\"", l.name)).collect::<Vec<_>>().join(", ");
+    for all in kinds(&|l| vec![l.kind.fluid[0].to_bits(), l.kind.fluid[2].to_bits()]) {
+        let [cd, _, along, _] = all[0].kind.fluid;
+        if cd != 0.0 || along != 0.0 {
+            let _ = write!(
+                out,
+                "\n[[forces]]\ntype = \"drag\"\ncn = {cd:?}\nct = {along:?}\non = [{}]\n",
+                names(&all)
+            );
+        }
+    }
+    for all in kinds(&|l| vec![l.kind.fluid[1].to_bits()]) {
+        let ca = all[0].kind.fluid[1];
+        if ca != 0.0 {
+            let _ = write!(out, "\n[[forces]]\ntype = \"added_mass\"\nca = {ca:?}\non = [{}]\n", names(&all));
+        }
+    }
+    let depth = deck.option_number(&["wtrdpth"], 0.0)?;
+    let floor = deck.option(&["seafloorfile"]).map(|row| deck.word(row, 0, "file")).transpose()?;
+    let (stiffness, damping) =
+        (deck.option_number(&["kbot", "kb"], 3e6)?, deck.option_number(&["cbot", "cb"], 3e5)?);
+    if stiffness == 0.0 || depth == 0.0 && floor.is_none() {
+        return Ok(());
+    }
+    let friction = deck.option_number(&["frictioncoefficient"], 0.0)?;
+    let grid = floor.map(|file| grid(&file.text, folder)).transpose()?;
+    for (k, all) in kinds(&|l| vec![l.kind.diameter.to_bits()]).into_iter().enumerate() {
+        let name = if k == 0 { "bed".to_string() } else { format!("bed-{}", k + 1) };
+        let radius = 0.5 * all[0].kind.diameter;
+        let below = if grid.is_some() { 0.0 } else { 0.0 - depth };
+        let _ = write!(
+            out,
+            "\n# the axis of a line lies on the deck's bed, here half a diameter above\n[[forces]]\ntype = \"bed\"\n\
+             name = \"{name}\"\npoint = [0, 0, {:?}]\nstiffness = {stiffness:?}\ndamping = {damping:?}\non = [{}]\n",
+            below - radius,
+            names(&all)
+        );
+        if friction > 0.0 {
+            let _ = writeln!(out, "friction = {friction:?}");
+        }
+        out.push_str(grid.as_deref().unwrap_or(""));
+    }
+    Ok(())
+}
+
+/// The heights of a sea floor: numbers of lines, the lines along x and y, and rows `x y z`.
+fn grid(file: &str, folder: &Path) -> Result<String, Fault> {
+    let name = Path::new(file).file_name().map_or(file, |f| f.to_str().unwrap_or(file));
+    let file = if folder.join(file).exists() { file } else { name };
+    let rows = table(folder, file, 2, 0)?;
+    let bad = |why: &str| Fault::new(format!("`{file}` is no sea floor: {why}"));
+    let [_, x, y, heights @ ..] = &rows[..] else {
+        return Err(bad("it needs the lines along x and y, and heights"));
+    };
+    let mut z = vec![vec![f64::NAN; y.len()]; x.len()];
+    for row in heights {
+        let near = |all: &[f64], at: f64| all.iter().position(|x| (x - at).abs() <= 1e-6 * (1.0 + at.abs()));
+        let ([i, j], height) = match row[..] {
+            [a, b, c] => ([near(x, a), near(y, b)], c),
+            _ => return Err(bad("each height is a row `x y z`")),
+        };
+        match (i, j) {
+            (Some(i), Some(j)) => z[i][j] = height,
+            _ => return Err(bad("a height isn't on its lines")),
+        }
+    }
+    if z.iter().flatten().any(|z| z.is_nan()) {
+        return Err(bad("a crossing of its lines has no height"));
+    }
+    Ok(format!("grid = {{ x = {x:?}, y = {y:?}, z = {z:?} }}\n"))
+}
