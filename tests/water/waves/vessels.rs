@@ -177,16 +177,20 @@ fn points_of_a_vessel_move_as_in_the_reference() {
 #[test]
 fn a_body_follows_its_course() {
     let case = &read("vessel_rao")["cases"][1]["case"];
-    let solver = "[solver]\nscheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-8 } }";
+    // where the ramp ends the power jumps: what the audit's trapezoidal rule misses there goes with the step
+    let solver = "[solver]\nscheme = \"radau-iia-5\"\nstepping = { controlled = { tolerance = 1e-8 } }\nh_max = \"1 ms\"";
     let text = vessel(case, solver).replace("components", "ramp = 20\n        components")
         + "[[records]]\ntype = \"position\"\nof = \"ship.bow\"\n[[records]]\ntype = \"energy\"\n";
     let h = run(&text);
     let model = scene(&text).build().expect("a model");
     assert!(h.warnings.is_empty(), "{:?}", h.warnings);
-    let imbalance = h.column("energy.imbalance").expect("energy").iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let most = h.column("energy.kinetic").expect("energy").iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let largest = |name: &str| {
+        let column = h.column(name).expect("energy");
+        column.iter().fold(0.0_f64, |most, x| if x.abs() <= most { most } else { x.abs() })
+    };
+    let (imbalance, most) = (largest("energy.imbalance"), largest("energy.kinetic"));
     println!("imbalance {imbalance:.1e} J of {most:.1e} J");
-    assert!(imbalance < 1e-3 * most);
+    assert!(imbalance < 1e-5 * most);
     assert_eq!(model.multipliers(), 6);
 }
 
