@@ -105,6 +105,12 @@ fn vehicle_whose_pin_shears_goes_on_to_the_last_bit() {
 }
 
 #[test]
+fn ropes_over_wheels_go_on_to_the_last_bit() {
+    let scene = bundled("four-falls", 1.5);
+    same_from_checkpoint(&scene, &scene.solver, 20, 4);
+}
+
+#[test]
 fn checkpoint_of_another_model_is_refused() {
     let (one, other) = (bundled("pendulum", 0.2), bundled("hose-turn", 0.2));
     let mut s = Simulation::new(one.build().expect("model"), &one.solver, 0.2).expect("start");
