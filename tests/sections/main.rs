@@ -1,5 +1,6 @@
 //! Sections along a cable, lumps on it, and stiffness that isn't constant, against closed forms.
 
+mod fed;
 mod laws;
 mod lumps;
 mod splice;

@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::fmt::Write;
 
 /// The cases of `lines.json`: closed forms of lines whose sections are elastic catenaries, one after the other.
-fn cases() -> Vec<Value> {
+pub fn cases() -> Vec<Value> {
     let all: Value = serde_json::from_str(include_str!("../data/lines.json")).expect("lines.json");
     all["cases"].as_array().expect("cases").clone()
 }

@@ -2,6 +2,7 @@
 
 mod closed;
 mod dynamics;
+mod feeding;
 #[cfg(feature = "contact")]
 mod hockle;
 mod joints;

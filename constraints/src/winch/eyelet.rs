@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 fn ramp() -> f64 {
     1.0
 }
+fn is_nought(x: &f64) -> bool {
+    *x == 0.0
+}
 fn fade() -> f64 {
     0.1
 }
@@ -71,6 +74,10 @@ pub struct EyeletSpec {
     /// Linear damping, added to `tension` [N s/m].
     #[serde(default, deserialize_with = "quantity::setting::damping")]
     pub damping: Setting,
+    /// What keeps a cable with torsion from turning about its own axis in the eyelet: torque over the spin of its material
+    /// [N m s]. With much of it, it takes its twist along when it leaves.
+    #[serde(default, deserialize_with = "quantity::rotational_damping", skip_serializing_if = "is_nought")]
+    pub grip: f64,
     /// Shortest length of the free cable [m]; the run ends there. Default: as for `winch`.
     #[serde(
         default,
@@ -120,6 +127,7 @@ impl EyeletSpec {
             per_speed2: 0.0.into(),
             reference_speed: None,
             damping: 0.0.into(),
+            grip: 0.0,
             shortest: None,
             element_length: None,
             fade: fade(),
@@ -138,6 +146,7 @@ impl EyeletSpec {
             per_speed2: self.per_speed2.clone(),
             reference_speed: self.reference_speed.clone(),
             damping: self.damping.clone(),
+            grip: self.grip,
             shortest: self.shortest,
             element_length: self.element_length,
             fade: self.fade,

@@ -1,11 +1,14 @@
 //! Where a cable lifts off from a package.
 
 use super::{Limit, Peel, Side};
+use crate::check::unit;
 use crate::package::{Lay, Package, PackageSpec};
+use crate::pair::kind;
 use ropewalk_core::error::{not_negative, positive};
-use ropewalk_core::rotation::cross;
+use ropewalk_core::rotation::{around, cross};
 use ropewalk_core::{
-    At, BuildError, Constraint, Feed, Marker, MovingBoundary, Node, NodeId, RowKind, Solid, V3, dot,
+    Arrow, At, BuildError, Constraint, Equation, Feed, Joint, Marker, MovingBoundary, Node, NodeId, NodeKind,
+    RowKind, Solid, V3, dot,
 };
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
@@ -168,7 +171,8 @@ impl Constraint for LiftOff {
 /// The lift-off point of a cable from a package. It runs round the package as the cable unwinds.
 ///
 /// A `winch` at the same end drives the unwinding: by `speed` or `motion`, or by the `tension` at the package. Or,
-/// without a winch, the cable sticks to the package with `adhesion_energy`. The other end needs an `eyelet`. Events
+/// without a winch, the cable sticks to the package with `adhesion_energy`. The other end needs an `eyelet`. A cable
+/// with torsion leaves the layer as it lies there: each wrap that is pulled off over the end of the package brings it a turn. Events
 /// are reported on the way: a tension too low to keep the cable taut, contact with the package, too much bending.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -202,6 +206,26 @@ fn slip_speed() -> f64 {
 }
 
 impl LiftOffSpec {
+    /// Holds the section of a cable with torsion as it lies on the package: one of its vectors stays at right angles to the axis.
+    /// So the section goes round once with each wrap.
+    fn holds(&self, b: &Builder, boundary: MovingBoundary, package: &Package) -> Result<Joint, BuildError> {
+        if !self.tangent {
+            let message = "a cable with torsion is held against twisting by the wound layer where it goes on along that: give \
+                           `tangent = true`, or leave `gj` out";
+            return Err(BuildError::at("tangent", message));
+        }
+        let (axis, node) = (package.axis(), Marker::node(boundary.end));
+        let t = b.place(&node).axes[2];
+        let across = unit("marker", cross(&t, &axis)).map_err(|_| {
+            BuildError::at("marker", "it leaves the package along its axis: lay it along the wound layer there")
+        })?;
+        let held = node.with_axes(b.nodes(), b.coordinates(), [across, cross(&t, &across), t]);
+        let ground = Marker::Ground { point: [0.0; 3], axes: around(axis) };
+        let (a, b_) = (Arrow::Axis { of: 0, axis: 2 }, Arrow::Axis { of: 1, axis: 0 });
+        let equation = Equation::Dot { a, b: b_, value: 0.0, motion: None };
+        Joint::new(format!("{}.twist", self.name), b.nodes(), [ground, held], vec![equation])
+    }
+
     /// Lifts off from a package, peeled by a winch.
     pub fn new(name: &str, marker: impl Into<MarkerRef>, package: PackageSpec) -> Self {
         let (name, marker) = (name.into(), marker.into());
@@ -243,6 +267,9 @@ impl ConstraintSpec for LiftOffSpec {
             side: Side::Empty,
             length: package.wound(),
         });
+        if kind(b, &Marker::node(boundary.end)) == Some(NodeKind::Twist) {
+            b.constraint(self.holds(b, boundary, &package)?)?;
+        }
         super::conditions::watch(b, &self.name, part.name(), boundary, &package);
         b.constraint(LiftOff::new(&self.name, boundary, package, self.tangent))
     }

@@ -95,6 +95,20 @@ pub struct WinchSpec {
     /// Moment of inertia of the drum over its radius squared [kg].
     #[serde(default, deserialize_with = "quantity::mass")]
     pub inertia: f64,
+    /// Length of a wrap of the coil over whose end the cable is pulled [m]: each brings it a turn of twist, which needs a cable with
+    /// torsion (`section.gj`). Negative of coils of the other hand, whose turns are left-handed. Default: it comes off a drum that
+    /// turns, untwisted. An end that is held against twisting (`clamp`) keeps the twist in.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub wrap: Option<f64>,
+    /// What keeps a cable with torsion from turning about its own axis as it passes this end: torque over the spin of its material
+    /// [N m s]. With much of it a cable that is reeled in takes its twist along; without, it can spin freely, unless the end is
+    /// held (`clamp`): then only untwisted cable passes.
+    #[serde(default, deserialize_with = "quantity::rotational_damping", skip_serializing_if = "is_nought")]
+    pub grip: f64,
     /// Whether the cable comes from a pile at rest instead of a turning drum.
     #[serde(default)]
     pub pile: bool,
@@ -136,6 +150,10 @@ fn resisting(field: &str, signal: Signal) -> Result<Signal, BuildError> {
     }
 }
 
+fn is_nought(x: &f64) -> bool {
+    *x == 0.0
+}
+
 fn is_infinite(x: &f64) -> bool {
     x.is_infinite()
 }
@@ -171,6 +189,8 @@ impl WinchSpec {
             per_speed2: 0.0.into(),
             reference_speed: None,
             inertia: 0.0,
+            wrap: None,
+            grip: 0.0,
             pile: false,
             stored_length: rest(),
             shortest: None,
@@ -206,7 +226,9 @@ impl ConstraintSpec for WinchSpec {
         vec![&self.marker]
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
-        (!self.idle()).then(|| (&self.marker, Feed { element: self.element_length, ..Feed::default() }))
+        // what is wrong with it is said when it is built
+        let twist = self.wrap.map_or(0.0, |wrap| if wrap == 0.0 { 0.0 } else { std::f64::consts::TAU / wrap });
+        (!self.idle()).then(|| (&self.marker, Feed { element: self.element_length, twist, grip: self.grip, ..Feed::default() }))
     }
     fn notes(&self, model: &Model) -> Vec<String> {
         let (Some(speed), MarkerRef::Name(marker)) =
@@ -238,6 +260,10 @@ impl ConstraintSpec for WinchSpec {
         let damping = resisting("damping", signal("damping", &self.damping, &kind::DAMPING)?)?;
         not_negative("inertia", self.inertia)?;
         positive("slip_speed", self.slip_speed)?;
+        not_negative("grip", self.grip)?;
+        if let Some(wrap) = self.wrap {
+            positive("wrap", wrap.abs())?;
+        }
         let part = b.feeding_part(&self.marker)?;
         let whole = part.length();
         if self.final_length.is_some() && part.name().contains('.') {
@@ -301,8 +327,15 @@ impl ConstraintSpec for WinchSpec {
         }
         // an element can't be swallowed by the last one
         let riding: f64 = [0, 1].map(|end| part.line().map_or(0.0, |line| line.riding(end))).iter().sum();
-        let least = self.element_length.map_or(0.05 * whole, |e| (riding + 2.0 * e).max(0.05 * whole));
+        let kept = part.line().map_or(0.0, |line| line.kept(usize::from(boundary.sign > 0.0)));
+        let least = kept + 0.05 * (whole - kept);
+        let least = self.element_length.map_or(least, |e| (riding + 2.0 * e).max(least));
         let shortest = positive("shortest", self.shortest.unwrap_or(least))?;
+        if shortest <= kept {
+            let message =
+                format!("{kept} m lie behind the section that is fed here, which stay out: `shortest` must be more");
+            return Err(BuildError::at("shortest", message));
+        }
         if shortest >= whole {
             let message = format!("the cable is {whole} m long at the start, and `shortest` must be less");
             return Err(BuildError::at("shortest", message));

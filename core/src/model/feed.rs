@@ -14,6 +14,12 @@ pub struct Feed {
     pub unstrained: bool,
     /// Whether the cable goes on behind the end, round a wheel or through a ring.
     pub passes: bool,
+    /// Twist with which a cable with torsion comes in, per length [rad/m]: of one that is pulled over the end of a coil a turn
+    /// per wrap. Else it comes in untwisted.
+    pub twist: f64,
+    /// What resists the turning of a cable with torsion about its own axis as it passes the end: torque over the spin of the
+    /// material [N m s].
+    pub grip: f64,
 }
 
 /// An end of a cable that feeds: the material coordinate there is an unknown.

@@ -155,6 +155,10 @@ pub trait Line: Send + Sync {
     fn riding(&self, _end: usize) -> f64 {
         0.0
     }
+    /// Length that can't be reeled in at an end that feeds [m]: what lies behind the section there.
+    fn kept(&self, _end: usize) -> f64 {
+        0.0
+    }
     /// Its mesh after a change, with the state that it goes on from; nothing where the mesh of its spec does.
     ///
     /// # Errors

@@ -158,6 +158,18 @@ impl Layout {
         self.starts.contains(&k) || self.splices.iter().any(|s| s.node == k)
     }
 
+    /// Whether it isn't the same all along.
+    pub fn changes(&self) -> bool {
+        self.made.len() > 1
+    }
+
+    /// Where the first section ends and where the last one begins, by nodes: the last node and the first of a cable that is
+    /// the same all along.
+    pub fn holds(&self) -> [usize; 2] {
+        let all = || (1..self.of.len()).filter(|&k| self.changes_at(k));
+        [all().next().unwrap_or(self.of.len()), all().last().unwrap_or(0)]
+    }
+
     /// Where it is spliced.
     pub fn splices(&self) -> &[Splice] {
         &self.splices

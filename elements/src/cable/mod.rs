@@ -20,6 +20,7 @@ mod l4;
 mod law;
 mod layout;
 pub mod longitudinal;
+mod loops;
 pub(crate) mod mesh;
 mod model;
 mod output;

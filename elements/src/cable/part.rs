@@ -249,8 +249,9 @@ impl CablePart {
 
     /// Angle by which the elements before element `k` are twisted in all [rad].
     fn turns_before(&self, k: usize, twisted: &Twisted, q: &[f64]) -> f64 {
+        let mesh = self.material(q);
         let own = |k: usize| {
-            let l = self.along[k + 1] - self.along[k];
+            let l = mesh[k + 1] - mesh[k];
             l * twisted.twist(k, l, q, self.around(k))[0]
         };
         self.layout.elements().take_while(|before| *before < k).map(own).sum()
@@ -264,6 +265,21 @@ impl CablePart {
         let mesh = self.material(q);
         let (l, e) = (mesh[k + 1] - mesh[k], natural(&self.dofs(k, q), 1.0 / (mesh[k + 1] - mesh[k])));
         Some(second(if at_start { &[-4.0, -2.0] } else { &[2.0, 4.0] }, 1.0 / l, &e))
+    }
+
+    /// The mesh and the state of a line whose own mesh doesn't change.
+    fn as_it_is(&self, line: &flow::Line, at: &At<'_>) -> Result<Mesh, String> {
+        let count = if self.twisted.is_some() { [10, 7] } else { [6, 6] };
+        let mut boundaries = [0.0; 2];
+        for (end, boundary) in &line.boundaries {
+            boundaries[*end] = at.v[boundary.v];
+        }
+        let state = MeshState {
+            q: self.seats.iter().map(|s| at.q[s.0..s.0 + count[0]].to_vec()).collect(),
+            v: self.seats.iter().map(|s| at.v[s.1..s.1 + count[1]].to_vec()).collect(),
+            boundaries,
+        };
+        Ok(Mesh { nodes: self.material(at.q).into_owned(), state: Some(state), prestrain: Vec::new() })
     }
 
     fn places(&self) -> String {
@@ -337,7 +353,7 @@ impl Part for CablePart {
 
     fn material_stations(&self) -> Option<Arc<dyn Stations>> {
         match &self.line {
-            Some(line) => push::stations(&self.all, line, &self.nodes, self.layout.section(0), true).ok(),
+            Some(line) => push::stations(&self.all, line, &self.nodes, &self.layout, true).ok(),
             None => self.stations(),
         }
     }
@@ -389,8 +405,8 @@ impl Part for CablePart {
         }
         let dead = DeadLoad::new(format!("{}: {what}", self.name), entries).ok()?;
         let Some(line) = &self.line else { return Some(Box::new(dead)) };
-        let flowing =
-            push::weight(&self.all, line, &self.nodes, load.map(|x| density(self.layout.section(0)) * x))?;
+        let own = |k: usize| load.map(|x| density(self.layout.section(k)) * x);
+        let flowing = push::weight(&self.all, line, &self.nodes, own)?;
         Some(Box::new(push::Weight { dead, flowing }))
     }
 
@@ -490,7 +506,7 @@ impl Line for CablePart {
         if self.line.is_none() {
             return self.mesh.clone();
         }
-        let mesh = self.material(at.q);
+        let mesh = self.layout.once(&self.material(at.q));
         mesh.iter().map(|p| p - mesh[0]).collect()
     }
 
@@ -597,6 +613,14 @@ impl Line for CablePart {
             let sides = [k.checked_sub(1), Some(k)];
             let bends: Vec<V3<f64>> =
                 sides.iter().flatten().filter_map(|&e| self.bend(e, e == k, q)).collect();
+            if let Some(twisted) = &self.twisted {
+                let twist = |e: &usize| {
+                    let l = self.along.get(e + 1)? - self.along[*e];
+                    Some(twisted.twist(*e, l, q, self.around(*e))[0])
+                };
+                let twists: Vec<f64> = sides.iter().flatten().filter_map(twist).collect();
+                v[v0 + 6] += change * twists.iter().sum::<f64>() / twists.len().max(1) as f64;
+            }
             for i in 0..3 {
                 v[v0 + i] += change * q[q0 + 3 + i];
                 v[v0 + 3 + i] += change * bends.iter().map(|b| b[i]).sum::<f64>() / bends.len().max(1) as f64;
@@ -616,8 +640,20 @@ impl Line for CablePart {
         if end == 0 { self.along[k] - self.along[0] } else { self.along[last] - self.along[k + 1] }
     }
 
+    fn kept(&self, end: usize) -> f64 {
+        let (holds, last) = (self.layout.holds(), self.along.len() - 1);
+        match (self.layout.changes(), end) {
+            (false, _) => 0.0,
+            (true, 0) => self.along[last] - self.along[holds[0]],
+            (true, _) => self.along[holds[1]] - self.along[0],
+        }
+    }
+
     fn remesh(&self, what: Change, at: &At<'_>) -> Result<Option<Mesh>, String> {
         let Some(line) = &self.line else { return Ok(None) };
+        if self.twisted.is_some() || self.layout.changes() {
+            return self.as_it_is(line, at).map(Some);
+        }
         let (mut new, last) = (self.snapshot(line, at)?, self.along.len() - 1);
         // elements whose strain goes on fading, by their new numbers, and those that are new
         let mut fading: Vec<Prestrain> =

@@ -4,6 +4,7 @@ use super::damping::{push_axial_damping, push_bending_damping};
 use super::flow::Line;
 use super::flow::push::{self, Piece};
 use super::layout::Layout;
+use super::loops::LoopLimit;
 use super::mesh::{MeshSpec, counted, even, pinned};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
 use super::part::CablePart;
@@ -284,6 +285,7 @@ impl CableSpec {
         nodes: &[NodeId],
         feeding: [Option<Feed>; 2],
         rates: [f64; 2],
+        layout: &Layout,
     ) -> Result<Line, BuildError> {
         push::check(model)?;
         if self.stress_free == StressFree::AsLaid || self.strain != 0.0 || self.curvature != 0.0 {
@@ -294,6 +296,7 @@ impl CableSpec {
         let mut boundaries = Vec::new();
         for (end, _) in feeding.iter().enumerate().filter(|(_, f)| f.is_some()) {
             let at = if end == 0 { 0 } else { mesh.len() - 1 };
+            let made_of = layout.section(if end == 0 { 0 } else { mesh.len() - 2 });
             let node = b.node(NodeKind::Scalars(1), &[mesh[at]], &[rates[end]])?;
             b.share(node);
             let (own, there) = (b.nodes()[node.0 as usize], b.nodes()[nodes[at].0 as usize]);
@@ -308,13 +311,43 @@ impl CableSpec {
                     end: nodes[at],
                     end_q: there.q,
                     end_v: there.v,
-                    rho_a: self.section.mass + self.section.flooded,
+                    rho_a: made_of.mass + made_of.flooded,
                 },
             ));
         }
         let ends = |is: fn(&Feed) -> bool| feeding.map(|f| f.as_ref().is_some_and(is));
-        let line = Line::new(mesh, boundaries, ends(|f| f.element.is_some()), self.rides(mesh, feeding)?);
-        Ok(Line { unstrained: ends(|f| f.unstrained), ..line })
+        let zones = ends(|f| f.element.is_some());
+        let line = Line::new(mesh, boundaries, zones, self.rides(mesh, feeding)?, layout.holds());
+        let twist = feeding.map(|f| f.map_or(0.0, |f| f.twist));
+        let grip = feeding.map(|f| f.map_or(0.0, |f| f.grip));
+        Ok(Line { unstrained: ends(|f| f.unstrained), twist, grip, ..line })
+    }
+
+    /// Refuses what of a section a winch at this end can't feed.
+    fn feeds_section(&self, end: usize, layout: &Layout, makes_elements: bool) -> Result<(), BuildError> {
+        if !self.sections.is_empty() && makes_elements {
+            let message = "elements of a cable of several sections grow and shrink together where it feeds: leave \
+                           `element_length` of its winch out, or give it one `section`";
+            return Err(BuildError::at("sections", message));
+        }
+        let along = if end == 0 { self.sections.first() } else { self.sections.last() };
+        if along.is_some_and(|along| along.end_section.is_some()) {
+            let message = "what a winch feeds is the same all along its section: leave `end_section` out, or put a section \
+                           between it and the winch";
+            return Err(BuildError::at("sections", message));
+        }
+        let k = if end == 0 { 0 } else { layout.elements().last().unwrap_or(0) };
+        if layout.elastic(k, 1.0, CableModel::default()).is_some() {
+            let message =
+                "what a winch feeds has constant stiffness: give its section `ea` and `ei`, and no tables";
+            return Err(BuildError::at(if along.is_some() { "sections" } else { "section" }, message));
+        }
+        Ok(())
+    }
+
+    /// Whether it asks for torsion.
+    fn twists(&self) -> bool {
+        self.section.gj.is_some() || self.sections.iter().any(|along| along.section.gj.is_some())
     }
 
     /// How many elements of a graded mesh ride with each end where others are born: those that are shorter than what is
@@ -469,17 +502,18 @@ impl ElementSpec for CableSpec {
         let feeds = feeding.iter().any(Option::is_some);
         // a wheel holds the direction of an end
         let goes_on = feeding.map(|feed| feed.is_some_and(|feed| feed.passes));
-        if feeds && !self.sections.is_empty() {
-            let message = "what a winch feeds must be the same all along: give it one `section`";
+        if layout.changes() && feeding.iter().all(Option::is_some) {
+            let message = "a cable of several sections feeds at one end: give it one `section`, or let one end be";
             return Err(BuildError::at("sections", message));
         }
-        if feeds && layout.elastic(0, 1.0, CableModel::default()).is_some() {
-            let message =
-                "what a winch feeds has constant stiffness: give its section `ea` and `ei`, and no tables";
-            return Err(BuildError::at("section", message));
+        for end in (0..2).filter(|&end| feeding[end].is_some()) {
+            self.feeds_section(end, &layout, feeding[end].is_some_and(|feed| feed.element.is_some()))?;
         }
         if let Some(given) = &given {
-            (mesh, layout) = (given.nodes.clone(), Layout::uniform(&self.section, given.nodes.len() - 1)?);
+            if self.sections.is_empty() {
+                layout = Layout::uniform(&self.section, given.nodes.len() - 1)?;
+            }
+            mesh.clone_from(&given.nodes);
         }
         if mesh.len() < 2 || (mesh[0] != 0.0 && !feeds) || layout.elements().any(|k| !(mesh[k + 1] > mesh[k]))
         {
@@ -493,19 +527,28 @@ impl ElementSpec for CableSpec {
                     // an end has stayed one while material went through it
                     0 => path.at(0.0),
                     k if k + 1 == mesh.len() => path.at(path.length()),
+                    // sections keep the way they look
+                    k if feeds && self.twists() => {
+                        path.at((mesh[k] - mesh[0]) / (mesh[mesh.len() - 1] - mesh[0]) * path.length())
+                    }
                     _ => path.at((mesh[k] * stretch).clamp(0.0, path.length())),
                 };
                 [x[0], x[1], x[2], t[0] * stretch, t[1] * stretch, t[2] * stretch]
             })
             .collect();
-        let (mut twisted, laid) = self.twisted(&mesh, &places, &layout, feeds)?.unzip();
+        let (mut twisted, laid) = self.twisted(&mesh, &places, &layout, length, feeds)?.unzip();
         let mut nodes = Vec::with_capacity(mesh.len());
         let mut seats = Vec::with_capacity(mesh.len());
         let state = given.as_ref().and_then(|m| m.state.as_ref());
         for (k, q) in places.iter().enumerate() {
             let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0, 0.0];
             let node = match (state, &laid) {
-                (Some(state), _) => {
+                (Some(state), Some(laid)) => {
+                    let node = b.node(NodeKind::Twist, &state.q[k], &state.v[k])?;
+                    b.was_laid(node, &laid[k]);
+                    node
+                }
+                (Some(state), None) => {
                     let node = b.node(NodeKind::Slope, &state.q[k], &state.v[k])?;
                     b.was_laid(node, q);
                     node
@@ -523,8 +566,22 @@ impl ElementSpec for CableSpec {
             integration: self.integration,
         };
         let rates = state.map_or([0.0; 2], |s| s.boundaries);
+        if twisted.is_some() && feeding.iter().flatten().any(|feed| feed.element.is_some()) {
+            let message = "elements of a cable with torsion all grow and shrink together: leave `element_length` of its winch out";
+            return Err(BuildError::at("section.gj", message));
+        }
+        if twisted.is_none() && feeding.iter().flatten().any(|feed| feed.grip != 0.0) {
+            let message = "this cable doesn't know whether it turns about its own axis: give its section a torsional stiffness, `gj`, \
+                           or leave `grip` out where it feeds";
+            return Err(BuildError::at("section.gj", message));
+        }
+        if twisted.is_none() && feeding.iter().flatten().any(|feed| feed.twist != 0.0) {
+            let message = "cable comes off a coil with twist, which this one doesn't feel: give its section a torsional \
+                           stiffness, `gj`, or leave `wrap` of its winch out";
+            return Err(BuildError::at("section.gj", message));
+        }
         let line =
-            if feeds { Some(self.line(b, model, length, &mesh, &nodes, feeding, rates)?) } else { None };
+            if feeds { Some(self.line(b, model, length, &mesh, &nodes, feeding, rates, &layout)?) } else { None };
         let flows = |k: usize| line.as_ref().filter(|line| line.flows(k));
         let all = b.coordinates();
         let dofs = |k: usize| -> [f64; 12] {
@@ -545,7 +602,7 @@ impl ElementSpec for CableSpec {
         for k in 0..mesh.len() - 1 {
             let Some(line) = flows(k) else { continue };
             params(k).check().map_err(BuildError::new)?;
-            push::push(b, model, params(k), &self.section, &Piece { line, k, on: [nodes[k], nodes[k + 1]] })?;
+            push::push(b, model, params(k), layout.section(k), &Piece { line, k, on: [nodes[k], nodes[k + 1]] })?;
         }
         let mut pools = Pools { builder: b, result: Ok(()) };
         for k in layout.elements().filter(|&k| flows(k).is_none()) {
@@ -563,11 +620,11 @@ impl ElementSpec for CableSpec {
             splice.join(b, name, &nodes, [x, y, z], twisted.is_some())?;
         }
         let stations = match &line {
-            Some(line) => push::stations(b.nodes(), line, &nodes, &self.section, false)?,
+            Some(line) => push::stations(b.nodes(), line, &nodes, &layout, false)?,
             None => stations(b.nodes(), &mesh, &nodes, &layout)?,
         };
         if let Some(twisted) = &mut twisted {
-            twisted.push(b, &mesh, &nodes, &layout)?;
+            twisted.push(b, &mesh, &nodes, &layout, line.as_ref())?;
         }
         let prestrain = given.as_ref().map_or_else(Vec::new, |m| m.prestrain.clone());
         if let Some(line) = &line {
@@ -576,6 +633,9 @@ impl ElementSpec for CableSpec {
                 let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
                 push::fading(b, model, strain, &self.section, &self.name, &piece)?;
             }
+        }
+        if twisted.is_some() {
+            b.event(LoopLimit { part: self.name.clone() });
         }
         b.part(Arc::new(CablePart {
             breaks: breaks(&mesh, &concentrated, &layout),

@@ -188,7 +188,7 @@ impl Element<COORDINATES, VELOCITIES> for TorsionDamping {
 
 /// `Φ̇`
 #[inline(always)]
-fn rate<R: Real>(g: &[R; VELOCITIES], v: &[R; VELOCITIES]) -> R {
+pub(super) fn rate<R: Real>(g: &[R; VELOCITIES], v: &[R; VELOCITIES]) -> R {
     let mut sum = R::zero();
     for i in 0..VELOCITIES {
         sum = g[i].fma(v[i], sum);
@@ -199,7 +199,7 @@ fn rate<R: Real>(g: &[R; VELOCITIES], v: &[R; VELOCITIES]) -> R {
 /// How `Φ̇` changes with increments while velocities stay: the symmetric second derivative times the velocities, and what
 /// two rotations one after the other add to it.
 #[inline(always)]
-fn change<R: Real>(
+pub(super) fn change<R: Real>(
     twisting: &Twisting<R>,
     k: &[[R; VELOCITIES]; VELOCITIES],
     v: &[R; VELOCITIES],

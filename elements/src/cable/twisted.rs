@@ -1,6 +1,7 @@
 //! A cable with torsion: how its sections are laid, what is added to its elements, and what can be observed of it.
 
 use super::directed::{Directed, DirectedParams, curvature};
+use super::flow::{FlowTorsion, Line};
 use super::layout::Layout;
 use super::quadrature::{MOST, Point, Quadrature, Rule};
 use super::rest::STRAIGHT;
@@ -35,6 +36,9 @@ pub(crate) struct Twisted {
     as_laid: bool,
     /// Stress-free curvature about the first director on top of that [1/m].
     curvature: f64,
+    /// How material flows through it, if an end feeds, and its twist per length when free of stress then [rad/m].
+    flow: Option<Line>,
+    per_length: f64,
     /// Whether bending has a direction, and then the bubble of each element: node, coordinate and velocity.
     directed: bool,
     bubbles: Vec<(NodeId, usize, usize)>,
@@ -149,6 +153,7 @@ impl CableSpec {
         mesh: &[f64],
         places: &[[f64; 6]],
         layout: &Layout,
+        length: f64,
         feeds: bool,
     ) -> Result<Option<(Twisted, Vec<Laid>)>, BuildError> {
         let s = &self.section;
@@ -166,9 +171,7 @@ impl CableSpec {
             return Ok(None);
         }
         if feeds {
-            let message = "what a winch feeds can't have torsion yet: leave out `gj`, and let the cable be free of \
-                           stress when straight";
-            return Err(BuildError::at("section.gj", message));
+            self.feeds_twisted()?;
         }
         let bar = |k: usize| {
             if sections { Bar::of(layout.section(k), "sections") } else { Bar::of(s, "section") }
@@ -185,9 +188,14 @@ impl CableSpec {
         if elements.iter().any(|&k| folds([&bare[k], &bare[k + 1]])) {
             return Err(BuildError::at("elements", FOLDS));
         }
+        // a cable that has fed since it was laid has the turns that it was laid with at its ends
+        let there = |k: usize| match mesh.len() - 1 {
+            last if feeds => length * (mesh[k] - mesh[0]) / (mesh[last] - mesh[0]),
+            _ => mesh[k],
+        };
         let untwist = untwisting(&bare, mesh, &elements, from);
         let straight: Vec<Laid> = (0..mesh.len()).map(|k| node(k, untwist[k])).collect();
-        let nodes = (0..mesh.len()).map(|k| node(k, untwist[k] + self.laid_twist * mesh[k])).collect();
+        let nodes = (0..mesh.len()).map(|k| node(k, untwist[k] + self.laid_twist * there(k))).collect();
         let twist0 = |k: usize| {
             let l = mesh[k + 1] - mesh[k];
             let own = if as_laid && l > 0.0 { Torsion::twist(&pair(&element(&straight, k)), l) } else { 0.0 };
@@ -209,6 +217,8 @@ impl CableSpec {
             straight,
             as_laid,
             curvature: self.curvature,
+            flow: None,
+            per_length: self.twist,
             directed: s.ei.has_direction() || springy || self.curvature != 0.0,
             bubbles: Vec::new(),
         };
@@ -226,6 +236,23 @@ impl CableSpec {
             return Err(BuildError::at("section.torque_tension", message));
         }
         Ok(Some((twisted, nodes)))
+    }
+
+    /// Refuses what can't be fed, though it could be twisted.
+    fn feeds_twisted(&self) -> Result<(), BuildError> {
+        if self.stress_free == StressFree::AsLaid || self.curvature != 0.0 {
+            // told with what else a winch can't feed
+            return Ok(());
+        }
+        let refused = [
+            ("section.ei", self.section.ei.has_direction(), "bends alike to all sides: give it one `ei`"),
+            ("section.torque_tension", self.section.torque_tension != 0.0, "doesn't couple torque with tension: leave `torque_tension` out"),
+            ("section.gyroscopic", self.section.gyroscopic, "isn't turned aside by its spin: leave `gyroscopic` out"),
+        ];
+        match refused.into_iter().find(|(_, is, _)| *is) {
+            Some((field, _, why)) => Err(BuildError::at(field, format!("what a winch feeds {why}"))),
+            None => Ok(()),
+        }
     }
 
     /// Refuses what only a cable with torsion can have.
@@ -284,8 +311,20 @@ impl Twisted {
         mesh: &[f64],
         nodes: &[NodeId],
         layout: &Layout,
+        line: Option<&Line>,
     ) -> Result<(), BuildError> {
+        self.flow = line.cloned();
+        let flows = |k: usize| line.filter(|line| line.flows(k));
         for k in layout.elements() {
+            if let Some(line) = flows(k) {
+                let boundaries = line.boundaries.iter().map(|(_, boundary)| boundary.node);
+                let on: Vec<NodeId> = [nodes[k], nodes[k + 1]].into_iter().chain(boundaries).collect();
+                match line.boundaries.len() {
+                    1 => b.element(self.flowing::<1>(k, line), &on)?,
+                    _ => b.element(self.flowing::<2>(k, line), &on)?,
+                }
+                continue;
+            }
             let Bar { eta_gj, rho_j, gyroscopic, .. } = self.bars[k];
             let on = [nodes[k], nodes[k + 1]];
             let l = mesh[k + 1] - mesh[k];
@@ -311,7 +350,23 @@ impl Twisted {
     }
 
     fn params(&self, k: usize, l: f64) -> TorsionParams {
-        TorsionParams { l, gj: self.bars[k].gj, rho_j: self.bars[k].rho_j, twist0: self.twist0[k] }
+        TorsionParams { l, gj: self.bars[k].gj, rho_j: self.bars[k].rho_j, twist0: self.free(k, l) }
+    }
+
+    /// Element `k`, through which material flows.
+    fn flowing<const F: usize>(&self, k: usize, line: &Line) -> FlowTorsion<F> {
+        let Bar { gj, eta_gj, rho_j, .. } = self.bars[k];
+        FlowTorsion { gj, eta_gj, rho_j, twist0: self.per_length, by: line.embedding(k), turns: line.turns(k), grip: line.grips(k) }
+    }
+
+    /// Twist of element `k` of length `l` when free of stress [rad].
+    fn free(&self, k: usize, l: f64) -> f64 {
+        if self.flow.is_some() { self.per_length * l } else { self.twist0[k] }
+    }
+
+    /// What element `k` is twisted by that came in with the material [rad].
+    fn turned(&self, k: usize, q: &[f64]) -> f64 {
+        self.flow.as_ref().map_or(0.0, |line| line.turned(k, q))
     }
 
     /// Element `k` of a rope that turns when it is pulled.
@@ -355,7 +410,11 @@ impl Twisted {
                     TorqueTension::lanes::<f64>(&ropewalk_core::Batch::of(std::slice::from_ref(&own)));
                 TorqueTension::add::<f64, false>(&lanes, &local, &w, &mut twist);
             }
-            None => Torsion::add::<f64, false>(&self.params(k, l), &local, &w, &mut twist),
+            None => {
+                let mut params = self.params(k, l);
+                params.twist0 -= self.turned(k, q);
+                Torsion::add::<f64, false>(&params, &local, &w, &mut twist);
+            }
         }
         let mut bent = Share::<f64, 15>::zero();
         if self.directed {
@@ -370,12 +429,12 @@ impl Twisted {
     /// Twist of element `k` per length [rad/m], and the moment that it transmits [N m].
     pub(super) fn twist(&self, k: usize, l: f64, q: &[f64], seats: [usize; 2]) -> [f64; 2] {
         let x = pair(&self.gather(k, q, seats, false));
-        let twist = Torsion::twist(&x, l);
+        let twist = Torsion::twist(&x, l) + self.turned(k, q);
         let pulled = match self.coupled(k, l) {
             Some(own) => own.lay * l * (TorqueTension::mean_strain(&x, l, own.points) - own.strain0),
             None => 0.0,
         };
-        [twist / l, self.bars[k].gj * (twist + pulled - self.twist0[k]) / l]
+        [twist / l, self.bars[k].gj * (twist + pulled - self.free(k, l)) / l]
     }
 
     /// Curvature about both directors at a point of element `k` [1/m], and the moments [N m].

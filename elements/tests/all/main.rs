@@ -5,6 +5,7 @@ mod clamp;
 mod common;
 mod directed;
 mod flow;
+mod flow_torsion;
 mod lay;
 mod mesh;
 mod oracle;

@@ -52,12 +52,19 @@ impl<R: Real> Grid<R> {
     /// At the boundaries of a local state, which stand behind the twelve dofs.
     #[inline(always)]
     pub fn new<const F: usize, const N: usize>(e: &Embedding<F, R>, x: &Local<R, N, N>) -> Self {
+        let of = |x: &[R; N]| -> [R; F] { std::array::from_fn(|k| x[12 + k]) };
+        Self::of(e, of(&x.q), of(&x.v), of(&x.a))
+    }
+
+    /// At these boundaries, with these rates and accelerations.
+    #[inline(always)]
+    pub fn of<const F: usize>(e: &Embedding<F, R>, q: [R; F], v: [R; F], a: [R; F]) -> Self {
         let (mut p, mut pd, mut pdd) = (e.fixed, [R::zero(); 2], [R::zero(); 2]);
         for k in 0..F {
             for i in 0..2 {
-                p[i] = e.by[k][i].fma(x.q[12 + k], p[i]);
-                pd[i] = e.by[k][i].fma(x.v[12 + k], pd[i]);
-                pdd[i] = e.by[k][i].fma(x.a[12 + k], pdd[i]);
+                p[i] = e.by[k][i].fma(q[k], p[i]);
+                pd[i] = e.by[k][i].fma(v[k], pd[i]);
+                pdd[i] = e.by[k][i].fma(a[k], pdd[i]);
             }
         }
         let l = p[1] - p[0];

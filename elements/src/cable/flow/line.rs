@@ -28,22 +28,29 @@ pub struct Line {
     pub middle: Vec<f64>,
     /// Whether what passes the ends is free of strain energy outside; else it takes along what it has inside.
     pub unstrained: [bool; 2],
+    /// Twist with which cable with torsion comes in at the ends, per length [rad/m].
+    pub twist: [f64; 2],
+    /// What resists its turning about its own axis as it passes them: torque over spin [N m s].
+    pub grip: [f64; 2],
 }
 
 impl Line {
     /// A line with these material coordinates at the nodes. Where an end has a zone, only its own node moves with its
-    /// boundary, and the elements that ride with it; else all nodes share the movement evenly.
+    /// boundary, and the elements that ride with it; else the nodes between it and that where its section begins, `holds`, share the
+    /// movement evenly.
     pub fn new(
         mesh: &[f64],
         boundaries: Vec<(usize, MovingBoundary)>,
         zone: [bool; 2],
         rides: [usize; 2],
+        holds: [usize; 2],
     ) -> Self {
         let (first, last) = (mesh[0], mesh[mesh.len() - 1]);
         let end = mesh.len() - 1;
         let nodes = (0..mesh.len())
             .map(|i| {
-                let share = (mesh[i] - first) / (last - first);
+                let (behind, before) = (mesh[holds[0]], mesh[holds[1]]);
+                let share = [(mesh[i] - first) / (behind - first), (mesh[i] - before) / (last - before)];
                 let mut node = Follows { fixed: 0.0, by: [0.0; 2] };
                 let mut moved = 0.0;
                 for (k, (at, boundary)) in boundaries.iter().enumerate() {
@@ -51,8 +58,8 @@ impl Line {
                     node.by[k] = match zone[*at] {
                         true if i.abs_diff(own) <= rides[*at] => 1.0,
                         true => 0.0,
-                        false if *at == 0 => 1.0 - share,
-                        false => share,
+                        false if *at == 0 => if i < holds[0] || holds[0] == end { 1.0 - share[0] } else { 0.0 },
+                        false => if i > holds[1] || holds[1] == 0 { share[1] } else { 0.0 },
                     };
                     // a node at an end that doesn't feed, or that has a zone, doesn't follow the other
                     if i != own && (i == 0 || i == end) {
@@ -68,7 +75,7 @@ impl Line {
             })
             .collect();
         let middle = mesh.windows(2).map(|w| (0.5 * (w[0] + w[1]) - first) / (last - first)).collect();
-        Line { boundaries, nodes, zone, rides, middle, unstrained: [false; 2] }
+        Line { boundaries, nodes, zone, rides, middle, unstrained: [false; 2], twist: [0.0; 2], grip: [0.0; 2] }
     }
 
     fn sum(&self, k: usize, fixed: f64, x: impl Fn(&MovingBoundary) -> f64) -> f64 {
@@ -101,6 +108,30 @@ impl Line {
     pub fn embedding<const F: usize>(&self, k: usize) -> Embedding<F> {
         let (a, b) = (&self.nodes[k], &self.nodes[k + 1]);
         Embedding { fixed: [a.fixed, b.fixed], by: std::array::from_fn(|f| [a.by[f], b.by[f]]) }
+    }
+    /// By how much the section of the material at either end of the element behind node `k` is turned against that of the
+    /// node, by what has been fed there.
+    pub fn turns<const F: usize>(&self, k: usize) -> Embedding<F> {
+        let mut turns = Embedding { fixed: [0.0; 2], by: [[0.0; 2]; F] };
+        let boundaries = self.boundaries.iter().zip(&mut turns.by);
+        for ((end, boundary), by) in boundaries.filter(|((end, _), _)| self.is_at(*end, k)) {
+            by[*end] = self.twist[*end];
+            turns.fixed[*end] = -self.twist[*end] * boundary.home;
+        }
+        turns
+    }
+    /// What that adds to the twist of the element [rad].
+    pub fn turned(&self, k: usize, q: &[f64]) -> f64 {
+        let at = self.boundaries.iter().filter(|(end, _)| self.is_at(*end, k));
+        at.map(|(end, b)| (if *end == 0 { -1.0 } else { 1.0 }) * self.twist[*end] * (q[b.q] - b.home)).sum()
+    }
+    /// What resists the spin of the material at either end of it [N m s].
+    pub fn grips(&self, k: usize) -> [f64; 2] {
+        [0, 1].map(|end| if self.boundaries.iter().any(|(at, _)| *at == end) && self.is_at(end, k) { self.grip[end] } else { 0.0 })
+    }
+    /// Whether the element behind node `k` is the one at an end.
+    fn is_at(&self, end: usize, k: usize) -> bool {
+        k == if end == 0 { 0 } else { self.nodes.len() - 2 }
     }
     /// How the element behind node `k` stands on the material, for what touches it.
     pub fn span(&self, k: usize) -> SpanFlow {

@@ -23,6 +23,7 @@ pub(super) mod prestrain;
 pub(super) mod push;
 mod rule;
 mod stations;
+mod torsion;
 mod transport;
 mod weight;
 
@@ -34,6 +35,7 @@ pub use end::FlowEnd;
 pub use line::{Follows, Line};
 pub use rule::close;
 pub use stations::FlowStations;
+pub use torsion::FlowTorsion;
 pub use transport::Transport;
 pub use weight::FlowWeight;
 

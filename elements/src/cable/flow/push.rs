@@ -4,6 +4,7 @@ use super::embedding::Embedding;
 use super::line::Line;
 use super::prestrain::{self, Place};
 use super::{FlowAxialDamping, FlowCable, FlowDamping, FlowEnd, FlowStations, FlowWeight};
+use crate::cable::layout::Layout;
 use crate::cable::longitudinal::Longitudinal;
 use crate::cable::model::{CableModel, LongitudinalModel, Models, WithModels, with_models};
 use crate::cable::quadrature::Rule;
@@ -129,14 +130,14 @@ pub(crate) fn stations(
     all: &[Node],
     line: &Line,
     nodes: &[NodeId],
-    section: &Section,
+    layout: &Layout,
     of_material: bool,
 ) -> Result<Arc<dyn Stations>, BuildError> {
     macro_rules! stations {
         ($boundaries:literal, $size:literal) => {{
             let mut pool = StationPool::<FlowStations<$boundaries>, $size, $size, 4>::new();
-            for k in 0..nodes.len() - 1 {
-                let (by, slip) = (line.embedding(k), line.slip(k));
+            for k in layout.elements() {
+                let (section, by, slip) = (layout.section(k), line.embedding(k), line.slip(k));
                 let slip = if of_material { [0.0; $boundaries] } else { slip };
                 let (diameter, area) = (section.diameter, section.displaced_area());
                 let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
@@ -185,14 +186,19 @@ impl Term for Weight {
     }
 }
 
-/// The weight of the elements of a line through which material flows, `load` being a force per length [N/m].
-pub(crate) fn weight(all: &[Node], line: &Line, nodes: &[NodeId], load: V3<f64>) -> Option<Box<dyn Term>> {
+/// The weight of the elements of a line through which material flows, `load` being the force per length of each [N/m].
+pub(crate) fn weight(
+    all: &[Node],
+    line: &Line,
+    nodes: &[NodeId],
+    load: impl Fn(usize) -> V3<f64>,
+) -> Option<Box<dyn Term>> {
     macro_rules! weight {
         ($boundaries:literal, $size:literal) => {{
             let mut pool = Pool::<FlowWeight<$boundaries>, $size, $size>::new();
             for k in (0..nodes.len() - 1).filter(|&k| line.flows(k)) {
                 let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
-                if !pool.push(all, FlowWeight { load, by: line.embedding(k) }, &piece.nodes()) {
+                if !pool.push(all, FlowWeight { load: load(k), by: line.embedding(k) }, &piece.nodes()) {
                     return None;
                 }
             }

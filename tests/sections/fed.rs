@@ -1,0 +1,180 @@
+//! Lines of several sections that a winch pays out and reels in.
+
+use crate::statics::cases;
+use crate::{last, number, run, scene};
+use ropewalk_core::statics::{Statics, StaticsOptions};
+use ropewalk_core::{Model, Quantity, State};
+use serde_json::Value;
+
+/// A line of a case in which this much of the section at an end (0 or 1) isn't out yet, and a winch that pays it out.
+fn fed(case: &Value, end: usize, d: f64, per_section: usize) -> String {
+    let own = case["sections"].as_array().expect("sections");
+    let (mut s, mut sections) = (0.0, String::new());
+    for (k, section) in own.iter().enumerate() {
+        let [length, weight, ea] = [0, 1, 2].map(|i| number(&section[i]));
+        let feeds = k == if end == 0 { 0 } else { own.len() - 1 };
+        s += if feeds { length - d } else { length };
+        let mass = weight / 9.81;
+        sections += &format!(
+            "{{ to = {s}, section = {{ mass = {mass:e}, ea = {ea:e}, diameter = 0.1, displaced = {:e} }}, elements = {per_section} }},",
+            1e-4 * mass
+        );
+    }
+    let [x, z] = [0, 1].map(|i| number(&case["end"][i]));
+    let at = ["start", "end"][end];
+    format!(
+        r#"
+        run = {{ duration = 1000 }}
+        [[elements]]
+        type = "cable"
+        name = "line"
+        points = [[0, 0, 0], [{x}, 0, {z}]]
+        sections = [{sections}]
+        [[constraints]]
+        type = "spherical"
+        name = "anchor"
+        marker = "line.start"
+        [[constraints]]
+        type = "spherical"
+        name = "fairlead"
+        marker = "line.end"
+        [[constraints]]
+        type = "winch"
+        name = "winch"
+        marker = "line.{at}"
+        speed = 1
+        payout = {d}
+        [[forces]]
+        type = "gravity"
+        "#
+    )
+}
+
+/// The line at rest once all of it is out.
+fn paid_out(text: &str, end: usize, d: f64) -> (Model, State) {
+    let model = scene(text).build().unwrap_or_else(|e| panic!("{e}"));
+    let mut state = model.state();
+    let boundary = model.part("line").and_then(|line| line.boundary(end)).expect("a boundary");
+    state.q[boundary.q] += boundary.sign * d;
+    state.t = 500.0;
+    let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
+    statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
+    drop(statics);
+    (model, state)
+}
+
+/// What has been paid out hangs as if it had been laid so: the section at the winch has become longer, the others haven't.
+#[test]
+fn a_line_that_is_paid_out_hangs_as_the_closed_form() {
+    for case in cases() {
+        if case["loads"].as_array().is_some_and(|all| all.iter().any(|x| number(x) != 0.0)) {
+            continue;
+        }
+        let length: f64 = case["sections"].as_array().expect("sections").iter().map(|s| number(&s[0])).sum();
+        let [t0, t1] = ["T0", "T1"].map(|name| number(&case[name]));
+        for end in [0, 1] {
+            for (n, limit) in [(20, 1e-5), (60, 1e-7)] {
+                let d = 0.05 * length;
+                let (model, state) = paid_out(&fed(&case, end, d, n), end, d);
+                let (part, at) = (model.part("line").expect("line"), state.at());
+                let pull = [(0.0, t0), (part.length_now(&at), t1)].map(|(s, t)| {
+                    part.observe(Quantity::Tension, s, &at).expect("a tension") / t - 1.0
+                });
+                let mut shape = 0.0_f64;
+                for row in case["rows"].as_array().expect("rows") {
+                    let [s, x, z] = [0, 1, 2].map(|i| number(&row[i]));
+                    let (r, _) = part.point(s, &at).expect("a place on it");
+                    let off = (r[0] - x).hypot(r[2] - z) / length;
+                    shape = if off <= shape { shape } else { off };
+                }
+                println!("{} {end} n {n}: shape {shape:.1e}, pull {:.1e} {:.1e}", case["name"], pull[0], pull[1]);
+                assert!(shape < limit && pull.iter().all(|p| p.abs() < limit), "{} {end}", case["name"]);
+            }
+        }
+    }
+}
+
+/// Wire above, chain below, that hang from a winch: as much is paid out as is reeled in again, with all that the balance of energy
+/// knows; at rest they hang by their weights, each with its own stretch.
+fn hanging(speed: f64, payout: f64, h: f64, more: &str) -> String {
+    format!(
+        r#"
+        run = {{ duration = 8, output = 0.1, from_equilibrium = true }}
+        solver = {{ scheme = "radau-iia-5", stepping = {{ fixed = {{ h = {h} }} }} }}
+        [[elements]]
+        type = "cable"
+        name = "line"
+        points = [[0, 0, 0], [0, 0, -5]]
+        sections = [
+          {{ to = 3, section = {{ mass = 0.5, ea = 2e4, ei = 1, axial_retardation_time = 0.02 }}, elements = 4 }},
+          {{ to = 5, section = {{ mass = 4, ea = 1e5, axial_retardation_time = 0.02 }}, elements = 3 }},
+        ]
+        [[constraints]]
+        type = "spherical"
+        name = "fairlead"
+        marker = "line.start"
+        [[constraints]]
+        type = "winch"
+        name = "winch"
+        marker = "line.start"
+        speed = {speed}
+        payout = {payout}
+        ramp = 1
+        {more}
+        [[forces]]
+        type = "gravity"
+        [[records]]
+        type = "reaction"
+        of = "fairlead"
+        [[records]]
+        type = "position"
+        of = "line.end"
+        [[records]]
+        type = "along"
+        of = "line"
+        what = "tension"
+        at = "start"
+        [[records]]
+        type = "length"
+        of = "line"
+        [[records]]
+        type = "energy"
+        "#
+    )
+}
+
+#[test]
+fn wire_and_chain_that_hang_from_a_winch_have_their_own_weight_and_stretch() {
+    let g = 9.81;
+    for (speed, payout) in [(0.5, 1.5), (-0.5, -1.5)] {
+        let h = run(&hanging(speed, payout, 0.02, ""));
+        let (wire, chain) = (3.0 + payout, 2.0);
+        let [light, heavy] = [0.5 * g, 4.0 * g];
+        let top = light * wire + heavy * chain;
+        let stretch = (heavy * chain * wire + 0.5 * light * wire * wire) / 2e4 + 0.5 * heavy * chain * chain / 1e5;
+        let off = [last(&h, "fairlead.magnitude") / top - 1.0, last(&h, "line.end.z") + wire + chain + stretch];
+        println!("{payout}: {off:?}");
+        assert!(off.iter().all(|x| x.abs() < 1e-7), "{payout}: {off:?}");
+        // power is taken at the steps, by the trapezoidal rule
+        let finer = run(&hanging(speed, payout, 0.005, ""));
+        let lost = [&h, &finer].map(|h| h.summary().energy.imbalance.abs());
+        println!("{lost:?} J, {:?}", finer.summary().energy);
+        assert!(lost[1] < 1e-4 && lost[0] / lost[1] > 12.0, "{lost:?}");
+    }
+}
+
+#[test]
+fn what_a_line_of_sections_can_not_feed_is_said() {
+    let says = |text: &str, message: &str| {
+        let file = ropewalk_scene::SceneFile::parse(text, "scene", ropewalk_scene::Format::Toml, &[]);
+        let error = match file {
+            Ok(file) => file.into_scene().build().map(drop).expect_err("refused").to_string(),
+            Err(e) => e.to_string(),
+        };
+        assert!(error.contains(message), "{error}");
+    };
+    says(&hanging(0.5, 1.0, 0.1, "element_length = 0.5"), "leave `element_length` of its winch out");
+    says(&hanging(-0.5, -1.0, 0.1, "shortest = 1.5"), "2 m lie behind the section");
+    let other = "[[constraints]]\ntype = \"winch\"\nname = \"other\"\nmarker = \"line.end\"\nspeed = 1";
+    says(&hanging(0.5, 1.0, 0.1, other), "feeds at one end");
+}
