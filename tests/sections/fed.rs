@@ -7,7 +7,7 @@ use ropewalk_core::{Model, Quantity, State};
 use serde_json::Value;
 
 /// A line of a case in which this much of the section at an end (0 or 1) isn't out yet, and a winch that pays it out.
-fn fed(case: &Value, end: usize, d: f64, per_section: usize) -> String {
+fn fed(case: &Value, end: usize, [d, payout]: [f64; 2], per_section: usize) -> String {
     let own = case["sections"].as_array().expect("sections");
     let (mut s, mut sections) = (0.0, String::new());
     for (k, section) in own.iter().enumerate() {
@@ -43,24 +43,33 @@ fn fed(case: &Value, end: usize, d: f64, per_section: usize) -> String {
         name = "winch"
         marker = "line.{at}"
         speed = 1
-        payout = {d}
+        payout = {payout}
+        ramp = 1e-3
         [[forces]]
         type = "gravity"
         "#
     )
 }
 
-/// The line at rest once all of it is out.
-fn paid_out(text: &str, end: usize, d: f64) -> (Model, State) {
-    let model = scene(text).build().unwrap_or_else(|e| panic!("{e}"));
-    let mut state = model.state();
-    let boundary = model.part("line").and_then(|line| line.boundary(end)).expect("a boundary");
-    state.q[boundary.q] += boundary.sign * d;
-    state.t = 500.0;
-    let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
-    statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
-    drop(statics);
-    (model, state)
+/// The line at rest once all of it is out, a tenth after the other.
+fn paid_out(case: &Value, end: usize, d: f64, per_section: usize) -> (Model, State) {
+    let mut before: Option<State> = None;
+    for k in 1..=10 {
+        let model = scene(&fed(case, end, [d, d * f64::from(k) / 10.0], per_section));
+        let model = model.build().unwrap_or_else(|e| panic!("{e}"));
+        let mut state = before.take().unwrap_or_else(|| model.state());
+        let boundary = model.part("line").and_then(|line| line.boundary(end)).expect("a boundary");
+        state.q[boundary.q] += boundary.sign * d / 10.0;
+        state.t = 500.0;
+        let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
+        statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
+        drop(statics);
+        if k == 10 {
+            return (model, state);
+        }
+        before = Some(state);
+    }
+    unreachable!()
 }
 
 /// What has been paid out hangs as if it had been laid so: the section at the winch has become longer, the others haven't.
@@ -75,11 +84,12 @@ fn a_line_that_is_paid_out_hangs_as_the_closed_form() {
         for end in [0, 1] {
             for (n, limit) in [(20, 1e-5), (60, 1e-7)] {
                 let d = 0.05 * length;
-                let (model, state) = paid_out(&fed(&case, end, d, n), end, d);
+                let (model, state) = paid_out(&case, end, d, n);
                 let (part, at) = (model.part("line").expect("line"), state.at());
-                let pull = [(0.0, t0), (part.length_now(&at), t1)].map(|(s, t)| {
-                    part.observe(Quantity::Tension, s, &at).expect("a tension") / t - 1.0
-                });
+                let pull = [(0.0, t0), (part.length_now(&at), t1)]
+                    .map(|(s, t)| part.observe(Quantity::Tension, s, &at).expect("a tension") / t - 1.0);
+                let short = part.length_now(&at) / length - 1.0;
+                assert!(short.abs() < 1e-12, "{short}");
                 let mut shape = 0.0_f64;
                 for row in case["rows"].as_array().expect("rows") {
                     let [s, x, z] = [0, 1, 2].map(|i| number(&row[i]));
@@ -87,7 +97,10 @@ fn a_line_that_is_paid_out_hangs_as_the_closed_form() {
                     let off = (r[0] - x).hypot(r[2] - z) / length;
                     shape = if off <= shape { shape } else { off };
                 }
-                println!("{} {end} n {n}: shape {shape:.1e}, pull {:.1e} {:.1e}", case["name"], pull[0], pull[1]);
+                println!(
+                    "{} {end} n {n}: shape {shape:.1e}, pull {:.1e} {:.1e}",
+                    case["name"], pull[0], pull[1]
+                );
                 assert!(shape < limit && pull.iter().all(|p| p.abs() < limit), "{} {end}", case["name"]);
             }
         }
@@ -151,8 +164,10 @@ fn wire_and_chain_that_hang_from_a_winch_have_their_own_weight_and_stretch() {
         let (wire, chain) = (3.0 + payout, 2.0);
         let [light, heavy] = [0.5 * g, 4.0 * g];
         let top = light * wire + heavy * chain;
-        let stretch = (heavy * chain * wire + 0.5 * light * wire * wire) / 2e4 + 0.5 * heavy * chain * chain / 1e5;
-        let off = [last(&h, "fairlead.magnitude") / top - 1.0, last(&h, "line.end.z") + wire + chain + stretch];
+        let stretch =
+            (heavy * chain * wire + 0.5 * light * wire * wire) / 2e4 + 0.5 * heavy * chain * chain / 1e5;
+        let off =
+            [last(&h, "fairlead.magnitude") / top - 1.0, last(&h, "line.end.z") + wire + chain + stretch];
         println!("{payout}: {off:?}");
         assert!(off.iter().all(|x| x.abs() < 1e-7), "{payout}: {off:?}");
         // power is taken at the steps, by the trapezoidal rule

@@ -1,6 +1,9 @@
 //! Cables with torsion that feed at a winch: twist travels with the material.
 
-use super::{case, number, run};
+use super::{case, number, run, scene};
+use ropewalk::{Options, Simulation};
+use ropewalk_core::Observer;
+use ropewalk_core::integrator::{Scheme, Stepping};
 use std::f64::consts::TAU;
 
 const FED: &str = include_str!("fed.toml");
@@ -25,27 +28,34 @@ fn a_torsional_pendulum_on_a_cable_that_grows() {
         }
     }
     // the balance of energy has the power at the steps alone
-    let imbalance = ["1e-6", "1e-9"].map(|tol| run(FED, &[format!("tol={tol}")]).summary().energy.imbalance.abs());
+    let imbalance = ["1e-6", "1e-8"]
+        .map(|tol| run(FED, &[format!("tol={tol}"), "n=1".into()]).summary().energy.imbalance.abs());
     println!("{imbalance:?}");
-    assert!(imbalance[0] < 1e-4 && imbalance[1] < 1e-6, "{imbalance:?}");
+    assert!(imbalance[0] < 1e-4 && imbalance[1] < 1e-5, "{imbalance:?}");
 }
 
 /// Cable that is pulled over the end of a coil brings a turn per wrap: against a disc that doesn't turn, all of them stay in it.
 #[test]
 fn a_coil_brings_a_turn_per_wrap() {
     for (wrap, elements) in [(2.0, 1), (-1.5, 4)] {
-        let set = [format!("wrap={wrap} m"), "disc=1e9".into(), format!("n={elements}")];
+        let set = [format!("wrap={wrap} m"), "disc=1e9".into(), format!("n={elements}"), "tol=1e-8".into()];
         let h = run(FED, &set);
-        let (angle, torque) = (h.column("wire.end.angle").expect("angle"), h.column("wire.start.torque").expect("torque"));
+        let (angle, torque) =
+            (h.column("wire.end.angle").expect("angle"), h.column("wire.start.torque").expect("torque"));
         for (k, t) in h.times().iter().enumerate() {
             let exact = 2.0 + TAU * 0.5 * t / wrap;
+            // the spin that it comes with sets off a wave of √(GJ ρJ) times that, 1.5e-5 N m
             let moment = 0.05 * exact / (1.0 + 0.5 * t);
             assert!((angle[k] - exact).abs() < 1e-6, "{wrap} {t}: {} {exact}", angle[k]);
-            assert!((torque[k] - moment).abs() < 1e-6, "{wrap} {t}: {} {moment}", torque[k]);
+            assert!((torque[k] - moment).abs() < 3e-5, "{wrap} {t}: {} {moment}", torque[k]);
         }
-        let energy = h.summary().energy;
-        println!("{wrap}: {energy:?}");
-        assert!(energy.imbalance.abs() < 1e-5, "{energy:?}");
+        let lost = [0.1, 0.025].map(|h| {
+            let text =
+                FED.replace("controlled = { tolerance = \"$tol\" }", &format!("fixed = {{ h = {h} }}"));
+            run(&text, &set).summary().energy.imbalance.abs()
+        });
+        println!("{wrap}: {lost:?}");
+        assert!(lost[1] < 3e-5 && lost[0] > 14.0 * lost[1], "{lost:?}");
     }
 }
 
@@ -53,9 +63,9 @@ fn a_coil_brings_a_turn_per_wrap() {
 /// goes towards a turn per wrap, as a first-order lag; the grip of the drum tells how much of it slips.
 #[test]
 fn twist_goes_along_with_what_is_reeled_in() {
-    for grip in [0.5, 1e3] {
-        let h = run(include_str!("through.toml"), &[format!("grip={grip} N m s")]);
-        let torque = h.column("wire.50%.torque").expect("torque");
+    for grip in [0.5, 20.0] {
+        let h = run(include_str!("through.toml"), &[format!("grip={grip} N m s/rad")]);
+        let torque = h.column("wire@50%.torque").expect("torque");
         let (gj, v, l, inflow) = (0.05, 0.5, 1.0, TAU / 2.0);
         let rate = (v + gj / grip) / l;
         let last = v * inflow / (l * rate);
@@ -67,27 +77,44 @@ fn twist_goes_along_with_what_is_reeled_in() {
         let energy = h.summary().energy;
         println!("{grip}: {worst:.1e}, {energy:?}");
         assert!(worst < 1e-5, "{grip}: {worst}");
-        assert!(energy.imbalance.abs() < 1e-5 && (grip > 1.0 || energy.dissipated > 1e-3), "{energy:?}");
+        assert!(energy.imbalance.abs() < 1e-4 && (grip > 1.0 || energy.dissipated > 1e-3), "{energy:?}");
     }
+}
+
+/// What happened, and when.
+#[derive(Default)]
+struct Told(Vec<(String, f64)>);
+
+impl Observer for Told {
+    fn event(&mut self, name: &str, t: f64) {
+        self.0.push((name.into(), t));
+    }
+}
+
+fn told(set: &[String]) -> Vec<(String, f64)> {
+    let model = scene(include_str!("slack.toml"), set).build().unwrap_or_else(|e| panic!("{e}"));
+    let stepping = Stepping::Fixed { h: 0.05 };
+    let options = Options { scheme: Scheme::RadauIia5, stepping, ..Options::default() };
+    let mut s = Simulation::new(model, &options, 12.0).unwrap_or_else(|e| panic!("{e}"));
+    let mut told = Told::default();
+    s.advance(12.0, 1.0, &mut told).unwrap_or_else(|e| panic!("{e}"));
+    told.0
 }
 
 /// A torque of 1 N m on EI = 1 N m² forms loops below 0.25 N, of which bending takes π² EI/L² in a cable of 20 m.
 #[test]
 fn a_cable_too_slack_for_its_torque_is_told() {
     let limit = 0.25 - std::f64::consts::PI.powi(2) / 400.0;
-    for (share, loops) in [(1.02, false), (0.98, true)] {
-        let h = run(include_str!("slack.toml"), &[format!("tension={} N", share * limit)]);
-        let events = &h.summary().events;
-        println!("{share}: {events:?}");
-        let told: Vec<_> = events.iter().filter(|e| e.name.contains("may form a loop")).collect();
-        assert_eq!(told.len(), usize::from(loops), "{events:?}");
-        assert!(told.iter().all(|e| e.name.contains("`rope`") && e.name.contains("M^2/4EI = 0.250 N")), "{told:?}");
-    }
+    let above = told(&[format!("tension={} N", 1.01 * limit)]);
+    assert!(above.is_empty(), "{above:?}");
+    let below = told(&[format!("tension={} N", 0.99 * limit)]);
+    println!("{below:?}");
+    let [(text, t)] = below.as_slice() else { panic!("{below:?}") };
+    assert!(text.contains("`rope` may form a loop") && text.contains("M^2/4EI = 0.250 N") && *t < 1e-9);
     // let out while it runs: the instant at which tension has fallen to the limit
-    let h = run(include_str!("slack.toml"), &["tension=1 N".into(), "out=2 mm".into()]);
-    let when = h.summary().events.iter().find(|e| e.name.contains("may form a loop")).map(|e| e.t);
-    // 20 m of 1 kN: 1 N is a strain of 1e-3, 20 mm; what is let out in 10 s is 2 mm per second
+    let out = told(&["tension=1 N".into(), "out=2 mm/s".into()]);
+    // 1 N is a strain of 1e-3, 20 mm less what it is laid with
     let exact = 20.0 * (1.0 - limit) / 1e3 / 2e-3;
-    println!("{when:?} {exact}");
-    assert!(when.is_some_and(|t| (t - exact).abs() < 0.02), "{when:?} {exact}");
+    println!("{out:?} {exact}");
+    assert!((out[0].1 - exact).abs() < 0.02 && out.len() == 1, "{out:?} {exact}");
 }

@@ -217,7 +217,10 @@ impl LiftOffSpec {
         let (axis, node) = (package.axis(), Marker::node(boundary.end));
         let t = b.place(&node).axes[2];
         let across = unit("marker", cross(&t, &axis)).map_err(|_| {
-            BuildError::at("marker", "it leaves the package along its axis: lay it along the wound layer there")
+            BuildError::at(
+                "marker",
+                "it leaves the package along its axis: lay it along the wound layer there",
+            )
         })?;
         let held = node.with_axes(b.nodes(), b.coordinates(), [across, cross(&t, &across), t]);
         let ground = Marker::Ground { point: [0.0; 3], axes: around(axis) };

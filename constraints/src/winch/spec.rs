@@ -227,8 +227,11 @@ impl ConstraintSpec for WinchSpec {
     }
     fn feeds(&self) -> Option<(&MarkerRef, Feed)> {
         // what is wrong with it is said when it is built
-        let twist = self.wrap.map_or(0.0, |wrap| if wrap == 0.0 { 0.0 } else { std::f64::consts::TAU / wrap });
-        (!self.idle()).then(|| (&self.marker, Feed { element: self.element_length, twist, grip: self.grip, ..Feed::default() }))
+        let twist =
+            self.wrap.map_or(0.0, |wrap| if wrap == 0.0 { 0.0 } else { std::f64::consts::TAU / wrap });
+        (!self.idle()).then(|| {
+            (&self.marker, Feed { element: self.element_length, twist, grip: self.grip, ..Feed::default() })
+        })
     }
     fn notes(&self, model: &Model) -> Vec<String> {
         let (Some(speed), MarkerRef::Name(marker)) =
@@ -332,8 +335,9 @@ impl ConstraintSpec for WinchSpec {
         let least = self.element_length.map_or(least, |e| (riding + 2.0 * e).max(least));
         let shortest = positive("shortest", self.shortest.unwrap_or(least))?;
         if shortest <= kept {
-            let message =
-                format!("{kept} m lie behind the section that is fed here, which stay out: `shortest` must be more");
+            let message = format!(
+                "{kept} m lie behind the section that is fed here, which stay out: `shortest` must be more"
+            );
             return Err(BuildError::at("shortest", message));
         }
         if shortest >= whole {

@@ -9,8 +9,7 @@ const PLACES: usize = 32;
 ///
 /// A long straight cable under tension buckles into a helix at `T = M²/4EI` and goes on to a loop (Greenhill 1883; Coyne, IEEE JOE
 /// 15, 1990); of one with the length `L` between ends that can turn the bending stiffness carries some of the torque. Without
-/// tension torque has to do it alone: what is pressed together is no case of this. The run goes on; if it begins beyond the limit, the
-/// first step says so.
+/// tension torque has to do it alone: what is pressed together is no case of this. The run goes on.
 #[derive(Clone, Debug)]
 pub(super) struct LoopLimit {
     /// Name of the cable.
@@ -40,7 +39,8 @@ impl LoopLimit {
         let every = (mesh.len() - 1).div_ceil(PLACES);
         let there = |k: usize| {
             let s = 0.5 * (mesh[k] + mesh[k + 1]);
-            let [torque, tension] = [Quantity::Torque, Quantity::Tension].map(|what| part.observe(what, s, at));
+            let [torque, tension] =
+                [Quantity::Torque, Quantity::Tension].map(|what| part.observe(what, s, at));
             let (torque, tension) = (torque?, tension?);
             let limit = torque * torque / (4.0 * ei);
             let straightens = tension.max(0.0) + whole;
@@ -62,9 +62,7 @@ impl Event for LoopLimit {
     }
     fn value(&self, model: &Model, state: &State) -> f64 {
         let nearest = model.part(&self.part).and_then(|part| Self::nearest(part.as_ref(), &state.at()));
-        let level = nearest.map_or(-1.0, |nearest| nearest.level);
-        // what begins beyond the limit crosses it in the first step
-        if state.t > 0.0 { level } else { level.min(-f64::MIN_POSITIVE) }
+        nearest.map_or(-1.0, |nearest| nearest.level)
     }
     fn direction(&self) -> i8 {
         1

@@ -503,7 +503,8 @@ impl ElementSpec for CableSpec {
         // a wheel holds the direction of an end
         let goes_on = feeding.map(|feed| feed.is_some_and(|feed| feed.passes));
         if layout.changes() && feeding.iter().all(Option::is_some) {
-            let message = "a cable of several sections feeds at one end: give it one `section`, or let one end be";
+            let message =
+                "a cable of several sections feeds at one end: give it one `section`, or let one end be";
             return Err(BuildError::at("sections", message));
         }
         for end in (0..2).filter(|&end| feeding[end].is_some()) {
@@ -580,8 +581,11 @@ impl ElementSpec for CableSpec {
                            stiffness, `gj`, or leave `wrap` of its winch out";
             return Err(BuildError::at("section.gj", message));
         }
-        let line =
-            if feeds { Some(self.line(b, model, length, &mesh, &nodes, feeding, rates, &layout)?) } else { None };
+        let line = if feeds {
+            Some(self.line(b, model, length, &mesh, &nodes, feeding, rates, &layout)?)
+        } else {
+            None
+        };
         let flows = |k: usize| line.as_ref().filter(|line| line.flows(k));
         let all = b.coordinates();
         let dofs = |k: usize| -> [f64; 12] {
@@ -602,7 +606,13 @@ impl ElementSpec for CableSpec {
         for k in 0..mesh.len() - 1 {
             let Some(line) = flows(k) else { continue };
             params(k).check().map_err(BuildError::new)?;
-            push::push(b, model, params(k), layout.section(k), &Piece { line, k, on: [nodes[k], nodes[k + 1]] })?;
+            push::push(
+                b,
+                model,
+                params(k),
+                layout.section(k),
+                &Piece { line, k, on: [nodes[k], nodes[k + 1]] },
+            )?;
         }
         let mut pools = Pools { builder: b, result: Ok(()) };
         for k in layout.elements().filter(|&k| flows(k).is_none()) {

@@ -246,8 +246,16 @@ impl CableSpec {
         }
         let refused = [
             ("section.ei", self.section.ei.has_direction(), "bends alike to all sides: give it one `ei`"),
-            ("section.torque_tension", self.section.torque_tension != 0.0, "doesn't couple torque with tension: leave `torque_tension` out"),
-            ("section.gyroscopic", self.section.gyroscopic, "isn't turned aside by its spin: leave `gyroscopic` out"),
+            (
+                "section.torque_tension",
+                self.section.torque_tension != 0.0,
+                "doesn't couple torque with tension: leave `torque_tension` out",
+            ),
+            (
+                "section.gyroscopic",
+                self.section.gyroscopic,
+                "isn't turned aside by its spin: leave `gyroscopic` out",
+            ),
         ];
         match refused.into_iter().find(|(_, is, _)| *is) {
             Some((field, _, why)) => Err(BuildError::at(field, format!("what a winch feeds {why}"))),
@@ -356,7 +364,15 @@ impl Twisted {
     /// Element `k`, through which material flows.
     fn flowing<const F: usize>(&self, k: usize, line: &Line) -> FlowTorsion<F> {
         let Bar { gj, eta_gj, rho_j, .. } = self.bars[k];
-        FlowTorsion { gj, eta_gj, rho_j, twist0: self.per_length, by: line.embedding(k), turns: line.turns(k), grip: line.grips(k) }
+        FlowTorsion {
+            gj,
+            eta_gj,
+            rho_j,
+            twist0: self.per_length,
+            by: line.embedding(k),
+            turns: line.turns(k),
+            grip: line.grips(k),
+        }
     }
 
     /// Twist of element `k` of length `l` when free of stress [rad].

@@ -32,8 +32,10 @@ const COIL: Embedding<1> = Embedding { fixed: [0.3, 0.0], by: [[1.7, 0.0]] };
 const COILS: Embedding<2> = Embedding { fixed: [0.3, -0.1], by: [[1.7, 0.0], [0.0, -2.1]] };
 
 fn terms(rho_j: f64) -> Vec<(usize, Box<dyn Term>)> {
-    let one = FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: ONE, turns: COIL, grip: [0.6, 0.0] };
-    let two = FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: TWO, turns: COILS, grip: [0.6, 0.9] };
+    let one =
+        FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: ONE, turns: COIL, grip: [0.6, 0.0] };
+    let two =
+        FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: TWO, turns: COILS, grip: [0.6, 0.9] };
     vec![(1, pool(one, 1)), (2, pool(two, 2))]
 }
 
@@ -54,7 +56,8 @@ fn tangents_are_derivatives() {
     for q in states() {
         for (boundaries, term) in terms(0.0) {
             for width in [Width::One, Width::Eight] {
-                let error = check_tangent(term.as_ref(), &nodes(boundaries), &at(&motion(&q, boundaries)), width);
+                let error =
+                    check_tangent(term.as_ref(), &nodes(boundaries), &at(&motion(&q, boundaries)), width);
                 println!("{boundaries}: {error:.1e}");
                 assert!(error < 1e-7, "{boundaries}: {error}");
             }
@@ -76,7 +79,8 @@ fn tangents_of_inertia_are_derivatives() {
                 for j in 0..14 + boundaries {
                     let exact = difference(|h| {
                         let mut moved = x.clone();
-                        let d: Vec<f64> = (0..14 + boundaries).map(|i| if i == j { h } else { 0.0 }).collect();
+                        let d: Vec<f64> =
+                            (0..14 + boundaries).map(|i| if i == j { h } else { 0.0 }).collect();
                         match kind {
                             0 => retract(&nodes, &x[0], &d, &mut moved[0]),
                             kind => moved[kind][j] += h,
@@ -86,7 +90,11 @@ fn tangents_of_inertia_are_derivatives() {
                     });
                     for i in 0..14 + boundaries {
                         let own = a[i][j] - b[i][j];
-                        assert!((own - exact[i]).abs() < 1e-7 * (1.0 + own.abs()), "{kind} {i} {j}: {own} {}", exact[i]);
+                        assert!(
+                            (own - exact[i]).abs() < 1e-7 * (1.0 + own.abs()),
+                            "{kind} {i} {j}: {own} {}",
+                            exact[i]
+                        );
                     }
                 }
             }
@@ -123,8 +131,17 @@ fn energy_is_kept_but_for_what_passes_the_ends() {
 #[test]
 fn what_does_not_feed_is_plain_torsion() {
     for q in states() {
-        let still = [Embedding { by: [[0.0; 2]], fixed: [0.2, 0.9] }, Embedding { by: [[0.0; 2]], fixed: [0.0; 2] }];
-        let flow = FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j: 0.7, twist0: 0.4, by: still[0], turns: still[1], grip: [0.0; 2] };
+        let still =
+            [Embedding { by: [[0.0; 2]], fixed: [0.2, 0.9] }, Embedding { by: [[0.0; 2]], fixed: [0.0; 2] }];
+        let flow = FlowTorsion {
+            gj: 0.8,
+            eta_gj: 0.3,
+            rho_j: 0.7,
+            twist0: 0.4,
+            by: still[0],
+            turns: still[1],
+            grip: [0.0; 2],
+        };
         let l = 0.7;
         let plain = TorsionParams { l, gj: 0.8, rho_j: 0.7, twist0: 0.4 * l };
         let damping = TorsionDamping { l, eta_gj: 0.3 };

@@ -58,8 +58,20 @@ impl Line {
                     node.by[k] = match zone[*at] {
                         true if i.abs_diff(own) <= rides[*at] => 1.0,
                         true => 0.0,
-                        false if *at == 0 => if i < holds[0] || holds[0] == end { 1.0 - share[0] } else { 0.0 },
-                        false => if i > holds[1] || holds[1] == 0 { share[1] } else { 0.0 },
+                        false if *at == 0 => {
+                            if i < holds[0] || holds[0] == end {
+                                1.0 - share[0]
+                            } else {
+                                0.0
+                            }
+                        }
+                        false => {
+                            if i > holds[1] || holds[1] == 0 {
+                                share[1]
+                            } else {
+                                0.0
+                            }
+                        }
                     };
                     // a node at an end that doesn't feed, or that has a zone, doesn't follow the other
                     if i != own && (i == 0 || i == end) {
@@ -75,7 +87,16 @@ impl Line {
             })
             .collect();
         let middle = mesh.windows(2).map(|w| (0.5 * (w[0] + w[1]) - first) / (last - first)).collect();
-        Line { boundaries, nodes, zone, rides, middle, unstrained: [false; 2], twist: [0.0; 2], grip: [0.0; 2] }
+        Line {
+            boundaries,
+            nodes,
+            zone,
+            rides,
+            middle,
+            unstrained: [false; 2],
+            twist: [0.0; 2],
+            grip: [0.0; 2],
+        }
     }
 
     fn sum(&self, k: usize, fixed: f64, x: impl Fn(&MovingBoundary) -> f64) -> f64 {
@@ -127,7 +148,13 @@ impl Line {
     }
     /// What resists the spin of the material at either end of it [N m s].
     pub fn grips(&self, k: usize) -> [f64; 2] {
-        [0, 1].map(|end| if self.boundaries.iter().any(|(at, _)| *at == end) && self.is_at(end, k) { self.grip[end] } else { 0.0 })
+        [0, 1].map(|end| {
+            if self.boundaries.iter().any(|(at, _)| *at == end) && self.is_at(end, k) {
+                self.grip[end]
+            } else {
+                0.0
+            }
+        })
     }
     /// Whether the element behind node `k` is the one at an end.
     fn is_at(&self, end: usize, k: usize) -> bool {

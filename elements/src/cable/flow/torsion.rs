@@ -117,9 +117,7 @@ impl<const F: usize, R: Real> FlowTorsionLanes<F, R> {
         let along = -(k * (S::of(0.5) * gj * k + eta * kd));
         let [va, vb] = m.spin(k);
         let slope = (vb - va) * m.grid.il;
-        let at = |i: usize| {
-            m.wd[i] + m.turns.pdd[i] - m.grid.pd[i] * (kd + slope) - m.grid.pdd[i] * k
-        };
+        let at = |i: usize| m.wd[i] + m.turns.pdd[i] - m.grid.pd[i] * (kd + slope) - m.grid.pdd[i] * k;
         let ([own, other], a, b) = (inertia(rho_j * m.grid.l), at(0), at(1));
         // what of this inertia isn't consistent grows with the element too, which keeps the energy
         let grows = S::of(0.125) * rho_j * m.grid.ld * (vb - va);
@@ -220,7 +218,11 @@ macro_rules! element {
                 let by_spin = [0, 1].map(|i| seen(&|m| (m.w[i].eps, m.wd[i].eps) = (wv, wa)));
                 // one column after the other: of the increments, then of the boundaries
                 for j in 0..$velocities {
-                    let mut d = Forces { moment: R::zero(), spin: [R::zero(); 2], boundary: [R::zero(); $boundaries] };
+                    let mut d = Forces {
+                        moment: R::zero(),
+                        spin: [R::zero(); 2],
+                        boundary: [R::zero(); $boundaries],
+                    };
                     let mut add = |by: &Forces<$boundaries, Dual<R>>, s: R| {
                         d.moment += s * by.moment.eps;
                         for i in 0..2 {
@@ -261,10 +263,7 @@ macro_rules! element {
                 }
             }
             #[inline(always)]
-            fn energy<R: Real>(
-                p: &Self::Lanes<R>,
-                x: &Local<R, $coordinates, $velocities>,
-            ) -> Energy<R> {
+            fn energy<R: Real>(p: &Self::Lanes<R>, x: &Local<R, $coordinates, $velocities>) -> Energy<R> {
                 let (m, _, _) = motion!($boundaries, p, x);
                 let (half, [k, _]) = (R::of(0.5), m.per_length());
                 let ([own, other], [a, b]) = (inertia(p.rho_j * m.grid.l), m.spin(k));
@@ -275,10 +274,7 @@ macro_rules! element {
             }
             /// What is damped, and the energy of spin that material carries over the ends.
             #[inline(always)]
-            fn power<R: Real>(
-                p: &Self::Lanes<R>,
-                x: &Local<R, $coordinates, $velocities>,
-            ) -> Power<R> {
+            fn power<R: Real>(p: &Self::Lanes<R>, x: &Local<R, $coordinates, $velocities>) -> Power<R> {
                 let (m, _, _) = motion!($boundaries, p, x);
                 let [k, kd] = m.per_length();
                 let [a, b] = m.spin(k);
