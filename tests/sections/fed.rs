@@ -7,7 +7,7 @@ use ropewalk_core::{Model, Quantity, State};
 use serde_json::Value;
 
 /// A line of a case in which this much of the section at an end (0 or 1) isn't out yet, and a winch that pays it out.
-fn fed(case: &Value, end: usize, [d, payout]: [f64; 2], per_section: usize) -> String {
+fn fed(case: &Value, end: usize, d: f64, per_section: usize) -> String {
     let own = case["sections"].as_array().expect("sections");
     let (mut s, mut sections) = (0.0, String::new());
     for (k, section) in own.iter().enumerate() {
@@ -20,7 +20,13 @@ fn fed(case: &Value, end: usize, [d, payout]: [f64; 2], per_section: usize) -> S
             1e-4 * mass
         );
     }
-    let [x, z] = [0, 1].map(|i| number(&case["end"][i]));
+    // laid as it will hang, stretched
+    let curve: Vec<[f64; 3]> = case["rows"]
+        .as_array()
+        .expect("rows")
+        .iter()
+        .map(|row| [number(&row[1]), 0.0, number(&row[2])])
+        .collect();
     let at = ["start", "end"][end];
     format!(
         r#"
@@ -28,7 +34,7 @@ fn fed(case: &Value, end: usize, [d, payout]: [f64; 2], per_section: usize) -> S
         [[elements]]
         type = "cable"
         name = "line"
-        points = [[0, 0, 0], [{x}, 0, {z}]]
+        curve = {curve:?}
         sections = [{sections}]
         [[constraints]]
         type = "spherical"
@@ -43,7 +49,7 @@ fn fed(case: &Value, end: usize, [d, payout]: [f64; 2], per_section: usize) -> S
         name = "winch"
         marker = "line.{at}"
         speed = 1
-        payout = {payout}
+        payout = {d}
         ramp = 1e-3
         [[forces]]
         type = "gravity"
@@ -51,25 +57,17 @@ fn fed(case: &Value, end: usize, [d, payout]: [f64; 2], per_section: usize) -> S
     )
 }
 
-/// The line at rest once all of it is out, a tenth after the other.
+/// The line at rest once all of it is out.
 fn paid_out(case: &Value, end: usize, d: f64, per_section: usize) -> (Model, State) {
-    let mut before: Option<State> = None;
-    for k in 1..=10 {
-        let model = scene(&fed(case, end, [d, d * f64::from(k) / 10.0], per_section));
-        let model = model.build().unwrap_or_else(|e| panic!("{e}"));
-        let mut state = before.take().unwrap_or_else(|| model.state());
-        let boundary = model.part("line").and_then(|line| line.boundary(end)).expect("a boundary");
-        state.q[boundary.q] += boundary.sign * d / 10.0;
-        state.t = 500.0;
-        let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
-        statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
-        drop(statics);
-        if k == 10 {
-            return (model, state);
-        }
-        before = Some(state);
-    }
-    unreachable!()
+    let model = scene(&fed(case, end, d, per_section)).build().unwrap_or_else(|e| panic!("{e}"));
+    let mut state = model.state();
+    let boundary = model.part("line").and_then(|line| line.boundary(end)).expect("a boundary");
+    state.q[boundary.q] += boundary.sign * d;
+    state.t = 500.0;
+    let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
+    statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
+    drop(statics);
+    (model, state)
 }
 
 /// What has been paid out hangs as if it had been laid so: the section at the winch has become longer, the others haven't.
