@@ -2,8 +2,8 @@
 
 use super::{case, number, run, scene};
 use ropewalk::{Options, Simulation};
-use ropewalk_core::Observer;
 use ropewalk_core::integrator::{Scheme, Stepping};
+use ropewalk_core::{Observer, Quantity, dot};
 use std::f64::consts::TAU;
 
 const FED: &str = include_str!("fed.toml");
@@ -117,4 +117,26 @@ fn a_cable_too_slack_for_its_torque_is_told() {
     let exact = 20.0 * (1.0 - limit) / 1e3 / 2e-3;
     println!("{out:?} {exact}");
     assert!((out[0].1 - exact).abs() < 0.02 && out.len() == 1, "{out:?} {exact}");
+}
+
+/// A cable that is unwound over the end of its package: the section goes round once with each wrap, and the eyelet takes the twist
+/// along. What the tangent there sweeps out on its cone is no twist, so in the end there are `cos β/R` of it per length.
+#[test]
+fn a_cable_that_is_unwound_has_a_turn_per_wrap() {
+    let (gj, grip, radius) = (2e-5, 1e-3, 0.06);
+    let text = include_str!("../../models/scenes/unwinding.toml")
+        .replace("\naxial_retardation_time = \"$", &format!("\ngj = {gj}\naxial_retardation_time = \"$"))
+        .replace("reference_speed = \"peel\"", &format!("reference_speed = \"peel\"\ngrip = {grip}"));
+    let set = ["rigidity=tangent", "duration=0.6 s", "speed=5 kn"].map(String::from);
+    let h = run(&text, &set);
+    let (part, at) = (h.model.part("cable").expect("cable"), h.state.at());
+    let twist = part.observe(Quantity::Twist, 0.0, &at).expect("a twist");
+    let eyelet = part.boundary(0).expect("a boundary");
+    let slope = [3, 4, 5].map(|i| h.state.q[eyelet.end_q + i]);
+    let (cosine, out) = (slope[2] / dot(&slope, &slope).sqrt(), -eyelet.rate(&at));
+    let exact = cosine / radius / (1.0 + gj / (grip * out));
+    println!("{twist} {exact}, cos {cosine}, {out} m/s, {:?}", h.summary().energy);
+    assert!((twist / exact - 1.0).abs() < 0.01 && exact > 10.0, "{twist} {exact}");
+    let energy = h.summary().energy;
+    assert!(energy.imbalance.abs() < 1e-4 * energy.supplied.abs(), "{energy:?}");
 }

@@ -59,6 +59,11 @@ impl LiftOff {
         at(sigma)
     }
 
+    /// Which of the velocities of its nodes is that of the boundary, behind those of the cable's node.
+    fn last(&self, nodes: &[Node]) -> usize {
+        nodes[self.nodes[0].0 as usize].kind.velocities()
+    }
+
     /// How the curvature changes; by differences, since a package has two continuous derivatives only.
     fn twist(&self, sigma: f64) -> V3<f64> {
         let h = 1e-4 * self.package.spec().radius;
@@ -114,40 +119,43 @@ impl Constraint for LiftOff {
     fn linear(&self) -> bool {
         false
     }
-    fn jacobian(&self, _: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
+    fn jacobian(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
         let (sigma, sign) = (self.boundary.fed(at), self.boundary.sign);
-        let lay = self.lay(sigma);
+        let (lay, last) = (self.lay(sigma), self.last(nodes));
+        let width = last + 1;
         jac.fill(0.0);
         for i in 0..3 {
             g[i] = at.q[self.boundary.end_q + i] - lay.x[i];
-            jac[7 * i + i] = 1.0;
-            jac[7 * i + 6] = -sign * lay.tangent[i];
+            jac[width * i + i] = 1.0;
+            jac[width * i + last] = -sign * lay.tangent[i];
         }
         if self.tangent {
             let slope = self.slope(at.q, self.boundary.end_q);
             let [d, by_sigma] = self.directions(&lay);
             for r in 0..2 {
                 g[3 + r] = dot(&d[r], &slope);
-                jac[7 * (3 + r) + 3..7 * (3 + r) + 6].copy_from_slice(&d[r]);
-                jac[7 * (3 + r) + 6] = sign * dot(&by_sigma[r], &slope);
+                jac[width * (3 + r) + 3..width * (3 + r) + 6].copy_from_slice(&d[r]);
+                jac[width * (3 + r) + last] = sign * dot(&by_sigma[r], &slope);
             }
         }
     }
     fn solids(&self) -> Vec<Solid> {
         vec![self.package.solid(&self.name)]
     }
-    fn geometric(&self, _: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
+    fn geometric(&self, nodes: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
         let (sigma, sign) = (self.boundary.fed(at), self.boundary.sign);
         let (lay, slope) = (self.lay(sigma), self.slope(at.q, self.boundary.end_q));
+        let last = self.last(nodes);
+        let width = last + 1;
         h.fill(0.0);
         let seconds = self.seconds(sigma, &lay, &slope);
-        h[7 * 6 + 6] = seconds.iter().zip(lambda).map(|(s, l)| s * l).sum();
+        h[width * last + last] = seconds.iter().zip(lambda).map(|(s, l)| s * l).sum();
         if self.tangent {
             let [_, by_sigma] = self.directions(&lay);
             for i in 0..3 {
                 let mixed = sign * (lambda[3] * by_sigma[0][i] + lambda[4] * by_sigma[1][i]);
-                h[7 * (3 + i) + 6] = mixed;
-                h[7 * 6 + 3 + i] = mixed;
+                h[width * (3 + i) + last] = mixed;
+                h[width * last + 3 + i] = mixed;
             }
         }
     }
