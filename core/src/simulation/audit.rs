@@ -108,7 +108,7 @@ impl Audit {
     /// nothing. `noise` is energy that doesn't count [J].
     pub fn is_blind(&self, noise: f64) -> bool {
         let off = self.imbalance();
-        off > CREATED * self.scale
+        off > RUNAWAY * self.scale
             && off > NOTHING * self.size + noise
             && self.created(noise) == Created::None
     }
