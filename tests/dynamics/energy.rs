@@ -146,3 +146,20 @@ fn fixed_steps_that_are_cut_are_counted() {
     let (cut, steps) = crank(100.0);
     assert!(cut > 5 && steps > 10, "{cut} of {steps}");
 }
+
+#[test]
+fn a_balance_that_only_its_own_integration_may_explain_is_said_to_be_blind() {
+    let energy = |kinetic| ropewalk_core::Energy { kinetic, potential: 0.0 };
+    let power = |supplied| ropewalk_core::Power { supplied, ..ropewalk_core::Power::zero() };
+    let mut audit = ropewalk_core::Audit::start(energy(0.0));
+    audit.add(1.0, energy(1.0), power(1.0), power(1.0));
+    assert!(!audit.is_blind(0.0), "{audit:?}");
+    // twice as much again from nowhere, between powers that swing by a hundred times that
+    let mut swinging = audit;
+    swinging.add(1.0, energy(3.0), power(-100.0), power(100.0));
+    assert!(swinging.is_blind(0.0), "{swinging:?}");
+    assert_eq!(swinging.created(0.0), ropewalk_core::Created::None);
+    // the same between powers that don't is no blindness: energy was made
+    audit.add(1.0, energy(3.0), power(0.0), power(0.0));
+    assert!(!audit.is_blind(0.0), "{audit:?}");
+}

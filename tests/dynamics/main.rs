@@ -21,6 +21,7 @@ mod inputs;
 mod invariance;
 mod joints;
 mod linearise;
+mod memory;
 mod motions;
 mod pendulums;
 mod radau;

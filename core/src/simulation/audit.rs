@@ -104,6 +104,14 @@ impl Audit {
             _ => Created::Most,
         }
     }
+    /// Whether the balance is off by so much that only the coarseness of its own integration may explain it: then it tells
+    /// nothing. `noise` is energy that doesn't count [J].
+    pub fn is_blind(&self, noise: f64) -> bool {
+        let off = self.imbalance();
+        off > RUNAWAY * self.scale
+            && off > NOTHING * self.size + noise
+            && self.created(noise) == Created::None
+    }
     /// What the balance misses: energy gained beyond what was supplied and not dissipated [J]. Numerical damping
     /// makes it negative.
     pub fn imbalance(&self) -> f64 {

@@ -2,7 +2,8 @@
 //!
 //! Error control lets the errors of steps add up to the tolerance over a horizon: the length of the run, unless it is given.
 //! Time in which steps err by next to nothing doesn't count: what moves for ten seconds after an hour at rest has the
-//! tolerance for these ten seconds.
+//! tolerance for these ten seconds. And a motion that forgets its errors, such as that of a line which drag damps, adds them
+//! up no longer than it remembers them: how long is [measured](super::look) in runs long enough to gain by it.
 
 use super::Simulation;
 use crate::solve::integrator::{StepReport, Stepping};
@@ -11,26 +12,80 @@ use crate::solve::integrator::{StepReport, Stepping};
 const NOTHING: f64 = 1e-2;
 /// Least part of the run that errors are taken to add up over.
 const LEAST: f64 = 1e-3;
+/// Steps after which memory is first measured: the start lies behind.
+const FIRST: u64 = 64;
+/// How many times as many steps later it is measured again, where errors were forgotten and where they were not.
+const AGAIN: [u64; 2] = [4, 32];
+/// Steps that a run takes at least in which measuring pays.
+const WORTH: f64 = 1000.0;
+/// Steps of a measurement, in parts of those of the run.
+const SHARE: f64 = 1.0 / 40.0;
+/// Between which parts of the run it is measured.
+const BETWEEN: [f64; 2] = [0.02, 0.5];
+/// Over how many times the time that the motion remembers errors are taken to add up.
+const SAFE: f64 = 3.0;
 
 /// The time over which errors add up.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Memory {
+    /// When the run began [s].
+    began: f64,
     /// How long the run is to be [s].
-    whole: f64,
+    pub whole: f64,
     /// Time in which steps erred by next to nothing [s].
     rest: f64,
+    /// How long the motion remembers an error, if it was seen to forget [s].
+    forgets: Option<f64>,
+    /// Steps of the run at which that is measured next.
+    next: u64,
+}
+
+/// How a motion treats an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Remembers {
+    /// It forgets: what is left of an error adds up to the error itself times this [s].
+    For(f64),
+    /// Not forgotten as long as it was looked at.
+    Longer,
+    /// It doesn't fade at all.
+    Always,
 }
 
 impl Memory {
-    /// Of a run of this length [s].
-    pub fn new(whole: f64) -> Self {
-        Memory { whole, rest: 0.0 }
+    /// Of a run of this length from time `began` [s].
+    pub fn new(began: f64, whole: f64) -> Self {
+        Memory { began, whole, rest: 0.0, forgets: None, next: FIRST }
     }
 
     /// The horizon of error control [s].
     pub fn horizon(&self) -> f64 {
-        (self.whole - self.rest).max(LEAST * self.whole)
+        let moving = (self.whole - self.rest).max(LEAST * self.whole);
+        self.forgets.map_or(moving, |memory| moving.min(SAFE * memory))
+    }
+
+    /// When the run is to end [s].
+    pub fn end(&self) -> f64 {
+        self.began + self.whole
+    }
+
+    /// Steps that a measurement may take now: none if it isn't worth one.
+    fn due(&self, t: f64, steps: u64) -> Option<u64> {
+        let past = t - self.began;
+        let expected = steps as f64 * self.whole / past;
+        let midst = past >= BETWEEN[0] * self.whole && past <= BETWEEN[1] * self.whole;
+        let due = steps >= self.next && expected >= WORTH && midst;
+        due.then_some((SHARE * expected) as u64)
+    }
+
+    /// Notes what was measured after so many steps.
+    fn note(&mut self, found: Remembers, steps: u64) {
+        self.forgets = if let Remembers::For(memory) = found { Some(memory) } else { None };
+        self.next = match found {
+            Remembers::For(_) => AGAIN[0] * steps,
+            Remembers::Longer => AGAIN[1] * steps,
+            Remembers::Always => u64::MAX,
+        };
     }
 }
 
@@ -39,9 +94,17 @@ impl Simulation {
     pub(super) fn remember(&mut self, report: &StepReport) {
         let options = self.integrator.options();
         let chosen = options.horizon == 0.0 && matches!(options.stepping, Stepping::Controlled { .. });
-        if chosen && report.error < NOTHING {
-            self.memory.rest += report.h;
-            self.integrator.set_horizon(self.memory.horizon());
+        if !chosen {
+            return;
         }
+        if report.error < NOTHING {
+            self.memory.rest += report.h;
+        }
+        let steps = self.work.counts.steps;
+        if let Some(most) = self.memory.due(self.state.t, steps) {
+            let found = self.measure_memory(most);
+            self.memory.note(found, steps);
+        }
+        self.integrator.set_horizon(self.memory.horizon());
     }
 }

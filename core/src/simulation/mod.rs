@@ -8,6 +8,7 @@ mod events;
 mod forces;
 mod inputs;
 pub mod layers;
+mod look;
 mod memory;
 pub mod record;
 mod stepping;
@@ -164,7 +165,7 @@ impl Simulation {
         let audit = Audit::start(model.energy(&state.at()));
         let power = model.power(&state.at(), &state.lambda);
         let (previous, scratch) = (state.clone(), state.clone());
-        let memory = Memory::new(integrator.horizon());
+        let memory = Memory::new(state.t, integrator.horizon());
         let events =
             model.events().iter().map(|e| (e.clone(), at_start(e.as_ref(), &model, &state))).collect();
         let controlling = inputs::at_start(&model);

@@ -136,6 +136,13 @@ impl Simulation {
                      in, of {all:.1e} J that came up in all. What follows can't be trusted; take {remedy}"
                 ));
             }
+            _ if t >= end && self.created.is_none() && self.audit.is_blind(noise) => {
+                observer.warn(&format!(
+                    "the balance of energy is off by {gained:.1e} J of {all:.1e} J: from step to step the power of loads, \
+                     motions and damping changes too much for it to tell whether energy appeared from nowhere. Take {remedy}, \
+                     and a finer mesh or some damping where something snaps or rings"
+                ));
+            }
             _ => {}
         }
         Ok(())

@@ -127,7 +127,8 @@ pub struct Options {
         )
     )]
     pub h_start: Option<f64>,
-    /// Time over which step errors accumulate [s]. 0 means the whole run, without the time in which errors are negligible.
+    /// Time over which step errors accumulate [s]. 0 means the whole run, without the time in which errors are negligible,
+    /// or three times as long as the motion was measured to remember an error, if that is shorter.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "ropewalk_quantity::time"))]
     pub horizon: f64,
     /// Project an inconsistent start onto the constraints, however far away it is.
