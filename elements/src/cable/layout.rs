@@ -167,7 +167,7 @@ impl Layout {
     /// the same all along.
     pub fn holds(&self) -> [usize; 2] {
         let all = || (1..self.of.len()).filter(|&k| self.changes_at(k));
-        [all().next().unwrap_or(self.of.len()), all().last().unwrap_or(0)]
+        [all().next().unwrap_or(self.of.len()), all().next_back().unwrap_or(0)]
     }
 
     /// Where it is spliced.
