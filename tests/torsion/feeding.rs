@@ -64,7 +64,8 @@ fn a_coil_brings_a_turn_per_wrap() {
 #[test]
 fn twist_goes_along_with_what_is_reeled_in() {
     for grip in [0.5, 20.0] {
-        let h = run(include_str!("through.toml"), &[format!("grip={grip} N m s/rad")]);
+        let (text, set) = (include_str!("through.toml"), [format!("grip={grip} N m s/rad")]);
+        let h = run(text, &set);
         let torque = h.column("wire@50%.torque").expect("torque");
         let (gj, v, l, inflow) = (0.05, 0.5, 1.0, TAU / 2.0);
         let rate = (v + gj / grip) / l;
@@ -74,10 +75,16 @@ fn twist_goes_along_with_what_is_reeled_in() {
             let off = torque[k] / gj - (last + (2.0 - last) * (-rate * t).exp());
             worst = if off.abs() <= worst { worst } else { off.abs() };
         }
-        let energy = h.summary().energy;
-        println!("{grip}: {worst:.1e}, {energy:?}");
+        println!("{grip}: {worst:.1e}");
         assert!(worst < 1e-5, "{grip}: {worst}");
-        assert!(energy.imbalance.abs() < 1e-4 && (grip > 1.0 || energy.dissipated > 1e-3), "{energy:?}");
+        // what slips in the grip is part of the balance; it begins with a jump, which costs an order
+        let energy = [0.02, 0.00125].map(|h| {
+            let text = text.replace("controlled = { tolerance = 1e-6 }", &format!("fixed = {{ h = {h} }}"));
+            run(&text, &set).summary().energy
+        });
+        println!("{energy:?}");
+        let [coarse, fine] = energy.map(|e| e.imbalance.abs());
+        assert!(fine < 2e-5 && coarse > 8.0 * fine && energy[1].dissipated > 1e-3, "{energy:?}");
     }
 }
 

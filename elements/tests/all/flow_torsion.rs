@@ -31,11 +31,12 @@ const TWO: Embedding<2> = Embedding { fixed: [0.02, 0.1], by: [[0.8, 0.35], [0.2
 const COIL: Embedding<1> = Embedding { fixed: [0.3, 0.0], by: [[1.7, 0.0]] };
 const COILS: Embedding<2> = Embedding { fixed: [0.3, -0.1], by: [[1.7, 0.0], [0.0, -2.1]] };
 
+/// With inertia and grip, or with elasticity and damping alone.
 fn terms(rho_j: f64) -> Vec<(usize, Box<dyn Term>)> {
-    let one =
-        FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: ONE, turns: COIL, grip: [0.6, 0.0] };
+    let g = 0.6 * rho_j;
+    let one = FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: ONE, turns: COIL, grip: [g, 0.0] };
     let two =
-        FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: TWO, turns: COILS, grip: [0.6, 0.9] };
+        FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: TWO, turns: COILS, grip: [g, 1.5 * g] };
     vec![(1, pool(one, 1)), (2, pool(two, 2))]
 }
 
@@ -65,7 +66,7 @@ fn tangents_are_derivatives() {
     }
 }
 
-/// Inertia apart: its spins don't follow from a potential, and have no part in what tangents leave out.
+/// Inertia and grip apart: they don't follow from a potential, and have no part in what tangents leave out.
 #[test]
 fn tangents_of_inertia_are_derivatives() {
     for q in states() {
