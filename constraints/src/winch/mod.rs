@@ -11,11 +11,13 @@ mod pull;
 mod spec;
 mod zone;
 
+pub(crate) use drive::Drive;
 pub use eyelet::EyeletSpec;
 pub use feeding::Feeding;
 pub use lift_off::{LiftOff, LiftOffSpec};
 pub use limit::{Limit, Side};
 pub use peel::Peel;
 pub use pull::Pull;
+pub(crate) use spec::resisting;
 pub use spec::WinchSpec;
 pub use zone::Zone;
