@@ -20,6 +20,9 @@ use std::sync::Arc;
 /// Turns that stay on a drum when it is empty.
 const DEAD: f64 = 3.0;
 
+/// Difference of stretch that is told.
+const STRETCH: f64 = 0.005;
+
 /// A drum on which an end of a cable is wound that names it in its `route`.
 ///
 /// The cable leaves it as a tangent, wherever it goes to, and is wound without slip. The drum pays out as it turns by the
@@ -84,8 +87,9 @@ pub struct DrumSpec {
     /// without inertia.
     #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
     pub wound: Option<f64>,
-    /// Tension with which that was wound [N], which tells its stretch; what is wound later has the same. Default: the tension
-    /// at which the cable is laid.
+    /// Tension with which that was wound [N], which tells its stretch; what is wound later has the same. The tension of the
+    /// free cable may differ from it by little beside its stiffness: the share of its stretch is the error. Default: the
+    /// tension at which the cable is laid.
     #[serde(default, deserialize_with = "quantity::optional::force", skip_serializing_if = "Option::is_none")]
     pub wound_tension: Option<f64>,
     /// Way of the cable along the axis in a turn [m]; usually its diameter. It winds towards the axis first. Default: none,
@@ -376,7 +380,7 @@ impl ConstraintSpec for DrumSpec {
         let shared = Arc::new(shaft.clone());
         let empty = self.wound.map(|_| What::Empty(DEAD * TAU));
         let full = self.layers.zip(helix.turns).map(|(n, turns)| What::Full(TAU * turns * n as f64));
-        for what in [empty, full, Some(What::Fleet(self.fleet))].into_iter().flatten() {
+        for what in [empty, full, Some(What::Fleet(self.fleet)), Some(What::Stretch(STRETCH))].into_iter().flatten() {
             b.event(Watch { what, drum: shared.clone() });
         }
         let free = b.parts(std::slice::from_ref(&end.span))?[0].1.length();
