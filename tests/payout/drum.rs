@@ -110,7 +110,8 @@ fn a_heavy_elastic_rope_hangs_from_a_drum_over_a_sheave() {
     for back in [false, true] {
         let drum = "{ wound = \"drum\" }";
         let load = "{ end = [0.4, 0, -38.7] }";
-        let (ends, way, axis) = if back { ([load, drum], "start", "[0, -1, 0]") } else { ([drum, load], "end", "[0, -1, 0]") };
+        let (ends, way, axis) =
+            if back { ([load, drum], "start", "[0, -1, 0]") } else { ([drum, load], "end", "[0, -1, 0]") };
         let scene = format!(
             r#"
             run = {{ analysis = "statics" }}
@@ -155,7 +156,8 @@ fn a_heavy_elastic_rope_hangs_from_a_drum_over_a_sheave() {
             number(&exact["tension_at_drum"])
         );
         let history = run(&scene);
-        let depth = -last(&history, &format!("rope.{way}.z")) / number(&exact["depth_below_sheave_centre"]) - 1.0;
+        let depth =
+            -last(&history, &format!("rope.{way}.z")) / number(&exact["depth_below_sheave_centre"]) - 1.0;
         assert!(depth.abs() <= 1e-5, "{depth}");
         let tension = last(&history, "drum.torque") / 0.5 / number(&exact["tension_at_drum"]) - 1.0;
         assert!(tension.abs() <= 1e-5, "{tension}");
@@ -254,7 +256,8 @@ fn a_brake_stops_a_drum_and_a_motor_hoists() {
     // the motor pulls with 1.5 times the weight: a = 0.5 g m / (m + J/R^2)
     let (inertia, radius) = (0.4, 0.3_f64);
     let drum = format!("inertia = {inertia}\ntorque = {}", -1.5 * weight * radius);
-    let history = run(&hanging("duration = 0.5, output = 0.1", &drum, "[0, 1, 0]", 60.0, [0.3, 0.0, -2.0], 5.0));
+    let history =
+        run(&hanging("duration = 0.5, output = 0.1", &drum, "[0, 1, 0]", 60.0, [0.3, 0.0, -2.0], 5.0));
     let a = -0.5 * weight / (5.0 + inertia / radius.powi(2));
     let off = last(&history, "drum.payout") - 0.5 * a * 0.25;
     assert!(off.abs() <= 1e-3, "{off} m");
@@ -262,7 +265,8 @@ fn a_brake_stops_a_drum_and_a_motor_hoists() {
     assert!(off <= 1e-3, "{off} of the work is unaccounted for");
     // a brake of twice the weight holds it, but for its creep
     let drum = format!("inertia = {inertia}\nbrake = {}", 2.0 * weight * radius);
-    let history = run(&hanging("duration = 0.5, output = 0.1", &drum, "[0, 1, 0]", weight, [0.3, 0.0, -2.0], 5.0));
+    let history =
+        run(&hanging("duration = 0.5, output = 0.1", &drum, "[0, 1, 0]", weight, [0.3, 0.0, -2.0], 5.0));
     let creep = 1e-3 / 3.0_f64.sqrt() * 0.5;
     let off = last(&history, "drum.payout") - creep;
     assert!(off.abs() <= 0.1 * creep, "{off} m");
@@ -285,7 +289,8 @@ fn a_rope_climbs_to_the_next_layer_and_energy_is_kept() {
 #[test]
 fn a_drum_stops_when_it_is_empty_or_full() {
     let scene = |speed: f64, wound: f64| {
-        let drum = format!("speed = {speed}\nramp = 0.5\nwidth = 0.1\npitch = 0.02\nwound = {wound}\nlayers = 2");
+        let drum =
+            format!("speed = {speed}\nramp = 0.5\nwidth = 0.1\npitch = 0.02\nwound = {wound}\nlayers = 2");
         hanging("duration = 10, output = 0.5", &drum, "[0, 1, 0]", 49.0, [0.32, -0.03, -20.0], 5.0)
     };
     let tau = std::f64::consts::TAU;
@@ -299,8 +304,7 @@ fn a_drum_stops_when_it_is_empty_or_full() {
 
 #[test]
 fn what_cannot_be_wound_is_refused_with_its_reason() {
-    let scene =
-        |drum: &str| hanging("duration = 1", drum, "[0, 1, 0]", 45.0, [0.9, 0.0, -1.4], 5.0);
+    let scene = |drum: &str| hanging("duration = 1", drum, "[0, 1, 0]", 45.0, [0.9, 0.0, -1.4], 5.0);
     let good = scene("speed = 0.5");
     let cases = [
         (scene(""), "a drum needs `speed` or `turn`"),
@@ -310,9 +314,15 @@ fn what_cannot_be_wound_is_refused_with_its_reason() {
         (scene("speed = 1\nwound = 2"), "turns stay on an empty drum"),
         (scene("speed = 1\nlayers = 2"), "give the `width`"),
         (scene("torque = 1\nstop = 2"), "this drum has none"),
-        (good.replace("{ wound = \"drum\" }", "{ over = \"drum\" }"), "begins and ends with `end` or `wound`"),
+        (
+            good.replace("{ wound = \"drum\" }", "{ over = \"drum\" }"),
+            "begins and ends with `end` or `wound`",
+        ),
         (good.replace("{ wound = \"drum\" }", "{ wound = \"drun\" }"), "`drun`"),
-        (good.replace("{ wound = \"drum\" }, ", "{ end = [0, 0, 0] }, { over = \"drum\" }, "), "`drum` is a drum"),
+        (
+            good.replace("{ wound = \"drum\" }, ", "{ end = [0, 0, 0] }, { over = \"drum\" }, "),
+            "`drum` is a drum",
+        ),
         (good.replace("{ wound = \"drum\" }, ", "{ end = [0, 0, 0] }, "), "begins and ends"),
         (good.replace("radius = 0.3", "radius = -0.3"), "radius"),
         (good.replace("radius = 0.3", "radius = 3"), "lies within the wheel"),
@@ -400,7 +410,9 @@ fn the_tangent_of_a_drum_is_the_derivative_of_its_forces() {
     let model = read(CARRIED).build().unwrap_or_else(|e| panic!("{e}"));
     let drum = model.terms().iter().find(|t| t.label() == "drum").expect("the drum");
     let state = model.state();
-    let some = |size: f64, k: f64| -> Vec<f64> { (0..state.v.len()).map(|i| size * (k * (i as f64 + 1.0)).sin()).collect() };
+    let some = |size: f64, k: f64| -> Vec<f64> {
+        (0..state.v.len()).map(|i| size * (k * (i as f64 + 1.0)).sin()).collect()
+    };
     let (v, a) = (some(1.0, 1.3), some(5.0, 2.7));
     let mut q = state.q.clone();
     retract(model.nodes(), &state.q, &some(0.01, 0.9), &mut q);

@@ -18,6 +18,6 @@ pub use lift_off::{LiftOff, LiftOffSpec};
 pub use limit::{Limit, Side};
 pub use peel::Peel;
 pub use pull::Pull;
-pub(crate) use spec::resisting;
 pub use spec::WinchSpec;
+pub(crate) use spec::resisting;
 pub use zone::Zone;

@@ -34,7 +34,9 @@ impl Event for Watch {
             What::Full(_) => format!("`{name}` is full: cable lies in all its layers"),
             What::Fleet(most) => {
                 let degrees = most.to_degrees();
-                format!("the cable arrives at `{name}` by more than {degrees:.3} degrees from the side: it winds badly")
+                format!(
+                    "the cable arrives at `{name}` by more than {degrees:.3} degrees from the side: it winds badly"
+                )
             }
             What::Stretch(most) => {
                 let percent = 100.0 * most;

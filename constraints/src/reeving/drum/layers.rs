@@ -49,11 +49,7 @@ impl Layers {
     pub fn at<S: Jet>(&self, angle: S) -> Wound<S> {
         let travel = self.pitch / TAU;
         let Some(turns) = self.turns else {
-            return Wound {
-                x: angle * travel,
-                radius: S::from(self.radius),
-                length: angle * self.radius,
-            };
+            return Wound { x: angle * travel, radius: S::from(self.radius), length: angle * self.radius };
         };
         let k = self.number(angle.re());
         let (whole, _) = self.layer(k);
@@ -112,7 +108,8 @@ impl Layers {
             let (n, climb) = (32, stop - bend);
             for i in 0..=n {
                 let weight = if i == 0 || i == n { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
-                let r = self.at((bend + climb * f64::from(i) / f64::from(n)).min(start + whole * (1.0 - 1e-14)));
+                let r =
+                    self.at((bend + climb * f64::from(i) / f64::from(n)).min(start + whole * (1.0 - 1e-14)));
                 sum += weight * r.radius.powi(3) * climb / (3.0 * f64::from(n));
             }
             k += 1.0;
@@ -144,8 +141,7 @@ mod tests {
         for layer in [1.0, 2.0] {
             let joint = TAU * 5.5 * layer;
             for at in [joint, joint - PI] {
-                let [a, b] =
-                    [-1e-9, 1e-9].map(|d| DRUM.at(Dual2_64::new(at + d, 1.0, 0.0)));
+                let [a, b] = [-1e-9, 1e-9].map(|d| DRUM.at(Dual2_64::new(at + d, 1.0, 0.0)));
                 for (a, b) in [(a.x, b.x), (a.radius, b.radius), (a.length, b.length)] {
                     let off = (a.re - b.re).abs() + (a.v1 - b.v1).abs() + (a.v2 - b.v2).abs();
                     assert!(off <= 1e-8, "{off} at {at} rad");

@@ -80,9 +80,7 @@ impl Shaft {
     pub fn fleet(&self, at: &At<'_>) -> f64 {
         let slope: V3<f64> = std::array::from_fn(|i| at.q[self.boundary.end_q + 3 + i]);
         let axis = match self.on {
-            Some((q, _)) => {
-                times(&matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]), &self.axis)
-            }
+            Some((q, _)) => times(&matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]), &self.axis),
             None => self.axis,
         };
         // the free cable goes on against the slope where it ends on the drum
@@ -105,7 +103,15 @@ impl Shaft {
     }
 
     /// Residual of its unknowns after the increment `p` of the material coordinate.
-    fn eval<S: Jet>(&self, free: &Free, at: &At<'_>, rope: [f64; 2], p: S, v: &[S; MOST], a: &[S; MOST]) -> [S; MOST] {
+    fn eval<S: Jet>(
+        &self,
+        free: &Free,
+        at: &At<'_>,
+        rope: [f64; 2],
+        p: S,
+        v: &[S; MOST],
+        a: &[S; MOST],
+    ) -> [S; MOST] {
         let inertia = -p * (self.boundary.sign * rope[1]) + (free.inertia + rope[0]);
         let own = self.axis.map(S::from);
         let along = |x: &[S; MOST]| x[2] * own[0] + x[3] * own[1] + x[4] * own[2];
@@ -220,7 +226,13 @@ impl Shows for Shaft {
         let lies = self.layers.at(Dual64::new(angle, 1.0));
         let [turned, rate] = self.turned(at);
         out.extend([turned, rate, self.boundary.fed(at), lies.length.re / self.stretch]);
-        out.extend([self.layers.number(angle) + 1.0, lies.radius.re, self.fleet(at), lies.x.eps, lies.radius.eps]);
+        out.extend([
+            self.layers.number(angle) + 1.0,
+            lies.radius.re,
+            self.fleet(at),
+            lies.x.eps,
+            lies.radius.eps,
+        ]);
     }
     fn solids(&self) -> Vec<Solid> {
         vec![self.solid.clone()]

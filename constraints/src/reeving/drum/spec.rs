@@ -58,7 +58,11 @@ pub struct DrumSpec {
     #[serde(default, deserialize_with = "quantity::optional::time", skip_serializing_if = "Option::is_none")]
     pub stop: Option<f64>,
     /// Length paid out when it stops [m], with the sign of the speed, instead of `stop`.
-    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub payout: Option<f64>,
     /// Name of a motion whose x component is the angle of the drum [rad], instead of `speed`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -85,12 +89,20 @@ pub struct DrumSpec {
     pub inertia: f64,
     /// Length of cable on it at the start, as it lies [m]. The run ends when 3 turns are left. Default: unlimited, and
     /// without inertia.
-    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub wound: Option<f64>,
     /// Tension with which that was wound [N], which tells its stretch; what is wound later has the same. The tension of the
     /// free cable may differ from it by little beside its stiffness: the share of its stretch is the error. Default: the
     /// tension at which the cable is laid.
-    #[serde(default, deserialize_with = "quantity::optional::force", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::force",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub wound_tension: Option<f64>,
     /// Way of the cable along the axis in a turn [m]; usually its diameter. It winds towards the axis first. Default: none,
     /// as behind a device that keeps it in the middle.
@@ -98,11 +110,19 @@ pub struct DrumSpec {
     pub pitch: f64,
     /// Width between the flanges [m]: the cable is wound in layers. Goes with `pitch` and `wound`. Default: one layer of any
     /// width, which begins at `marker`.
-    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub width: Option<f64>,
     /// Height of a layer on the one below [m]. Default: 0.866 `pitch`, that of cables that lie in the grooves of the layer
     /// below.
-    #[serde(default, deserialize_with = "quantity::optional::length", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::length",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub layer_height: Option<f64>,
     /// Number of layers; the run ends when they are full. Default: any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -228,8 +248,9 @@ impl DrumSpec {
             let angle = self.angle();
             if angle <= DEAD * TAU {
                 let least = self.helix().at(DEAD * TAU).length;
-                let message =
-                    format!("{DEAD} turns stay on an empty drum, {least:.3} m: it needs more on it at the start");
+                let message = format!(
+                    "{DEAD} turns stay on an empty drum, {least:.3} m: it needs more on it at the start"
+                );
                 return Err(BuildError::at("wound", message));
             }
             let number = self.helix().number(angle) + 1.0;
@@ -380,11 +401,16 @@ impl ConstraintSpec for DrumSpec {
         let shared = Arc::new(shaft.clone());
         let empty = self.wound.map(|_| What::Empty(DEAD * TAU));
         let full = self.layers.zip(helix.turns).map(|(n, turns)| What::Full(TAU * turns * n as f64));
-        for what in [empty, full, Some(What::Fleet(self.fleet)), Some(What::Stretch(STRETCH))].into_iter().flatten() {
+        for what in
+            [empty, full, Some(What::Fleet(self.fleet)), Some(What::Stretch(STRETCH))].into_iter().flatten()
+        {
             b.event(Watch { what, drum: shared.clone() });
         }
         let free = b.parts(std::slice::from_ref(&end.span))?[0].1.length();
-        b.event(Short { span: end.span.clone(), length: (0.05 * free).max(0.5 * self.radius).min(0.5 * free) });
+        b.event(Short {
+            span: end.span.clone(),
+            length: (0.05 * free).max(0.5 * self.radius).min(0.5 * free),
+        });
         b.term(Box::new(shaft));
         Ok(())
     }

@@ -130,9 +130,14 @@ impl CableSpec {
                 );
             }
             match (matches!(waypoint, Waypoint::Wound(_)), guide.winds) {
-                (true, false) => return at(k, format!("`{name}` is no drum, so nothing can be `wound` on it")),
+                (true, false) => {
+                    return at(k, format!("`{name}` is no drum, so nothing can be `wound` on it"));
+                }
                 (false, true) => {
-                    return at(k, format!("`{name}` is a drum: the cable ends there, `{{ wound = \"{name}\" }}`"));
+                    return at(
+                        k,
+                        format!("`{name}` is a drum: the cable ends there, `{{ wound = \"{name}\" }}`"),
+                    );
                 }
                 _ => {}
             }
