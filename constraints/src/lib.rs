@@ -47,7 +47,7 @@ pub use prismatic::{
     CylindricalSpec, PointOnLineSpec, PointOnPlaneSpec, PrismaticSpec, cylindrical, point_on_line,
     point_on_plane, prismatic,
 };
-pub use reeving::{SheaveRecordSpec, SheaveSpec};
+pub use reeving::{DrumRecordSpec, DrumSpec, SheaveRecordSpec, SheaveSpec};
 pub use revolute::{RevoluteSpec, revolute};
 pub use spherical::{SphericalSpec, spherical};
 pub use universal::{PerpendicularSpec, UniversalSpec, perpendicular, universal};

@@ -3,7 +3,7 @@
 use crate::inputs::Inputs;
 use crate::marker::{MarkerRef, split_marker};
 use crate::motions::{Motions, no_motion};
-use crate::reeving::{Guide, Passage};
+use crate::reeving::{Guide, Passage, Winding};
 use crate::scene::GRAVITY;
 use crate::water::{Air, Water};
 use ropewalk_core::error::finite;
@@ -75,6 +75,8 @@ pub struct Builder {
     guides: BTreeMap<String, Guide>,
     /// Where they do.
     passages: Vec<Passage>,
+    /// Ends of cables that are wound on drums.
+    windings: Vec<Winding>,
     /// Cables with a route, whose spans are named `NAME.1`, `NAME.2`, …
     routes: HashSet<String>,
     /// The parts that have weight, all of them if one list is empty.
@@ -320,7 +322,10 @@ impl Builder {
     }
 
     /// Notes that material flows through an end of a part, by a constraint of this name.
-    pub(crate) fn feed(&mut self, name: &str, marker: &MarkerRef, feed: Feed) -> Result<(), BuildError> {
+    ///
+    /// # Errors
+    /// The marker is no end of a part, or something else pays out there.
+    pub fn feed(&mut self, name: &str, marker: &MarkerRef, feed: Feed) -> Result<(), BuildError> {
         let (part, end) = end_of(marker)?;
         match self.feeds.entry(part.to_string()).or_default()[end].replace((feed, name.to_string())) {
             None => Ok(()),
@@ -513,6 +518,16 @@ impl Builder {
     /// Where cables pass a guide.
     pub fn passages(&self, guide: &str) -> Vec<Passage> {
         self.passages.iter().filter(|p| p.guide == guide).cloned().collect()
+    }
+
+    /// Notes that an end of a cable is wound on a drum.
+    pub fn winding(&mut self, winding: Winding) {
+        self.windings.push(winding);
+    }
+
+    /// The ends of cables that are wound on a drum.
+    pub fn windings(&self, guide: &str) -> Vec<Winding> {
+        self.windings.iter().filter(|w| w.guide == guide).cloned().collect()
     }
 
     pub(crate) fn weigh(&mut self, on: &[String]) {

@@ -33,7 +33,7 @@ pub use document::{
 pub use inputs::{InputSpec, Inputs};
 pub use marker::{MarkerRef, split_marker};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};
-pub use reeving::{Guide, Passage, Strand};
+pub use reeving::{Guide, Passage, Strand, Winding};
 pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, RangeSpec, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use scene_file::{Bundled, SceneFile, SceneText};

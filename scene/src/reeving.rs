@@ -7,7 +7,7 @@
 use crate::marker::MarkerRef;
 use ropewalk_core::{Marker, MovingBoundary, V3};
 
-/// What a cable can run over or through: a wheel, or a ring.
+/// What a cable can run over, through or onto: a wheel, a ring, or a drum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide {
     /// Name by which a route asks for it.
@@ -20,6 +20,8 @@ pub struct Guide {
     pub axis: V3<f64>,
     /// Radius of a wheel to the middle of the cable [m]; 0 of a ring.
     pub radius: f64,
+    /// Whether cable ends on it and is wound, as on a drum that pays out as it turns about its axis.
+    pub winds: bool,
 }
 
 /// What runs over a wheel, per unstretched length.
@@ -54,6 +56,25 @@ pub struct Passage {
     pub radius: f64,
     /// Unstretched length between the spans at the start [m].
     pub stored: f64,
+    /// What it is made of.
+    pub strand: Strand,
+}
+
+/// An end of a cable that is wound on a drum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Winding {
+    /// The drum.
+    pub guide: String,
+    /// The cable, and the span at this end.
+    pub cable: String,
+    /// See [`Winding::cable`].
+    pub span: String,
+    /// The end of the span.
+    pub boundary: MovingBoundary,
+    /// The middle of the drum.
+    pub marker: Marker,
+    /// Stretch of the cable at the start.
+    pub stretch: f64,
     /// What it is made of.
     pub strand: Strand,
 }

@@ -35,7 +35,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("pin", &["revolute", "break"]),
     ("pipe", &["cable", "internal_flow"]),
     ("pulley", &["sheave"]),
-    ("reeving", &["sheave", "ring", "cable"]),
+    ("reeving", &["sheave", "ring", "drum", "cable"]),
     ("riser", &["cable"]),
     ("rod", &["cable", "distance"]),
     ("rope", &["cable"]),

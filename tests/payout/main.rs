@@ -7,6 +7,7 @@ mod program;
 
 mod arc;
 mod births;
+mod drum;
 mod eyelet;
 mod reeling;
 mod reeving;

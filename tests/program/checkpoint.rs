@@ -1,6 +1,8 @@
 //! Checkpoints: what goes on from one is to the last bit what never stopped, and a killed run loses nothing else.
 
 use crate::program::{program, run};
+use ropewalk::SceneFile;
+use ropewalk::scene::Format;
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::{Checkpoint, End, Model, Observer, Sample, Simulation, State, Unfit};
 use ropewalk_scene::Scene;
@@ -107,6 +109,41 @@ fn vehicle_whose_pin_shears_goes_on_to_the_last_bit() {
 #[test]
 fn ropes_over_wheels_go_on_to_the_last_bit() {
     let scene = bundled("four-falls", 1.5);
+    same_from_checkpoint(&scene, &scene.solver, 20, 4);
+}
+
+#[test]
+fn drum_that_its_motor_turns_goes_on_to_the_last_bit() {
+    let text = r#"
+        run = { duration = 1, output = 0.1 }
+        [[elements]]
+        type = "cable"
+        name = "rope"
+        section = { mass = 0.2, ea = "1 MN", axial_retardation_time = "5 ms" }
+        tension = 49
+        route = [{ wound = "drum" }, { end = [0.9, 0, -2] }]
+        [[elements]]
+        type = "point_mass"
+        name = "load"
+        marker = "rope.end"
+        mass = 5
+        [[constraints]]
+        type = "drum"
+        name = "drum"
+        marker = [0, 0, 0]
+        axis = [0, 1, 0]
+        radius = 0.3
+        torque = -20
+        inertia = 0.5
+        brake = 2
+        wound = 30
+        pitch = 0.02
+        width = 0.2
+        [[forces]]
+        type = "gravity"
+    "#;
+    let file = SceneFile::parse(text, "drum", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let scene = file.into_scene();
     same_from_checkpoint(&scene, &scene.solver, 20, 4);
 }
 

@@ -6,6 +6,7 @@
 //! is on the wheel or in the next.
 
 mod arc;
+mod drum;
 mod events;
 mod record;
 mod ring;
@@ -14,6 +15,7 @@ mod spec;
 mod tangent;
 
 pub use arc::{Arc, End, Grip, Instant, Residual, Wheel, direction};
+pub use drum::{DrumRecordSpec, DrumSpec};
 pub use record::SheaveRecordSpec;
 pub use ring::RingSpec;
 pub use spec::{BearingSpec, SheaveSpec};

@@ -51,7 +51,7 @@ impl ConstraintSpec for RingSpec {
     }
     fn guides(&self) -> Vec<Guide> {
         let (name, marker) = (self.name.clone(), self.marker.clone());
-        vec![Guide { name, marker, beside: 0.0, axis: [0.0, 0.0, 1.0], radius: 0.0 }]
+        vec![Guide { name, marker, beside: 0.0, axis: [0.0, 0.0, 1.0], radius: 0.0, winds: false }]
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         not_negative("friction", self.friction)?;

@@ -301,6 +301,7 @@ impl ConstraintSpec for SheaveSpec {
             beside,
             axis: self.axis,
             radius: self.radius,
+            winds: false,
         };
         self.wheels().into_iter().map(guide).collect()
     }

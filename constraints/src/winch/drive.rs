@@ -9,7 +9,7 @@ use ropewalk_scene::quantity::{Setting, kind};
 use std::sync::Arc;
 
 /// What moves cable through an end.
-pub(super) enum Drive {
+pub(crate) enum Drive {
     /// The payout length follows a motion.
     Motion(Arc<dyn Motion>),
     /// The tension of the cable, against what holds it back.
@@ -90,7 +90,7 @@ impl WinchSpec {
     ///
     /// # Errors
     /// Nothing does, or too much; a course that can't be run.
-    pub(super) fn drive(&self, b: &Builder, whole: f64) -> Result<Drive, BuildError> {
+    pub(crate) fn drive(&self, b: &Builder, whole: f64) -> Result<Drive, BuildError> {
         let free =
             self.tension.is_some() || !self.brake.is(0.0) || !self.damping.is(0.0) || self.inertia != 0.0;
         match (&self.speed, &self.motion) {

@@ -11,6 +11,7 @@ mod pull;
 mod spec;
 mod zone;
 
+pub(crate) use drive::Drive;
 pub use eyelet::EyeletSpec;
 pub use feeding::Feeding;
 pub use lift_off::{LiftOff, LiftOffSpec};
@@ -18,4 +19,5 @@ pub use limit::{Limit, Side};
 pub use peel::Peel;
 pub use pull::Pull;
 pub use spec::WinchSpec;
+pub(crate) use spec::resisting;
 pub use zone::Zone;

@@ -138,7 +138,7 @@ pub struct WinchSpec {
 register_spec!(Constraint, "winch", WinchSpec);
 
 /// What resists can't push: an input needs `min = 0` or above.
-fn resisting(field: &str, signal: Signal) -> Result<Signal, BuildError> {
+pub(crate) fn resisting(field: &str, signal: Signal) -> Result<Signal, BuildError> {
     match &signal {
         Signal::Constant(x) => not_negative(field, *x).map(|_| signal),
         Signal::Input(input) if !(input.limits()[0] >= 0.0) => {
@@ -171,7 +171,7 @@ impl WinchSpec {
     pub fn tension(name: &str, marker: impl Into<MarkerRef>, tension: f64) -> Self {
         WinchSpec { tension: Some(tension.into()), ..Self::new(name, marker) }
     }
-    pub(super) fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
+    pub(crate) fn new(name: &str, marker: impl Into<MarkerRef>) -> Self {
         WinchSpec {
             name: name.into(),
             marker: marker.into(),

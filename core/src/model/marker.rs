@@ -102,7 +102,8 @@ impl Marker {
         };
         let q = &q[node.coords()];
         let moved = |i: usize| d(i) + q[i];
-        let x = [moved(0), moved(1), moved(2)];
+        // of plain numbers there may be less than three
+        let x = std::array::from_fn(|i| if i < q.len() { moved(i) } else { S::zero() });
         match node.kind {
             NodeKind::Point | NodeKind::Scalars(_) => Place { x, axes: axes.map(|a| a.map(S::from)) },
             NodeKind::Slope => {

@@ -104,6 +104,11 @@ impl Stop {
         }
     }
 
+    /// Whether a line may begin or end there this way round: a drum has one.
+    fn starts(&self, way: usize) -> bool {
+        way == 0 || !matches!(self, Stop::Wheel { side: Side::About, .. })
+    }
+
     /// Whether a line that arrives and leaves there runs over it as it is to, and its wrap.
     fn wraps(&self, way: usize, [arrives, leaves]: [&V3<f64>; 2]) -> Option<f64> {
         let Stop::Wheel { centre, radius, side, .. } = self else { return Some(0.0) };
@@ -140,7 +145,7 @@ fn tangent(from: &Placed, to: &Placed) -> Option<[V3<f64>; 2]> {
     Some([leaves, arrives])
 }
 
-/// The shortest line along a route of at least two stops, the first and last of which are points.
+/// The shortest line along a route of at least two stops, the first and last of which are points or drums.
 ///
 /// Between two wheels a taut line is their tangent, whatever lies beyond; so the ways round all wheels are found one
 /// after the other (Viterbi's algorithm).
@@ -159,7 +164,9 @@ pub fn lay(stops: &[Stop]) -> Result<Vec<Turn>, Fault> {
         for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let Some(next) = &tangents[k][a][b] else { continue };
             if k == 0 {
-                least[0][a][b] = (length(next), 0);
+                if stops[0].starts(a) {
+                    least[0][a][b] = (length(next), 0);
+                }
                 continue;
             }
             let radius = placed[k][a].radius;
@@ -177,9 +184,12 @@ pub fn lay(stops: &[Stop]) -> Result<Vec<Turn>, Fault> {
         }
     }
     let last = tangents.len() - 1;
-    let ways = [(0, 0), (0, 1), (1, 0), (1, 1)];
-    let best = ways.into_iter().min_by(|x, y| least[last][x.0][x.1].0.total_cmp(&least[last][y.0][y.1].0));
+    let ways = [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().filter(|way| stops[last + 1].starts(way.1));
+    let best = ways.min_by(|x, y| least[last][x.0][x.1].0.total_cmp(&least[last][y.0][y.1].0));
     let (mut a, mut b) = best.unwrap_or_default();
+    if least[last][a][b].0.is_infinite() {
+        return Err(fault(stops, &tangents, last));
+    }
     let mut way = vec![0; stops.len()];
     for k in (0..=last).rev() {
         way[k + 1] = b;

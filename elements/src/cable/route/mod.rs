@@ -12,8 +12,8 @@ pub use geometry::{Side, Stop, lay};
 use super::spec::CableSpec;
 use part::RoutePart;
 use ropewalk_core::error::finite;
-use ropewalk_core::{BuildError, Equation, Joint, Marker, Spot, V3, dot};
-use ropewalk_scene::{Builder, ElementSpec, Guide, MarkerRef, Passage, Strand};
+use ropewalk_core::{BuildError, Equation, Feed, Joint, Marker, Spot, V3, dot};
+use ropewalk_scene::{Builder, ElementSpec, Guide, MarkerRef, Passage, Strand, Winding};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -32,6 +32,8 @@ pub enum Waypoint {
     Round(String),
     /// Name of a ring that the cable runs through.
     Through(String),
+    /// Name of a drum on which the cable is wound, at an end of it.
+    Wound(String),
 }
 
 impl Waypoint {
@@ -42,7 +44,8 @@ impl Waypoint {
             Waypoint::Over(name)
             | Waypoint::Under(name)
             | Waypoint::Round(name)
-            | Waypoint::Through(name) => Some(name),
+            | Waypoint::Through(name)
+            | Waypoint::Wound(name) => Some(name),
         }
     }
 }
@@ -90,15 +93,21 @@ impl CableSpec {
             );
             return Err(BuildError::at("route", message));
         }
-        let ends = |w: Option<&Waypoint>| matches!(w, Some(Waypoint::End(_)));
+        let ends = |w: Option<&Waypoint>| matches!(w, Some(Waypoint::End(_) | Waypoint::Wound(_)));
         let inner = self.route.len().max(2) - 1;
-        if !ends(self.route.first()) || !ends(self.route.last()) || self.route.len() < 3 {
-            let message = "a route begins and ends with `end`, like [{ end = [0, 0, 0] }, { over = \"wheel\" }, \
+        let wound = self.route.iter().any(|w| matches!(w, Waypoint::Wound(_)));
+        let least = if wound { 2 } else { 3 };
+        if !ends(self.route.first()) || !ends(self.route.last()) || self.route.len() < least {
+            let message = "a route begins and ends with `end` or `wound`, like [{ end = [0, 0, 0] }, { over = \"wheel\" }, \
                            { end = \"load\" }]: a closed belt isn't known";
             return Err(BuildError::at("route", message));
         }
+        if wound && self.speed != 0.0 {
+            let message = "a cable that is wound on a drum starts at rest, as the drum does: leave it out";
+            return Err(BuildError::at("speed", message));
+        }
         match (1..inner).find(|&k| ends(self.route.get(k))) {
-            Some(k) => at(k, "only the first and the last of a route are ends"),
+            Some(k) => at(k, "only the first and the last of a route are ends, `end` or `wound`"),
             None => Ok(()),
         }
     }
@@ -119,6 +128,18 @@ impl CableSpec {
                     k,
                     format!("the `axis` of `{name}` is a direction, such as [0, 1, 0]: it needs a length"),
                 );
+            }
+            match (matches!(waypoint, Waypoint::Wound(_)), guide.winds) {
+                (true, false) => {
+                    return at(k, format!("`{name}` is no drum, so nothing can be `wound` on it"));
+                }
+                (false, true) => {
+                    return at(
+                        k,
+                        format!("`{name}` is a drum: the cable ends there, `{{ wound = \"{name}\" }}`"),
+                    );
+                }
+                _ => {}
             }
             let ring = matches!(waypoint, Waypoint::Through(_));
             match (ring, guide.radius > 0.0) {
@@ -152,7 +173,7 @@ impl CableSpec {
                 }
                 Waypoint::Over(_) => Side::Towards(up),
                 Waypoint::Under(_) => Side::Towards(up.map(|x| -x)),
-                Waypoint::Round(_) | Waypoint::Through(_) => Side::About,
+                Waypoint::Round(_) | Waypoint::Through(_) | Waypoint::Wound(_) => Side::About,
             };
             let Some(Guided { guide, marker }) = guided else { return at(k, "it leads nowhere") };
             let place = b.place(marker).x;
@@ -171,6 +192,8 @@ impl CableSpec {
                 return at(k, message);
             }
             let centre = std::array::from_fn(|i| place[i] + guide.beside * axis[i]);
+            // a drum turns about its axis to pay out: the cable arrives at one the other way round
+            let axis = if guide.winds && k > 0 { axis.map(|x| -x) } else { axis };
             Ok(Stop::Wheel { centre, axis, radius: guide.radius, side })
         };
         self.route.iter().zip(guided).enumerate().map(one).collect()
@@ -201,6 +224,12 @@ impl CableSpec {
         }
         let stretch = path / self.unstretched_length(path)?;
         let names: Vec<String> = (1..=spans.len()).map(|k| format!("{}.{k}", self.name)).collect();
+        for (place, k) in [("start", 0), ("end", self.route.len() - 1)] {
+            if let Waypoint::Wound(drum) = &self.route[k] {
+                let end = MarkerRef::Name(format!("{}.{place}", self.name));
+                b.feed(drum, &end, Feed::default()).map_err(|e| e.of(format!("route[{k}]")))?;
+            }
+        }
         b.route(&self.name, &names)?;
         for ((name, span), length) in names.iter().zip(&spans).zip(&lengths) {
             let along = way(span).map(|x| self.speed * x / length);
@@ -222,13 +251,36 @@ impl CableSpec {
         }
         let parts = names.iter().map(|name| Ok(b.parts(std::slice::from_ref(name))?[0].1.clone()));
         let parts = parts.collect::<Result<Vec<_>, BuildError>>()?;
+        let s = &self.section;
+        let strand = Strand {
+            mass: s.mass,
+            ea: s.ea,
+            ei: s.ei.across,
+            damping: s.axial_retardation_time * s.ea,
+            weighs: b.weighs(&self.name),
+        };
         let mut passages = Vec::new();
         for (k, turn) in turns.iter().enumerate() {
             let Some(Guided { guide, marker }) = &guided[k] else { continue };
+            if guide.winds {
+                let (span, end) = if k == 0 { (0, 0) } else { (k - 1, 1) };
+                let Some(boundary) = parts[span].boundary(end) else {
+                    return at(k, "no material flows there");
+                };
+                b.winding(Winding {
+                    guide: guide.name.clone(),
+                    cable: self.name.clone(),
+                    span: names[span].clone(),
+                    boundary,
+                    marker: *marker,
+                    stretch,
+                    strand,
+                });
+                continue;
+            }
             let (Some(end), Some(start)) = (parts[k - 1].boundary(1), parts[k].boundary(0)) else {
                 return at(k, "no material flows there");
             };
-            let s = &self.section;
             let passage = Passage {
                 guide: guide.name.clone(),
                 spans: [names[k - 1].clone(), names[k].clone()],
@@ -237,13 +289,7 @@ impl CableSpec {
                 axis: turn.axis,
                 radius: guide.radius,
                 stored: guide.radius * turn.wrap / stretch,
-                strand: Strand {
-                    mass: s.mass,
-                    ea: s.ea,
-                    ei: s.ei.across,
-                    damping: s.axial_retardation_time * s.ea,
-                    weighs: b.weighs(&self.name),
-                },
+                strand,
             };
             b.passage(passage.clone());
             passages.push(passage);

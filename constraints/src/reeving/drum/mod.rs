@@ -1,0 +1,15 @@
+//! Drums: ends of cables that are wound.
+//!
+//! What is free begins at the tangent point, and goes over into what is wound without slip ([`winding`]). The angle of the
+//! drum is prescribed, or an unknown that a motor, a brake and the cable turn ([`shaft`]). The cable lies on it in a helix,
+//! in one layer or several ([`layers`]).
+
+mod events;
+mod layers;
+mod record;
+mod shaft;
+mod spec;
+mod winding;
+
+pub use record::DrumRecordSpec;
+pub use spec::DrumSpec;

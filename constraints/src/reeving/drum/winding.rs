@@ -1,0 +1,124 @@
+//! The point at which a cable leaves a drum, and the cable that this winds.
+
+use super::layers::Layers;
+use ropewalk_core::{
+    At, Constraint, Jet, Marker, Motion, Node, NodeId, Place, Related, Relation, RowKind, lift,
+};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// The cable is tangent to the drum where it leaves it, and what leaves was wound: no slip.
+///
+/// With `d = r - c`, the slope `s`, the angle `ψ` of the drum and `φ` of the tangent point about its axis since the start,
+/// both in the sense that pays out: `a·d = x`, `|d| = R` (of the part normal to the axis), `d·s = 0`, and
+/// `Λ(fed) = L(θ₀) - L(θ)`, where `θ = θ₀ - (ψ - φ)` is the angle that is still wound, `L(θ)` the length of cable in it, `x`
+/// and `R` where it lies. What is fed out has the stretch it was wound with. Turns of `φ` are counted by what is fed out.
+///
+/// The markers: the end of the cable, the drum with its axis as the third, the material coordinate, and the angle if it is an
+/// unknown.
+#[derive(Clone)]
+pub(super) struct Winding {
+    pub layers: Layers,
+    /// Where the marker of the drum is on its axis, as its layers count [m].
+    pub offset: f64,
+    /// Angle wound at the start [rad].
+    pub wound: f64,
+    /// Angle of the tangent point at the start [rad].
+    pub phi: f64,
+    /// The material coordinate at the start [m], and whether it grows or falls as cable is fed out.
+    pub home: f64,
+    pub sign: f64,
+    /// Stretch of what is wound.
+    pub stretch: f64,
+    /// The angle of the drum, if it is prescribed.
+    pub motion: Option<Arc<dyn Motion>>,
+}
+
+impl Relation for Winding {
+    fn rows(&self) -> Vec<RowKind> {
+        vec![RowKind::Position, RowKind::Position, RowKind::Direction, RowKind::Position]
+    }
+    fn follows(&self) -> Option<&dyn Motion> {
+        self.motion.as_deref()
+    }
+    fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]) {
+        let (end, drum, front) = (&at[0], &at[1], &at[2]);
+        let [x, y, axis] = &drum.axes;
+        let along = |a: &[S; 3], b: &[S; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let d: [S; 3] = std::array::from_fn(|i| end.x[i] - drum.x[i]);
+        let beside = along(axis, &d);
+        let flat: [S; 3] = std::array::from_fn(|i| d[i] - axis[i] * beside);
+        let psi = match &self.motion {
+            Some(motion) => {
+                let now = motion.at(t.re());
+                lift(t, [now.x[0], now.v[0], now.a[0]])
+            }
+            None => at[3].x[0],
+        };
+        let fed = (front.x[0] - self.home) * (self.sign * self.stretch);
+        let all = self.layers.at(self.wound).length;
+        let off = psi - angle(along(&flat, y), along(&flat, x)) + self.phi;
+        let wanted = self.wound - self.layers.angle(all - fed.re());
+        let off = off - TAU * ((off.re() - wanted) / TAU).round();
+        let lies = self.layers.at(-off + self.wound);
+        g[0] = beside - lies.x + self.offset;
+        g[1] = along(&flat, &flat).sqrt() - lies.radius;
+        g[2] = along(&d, &end.axes[0]) / self.layers.radius;
+        g[3] = fed + lies.length - all;
+    }
+}
+
+/// The angle of a point of the plane, regular all round: derivatives are taken where it is small.
+fn angle<S: Jet>(y: S, x: S) -> S {
+    let now = y.re().atan2(x.re());
+    let (sin, cos) = now.sin_cos();
+    ((y * cos - x * sin) / (x * cos + y * sin)).atan() + now
+}
+
+/// That as a constraint, of which only the end of the cable and the drum are places.
+pub(super) struct Winds {
+    inner: Related<Winding>,
+}
+
+impl Winds {
+    pub fn new(name: String, winding: Winding, markers: Vec<Marker>) -> Self {
+        let range = winding.motion.as_ref().map_or((f64::NEG_INFINITY, f64::INFINITY), |m| m.range());
+        Winds { inner: Related::new(name, winding, markers).within(range) }
+    }
+}
+
+impl Constraint for Winds {
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+    fn rows(&self) -> &[RowKind] {
+        self.inner.rows()
+    }
+    fn markers(&self) -> &[Marker] {
+        &self.inner.markers()[..2]
+    }
+    fn nodes(&self) -> &[NodeId] {
+        self.inner.nodes()
+    }
+    fn linear(&self) -> bool {
+        false
+    }
+    fn jacobian(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {
+        self.inner.jacobian(nodes, at, g, jac);
+    }
+    fn geometric(&self, nodes: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]) {
+        self.inner.geometric(nodes, at, lambda, h);
+    }
+    fn rates(&self, nodes: &[Node], at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
+        self.inner.rates(nodes, at, rate, bias);
+    }
+    fn moves(&self) -> bool {
+        self.inner.moves()
+    }
+    fn reach(&self, t: f64, h: f64) -> Option<f64> {
+        self.inner.reach(t, h)
+    }
+    fn range(&self) -> (f64, f64) {
+        self.inner.range()
+    }
+}
