@@ -13,7 +13,6 @@ const WORDS: &[(&str, &[&str])] = &[
     ("clump", &["attachments", "point_mass"]),
     ("current", &["water"]),
     ("damper", &["spring"]),
-    ("drum", &["winch", "contact"]),
     ("encoder", &["payout", "length"]),
     ("fixed", &["weld", "clamp"]),
     ("float", &["attachments", "point_mass", "buoyancy"]),

@@ -20,6 +20,8 @@ fn steady(scene: &Scene, duration: f64, tolerance: f64) -> ([f64; 3], f64, u64) 
     let options = Options {
         scheme: Scheme::GeneralizedAlpha { rho_inf: 0.0 },
         stepping: Stepping::Controlled { tolerance },
+        // tensions are compared to a thousandth
+        force_tolerance: 1e-3,
         ..Options::default()
     };
     let mut s = Simulation::new(model, &options, duration).unwrap_or_else(|e| panic!("{e}"));

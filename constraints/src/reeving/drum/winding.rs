@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// The cable is tangent to the drum where it leaves it, and what leaves was wound: no slip.
 ///
 /// With `d = r - c`, the slope `s`, the angle `ψ` of the drum and `φ` of the tangent point about its axis since the start,
-/// both in the sense that pays out: `a·d = x`, `|d| = R` (of the part normal to the axis), `d·s = 0`, and
+/// both in the sense that pays out: `a·d = x`, and of the part of `d` normal to the axis `|d| = R` and `d·s = 0`; and
 /// `Λ(fed) = L(θ₀) - L(θ)`, where `θ = θ₀ - (ψ - φ)` is the angle that is still wound, `L(θ)` the length of cable in it, `x`
 /// and `R` where it lies. What is fed out has the stretch it was wound with. Turns of `φ` are counted by what is fed out.
 ///
@@ -63,7 +63,7 @@ impl Relation for Winding {
         let lies = self.layers.at(-off + self.wound);
         g[0] = beside - lies.x + self.offset;
         g[1] = along(&flat, &flat).sqrt() - lies.radius;
-        g[2] = along(&d, &end.axes[0]) / self.layers.radius;
+        g[2] = along(&flat, &end.axes[0]) / self.layers.radius;
         g[3] = fed + lies.length - all;
     }
 }
