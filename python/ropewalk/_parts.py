@@ -526,6 +526,98 @@ class Parts:
             "motion": motion,
         })
 
+    def drum(
+        self,
+        *,
+        name: str,
+        marker: Union[Sequence[Number], str],
+        axis: Sequence[Number],
+        radius: Number,
+        speed: Union[Mapping[str, Any], Number] | None = None,
+        start: Number | None = None,
+        ramp: Number | None = None,
+        stop: Number | None = None,
+        payout: Number | None = None,
+        turn: str | None = None,
+        torque: Union[Mapping[str, Any], Number] | None = None,
+        brake: Union[Mapping[str, Any], Number] | None = None,
+        slip_speed: Number | None = None,
+        damping: Number | None = None,
+        inertia: Number | None = None,
+        wound: Number | None = None,
+        wound_tension: Number | None = None,
+        pitch: Number | None = None,
+        width: Number | None = None,
+        layer_height: Number | None = None,
+        layers: Integer | None = None,
+        fleet: Number | None = None,
+    ) -> Part:
+        """A drum on which an end of a cable is wound that names it in its `route`.
+
+        The cable leaves it as a tangent, wherever it goes to, and is wound without slip. The drum pays out as it
+        turns by the right-hand rule about its `axis`; so about [0, 1, 0] it leaves from the top towards x. Its
+        `speed` or angle is prescribed, or it is turned by `torque`, its cable and `brake`. What is wound keeps the
+        stretch of `wound_tension`.
+
+        name: Name; routes and records refer to it.
+        marker: Its middle: a point in space, or of a rigid body, which stands above the cable in the scene.
+        axis: Axis in space at the start; it turns with what carries the drum. Turning about it by the right-hand rule
+            pays out.
+        radius: Radius of the first layer, to the middle of the cable [m].
+        speed: Rope speed on the layer of the start, after the ramp [m/s]; negative reels in. The drum turns so; a
+            load that swings makes no slip. Of an input: the speed itself, without ramp, so the input needs `join =
+            "linear"`.
+        start: Start time [s].
+        ramp: Time in which the speed rises, and falls again at the stop [s]. Default 1.0.
+        stop: Time at which the speed begins to fall again [s]. Default: never.
+        payout: Length paid out when it stops [m], with the sign of the speed, instead of `stop`.
+        turn: Name of a motion whose x component is the angle of the drum [rad], instead of `speed`.
+        torque: Moment of its motor, if the speed isn't prescribed, positive where it pays out [N m].
+        brake: Moment of its brake, dry friction [N m].
+        slip_speed: Speed of the cable below which the brake creeps instead of sticking [m/s]. Default 0.001.
+        damping: Moment by angular velocity [N m s/rad].
+        inertia: Moment of inertia about its axis, without cable: that of `wound` is added. Its mass, with the cable
+            on it, belongs to what carries it [kg m²].
+        wound: Length of cable on it at the start, as it lies [m]. The run ends when 3 turns are left. Default:
+            unlimited, and without inertia.
+        wound_tension: Tension with which that was wound [N], which tells its stretch; what is wound later has the
+            same. The tension of the free cable may differ from it by little beside its stiffness: the share of its
+            stretch is the error. Default: the tension at which the cable is laid.
+        pitch: Way of the cable along the axis in a turn [m]; usually its diameter. It winds towards the axis first.
+            Default: none, as behind a device that keeps it in the middle.
+        width: Width between the flanges [m]: the cable is wound in layers. Goes with `pitch` and `wound`. Default:
+            one layer of any width, which begins at `marker`.
+        layer_height: Height of a layer on the one below [m]. Default: 0.866 `pitch`, that of cables that lie in the
+            grooves of the layer below.
+        layers: Number of layers; the run ends when they are full. Default: any.
+        fleet: Angle against the plane of the drum from which on a cable winds badly, which is said once [rad].
+            Default 0.026179938779914945.
+        """
+        return self._add("constraints", "drum", {
+            "name": name,
+            "marker": marker,
+            "axis": axis,
+            "radius": radius,
+            "speed": speed,
+            "start": start,
+            "ramp": ramp,
+            "stop": stop,
+            "payout": payout,
+            "turn": turn,
+            "torque": torque,
+            "brake": brake,
+            "slip_speed": slip_speed,
+            "damping": damping,
+            "inertia": inertia,
+            "wound": wound,
+            "wound_tension": wound_tension,
+            "pitch": pitch,
+            "width": width,
+            "layer_height": layer_height,
+            "layers": layers,
+            "fleet": fleet,
+        })
+
     def eyelet(
         self,
         *,
@@ -542,6 +634,7 @@ class Parts:
         per_speed2: Union[Mapping[str, Any], Number] | None = None,
         reference_speed: str | None = None,
         damping: Union[Mapping[str, Any], Number] | None = None,
+        grip: Number | None = None,
         shortest: Number | None = None,
         element_length: Number | None = None,
         fade: Number | None = None,
@@ -567,6 +660,8 @@ class Parts:
         reference_speed: Name of a motion whose speed along x `per_speed2` refers to. Default: the speed of the cable
             here, which can be unstable.
         damping: Linear damping, added to `tension` [N s/m]. Default 0.0.
+        grip: What keeps a cable with torsion from turning about its own axis in the eyelet: torque over the spin of
+            its material [N m s]. With much of it, it takes its twist along when it leaves.
         shortest: Shortest length of the free cable [m]; the run ends there. Default: as for `winch`.
         element_length: Length of the elements that are added and removed at the eyelet [m]. Default: all elements
             grow and shrink together.
@@ -587,6 +682,7 @@ class Parts:
             "per_speed2": per_speed2,
             "reference_speed": reference_speed,
             "damping": damping,
+            "grip": grip,
             "shortest": shortest,
             "element_length": element_length,
             "fade": fade,
@@ -606,8 +702,9 @@ class Parts:
 
         A `winch` at the same end drives the unwinding: by `speed` or `motion`, or by the `tension` at the package.
         Or, without a winch, the cable sticks to the package with `adhesion_energy`. The other end needs an `eyelet`.
-        Events are reported on the way: a tension too low to keep the cable taut, contact with the package, too much
-        bending.
+        A cable with torsion leaves the layer as it lies there: each wrap that is pulled off over the end of the
+        package brings it a turn. Events are reported on the way: a tension too low to keep the cable taut, contact
+        with the package, too much bending.
 
         name: Name; records of the reaction refer to it.
         marker: The wound end of the cable: `fibre.end` or `fibre.start`.
@@ -1031,6 +1128,8 @@ class Parts:
         per_speed2: Union[Mapping[str, Any], Number] | None = None,
         reference_speed: str | None = None,
         inertia: Number | None = None,
+        wrap: Number | None = None,
+        grip: Number | None = None,
         pile: Boolean | None = None,
         stored_length: Number | None = None,
         shortest: Number | None = None,
@@ -1062,6 +1161,13 @@ class Parts:
         reference_speed: Name of a motion whose speed along x `per_speed2` refers to. Default: the payout rate here. A
             tension that draws the cable and grows with its speed is unstable: then name a motion.
         inertia: Moment of inertia of the drum over its radius squared [kg]. Default 0.0.
+        wrap: Length of a wrap of the coil over whose end the cable is pulled [m]: each brings it a turn of twist,
+            which needs a cable with torsion (`section.gj`). Negative of coils of the other hand, whose turns are
+            left-handed. Default: it comes off a drum that turns, untwisted. An end that is held against twisting
+            (`clamp`) keeps the twist in.
+        grip: What keeps a cable with torsion from turning about its own axis as it passes this end: torque over the
+            spin of its material [N m s]. With much of it a cable that is reeled in takes its twist along; without, it
+            can spin freely, unless the end is held (`clamp`): then only untwisted cable passes.
         pile: Whether the cable comes from a pile at rest instead of a turning drum. Default False.
         stored_length: Length stored on the spool at the start [m]. The run ends when it is paid out. Default:
             unlimited.
@@ -1089,6 +1195,8 @@ class Parts:
             "per_speed2": per_speed2,
             "reference_speed": reference_speed,
             "inertia": inertia,
+            "wrap": wrap,
+            "grip": grip,
             "pile": pile,
             "stored_length": stored_length,
             "shortest": shortest,
@@ -2140,6 +2248,26 @@ class Parts:
             "title": title,
         })
 
+    def drum_record(
+        self,
+        *,
+        of: str,
+        name: str | None = None,
+    ) -> Part:
+        """A drum and the cable on it: columns `drum.angle` in rad and `.spin` in rad/s, positive where it pays out;
+        `.payout`, the length fed out, and `.wound`, that on the drum, in m of unstretched cable; `.layer` and
+        `.radius` where the cable arrives; `.fleet`, its angle against the plane of the drum there, in rad; `.torque`,
+        the moment of the cable about the axis in N m, positive where it would pay out. `.wound` counts from 0 if the
+        drum has no `wound`.
+
+        of: Name of the drum.
+        name: Name in results. Default: that of the drum.
+        """
+        return self._add("records", "drum", {
+            "of": of,
+            "name": name,
+        })
+
     def energy(
         self,
         *,
@@ -2803,7 +2931,8 @@ class Parts:
         h_min: Smallest step [s]; a run that needs a smaller one ends with an error. Default: 1e-12 of the run.
         h_start: First step of error control [s]. Default: from the motion at the start.
         horizon: Time over which step errors accumulate [s]. 0 means the whole run, without the time in which errors
-            are negligible. Default 0.0.
+            are negligible, or three times as long as the motion was measured to remember an error, if that is
+            shorter. Default 0.0.
         project: Project an inconsistent start onto the constraints, however far away it is. Default False.
         filter_start: Filter the initial accelerations by the stiffness, which fine meshes need, and start the
             scheme's own acceleration variable ahead of them, which its order needs. `false` is for textbook
