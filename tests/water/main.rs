@@ -4,8 +4,10 @@
 mod common;
 
 mod afloat;
+mod all_round;
 mod fluid;
 mod one_world;
 mod towing;
+mod vortices;
 mod waves;
 mod whirling;

@@ -3,7 +3,7 @@
 use super::body::body;
 use super::deck::Deck;
 use super::joints::{fasten, records};
-use super::parts::{line, line_type, place, point};
+use super::parts::{LineType, line, line_type, place, point};
 use super::water::{forces, head};
 use ropewalk_scene::Fault;
 use std::collections::BTreeMap;
@@ -84,10 +84,11 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
         .map(|row| line(deck, row, &types, &points, &mut sections))
         .collect::<Result<Vec<_>, _>>()?;
 
-    for kind in types.iter().filter(|t| t.fluid[3] != 0.0 && lines.iter().any(|l| std::ptr::eq(l.kind, *t))) {
+    let used = |t: &&LineType<'_>| lines.iter().any(|l| std::ptr::eq(l.kind, *t));
+    for kind in types.iter().filter(|t| t.fluid[3] > t.fluid[1]).filter(used) {
         notes.push(format!(
-            "added mass along `{}` (CaAx = {}) is left out",
-            kind.row.words[0].text, kind.fluid[3]
+            "added mass along `{}` (CaAx = {}) is more than across: it is taken as Ca = {}",
+            kind.row.words[0].text, kind.fluid[3], kind.fluid[1]
         ));
     }
 
