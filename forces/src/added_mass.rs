@@ -1,8 +1,8 @@
 //! Added mass: the water that a slender body pushes aside.
 
+use crate::all_round::AllRound;
 use crate::buoyancy::surface;
 use crate::drag::{add, free_tips, less_product, velocity};
-use crate::all_round::AllRound;
 use crate::{BluntEnd, FeedingEnd, FroudeKrylov, Surface, Wetted, at_tip};
 use ropewalk_core::error::not_negative;
 use ropewalk_core::{BuildError, Gives, Law, Load, Part, Power, Real, Station, V3, dot, scaled};
@@ -387,7 +387,8 @@ impl ForceSpec for AddedMassSpec {
         let surface = surface(b)?;
         let water = b.water()?;
         if !(0.0..=self.ca).contains(&self.ca_axial) {
-            let message = format!("`ca_axial` must be between 0 and `ca` = {}, not {}", self.ca, self.ca_axial);
+            let message =
+                format!("`ca_axial` must be between 0 and `ca` = {}, not {}", self.ca, self.ca_axial);
             return Err(BuildError::at("ca_axial", message));
         }
         // what is the same along and across goes as of a ball, the rest across alone

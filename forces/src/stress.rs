@@ -37,7 +37,7 @@ pub struct StressSpec {
     /// Where: as for `along`. Default: in the middle.
     #[serde(default = "middle")]
     pub at: Vec<RecordPlace>,
-    /// Name in results. Default: that of the cable.
+    /// Name in results. Default: that of the cable and `.stress`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// Title of its plots. Default: the quantity.
@@ -79,13 +79,15 @@ impl Stress {
         // within one element, whatever side of a node
         let mesh = part.line()?.mesh_now(at);
         let after = mesh.partition_point(|x| *x <= s).clamp(1, mesh.len().max(2) - 1);
-        let (a, b) = (mesh.get(after - 1).copied().unwrap_or(0.0), mesh.get(after).copied().unwrap_or(length));
+        let (a, b) =
+            (mesh.get(after - 1).copied().unwrap_or(0.0), mesh.get(after).copied().unwrap_or(length));
         let step = NEAR * (b - a);
         let s = s.clamp(a + step, b - step);
         let [before, here, behind] = [s - step, s, s + step].map(|s| part.point(s, at).map(|(x, _)| x));
         let (before, here, behind) = (before?, here?, behind?);
         let slope: V3<f64> = std::array::from_fn(|i| (behind[i] - before[i]) / (2.0 * step));
-        let second: V3<f64> = std::array::from_fn(|i| (behind[i] - 2.0 * here[i] + before[i]) / (step * step));
+        let second: V3<f64> =
+            std::array::from_fn(|i| (behind[i] - 2.0 * here[i] + before[i]) / (step * step));
         let square = dot(&slope, &slope);
         let along = dot(&second, &slope) / square;
         let t = scaled(1.0 / square.sqrt(), &slope);
@@ -156,7 +158,7 @@ impl Record for Stress {
     fn columns(&self) -> Vec<Column> {
         let angle = |k: usize| 360.0 * k as f64 / self.points as f64;
         let round = |at: &RecordPlace| {
-            let name = format!("{}.stress{at}", self.name);
+            let name = format!("{}{at}", self.name);
             (0..self.points).map(move |k| Column::new(format!("{name}.{}deg", angle(k).round()), "Pa"))
         };
         self.at.iter().flat_map(round).collect()
@@ -188,7 +190,10 @@ impl RecordSpec for StressSpec {
             return Err(BuildError::at("inner_diameter", message));
         }
         if !(1..=360).contains(&self.points) {
-            return Err(BuildError::at("points", format!("`points` must be from 1 to 360, not {}", self.points)));
+            return Err(BuildError::at(
+                "points",
+                format!("`points` must be from 1 to 360, not {}", self.points),
+            ));
         }
         let state = model.state();
         if part.observe(Quantity::Moment, 0.0, &state.at()).is_none() {
@@ -198,7 +203,7 @@ impl RecordSpec for StressSpec {
         check_places(part.as_ref(), &self.at)?;
         let area = PI / 4.0 * (outer * outer - inner * inner);
         let second = PI / 64.0 * (outer.powi(4) - inner.powi(4));
-        let name = named(&self.name, || part.name().to_string());
+        let name = named(&self.name, || format!("{}.stress", part.name()));
         let title = named(&self.title, || format!("Stress round {}", part.name()));
         let mut stress = Stress {
             wall: Wall::new(model, part),

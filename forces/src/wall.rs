@@ -22,7 +22,8 @@ impl Wall {
     pub fn new(model: &Model, part: Arc<dyn Part>) -> Self {
         let state = model.state();
         let knows = |quantity: &str| {
-            let finds = |t: &Arc<dyn Term>| local(t.as_ref(), quantity, part.name(), 0.0, &state.at()).is_some();
+            let finds =
+                |t: &Arc<dyn Term>| local(t.as_ref(), quantity, part.name(), 0.0, &state.at()).is_some();
             model.terms().iter().position(finds)
         };
         let (flow, water) = (knows(PRESSURE), knows(SPECIFIC_WEIGHT));
@@ -40,7 +41,8 @@ impl Wall {
     }
 
     fn of(&self, term: usize, quantity: &str, s: f64, sample: &Sample<'_>) -> f64 {
-        local(sample.model.terms()[term].as_ref(), quantity, self.part.name(), s, &sample.at).unwrap_or(f64::NAN)
+        local(sample.model.terms()[term].as_ref(), quantity, self.part.name(), s, &sample.at)
+            .unwrap_or(f64::NAN)
     }
 
     /// Pressure of what flows in it at an arc length [Pa]; NaN if nothing does.

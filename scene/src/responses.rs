@@ -125,7 +125,10 @@ impl RaoSpec {
     /// As for [`RaoSpec::motions`]; a unit of angles, which loads don't have.
     pub fn loads(&self, field: &str) -> Result<Responses, BuildError> {
         if self.angles != RaoAngles::Deg {
-            return Err(BuildError::at(format!("{field}.angles"), "loads have no angles: leave `angles` out"));
+            return Err(BuildError::at(
+                format!("{field}.angles"),
+                "loads have no angles: leave `angles` out",
+            ));
         }
         self.responses(field, [1.0; MOTIONS])
     }
@@ -172,7 +175,8 @@ impl RaoSpec {
             return Err(BuildError::at(format!("{field}.headings"), message));
         }
         let aside = rows.iter().filter(|row| row.0 > 1e-9 && row.0 < PI - 1e-9);
-        let turned = |lag: &[f64; MOTIONS]| std::array::from_fn(|k| if k % 2 == 1 { lag[k] + PI } else { lag[k] });
+        let turned =
+            |lag: &[f64; MOTIONS]| std::array::from_fn(|k| if k % 2 == 1 { lag[k] + PI } else { lag[k] });
         Ok(aside
             .map(|(heading, a, lag)| (TAU - heading, a.clone(), lag.iter().map(turned).collect()))
             .collect())
@@ -182,7 +186,9 @@ impl RaoSpec {
     pub fn long_motions(&self) -> Option<String> {
         let responses = self.motions("").ok()?;
         let (from_astern, towards_port) = ends(&responses);
-        let metres = |k: usize| format!("{:.3} m/m with lag {:.0} deg", from_astern[k][0], from_astern[k][1].to_degrees());
+        let metres = |k: usize| {
+            format!("{:.3} m/m with lag {:.0} deg", from_astern[k][0], from_astern[k][1].to_degrees())
+        };
         let degrees =
             |[a, lag]: [f64; 2]| format!("{:.3} deg/m with lag {:.0} deg", a.to_degrees(), lag.to_degrees());
         Some(format!(
@@ -203,7 +209,10 @@ impl RaoSpec {
         let omega = responses.band()[0];
         let slope = omega * omega / crate::GRAVITY[2].abs();
         let say = |[a, lag]: [f64; 2], still: f64, wanted: f64| {
-            format!("{a:.3e} with lag {:.0} deg (from stiffness {still:.3e} with {wanted:.0} deg)", lag.to_degrees())
+            format!(
+                "{a:.3e} with lag {:.0} deg (from stiffness {still:.3e} with {wanted:.0} deg)",
+                lag.to_degrees()
+            )
         };
         Some(format!(
             "on its longest waves, of {:.1} s, per metre, from astern: surge {:.3e} N with lag {:.0} deg (long ones -90 deg), heave \

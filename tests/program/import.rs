@@ -153,3 +153,85 @@ fn what_has_no_counterpart_is_refused_where_it_stands() {
     let told = run(here.path(), &["import", "deck.txt"]);
     assert!(told.stderr.contains("has no lines: it isn't a MoorDyn deck"), "{}", told.stderr);
 }
+
+const HANGING: &str = "\
+--- MoorDyn Input File ---
+A rod that hangs from two ropes
+--- LINE TYPES ---
+TypeName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx
+(name) (m) (kg/m) (N) (N-s/-) (N-m^2) (-) (-) (-) (-)
+rope 0.09 77.7066 384.243E6 -0.3 0 1.6 1.0 0.1 0.2
+--- ROD TYPES ---
+TypeName Diam Mass/m Cd Ca CdEnd CaEnd
+(name) (m) (kg/m) (-) (-) (-) (-)
+rod 0.25 77.7066 1.6 1.0 1.6 1.0
+--- RODS ---
+ID RodType Attachment Xa Ya Za Xb Yb Zb NumSegs RodOutputs
+(#) (name) (#/key) (m) (m) (m) (m) (m) (m) (-) (-)
+1 rod Free -10 0 -75 10 0 -75 1 -
+--- POINTS ---
+ID Type X Y Z Mass Volume CdA Ca
+(#) (-) (m) (m) (m) (kg) (m3) (m^2) (-)
+1 Fixed -450 0 0 0 0 0 0
+2 Fixed 450 0 0 0 0 0 0
+--- LINES ---
+ID LineType AttachA AttachB UnstrLen NumSegs LineOutputs
+(#) (name) (#) (#) (m) (-) (-)
+1 rope 1 R1A 450 45 -
+2 rope 2 R1B 450 45 -
+--- OPTIONS ---
+150 WtrDpth depth
+--- need this line ---
+";
+
+/// Two catenaries carry half of the rod's weight in water each, and it hangs level.
+#[test]
+fn a_rod_hangs_from_the_lines_of_its_deck() {
+    let here = folder(&[("rod.txt", HANGING)]);
+    let made = run(here.path(), &["import", "rod.txt", "--out", "rod.toml"]);
+    assert!(made.stderr.contains("CaEnd"), "{}", made.stderr);
+    let text = fs::read_to_string(here.path().join("rod.toml")).unwrap();
+    for part in [
+        "name = \"rod1\"",
+        "to = \"rod1.b\"",
+        "ca_axial = 0.2",
+        "hull = { from = [0, 0, 0], to = [20.0, 0.0, 0.0], diameter = 0.25 }",
+    ] {
+        assert!(text.contains(part), "{part} isn't in\n{text}");
+    }
+    let more = "\n[[records]]\ntype = \"position\"\nof = \"rod1.a\"\n\n[[records]]\ntype = \"position\"\nof = \"rod1.b\"\n";
+    fs::write(here.path().join("rod.toml"), text.replace("60 s", "1 s") + more).unwrap();
+    let told = run(here.path(), &["run", "rod.toml", "--no-report", "--no-plots"]);
+    let out = told.stdout;
+    let last = |name: &str| -> f64 {
+        let line =
+            out.lines().find(|l| l.contains(name)).unwrap_or_else(|| panic!("{name}: {out}{}", told.stderr));
+        line.split_whitespace().rev().nth(1).unwrap().parse().unwrap()
+    };
+    let (a, b) = (last("rod1.a.z"), last("rod1.b.z"));
+    assert!((a - b).abs() < 1e-3, "{a} {b}");
+    // at the rod, each line carries half of it upwards: T_A² = T_rod² by heights, T = H + w z of the elastic catenary
+    let water = |mass: f64, d: f64| 9.80665 * (mass - 1025.0 * std::f64::consts::PI / 4.0 * d * d);
+    let half = 10.0 * water(77.7066, 0.25);
+    let weight = water(77.7066, 0.09);
+    let (foot, top) = (last("FairTen1"), last("AnchTen1"));
+    let level = (foot * foot - half * half).sqrt();
+    let wanted = level.hypot(half + 450.0 * weight);
+    assert!((top / wanted - 1.0).abs() < 2e-3, "{top} {wanted}");
+}
+
+#[test]
+fn rods_that_have_no_counterpart_are_refused() {
+    for (from, to, what) in [
+        ("1 rod Free", "1 rod Body1", "a rod of type `Body1` isn't taken over"),
+        ("1 rod Free", "1 pole Free", "there is no rod type `pole`"),
+        ("10 0 -75 1 -", "-10 0 -75 1 -", "a rod without length"),
+        ("2 R1B", "2 R2B", "there is no point `R2B`"),
+    ] {
+        assert!(HANGING.contains(from), "{from}");
+        let here = folder(&[("deck.txt", &HANGING.replacen(from, to, 1))]);
+        let told = run(here.path(), &["import", "deck.txt"]);
+        assert_eq!((told.code, told.stdout.as_str()), (Some(2), ""));
+        assert!(told.stderr.contains(what), "{what} isn't in\n{}", told.stderr);
+    }
+}

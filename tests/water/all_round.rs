@@ -139,7 +139,9 @@ fn a_body_without_hull_is_a_ball_to_waves() {
     let body = run(&text(&format!(
         "type = \"rigid_body\"\nname = \"ball\"\nposition = [0, 0, -3]\nmass = 20\ninertia = [0.1, 0.1, 0.1]\n{water}"
     )));
-    let point = run(&text(&format!("type = \"point_mass\"\nname = \"ball\"\nmarker = [0, 0, -3]\nmass = 20\n{water}")));
+    let point = run(&text(&format!(
+        "type = \"point_mass\"\nname = \"ball\"\nmarker = [0, 0, -3]\nmass = 20\n{water}"
+    )));
     for name in ["ball.x", "ball.y", "ball.z"] {
         let columns = [&body, &point].map(|h| h.column(name).expect("a column").to_vec());
         for (a, b) in columns[0].iter().zip(&columns[1]) {

@@ -9,5 +9,6 @@ mod fluid;
 mod one_world;
 mod towing;
 mod vortices;
+mod wall;
 mod waves;
 mod whirling;

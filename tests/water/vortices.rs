@@ -247,7 +247,12 @@ fn strumming_adds_to_drag() {
     let y = plain.column("line@50%.y").expect("y");
     let swing = y[y.len() / 2..].iter().fold(0.0_f64, |m, y| m.max(y.abs())) / 0.02;
     let shown = grown.last("line: vortex shedding.amplitude").expect("amplitude") / 0.02;
-    println!("swing {swing:.3} D, largest {shown:.3} D; sag {} {} {}", mean(&still), mean(&plain), mean(&grown));
+    println!(
+        "swing {swing:.3} D, largest {shown:.3} D; sag {} {} {}",
+        mean(&still),
+        mean(&plain),
+        mean(&grown)
+    );
     assert!(swing > 0.1 && shown > 0.1, "{swing} {shown}");
     assert!(mean(&grown) > 1.03 * mean(&still));
 }
@@ -255,7 +260,8 @@ fn strumming_adds_to_drag() {
 #[test]
 fn what_is_wrong_with_vortices_is_said() {
     let refused = |part: &str, force: &str| {
-        let text = format!("[run]\nduration = 1\n[water]\n{part}\n[[forces]]\ntype = \"vortex_shedding\"\n{force}");
+        let text =
+            format!("[run]\nduration = 1\n[water]\n{part}\n[[forces]]\ntype = \"vortex_shedding\"\n{force}");
         match SceneFile::parse(&text, "vortices", Format::Toml, &[]) {
             Err(e) => e.to_string(),
             Ok(file) => file.build().err().expect("is refused").to_string(),

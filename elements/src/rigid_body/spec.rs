@@ -2,9 +2,9 @@
 
 use super::part::BodyPart;
 use super::{Hull, Inertia, Shape, inertia};
+use crate::point_mass::Ball;
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::rotation::{cross, from_bryant, matrix, times, transposed_times};
-use crate::point_mass::Ball;
 use ropewalk_core::{BuildError, Marker, NodeId, NodeKind, StationPool, V3};
 use ropewalk_scene::{Builder, ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
@@ -166,7 +166,9 @@ impl RigidBodySpec {
         for (field, x) in [("added_mass", self.added_mass), ("drag_area", self.drag_area)] {
             not_negative(field, x)?;
             if x > 0.0 && self.hull.is_some() {
-                let message = format!("the hull has drag and added mass of its own: leave out `{field}`, or the `hull`");
+                let message = format!(
+                    "the hull has drag and added mass of its own: leave out `{field}`, or the `hull`"
+                );
                 return Err(BuildError::at(field, message));
             }
         }

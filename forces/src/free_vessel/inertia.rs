@@ -44,7 +44,10 @@ impl VesselInertia {
         }
         let matrix = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
-                (0..MOTIONS).flat_map(|k| (0..MOTIONS).map(move |l| (k, l))).map(|(k, l)| t[k][i] * added[k][l] * t[l][j]).sum()
+                (0..MOTIONS)
+                    .flat_map(|k| (0..MOTIONS).map(move |l| (k, l)))
+                    .map(|(k, l)| t[k][i] * added[k][l] * t[l][j])
+                    .sum()
             })
         });
         VesselInertia { label: label.into(), q, v, matrix }

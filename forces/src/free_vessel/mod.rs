@@ -9,7 +9,8 @@ pub use spec::{FreeVesselSpec, SixBySix};
 use crate::bushing::frames::{Frames, Pose, Wrench, between};
 use ropewalk_core::rotation::{matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Column, Energy, Jet, Marker, Node, Pattern, Power, Shows, Term, Timed, V3, reach,
+    Assembly, At, BuildError, Column, Energy, Jet, Marker, Node, Pattern, Power, Shows, Term, Timed, V3,
+    reach,
 };
 use ropewalk_sea::{MOTIONS, VesselResponse};
 

@@ -37,10 +37,10 @@ pub struct FreeVesselSpec {
     /// Linear damping.
     #[serde(default)]
     pub damping: SixBySix,
-    /// Quadratic damping of each motion, `B |v| v` [N s²/m², N m s²].
+    /// Quadratic damping of each motion, `B |v| v`, in N s²/m² and N m s².
     #[serde(default)]
     pub quadratic_damping: [f64; MOTIONS],
-    /// Constant force [N] and moment [N m] on it at the reference point: what carries the lines, mean wind and drift.
+    /// Constant force in N and moment in N m on it at the reference point: what carries the lines, mean wind and drift.
     #[serde(default)]
     pub mean_load: [f64; MOTIONS],
     /// Loads of waves, per metre of amplitude: forces in N, moments in N m; the scene needs `[water.waves]`.
@@ -51,7 +51,10 @@ register_spec!(Force, "free_vessel", FreeVesselSpec);
 
 /// A 6 x 6 matrix over surge, sway, heave, roll, pitch, yaw.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "a 6 x 6 matrix is six rows of six numbers, or the six numbers of its diagonal")]
+#[serde(
+    untagged,
+    expecting = "a 6 x 6 matrix is six rows of six numbers, or the six numbers of its diagonal"
+)]
 pub enum SixBySix {
     /// Its diagonal; the rest is 0.
     Diagonal([f64; MOTIONS]),
@@ -181,7 +184,8 @@ impl ForceSpec for FreeVesselSpec {
         for x in self.quadratic_damping {
             not_negative("quadratic_damping", x)?;
         }
-        let (stiffness, added) = (self.stiffness.symmetric("stiffness")?, self.added_mass.symmetric("added_mass")?);
+        let (stiffness, added) =
+            (self.stiffness.symmetric("stiffness")?, self.added_mass.symmetric("added_mass")?);
         let damping = self.damping.finite("damping")?;
         for (field, matrix, wrong) in [
             ("added_mass", &added, "has a motion with less than no inertia"),
@@ -194,7 +198,8 @@ impl ForceSpec for FreeVesselSpec {
         }
         let part = self.body(b)?;
         let on = b.marker("marker", &self.marker)?;
-        let Some(node) = on.on().map(|k| b.nodes()[k.0 as usize]).filter(|n| n.kind == NodeKind::Frame) else {
+        let Some(node) = on.on().map(|k| b.nodes()[k.0 as usize]).filter(|n| n.kind == NodeKind::Frame)
+        else {
             return Err(self.no_body());
         };
         if part.dead_load(Per::Volume, [0.0, 0.0, 1.0]).is_some() {

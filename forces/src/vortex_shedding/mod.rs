@@ -10,8 +10,8 @@ use crate::Surface;
 use crate::drag::velocity;
 use ropewalk_core::rotation::cross;
 use ropewalk_core::{
-    Assembly, At, Column, Foresees, Gives, Load, Pattern, Power, Remembers, Shows, Station, Stations, Term, Timed, V3,
-    dot, scaled,
+    Assembly, At, Column, Foresees, Gives, Load, Pattern, Power, Remembers, Shows, Station, Stations, Term,
+    Timed, V3, dot, scaled,
 };
 use ropewalk_scene::{Current, Sea};
 use std::f64::consts::TAU;

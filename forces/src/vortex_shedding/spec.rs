@@ -33,7 +33,11 @@ pub struct VortexSheddingSpec {
     pub epsilon: f64,
     /// Drag coefficient across of the line at rest: strumming adds `2.1 A/D` times it, with the amplitude `A` (Blevins 1990). Default:
     /// drag doesn't grow.
-    #[serde(default, deserialize_with = "quantity::optional::number", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::number",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub strumming: Option<f64>,
     /// Parts it acts on. Default: all that have a diameter along them.
     #[serde(default)]
@@ -70,7 +74,8 @@ impl ForceSpec for VortexSheddingSpec {
         for part in b.parts(&self.on)? {
             let Some(stations) = part.1.stations().filter(|s| !s.is_empty()) else { continue };
             let name = part.1.name().to_string();
-            let (q, v) = (b.coordinates().to_vec(), vec![0.0; b.nodes().iter().map(|n| n.kind.velocities()).sum()]);
+            let (q, v) =
+                (b.coordinates().to_vec(), vec![0.0; b.nodes().iter().map(|n| n.kind.velocities()).sum()]);
             let at = At { t: 0.0, q: &q, v: &v, a: &v, internal: &[], relaxed: None };
             let (mut count, mut least) = (0, f64::INFINITY);
             stations.each(&at, &mut |s| (count, least) = (count + 1, least.min(s.diameter)));
@@ -78,7 +83,8 @@ impl ForceSpec for VortexSheddingSpec {
                 if self.on.is_empty() {
                     continue;
                 }
-                let message = format!("vortices need a diameter, and `{name}` has none: give its section a `diameter`");
+                let message =
+                    format!("vortices need a diameter, and `{name}` has none: give its section a `diameter`");
                 return Err(BuildError::at("on", message));
             }
             if b.feeding(&name).iter().any(Option::is_some) {
@@ -96,13 +102,21 @@ impl ForceSpec for VortexSheddingSpec {
                 surface: surface(b)?,
             };
             let memory = b.memory(&format!("{name}: wake"), MEMORY * count);
-            b.term(Box::new(VortexShedding::new(&name, stations, [memory, count], fluid, wake, self.strumming)));
+            b.term(Box::new(VortexShedding::new(
+                &name,
+                stations,
+                [memory, count],
+                fluid,
+                wake,
+                self.strumming,
+            )));
             any = true;
         }
         if any {
             return Ok(());
         }
-        let message = "vortices are shed by cables, chains and hulls with a diameter, and the scene has none of them";
+        let message =
+            "vortices are shed by cables, chains and hulls with a diameter, and the scene has none of them";
         Err(BuildError::at("on", message))
     }
 }

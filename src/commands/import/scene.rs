@@ -4,6 +4,7 @@ use super::body::body;
 use super::deck::Deck;
 use super::joints::{fasten, records};
 use super::parts::{LineType, line, line_type, place, point};
+use super::rod::{hold, meet, rod};
 use super::water::{forces, head};
 use ropewalk_scene::Fault;
 use std::collections::BTreeMap;
@@ -97,6 +98,9 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
     for row in &deck.bodies {
         body(deck, row, &mut notes, &mut out)?;
     }
+    for row in &deck.rods {
+        rod(deck, row, &mut notes, &mut out)?;
+    }
     for (section, (kind, time)) in &sections {
         let _ = write!(
             out,
@@ -130,7 +134,13 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
     for point in &points {
         fasten(point, &lines, density, &mut out);
     }
+    for row in &deck.rods {
+        hold(deck, row, &lines, &mut out)?;
+    }
     forces(deck, &lines, folder, &mut out)?;
+    for row in &deck.rods {
+        meet(deck, row, &mut out)?;
+    }
     records(deck, &lines, &points, &mut notes, &mut out);
     Ok(Imported { text: out, notes })
 }

@@ -180,13 +180,15 @@ fn motions_in_a_wave_are_those_of_the_linear_equation() {
     let names = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
     for (name, (re, im)) in names.iter().zip(response) {
         let size = height * re.hypot(im);
-        for (t, x) in h.times().iter().zip(column(&h, &format!("float.{name}"))).filter(|(t, _)| **t > 120.0) {
+        for (t, x) in h.times().iter().zip(column(&h, &format!("float.{name}"))).filter(|(t, _)| **t > 120.0)
+        {
             let theta = there - omega * t;
             let wanted = height * (re * theta.cos() - im * theta.sin());
             assert!((x - wanted).abs() <= 2e-4 * size, "{name} at {t}: {x} {wanted}");
         }
     }
-    let share = column(&h, "energy.imbalance").iter().fold(0.0, |m: f64, x| if x.abs() <= m { m } else { x.abs() });
+    let share =
+        column(&h, "energy.imbalance").iter().fold(0.0, |m: f64, x| if x.abs() <= m { m } else { x.abs() });
     let most = column(&h, "energy.supplied").iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     assert!(share <= 1e-4 * most, "{share} of {most}");
 }
@@ -208,7 +210,8 @@ fn imports_of_other_conventions_are_the_same_table() {
                  "[[[90,0,5,0,80,0],[80,0,9,0,90,0]],[[-70,120,3,230,-80,210],[-40,130,9,200,-10,240]],[[-80,0,5,0,-90,0],[-70,0,9,0,-99,0]],[[-70,-60,3,50,-80,30],[-40,-50,9,20,-10,60]]]")
         + ", waves = \"from\"";
     let table = |rao: &str| -> ropewalk_scene::RaoSpec {
-        let text = buoy("duration = 1", "", "", &format!("stiffness = [0, 0, 1, 1, 1, 0]\nloads = {{ {rao} }}"));
+        let text =
+            buoy("duration = 1", "", "", &format!("stiffness = [0, 0, 1, 1, 1, 0]\nloads = {{ {rao} }}"));
         let file = scene(&text);
         let value = serde_json::to_value(&*file.scene().forces[1]).expect("JSON");
         serde_json::from_value(value["free_vessel"]["loads"].clone()).expect("a table")
@@ -221,7 +224,10 @@ fn imports_of_other_conventions_are_the_same_table() {
             for omega in [0.5, 0.9, 1.2, 2.0] {
                 for (a, b) in wanted.at(relative, omega).iter().zip(found.at(relative, omega)) {
                     let turn = (a[1] - b[1] + PI).rem_euclid(TAU) - PI;
-                    assert!((a[0] - b[0]).abs() <= 1e-12 && (turn * a[0]).abs() <= 1e-12, "{relative} {omega}: {a:?} {b:?}");
+                    assert!(
+                        (a[0] - b[0]).abs() <= 1e-12 && (turn * a[0]).abs() <= 1e-12,
+                        "{relative} {omega}: {a:?} {b:?}"
+                    );
                 }
             }
         }
@@ -261,7 +267,11 @@ fn limits_of_long_waves_are_in_the_notes() {
     );
     let notes: Vec<String> = scene(&text).scene().forces.iter().flat_map(|f| f.notes()).collect();
     let note = notes.first().expect("a note");
-    for said in ["of 12.6 s", "heave 2.900e4 with lag 1 deg (from stiffness 3.000e4 with 0 deg)", "pitch 1.300e2 with lag -91 deg"] {
+    for said in [
+        "of 12.6 s",
+        "heave 2.900e4 with lag 1 deg (from stiffness 3.000e4 with 0 deg)",
+        "pitch 1.300e2 with lag -91 deg",
+    ] {
         assert!(note.contains(said), "{said}: {note}");
     }
 }
