@@ -146,7 +146,7 @@ fn what_has_no_counterpart_is_refused_where_it_stands() {
     refused(
         "--------- OPTIONS",
         "--- RODS ---\nID\n(#)\n1 can\n--- OPTIONS",
-        "rods of a deck aren't taken over",
+        "there is no rod type `can`",
     );
     refused("--------- LINES", "--------- ROPES", "no section of a MoorDyn deck has this name");
     let here = folder(&[("deck.txt", "nothing\n")]);

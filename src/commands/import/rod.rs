@@ -31,6 +31,15 @@ fn kind(deck: &Deck<'_>, row: &Row) -> Result<[f64; 6], Fault> {
     Ok(all)
 }
 
+/// The way from a rod's end A to its end B, and its length.
+fn axis(deck: &Deck<'_>, row: &Row) -> Result<([f64; 3], f64), Fault> {
+    let mut axis = [0.0; 3];
+    for (k, x) in axis.iter_mut().enumerate() {
+        *x = deck.number(row, 6 + k, "place of an end")? - deck.number(row, 3 + k, "place of an end")?;
+    }
+    Ok((axis, axis.iter().map(|x| x * x).sum::<f64>().sqrt()))
+}
+
 /// A rod as an element: its frame is that of space, with the origin at the end A.
 pub(super) fn rod(
     deck: &Deck<'_>,
@@ -40,13 +49,12 @@ pub(super) fn rod(
 ) -> Result<(), Fault> {
     let [diameter, mass, .., end] = kind(deck, row)?;
     let id = &deck.word(row, 0, "number")?.text;
-    let mut at = [[0.0; 3]; 2];
-    for (k, x) in at.iter_mut().flatten().enumerate() {
+    let mut at = [0.0; 3];
+    for (k, x) in at.iter_mut().enumerate() {
         *x = deck.number(row, 3 + k, "place of an end")?;
     }
-    let axis: [f64; 3] = std::array::from_fn(|i| at[1][i] - at[0][i]);
-    let square: f64 = axis.iter().map(|x| x * x).sum();
-    let length = square.sqrt();
+    let (axis, length) = axis(deck, row)?;
+    let square = length * length;
     if !(length > 0.0) {
         let fault = deck.fault("a rod without length isn't taken over", row);
         return Err(fault.with_help(
@@ -67,7 +75,7 @@ pub(super) fn rod(
          {:?}\ncentre = {:?}\nvolume = {:?}\nhull = {{ from = [0, 0, 0], to = {axis:?}, diameter = {diameter:?} }}\npoints = {{ a = [0, 0, 0], \
          b = {axis:?} }}\n",
         row.line,
-        at[0],
+        at,
         [entry(0, 0), entry(1, 1), entry(2, 2)],
         [entry(0, 1), entry(0, 2), entry(1, 2)],
         axis.map(|x| 0.5 * x),
@@ -104,6 +112,23 @@ pub(super) fn hold(deck: &Deck<'_>, row: &Row, lines: &[Line<'_>], out: &mut Str
             return Err(fault.with_help("`Free`, `Fixed`, `Pinned`, `Coupled` and `CoupledPinned` are"));
         }
     }
+    if matches!(how.text.to_lowercase().as_str(), "fixed" | "fix" | "anchor" | "coupled" | "vessel") {
+        return fasten(deck, row, lines, out);
+    }
+    let ([_, mass, ..], (axis, length)) = (kind(deck, row)?, axis(deck, row)?);
+    // hardly more than nothing beside what turns it across
+    let stiffness = 1e-6 * mass * length * length * 9.81;
+    let _ = write!(
+        out,
+        "\n# how a rod turns about its own axis means nothing: a weak spring keeps it\n[[forces]]\ntype = \"rotational_spring\"\nname = \
+         \"rod{id}-spin\"\nmarker = \"rod{id}\"\naxis = {axis:?}\nstiffness = {stiffness:?}\n"
+    );
+    fasten(deck, row, lines, out)
+}
+
+/// The lines that end at a rod.
+fn fasten(deck: &Deck<'_>, row: &Row, lines: &[Line<'_>], out: &mut String) -> Result<(), Fault> {
+    let id = &deck.word(row, 0, "number")?.text;
     for (line, end) in lines.iter().flat_map(|l| [(l, 0), (l, 1)]) {
         let Some((there, side)) = rod_end(deck, &line.ends[end]) else { continue };
         if std::ptr::eq(there, row) {
