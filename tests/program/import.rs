@@ -143,11 +143,7 @@ fn what_has_no_counterpart_is_refused_where_it_stands() {
     refused("320     WtrDpth", "3 WaveKin\n320 WtrDpth", "waves of this kind");
     refused("320     WtrDpth", "1 Currents\n320 WtrDpth", "current_profile.txt`, which the deck needs");
     refused("902.2    20      -", "", "this row ends before its unstretched length");
-    refused(
-        "--------- OPTIONS",
-        "--- RODS ---\nID\n(#)\n1 can\n--- OPTIONS",
-        "there is no rod type `can`",
-    );
+    refused("--------- OPTIONS", "--- RODS ---\nID\n(#)\n1 can\n--- OPTIONS", "there is no rod type `can`");
     refused("--------- LINES", "--------- ROPES", "no section of a MoorDyn deck has this name");
     let here = folder(&[("deck.txt", "nothing\n")]);
     let told = run(here.path(), &["import", "deck.txt"]);
@@ -201,12 +197,16 @@ fn a_rod_hangs_from_the_lines_of_its_deck() {
     }
     let more = "\n[[records]]\ntype = \"position\"\nof = \"rod1.a\"\n\n[[records]]\ntype = \"position\"\nof = \"rod1.b\"\n";
     fs::write(here.path().join("rod.toml"), text.replace("60 s", "1 s") + more).unwrap();
-    let told = run(here.path(), &["run", "rod.toml", "--no-report", "--no-plots"]);
-    let out = told.stdout;
+    let told = run(here.path(), &["run", "rod.toml", "--out", "rod", "--no-report", "--no-plots"]);
+    assert_eq!(told.code, Some(0), "{}", told.stderr);
+    let table = fs::read_to_string(here.path().join("rod/history.csv")).unwrap();
+    let [names, .., values] = &table.lines().collect::<Vec<_>>()[..] else { panic!("{table}") };
     let last = |name: &str| -> f64 {
-        let line =
-            out.lines().find(|l| l.contains(name)).unwrap_or_else(|| panic!("{name}: {out}{}", told.stderr));
-        line.split_whitespace().rev().nth(1).unwrap().parse().unwrap()
+        let k = names
+            .split(',')
+            .position(|n| n.starts_with(name))
+            .unwrap_or_else(|| panic!("no {name}: {names}"));
+        values.split(',').nth(k).unwrap().parse().unwrap()
     };
     let (a, b) = (last("rod1.a.z"), last("rod1.b.z"));
     assert!((a - b).abs() < 1e-3, "{a} {b}");
@@ -234,4 +234,77 @@ fn rods_that_have_no_counterpart_are_refused() {
         assert_eq!((told.code, told.stdout.as_str()), (Some(2), ""));
         assert!(told.stderr.contains(what), "{what} isn't in\n{}", told.stderr);
     }
+}
+
+/// A deck that is made of a scene of a deck says the same: number by number from there on, and in tension.
+#[test]
+fn scenes_go_back_into_decks() {
+    let joined = SPAR
+        .replace("4   Vessel  5.2      0.0      -70.0   0 ", "4   Free    5.2      0.0      -70.0   2e4 ")
+        .replace("2   main     2       5  ", "2   main     2       4  ");
+    for deck in [SPAR, &joined] {
+        let here = folder(&[("first.txt", deck)]);
+        let there = |name: &str| here.path().join(name);
+        let done = |args: &[&str]| {
+            let told = run(here.path(), args);
+            assert_eq!(told.code, Some(0), "{args:?}: {}", told.stderr);
+            told.stdout
+        };
+        done(&["import", "first.txt", "--out", "first.toml"]);
+        done(&["export", "first.toml", "--out", "second.txt"]);
+        done(&["import", "second.txt", "--out", "second.toml"]);
+        done(&["export", "second.toml", "--out", "third.txt"]);
+        let [second, third] =
+            ["second.txt", "third.txt"].map(|name| fs::read_to_string(there(name)).unwrap());
+        assert!(second.split_whitespace().count() > 80, "{second}");
+        assert_eq!(second.split_whitespace().count(), third.split_whitespace().count(), "{second}{third}");
+        for (a, b) in second.split_whitespace().zip(third.split_whitespace()) {
+            match (a.parse::<f64>(), b.parse::<f64>()) {
+                (Ok(x), Ok(y)) => assert!((x - y).abs() <= 1e-12 * x.abs(), "{a} {b}"),
+                _ => assert_eq!(a, b, "{second}{third}"),
+            }
+        }
+        if deck == SPAR {
+            let tension = |name: &str| {
+                let text = fs::read_to_string(there(name)).unwrap().replace("60 s", "1 s");
+                fs::write(there(name), text).unwrap();
+                let out = done(&["run", name, "--no-report", "--no-plots"]);
+                let line = out.lines().find(|l| l.contains("FairTen1")).unwrap_or_else(|| panic!("{out}"));
+                line.split_whitespace().rev().nth(1).unwrap().parse::<f64>().unwrap()
+            };
+            let (a, b) = (tension("first.toml"), tension("second.toml"));
+            assert!((a / b - 1.0).abs() < 1e-5, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn what_a_deck_has_no_place_for_is_refused_by_name() {
+    let here = folder(&[("spar.txt", SPAR)]);
+    run(here.path(), &["import", "spar.txt", "--out", "spar.toml"]);
+    let text = fs::read_to_string(here.path().join("spar.toml")).unwrap();
+    for (more, what) in [
+        (
+            "[[elements]]\ntype = \"rigid_body\"\nname = \"b\"\nposition = [0, 0, 0]\nmass = 1\ninertia = [1, 1, 1]\n",
+            "`rigid_body`",
+        ),
+        ("[[forces]]\ntype = \"vortex_shedding\"\n", "`vortex_shedding`"),
+        (
+            "[[constraints]]\ntype = \"clamp\"\nname = \"foot\"\nmarker = \"line1.start\"\n",
+            "the constraint `foot` of type `clamp`",
+        ),
+    ] {
+        fs::write(here.path().join("more.toml"), format!("{text}\n{more}")).unwrap();
+        let told = run(here.path(), &["export", "more.toml"]);
+        assert_eq!((told.code, told.stdout.as_str()), (Some(2), ""), "{}", told.stderr);
+        assert!(
+            told.stderr.contains(what) && told.stderr.contains("no counterpart"),
+            "{what}: {}",
+            told.stderr
+        );
+    }
+    let wet = text.replace("level = 0", "level = 0\ncurrent = [1, 0, 0]");
+    fs::write(here.path().join("wet.toml"), wet).unwrap();
+    let told = run(here.path(), &["export", "wet.toml"]);
+    assert!(told.stderr.contains("a current or waves"), "{}", told.stderr);
 }

@@ -13,7 +13,7 @@ fn run(text: &str) -> History {
 /// `m g (L - s) - ρ g (depth of the foot) A`.
 #[test]
 fn the_wall_of_a_hanging_pipe_carries_its_weight_less_the_pressure_at_its_foot() {
-    let (mass, density, diameter, length, top) = (40.0, 1025.0, 0.2, 60.0, 5.0);
+    let (mass, density, diameter, length, top) = (40.0, 1025.0, 0.2, 60.0, 30.0);
     let h = run(&format!(
         r#"
         run = {{ analysis = "statics" }}

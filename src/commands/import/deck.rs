@@ -111,7 +111,7 @@ impl<'a> Deck<'a> {
             }
         }
         if deck.lines.is_empty() && deck.rods.is_empty() {
-            let fault = Fault::new(format!("`{name}` has neither lines nor rods: it isn't a MoorDyn deck"));
+            let fault = Fault::new(format!("`{name}` has no lines: it isn't a MoorDyn deck"));
             return Err(fault.with_help("sections begin with dashed rows, such as `--- LINES ---`"));
         }
         Ok(deck)
