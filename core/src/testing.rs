@@ -181,10 +181,15 @@ pub fn check_constraint(constraint: &dyn Constraint, nodes: &[Node], at: &At<'_>
     constraint.jacobian(nodes, at, &mut g, &mut jac);
     constraint.geometric(nodes, at, &lambda, &mut h);
     constraint.rates(nodes, at, &mut rate, &mut bias);
+    let mut alone = vec![0.0; rows];
+    constraint.violation(nodes, at, &mut alone, &mut vec![0.0; rows * n]);
 
     let columns: Vec<Vec<f64>> = (0..n).map(|j| (0..rows).map(|r| jac[r * n + j]).collect()).collect();
     let numeric: Vec<Vec<f64>> = (0..n).map(|j| difference(|h| moved(0.0, &unit(j, h)))).collect();
-    let mut worst = column_error(&columns, &numeric, 1.0);
+    let mut worst = column_error(&columns, &numeric, 1.0).max(column_error(&[alone], &[g.clone()], 1.0));
+    if !constraint.moves() {
+        worst = worst.max(largest(&rate));
+    }
 
     let pull = |d: &[f64]| -> Vec<f64> {
         let mut step = vec![0.0; all];

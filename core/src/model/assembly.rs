@@ -291,7 +291,7 @@ impl Model {
             }
             let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
             sys.jacobian.resize(n * constraint.rows().len(), 0.0);
-            constraint.jacobian(&self.nodes, at, &mut g[self.rows_of(c)], &mut sys.jacobian);
+            constraint.violation(&self.nodes, at, &mut g[self.rows_of(c)], &mut sys.jacobian);
         }
     }
 

@@ -33,6 +33,10 @@ pub trait Constraint: Send + Sync {
     }
     /// Sets `g` and, row by row, its Jacobian by the velocities of [`Constraint::nodes`].
     fn jacobian(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]);
+    /// Sets `g` alone; `room` is as large as the Jacobian, for those who know no shorter way.
+    fn violation(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], room: &mut [f64]) {
+        self.jacobian(nodes, at, g, room);
+    }
     /// Sets `h = ∂(Gᵀλ)/∂q`, a square matrix over the velocities of its nodes: row by equation, column by increment. It
     /// isn't symmetric where nodes have orientations.
     fn geometric(&self, nodes: &[Node], at: &At<'_>, lambda: &[f64], h: &mut [f64]);
@@ -42,7 +46,7 @@ pub trait Constraint: Send + Sync {
     fn imposes(&self) -> Option<&dyn Motion> {
         None
     }
-    /// Whether it changes with time: only then [`Constraint::reach`] is asked.
+    /// Whether it changes with time: only then [`Constraint::reach`] is asked, and `∂g/∂t` may be other than nought.
     fn moves(&self) -> bool {
         self.imposes().is_some()
     }

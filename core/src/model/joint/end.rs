@@ -1,11 +1,13 @@
 //! Where the two markers of a joint are, and how the vectors between them and of their axes change.
 
 use crate::algebra::lane::V3;
-use crate::algebra::rotation::{IDENTITY, M3, cross, product, skew, times, transposed_times};
+use crate::algebra::rotation::{IDENTITY, M3, cross, matrix, product, skew, times, transposed_times};
 use crate::model::joint::equation::Arrow;
-use crate::model::node::NodeKind;
+use crate::model::marker::Marker;
+use crate::model::node::{Node, NodeKind};
 use crate::model::state::At;
-use crate::model::twist::Turned;
+use crate::model::twist::{self, Turned, VELOCITIES};
+use std::ops::Range;
 
 /// More unknowns than two nodes have.
 pub(super) const MOST: usize = 14;
@@ -38,6 +40,46 @@ pub(super) struct Flow {
 }
 
 impl End {
+    /// Where a marker is whose node's first unknown is number `start` of the joint.
+    pub fn new(marker: &Marker, start: usize, nodes: &[Node], at: &At<'_>) -> End {
+        let none = [0.0; 3];
+        match *marker {
+            Marker::Ground { point, axes } => End {
+                kind: None,
+                start,
+                v: 0,
+                x: point,
+                point,
+                axes,
+                r: [none; 3],
+                slope: none,
+                section: None,
+            },
+            Marker::Node { node, point, axes } => {
+                let n = &nodes[node.0 as usize];
+                let q = &at.q[n.coords()];
+                let (mut x, mut r, mut slope) = ([q[0], q[1], q[2]], [none; 3], none);
+                let mut section = None;
+                match n.kind {
+                    NodeKind::Frame => r = matrix(&[q[3], q[4], q[5], q[6]]),
+                    NodeKind::Slope => slope = [q[3], q[4], q[5]],
+                    NodeKind::Twist => {
+                        slope = [q[3], q[4], q[5]];
+                        r = twist::section(q);
+                        section = Some(Turned::new(q));
+                    }
+                    NodeKind::Scalars(_) | NodeKind::Point => {}
+                }
+                if matches!(n.kind, NodeKind::Frame | NodeKind::Twist) {
+                    let arm = times(&r, &point);
+                    (0..3).for_each(|i| x[i] += arm[i]);
+                }
+                let axes =
+                    if matches!(n.kind, NodeKind::Scalars(_)) { [[q[0], q[1], q[2]]; 3] } else { axes };
+                End { kind: Some(n.kind), start, v: n.v, x, point, axes, r, slope, section }
+            }
+        }
+    }
     pub fn is_body(&self) -> bool {
         self.kind == Some(NodeKind::Frame)
     }
@@ -71,6 +113,18 @@ impl End {
             Some(NodeKind::Twist) => matches!(arrow, Arrow::Tangent { .. }),
             _ => false,
         }
+    }
+    /// The unknowns that change its point, or the vectors of its axes.
+    fn span(&self, of_point: bool) -> Range<usize> {
+        let first = if of_point || matches!(self.kind, Some(NodeKind::Scalars(_))) { 0 } else { 3 };
+        let last = match self.kind {
+            None => first,
+            Some(NodeKind::Twist) => VELOCITIES,
+            Some(NodeKind::Frame) => 6,
+            Some(NodeKind::Slope) if !of_point => 6,
+            Some(_) => 3,
+        };
+        self.start + first..self.start + last
     }
     fn in_space(&self, u: &V3<f64>) -> V3<f64> {
         if self.turns() { times(&self.r, u) } else { *u }
@@ -193,13 +247,38 @@ pub(super) fn add_twice(
     }
 }
 
-/// Derivatives of a vector by all unknowns: row by component.
-pub(super) fn derivatives(arrow: &Arrow, ends: &[End; 2], t: f64) -> [[f64; MOST]; 3] {
-    let mut j = [[0.0; MOST]; 3];
-    for (i, row) in j.iter_mut().enumerate() {
+/// The first derivatives of a vector: row by component, nought but for the unknowns in `spans`.
+pub(super) struct Derivatives {
+    pub rows: [[f64; MOST]; 3],
+    pub spans: [Range<usize>; 2],
+}
+
+impl Derivatives {
+    /// Adds `l ∂a/∂q_i·∂b/∂q_j`, and its transpose, to the matrix of `n` unknowns.
+    pub fn add_product(&self, other: &Derivatives, l: f64, n: usize, h: &mut [f64]) {
+        for i in self.spans.iter().cloned().flatten() {
+            let a = [0, 1, 2].map(|c| l * self.rows[c][i]);
+            for j in other.spans.iter().cloned().flatten() {
+                let x = a[0] * other.rows[0][j] + a[1] * other.rows[1][j] + a[2] * other.rows[2][j];
+                h[i * n + j] += x;
+                h[j * n + i] += x;
+            }
+        }
+    }
+}
+
+pub(super) fn derivatives(arrow: &Arrow, ends: &[End; 2], t: f64) -> Derivatives {
+    let mut rows = [[0.0; MOST]; 3];
+    for (i, row) in rows.iter_mut().enumerate() {
         add(arrow, ends, t, &IDENTITY[i], row);
     }
-    j
+    let spans = match arrow {
+        Arrow::Between => [ends[0].span(true), ends[1].span(true)],
+        Arrow::Axis { of, .. } | Arrow::Tangent { of } | Arrow::Turned { of, .. } => {
+            [ends[*of].span(false), 0..0]
+        }
+    };
+    Derivatives { rows, spans }
 }
 
 pub(super) fn flow(arrow: &Arrow, ends: &[End; 2], at: &At<'_>) -> Flow {

@@ -1,6 +1,6 @@
 //! The equations of joints.
 
-use crate::algebra::lane::V3;
+use crate::algebra::lane::{V3, dot};
 use crate::algebra::rotation::IDENTITY;
 use crate::model::constraint::RowKind;
 use crate::model::motion::Motion;
@@ -89,6 +89,20 @@ impl Equation {
     pub(super) fn coincide_only(equations: &[Equation]) -> bool {
         let axis = |i: usize, e: &Equation| matches!(e, Equation::Along { direction, motion: None } if *direction == IDENTITY[i]);
         equations.len() == 3 && equations.iter().enumerate().all(|(i, e)| axis(i, e))
+    }
+    /// By how much it is broken, with the vector `d` between the markers.
+    #[inline]
+    pub(super) fn violation(&self, d: &V3<f64>, value: impl Fn(&Arrow) -> V3<f64>, t: f64) -> f64 {
+        match self {
+            Equation::Along { direction, motion } => {
+                let x = motion.as_ref().map_or([0.0; 3], |m| m.at(t).x);
+                (0..3).map(|i| direction[i] * (d[i] - x[i])).sum()
+            }
+            Equation::Dot { a, b, value: c, motion } => {
+                dot(&value(a), &value(b)) - c - motion.as_ref().map_or(0.0, |m| m.at(t).x[0])
+            }
+            Equation::Distance { length } => dot(d, d).sqrt() - length,
+        }
     }
     pub(super) fn kind(&self) -> RowKind {
         match self {

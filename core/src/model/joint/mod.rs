@@ -19,7 +19,6 @@ use crate::model::marker::Marker;
 use crate::model::motion::Motion;
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::state::At;
-use crate::model::twist::{self, Turned};
 use std::sync::Arc;
 
 /// Equations between two markers, as a constraint.
@@ -186,48 +185,10 @@ impl Joint {
         }
     }
 
+    /// Where the two markers are. Each is written where it stays: they are large, and every iteration asks for them.
     fn ends(&self, nodes: &[Node], at: &At<'_>) -> [End; 2] {
-        let mut start = 0;
-        self.markers.map(|m| match m {
-            Marker::Ground { point, axes } => {
-                let (r, slope) = ([[0.0; 3]; 3], [0.0; 3]);
-                End { kind: None, start, v: 0, x: point, point, axes, r, slope, section: None }
-            }
-            Marker::Node { node, point, axes } => {
-                let n = &nodes[node.0 as usize];
-                let q = &at.q[n.coords()];
-                let mut end = End {
-                    kind: Some(n.kind),
-                    start,
-                    v: n.v,
-                    x: [q[0], q[1], q[2]],
-                    point,
-                    axes,
-                    r: [[0.0; 3]; 3],
-                    slope: [0.0; 3],
-                    section: None,
-                };
-                start += n.kind.velocities();
-                match n.kind {
-                    NodeKind::Frame => {
-                        end.r = matrix(&[q[3], q[4], q[5], q[6]]);
-                        let arm = times(&end.r, &point);
-                        (0..3).for_each(|i| end.x[i] += arm[i]);
-                    }
-                    NodeKind::Slope => end.slope = [q[3], q[4], q[5]],
-                    NodeKind::Twist => {
-                        end.slope = [q[3], q[4], q[5]];
-                        end.r = twist::section(q);
-                        let arm = times(&end.r, &point);
-                        (0..3).for_each(|i| end.x[i] += arm[i]);
-                        end.section = Some(Turned::new(q));
-                    }
-                    NodeKind::Scalars(_) => end.axes = [[q[0], q[1], q[2]]; 3],
-                    NodeKind::Point => {}
-                }
-                end
-            }
-        })
+        let second = self.markers[0].on().map_or(0, |n| nodes[n.0 as usize].kind.velocities());
+        [End::new(&self.markers[0], 0, nodes, at), End::new(&self.markers[1], second, nodes, at)]
     }
 
     fn size(&self, nodes: &[Node]) -> usize {
@@ -294,24 +255,31 @@ impl Constraint for Joint {
         let ends = self.ends(nodes, at);
         let d = value(&Arrow::Between, &ends, at.t);
         for ((equation, g), row) in self.equations.iter().zip(g).zip(jac.chunks_exact_mut(n)) {
+            *g = equation.violation(&d, |arrow| value(arrow, &ends, at.t), at.t);
             match equation {
-                Equation::Along { direction, motion } => {
-                    let x = motion.as_ref().map_or([0.0; 3], |m| m.at(at.t).x);
-                    *g = (0..3).map(|i| direction[i] * (d[i] - x[i])).sum();
-                    add(&Arrow::Between, &ends, at.t, direction, row);
+                Equation::Along { direction, .. } => add(&Arrow::Between, &ends, at.t, direction, row),
+                Equation::Dot { a, b, .. } => {
+                    add(a, &ends, at.t, &value(b, &ends, at.t), row);
+                    add(b, &ends, at.t, &value(a, &ends, at.t), row);
                 }
-                Equation::Dot { a, b, value: c, motion } => {
-                    let (va, vb) = (value(a, &ends, at.t), value(b, &ends, at.t));
-                    *g = dot(&va, &vb) - c - motion.as_ref().map_or(0.0, |m| m.at(at.t).x[0]);
-                    add(a, &ends, at.t, &vb, row);
-                    add(b, &ends, at.t, &va, row);
-                }
-                Equation::Distance { length } => {
+                Equation::Distance { .. } => {
                     let size = dot(&d, &d).sqrt();
-                    *g = size - length;
                     add(&Arrow::Between, &ends, at.t, &d.map(|d| d / size), row);
                 }
             }
+        }
+    }
+
+    fn violation(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], _: &mut [f64]) {
+        if self.coincide {
+            g.fill(0.0);
+            self.points(nodes, at, |sign, _, x, _| (0..3).for_each(|i| g[i] += sign * x[i]));
+            return;
+        }
+        let ends = self.ends(nodes, at);
+        let d = value(&Arrow::Between, &ends, at.t);
+        for (equation, g) in self.equations.iter().zip(g) {
+            *g = equation.violation(&d, |arrow| value(arrow, &ends, at.t), at.t);
         }
     }
 
@@ -339,19 +307,13 @@ impl Constraint for Joint {
                 Equation::Along { direction, .. } => (0..3).for_each(|i| force[i] += l * direction[i]),
                 Equation::Dot { a, b, .. } => {
                     let (va, vb) = (value(a, &ends, at.t), value(b, &ends, at.t));
-                    let (ja, jb) = (derivatives(a, &ends, at.t), derivatives(b, &ends, at.t));
-                    for i in 0..n {
-                        for j in 0..n {
-                            h[i * n + j] +=
-                                l * (0..3).map(|c| ja[c][i] * jb[c][j] + jb[c][i] * ja[c][j]).sum::<f64>();
-                        }
-                    }
+                    derivatives(a, &ends, at.t).add_product(&derivatives(b, &ends, at.t), l, n, h);
                     add_twice(a, &ends, at.t, &vb, l, n, h);
                     add_twice(b, &ends, at.t, &va, l, n, h);
                 }
                 Equation::Distance { .. } => {
                     let size = dot(&d, &d).sqrt();
-                    let (e, jd) = (d.map(|d| d / size), derivatives(&Arrow::Between, &ends, at.t));
+                    let (e, jd) = (d.map(|d| d / size), derivatives(&Arrow::Between, &ends, at.t).rows);
                     let along: [f64; MOST] =
                         std::array::from_fn(|i| (0..3).map(|c| e[c] * jd[c][i]).sum::<f64>());
                     for i in 0..n {

@@ -272,6 +272,15 @@ impl Alpha {
         true
     }
 
+    /// Whether velocities break the constraints by more than the error that positions may gather in the run.
+    fn drifts(&self, model: &Model, state: &State, work: &mut Workspace) -> bool {
+        let Stepping::Controlled { tolerance } = self.options.stepping else { return false };
+        let mut rates = vec![0.0; model.multipliers()];
+        model.constraint_rates(&state.at(), &mut work.system, &mut rates);
+        let limit = tolerance * model.length() / self.horizon;
+        rates.iter().zip(model.row_scale()).any(|(rate, scale)| rate.abs() > limit * scale)
+    }
+
     /// Whether a trial that converged is to be accepted.
     fn judge(
         &self,
@@ -442,6 +451,7 @@ impl Integrator for Alpha {
         let mut remedies = Remedies::default();
         // step and error of the first try that was rejected for its error
         let mut rejected = None;
+        let mut renewed = false;
         loop {
             let h = steps.h;
             let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
@@ -459,9 +469,11 @@ impl Integrator for Alpha {
                     let [first, largest] = *rejected.get_or_insert([h, error]);
                     let stays = h <= SHRUNK * first && error > largest * (h / first).sqrt();
                     let kinked = !model.inputs().is_empty() && model.multipliers() > 0;
-                    if stays && kinked && h <= SHRUNK * state.control.h_last {
-                        // not the error of this step: behind the kink of an input velocities meet the constraints to the
-                        // order of the longer step before it
+                    // not the error of this step: behind the kink of an input velocities meet the constraints to the order of
+                    // the longer step before it, and where steps change much they may leave them altogether
+                    let behind = stays && kinked && h <= SHRUNK * state.control.h_last;
+                    if behind || !renewed && h <= SHRUNK * first && self.drifts(model, state, work) {
+                        renewed = true;
                         let internal = state.internal.clone();
                         anew(model, state, work, self, steps.h, true)?;
                         state.internal = internal;
