@@ -187,7 +187,7 @@ pub fn check_constraint(constraint: &dyn Constraint, nodes: &[Node], at: &At<'_>
     let columns: Vec<Vec<f64>> = (0..n).map(|j| (0..rows).map(|r| jac[r * n + j]).collect()).collect();
     let numeric: Vec<Vec<f64>> = (0..n).map(|j| difference(|h| moved(0.0, &unit(j, h)))).collect();
     let mut worst = column_error(&columns, &numeric, 1.0).max(column_error(&[alone], &[g.clone()], 1.0));
-    if !constraint.moves() {
+    if constraint.is_steady() {
         worst = worst.max(largest(&rate));
     }
 

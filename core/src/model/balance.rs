@@ -28,7 +28,7 @@ impl Model {
             p += t.power(at);
         }
         let holding = self.constraints.iter().enumerate().filter(|(c, _)| self.holds(*c, at.internal));
-        for (c, constraint) in holding.filter(|(_, constraint)| constraint.moves()) {
+        for (c, constraint) in holding.filter(|(_, constraint)| !constraint.is_steady()) {
             let (mut rate, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
             constraint.rates(&self.nodes, at, &mut rate, &mut bias);
             p.supplied += rate.iter().zip(&lambda[self.rows_of(c)]).map(|(r, l)| r * l).sum::<f64>();

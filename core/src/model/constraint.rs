@@ -46,9 +46,13 @@ pub trait Constraint: Send + Sync {
     fn imposes(&self) -> Option<&dyn Motion> {
         None
     }
-    /// Whether it changes with time: only then [`Constraint::reach`] is asked, and `∂g/∂t` may be other than nought.
+    /// Whether it changes with time: only then [`Constraint::reach`] is asked.
     fn moves(&self) -> bool {
         self.imposes().is_some()
+    }
+    /// Whether its `∂g/∂t` is nought whatever happens, so that its power needn't be asked for.
+    fn is_steady(&self) -> bool {
+        false
     }
     /// How much of a step `h` from `t` may be taken that leaps over nothing of its motion, as [`Motion::reach`].
     fn reach(&self, t: f64, h: f64) -> Option<f64> {

@@ -221,6 +221,9 @@ impl Constraint for Joint {
     fn moves(&self) -> bool {
         self.motions().next().is_some()
     }
+    fn is_steady(&self) -> bool {
+        !self.moves()
+    }
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.motions().try_fold(h, |h, m| m.reach(t, h))
     }
