@@ -290,8 +290,8 @@ fn what_a_deck_has_no_place_for_is_refused_by_name() {
         ),
         ("[[forces]]\ntype = \"vortex_shedding\"\n", "`vortex_shedding`"),
         (
-            "[[constraints]]\ntype = \"clamp\"\nname = \"foot\"\nmarker = \"line1.start\"\n",
-            "the constraint `foot` of type `clamp`",
+            "[[constraints]]\ntype = \"distance\"\nname = \"foot\"\nmarker = \"line1.end\"\nto = \"line2.end\"\n",
+            "the constraint `foot` of type `distance`",
         ),
     ] {
         fs::write(here.path().join("more.toml"), format!("{text}\n{more}")).unwrap();

@@ -59,7 +59,7 @@ pub enum SixBySix {
     /// Its diagonal; the rest is 0.
     Diagonal([f64; MOTIONS]),
     /// Six rows.
-    Matrix([[f64; MOTIONS]; MOTIONS]),
+    Matrix(Box<[[f64; MOTIONS]; MOTIONS]>),
 }
 
 impl Default for SixBySix {
@@ -71,7 +71,7 @@ impl Default for SixBySix {
 impl SixBySix {
     fn rows(&self) -> Six {
         match self {
-            SixBySix::Matrix(rows) => *rows,
+            SixBySix::Matrix(rows) => **rows,
             SixBySix::Diagonal(d) => {
                 std::array::from_fn(|i| std::array::from_fn(|j| if i == j { d[i] } else { 0.0 }))
             }
