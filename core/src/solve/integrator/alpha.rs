@@ -40,6 +40,8 @@ const MOST_TURNING: f64 = 100.0;
 const MOST_TURN: f64 = 1.5;
 /// A step so much smaller than another one has a much smaller error, or it isn't that of the step.
 const SHRUNK: f64 = 0.1;
+/// How many times more than that is far.
+const FAR: f64 = 100.0;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
@@ -272,12 +274,12 @@ impl Alpha {
         true
     }
 
-    /// Whether velocities break the constraints by more than the error that positions may gather in the run.
+    /// Whether velocities break the constraints by far more than what the error that positions may gather in the run asks.
     fn drifts(&self, model: &Model, state: &State, work: &mut Workspace) -> bool {
         let Stepping::Controlled { tolerance } = self.options.stepping else { return false };
         let mut rates = vec![0.0; model.multipliers()];
         model.constraint_rates(&state.at(), &mut work.system, &mut rates);
-        let limit = tolerance * model.length() / self.horizon;
+        let limit = FAR * tolerance * model.length() / self.horizon;
         rates.iter().zip(model.row_scale()).any(|(rate, scale)| rate.abs() > limit * scale)
     }
 
