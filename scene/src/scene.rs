@@ -400,6 +400,19 @@ impl Scene {
     /// # Errors
     /// As [`Scene::build`].
     pub fn build_on(&self, plan: &Plan) -> Result<Model, SceneError> {
+        self.build_as(plan, self.run.analysis == Analysis::Statics)
+    }
+
+    /// Builds the model in which a run in time looks for the equilibrium that it starts from: what changes with time is there
+    /// as if it stayed as it is. States fit both models.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub fn build_at_rest(&self) -> Result<Model, SceneError> {
+        self.build_as(&Plan::new(), true)
+    }
+
+    fn build_as(&self, plan: &Plan, statics: bool) -> Result<Model, SceneError> {
         if !self.processes.is_empty() {
             // what there is to build is in the process
             self.start_process()?;
@@ -419,7 +432,7 @@ impl Scene {
         water.as_mut().map_or(Ok(()), |water| water.bind(&inputs, self.gravity)).map_err(whole)?;
         air.as_mut().map_or(Ok(()), |air| air.bind(&inputs)).map_err(whole)?;
         b.set_world(self.gravity, water, air);
-        b.set_statics(self.run.analysis == Analysis::Statics);
+        b.set_statics(statics);
         for (part, mesh) in plan {
             b.remesh(part, mesh.clone());
         }

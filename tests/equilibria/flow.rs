@@ -320,6 +320,53 @@ fn the_wall_carries_what_friction_and_its_own_weight_ask_for() {
     }
 }
 
+/// A pump whose flow changes from the first moment on: the hose hangs at first as with the flow that it has then, and what its
+/// speeding up pushes along it is felt from then on.
+#[test]
+fn a_run_starts_from_the_equilibrium_of_its_flow_at_that_instant() {
+    let hose = |more: &str, time: &str| {
+        format!(
+            r#"
+            run = {{ duration = 1e-3, output = 1e-3, {more} }}
+            [[elements]]
+            type = "cable"
+            name = "hose"
+            points = [[0, 0, 0], [0, 0, -4]]
+            elements = 4
+            section = {{ mass = 0.5, ea = 1e4, ei = 1 }}
+            [[constraints]]
+            type = "clamp"
+            name = "top"
+            marker = "hose.start"
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "internal_flow"
+            cable = "hose"
+            density = 1000
+            bore = 0.02
+            speed = 3
+            {time}
+            [[records]]
+            type = "position"
+            of = "hose.end"
+            "#
+        )
+    };
+    let start = |more: &str, time: &str| {
+        let history = ropewalk::simulate(&scene(&hose(more, time))).unwrap_or_else(|e| panic!("{e}"));
+        history.column("hose.end.z").expect("a position")[0]
+    };
+    let faster = "time = { harmonic = { mean = 1, amplitude = 0.5, frequency = 2, phase = 0 } }";
+    let rest = "analysis = \"statics\"";
+    let [still, steady, changing] =
+        [(rest, ""), ("from_equilibrium = true", ""), ("from_equilibrium = true", faster)]
+            .map(|(more, time)| start(more, time));
+    // what accelerates it is m u̇ = 5.9 N/m, as much as its weight
+    println!("{still} {steady} {changing}");
+    assert!(still < -4.0 && (steady - still).abs() < 1e-9 && (changing - still).abs() < 1e-9);
+}
+
 /// A hose that hangs in water from 20 m below its surface, which is far enough for no element to feel it, open below: its wall, the pressure in it, and those to be.
 fn hanging(speed: f64, expected: impl Fn(f64) -> [f64; 2]) {
     let text = format!(

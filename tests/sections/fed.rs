@@ -6,13 +6,13 @@ use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Model, Quantity, State};
 use serde_json::Value;
 
-/// A line of a case in which this much of the section at an end (0 or 1) isn't out yet, and a winch that pays it out.
-fn fed(case: &Value, end: usize, d: f64, per_section: usize) -> String {
+/// A line of a case in which this much of the section at each of these ends (0 and 1) isn't out yet, and winches that pay it out.
+fn fed(case: &Value, ends: &[usize], d: f64, per_section: usize) -> String {
     let own = case["sections"].as_array().expect("sections");
     let (mut s, mut sections) = (0.0, String::new());
     for (k, section) in own.iter().enumerate() {
         let [length, weight, ea] = [0, 1, 2].map(|i| number(&section[i]));
-        let feeds = k == if end == 0 { 0 } else { own.len() - 1 };
+        let feeds = ends.iter().any(|&end| k == if end == 0 { 0 } else { own.len() - 1 });
         s += if feeds { length - d } else { length };
         let mass = weight / 9.81;
         sections += &format!(
@@ -27,7 +27,21 @@ fn fed(case: &Value, end: usize, d: f64, per_section: usize) -> String {
         .iter()
         .map(|row| [number(&row[1]), 0.0, number(&row[2])])
         .collect();
-    let at = ["start", "end"][end];
+    let winch = |end: &usize| {
+        let at = ["start", "end"][*end];
+        format!(
+            r#"
+        [[constraints]]
+        type = "winch"
+        name = "winch at the {at}"
+        marker = "line.{at}"
+        speed = 1
+        payout = {d}
+        ramp = 1e-3
+        "#
+        )
+    };
+    let winches: String = ends.iter().map(winch).collect();
     format!(
         r#"
         run = {{ duration = 1000 }}
@@ -44,13 +58,7 @@ fn fed(case: &Value, end: usize, d: f64, per_section: usize) -> String {
         type = "spherical"
         name = "fairlead"
         marker = "line.end"
-        [[constraints]]
-        type = "winch"
-        name = "winch"
-        marker = "line.{at}"
-        speed = 1
-        payout = {d}
-        ramp = 1e-3
+        {winches}
         [[forces]]
         type = "gravity"
         "#
@@ -58,11 +66,13 @@ fn fed(case: &Value, end: usize, d: f64, per_section: usize) -> String {
 }
 
 /// The line at rest once all of it is out.
-fn paid_out(case: &Value, end: usize, d: f64, per_section: usize) -> (Model, State) {
-    let model = scene(&fed(case, end, d, per_section)).build().unwrap_or_else(|e| panic!("{e}"));
+fn paid_out(case: &Value, ends: &[usize], d: f64, per_section: usize) -> (Model, State) {
+    let model = scene(&fed(case, ends, d, per_section)).build().unwrap_or_else(|e| panic!("{e}"));
     let mut state = model.state();
-    let boundary = model.part("line").and_then(|line| line.boundary(end)).expect("a boundary");
-    state.q[boundary.q] += boundary.sign * d;
+    for &end in ends {
+        let boundary = model.part("line").and_then(|line| line.boundary(end)).expect("a boundary");
+        state.q[boundary.q] += boundary.sign * d;
+    }
     state.t = 500.0;
     let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
     statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
@@ -79,10 +89,10 @@ fn a_line_that_is_paid_out_hangs_as_the_closed_form() {
         }
         let length: f64 = case["sections"].as_array().expect("sections").iter().map(|s| number(&s[0])).sum();
         let [t0, t1] = ["T0", "T1"].map(|name| number(&case[name]));
-        for end in [0, 1] {
+        for ends in [&[0][..], &[1], &[0, 1]] {
             for (n, limit) in [(20, 1e-5), (60, 1e-7)] {
                 let d = 0.05 * length;
-                let (model, state) = paid_out(&case, end, d, n);
+                let (model, state) = paid_out(&case, ends, d, n);
                 let (part, at) = (model.part("line").expect("line"), state.at());
                 let pull = [(0.0, t0), (part.length_now(&at), t1)]
                     .map(|(s, t)| part.observe(Quantity::Tension, s, &at).expect("a tension") / t - 1.0);
@@ -96,10 +106,10 @@ fn a_line_that_is_paid_out_hangs_as_the_closed_form() {
                     shape = if off <= shape { shape } else { off };
                 }
                 println!(
-                    "{} {end} n {n}: shape {shape:.1e}, pull {:.1e} {:.1e}",
+                    "{} {ends:?} n {n}: shape {shape:.1e}, pull {:.1e} {:.1e}",
                     case["name"], pull[0], pull[1]
                 );
-                assert!(shape < limit && pull.iter().all(|p| p.abs() < limit), "{} {end}", case["name"]);
+                assert!(shape < limit && pull.iter().all(|p| p.abs() < limit), "{} {ends:?}", case["name"]);
             }
         }
     }
@@ -188,6 +198,66 @@ fn what_a_line_of_sections_can_not_feed_is_said() {
     };
     says(&hanging(0.5, 1.0, 0.1, "element_length = 0.5"), "leave `element_length` of its winch out");
     says(&hanging(-0.5, -1.0, 0.1, "shortest = 1.5"), "2 m lie behind the section");
-    let other = "[[constraints]]\ntype = \"winch\"\nname = \"other\"\nmarker = \"line.end\"\nspeed = 1";
-    says(&hanging(0.5, 1.0, 0.1, other), "feeds at one end");
+}
+
+/// Chain between two wires from two winches: one reels in while the other pays out.
+fn between(start: f64, end: f64, h: f64) -> String {
+    let winch = |at: &str, payout: f64| {
+        format!(
+            "[[constraints]]\ntype = \"winch\"\nname = \"{at} winch\"\nmarker = \"line.{at}\"\nspeed = {}\npayout = {payout}\nramp = 1\n",
+            0.5 * payout.signum()
+        )
+    };
+    let winches = winch("start", start) + &winch("end", end);
+    format!(
+        r#"
+        run = {{ duration = 8, output = 0.1, from_equilibrium = true }}
+        solver = {{ scheme = "radau-iia-5", stepping = {{ fixed = {{ h = {h} }} }} }}
+        forces = [{{ type = "gravity" }}]
+        records = [{{ type = "length", of = "line" }}, {{ type = "energy" }}]
+        [[elements]]
+        type = "cable"
+        name = "line"
+        points = [[0, 0, 0], [3, 0, -4], [6, 0, 0]]
+        radius = 0.1
+        sections = [
+          {{ to = 3.5, section = {{ mass = 0.5, ea = 2e4, ei = 1, axial_retardation_time = 0.02 }}, elements = 4 }},
+          {{ to = 6.5, section = {{ mass = 4, ea = 1e5, axial_retardation_time = 0.02 }}, elements = 4 }},
+          {{ section = {{ mass = 0.5, ea = 2e4, ei = 1, axial_retardation_time = 0.02 }}, elements = 4 }},
+        ]
+        [[constraints]]
+        type = "spherical"
+        name = "left"
+        marker = "line.start"
+        [[constraints]]
+        type = "spherical"
+        name = "right"
+        marker = "line.end"
+        {winches}
+        "#
+    )
+}
+
+#[test]
+fn two_winches_feed_the_sections_at_both_ends() {
+    let runs = [0.02, 0.005].map(|h| run(&between(-1.5, 2.0, h)));
+    let short =
+        runs.each_ref().map(|h| last(h, "line.length") - (h.column("line.length").expect("length")[0] + 0.5));
+    let lost = runs.each_ref().map(|h| h.summary().energy.imbalance.abs());
+    println!("{short:?} m, {lost:?} J, {:?}", runs[1].summary().energy);
+    assert!(short.iter().all(|x| x.abs() < 1e-9), "{short:?}");
+    assert!(lost[1] < 1e-4 && lost[0] / lost[1] > 12.0, "{lost:?}");
+}
+
+/// What one winch pays out is none of the section at the other, which ends the run while that much of it is left.
+#[test]
+fn a_section_is_reeled_in_to_its_shortest_whatever_the_other_end_does() {
+    for (end, least) in [(3.0, 0.05), (-0.5, 0.05)] {
+        let h = run(&between(-3.4, end, 0.02));
+        let summary = h.summary();
+        let fed = last(&h, "line.length") - h.column("line.length").expect("length")[0];
+        println!("{end}: {fed} {} {:?}", summary.status, summary.message);
+        let own = fed - end + 3.5;
+        assert!((own / 3.5 - least).abs() < 1e-3, "{end}: {own} m are left");
+    }
 }

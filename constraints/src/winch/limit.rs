@@ -22,7 +22,8 @@ pub struct Limit {
     pub part: String,
     /// Which limit.
     pub side: Side,
-    /// Length fed out at which the spool is empty, or length of cable that stays out [m].
+    /// Length fed out at which the spool is empty, or length of cable that stays out [m], besides what another section has
+    /// been fed at the other end.
     pub length: f64,
 }
 
@@ -39,7 +40,11 @@ impl Event for Limit {
         let at = state.at();
         match self.side {
             Side::Empty => self.length - self.boundary.fed(&at),
-            Side::Short => model.part(&self.part).map_or(1.0, |p| p.length_now(&at) - self.length),
+            Side::Short => model.part(&self.part).map_or(1.0, |part| {
+                let end = usize::from(self.boundary.sign > 0.0);
+                let more = part.line().map_or(0.0, |line| line.kept_more(end, &at));
+                part.length_now(&at) - more - self.length
+            }),
         }
     }
     fn direction(&self) -> i8 {

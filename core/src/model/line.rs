@@ -155,8 +155,12 @@ pub trait Line: Send + Sync {
     fn riding(&self, _end: usize) -> f64 {
         0.0
     }
-    /// Length that can't be reeled in at an end that feeds [m]: what lies behind the section there.
+    /// Length that can't be reeled in at an end that feeds [m]: what lies behind the section there, as laid.
     fn kept(&self, _end: usize) -> f64 {
+        0.0
+    }
+    /// By how much that has grown since [m], where another section feeds at the other end.
+    fn kept_more(&self, _end: usize, _at: &At<'_>) -> f64 {
         0.0
     }
     /// Its mesh after a change, with the state that it goes on from; nothing where the mesh of its spec does.

@@ -641,12 +641,19 @@ impl Line for CablePart {
     }
 
     fn kept(&self, end: usize) -> f64 {
-        let (holds, last) = (self.layout.holds(), self.along.len() - 1);
+        let holds = self.layout.holds();
         match (self.layout.changes(), end) {
             (false, _) => 0.0,
-            (true, 0) => self.along[last] - self.along[holds[0]],
-            (true, _) => self.along[holds[1]] - self.along[0],
+            (true, 0) => self.laid - self.along[holds[0]],
+            (true, _) => self.along[holds[1]],
         }
+    }
+
+    fn kept_more(&self, end: usize, at: &At<'_>) -> f64 {
+        if !self.layout.changes() {
+            return 0.0;
+        }
+        self.boundary(1 - end).map_or(0.0, |other| other.fed(at))
     }
 
     fn remesh(&self, what: Change, at: &At<'_>) -> Result<Option<Mesh>, String> {

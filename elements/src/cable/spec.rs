@@ -502,11 +502,6 @@ impl ElementSpec for CableSpec {
         let feeds = feeding.iter().any(Option::is_some);
         // a wheel holds the direction of an end
         let goes_on = feeding.map(|feed| feed.is_some_and(|feed| feed.passes));
-        if layout.changes() && feeding.iter().all(Option::is_some) {
-            let message =
-                "a cable of several sections feeds at one end: give it one `section`, or let one end be";
-            return Err(BuildError::at("sections", message));
-        }
         for end in (0..2).filter(|&end| feeding[end].is_some()) {
             self.feeds_section(end, &layout, feeding[end].is_some_and(|feed| feed.element.is_some()))?;
         }

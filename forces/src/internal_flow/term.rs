@@ -41,7 +41,7 @@ pub struct InternalFlow {
     pub nozzle: f64,
     /// Whether the outlet leads into the inlet, so that nothing enters or leaves.
     pub closed: bool,
-    /// Whether it counts as steady however its speed changes: in statics, where time is a load factor.
+    /// Whether it counts as steady however its speed changes: where an equilibrium is looked for.
     pub steady: bool,
     /// What pressures follow from, if they are to be known. They move nothing.
     pub bore: Option<Bore>,

@@ -63,7 +63,11 @@ impl Started {
         let (mut state, mut flutter, mut remarks) = (model.state(), 0.0, Vec::new());
         if run.from_equilibrium {
             state.v.fill(0.0);
-            let mut search = Statics::new(&model, &scene.statics).map_err(no_memory)?;
+            // a flow that starts or stops pushes the cable along, which is no equilibrium: at rest it is steady
+            let flows = scene.forces.iter().any(|f| f.typetag_name() == "internal_flow");
+            let steady = if flows { Some(scene.build_at_rest()?) } else { None };
+            let mut search =
+                Statics::new(steady.as_ref().unwrap_or(&model), &scene.statics).map_err(no_memory)?;
             search.stop_if(move || watch.is_over());
             flutter = search.find(&mut state, true)?.flutter;
             remarks = remarks_on(&search);
