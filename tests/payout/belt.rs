@@ -168,7 +168,8 @@ fn belt_of_two_sizes_and_a_crossed_one_are_laid_as_by_hand() {
     };
     let (large, small, apart) = (0.3, 0.1, 1.0);
     let off = |a: V3<f64>, b: V3<f64>| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
-    for (way, lean) in [(1.0, f64::asin((large - small) / apart)), (-1.0, f64::asin((large + small) / apart))] {
+    for (way, lean) in [(1.0, f64::asin((large - small) / apart)), (-1.0, f64::asin((large + small) / apart))]
+    {
         let turns = lay_closed(&[wheel(0.0, large, 1.0), wheel(apart, small, way)]).unwrap();
         let second = if way > 0.0 { PI - 2.0 * lean } else { PI + 2.0 * lean };
         approx::assert_abs_diff_eq!(turns[0].wrap, PI + 2.0 * lean, epsilon = 1e-12);
@@ -180,7 +181,12 @@ fn belt_of_two_sizes_and_a_crossed_one_are_laid_as_by_hand() {
     }
     // three wheels, over and under: the middle one presses on the lower side from below
     let side = |up: f64| Side::Towards([0.0, 0.0, up]);
-    let about = |x: f64, z: f64, side: Side| Stop::Wheel { centre: [x, 0.0, z], axis: [0.0, 1.0, 0.0], radius: 0.1, side };
+    let about = |x: f64, z: f64, side: Side| Stop::Wheel {
+        centre: [x, 0.0, z],
+        axis: [0.0, 1.0, 0.0],
+        radius: 0.1,
+        side,
+    };
     let stops = [about(0.0, 0.0, Side::About), about(1.0, 0.0, Side::About), about(0.5, -0.15, side(1.0))];
     let turns = lay_closed(&stops).unwrap();
     assert_eq!(turns.len(), 3);

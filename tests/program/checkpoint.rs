@@ -154,7 +154,8 @@ fn a_crane_operators_day_goes_on_to_the_last_bit() {
     let scene = ropewalk::read(&path).expect("the scene");
     let history = ropewalk::simulate(&scene).unwrap_or_else(|e| panic!("{e}"));
     let at = |column: &str, t: f64| {
-        let k = history.times().iter().position(|x| (x - t).abs() < 1e-6).unwrap_or_else(|| panic!("no {t} s"));
+        let k =
+            history.times().iter().position(|x| (x - t).abs() < 1e-6).unwrap_or_else(|| panic!("no {t} s"));
         history.column(column).unwrap_or_else(|| panic!("no {column}"))[k]
     };
     let weight = 2000.0 * 9.81;

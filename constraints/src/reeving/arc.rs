@@ -155,7 +155,11 @@ impl<S: Jet> Half<S> {
         let mut y = 0.5 * (low + high);
         for _ in 0..60 {
             let off = excess(y);
-            if off > 0.0 { high = y } else { low = y }
+            if off > 0.0 {
+                high = y
+            } else {
+                low = y
+            }
             let next = y - off / slope(y);
             let next = if next > low && next < high { next } else { 0.5 * (low + high) };
             let done = (next - y).abs() <= 1e-15 * slip.re().abs().max(re.slip_speed);

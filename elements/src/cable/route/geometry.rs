@@ -221,7 +221,8 @@ pub fn lay_closed(stops: &[Stop]) -> Result<Vec<Turn>, Fault> {
             }
             point => point,
         };
-        let round: Vec<Stop> = std::iter::once(first).chain(stops[1..].iter().copied()).chain([first]).collect();
+        let round: Vec<Stop> =
+            std::iter::once(first).chain(stops[1..].iter().copied()).chain([first]).collect();
         let mut turns = match lay(&round) {
             Ok(turns) => turns,
             Err(Fault { stop, what }) => {

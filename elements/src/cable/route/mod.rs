@@ -212,8 +212,7 @@ impl CableSpec {
 
     /// Whether the route has no ends: it closes on itself.
     fn closed(&self) -> bool {
-        self.route.len() > 1
-            && !self.route.iter().any(|w| matches!(w, Waypoint::End(_) | Waypoint::Wound(_)))
+        self.route.len() > 1 && !self.route.iter().any(|w| matches!(w, Waypoint::End(_) | Waypoint::Wound(_)))
     }
 
     /// Makes a cable with a route: its spans, and what is between them.
