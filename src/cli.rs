@@ -252,9 +252,16 @@ pub(crate) enum Command {
     #[command(after_help = "Examples:\n  \
         ropewalk import lines.txt > scene.toml\n  \
         ropewalk import lines.txt --out scene.toml\n\n\
-        Takes line types, points, lines, bodies, options, a current profile, wave components and a sea floor over, and says by\n\
-        name what it can't: rods, failures, control, stiffness by rate or load, lift.")]
+        Takes line types, points, lines, bodies, rods, options, a current profile, wave components and a sea floor over, and says by\n\
+        name what it can't: failures, control, stiffness by rate or load, lift.")]
     Import(commands::import::ImportArgs),
+    /// Write a scene of lines as an input file of MoorDyn
+    #[command(after_help = "Examples:\n  \
+        ropewalk export mooring.toml > lines.txt\n  \
+        ropewalk export mooring.toml --set depth='80 m' --out lines.txt\n\n\
+        Writes cables with their sections, ends that are fixed, driven or joined, point masses at ends, drag, added mass and a level\n\
+        bed, and says by name what it can't: bodies, winches, other contact, currents and waves.")]
+    Export(commands::export::ExportArgs),
     /// Write what a shell has to read to complete commands
     #[command(after_help = "Examples:\n  \
         ropewalk completions bash > ~/.local/share/bash-completion/completions/ropewalk\n  \
@@ -416,6 +423,7 @@ pub fn exit_from(
         Command::Check { scene } => commands::check::check(&scene, bundled),
         Command::Import(args) => commands::import::run(&args),
         Command::Migrate(args) => commands::migrate::run(&args),
+        Command::Export(args) => commands::export::run(&args, bundled),
         Command::ExportFmu(args) => commands::export_fmu::run(&args, bundled),
     };
     match done {

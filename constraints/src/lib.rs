@@ -51,7 +51,7 @@ pub use reeving::{DrumRecordSpec, DrumSpec, SheaveRecordSpec, SheaveSpec};
 pub use revolute::{RevoluteSpec, revolute};
 pub use spherical::{SphericalSpec, spherical};
 pub use universal::{PerpendicularSpec, UniversalSpec, perpendicular, universal};
-pub use vessel::{RaoSpec, VesselSpec};
+pub use vessel::VesselSpec;
 pub use weld::{WeldSpec, weld};
 pub use winch::{EyeletSpec, LiftOffSpec, WinchSpec};
 

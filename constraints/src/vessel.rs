@@ -9,8 +9,8 @@ use ropewalk_core::{
     Relation, RowKind, V3, lift, reach,
 };
 use ropewalk_scene::quantity::{self, kind};
-use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, register_spec};
-use ropewalk_sea::{MOTIONS, Responses, VesselResponse};
+use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, RaoSpec, register_spec};
+use ropewalk_sea::{MOTIONS, VesselResponse};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -46,65 +46,6 @@ pub struct VesselSpec {
     pub ramp: f64,
 }
 register_spec!(Constraint, "vessel", VesselSpec);
-
-/// Response amplitude operators: motions per metre of wave amplitude.
-///
-/// A wave `a cos θ` makes the motion `a A cos(θ + lag)`, with the wave's `θ` at the reference point in still water. `θ` falls with
-/// time, so that a positive lag is later than the crest. On long waves, a table should have: surge 1 with lag 90 from astern, heave 1
-/// with lag 0, pitch with lag -90 from astern, roll with lag 90 in waves towards port. The notes of a run say what it has.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RaoSpec {
-    /// Directions that waves travel relative to the heading, ascending from 0 [rad]: 0 from astern, 90 deg towards port, 180 deg a
-    /// head sea. Between them, and round from the last to the first, responses are interpolated.
-    #[serde(deserialize_with = "quantity::list::angle")]
-    pub headings: Vec<f64>,
-    /// Angular frequencies, ascending [rad/s]. Beyond them responses are those at the ends.
-    #[serde(deserialize_with = "quantity::list::angular_velocity")]
-    pub omegas: Vec<f64>,
-    /// For each direction and frequency, per metre of wave amplitude: surge, sway, heave in metres, roll, pitch, yaw in degrees.
-    pub amplitude: Vec<Vec<[f64; MOTIONS]>>,
-    /// For each direction and frequency the lag of each motion behind the crest in degrees.
-    pub lag: Vec<Vec<[f64; MOTIONS]>>,
-}
-
-impl RaoSpec {
-    fn responses(&self) -> Result<Responses, BuildError> {
-        let metres = |k: usize| k < 3;
-        let amplitude: Vec<Vec<[f64; MOTIONS]>> =
-            each(&self.amplitude, |k, a| if metres(k) { a } else { a.to_radians() });
-        let lag = each(&self.lag, |_, lag| lag.to_radians());
-        Responses::new(self.headings.clone(), self.omegas.clone(), &amplitude, &lag)
-            .map_err(|e| BuildError::at(format!("rao.{}", e.field), e.message))
-    }
-
-    /// What it has on the longest waves, in a sentence.
-    fn long_waves(&self) -> Option<String> {
-        let responses = self.responses().ok()?;
-        let omega = responses.band()[0];
-        let say = |relative: f64, motions: &[(usize, &str)]| -> String {
-            let found = responses.at(relative, omega);
-            let one = |&(k, name): &(usize, &str)| {
-                let [a, lag] = found[k];
-                let a = if k < 3 { format!("{a:.3} m/m") } else { format!("{:.3} deg/m", a.to_degrees()) };
-                format!("{name} {a} with lag {:.0} deg", lag.to_degrees())
-            };
-            motions.iter().map(one).collect::<Vec<_>>().join(", ")
-        };
-        Some(format!(
-            "on its longest waves, of {:.1} s, from astern: {}; towards port: {}. Endlessly long ones have lags of 90, 0, -90 and \
-             90 deg",
-            TAU / omega,
-            say(0.0, &[(0, "surge"), (2, "heave"), (4, "pitch")]),
-            say(0.25 * TAU, &[(3, "roll")]),
-        ))
-    }
-}
-
-fn each(rows: &[Vec<[f64; MOTIONS]>], f: impl Fn(usize, f64) -> f64) -> Vec<Vec<[f64; MOTIONS]>> {
-    let one = |row: &[f64; MOTIONS]| std::array::from_fn(|k| f(k, row[k]));
-    rows.iter().map(|rows| rows.iter().map(one).collect()).collect()
-}
 
 /// Six motions over time, each with its first and second derivative.
 type Six = [[f64; 3]; MOTIONS];
@@ -239,7 +180,7 @@ impl VesselSpec {
                 Err(BuildError::at("ramp", message))
             }
             (Some(rao), None) => {
-                let responses = rao.responses()?;
+                let responses = rao.motions("rao")?;
                 let sea = b.water().ok().and_then(|water| water.sea.clone()).ok_or_else(|| {
                     let message =
                         "responses are to waves, and the scene has none: add [water.waves], or take a `file`";
@@ -301,7 +242,7 @@ impl ConstraintSpec for VesselSpec {
         vec![&self.marker]
     }
     fn notes(&self, _: &Model) -> Vec<String> {
-        let long = self.rao.as_ref().and_then(RaoSpec::long_waves);
+        let long = self.rao.as_ref().and_then(RaoSpec::long_motions);
         long.into_iter().map(|text| format!("`{}` {text}", self.name)).collect()
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {

@@ -290,6 +290,48 @@ impl PointMassSpec {
 }
 
 impl PointMassSpec {
+    /// What water does to it.
+    fn as_ball(&self) -> Ball {
+        Ball { volume: self.volume, added_mass: self.added_mass, drag_area: self.drag_area }
+    }
+}
+
+/// A compact body as the water meets it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball {
+    /// Displaced volume [m³].
+    pub volume: f64,
+    /// Added mass [kg].
+    pub added_mass: f64,
+    /// Drag coefficient times area [m²].
+    pub drag_area: f64,
+}
+
+impl Ball {
+    /// The term of a mass [kg] at a marker with what the water of the scene does to it; `None` if that is nothing.
+    pub(crate) fn in_water(
+        &self,
+        b: &Builder,
+        label: String,
+        marker: &Marker,
+        mass: f64,
+    ) -> Result<Option<PointMass>, BuildError> {
+        let waves = self.volume > 0.0 && b.water().is_ok_and(|water| water.sea.is_some());
+        if !(self.added_mass > 0.0 || self.drag_area > 0.0 || waves) {
+            return Ok(None);
+        }
+        let water = b.water()?.clone();
+        let mut ball = PointMass::new(label, b.nodes(), marker, mass)?.in_fluid(
+            water.density,
+            self.added_mass,
+            self.drag_area,
+            water.current()?,
+        )?;
+        ball.sea = water.sea.clone().map(|sea| (sea, self.volume));
+        ball.surface = water.level.map(|level| Across { level, radius: self.radius(water.density) });
+        Ok(Some(ball))
+    }
+
     /// The radius of the ball that displaces its volume, or else has its drag area, or its added mass of half a ball of
     /// fluid.
     fn radius(&self, density: f64) -> f64 {
@@ -331,14 +373,10 @@ impl ElementSpec for PointMassSpec {
         let Some(node) = marker.on() else {
             return Err(BuildError::at("marker", "a mass needs a marker on a part, or a position"));
         };
-        let mut mass = PointMass::new(&self.name, b.nodes(), &marker, self.mass)?;
-        let waves = self.volume > 0.0 && b.water().is_ok_and(|water| water.sea.is_some());
-        if self.added_mass > 0.0 || self.drag_area > 0.0 || waves {
-            let water = b.water()?.clone();
-            mass = mass.in_fluid(water.density, self.added_mass, self.drag_area, water.current()?)?;
-            mass.sea = water.sea.clone().map(|sea| (sea, self.volume));
-            mass.surface = water.level.map(|level| Across { level, radius: self.radius(water.density) });
-        }
+        let mass = match self.as_ball().in_water(b, self.name.clone(), &marker, self.mass)? {
+            Some(mass) => mass,
+            None => PointMass::new(&self.name, b.nodes(), &marker, self.mass)?,
+        };
         let (seat, held) = (b.nodes()[node.0 as usize], mass.held);
         b.term(Box::new(mass));
         b.part(Arc::new(Body { spec: self.clone(), marker, held, node, own, q: seat.q, v: seat.v }))
@@ -408,7 +446,7 @@ impl Part for Body {
     }
     /// The ball that displaces its volume, or has its drag area.
     fn solids(&self) -> Vec<Solid> {
-        let radius = self.spec.radius(0.0);
+        let radius = self.spec.as_ball().radius(0.0);
         if !(radius > 0.0 && radius.is_finite()) {
             return Vec::new();
         }

@@ -1,5 +1,6 @@
 //! Added mass: the water that a slender body pushes aside.
 
+use crate::all_round::AllRound;
 use crate::buoyancy::surface;
 use crate::drag::{add, free_tips, less_product, velocity};
 use crate::{BluntEnd, FeedingEnd, FroudeKrylov, Surface, Wetted, at_tip};
@@ -354,6 +355,9 @@ pub struct AddedMassSpec {
     /// Coefficient: added mass over the mass of water in a cylinder of the hydrodynamic diameter.
     #[serde(default = "one", deserialize_with = "quantity::number")]
     pub ca: f64,
+    /// The same along the axis: 0 for smooth cables, about 0.1 for rough ropes, up to 0.5 for chains. At most `ca`.
+    #[serde(default, deserialize_with = "quantity::number")]
+    pub ca_axial: f64,
     /// `energy` or `morison`. Default: `energy`.
     #[serde(default)]
     pub theory: Option<Theory>,
@@ -369,7 +373,7 @@ register_spec!(Force, "added_mass", AddedMassSpec);
 
 impl Default for AddedMassSpec {
     fn default() -> Self {
-        AddedMassSpec { ca: 1.0, theory: None, tail: 0.0, on: Vec::new() }
+        AddedMassSpec { ca: 1.0, ca_axial: 0.0, theory: None, tail: 0.0, on: Vec::new() }
     }
 }
 
@@ -382,7 +386,13 @@ impl ForceSpec for AddedMassSpec {
         }
         let surface = surface(b)?;
         let water = b.water()?;
-        let law = AddedMass::new(water.density, self.ca)?.in_current(water.current()?)?;
+        if !(0.0..=self.ca).contains(&self.ca_axial) {
+            let message =
+                format!("`ca_axial` must be between 0 and `ca` = {}, not {}", self.ca, self.ca_axial);
+            return Err(BuildError::at("ca_axial", message));
+        }
+        // what is the same along and across goes as of a ball, the rest across alone
+        let law = AddedMass::new(water.density, self.ca - self.ca_axial)?.in_current(water.current()?)?;
         let law = law.in_waves(water.sea.clone());
         let theory = self.theory.unwrap_or_default();
         for numbered in b.parts(&self.on)? {
@@ -392,6 +402,13 @@ impl ForceSpec for AddedMassSpec {
             }
         }
         let law = law.by(theory);
+        if self.ca_axial > 0.0 {
+            let all_round = AllRound::new(&law, self.ca_axial);
+            match surface.clone() {
+                None => b.load(&self.on, all_round)?,
+                Some(surface) => b.load(&self.on, Wetted::below(surface, all_round))?,
+            }
+        }
         match surface {
             None => b.load(&self.on, law),
             Some(surface) => {

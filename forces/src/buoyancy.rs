@@ -96,7 +96,21 @@ impl Law for Buoyancy {
             R::zero()
         }
     }
+    fn local(&self, quantity: &str, _: f64, at: &Station<f64>) -> Option<f64> {
+        match quantity {
+            SPECIFIC_WEIGHT => Some(self.specific_weight),
+            LEVEL => Some(self.surface.level),
+            AREA => Some(at.area),
+            _ => None,
+        }
+    }
 }
+
+/// What the wall of a cable asks of the water around: its specific weight [N/m³], the height of its surface at rest [m], and the area
+/// displaced per unstretched length [m²].
+pub(crate) const SPECIFIC_WEIGHT: &str = "specific weight of the water around";
+pub(crate) const LEVEL: &str = "level of the water around";
+pub(crate) const AREA: &str = "area displaced";
 
 /// Buoyancy of a ball: of a compact body that may lie across the surface.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,12 +21,14 @@
 //! is a term (point forces and moments, springs, bushings, latches).
 
 mod added_mass;
+mod all_round;
 mod buoyancy;
 mod bushing;
 #[cfg(feature = "contact")]
 pub mod contact;
 mod drag;
 mod drag_coefficient;
+mod free_vessel;
 mod froude_krylov;
 mod function;
 mod gravity;
@@ -37,12 +39,16 @@ mod moment;
 mod point;
 mod signals;
 mod spring;
+mod stress;
 mod surface;
 mod time;
 mod tip;
+mod vortex_shedding;
+mod wall;
 mod wetted;
 
 pub use added_mass::{AddedMass, AddedMassSpec, Theory};
+pub use all_round::AllRound;
 pub use buoyancy::{Buoyancy, BuoyancySpec, Float};
 pub use bushing::{Bushing, BushingSpec, RotationalSpring, RotationalSpringSpec};
 pub use drag::{
@@ -50,6 +56,7 @@ pub use drag::{
     choo_casarella_ct_over_mu,
 };
 pub use drag_coefficient::DragCoefficientSpec;
+pub use free_vessel::{FreeVessel, FreeVesselSpec, SixBySix, VesselInertia};
 pub use froude_krylov::FroudeKrylov;
 pub use function::{FunctionForce, FunctionLoad, FunctionSpec, Scales};
 pub use gravity::GravitySpec;
@@ -59,7 +66,9 @@ pub use line_load::{LineLoad, LineLoadSpec};
 pub use moment::{PointMoment, PointMomentSpec};
 pub use point::{PointForce, PointForceSpec};
 pub use spring::{Spring, SpringSpec};
+pub use stress::StressSpec;
 pub use surface::{Surface, Wet};
 pub use time::{TimeFunction, TimeTable};
 pub use tip::{BluntEnd, EndDrag, FeedingEnd, TipLaw, at_tip};
+pub use vortex_shedding::{VortexShedding, VortexSheddingSpec, WakeOscillator};
 pub use wetted::Wetted;

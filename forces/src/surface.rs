@@ -77,21 +77,102 @@ impl Surface {
     /// How a station's cell lies in the water, whose waves are those of [`Surface::swell`] there.
     #[inline(always)]
     pub fn wet<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> Wet<R> {
+        let (s, radius) = (self.depth(at, swell), radius(at));
+        if all_below(at, s, radius) { Wet::below(at, s, radius) } else { Wet::each(at, s, radius) }
+    }
+
+    /// The same, if only the share is asked for: next to nothing is to be done where all is wet.
+    #[inline(always)]
+    pub(crate) fn share<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> Wet<R> {
+        let (s, radius) = (self.depth(at, swell), radius(at));
+        if all_below(at, s, radius) { Wet::whole(s) } else { Wet::each(at, s, radius) }
+    }
+
+    /// Depth of the axis at a station [m].
+    #[inline(always)]
+    fn depth<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> R {
         let risen = swell.map_or(R::zero(), |swell| swell.elevation);
+        R::of(self.level) + risen - at.x[2]
+    }
+
+    /// Share of a ball's volume that is wet, and what it changes by with height [1/m]; `x` is its middle.
+    pub fn ball<R: Real>(&self, t: f64, x: &V3<R>, radius: f64) -> (R, R) {
+        match self.swell(t, x) {
+            None => ball_below(self.level, x[2], radius),
+            Some(swell) => ball_below(self.level, x[2] - swell.elevation, radius),
+        }
+    }
+}
+
+/// Radius of the displaced section of a station [m].
+#[inline(always)]
+fn radius<R: Real>(at: &Station<R>) -> R {
+    let of_area = (at.area / R::of(PI)).sqrt();
+    at.area.if_gt(R::zero(), of_area, R::of(0.5) * at.diameter)
+}
+
+/// Whether the cells of all lanes lie below the surface as a whole.
+#[inline(always)]
+fn all_below<R: Real>(at: &Station<R>, s: R, radius: R) -> bool {
+    let rise = at.slope[2];
+    let clear = [s + at.before * rise - radius, s - (at.weight - at.before) * rise - radius];
+    (0..R::LANES).all(|lane| clear.iter().all(|clear| clear.lane(lane) >= 0.0))
+}
+
+impl<R: Real> Wet<R> {
+    /// All of it is wet, at a depth; nothing else is told.
+    #[inline(always)]
+    fn whole(depth: R) -> Self {
+        let (zero, one) = (R::zero(), R::of(1.0));
+        Wet {
+            depth,
+            depth_by_slope: [zero; 3],
+            depth_by_slopes: [[zero; 3]; 3],
+            lift: one,
+            lift_by_z: zero,
+            lift_by_slope: [zero; 3],
+            share: one,
+            share_by_z: zero,
+            share_by_slope: [zero; 3],
+        }
+    }
+
+    /// Cells that lie below the surface, whose axis is at depth `s`: as [`Cell::wet`].
+    #[inline(always)]
+    fn below(at: &Station<R>, s: R, radius: R) -> Self {
+        let (zero, one, rise) = (R::zero(), R::of(1.0), at.slope[2]);
+        let lever = R::of(0.5) * (at.before - (at.weight - at.before));
+        let deep = R::of(DEEP) * at.element + R::of(2.0) * radius;
+        let u = s / deep;
+        let u = u.if_gt(zero, u, zero);
+        let u = u.if_gt(one, one, u);
+        // what is rigid has no element
+        let u = at.element.if_gt(zero, u, zero);
+        let rest = one - u;
+        let centred = u * u * u * (R::of(10.0) + u * (R::of(6.0) * u - R::of(15.0)));
+        let by_s = R::of(30.0) * u * u * rest * rest / deep;
+        let by_s_s = R::of(60.0) * u * rest * (one - R::of(2.0) * u) / (deep * deep);
+        let mut wet = Wet::whole(s + lever * rise - lever * rise * centred);
+        wet.depth_by_slope[2] = lever - lever * centred;
+        wet.lift = one - lever * rise * by_s;
+        wet.lift_by_z = lever * rise * by_s_s;
+        wet.lift_by_slope[2] = -(lever * by_s);
+        wet
+    }
+
+    /// Each cell by itself.
+    #[inline(never)]
+    fn each(at: &Station<R>, s: R, radius: R) -> Self {
         let mut cells = [Wet::dry(); MOST];
         for (lane, cell) in cells.iter_mut().enumerate().take(R::LANES) {
-            let radius = match at.area.lane(lane) {
-                area if area > 0.0 => (area / PI).sqrt(),
-                _ => 0.5 * at.diameter.lane(lane),
-            };
             let before = at.before.lane(lane);
             *cell = Cell {
-                s: self.level + risen.lane(lane) - at.x[2].lane(lane),
+                s: s.lane(lane),
                 slope: [at.slope[0].lane(lane), at.slope[1].lane(lane), at.slope[2].lane(lane)],
                 before,
                 behind: at.weight.lane(lane) - before,
                 element: at.element.lane(lane),
-                radius,
+                radius: radius.lane(lane),
             }
             .wet();
         }
@@ -111,16 +192,6 @@ impl Surface {
         }
     }
 
-    /// Share of a ball's volume that is wet, and what it changes by with height [1/m]; `x` is its middle.
-    pub fn ball<R: Real>(&self, t: f64, x: &V3<R>, radius: f64) -> (R, R) {
-        match self.swell(t, x) {
-            None => ball_below(self.level, x[2], radius),
-            Some(swell) => ball_below(self.level, x[2] - swell.elevation, radius),
-        }
-    }
-}
-
-impl<R: Real> Wet<R> {
     /// How fast the share changes as the station and the surface move [1/s].
     #[inline(always)]
     pub(crate) fn share_rate(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> R {

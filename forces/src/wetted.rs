@@ -33,7 +33,7 @@ impl<L: Law> Wetted<L> {
     #[inline(always)]
     fn share<R: Real>(&self, t: f64, at: &Station<R>) -> (Wet<R>, Option<Swell<R>>) {
         let swell = self.surface.swell(t, &at.x);
-        let mut wet = self.surface.wet(at, swell.as_ref());
+        let mut wet = self.surface.share(at, swell.as_ref());
         if self.above {
             wet.share = R::of(1.0) - wet.share;
             wet.share_by_z = -wet.share_by_z;

@@ -254,6 +254,8 @@ class Parts:
         volume: Number | None = None,
         centre_of_volume: Sequence[Number] | None = None,
         hull: Mapping[str, Any] | None = None,
+        added_mass: Number | None = None,
+        drag_area: Number | None = None,
         drawn: Mapping[str, Any] | None = None,
         points: Mapping[str, Any] | None = None,
     ) -> Part:
@@ -278,10 +280,14 @@ class Parts:
         volume: Displaced volume, for buoyancy [m³]. Default 0.0.
         centre_of_volume: Centre of buoyancy [m]. Default: the centre of mass. If the water has a `level`, the volume
             of a body with a hull is distributed along the hull.
-        hull: Cylinder for drag and added mass. Default: none, and neither acts.
+        hull: Cylinder for drag and added mass. Default: none; then the body is a ball of its `volume`, on which
+            `drag_area`, `added_mass` and the pressure of waves act.
             from: One end of its axis [m]. Required.
             to: The other end [m]. Required.
             diameter: Diameter [m]. Required.
+        added_mass: Added mass in water of a body without hull, the same in all directions, at the centre of its
+            volume [kg].
+        drag_area: Drag coefficient times area of a body without hull [m²].
         drawn: Cylinder that stands for it in pictures, if it has neither `hull` nor `shape`; nothing acts on it.
             from: One end of its axis [m]. Required.
             to: The other end [m]. Required.
@@ -303,6 +309,8 @@ class Parts:
             "volume": volume,
             "centre_of_volume": centre_of_volume,
             "hull": hull,
+            "added_mass": added_mass,
+            "drag_area": drag_area,
             "drawn": drawn,
             "points": points,
         })
@@ -1072,9 +1080,15 @@ class Parts:
                 deg towards port, 180 deg a head sea. Between them, and round from the last to the first, responses
                 are interpolated. Required.
             omegas: Angular frequencies, ascending [rad/s]. Beyond them responses are those at the ends. Required.
-            amplitude: For each direction and frequency, per metre of wave amplitude: surge, sway, heave in metres,
-                roll, pitch, yaw in degrees. Required.
-            lag: For each direction and frequency the lag of each motion behind the crest in degrees. Required.
+            amplitude: For each direction and frequency, per metre of wave amplitude. Motions: surge, sway, heave in
+                metres, roll, pitch, yaw in degrees. Loads: forces in N along x, y, z, moments in N m about them.
+                Required.
+            lag: For each direction and frequency the lag of each behind the crest in degrees. Required.
+            phase: Whether phases lag behind the crest, or lead it.
+            waves: Whether `headings` are where waves travel to, or where they come from.
+            per: Whether responses are per metre of amplitude, or of height from trough to crest.
+            symmetry: Whether the table goes from 0 to 180 deg and holds for the other side of a symmetric vessel too.
+            angles: Unit of amplitudes of roll, pitch and yaw.
         file: CSV file with the columns `t`, and any of `surge`, `sway`, `heave` (in m), `roll`, `pitch`, `yaw` (in
             rad unless their headings say deg): joined by cubic splines.
         ramp: Time from t = 0 in which the motions of a `file` grow from nothing, as `(1 - cos πt/ramp)/2` [s].
@@ -1208,6 +1222,7 @@ class Parts:
         self,
         *,
         ca: Number | None = None,
+        ca_axial: Number | None = None,
         theory: Literal['energy', 'morison'] | None = None,
         tail: Number | None = None,
         on: Sequence[str] | None = None,
@@ -1222,6 +1237,8 @@ class Parts:
         with it.
 
         ca: Coefficient: added mass over the mass of water in a cylinder of the hydrodynamic diameter. Default 1.0.
+        ca_axial: The same along the axis: 0 for smooth cables, about 0.1 for rough ropes, up to 0.5 for chains. At
+            most `ca`. Default 0.0.
         theory: `energy` or `morison`. Default: `energy`.
         tail: Fraction of its momentum that the water returns at free ends of cables: 0 for cut ends, about 0.8 for
             tapered ends, 1 for an ideal tail. Default 0.0.
@@ -1229,6 +1246,7 @@ class Parts:
         """
         return self._add("forces", "added_mass", {
             "ca": ca,
+            "ca_axial": ca_axial,
             "theory": theory,
             "tail": tail,
             "on": on,
@@ -1438,6 +1456,69 @@ class Parts:
             "stretched": stretched,
             "blend": blend,
             "on": on,
+        })
+
+    def free_vessel(
+        self,
+        *,
+        name: str,
+        marker: Union[Sequence[Number], str],
+        stiffness: Union[Sequence[Number], Sequence[Sequence[Number]]],
+        heading: Number | None = None,
+        added_mass: Union[Sequence[Number], Sequence[Sequence[Number]]] | None = None,
+        damping: Union[Sequence[Number], Sequence[Sequence[Number]]] | None = None,
+        quadratic_damping: Sequence[Number] | None = None,
+        mean_load: Sequence[Number] | None = None,
+        loads: Mapping[str, Any] | None = None,
+    ) -> Part:
+        """A rigid body floats as a vessel or a buoy, by 6 x 6 matrices of stiffness, added mass and damping about its
+        reference point, and loads of waves by frequency and direction.
+
+        The matrices are over surge, sway, heave, roll, pitch, yaw, along axes ahead, to port and up: N/m, N and N m
+        for what is per metre or radian, kg, kg m and kg m² for added mass, N s/m, N s and N m s for damping. The body
+        starts where it floats in still water, and there its weight is carried; `stiffness` says how weight and
+        buoyancy change from there, so that the body needs no `volume`. `mean_load` carries the lines. Motions are
+        turned as those of `vessel`: `R = Rz(heading + yaw) Ry(pitch) Rx(roll)`. Wave loads and mean load are for the
+        mean place and heading; damping and added mass turn with the body. Currents don't act on it, and second-order
+        loads aren't in it: what they are on average goes into `mean_load`. A record of type `force` shows the six
+        motions and the force of the waves.
+
+        name: Name, by which records ask for it.
+        marker: Reference point, on a rigid body: what all coefficients are about.
+        stiffness: Stiffness: how weight and buoyancy change with the motions, and what holds the vessel beside its
+            lines.
+        heading: Mean heading, from x to y [rad]. Default 0.0.
+        added_mass: Added mass. Default [0.0, 0.0, 0.0, 0.0, 0.0, 0.0].
+        damping: Linear damping. Default [0.0, 0.0, 0.0, 0.0, 0.0, 0.0].
+        quadratic_damping: Quadratic damping of each motion, `B |v| v`, in N s²/m² and N m s². Default [0.0, 0.0, 0.0,
+            0.0, 0.0, 0.0].
+        mean_load: Constant force in N and moment in N m on it at the reference point: what carries the lines, mean
+            wind and drift. Default [0.0, 0.0, 0.0, 0.0, 0.0, 0.0].
+        loads: Loads of waves, per metre of amplitude: forces in N, moments in N m; the scene needs `[water.waves]`.
+            headings: Directions that waves travel relative to the heading, ascending from 0 [rad]: 0 from astern, 90
+                deg towards port, 180 deg a head sea. Between them, and round from the last to the first, responses
+                are interpolated. Required.
+            omegas: Angular frequencies, ascending [rad/s]. Beyond them responses are those at the ends. Required.
+            amplitude: For each direction and frequency, per metre of wave amplitude. Motions: surge, sway, heave in
+                metres, roll, pitch, yaw in degrees. Loads: forces in N along x, y, z, moments in N m about them.
+                Required.
+            lag: For each direction and frequency the lag of each behind the crest in degrees. Required.
+            phase: Whether phases lag behind the crest, or lead it.
+            waves: Whether `headings` are where waves travel to, or where they come from.
+            per: Whether responses are per metre of amplitude, or of height from trough to crest.
+            symmetry: Whether the table goes from 0 to 180 deg and holds for the other side of a symmetric vessel too.
+            angles: Unit of amplitudes of roll, pitch and yaw.
+        """
+        return self._add("forces", "free_vessel", {
+            "name": name,
+            "marker": marker,
+            "stiffness": stiffness,
+            "heading": heading,
+            "added_mass": added_mass,
+            "damping": damping,
+            "quadratic_damping": quadratic_damping,
+            "mean_load": mean_load,
+            "loads": loads,
         })
 
     def function(
@@ -1756,6 +1837,43 @@ class Parts:
             "damping": damping,
             "length": length,
             "tension_only": tension_only,
+        })
+
+    def vortex_shedding(
+        self,
+        *,
+        strouhal: Number | None = None,
+        lift: Number | None = None,
+        coupling: Number | None = None,
+        epsilon: Number | None = None,
+        strumming: Number | None = None,
+        on: Sequence[str] | None = None,
+    ) -> Part:
+        """Lift of the vortices that cables, chains and hulls shed in water, as a wake oscillator at each station:
+        vortex-induced vibration across the flow, with lock-in.
+
+        The model and its numbers are those of Facchinetti, de Langre and Biolley (2004), with lift by the flow past
+        the mean way of the line. Damping of the vibration by the water is that of `drag` (the paper has `cn` = 2),
+        its inertia that of `added_mass`. It takes no part in equilibria; wakes begin with a small disturbance that
+        differs from station to station, the same in each run. A step is at most a sixteenth of a period of shedding.
+        A record of type `force` for `LINE: vortex shedding` shows the largest variable of a wake, amplitude and
+        frequency along the line.
+
+        strouhal: Strouhal number: frequency of shedding times diameter over speed. Default 0.2.
+        lift: Amplitude of the lift coefficient of a cylinder at rest. Default 0.3.
+        coupling: How strongly acceleration drives the wake, `A` of the paper. Default 12.0.
+        epsilon: How fast wakes come to their own amplitude, `ε` of the paper. Default 0.3.
+        strumming: Drag coefficient across of the line at rest: strumming adds `2.1 A/D` times it, with the amplitude
+            `A` (Blevins 1990). Default: drag doesn't grow.
+        on: Parts it acts on. Default: all that have a diameter along them.
+        """
+        return self._add("forces", "vortex_shedding", {
+            "strouhal": strouhal,
+            "lift": lift,
+            "coupling": coupling,
+            "epsilon": epsilon,
+            "strumming": strumming,
+            "on": on,
         })
 
     def circle(
@@ -2490,6 +2608,47 @@ class Parts:
             "name": name,
         })
 
+    def stress(
+        self,
+        *,
+        of: str,
+        diameter: Number,
+        inner_diameter: Number | None = None,
+        points: Integer | None = None,
+        reference: Sequence[Number] | None = None,
+        at: Sequence[Number] | None = None,
+        name: str | None = None,
+        title: str | None = None,
+    ) -> Part:
+        """Axial stress at points round the section of a pipe or cable, `σ = T_w/A + M c/I`: columns
+        `riser.stress@50%.0deg`, `.45deg`, … in Pa, for fatigue too.
+
+        The wall's tension is that of `wall_tension` where something presses on it, else the tension. Angles count
+        from a direction that is carried along the line from its start without twist (parallel transport), towards the
+        right hand about the tangent: of a cable without torsion the section knows no other; of a cable with torsion
+        (`section.gj`) they count from the first director of its section.
+
+        of: The cable.
+        diameter: Outer diameter of what carries [m].
+        inner_diameter: Its inner diameter [m]. Default: it is solid. Default 0.0.
+        points: Number of points round the section. Default 8.
+        reference: Direction in space from which angles count at the start of the line, without its part along the
+            tangent. Default: z, or x where the line starts upright.
+        at: Where: as for `along`. Default: in the middle. Default ['50 %'].
+        name: Name in results. Default: that of the cable and `.stress`.
+        title: Title of its plots. Default: the quantity.
+        """
+        return self._add("records", "stress", {
+            "of": of,
+            "diameter": diameter,
+            "inner_diameter": inner_diameter,
+            "points": points,
+            "reference": reference,
+            "at": at,
+            "name": name,
+            "title": title,
+        })
+
     def touchdown(
         self,
         *,
@@ -2540,12 +2699,13 @@ class Parts:
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """What the wall of a hose with an `internal_flow` carries, and the pressure in it: columns
-        `hose.wall_tension@50%` in N and `hose.pressure@50%` in Pa.
+        """What the wall of a cable carries: columns `hose.wall_tension@50%` in N, and `hose.pressure@50%` in Pa if there
+        is an `internal_flow`.
 
         The tension of a cable is the effective one; that of the wall is larger by inner pressure times the bore's
-        area, less outer pressure times the outer one. Pressures are those above the air's. They come from the outlet,
-        with the fluid's weight, acceleration and friction; water presses from outside where it has a `level`.
+        area, less outer pressure times the outer one. Pressures are those above the air's. Inner ones come from the
+        outlet, with the fluid's weight, acceleration and friction; water with a `level` presses from outside by its
+        depth at rest, where `buoyancy` acts on the cable.
 
         of: The cable.
         at: Where: as for `along`. Default: at both ends and in the middle. Default ['0 %', '50 %', '100 %'].

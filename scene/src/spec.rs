@@ -69,6 +69,10 @@ pub trait ForceSpec: Debug + Send + Sync {
     fn weighs(&self) -> Option<&[String]> {
         None
     }
+    /// What one should know about it, one sentence each.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
     /// Adds its terms.
     fn build(&self, b: &mut Builder) -> Result<(), BuildError>;
 }

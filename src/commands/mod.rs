@@ -9,6 +9,7 @@ pub(crate) mod cost;
 pub(crate) mod describe;
 pub(crate) mod effects;
 mod examples;
+pub(crate) mod export;
 pub(crate) mod export_fmu;
 pub(crate) mod import;
 pub(crate) mod linearise;

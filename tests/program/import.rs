@@ -143,13 +143,168 @@ fn what_has_no_counterpart_is_refused_where_it_stands() {
     refused("320     WtrDpth", "3 WaveKin\n320 WtrDpth", "waves of this kind");
     refused("320     WtrDpth", "1 Currents\n320 WtrDpth", "current_profile.txt`, which the deck needs");
     refused("902.2    20      -", "", "this row ends before its unstretched length");
-    refused(
-        "--------- OPTIONS",
-        "--- RODS ---\nID\n(#)\n1 can\n--- OPTIONS",
-        "rods of a deck aren't taken over",
-    );
+    refused("--------- OPTIONS", "--- RODS ---\nID\n(#)\n1 can\n--- OPTIONS", "there is no rod type `can`");
     refused("--------- LINES", "--------- ROPES", "no section of a MoorDyn deck has this name");
     let here = folder(&[("deck.txt", "nothing\n")]);
     let told = run(here.path(), &["import", "deck.txt"]);
     assert!(told.stderr.contains("has no lines: it isn't a MoorDyn deck"), "{}", told.stderr);
+}
+
+const HANGING: &str = "\
+--- MoorDyn Input File ---
+A rod that hangs from two ropes
+--- LINE TYPES ---
+TypeName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx
+(name) (m) (kg/m) (N) (N-s/-) (N-m^2) (-) (-) (-) (-)
+rope 0.09 77.7066 384.243E6 -0.3 0 1.6 1.0 0.1 0.2
+--- ROD TYPES ---
+TypeName Diam Mass/m Cd Ca CdEnd CaEnd
+(name) (m) (kg/m) (-) (-) (-) (-)
+rod 0.25 77.7066 1.6 1.0 1.6 1.0
+--- RODS ---
+ID RodType Attachment Xa Ya Za Xb Yb Zb NumSegs RodOutputs
+(#) (name) (#/key) (m) (m) (m) (m) (m) (m) (-) (-)
+1 rod Free -10 0 -75 10 0 -75 1 -
+--- POINTS ---
+ID Type X Y Z Mass Volume CdA Ca
+(#) (-) (m) (m) (m) (kg) (m3) (m^2) (-)
+1 Fixed -450 0 0 0 0 0 0
+2 Fixed 450 0 0 0 0 0 0
+--- LINES ---
+ID LineType AttachA AttachB UnstrLen NumSegs LineOutputs
+(#) (name) (#) (#) (m) (-) (-)
+1 rope 1 R1A 450 45 -
+2 rope 2 R1B 450 45 -
+--- OPTIONS ---
+150 WtrDpth depth
+--- need this line ---
+";
+
+/// Two catenaries carry half of the rod's weight in water each, and it hangs level.
+#[test]
+fn a_rod_hangs_from_the_lines_of_its_deck() {
+    let here = folder(&[("rod.txt", HANGING)]);
+    let made = run(here.path(), &["import", "rod.txt", "--out", "rod.toml"]);
+    assert!(made.stderr.contains("CaEnd"), "{}", made.stderr);
+    let text = fs::read_to_string(here.path().join("rod.toml")).unwrap();
+    for part in [
+        "name = \"rod1\"",
+        "to = \"rod1.b\"",
+        "ca_axial = 0.2",
+        "hull = { from = [0, 0, 0], to = [20.0, 0.0, 0.0], diameter = 0.25 }",
+    ] {
+        assert!(text.contains(part), "{part} isn't in\n{text}");
+    }
+    let more = "\n[[records]]\ntype = \"position\"\nof = \"rod1.a\"\n\n[[records]]\ntype = \"position\"\nof = \"rod1.b\"\n";
+    fs::write(here.path().join("rod.toml"), text.replace("60 s", "1 s") + more).unwrap();
+    let told = run(here.path(), &["run", "rod.toml", "--out", "rod", "--no-report", "--no-plots"]);
+    assert_eq!(told.code, Some(0), "{}", told.stderr);
+    let table = fs::read_to_string(here.path().join("rod/history.csv")).unwrap();
+    let [names, .., values] = &table.lines().collect::<Vec<_>>()[..] else { panic!("{table}") };
+    let last = |name: &str| -> f64 {
+        let k = names
+            .split(',')
+            .position(|n| n.starts_with(name))
+            .unwrap_or_else(|| panic!("no {name}: {names}"));
+        values.split(',').nth(k).unwrap().parse().unwrap()
+    };
+    let (a, b) = (last("rod1.a.z"), last("rod1.b.z"));
+    assert!((a - b).abs() < 1e-3, "{a} {b}");
+    // at the rod, each line carries half of it upwards: T_A² = T_rod² by heights, T = H + w z of the elastic catenary
+    let water = |mass: f64, d: f64| 9.80665 * (mass - 1025.0 * std::f64::consts::PI / 4.0 * d * d);
+    let half = 10.0 * water(77.7066, 0.25);
+    let weight = water(77.7066, 0.09);
+    let (foot, top) = (last("FairTen1"), last("AnchTen1"));
+    let level = (foot * foot - half * half).sqrt();
+    let wanted = level.hypot(half + 450.0 * weight);
+    assert!((top / wanted - 1.0).abs() < 2e-3, "{top} {wanted}");
+}
+
+#[test]
+fn rods_that_have_no_counterpart_are_refused() {
+    for (from, to, what) in [
+        ("1 rod Free", "1 rod Body1", "a rod of type `Body1` isn't taken over"),
+        ("1 rod Free", "1 pole Free", "there is no rod type `pole`"),
+        ("10 0 -75 1 -", "-10 0 -75 1 -", "a rod without length"),
+        ("2 R1B", "2 R2B", "there is no point `R2B`"),
+    ] {
+        assert!(HANGING.contains(from), "{from}");
+        let here = folder(&[("deck.txt", &HANGING.replacen(from, to, 1))]);
+        let told = run(here.path(), &["import", "deck.txt"]);
+        assert_eq!((told.code, told.stdout.as_str()), (Some(2), ""));
+        assert!(told.stderr.contains(what), "{what} isn't in\n{}", told.stderr);
+    }
+}
+
+/// A deck that is made of a scene of a deck says the same: number by number from there on, and in tension.
+#[test]
+fn scenes_go_back_into_decks() {
+    let joined = SPAR
+        .replace("4   Vessel  5.2      0.0      -70.0   0 ", "4   Free    5.2      0.0      -70.0   2e4 ")
+        .replace("2   main     2       5  ", "2   main     2       4  ");
+    for deck in [SPAR, &joined] {
+        let here = folder(&[("first.txt", deck)]);
+        let there = |name: &str| here.path().join(name);
+        let done = |args: &[&str]| {
+            let told = run(here.path(), args);
+            assert_eq!(told.code, Some(0), "{args:?}: {}", told.stderr);
+            told.stdout
+        };
+        done(&["import", "first.txt", "--out", "first.toml"]);
+        done(&["export", "first.toml", "--out", "second.txt"]);
+        done(&["import", "second.txt", "--out", "second.toml"]);
+        done(&["export", "second.toml", "--out", "third.txt"]);
+        let [second, third] =
+            ["second.txt", "third.txt"].map(|name| fs::read_to_string(there(name)).unwrap());
+        assert!(second.split_whitespace().count() > 80, "{second}");
+        assert_eq!(second.split_whitespace().count(), third.split_whitespace().count(), "{second}{third}");
+        for (a, b) in second.split_whitespace().zip(third.split_whitespace()) {
+            match (a.parse::<f64>(), b.parse::<f64>()) {
+                (Ok(x), Ok(y)) => assert!((x - y).abs() <= 1e-12 * x.abs(), "{a} {b}"),
+                _ => assert_eq!(a, b, "{second}{third}"),
+            }
+        }
+        if deck == SPAR {
+            let tension = |name: &str| {
+                let text = fs::read_to_string(there(name)).unwrap().replace("60 s", "1 s");
+                fs::write(there(name), text).unwrap();
+                let out = done(&["run", name, "--no-report", "--no-plots"]);
+                let line = out.lines().find(|l| l.contains("FairTen1")).unwrap_or_else(|| panic!("{out}"));
+                line.split_whitespace().rev().nth(1).unwrap().parse::<f64>().unwrap()
+            };
+            let (a, b) = (tension("first.toml"), tension("second.toml"));
+            assert!((a / b - 1.0).abs() < 1e-5, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn what_a_deck_has_no_place_for_is_refused_by_name() {
+    let here = folder(&[("spar.txt", SPAR)]);
+    run(here.path(), &["import", "spar.txt", "--out", "spar.toml"]);
+    let text = fs::read_to_string(here.path().join("spar.toml")).unwrap();
+    for (more, what) in [
+        (
+            "[[elements]]\ntype = \"rigid_body\"\nname = \"b\"\nposition = [0, 0, 0]\nmass = 1\ninertia = [1, 1, 1]\n",
+            "`rigid_body`",
+        ),
+        ("[[forces]]\ntype = \"vortex_shedding\"\n", "`vortex_shedding`"),
+        (
+            "[[constraints]]\ntype = \"clamp\"\nname = \"foot\"\nmarker = \"line1.start\"\n",
+            "the constraint `foot` of type `clamp`",
+        ),
+    ] {
+        fs::write(here.path().join("more.toml"), format!("{text}\n{more}")).unwrap();
+        let told = run(here.path(), &["export", "more.toml"]);
+        assert_eq!((told.code, told.stdout.as_str()), (Some(2), ""), "{}", told.stderr);
+        assert!(
+            told.stderr.contains(what) && told.stderr.contains("no counterpart"),
+            "{what}: {}",
+            told.stderr
+        );
+    }
+    let wet = text.replace("level = 0", "level = 0\ncurrent = [1, 0, 0]");
+    fs::write(here.path().join("wet.toml"), wet).unwrap();
+    let told = run(here.path(), &["export", "wet.toml"]);
+    assert!(told.stderr.contains("a current or waves"), "{}", told.stderr);
 }

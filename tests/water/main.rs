@@ -4,8 +4,11 @@
 mod common;
 
 mod afloat;
+mod all_round;
 mod fluid;
 mod one_world;
 mod towing;
+mod vortices;
+mod wall;
 mod waves;
 mod whirling;

@@ -275,15 +275,18 @@ pub fn find<'a>(nodes: &'a [Node], node: NodeId, what: &str) -> Result<&'a Node,
 /// Three numbers from an index on.
 #[inline(always)]
 pub fn three(x: &[f64], from: usize) -> V3<f64> {
-    [x[from], x[from + 1], x[from + 2]]
+    let x = &x[from..from + 3];
+    [x[0], x[1], x[2]]
 }
 
 fn sum(a: V3<f64>, b: V3<f64>) -> V3<f64> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-fn blend(x: &[f64], at: &[usize; 4], weight: &[f64; 4]) -> V3<f64> {
-    std::array::from_fn(|i| (0..4).map(|n| weight[n] * x[at[n] + i]).sum())
+#[inline]
+fn blend(x: &[f64], at: &[usize; 4], [w0, w1, w2, w3]: &[f64; 4]) -> V3<f64> {
+    let [a, b, c, d] = [three(x, at[0]), three(x, at[1]), three(x, at[2]), three(x, at[3])];
+    std::array::from_fn(|i| w0 * a[i] + w1 * b[i] + w2 * c[i] + w3 * d[i])
 }
 
 /// 1 on the diagonal, else 0.

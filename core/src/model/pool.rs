@@ -406,11 +406,15 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for Sum<'_, E, Q
             let x = Seat::gather::<R>(seats, self.at);
             if let Some(total) = self.energy.as_deref_mut() {
                 let energy = E::energy(&p, &x);
-                (0..seats.len()).for_each(|l| *total += energy.lane(l));
+                for l in 0..seats.len() {
+                    *total += energy.lane(l);
+                }
             }
             if let Some(total) = self.power.as_deref_mut() {
                 let power = E::power(&p, &x);
-                (0..seats.len()).for_each(|l| *total += power.lane(l));
+                for l in 0..seats.len() {
+                    *total += power.lane(l);
+                }
             }
         }
     }

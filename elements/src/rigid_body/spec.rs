@@ -2,9 +2,10 @@
 
 use super::part::BodyPart;
 use super::{Hull, Inertia, Shape, inertia};
+use crate::point_mass::Ball;
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::rotation::{cross, from_bryant, matrix, times, transposed_times};
-use ropewalk_core::{BuildError, NodeKind, StationPool, V3};
+use ropewalk_core::{BuildError, Marker, NodeId, NodeKind, StationPool, V3};
 use ropewalk_scene::{Builder, ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -58,9 +59,16 @@ pub struct RigidBodySpec {
     /// hull is distributed along the hull.
     #[serde(default, deserialize_with = "place")]
     pub centre_of_volume: Option<V3<f64>>,
-    /// Cylinder for drag and added mass. Default: none, and neither acts.
+    /// Cylinder for drag and added mass. Default: none; then the body is a ball of its `volume`, on which `drag_area`, `added_mass` and
+    /// the pressure of waves act.
     #[serde(default)]
     pub hull: Option<HullSpec>,
+    /// Added mass in water of a body without hull, the same in all directions, at the centre of its volume [kg].
+    #[serde(default, deserialize_with = "quantity::mass", skip_serializing_if = "is_nought")]
+    pub added_mass: f64,
+    /// Drag coefficient times area of a body without hull [m²].
+    #[serde(default, deserialize_with = "quantity::area", skip_serializing_if = "is_nought")]
+    pub drag_area: f64,
     /// Cylinder that stands for it in pictures, if it has neither `hull` nor `shape`; nothing acts on it.
     #[serde(default)]
     pub drawn: Option<HullSpec>,
@@ -75,6 +83,9 @@ register_spec!(Element, "rigid_body", RigidBodySpec);
 #[serde(transparent)]
 pub struct Point(#[serde(deserialize_with = "quantity::vec3::length")] pub V3<f64>);
 
+fn is_nought(x: &f64) -> bool {
+    *x == 0.0
+}
 fn triple<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Option<V3<f64>>, D::Error> {
     quantity::vec3::inertia(d).map(Some)
 }
@@ -124,6 +135,8 @@ impl RigidBodySpec {
             volume: 0.0,
             centre_of_volume: None,
             hull: None,
+            added_mass: 0.0,
+            drag_area: 0.0,
             drawn: None,
             points: BTreeMap::new(),
         }
@@ -146,6 +159,28 @@ impl RigidBodySpec {
         let message = "the water has a `level`, and then buoyancy is that of the hull: leave `centre_of_volume` out, or put \
                        it in the middle of the hull";
         Err(BuildError::at("centre_of_volume", message))
+    }
+
+    /// The water around a body without hull, as around a ball that moves with the middle of its volume.
+    fn add_ball(&self, b: &mut Builder, node: NodeId) -> Result<(), BuildError> {
+        for (field, x) in [("added_mass", self.added_mass), ("drag_area", self.drag_area)] {
+            not_negative(field, x)?;
+            if x > 0.0 && self.hull.is_some() {
+                let message = format!(
+                    "the hull has drag and added mass of its own: leave out `{field}`, or the `hull`"
+                );
+                return Err(BuildError::at(field, message));
+            }
+        }
+        let middle = self.centre_of_volume.map_or([0.0; 3], |c| from(self.centre, c));
+        let ball = Ball { volume: self.volume, added_mass: self.added_mass, drag_area: self.drag_area };
+        if self.hull.is_none()
+            && let Some(water) =
+                ball.in_water(b, format!("{}: water", self.name), &Marker::beside(node, middle), 0.0)?
+        {
+            b.term(Box::new(water));
+        }
+        Ok(())
     }
 
     fn properties(&self) -> Result<Inertia, BuildError> {
@@ -212,6 +247,7 @@ impl ElementSpec for RigidBodySpec {
         let node = b.node(NodeKind::Frame, &q, &v)?;
         b.element(inertia, &[node])?;
 
+        self.add_ball(b, node)?;
         let mut stations = StationPool::<Hull, 7, 6, 4>::new();
         self.drawn.as_ref().map_or(Ok(()), HullSpec::check).map_err(|e| e.of("drawn"))?;
         if let Some(hull) = &self.hull {

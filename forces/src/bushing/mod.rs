@@ -1,6 +1,6 @@
 //! Springs and dampers between two frames, on rigid bodies and on cables with torsion: bushings, and torsion springs.
 
-mod frames;
+pub(crate) mod frames;
 mod spec;
 
 pub use spec::{BushingSpec, RotationalSpringSpec};

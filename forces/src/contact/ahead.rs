@@ -87,7 +87,10 @@ impl Contact {
             What::Ball(ball) => through(&ball.held, ball.radius),
             What::Span(span) => {
                 let moved = |held: &Held| {
-                    let [a, b] = place(held);
+                    let [a, b] = match self.fixed.seat {
+                        Seat::Ground => [held.x(before), held.x(after)],
+                        Seat::Body { .. } => place(held),
+                    };
                     size(&minus(&a, &b))
                 };
                 let reach = span.line.controls().iter().map(moved).fold(0.0, f64::max);
@@ -141,7 +144,6 @@ impl Contact {
     /// points, a convex shape ends.
     fn free_span(&self, span: &Span, frame: &Frame, at: &At<'_>) -> f64 {
         let all = span.line.controls().map(|held| self.seen(&held, frame, at));
-        let curve = span.curve(&self.fixed, frame, at);
         let most = |of: fn(&Seen) -> &V3<f64>| all.iter().fold(0.0_f64, |m, p| m.max(size(of(p))));
         let press = PRESS * span.radius;
         if let Shape::Tube { .. } = self.fixed.shape {
@@ -153,6 +155,7 @@ impl Contact {
             return all.map(one).fold(f64::INFINITY, f64::min);
         }
         if self.fixed.shape.concave() {
+            let curve = span.curve(&self.fixed, frame, at);
             let room = Search::new(&self.fixed.shape, &curve, span.radius).room();
             let (u, a) = (most(|p| &p.u), most(|p| &p.a));
             let anyhow = time(room.max(span.radius), u, a);

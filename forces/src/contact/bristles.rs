@@ -180,14 +180,53 @@ impl Contact {
         }
         let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
         for group in &self.groups {
-            let Some(bristles) = group.bristles else { continue };
             let mut cells = self.press(group, &frame, at, &mut scratch);
-            for (cell, pressed) in cells[..bristles.cells].iter_mut().enumerate() {
-                if pressed.settle()
-                    && let Some(b) = self.bristle(group, cell, pressed, &frame, at, at.internal)
-                {
-                    see(&b.hold, pressed.normal);
+            self.bristles_of(group, &mut cells, &frame, at, &mut see);
+        }
+    }
+
+    /// Sees all that touches, and each bristle that holds, in one go.
+    pub(super) fn each_with_bristles(
+        &self,
+        at: &At<'_>,
+        mut see: impl FnMut(&Touch),
+        mut see_bristle: impl FnMut(&Hold, f64),
+    ) {
+        let rubs = self.law.friction.is_some() && !self.brakes(at.internal);
+        let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
+        for group in &self.groups {
+            let mut cells = [Pressed::NONE; CELLS];
+            group.gather(&self.fixed, &frame, at, &mut scratch);
+            for ball in &scratch.balls {
+                if let Some((touch, _)) = self.touch(ball, &frame, at) {
+                    see(&touch);
+                    if rubs {
+                        cells[ball.cell].add(touch.normal, &touch.gap.normal);
+                    }
                 }
+            }
+            if rubs {
+                self.bristles_of(group, &mut cells, &frame, at, &mut see_bristle);
+            }
+        }
+        self.each_flowing(at, |touch| see(touch));
+    }
+
+    /// Sees the bristles of a group, whose cells are pressed so.
+    fn bristles_of(
+        &self,
+        group: &Group,
+        cells: &mut [Pressed; CELLS],
+        frame: &Frame,
+        at: &At<'_>,
+        see: &mut impl FnMut(&Hold, f64),
+    ) {
+        let Some(bristles) = group.bristles else { return };
+        for (cell, pressed) in cells[..bristles.cells].iter_mut().enumerate() {
+            if pressed.settle()
+                && let Some(b) = self.bristle(group, cell, pressed, frame, at, at.internal)
+            {
+                see(&b.hold, pressed.normal);
             }
         }
     }

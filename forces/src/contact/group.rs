@@ -113,8 +113,10 @@ impl Group {
             What::Span(span) => span,
         };
         let cells = self.bristles.map_or(1, |b| b.cells);
-        let curve = span.curve(fixed, frame, at);
-        Search::new(&fixed.shape, &curve, span.radius).find(&mut scratch.pieces, &mut scratch.found);
+        if span.is_near(fixed, frame, at) {
+            let curve = span.curve(fixed, frame, at);
+            Search::new(&fixed.shape, &curve, span.radius).find(&mut scratch.pieces, &mut scratch.found);
+        }
         for &[from, to] in &scratch.found {
             // cut where one cell ends and the next begins
             let borders = (1..cells).map(|c| c as f64 / cells as f64).filter(|&b| b > from && b < to);
@@ -141,6 +143,14 @@ impl Group {
 }
 
 impl Span {
+    /// Whether it is nearer to the shape than it is long: for most pieces of a long cable it isn't, and this is all that
+    /// they are asked.
+    fn is_near(&self, fixed: &Fixed, frame: &Frame, at: &At<'_>) -> bool {
+        let line = Cubic(self.line.place(at));
+        let middle = fixed.inside(frame, &line.at(0.5));
+        fixed.shape.gap(&middle, self.radius + 0.5 * line.speed()).is_some()
+    }
+
     /// Its line in the shape's own axes.
     pub fn curve(&self, fixed: &Fixed, frame: &Frame, at: &At<'_>) -> Cubic {
         let [a, da, b, db] = self.line.place(at);

@@ -282,12 +282,22 @@ impl Contact {
                 }
             }
         }
+        self.each_flowing_ball(at, |ball, touch| see(ball, touch, &frame));
+    }
+
+    /// Sees all that touches of cables that feed.
+    pub(super) fn each_flowing(&self, at: &At<'_>, mut see: impl FnMut(&Touch)) {
+        self.each_flowing_ball(at, |_, touch| see(touch));
+    }
+
+    fn each_flowing_ball(&self, at: &At<'_>, mut see: impl FnMut(&Ball, &Touch)) {
+        let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
         for flowing in &self.flowing {
             let now = flowing.now(at);
             now.group.gather(&self.fixed, &frame, &now.at(at), &mut scratch);
             for ball in &scratch.balls {
                 if let Some((touch, _)) = self.touch(ball, &frame, &now.at(at)) {
-                    see(ball, &touch, &frame);
+                    see(ball, &touch);
                 }
             }
         }
@@ -422,10 +432,13 @@ impl Term for Contact {
         Energy { potential, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let mut dissipated = 0.0;
-        self.each(at, |_, t, _| dissipated += (t.normal - t.elastic) * t.rate);
-        self.each_bristle(at, |hold, _| dissipated += hold.heat);
-        Power { dissipated, ..Power::default() }
+        let (mut pushed, mut rubbed) = (0.0, 0.0);
+        self.each_with_bristles(
+            at,
+            |t| pushed += (t.normal - t.elastic) * t.rate,
+            |hold, _| rubbed += hold.heat,
+        );
+        Power { dissipated: pushed + rubbed, ..Power::default() }
     }
     fn kinked(&self) -> bool {
         self.law.friction.is_some()

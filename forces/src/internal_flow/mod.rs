@@ -23,6 +23,7 @@ mod spec;
 mod term;
 
 pub use pressure::Bore;
+pub(crate) use pressure::{PRESSURE, WALL};
 pub use record::WallTensionSpec;
 pub use spec::InternalFlowSpec;
 pub use term::InternalFlow;

@@ -5,6 +5,7 @@ mod bed;
 #[cfg(feature = "contact")]
 mod contact;
 mod drag;
+mod free_vessel;
 mod functions;
 #[cfg(feature = "contact")]
 mod lines;

@@ -24,12 +24,14 @@ pub(super) struct Row {
 enum Section {
     Title,
     LineTypes,
+    RodTypes,
     Bodies,
+    Rods,
     Points,
     Lines,
     Options,
     Outputs,
-    /// What has no counterpart: rods, failures, control.
+    /// What has no counterpart: failures, control.
     Other(&'static str),
     End,
 }
@@ -40,7 +42,9 @@ pub(super) struct Deck<'a> {
     text: &'a str,
     pub title: String,
     pub types: Vec<Row>,
+    pub rod_types: Vec<Row>,
     pub bodies: Vec<Row>,
+    pub rods: Vec<Row>,
     pub points: Vec<Row>,
     pub lines: Vec<Row>,
     pub options: Vec<Row>,
@@ -59,7 +63,9 @@ impl<'a> Deck<'a> {
             text,
             title: String::new(),
             types: none(),
+            rod_types: none(),
             bodies: none(),
+            rods: none(),
             points: none(),
             lines: none(),
             options: none(),
@@ -90,7 +96,9 @@ impl<'a> Deck<'a> {
                 Section::Title if deck.title.is_empty() => deck.title = bare.into(),
                 Section::Title | Section::End => {}
                 Section::LineTypes => deck.types.push(row),
+                Section::RodTypes => deck.rod_types.push(row),
                 Section::Bodies => deck.bodies.push(row),
+                Section::Rods => deck.rods.push(row),
                 Section::Points => deck.points.push(row),
                 Section::Lines => deck.lines.push(row),
                 Section::Options => deck.options.push(row),
@@ -102,7 +110,7 @@ impl<'a> Deck<'a> {
                 }
             }
         }
-        if deck.lines.is_empty() {
+        if deck.lines.is_empty() && deck.rods.is_empty() {
             let fault = Fault::new(format!("`{name}` has no lines: it isn't a MoorDyn deck"));
             return Err(fault.with_help("sections begin with dashed rows, such as `--- LINES ---`"));
         }
@@ -186,7 +194,8 @@ impl Section {
         let list = |what: &str| has(&[&format!("{what} PROP"), &format!("{what} LIST")]);
         Some(match () {
             () if has(&["LINE TYPE", "LINE DICT"]) => Section::LineTypes,
-            () if has(&["ROD TYPE", "ROD DICT", "RODS"]) || list("ROD") => Section::Other("rods"),
+            () if has(&["ROD TYPE", "ROD DICT"]) => Section::RodTypes,
+            () if name == "RODS" || list("ROD") => Section::Rods,
             () if has(&["BODIES"]) || list("BODY") => Section::Bodies,
             () if has(&["POINTS", "CONNECT", "NODE PROP"]) || list("POINT") => Section::Points,
             () if has(&["FAILURE"]) => Section::Other("failures"),

@@ -4,6 +4,7 @@ mod body;
 mod deck;
 mod joints;
 mod parts;
+mod rod;
 mod scene;
 mod water;
 

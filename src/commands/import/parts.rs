@@ -1,6 +1,7 @@
 //! Types of line, points and lines of a deck.
 
 use super::deck::{Deck, Row, Word};
+use super::rod::rod_end;
 use ropewalk_scene::Fault;
 use std::collections::BTreeMap;
 
@@ -111,12 +112,12 @@ pub(super) fn point<'a>(deck: &Deck<'_>, row: &'a Row) -> Result<Point<'a>, Faul
 pub(super) fn ends(deck: &Deck<'_>, word: &Word, points: &[Point<'_>]) -> Result<String, Fault> {
     let id = word.text.to_lowercase();
     let id = ["point", "connection", "con", "p", "c"].iter().find_map(|p| id.strip_prefix(p)).unwrap_or(&id);
-    if points.iter().any(|p| p.id == id) {
+    if points.iter().any(|p| p.id == id) || rod_end(deck, id).is_some() {
         return Ok(id.into());
     }
     Err(deck
         .word_fault(&format!("there is no point `{}`", word.text), word)
-        .with_help("lines end at points of the deck; at rods they aren't taken over"))
+        .with_help("lines end at points of the deck, and at ends of its rods, such as `R1A`"))
 }
 
 /// A line; `sections` gets what it is made of, once for each damping.
@@ -159,6 +160,13 @@ pub(super) fn line<'a>(
 
 /// Where a point is in space.
 pub(super) fn place(deck: &Deck<'_>, points: &[Point<'_>], id: &str) -> Result<[f64; 3], Fault> {
+    if let Some((row, end)) = rod_end(deck, id) {
+        let mut at = [0.0; 3];
+        for (k, x) in at.iter_mut().enumerate() {
+            *x = deck.number(row, 3 + 3 * end + k, "place of an end")?;
+        }
+        return Ok(at);
+    }
     let Some(point) = points.iter().find(|p| p.id == id) else { return Ok([0.0; 3]) };
     let body = deck
         .bodies

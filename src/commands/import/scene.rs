@@ -3,7 +3,8 @@
 use super::body::body;
 use super::deck::Deck;
 use super::joints::{fasten, records};
-use super::parts::{line, line_type, place, point};
+use super::parts::{LineType, line, line_type, place, point};
+use super::rod::{hold, meet, rod};
 use super::water::{forces, head};
 use ropewalk_scene::Fault;
 use std::collections::BTreeMap;
@@ -84,10 +85,11 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
         .map(|row| line(deck, row, &types, &points, &mut sections))
         .collect::<Result<Vec<_>, _>>()?;
 
-    for kind in types.iter().filter(|t| t.fluid[3] != 0.0 && lines.iter().any(|l| std::ptr::eq(l.kind, *t))) {
+    let used = |t: &&LineType<'_>| lines.iter().any(|l| std::ptr::eq(l.kind, *t));
+    for kind in types.iter().filter(|t| t.fluid[3] > t.fluid[1]).filter(used) {
         notes.push(format!(
-            "added mass along `{}` (CaAx = {}) is left out",
-            kind.row.words[0].text, kind.fluid[3]
+            "added mass along `{}` (CaAx = {}) is more than across: it is taken as Ca = {}",
+            kind.row.words[0].text, kind.fluid[3], kind.fluid[1]
         ));
     }
 
@@ -95,6 +97,9 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
     head(deck, name, density, folder, &mut out)?;
     for row in &deck.bodies {
         body(deck, row, &mut notes, &mut out)?;
+    }
+    for row in &deck.rods {
+        rod(deck, row, &mut notes, &mut out)?;
     }
     for (section, (kind, time)) in &sections {
         let _ = write!(
@@ -129,7 +134,13 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
     for point in &points {
         fasten(point, &lines, density, &mut out);
     }
+    for row in &deck.rods {
+        hold(deck, row, &lines, &mut out)?;
+    }
     forces(deck, &lines, folder, &mut out)?;
+    for row in &deck.rods {
+        meet(deck, row, &mut out)?;
+    }
     records(deck, &lines, &points, &mut notes, &mut out);
     Ok(Imported { text: out, notes })
 }

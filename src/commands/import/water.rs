@@ -142,10 +142,15 @@ pub(super) fn forces(
             );
         }
     }
-    for all in kinds(&|l| vec![l.kind.fluid[1].to_bits()]) {
-        let ca = all[0].kind.fluid[1];
+    for all in kinds(&|l| vec![l.kind.fluid[1].to_bits(), l.kind.fluid[3].to_bits()]) {
+        let [_, ca, _, along] = all[0].kind.fluid;
         if ca != 0.0 {
-            let _ = write!(out, "\n[[forces]]\ntype = \"added_mass\"\nca = {ca:?}\non = [{}]\n", names(&all));
+            let along = match along.clamp(0.0, ca) {
+                0.0 => String::new(),
+                along => format!("ca_axial = {along:?}\n"),
+            };
+            let on = names(&all);
+            let _ = write!(out, "\n[[forces]]\ntype = \"added_mass\"\nca = {ca:?}\n{along}on = [{on}]\n");
         }
     }
     let depth = deck.option_number(&["wtrdpth"], 0.0)?;

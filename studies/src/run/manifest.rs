@@ -91,7 +91,8 @@ impl Manifest {
 pub(super) fn notes(scene: &Scene, model: &Model) -> Vec<String> {
     let sea = scene.water.as_ref().and_then(|water| water.raised(scene.gravity).ok().flatten());
     let waves = sea.into_iter().map(|sea| sea.about().to_string());
-    scene.constraints.iter().flat_map(|c| c.notes(model)).chain(waves).collect()
+    let constraints = scene.constraints.iter().flat_map(|c| c.notes(model));
+    constraints.chain(scene.forces.iter().flat_map(|f| f.notes())).chain(waves).collect()
 }
 
 impl fmt::Display for Manifest {

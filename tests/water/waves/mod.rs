@@ -1,5 +1,6 @@
 //! Waves: laws against differences and balances, reference sets, scenes.
 
+mod free;
 mod laws;
 mod measured;
 mod reference;

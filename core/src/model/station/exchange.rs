@@ -31,6 +31,10 @@ fn vector<R: Real>(row: &[f64], i: usize) -> V3<R> {
     [number(row, i), number(row, i + 1), number(row, i + 2)]
 }
 #[inline(always)]
+fn matrix<R: Real>(row: &[f64], i: usize) -> [V3<R>; 3] {
+    [vector(row, i), vector(row, i + 3), vector(row, i + 6)]
+}
+#[inline(always)]
 fn put<R: Real, const K: usize>(row: &mut [f64], i: usize, x: &[R; K]) {
     for k in 0..K {
         x[k].write(&mut row[(i + k) * R::LANES..]);
@@ -85,27 +89,28 @@ impl<R: Real> Station<R> {
 
 impl<R: Real> Load<R> {
     #[inline(always)]
-    pub(super) fn read(&mut self, row: &[f64], gives: Gives) {
+    pub(super) fn read(&mut self, row: &[f64], gives: Gives, tangent: bool) {
         self.f = vector(row, 0);
-        let matrix = |from: usize| [vector(row, from), vector(row, from + 3), vector(row, from + 6)];
         if gives.x {
-            self.d_x = matrix(D_X);
+            self.d_x = matrix(row, D_X);
         }
         if gives.slope {
-            self.d_slope = matrix(D_SLOPE);
+            self.d_slope = matrix(row, D_SLOPE);
         }
         if gives.v {
-            self.d_v = matrix(D_V);
+            self.d_v = matrix(row, D_V);
         }
         if gives.a {
-            self.d_a = matrix(D_A);
+            self.d_a = matrix(row, D_A);
         }
         if gives.couple {
             self.g = vector(row, G);
-            self.d_rate = matrix(D_RATE);
-            self.g_x = matrix(G_X);
-            self.g_slope = matrix(G_SLOPE);
-            self.g_v = matrix(G_V);
+        }
+        if gives.couple && tangent {
+            self.d_rate = matrix(row, D_RATE);
+            self.g_x = matrix(row, G_X);
+            self.g_slope = matrix(row, G_SLOPE);
+            self.g_v = matrix(row, G_V);
         }
     }
 }
@@ -251,7 +256,9 @@ impl<L: Law> LaneTask for PowerOf<'_, L> {
             sum.supplied = at.weight.fma(power.supplied, sum.supplied);
             sum.carried = at.weight.fma(power.carried, sum.carried);
         }
-        (0..self.lanes).for_each(|l| *self.out += sum.lane(l));
+        for l in 0..self.lanes {
+            *self.out += sum.lane(l);
+        }
     }
 }
 

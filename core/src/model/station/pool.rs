@@ -79,7 +79,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             }
             let gives = self.exchange.given;
             for (load, row) in loads.iter_mut().zip(self.exchange.loads.chunks_exact(LOAD * R::LANES)) {
-                load.read(row, gives);
+                load.read(row, gives, tangent);
             }
             if tangent {
                 E::spread::<R, true>(&p, &x, &loads, gives, &w, &mut share);

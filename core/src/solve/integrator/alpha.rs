@@ -40,6 +40,8 @@ const MOST_TURNING: f64 = 100.0;
 const MOST_TURN: f64 = 1.5;
 /// A step so much smaller than another one has a much smaller error, or it isn't that of the step.
 const SHRUNK: f64 = 0.1;
+/// How many times more than that is far.
+const FAR: f64 = 100.0;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
@@ -272,6 +274,15 @@ impl Alpha {
         true
     }
 
+    /// Whether velocities break the constraints by far more than what the error that positions may gather in the run asks.
+    fn drifts(&self, model: &Model, state: &State, work: &mut Workspace) -> bool {
+        let Stepping::Controlled { tolerance } = self.options.stepping else { return false };
+        let mut rates = vec![0.0; model.multipliers()];
+        model.constraint_rates(&state.at(), &mut work.system, &mut rates);
+        let limit = FAR * tolerance * model.length() / self.horizon;
+        rates.iter().zip(model.row_scale()).any(|(rate, scale)| rate.abs() > limit * scale)
+    }
+
     /// Whether a trial that converged is to be accepted.
     fn judge(
         &self,
@@ -442,6 +453,7 @@ impl Integrator for Alpha {
         let mut remedies = Remedies::default();
         // step and error of the first try that was rejected for its error
         let mut rejected = None;
+        let mut renewed = false;
         loop {
             let h = steps.h;
             let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
@@ -459,9 +471,11 @@ impl Integrator for Alpha {
                     let [first, largest] = *rejected.get_or_insert([h, error]);
                     let stays = h <= SHRUNK * first && error > largest * (h / first).sqrt();
                     let kinked = !model.inputs().is_empty() && model.multipliers() > 0;
-                    if stays && kinked && h <= SHRUNK * state.control.h_last {
-                        // not the error of this step: behind the kink of an input velocities meet the constraints to the
-                        // order of the longer step before it
+                    // not the error of this step: behind the kink of an input velocities meet the constraints to the order of
+                    // the longer step before it, and where steps change much they may leave them altogether
+                    let behind = stays && kinked && h <= SHRUNK * state.control.h_last;
+                    if behind || !renewed && h <= SHRUNK * first && self.drifts(model, state, work) {
+                        renewed = true;
                         let internal = state.internal.clone();
                         anew(model, state, work, self, steps.h, true)?;
                         state.internal = internal;

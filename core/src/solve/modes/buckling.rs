@@ -140,7 +140,7 @@ fn search(growth: &mut Growth<'_>, stable: bool) -> Result<Option<(f64, Vec<f64>
             continue;
         }
         closed &= space.is_closed();
-        let all = space.ritz(false).ok_or(ModesError::Eigen)?;
+        let all = space.ritz(false, 64).ok_or(ModesError::Eigen)?;
         let factor = |r: &Ritz| 1.0 + 1.0 / r.value[0];
         let real = |r: &&Ritz| r.value[1].abs() <= 1e-6 * r.size();
         let counts = |r: &&Ritz| match stable {

@@ -52,6 +52,8 @@ impl Ritz {
 
 /// What is left of a vector below this part of the operator's size is rounding.
 const NOTHING: f64 = 1e-13;
+/// What is left of a vector is little below this part of it.
+const LITTLE: f64 = 0.7;
 
 impl Arnoldi {
     /// How many vectors have had their turn.
@@ -117,20 +119,26 @@ impl Arnoldi {
         if square < 0.0 { 0.0 } else { square.sqrt() }
     }
 
-    /// Takes the basis out of a vector, and says how much of it there was and what size is left.
+    /// Takes the basis out of a vector, and says how much of it there was and what size is left: once more where little
+    /// is left, of which rounding is a part (Daniel, Gragg, Kaufman & Stewart, Math. Comp. 30 (1976) 772).
     fn orthogonalise(&mut self, op: &mut dyn Operator, x: &mut [f64]) -> Result<(Vec<f64>, f64), SolveError> {
         let mut sum = vec![0.0; self.basis.len()];
-        self.scratch.resize(x.len(), 0.0);
+        let mut before = self.size(op, x);
         for _ in 0..2 {
-            op.weigh(x, &mut self.scratch);
-            let parts: Vec<f64> = self.basis.iter().map(|v| dot(v, &self.scratch)).collect();
-            for ((v, p), sum) in self.basis.iter().zip(&parts).zip(&mut sum) {
-                *sum += p;
-                x.iter_mut().zip(v).for_each(|(x, v)| *x -= p * v);
+            for (v, sum) in self.basis.iter().zip(&mut sum) {
+                // the scratch holds the weighed vector as it was
+                let part = dot(v, &self.scratch);
+                *sum += part;
+                x.iter_mut().zip(v).for_each(|(x, v)| *x -= part * v);
+            }
+            let left = self.size(op, x);
+            let little = left < LITTLE * before;
+            before = left;
+            if !little {
+                break;
             }
         }
-        let left = self.size(op, x);
-        if left.is_finite() { Ok((sum, left)) } else { Err(SolveError::NotFinite) }
+        if before.is_finite() { Ok((sum, before)) } else { Err(SolveError::NotFinite) }
     }
 
     fn projection(&self) -> Mat<f64> {
@@ -153,8 +161,9 @@ impl Arnoldi {
     }
 
     /// Eigenvalues of the projection, largest first; of complex pairs that with the positive imaginary part.
-    /// `symmetric` says that the operator is, in its inner product.
-    pub fn ritz(&self, symmetric: bool) -> Option<Vec<Ritz>> {
+    /// `symmetric` says that the operator is, in its inner product; where it isn't, about the first `leading` are looked at
+    /// closely.
+    pub fn ritz(&self, symmetric: bool, leading: usize) -> Option<Vec<Ritz>> {
         let (h, j) = (self.projection(), self.turns());
         if j == 0 {
             return Some(Vec::new());
@@ -179,7 +188,7 @@ impl Arnoldi {
             let vector = |k: &usize| (0..j).map(|i| eigen.U()[(i, *k)]).collect();
             let mut pairs: Vec<Eigenpair> = upper.iter().map(|k| (values[*k], vector(k))).collect();
             pairs.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
-            mend(&h, &mut pairs);
+            mend(&h, &mut pairs, leading);
             for (value, vector) in &pairs {
                 let size = norm(vector);
                 let part = |f: fn(&c64) -> f64| vector.iter().map(|z| f(z) / size).collect::<Vec<f64>>();
@@ -216,14 +225,12 @@ type Eigenpair = (c64, Vec<c64>);
 const ONE: f64 = 1e-8;
 /// What an eigenvector may leave of its equation, in parts of the largest eigenvalue.
 const EXACT: f64 = 1e-12;
-/// How many eigenvectors are looked at: those of the largest eigenvalues.
-const LEADING: usize = 64;
 
 /// Computes eigenvectors anew that belong to one eigenvalue several times, or don't meet their equation: a decomposition
 /// makes them nearly parallel, or anything. Inverse iteration from as many vectors as there are finds what they span.
-/// The largest eigenvalues come first.
-fn mend(h: &Mat<f64>, pairs: &mut [Eigenpair]) {
-    let (j, leading) = (h.nrows(), pairs.len().min(LEADING));
+/// The largest eigenvalues come first, of which the `leading` ones count.
+fn mend(h: &Mat<f64>, pairs: &mut [Eigenpair], leading: usize) {
+    let (j, leading) = (h.nrows(), pairs.len().min(leading));
     let largest = pairs.first().map_or(0.0, |(value, _)| value.norm());
     let mut done = vec![false; leading];
     for k in 0..leading {
@@ -270,9 +277,7 @@ fn norm(x: &[c64]) -> f64 {
     x.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt()
 }
 
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
+pub(super) use crate::model::structure::sum_of_products as dot;
 
 #[cfg(test)]
 mod tests {
@@ -318,7 +323,7 @@ mod tests {
         for _ in 0..40 {
             space.step(&mut op).unwrap();
         }
-        let found = space.ritz(true).unwrap();
+        let found = space.ritz(true, 8).unwrap();
         for (ritz, exact) in found.iter().zip([9.0, 9.0, 9.0, 5.0, 5.0, 3.0, 1.0, 0.5]) {
             assert_relative_eq!(ritz.value[0], exact, max_relative = 1e-11);
             assert!(ritz.residual < 1e-6, "{ritz:?}");
@@ -344,7 +349,7 @@ mod tests {
         let mut pairs: Vec<Eigenpair> =
             upper.map(|k| (values[k], (0..j).map(|i| eigen.U()[(i, k)]).collect())).collect();
         pairs.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
-        mend(&h, &mut pairs);
+        mend(&h, &mut pairs, j);
         assert_eq!(pairs.len(), rates.len());
         for ((value, vector), rate) in pairs.iter().zip(rates) {
             assert_relative_eq!(value.im, rate, max_relative = 1e-9);
@@ -366,7 +371,7 @@ mod tests {
             space.step(&mut op).unwrap();
         }
         assert!(!space.start(&mut op).unwrap());
-        let found = space.ritz(false).unwrap();
+        let found = space.ritz(false, 8).unwrap();
         assert_eq!(found.len(), 2);
         assert_relative_eq!(found[0].value[0], 4.0, max_relative = 1e-12);
         assert_relative_eq!(found[1].value[0], 1.0, max_relative = 1e-12);

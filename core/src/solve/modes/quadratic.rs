@@ -84,7 +84,7 @@ pub(super) fn find(
             continue;
         }
         closed &= space.is_closed();
-        let mut all = space.ritz(false).ok_or(ModesError::Eigen)?;
+        let mut all = space.ritz(false, 2 * count + 8).ok_or(ModesError::Eigen)?;
         all.retain(|r| r.size() > 0.0);
         all.sort_by(|a, b| size(rate(a, sigma)).total_cmp(&size(rate(b, sigma))));
         let good = all.iter().take_while(|r| r.residual <= 1e-9 * r.size()).count();

@@ -65,7 +65,7 @@ fn lowest(p: &mut Pencil, m: f64) -> Result<f64, ModesError> {
             }
         }
         let mut lowest = f64::INFINITY;
-        let found = space.ritz(p.symmetric).ok_or(ModesError::Eigen)?;
+        let found = space.ritz(p.symmetric, 64).ok_or(ModesError::Eigen)?;
         for ritz in found.iter().filter(|r| r.residual <= 1e-4 * r.size()) {
             let parts = space.vector(&ritz.vector);
             let k: f64 = parts.iter().filter(|x| !x.is_empty()).map(|x| p.energy(x).0).sum();
@@ -103,7 +103,7 @@ pub(super) fn find(
             continue;
         }
         closed &= space.is_closed();
-        let mut all = space.ritz(true).ok_or(ModesError::Eigen)?;
+        let mut all = space.ritz(true, 64).ok_or(ModesError::Eigen)?;
         // beyond this the projection shows what it doesn't hold yet
         all.retain(|r| r.value[0] != 0.0);
         all.sort_by(|a, b| square(a, m).total_cmp(&square(b, m)));

@@ -80,6 +80,21 @@ impl Statics<'_> {
         Ok(found)
     }
 
+    /// Whether the forces of velocities do no work, as in a frame that turns: then nothing grows about an equilibrium whose
+    /// potential is least there, since `ẋᵀM ẋ + xᵀK x` stays (Thomson and Tait).
+    pub(super) fn only_turns(&mut self, state: &State) -> bool {
+        self.assemble(state, &state.q, &state.lambda, None, true);
+        let (s, values) = (&self.structure, &self.damping.values);
+        let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        s.rows().filter(|(r, ..)| !s.is_multiplier[*r]).all(|(r, columns, at)| {
+            at.enumerate().all(|(k, p)| {
+                let c = columns.get(k);
+                let works = || values[p] + s.entry(values, c, r);
+                c < r || s.is_multiplier[c] || works().abs() <= f64::EPSILON * largest
+            })
+        })
+    }
+
     /// `(1-αm)/(1-αf) M + γ h C + β h² K`, with the constraints as they are.
     fn iteration_matrix(&self, c: &Coefficients, h: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.structure.entries()];

@@ -135,6 +135,9 @@ impl Statics<'_> {
             state.t = if (t - before.t).abs() <= 1.001 * h.abs() { t } else { before.t + h };
             let to = state.t;
             self.run_on(state, to - before.t);
+            if self.stays(&before, state) {
+                continue;
+            }
             let e = match self.step_on(state) {
                 Ok(found) => {
                     sum.add(&found);
@@ -181,6 +184,23 @@ impl Statics<'_> {
             }
         }
         Ok(sum)
+    }
+
+    /// Whether an equilibrium that was judged is the one of a later time too, since nothing has changed. Asked only where
+    /// judging is dear, which is where loads have no potential.
+    fn stays(&mut self, judged: &State, later: &State) -> bool {
+        let known = self.judged.of.as_ref().is_some_and(|(t, q)| *t == judged.t && *q == judged.q);
+        if self.judged.potential || !known || judged.q != later.q || judged.internal != later.internal {
+            return false;
+        }
+        self.assemble(later, &later.q, &later.lambda, None, false);
+        let (residual, values) = (self.system.residual.clone(), self.system.values.clone());
+        self.assemble(judged, &judged.q, &judged.lambda, None, false);
+        let same = residual == self.system.residual && values == self.system.values;
+        if same {
+            self.judged.of = Some((later.t, later.q.clone()));
+        }
+        same
     }
 
     /// One step of [`Statics::follow`]: a stable equilibrium at the time of the state.

@@ -148,6 +148,8 @@ pub struct Neutral {
 /// What an equilibrium is like.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Judgement {
+    /// The time and the coordinates of what was judged, if it was found to be an equilibrium.
+    pub of: Option<(f64, Vec<f64>)>,
     /// Newton's correction there.
     pub correction: Vec<f64>,
     /// Largest residual force [N].

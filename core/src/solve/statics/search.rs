@@ -197,6 +197,11 @@ impl Statics<'_> {
         cut
     }
 
+    /// Whether no more than rounding is left of an iteration, by its correction.
+    pub(super) fn is_there(&self, correction: &[f64]) -> bool {
+        self.size(&correction[..self.model.velocities()]) <= ROUNDED * self.options.tolerance
+    }
+
     /// What is accepted is checked at the point itself: its residual, and whether it is stable.
     fn examine(
         &mut self,
@@ -224,8 +229,7 @@ impl Statics<'_> {
             let out = judged.way_out.take();
             return Ok(out.map_or(Verdict::GoOn, |d| Verdict::Leave(self.small(d))));
         }
-        let left = self.size(&judged.correction[..self.model.velocities()]);
-        if !(left <= ROUNDED * self.options.tolerance) {
+        if !self.is_there(&judged.correction) {
             return Ok(Verdict::GoOn);
         }
         self.follow_frame(&it.q);
@@ -233,7 +237,9 @@ impl Statics<'_> {
         there.a.clone_from(&self.a);
         there.aux.clone_from(&self.a);
         found.flutter = judged.flutter;
-        if cold && self.options.stable && !self.structure.symmetric {
+        let sound =
+            judged.potential && judged.unstable == 0 && judged.neutral.is_empty() && judged.doubt.is_none();
+        if cold && self.options.stable && !self.structure.symmetric && !(sound && self.only_turns(&there)) {
             let d = self.disturb(&there).map_err(|e| e.to_string())?;
             if d.unstable && d.one_way {
                 return Ok(Verdict::Leave(self.small(d.shape)));
@@ -245,6 +251,7 @@ impl Statics<'_> {
         self.unstable = judged.unstable;
         self.neutral = std::mem::take(&mut judged.neutral);
         self.doubt = judged.doubt.take();
+        judged.of = Some((there.t, there.q.clone()));
         self.judged = judged;
         Ok(Verdict::Found(Box::new(there)))
     }

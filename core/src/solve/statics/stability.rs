@@ -44,7 +44,10 @@ impl Statics<'_> {
             self.free.clear();
             self.factor()?;
             out.correction = self.correction()?;
-            self.judge_motion(there, &mut out)?;
+            // eigenvalues cost more than another iteration
+            if self.is_there(&out.correction) {
+                self.judge_motion(there, &mut out)?;
+            }
             return Ok(out);
         }
         let held = self.held(there);
