@@ -39,7 +39,7 @@ pub use rigid_chain::{LinkSection, RigidChainSpec};
 #[doc(hidden)]
 pub mod testing {
     pub use crate::cable::mesh::{even, pinned};
-    pub use crate::cable::route::{Side, Stop, lay};
+    pub use crate::cable::route::{Side, Stop, lay, lay_closed};
     pub use crate::cable::transmitted::weights;
     pub use crate::rigid_chain::lay::filling;
     pub use crate::rigid_chain::spec::orientations;

@@ -488,11 +488,11 @@ impl Builder {
     }
 
     /// Notes that a cable has a route, so that its spans can be named after it; material flows through all of their inner
-    /// ends.
+    /// ends, which all are those of one that is `closed`.
     ///
     /// # Errors
     /// Something else feeds at an end of a span.
-    pub fn route(&mut self, name: &str, spans: &[String]) -> Result<(), BuildError> {
+    pub fn route(&mut self, name: &str, spans: &[String], closed: bool) -> Result<(), BuildError> {
         if let Some(span) = spans.iter().find(|span| self.feeds.contains_key(*span)) {
             let message = format!(
                 "`{span}` feeds at wheels and rings by itself: put a winch at `{name}.start` or `{name}.end`"
@@ -503,8 +503,8 @@ impl Builder {
         let outer = self.feeds.get(name).cloned().unwrap_or_default();
         let passing = Some((Feed { unstrained: true, passes: true, ..Feed::default() }, name.to_string()));
         for (k, span) in spans.iter().enumerate() {
-            let first = if k == 0 { outer[0].clone() } else { passing.clone() };
-            let last = if k + 1 == spans.len() { outer[1].clone() } else { passing.clone() };
+            let first = if k == 0 && !closed { outer[0].clone() } else { passing.clone() };
+            let last = if k + 1 == spans.len() && !closed { outer[1].clone() } else { passing.clone() };
             self.feeds.insert(span.clone(), [first, last]);
         }
         Ok(())

@@ -6,9 +6,11 @@ mod common;
 mod program;
 
 mod arc;
+mod belt;
 mod births;
 mod drum;
 mod eyelet;
+mod falls;
 mod reeling;
 mod reeving;
 mod route;

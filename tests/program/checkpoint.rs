@@ -147,6 +147,34 @@ fn drum_that_its_motor_turns_goes_on_to_the_last_bit() {
     same_from_checkpoint(&scene, &scene.solver, 20, 4);
 }
 
+/// Picks up from a slack sling, hoists, brakes, slews, brakes, lowers, sets down, slack again.
+#[test]
+fn a_crane_operators_day_goes_on_to_the_last_bit() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/crane_day.toml");
+    let scene = ropewalk::read(&path).expect("the scene");
+    let history = ropewalk::simulate(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let at = |column: &str, t: f64| {
+        let k =
+            history.times().iter().position(|x| (x - t).abs() < 1e-6).unwrap_or_else(|| panic!("no {t} s"));
+        history.column(column).unwrap_or_else(|| panic!("no {column}"))[k]
+    };
+    let weight = 2000.0 * 9.81;
+    // on the ground and slack, in the air, on the ground and slack, and elsewhere
+    for (t, lifted) in [(0.5, false), (6.5, true), (10.5, true), (20.0, false)] {
+        let (normal, sling) = (at("ground.normal", t), at("sling.tension", t));
+        if lifted {
+            assert!(normal == 0.0 && sling > 0.5 * weight, "at {t} s: {normal} N, {sling} N");
+        } else {
+            assert!((normal / weight - 1.0).abs() < 0.01 && sling == 0.0, "at {t} s: {normal} N, {sling} N");
+        }
+    }
+    let way = (at("load.x", 20.0) - 10.0).hypot(at("load.y", 20.0));
+    assert!(way > 2.0, "{way} m");
+    let [supplied, imbalance] = ["supplied", "imbalance"].map(|what| at(&format!("energy.{what}"), 20.0));
+    assert!(imbalance.abs() < 0.01 * supplied, "{imbalance} J of {supplied} J");
+    same_from_checkpoint(&scene, &scene.solver, 500, 4);
+}
+
 #[test]
 fn checkpoint_of_another_model_is_refused() {
     let (one, other) = (bundled("pendulum", 0.2), bundled("hose-turn", 0.2));

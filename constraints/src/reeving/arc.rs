@@ -115,6 +115,66 @@ pub fn direction<S: Jet>(x: S, x0: f64) -> S {
     x / (x * x + x0 * x0).sqrt()
 }
 
+/// Friction on half of a wrap.
+struct Half<S> {
+    /// Tension that presses on the groove [N].
+    presses: S,
+    /// Angle times coefficient of friction.
+    angle: S,
+    /// 1 at the end where the arc begins, -1 where it ends.
+    sign: f64,
+    /// See [`Arc::slip_speed`].
+    slip_speed: f64,
+}
+
+impl<S: Jet> Half<S> {
+    /// Friction on the cable along the groove where the groove is faster by this [N].
+    fn sliding(&self, slip: S) -> S {
+        ((direction(slip, self.slip_speed) * self.angle * self.sign).exp() - 1.0) * self.presses * self.sign
+    }
+
+    /// The same where material flows, at a rate over the axial stiffness [m/(s N)]: the half by which it arrives changes
+    /// its stretch, hence its speed, towards that of the groove. So it sticks, and slides only by what the other half can't
+    /// hold, which is the creep of a belt (Grashof).
+    ///
+    /// The slip `y` with `y + flow F(y) = slip`, whose left side rises, by Newton's method between bounds.
+    fn sticking(&self, slip: S, flow: S) -> S {
+        let flow = flow * self.sign;
+        if !(flow.re() > 0.0) {
+            return self.sliding(slip);
+        }
+        let Half { sign, slip_speed, .. } = *self;
+        let re = Half { presses: self.presses.re(), angle: self.angle.re(), sign, slip_speed };
+        let excess = |y: f64| y + flow.re() * re.sliding(y) - slip.re();
+        let slope = |y: f64| {
+            let turns = re.slip_speed.powi(2) / (y * y + re.slip_speed.powi(2)).powf(1.5);
+            let pull = re.presses + re.sign * re.sliding(y);
+            1.0 + flow.re() * pull * re.angle * turns
+        };
+        let (mut low, mut high) = (slip.re().min(0.0), slip.re().max(0.0));
+        let mut y = 0.5 * (low + high);
+        for _ in 0..60 {
+            let off = excess(y);
+            if off > 0.0 {
+                high = y
+            } else {
+                low = y
+            }
+            let next = y - off / slope(y);
+            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            let done = (next - y).abs() <= 1e-15 * slip.re().abs().max(re.slip_speed);
+            y = next;
+            if done {
+                break;
+            }
+        }
+        // one more step, which brings the derivatives
+        let at = S::from(y);
+        let y = at - (at + flow * self.sliding(at) - slip) / slope(y);
+        self.sliding(y)
+    }
+}
+
 impl Arc {
     /// Evaluates all of it; `stored` is the unstretched length for material coordinates of 0.
     pub fn eval<S: Jet>(
@@ -180,6 +240,7 @@ impl Arc {
         let half = [minus(&f[0], &across), minus(&across, &f[1])];
         let lift = [0, 1].map(|k| (mean * mean - along(&h, &half[k]) * 2.0 / wrap * radius) * mass / stretch);
         let mut friction = [S::zero(); 2];
+        let mut strain = [S::zero(); 2];
         let mut axle_friction = S::zero();
         let mut moving = S::zero();
         match self.grip {
@@ -188,9 +249,16 @@ impl Arc {
                 for k in 0..2 {
                     let presses = tension - lift[k];
                     if mu > 0.0 && presses.re() > 0.0 {
-                        let sign = if k == 0 { 1.0 } else { -1.0 };
-                        let exponent = direction(rim - v[k], self.slip_speed) * wrap * (0.5 * mu * sign);
-                        friction[k] = presses * (exponent.exp() - 1.0) * sign;
+                        let half = Half {
+                            presses,
+                            angle: wrap * (0.5 * mu),
+                            sign: if k == 0 { 1.0 } else { -1.0 },
+                            slip_speed: self.slip_speed,
+                        };
+                        let flow = -ends[k].p[1] / ea;
+                        friction[k] = half.sticking(rim - v[k], flow);
+                        // it acts where the stretch is on its way to that beside the wheel
+                        strain[k] = friction[k] * (0.5 * half.sign / ea);
                     }
                 }
                 moving = rim * (friction[0] + friction[1]);
@@ -212,12 +280,15 @@ impl Arc {
                 out.r[k][i] += f[k][i] * push[k];
                 out.centre[i] -= f[k][i] * push[k];
             }
-            out.p[k] -= stretch * push[k];
+            out.p[k] -= stretch * push[k] - strain[k] * friction[k];
         }
         out.groove = (friction[0] + friction[1]) * radius;
 
         let lost = match self.grip {
-            Grip::Slides(_) => moving - friction[0] * v[0] - friction[1] * v[1],
+            Grip::Slides(_) => {
+                let gains = [0, 1].map(|k| friction[k] * (v[k] - strain[k] * ends[k].p[1]));
+                moving - gains[0] - gains[1]
+            }
             Grip::Turns(_) => axle_friction,
         };
         let wheel_energy = match self.grip {

@@ -69,7 +69,8 @@ pub struct CableSpec {
     /// What it runs over and through, from end to end, instead of `points`:
     /// `[{ end = "drum" }, { over = "head" }, { under = "block" }, { end = "jib.anchor" }]`. Sheaves and rings are
     /// constraints of their own. The cable is then several spans, `name.1`, `name.2`, …, each with `elements` elements, and
-    /// runs freely from one to the next; its shape at the start is the shortest taut line.
+    /// runs freely from one to the next; its shape at the start is the shortest taut line. A route without ends is that of a
+    /// closed belt: `[{ round = "driver" }, { round = "driven" }]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub route: Vec<Waypoint>,
     /// Speed with which a cable with a `route` runs along it at the start, from its start to its end [m/s].

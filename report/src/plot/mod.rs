@@ -14,6 +14,7 @@ mod clip;
 mod colour;
 mod frame;
 mod line;
+mod outline;
 mod panels;
 mod raster;
 mod shape;

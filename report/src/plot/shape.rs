@@ -7,7 +7,9 @@ use super::canvas::{Align, Canvas, Pen};
 use super::colour::{self, Colour};
 use super::frame::{AREA, Area, Bar, Entry, Frame};
 use super::line::Mark;
+use super::outline::outline;
 use super::thin;
+use crate::field::{Pose, Shape as FieldShape};
 use crate::{OutputError, write_atomic};
 
 /// Points of all snapshots together, as in a line plot.
@@ -17,6 +19,7 @@ const MOST_SNAPSHOTS: usize = 200;
 /// With more snapshots than this a colour bar takes the place of the legend.
 const MOST_ENTRIES: usize = 8;
 const LINE_WIDTH: f64 = 1.5;
+const OUTLINE_WIDTH: f64 = 0.8;
 
 /// A cable at one time.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,6 +29,8 @@ pub struct Snapshot {
     /// Points along the cable in the plane, in metres and in order. One that isn't finite breaks the
     /// line.
     pub points: Vec<(f64, f64)>,
+    /// Outlines of wheels and drums that move, each closed by a line to its first point.
+    pub outlines: Vec<Vec<(f64, f64)>>,
 }
 
 /// From where a cable is looked at; z is up.
@@ -105,6 +110,8 @@ pub struct ShapePlot {
     pub names: Vec<String>,
     /// Directions of x, y and z in the plane, drawn as a small cross of axes if there are any.
     pub directions: Vec<(f64, f64)>,
+    /// Outlines of wheels and drums that stand, each closed by a line to its first point.
+    pub outlines: Vec<Vec<(f64, f64)>>,
 }
 
 impl ShapePlot {
@@ -115,6 +122,7 @@ impl ShapePlot {
         let snapshot = |(t, points): &(f64, Vec<[f64; 3]>)| Snapshot {
             t: *t,
             points: points.iter().map(|p| plane.project(*p)).collect(),
+            outlines: Vec::new(),
         };
         Self {
             title: title.into(),
@@ -129,7 +137,28 @@ impl ShapePlot {
                 }
                 _ => Vec::new(),
             },
+            outlines: Vec::new(),
         }
+    }
+
+    /// The same with the outlines of cylinders such as wheels and drums, as they are seen in this plane: those `on` the
+    /// ground, and those on bodies. `of` tells for each snapshot which there are, and where the body of each is. What isn't
+    /// a cylinder is left out.
+    #[must_use]
+    pub fn with_wheels<'a>(
+        mut self,
+        plane: Plane,
+        on: impl IntoIterator<Item = &'a FieldShape>,
+        of: impl Fn(usize) -> Vec<(&'a FieldShape, Pose)>,
+    ) -> Self {
+        let ground = Pose::default();
+        self.outlines = on.into_iter().filter_map(|shape| outline(shape, &ground, plane)).collect();
+        for (k, snapshot) in self.snapshots.iter_mut().enumerate() {
+            let wheels = of(k);
+            let outlines = wheels.iter().filter_map(|(shape, carrier)| outline(shape, carrier, plane));
+            snapshot.outlines = outlines.collect();
+        }
+        self
     }
 
     /// Writes the picture to a file.
@@ -147,7 +176,8 @@ impl ShapePlot {
     pub fn svg(&self) -> Result<String, OutputError> {
         let shown = self.shown();
         let points = || {
-            let points = shown.iter().flat_map(|s| s.points.iter());
+            let moving = shown.iter().flat_map(|s| s.points.iter().chain(s.outlines.iter().flatten()));
+            let points = moving.chain(self.outlines.iter().flatten());
             points.filter(|(x, y)| x.is_finite() && y.is_finite())
         };
         let x = Axis::covering(points().map(|p| p.0), false, 0.05);
@@ -168,6 +198,9 @@ impl ShapePlot {
             heads_page: true,
         };
         Ok(frame.draw(|canvas, area| {
+            for outline in &self.outlines {
+                draw_outline(canvas, area, outline, colour::AXIS);
+            }
             for snapshot in &shown {
                 let colour = colour::ramp(age(snapshot, &shown));
                 draw_snapshot(canvas, area, snapshot, BUDGET / shown.len(), colour);
@@ -186,7 +219,18 @@ impl ShapePlot {
     }
 }
 
+fn draw_outline(canvas: &mut Canvas, area: &Area, outline: &[(f64, f64)], colour: Colour) {
+    let closed = outline.iter().chain(outline.first());
+    let pixels: Vec<_> = closed.map(|p| area.pixel(*p)).collect();
+    for run in thin::runs(&pixels, BUDGET) {
+        canvas.line(run, Pen::solid(OUTLINE_WIDTH, colour));
+    }
+}
+
 fn draw_snapshot(canvas: &mut Canvas, area: &Area, snapshot: &Snapshot, budget: usize, colour: Colour) {
+    for outline in &snapshot.outlines {
+        draw_outline(canvas, area, outline, colour);
+    }
     let pixels: Vec<_> = snapshot.points.iter().map(|p| area.pixel(*p)).collect();
     for run in thin::runs(&pixels, budget) {
         match run[..] {

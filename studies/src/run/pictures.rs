@@ -26,7 +26,8 @@ pub(crate) fn draw(
     let titles = &recorder.scene.run.shape_titles;
     let asked = [(Plane::Oblique, &titles.space), (Plane::Radial, &titles.radial)];
     let asked = asked.into_iter().filter(|(_, title)| title.is_some()).map(|(plane, _)| plane);
-    let shapes: Vec<_> = recorder.kept.drawn().map(|shape| (shape.t, shape.points())).collect();
+    let drawn_shapes: Vec<_> = recorder.kept.drawn().collect();
+    let shapes: Vec<_> = drawn_shapes.iter().map(|shape| (shape.t, shape.points())).collect();
     let t_label = match recorder.table.columns.first() {
         Some(t) if t.name != "t" => t.heading(),
         _ => String::new(),
@@ -35,6 +36,10 @@ pub(crate) fn draw(
         let (name, from) = view(plane);
         let title = shape_title(titles, plane).cloned().unwrap_or_else(|| format!("{title}, {from}"));
         let plot = ShapePlot::of_positions(title, plane, &shapes);
+        let plot = match &recorder.kept.scenery {
+            Some(scenery) => scenery.with_wheels(plot, plane, &drawn_shapes),
+            None => plot,
+        };
         let plot = ShapePlot { t_label: t_label.clone(), ..plot };
         if folder.draw(name, |path| plot.write(path), warn) {
             drawn.push(name.to_string());

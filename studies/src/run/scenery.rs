@@ -5,7 +5,7 @@ use super::shapes::{Line, MEASURED, Shape};
 use ropewalk_core::rotation::{from_matrix, matrix, transposed_times};
 use ropewalk_core::{At, Attitude, Marker, Model, NodeKind, Part, Quantity, Solid, Surface, V3};
 use ropewalk_report as output;
-use ropewalk_report::{BodyRecord, FieldRecord, LineRecord, LineSnapshot, Mesh, Pose};
+use ropewalk_report::{BodyRecord, FieldRecord, LineRecord, LineSnapshot, Mesh, Plane, Pose, ShapePlot};
 use ropewalk_scene::{Analysis, Process, SceneFile};
 
 const SPEED: &str = "speed";
@@ -17,6 +17,8 @@ pub(crate) struct Scenery {
     still: FieldRecord,
     /// What each of its bodies is in the model.
     movers: Vec<Mover>,
+    /// Wheels, drums and other cylinders that aren't bodies, each with the number of the body that carries it.
+    wheels: Vec<(Option<usize>, output::Shape)>,
     /// Points of all lines together.
     points: usize,
     /// What exerts forces.
@@ -107,7 +109,11 @@ impl Scenery {
             let is_bed = solid.surface == Surface::Plane && normal == [0.0, 0.0, 1.0];
             match is_bed && self.still.water.is_some() && self.still.bed.is_none() {
                 true => self.still.bed = Some(solid.seat.x[2]),
-                false => self.still.shapes.push(shape(solid, &[0.0; 3])),
+                false => {
+                    let there = shape(solid, &[0.0; 3]);
+                    self.wheels.push((None, there.clone()));
+                    self.still.shapes.push(there);
+                }
             }
             return;
         };
@@ -131,7 +137,18 @@ impl Scenery {
         };
         let arm: V3<f64> = std::array::from_fn(|i| origin[i] - there.x[i]);
         let arm = transposed_times(&matrix(&there.turn), &arm);
-        self.still.bodies[k].shapes.push(shape(solid, &arm));
+        let there = shape(solid, &arm);
+        self.wheels.push((Some(k), there.clone()));
+        self.still.bodies[k].shapes.push(there);
+    }
+
+    /// A plot of these shapes with all wheels, as they are seen in its plane.
+    pub fn with_wheels(&self, plot: ShapePlot, plane: Plane, shapes: &[&Shape]) -> ShapePlot {
+        let standing = self.wheels.iter().filter(|(body, _)| body.is_none()).map(|(_, shape)| shape);
+        plot.with_wheels(plane, standing, |k| {
+            let wheels = self.wheels.iter().filter_map(|(body, wheel)| Some(((*body)?, wheel)));
+            wheels.filter_map(|(body, wheel)| Some((wheel, *shapes[k].bodies.get(body)?))).collect()
+        })
     }
 
     /// Another model of the same scene, whose nodes have other numbers: carriers of shapes are found anew.

@@ -206,6 +206,56 @@ pub fn lay(stops: &[Stop]) -> Result<Vec<Turn>, Fault> {
     Ok((0..stops.len()).map(turn).collect())
 }
 
+/// The shortest closed line along a route of at least two stops, none of which is a drum.
+///
+/// # Errors
+/// A wheel that can't be passed as asked.
+pub fn lay_closed(stops: &[Stop]) -> Result<Vec<Turn>, Fault> {
+    let mut best: Result<(f64, Vec<Turn>), Fault> = Err(Fault { stop: 0, what: ASKEW });
+    // whichever way round the first wheel, the line comes back to it in that way
+    for way in [0, 1] {
+        let placed = stops[0].placed()[way];
+        let first = match stops[0] {
+            Stop::Wheel { centre, radius, .. } => {
+                Stop::Wheel { centre, axis: placed.axis, radius, side: Side::About }
+            }
+            point => point,
+        };
+        let round: Vec<Stop> =
+            std::iter::once(first).chain(stops[1..].iter().copied()).chain([first]).collect();
+        let mut turns = match lay(&round) {
+            Ok(turns) => turns,
+            Err(Fault { stop, what }) => {
+                if best.as_ref().is_err_and(|fault| fault.what == ASKEW) {
+                    best = Err(Fault { stop: stop % stops.len(), what });
+                }
+                continue;
+            }
+        };
+        let Some(last) = turns.pop() else { continue };
+        let at = [last.at[0], turns[0].at[1]];
+        let Some(wrap) = stops[0].wraps(way, [&at[0], &at[1]]) else { continue };
+        turns[0] = Turn { at, axis: placed.axis, wrap };
+        let radius = |k: usize| match stops[k] {
+            Stop::Wheel { radius, .. } => radius,
+            Stop::Point(_) => 0.0,
+        };
+        let length: f64 = (0..turns.len())
+            .map(|k| {
+                let next = &turns[(k + 1) % turns.len()];
+                radius(k) * turns[k].wrap + size(&minus(&next.at[0], &turns[k].at[1]))
+            })
+            .sum();
+        if best.as_ref().map_or(true, |(least, _)| length < *least) {
+            best = Ok((length, turns));
+        }
+    }
+    best.map(|(_, turns)| turns)
+}
+
+/// What is wrong with a wheel that the line doesn't pass as asked.
+const ASKEW: &str = "a taut cable wouldn't touch it on that side, or would wrap all round it";
+
 /// Why no line reaches stop `k + 1`.
 fn fault(stops: &[Stop], tangents: &[Tangents], k: usize) -> Fault {
     if tangents[k].iter().flatten().all(Option::is_none) {
@@ -213,6 +263,5 @@ fn fault(stops: &[Stop], tangents: &[Tangents], k: usize) -> Fault {
         let stop = if wheel(k) { k } else { k + 1 };
         return Fault { stop, what: "the stop beside it in the route lies within the wheel" };
     }
-    let what = "a taut cable wouldn't touch it on that side, or would wrap all round it";
-    Fault { stop: k, what }
+    Fault { stop: k, what: ASKEW }
 }

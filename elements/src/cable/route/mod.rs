@@ -1,13 +1,14 @@
 //! Cables with a route: over wheels and through rings, from end to end.
 //!
 //! Such a cable is several spans, which are cables of their own whose inner ends feed, and a [`Passage`] between each two
-//! of them, whose equations the constraint of the wheel or ring makes.
+//! of them, whose equations the constraint of the wheel or ring makes. Without ends it is a closed belt: the last span goes
+//! on in the first.
 
 mod geometry;
 mod part;
 
 use geometry::Fault;
-pub use geometry::{Side, Stop, lay};
+pub use geometry::{Side, Stop, lay, lay_closed};
 
 use super::spec::CableSpec;
 use part::RoutePart;
@@ -94,12 +95,22 @@ impl CableSpec {
             return Err(BuildError::at("route", message));
         }
         let ends = |w: Option<&Waypoint>| matches!(w, Some(Waypoint::End(_) | Waypoint::Wound(_)));
+        if self.closed() {
+            let fed = b.feeding(&self.name).iter().any(Option::is_some);
+            return match fed {
+                true => {
+                    let message = "a closed belt has no end at which cable could be fed: leave the winch out";
+                    Err(BuildError::at("route", message))
+                }
+                false => Ok(()),
+            };
+        }
         let inner = self.route.len().max(2) - 1;
         let wound = self.route.iter().any(|w| matches!(w, Waypoint::Wound(_)));
         let least = if wound { 2 } else { 3 };
         if !ends(self.route.first()) || !ends(self.route.last()) || self.route.len() < least {
             let message = "a route begins and ends with `end` or `wound`, like [{ end = [0, 0, 0] }, { over = \"wheel\" }, \
-                           { end = \"load\" }]: a closed belt isn't known";
+                           { end = \"load\" }]; a closed belt has none, like [{ round = \"driver\" }, { round = \"driven\" }]";
             return Err(BuildError::at("route", message));
         }
         if wound && self.speed != 0.0 {
@@ -199,6 +210,11 @@ impl CableSpec {
         self.route.iter().zip(guided).enumerate().map(one).collect()
     }
 
+    /// Whether the route has no ends: it closes on itself.
+    fn closed(&self) -> bool {
+        self.route.len() > 1 && !self.route.iter().any(|w| matches!(w, Waypoint::End(_) | Waypoint::Wound(_)))
+    }
+
     /// Makes a cable with a route: its spans, and what is between them.
     pub(super) fn build_route(&self, b: &mut Builder) -> Result<(), BuildError> {
         self.check_route(b)?;
@@ -206,14 +222,18 @@ impl CableSpec {
         finite("speed", &[self.speed])?;
         let guided = self.guided(b)?;
         let stops = self.stops(b, &guided)?;
-        let turns = lay(&stops).map_err(|Fault { stop, what }| {
+        let closed = self.closed();
+        let laid = if closed { lay_closed(&stops) } else { lay(&stops) };
+        let turns = laid.map_err(|Fault { stop, what }| {
             let message = match self.route[stop].guide() {
                 Some(name) => format!("the cable can't run as its route says at `{name}`: {what}"),
                 None => what.to_string(),
             };
             BuildError::at(format!("route[{stop}]"), message)
         })?;
-        let spans: Vec<[V3<f64>; 2]> = turns.windows(2).map(|w| [w[0].at[1], w[1].at[0]]).collect();
+        let number = turns.len() - usize::from(!closed);
+        let next = |k: usize| (k + 1) % turns.len();
+        let spans: Vec<[V3<f64>; 2]> = (0..number).map(|k| [turns[k].at[1], turns[next(k)].at[0]]).collect();
         let way = |s: &[V3<f64>; 2]| -> V3<f64> { std::array::from_fn(|i| s[1][i] - s[0][i]) };
         let lengths: Vec<f64> = spans.iter().map(|s| dot(&way(s), &way(s)).sqrt()).collect();
         let radius = |k: usize| guided[k].as_ref().map_or(0.0, |g| g.guide.radius);
@@ -230,7 +250,7 @@ impl CableSpec {
                 b.feed(drum, &end, Feed::default()).map_err(|e| e.of(format!("route[{k}]")))?;
             }
         }
-        b.route(&self.name, &names)?;
+        b.route(&self.name, &names, closed)?;
         for ((name, span), length) in names.iter().zip(&spans).zip(&lengths) {
             let along = way(span).map(|x| self.speed * x / length);
             let span = CableSpec {
@@ -278,12 +298,13 @@ impl CableSpec {
                 });
                 continue;
             }
-            let (Some(end), Some(start)) = (parts[k - 1].boundary(1), parts[k].boundary(0)) else {
+            let before = (k + number - 1) % number;
+            let (Some(end), Some(start)) = (parts[before].boundary(1), parts[k].boundary(0)) else {
                 return at(k, "no material flows there");
             };
             let passage = Passage {
                 guide: guide.name.clone(),
-                spans: [names[k - 1].clone(), names[k].clone()],
+                spans: [names[before].clone(), names[k].clone()],
                 boundaries: [end, start],
                 marker: *marker,
                 axis: turn.axis,
@@ -295,7 +316,8 @@ impl CableSpec {
             passages.push(passage);
         }
         // running along the route, it stands still in space at the wheels
-        let inner = (1..names.len()).flat_map(|k| [(k - 1, "end"), (k, "start")]);
+        let joints = usize::from(!closed)..number;
+        let inner = joints.flat_map(|k| [((k + number - 1) % number, "end"), (k, "start")]);
         for (k, end) in inner.filter(|_| self.speed != 0.0) {
             b.start_feeding(&format!("{}.{end}", names[k]).as_str().into(), -self.speed / stretch)?;
         }
@@ -309,6 +331,6 @@ impl CableSpec {
             let name = format!("{}.{place}", self.name);
             b.constraint(Joint::new(name, b.nodes(), [to, own], Equation::coincide())?)?;
         }
-        b.part(Arc::new(RoutePart::new(&self.name, parts, passages)))
+        b.part(Arc::new(RoutePart::new(&self.name, parts, passages, closed)))
     }
 }

@@ -10,17 +10,22 @@ pub(super) struct RoutePart {
     spans: Vec<Arc<dyn Part>>,
     /// Unstretched length and mass of what lies between the spans at the start.
     between: [f64; 2],
+    /// Whether the last span goes on in the first.
+    closed: bool,
 }
 
 impl RoutePart {
-    pub fn new(name: &str, spans: Vec<Arc<dyn Part>>, passages: Vec<Passage>) -> Self {
+    pub fn new(name: &str, spans: Vec<Arc<dyn Part>>, passages: Vec<Passage>, closed: bool) -> Self {
         let length = passages.iter().map(|p| p.stored).sum();
         let mass = passages.iter().map(|p| p.stored * p.strand.mass).sum();
-        RoutePart { name: name.into(), spans, between: [length, mass] }
+        RoutePart { name: name.into(), spans, between: [length, mass], closed }
     }
 
     fn places(&self) -> String {
         let (name, last) = (&self.name, self.spans.len());
+        if self.closed {
+            return format!("no ends, being closed; its spans have, `{name}.1.start` to `{name}.{last}.end`");
+        }
         format!(
             "`{name}.start`, `{name}.end`, and those of its spans, `{name}.1.start` to `{name}.{last}.end`"
         )
@@ -40,8 +45,8 @@ impl Part for RoutePart {
             return Err(format!("material flows past places of `{}`; it has {}", self.name, self.places()));
         };
         let (span, place) = match (place.as_str(), place.split_once('.')) {
-            ("start", _) => (0, "start"),
-            ("end", _) => (last, "end"),
+            ("start", _) if !self.closed => (0, "start"),
+            ("end", _) if !self.closed => (last, "end"),
             (_, Some((number, place))) => match number.parse::<usize>() {
                 Ok(k) if (1..=last + 1).contains(&k) => (k - 1, place),
                 _ => return Err(format!("it has no span {number}; it has {}", self.places())),
