@@ -112,7 +112,8 @@ class Parts:
         route: What it runs over and through, from end to end, instead of `points`: `[{ end = "drum" }, { over =
             "head" }, { under = "block" }, { end = "jib.anchor" }]`. Sheaves and rings are constraints of their own.
             The cable is then several spans, `name.1`, `name.2`, …, each with `elements` elements, and runs freely
-            from one to the next; its shape at the start is the shortest taut line.
+            from one to the next; its shape at the start is the shortest taut line. A route without ends is that of a
+            closed belt: `[{ round = "driver" }, { round = "driven" }]`.
         speed: Speed with which a cable with a `route` runs along it at the start, from its start to its end [m/s].
         length: Unstretched length [m]. Default: the length of the path. Another length is strained uniformly to fit
             the path.
