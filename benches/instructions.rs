@@ -55,6 +55,7 @@ fn problem(name: &str, elements: usize) -> Option<Pendulum> {
     Some(match name {
         "dry" => dry,
         "damped" => dry.damped(),
+        "twisted" => dry.twisted(),
         "water" => dry.in_water(),
         _ => return None,
     })
