@@ -1,9 +1,10 @@
 //! Cables with torsion that feed at a winch: twist travels with the material.
 
 use super::{case, number, run, scene};
-use ropewalk::{Options, Simulation};
+use ropewalk::{Options, RunOptions, Simulation};
 use ropewalk_core::integrator::{Scheme, Stepping};
 use ropewalk_core::{Observer, Quantity, dot};
+use ropewalk_scene::{Format, SceneFile};
 use std::f64::consts::TAU;
 
 const FED: &str = include_str!("fed.toml");
@@ -133,8 +134,12 @@ fn a_cable_too_slack_for_its_torque_is_told_in_statics() {
     let told = |let_out: f64| {
         let text = include_str!("slack.toml")
             .replace("duration = 15\noutput = 0.5", "analysis = \"statics\"\n[statics]\nsteps = 20");
-        let h = run(&text, &["tension=1 N".into(), format!("out={let_out} m/s")]);
-        h.summary().events.iter().map(|e| (e.name.clone(), e.t)).collect::<Vec<_>>()
+        let set = ["tension=1 N".into(), format!("out={let_out} m/s")];
+        let file = SceneFile::parse(&text, "slack", Format::Toml, &set).unwrap_or_else(|e| panic!("{e}"));
+        let folder = tempfile::tempdir().expect("a folder");
+        let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
+        let done = ropewalk::run(&file, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+        done.summary.events.iter().map(|e| (e.name.clone(), e.t)).collect::<Vec<_>>()
     };
     // 1 N is a strain of 1e-3, 20 mm less what it is laid with
     let all = 20.0 * (1.0 - limit) / 1e3;

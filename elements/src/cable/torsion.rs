@@ -1,7 +1,7 @@
 //! Torsion: the elastic twist of a cable element, the inertia of its sections about the tangent, and the damping of twist.
 
 use super::twisting::{
-    Blocks, COORDINATES, SECOND, Twisting, VELOCITIES, on_dofs, set, spread, three, times,
+    Blocks, COORDINATES, SECOND, Twisting, VELOCITIES, add_outer, nought, on_dofs, set, spread, three, times,
 };
 use ropewalk_core::rotation::cross;
 use ropewalk_core::{Batch, Element, Energy, Local, Power, Real, Share, V3, Weights};
@@ -81,8 +81,12 @@ impl Element<COORDINATES, VELOCITIES> for Torsion {
         out.r[SECOND + 6] += own.fma(b, other * a);
         if TANGENT {
             // of slopes and chord, of which blocks on the diagonal and above it are looked at
-            let mut h: Blocks<R> =
-                std::array::from_fn(|i| std::array::from_fn(|j| by[i].map(|x| times(stiffness * x, &by[j]))));
+            let mut h: Blocks<R> = [[nought(); 3]; 3];
+            for i in 0..3 {
+                for j in i..3 {
+                    add_outer(&mut h[i][j], stiffness, &by[i], &by[j]);
+                }
+            }
             twisting.add_hessian(moment, moment, &mut h);
             let wq = R::of(w.q);
             set(&h, il, wq, &mut out.k);
