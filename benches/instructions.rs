@@ -3,6 +3,7 @@
 //! `cargo bench --bench instructions` counts and compares
 //! - a step of the same scene in this program and in one without water, drag and the like, which must be equal: what
 //!   a scene doesn't ask for costs nothing, not even where the program could do it;
+//! - an iteration of a cable with torsion with that of one without, of which it must not take more than 1.8;
 //! - the full Newton iteration with those in `benches/instructions.csv`, which must not be exceeded by more than 5 %.
 //!
 //! `cargo bench --bench instructions -- --record` writes that file anew.
@@ -28,6 +29,8 @@ const RECORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.
 const TOLERANCE: f64 = 0.05;
 /// How far equal programs may be apart: where memory lies makes a difference to the C library when it clears it.
 const EQUAL: f64 = 1e-4;
+/// Most instructions of an iteration with torsion, in those of one without.
+const TORSION: f64 = 1.8;
 /// Repetitions that are counted.
 const REPEATS: usize = 5;
 
@@ -55,6 +58,7 @@ fn problem(name: &str, elements: usize) -> Option<Pendulum> {
     Some(match name {
         "dry" => dry,
         "damped" => dry.damped(),
+        "twisted" => dry.twisted(),
         "water" => dry.in_water(),
         _ => return None,
     })
@@ -133,7 +137,7 @@ fn all(record: bool) -> Result<bool> {
     println!("\ninstructions per element, and against the record");
     let lanes: &[&str] = if Width::best() == Width::One { &["one"] } else { &["one", "four"] };
     for work in ["iteration", "step"] {
-        for scene in ["dry", "damped", "water"] {
+        for scene in ["dry", "damped", "twisted", "water"] {
             for elements in [64, 512] {
                 for width in lanes {
                     let case = format!("{work}-{scene}-{elements}-{width}");
@@ -151,6 +155,12 @@ fn all(record: bool) -> Result<bool> {
                 }
             }
         }
+    }
+    for width in lanes {
+        let of = |scene: &str| counts[&format!("iteration-{scene}-64-{width}")];
+        let times = of("twisted") / of("dry");
+        println!("  an iteration with torsion, {width} at a time, takes {times:.2} of one without");
+        fine &= times <= TORSION;
     }
     if record {
         let mut text = String::from("case,instructions per element\n");

@@ -157,7 +157,7 @@ impl Term for PointMass {
     }
     fn symmetric(&self) -> bool {
         // the inertia of what turns with a body isn't
-        let turns = matches!(self.held, Held::Beside { .. });
+        let turns = matches!(self.held, Held::Beside { .. } | Held::Lever { .. });
         let drags = self.density * self.drag_area > 0.0;
         let emerges = self.surface.is_some() && (drags || self.added_mass > 0.0);
         !turns && !emerges && self.sea.is_none() && (self.current.is_uniform() || !drags)
@@ -208,7 +208,7 @@ impl Term for PointMass {
             })
         });
         // the force stays in space while the body turns under it
-        let turning = motion.turning(&force);
+        let turning = motion.second(&force);
         out.add_block(0, motion.n, |i, j| {
             let turn = turning.filter(|_| i >= 3 && j >= 3).map_or(0.0, |t| t[i - 3][j - 3]);
             motion.carry(i, &by[j]) + w.q * turn

@@ -263,6 +263,11 @@ impl ForceSpec for PointForceSpec {
         let Some(node) = marker.on() else {
             return Err(BuildError::at("marker", "a follower force needs a marker on a cable"));
         };
+        if matches!(Held::new(b.nodes(), &marker, &label)?, Held::Lever { .. }) {
+            let message =
+                "a follower force acts on the axis of a cable, not on a lever: name a place on the cable";
+            return Err(BuildError::at("marker", message));
+        }
         let along = [follower.clone(), 0.0.into(), 0.0.into()];
         for ([along, ..], time) in apart(b, "follower", &along, &kind::FORCE, &self.time)? {
             let term = PointForce::follower(label.clone(), b.nodes(), node, along, time)?;

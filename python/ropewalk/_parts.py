@@ -95,6 +95,7 @@ class Parts:
         normal: Sequence[Number] | None = None,
         twist: Number | None = None,
         laid_twist: Number | None = None,
+        levers: Mapping[str, Any] | None = None,
     ) -> Part:
         """A cable, hose or tether with large displacements, stretch and bending, and torsion if its section has a
         torsional stiffness `gj`.
@@ -176,6 +177,8 @@ class Parts:
             matter.
         twist: Stress-free twist per length of a cable with torsion, added to that of `stress_free` [rad/m].
         laid_twist: Twist per length with which a cable with torsion is laid [rad/m].
+        levers: Points beside the axis of a cable with torsion, by name, that its sections carry along, such as the end of a
+            crank: `levers.crank = { at = "end", offset = [0, 0, "10 cm"] }` gives a marker `name.crank`.
         """
         return self._add("elements", "cable", {
             "name": name,
@@ -202,6 +205,7 @@ class Parts:
             "normal": normal,
             "twist": twist,
             "laid_twist": laid_twist,
+            "levers": levers,
         })
 
     def point_mass(

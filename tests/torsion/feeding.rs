@@ -1,9 +1,10 @@
 //! Cables with torsion that feed at a winch: twist travels with the material.
 
 use super::{case, number, run, scene};
-use ropewalk::{Options, Simulation};
+use ropewalk::{Options, RunOptions, Simulation};
 use ropewalk_core::integrator::{Scheme, Stepping};
 use ropewalk_core::{Observer, Quantity, dot};
+use ropewalk_scene::{Format, SceneFile};
 use std::f64::consts::TAU;
 
 const FED: &str = include_str!("fed.toml");
@@ -124,6 +125,55 @@ fn a_cable_too_slack_for_its_torque_is_told() {
     let exact = 20.0 * (1.0 - limit) / 1e3 / 2e-3;
     println!("{out:?} {exact}");
     assert!((out[0].1 - exact).abs() < 0.02 && out.len() == 1, "{out:?} {exact}");
+}
+
+/// In statics the same is told of the first equilibrium below the limit, and once.
+#[test]
+fn a_cable_too_slack_for_its_torque_is_told_in_statics() {
+    let limit = 0.25 - std::f64::consts::PI.powi(2) / 400.0;
+    let told = |let_out: f64| {
+        let text = include_str!("slack.toml")
+            .replace("duration = 15\noutput = 0.5", "analysis = \"statics\"\n[statics]\nsteps = 20");
+        let set = ["tension=1 N".into(), format!("out={let_out} m/s")];
+        let file = SceneFile::parse(&text, "slack", Format::Toml, &set).unwrap_or_else(|e| panic!("{e}"));
+        let folder = tempfile::tempdir().expect("a folder");
+        let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
+        let done = ropewalk::run(&file, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+        done.summary.events.iter().map(|e| (e.name.clone(), e.t)).collect::<Vec<_>>()
+    };
+    // 1 N is a strain of 1e-3, 20 mm less what it is laid with
+    let all = 20.0 * (1.0 - limit) / 1e3;
+    assert!(told(0.9 * all).is_empty());
+    let below = told(1.2 * all);
+    println!("{below:?}");
+    let [(text, t)] = below.as_slice() else { panic!("{below:?}") };
+    // of twenty steps to 1.2 times the way the 17th is the first beyond it
+    assert!(text.contains("`rope` may form a loop") && (t - 0.85).abs() < 1e-9, "{below:?}");
+}
+
+/// What comes with the wraps of a coil, and what a drum lets through, goes on from a checkpoint to the last bit.
+#[test]
+fn wraps_and_grips_go_on_from_a_checkpoint_to_the_last_bit() {
+    let through = include_str!("through.toml");
+    for (text, set) in
+        [(FED, vec!["wrap=2 m".to_string(), "n=2".into()]), (through, vec!["grip=0.05".into()])]
+    {
+        let scene = scene(text, &set);
+        let build = || scene.build().unwrap_or_else(|e| panic!("{e}"));
+        let mut one = Simulation::new(build(), &scene.solver, 4.0).unwrap_or_else(|e| panic!("{e}"));
+        one.advance(2.0, 0.5, &mut ()).unwrap_or_else(|e| panic!("{e}"));
+        let kept = one.checkpoint().unwrap_or_else(|e| panic!("{e}"));
+        let mut other =
+            Simulation::restore(build(), &scene.solver, 4.0, kept).unwrap_or_else(|e| panic!("{e:?}"));
+        let before = one.state.q.clone();
+        for s in [&mut one, &mut other] {
+            s.advance(4.0, 0.5, &mut ()).unwrap_or_else(|e| panic!("{e}"));
+        }
+        assert!(one.state.t >= 4.0 - 1e-9 && one.state.q != before);
+        assert_eq!(one.state.q, other.state.q);
+        assert_eq!(one.state.v, other.state.v);
+        assert_eq!(one.state.internal, other.state.internal);
+    }
 }
 
 /// A cable that is unwound over the end of its package: the section goes round once with each wrap, and the eyelet takes the twist

@@ -6,6 +6,7 @@ mod feeding;
 #[cfg(feature = "contact")]
 mod hockle;
 mod joints;
+mod levers;
 mod models;
 mod rope;
 mod sections;

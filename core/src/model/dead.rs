@@ -52,7 +52,7 @@ impl DeadLoad {
     pub fn at_marker(nodes: &[Node], marker: &Marker, force: V3<f64>) -> Result<Vec<DeadEntry>, BuildError> {
         match Held::new(nodes, marker, "dead load")? {
             Held::Ground(_) => Ok(Vec::new()),
-            Held::Beside { .. } | Held::Between { .. } => {
+            Held::Beside { .. } | Held::Lever { .. } | Held::Between { .. } => {
                 Err(BuildError::new("a dead load on a body beside its node turns it, which isn't constant"))
             }
             Held::Moves { q, v } => Ok((0..3)

@@ -39,6 +39,10 @@ pub trait Event: Send + Sync {
     fn report(&self, _model: &Model, _state: &State) -> String {
         self.name()
     }
+    /// Whether it only tells and changes nothing: then it is told of equilibria along a path of loads too.
+    fn only_tells(&self) -> bool {
+        false
+    }
     /// The part whose mesh it changes, and at which end, for the report.
     fn remeshes(&self) -> Option<(&str, usize)> {
         None

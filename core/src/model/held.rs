@@ -3,6 +3,7 @@
 use crate::algebra::lane::V3;
 use crate::algebra::rotation::{M3, product, skew, times, transposed_times};
 use crate::error::{BuildError, need};
+use crate::model::lever::Lever;
 use crate::model::marker::{Marker, frame};
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::state::At;
@@ -29,6 +30,15 @@ pub enum Held {
         /// Index of its first velocity.
         v: usize,
         /// Where it is, in the body's axes [m].
+        arm: V3<f64>,
+    },
+    /// On the section of a cable with torsion, beside its axis.
+    Lever {
+        /// Index of the first coordinate of its node.
+        q: usize,
+        /// Index of its first velocity.
+        v: usize,
+        /// Where it is, in the axes of the section [m].
         arm: V3<f64>,
     },
     /// Between two nodes of a cable: a sum of the vectors `r`, `r'` of both, each with its weight.
@@ -62,6 +72,8 @@ pub struct Motion {
     pub v_by_q: [V3<f64>; MOST],
     /// Rotation matrix and arm, on a body.
     body: Option<(M3, V3<f64>)>,
+    /// Beside the axis of a cable.
+    lever: Option<Lever>,
 }
 
 impl Held {
@@ -77,10 +89,11 @@ impl Held {
                 need(!matches!(n.kind, NodeKind::Scalars(_)), || {
                     format!("{what}: node {} has no position", node.0)
                 })?;
-                Ok(if n.kind == NodeKind::Frame && point != [0.0; 3] {
-                    Held::Beside { q: n.q, v: n.v, arm: point }
-                } else {
-                    Held::Moves { q: n.q, v: n.v }
+                let (q, v, arm) = (n.q, n.v, point);
+                Ok(match n.kind {
+                    NodeKind::Frame if point != [0.0; 3] => Held::Beside { q, v, arm },
+                    NodeKind::Twist if point != [0.0; 3] => Held::Lever { q, v, arm },
+                    _ => Held::Moves { q, v },
                 })
             }
         }
@@ -92,6 +105,7 @@ impl Held {
             Held::Ground(x) => x,
             Held::Moves { q, .. } => three(at.q, q),
             Held::Beside { q, arm, .. } => sum(three(at.q, q), times(&frame(&at.q[q..]), &arm)),
+            Held::Lever { q, arm, .. } => Lever::new(&at.q[q..], &arm).x(),
             Held::Between { q, weight, .. } => blend(at.q, &q, &weight),
         }
     }
@@ -105,6 +119,9 @@ impl Held {
                 let turning = cross(&three(at.v, v + 3), &arm);
                 sum(three(at.v, v), times(&frame(&at.q[q..]), &turning))
             }
+            Held::Lever { q, v, arm } => {
+                sum(three(at.v, v), Lever::new(&at.q[q..], &arm).velocity(&at.v[v..]).0)
+            }
             Held::Between { v, weight, .. } => blend(at.v, &v, &weight),
         }
     }
@@ -113,9 +130,18 @@ impl Held {
         let none = [[0.0; 3]; MOST];
         let a = match *self {
             Held::Ground(_) => [0.0; 3],
-            Held::Moves { v, .. } | Held::Beside { v, .. } => three(at.a, v),
+            Held::Moves { v, .. } | Held::Beside { v, .. } | Held::Lever { v, .. } => three(at.a, v),
             Held::Between { v, weight, .. } => blend(at.a, &v, &weight),
         };
+        if let Held::Lever { q, v, arm } = *self {
+            let (swing, by) = Lever::new(&at.q[q..], &arm).acceleration(&at.v[v..], &at.a[v..]);
+            let [by_v, by_q] = by.map(|by| {
+                let mut all = none;
+                all[3..7].copy_from_slice(&by);
+                all
+            });
+            return Acceleration { a: sum(a, swing), by_v, by_q };
+        }
         let Held::Beside { q, v, arm } = *self else { return Acceleration { a, by_v: none, by_q: none } };
         let (r, omega) = (frame(&at.q[q..]), three(at.v, v + 3));
         let turning = cross(&omega, &arm);
@@ -135,6 +161,7 @@ impl Held {
             Held::Ground(_) => 0,
             Held::Moves { .. } => 3,
             Held::Beside { .. } => 6,
+            Held::Lever { .. } => 7,
             Held::Between { .. } => 12,
         }
     }
@@ -143,7 +170,7 @@ impl Held {
     pub fn dof(&self, k: usize) -> usize {
         match *self {
             Held::Ground(_) => usize::MAX,
-            Held::Moves { v, .. } | Held::Beside { v, .. } => v + k,
+            Held::Moves { v, .. } | Held::Beside { v, .. } | Held::Lever { v, .. } => v + k,
             Held::Between { v, .. } => v[k / 3] + k % 3,
         }
     }
@@ -162,6 +189,7 @@ impl Held {
             by_q: none,
             v_by_q: none,
             body: None,
+            lever: None,
         };
         for k in 0..m.n {
             m.dof[k] = self.dof(k);
@@ -181,6 +209,13 @@ impl Held {
                 }
             }
             m.body = Some((r, arm));
+        }
+        if let Held::Lever { q, v, arm } = *self {
+            let lever = Lever::new(&at.q[q..], &arm);
+            // of slope and spin the unit vectors on the diagonal are none
+            m.by_q[3..7].copy_from_slice(&lever.by());
+            m.v_by_q[3..7].copy_from_slice(&lever.velocity(&at.v[v..]).1);
+            m.lever = Some(lever);
         }
         m
     }
@@ -207,6 +242,16 @@ impl Motion {
     /// the first of the three rotations. `None` where the way back is constant.
     pub fn turning(&self, f: &V3<f64>) -> Option<M3> {
         self.body.map(|(r, arm)| product(&skew(&arm), &skew(&transposed_times(&r, f))))
+    }
+    /// The same of what turns in whichever way, with the spin of a section as a fourth row and column: of a lever on a cable
+    /// the symmetric second derivative.
+    pub fn second(&self, f: &V3<f64>) -> Option<[[f64; 4]; 4]> {
+        let padded = |m: M3| {
+            let mut all = [[0.0; 4]; 4];
+            (0..3).for_each(|i| all[i][..3].copy_from_slice(&m[i]));
+            all
+        };
+        self.lever.map(|lever| lever.second(f)).or_else(|| self.turning(f).map(padded))
     }
 }
 
@@ -251,7 +296,7 @@ pub fn pull(ends: &[Held; 2], at: &At<'_>, pull: &Pull, clique: usize, out: &mut
             by[e * first + k] = std::array::from_fn(|i| -sign * (w.q * (by_x[i] + turn[i]) + w.v * rate[i]));
         }
     }
-    let turning = [m[0].turning(&pull.f), m[1].turning(&pull.f)];
+    let turning = [m[0].second(&pull.f), m[1].second(&pull.f)];
     out.add_block(clique, first + m[1].n, |i, j| {
         let (ei, ki) = if i < first { (0, i) } else { (1, i - first) };
         let mut k = signs[ei] * m[ei].carry(ki, &by[j]);
@@ -259,7 +304,7 @@ pub fn pull(ends: &[Held; 2], at: &At<'_>, pull: &Pull, clique: usize, out: &mut
             && ki >= 3
         {
             let kj = if ei == 0 { j } else { j.wrapping_sub(first) };
-            if (3..6).contains(&kj) && (ei == 1 || j < first) {
+            if (3..7).contains(&kj) && (ei == 1 || j < first) {
                 k += w.q * signs[ei] * t[ki - 3][kj - 3];
             }
         }

@@ -14,6 +14,7 @@ pub mod feed;
 pub mod held;
 pub mod input;
 pub mod joint;
+mod lever;
 pub mod limit;
 pub mod line;
 pub mod marker;

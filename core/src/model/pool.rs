@@ -188,6 +188,30 @@ impl<const M: usize> Places<M> {
     #[inline(always)]
     fn gather<'a, R: Real>(x: &[f64], of: impl Fn(usize) -> &'a Self) -> [R; M] {
         let mut out = [R::zero(); M];
+        if let Places::Two(..) = of(0)
+            && (0..R::LANES).all(|l| matches!(of(l), Places::Two(..)))
+        {
+            // two runs, each of them several at a time
+            let half = M / 2;
+            for second in [false, true] {
+                let mut rows: [&[f64]; MOST_LANES] = [&[]; MOST_LANES];
+                for l in 0..R::LANES {
+                    if let Places::Two(one, two) = of(l) {
+                        let first = *(if second { two } else { one }) as usize;
+                        rows[l] = &x[first..first + half];
+                    }
+                }
+                let (from, whole) = (if second { half } else { 0 }, half / 4 * 4);
+                for j in (0..whole).step_by(4) {
+                    let four = R::from_rows(|l| [rows[l][j], rows[l][j + 1], rows[l][j + 2], rows[l][j + 3]]);
+                    out[from + j..from + j + 4].copy_from_slice(&four);
+                }
+                for j in whole..half {
+                    out[from + j] = R::each(|l| rows[l][j]);
+                }
+            }
+            return out;
+        }
         let mut rows: [&[f64; M]; MOST_LANES] = [&[0.0; M]; MOST_LANES];
         let mut neighbours = true;
         for l in 0..R::LANES {

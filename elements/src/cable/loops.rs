@@ -79,6 +79,9 @@ impl Event for LoopLimit {
             None => self.name(),
         }
     }
+    fn only_tells(&self) -> bool {
+        true
+    }
     fn act(&self, _: &Model, _: &mut State) -> Action {
         Action::Continue
     }

@@ -19,6 +19,7 @@ mod l3;
 mod l4;
 mod law;
 mod layout;
+mod lever;
 pub mod longitudinal;
 mod loops;
 pub(crate) mod mesh;
@@ -56,6 +57,7 @@ pub use l2::L2;
 pub use l3::L3;
 pub use l4::L4;
 pub use law::{AxialForce, BendingMoment};
+pub use lever::LeverSpec;
 pub use mesh::{Grading, MeshSpec};
 pub use model::{
     CableModel, ChosenModels, Integration, LongitudinalModel, Models, Sink, TransverseModel, WithModels,

@@ -50,6 +50,8 @@ pub struct CablePart {
     pub(crate) offset: (f64, f64),
     /// Its torsion, if it has any.
     pub(crate) twisted: Option<Twisted>,
+    /// Points that its sections carry along, by name.
+    pub(crate) levers: Vec<(String, Marker)>,
 }
 
 impl CablePart {
@@ -283,7 +285,9 @@ impl CablePart {
     }
 
     fn places(&self) -> String {
-        format!("`{0}.start`, `{0}.end`, or `{0}@s` with s from 0 to {1} m", self.name, self.length())
+        let levers: String =
+            self.levers.iter().map(|(name, _)| format!("`{}.{name}`, ", self.name)).collect();
+        format!("`{0}.start`, `{0}.end`, {levers}or `{0}@s` with s from 0 to {1} m", self.name, self.length())
     }
 }
 
@@ -312,7 +316,10 @@ impl Part for CablePart {
             Spot::Named(n) if n == "start" => Ok(Marker::node(self.nodes[0])),
             Spot::Named(n) if n == "end" => Ok(Marker::node(self.nodes[end])),
             Spot::Named(n) if n.is_empty() => Err(format!("say where on the cable: {}", self.places())),
-            Spot::Named(n) => Err(format!("a cable has no place `{n}`; it has {}", self.places())),
+            Spot::Named(n) => match self.levers.iter().find(|(name, _)| name == n) {
+                Some((_, marker)) => Ok(*marker),
+                None => Err(format!("a cable has no place `{n}`; it has {}", self.places())),
+            },
             Spot::Along(_) | Spot::Share(_) if self.line.is_some() => Err(format!(
                 "material flows past this place of `{}`: hold on to `{0}.start` or `{0}.end`",
                 self.name

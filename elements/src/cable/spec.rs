@@ -4,6 +4,7 @@ use super::damping::{push_axial_damping, push_bending_damping};
 use super::flow::Line;
 use super::flow::push::{self, Piece};
 use super::layout::Layout;
+use super::lever::LeverSpec;
 use super::loops::LoopLimit;
 use super::mesh::{MeshSpec, counted, even, pinned};
 use super::model::{CableModel, Integration, LongitudinalModel, Sink, TransverseModel, legal, push_cable};
@@ -20,6 +21,7 @@ use ropewalk_core::{
 use ropewalk_scene::{Builder, ElementSpec, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Bending stiffness of the end elements of a cable that has none, in parts of their weight times the square of their length.
@@ -139,6 +141,10 @@ pub struct CableSpec {
     /// Twist per length with which a cable with torsion is laid [rad/m].
     #[serde(default, deserialize_with = "quantity::curvature", skip_serializing_if = "is_nought")]
     pub laid_twist: f64,
+    /// Points beside the axis of a cable with torsion, by name, that its sections carry along, such as the end of a crank:
+    /// `levers.crank = { at = "end", offset = [0, 0, "10 cm"] }` gives a marker `name.crank`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub levers: BTreeMap<String, LeverSpec>,
 }
 
 register_spec!(Element, "cable", CableSpec);
@@ -179,6 +185,7 @@ impl CableSpec {
             normal: None,
             twist: 0.0,
             laid_twist: 0.0,
+            levers: BTreeMap::new(),
         }
     }
     /// With other stiffness models.
@@ -494,6 +501,7 @@ impl ElementSpec for CableSpec {
             return Err(BuildError::at(field, message));
         }
         let mut pins = b.pins(&self.name, length);
+        pins.extend(self.pins_of_levers(length)?);
         let concentrated = pins.clone();
         pins.extend(path.stops().map(|s| s / stretch));
         pins.sort_by(f64::total_cmp);
@@ -577,6 +585,8 @@ impl ElementSpec for CableSpec {
                            stiffness, `gj`, or leave `wrap` of its winch out";
             return Err(BuildError::at("section.gj", message));
         }
+        let levers =
+            self.markers_of_levers(&nodes, &mesh, laid.as_deref(), feeding.map(|feed| feed.is_some()))?;
         let line = if feeds {
             Some(self.line(b, model, length, &mesh, &nodes, feeding, rates, &layout)?)
         } else {
@@ -660,6 +670,7 @@ impl ElementSpec for CableSpec {
             model,
             rest: (self.stress_free == StressFree::AsLaid).then_some(shapes),
             twisted,
+            levers,
             offset: (self.strain, self.curvature),
         }))
     }

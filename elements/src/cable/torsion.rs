@@ -1,6 +1,8 @@
 //! Torsion: the elastic twist of a cable element, the inertia of its sections about the tangent, and the damping of twist.
 
-use super::twisting::{COORDINATES, SECOND, Twisting, VELOCITIES, on_dofs, spread, three, times};
+use super::twisting::{
+    Blocks, COORDINATES, SECOND, Twisting, VELOCITIES, add_outer, nought, on_dofs, set, spread, three, times,
+};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::{Batch, Element, Energy, Local, Power, Real, Share, V3, Weights};
 
@@ -42,6 +44,7 @@ impl Torsion {
 
 impl Element<COORDINATES, VELOCITIES> for Torsion {
     type Lanes<R: Real> = TorsionParams<R>;
+    const SETS: bool = true;
 
     fn label(&self) -> String {
         "torsion".into()
@@ -67,25 +70,33 @@ impl Element<COORDINATES, VELOCITIES> for Torsion {
         let stiffness = p.gj * il;
         let moment = stiffness * (twisting.twist - p.twist0);
         let one = R::of(1.0);
-        let g = on_dofs(&twisting.gradient(one, one), il);
+        let by = twisting.gradient(one, one);
+        let g = on_dofs(&by, il);
         for i in 0..VELOCITIES {
-            out.r[i] = moment.fma(g[i], out.r[i]);
+            out.r[i] = moment * g[i];
         }
         let [own, other] = inertia(p.rho_j * p.l);
         let (a, b) = (x.a[6], x.a[SECOND + 6]);
         out.r[6] += own.fma(a, other * b);
         out.r[SECOND + 6] += own.fma(b, other * a);
         if TANGENT {
-            let wq = R::of(w.q);
-            for i in 0..VELOCITIES {
-                let s = wq * stiffness * g[i];
-                for j in 0..VELOCITIES {
-                    out.k[i][j] = s.fma(g[j], out.k[i][j]);
+            // of slopes and chord, of which blocks on the diagonal and above it are looked at
+            let mut h: Blocks<R> = [[nought(); 3]; 3];
+            for i in 0..3 {
+                for j in i..3 {
+                    add_outer(&mut h[i][j], stiffness, &by[i], &by[j]);
                 }
             }
-            let mut h = [[[[R::zero(); 3]; 3]; 3]; 3];
-            twisting.add_hessian(one, one, &mut h);
-            spread(&h, il, wq * moment, &mut out.k);
+            twisting.add_hessian(moment, moment, &mut h);
+            let wq = R::of(w.q);
+            set(&h, il, wq, &mut out.k);
+            // what both angles have to do with it
+            let s = wq * stiffness;
+            for i in 0..VELOCITIES {
+                let x = s * g[i];
+                (out.k[6][i], out.k[SECOND + 6][i]) = (-x, x);
+                (out.k[i][6], out.k[i][SECOND + 6]) = (-x, x);
+            }
             let wa = R::of(w.a);
             for (i, j, m) in [(6, 6, own), (13, 13, own), (6, 13, other), (13, 6, other)] {
                 out.k[i][j] += wa * m;

@@ -190,54 +190,42 @@ impl<R: Real> Twisting<R> {
         let (mut first, mut last, mut mixed) = (out[0][0], out[2][2], out[0][2]);
         self.holonomy.add_hessian(x, [&mut first, &mut last], &mut mixed);
         (out[0][0], out[2][2], out[0][2]) = (first, last, mixed);
-        let ([t1, chord, t2], ia, one) = (&self.e, self.ia, R::of(1.0));
-        let v = [cross(t2, chord), cross(t1, t2), cross(chord, t1)];
-        let s = [plus(chord, one, t2), plus(t1, one, t2), plus(chord, one, t1)];
-        let (four, vi) = (R::of(4.0) * ia * y, self.v * ia);
+        let ([t1, chord, t2], one) = (&self.e, R::of(1.0));
+        let (ia, vi) = (self.ia * y, self.v * self.ia);
+        let four = R::of(4.0) * ia;
+        // `a` has these sums for derivatives, of which only what is normal to each direction counts
+        let sums = [plus(chord, one, t2), plus(t1, one, t2), plus(chord, one, t1)];
+        let mut s = sums;
         for i in 0..3 {
-            for j in i..3 {
-                let mut f = nought();
-                add_outer(&mut f, -ia, &v[i], &s[j]);
-                add_outer(&mut f, -ia, &s[i], &v[j]);
-                add_outer(&mut f, R::of(2.0) * vi * ia, &s[i], &s[j]);
-                match (i, j) {
-                    (0, 1) => add_skew(&mut f, one, t2),
-                    (0, 2) => add_skew(&mut f, -one, chord),
-                    (1, 2) => add_skew(&mut f, one, t1),
-                    _ => {}
-                }
-                if i != j {
-                    add_unit(&mut f, -vi);
-                }
-                project(&mut f, &self.e[i], &self.e[j]);
-                let w = four * self.inverse[i] * self.inverse[j];
-                for r in 0..3 {
-                    for c in 0..3 {
-                        out[i][j][r][c] = w.fma(f[r][c], out[i][j][r][c]);
-                    }
-                }
-            }
-            let (e, w) = (&self.e[i], -y * self.inverse[i] * self.inverse[i]);
-            let along = dot(e, &self.by[i]);
-            add_unit(&mut out[i][i], w * along);
-            add_outer(&mut out[i][i], -w * along, e, e);
-            add_outer(&mut out[i][i], w, &self.across[i], e);
-            add_outer(&mut out[i][i], w, e, &self.across[i]);
+            s[i] = plus(&sums[i], -dot(&sums[i], &self.e[i]), &self.e[i]);
         }
-    }
-}
-
-/// `P_a F P_b` with `P_a = I - a aᵀ`.
-#[inline(always)]
-fn project<R: Real>(f: &mut M3<R>, a: &V3<R>, b: &V3<R>) {
-    for row in f.iter_mut() {
-        let along = dot(row, b);
-        *row = plus(row, -along, b);
-    }
-    for c in 0..3 {
-        let along = a[0] * f[0][c] + a[1] * f[1][c] + a[2] * f[2][c];
-        for r in 0..3 {
-            f[r][c] -= along * a[r];
+        for (i, j, k) in [(0, 1, 2), (0, 2, 1), (1, 2, 0)] {
+            let (a, b, w) = (&self.e[i], &self.e[j], self.inverse[i] * self.inverse[j]);
+            let f = &mut out[i][j];
+            add_outer(f, -(ia * w), &self.across[i], &s[j]);
+            add_outer(f, -(ia * w), &s[i], &self.across[j]);
+            // P_a ([c]x - V/a I) P_b, by two outer products
+            let (sign, w) = (if k == 1 { -one } else { one }, w * four);
+            let (c, d) = (&self.e[k], vi * w);
+            let turned = sign * w;
+            add_skew(f, turned, c);
+            add_unit(f, -d);
+            let (left, right) = (cross(a, c), cross(c, b));
+            let right = plus(&times(turned, &right), -d, b);
+            let both = dot(a, &right);
+            let right = plus(&right, -both, a);
+            add_outer(f, -one, a, &plus(&times(turned, &left), -d, a));
+            add_outer(f, -one, &right, b);
+        }
+        for i in 0..3 {
+            let (e, w) = (&self.e[i], self.inverse[i] * self.inverse[i]);
+            let f = &mut out[i][i];
+            let along = y * w * dot(&self.by[i], e);
+            add_unit(f, -along);
+            add_outer(f, along, e, e);
+            let side = plus(&times(ia * w, &s[i]), y * w, e);
+            add_outer(f, -one, &self.across[i], &side);
+            add_outer(f, -one, &side, &self.across[i]);
         }
     }
 }
@@ -254,13 +242,13 @@ pub(super) fn on_dofs<R: Real>(g: &[V3<R>; 3], il: R) -> [R; VELOCITIES] {
     out
 }
 
-/// Where the numbers that belong to both slopes and `Δ` stand among the increments, with their shares.
+/// Where the numbers that belong to both slopes and `Δ` stand among the increments, and whether they count less.
 #[inline(always)]
-fn places<R: Real>(block: usize, il: R) -> [(usize, R); 2] {
+fn places(block: usize) -> &'static [(usize, bool)] {
     match block {
-        0 => [(3, R::of(1.0)), (3, R::zero())],
-        1 => [(0, -il), (SECOND, il)],
-        _ => [(SECOND + 3, R::of(1.0)), (3, R::zero())],
+        0 => &[(3, false)],
+        1 => &[(0, true), (SECOND, false)],
+        _ => &[(SECOND + 3, false)],
     }
 }
 
@@ -269,12 +257,17 @@ fn places<R: Real>(block: usize, il: R) -> [(usize, R); 2] {
 pub(super) fn spread<R: Real, const N: usize>(h: &Blocks<R>, il: R, w: R, out: &mut [[R; N]; N]) {
     for i in 0..3 {
         for j in i..3 {
-            for &(row, by_row) in &places(i, il)[..if i == 1 { 2 } else { 1 }] {
-                for &(column, by_column) in &places(j, il)[..if j == 1 { 2 } else { 1 }] {
-                    let s = w * by_row * by_column;
-                    for r in 0..3 {
-                        for c in 0..3 {
-                            let x = s * h[i][j][r][c];
+            let s = match (i, j) {
+                (1, 1) => w * il * il,
+                (1, _) | (_, 1) => w * il,
+                _ => w,
+            };
+            for r in 0..3 {
+                for c in 0..3 {
+                    let x = s * h[i][j][r][c];
+                    for &(row, less) in places(i) {
+                        for &(column, too) in places(j) {
+                            let x = if less == too { x } else { -x };
                             out[row + r][column + c] += x;
                             if i != j {
                                 out[column + c][row + r] += x;
@@ -283,6 +276,30 @@ pub(super) fn spread<R: Real, const N: usize>(h: &Blocks<R>, il: R, w: R, out: &
                     }
                 }
             }
+        }
+    }
+}
+
+/// The same where all these rows and columns are still to be set.
+#[inline(always)]
+pub(super) fn set<R: Real>(h: &Blocks<R>, il: R, w: R, out: &mut [[R; VELOCITIES]; VELOCITIES]) {
+    const P: usize = 3;
+    const Q: usize = SECOND + 3;
+    let (once, twice) = (w * il, w * il * il);
+    for r in 0..3 {
+        for c in 0..3 {
+            (out[P + r][P + c], out[Q + r][Q + c]) = (w * h[0][0][r][c], w * h[2][2][r][c]);
+            let x = w * h[0][2][r][c];
+            (out[P + r][Q + c], out[Q + c][P + r]) = (x, x);
+            let x = once * h[0][1][r][c];
+            (out[P + r][c], out[c][P + r]) = (-x, -x);
+            (out[P + r][SECOND + c], out[SECOND + c][P + r]) = (x, x);
+            let x = once * h[1][2][r][c];
+            (out[r][Q + c], out[Q + c][r]) = (-x, -x);
+            (out[SECOND + r][Q + c], out[Q + c][SECOND + r]) = (x, x);
+            let x = twice * h[1][1][r][c];
+            (out[r][c], out[SECOND + r][SECOND + c]) = (x, x);
+            (out[r][SECOND + c], out[SECOND + r][c]) = (-x, -x);
         }
     }
 }

@@ -102,6 +102,9 @@ impl Contact {
         let mut groups = Vec::with_capacity(points.len() + spans.len());
         let mut flowing = Vec::new();
         for p in points {
+            need(!matches!(p.held, Held::Lever { .. }), || {
+                format!("{label}: a lever on a cable touches nothing: weld a rigid body there")
+            })?;
             let (radius, k) =
                 (positive("radius", p.radius)?, positive("stiffness", stiffness.of_point(p.radius))?);
             groups.push(What::Ball(Ball { held: p.held, radius, k, cell: 0 }));

@@ -58,6 +58,11 @@ impl FunctionForce {
         need(!matches!(n.kind, NodeKind::Scalars(_)), || {
             format!("{label}: node {} has no position", node.0)
         })?;
+        need(n.kind != NodeKind::Twist || point == [0.0; 3], || {
+            format!(
+                "{label}: a function acts on the axis of a cable: weld a rigid body to the lever, and let it act there"
+            )
+        })?;
         let (turns, reads) = (n.kind == NodeKind::Frame, function.reads);
         if reads.slope {
             let message =

@@ -3,11 +3,12 @@
 use crate::error::Error;
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::integrator::{Alpha, Integrator, Options, StepError, Stepping, Workspace, prepare};
-use ropewalk_core::{Model, SolveError, State, V3, Weights, Width};
+use ropewalk_core::{Model, Node, NodeKind, SolveError, State, V3, Weights, Width};
 use ropewalk_elements::cable::{CableModel, Integration, LongitudinalModel, TransverseModel, legal};
 use ropewalk_elements::{CableSpec, LinkSection, RigidChainSpec, Section};
 use ropewalk_forces::{AddedMassSpec, BuoyancySpec, DragSpec, GravitySpec};
 use ropewalk_scene::{Scene, Water};
+use std::f64::consts::PI;
 
 /// Step of the fixed-step measurements [s].
 const STEP: f64 = 1e-3;
@@ -22,6 +23,8 @@ pub struct Pendulum {
     pub water: bool,
     /// Whether its material resists rates of strain and curvature, with 1 ms.
     pub damped: bool,
+    /// Whether it has torsion, laid with half a turn.
+    pub twisted: bool,
     /// Its stiffness models.
     pub models: CableModel,
 }
@@ -42,6 +45,12 @@ impl Pendulum {
     #[must_use]
     pub fn damped(self) -> Self {
         Pendulum { damped: true, ..self }
+    }
+
+    /// The same with torsion.
+    #[must_use]
+    pub fn twisted(self) -> Self {
+        Pendulum { twisted: true, ..self }
     }
 
     /// The same of other models.
@@ -67,6 +76,8 @@ impl Pendulum {
         let damping = if self.damped { 1e-3 } else { 0.0 };
         Section {
             diameter: if self.water { 0.02 } else { 0.0 },
+            gj: self.twisted.then_some(0.08),
+            rotary_inertia: self.twisted.then_some(2.5e-5),
             axial_retardation_time: damping,
             bending_retardation_time: damping,
             ..Section::new(0.5, 5000.0, 0.1)
@@ -77,6 +88,7 @@ impl Pendulum {
         let g: V3<f64> = [0.0, -9.81, 0.0];
         let m = self.models;
         let mut scene = Scene::new();
+        let cable = CableSpec { laid_twist: if self.twisted { PI } else { 0.0 }, ..cable };
         scene
             .element(cable.models(m.longitudinal, m.transverse, m.integration))
             .constraint(SphericalSpec::pin("pin", "cable.start"))
@@ -159,12 +171,20 @@ impl FullIteration {
     pub fn of(model: Model) -> Result<Self, Error> {
         const TURN: V3<f64> = [0.0, 0.0, -3.0];
         let mut state = model.state();
-        // positions and slopes turn alike
-        let turned = |x: &[f64]| -> Vec<f64> {
-            x.chunks_exact(3).flat_map(|x| cross(TURN, [x[0], x[1], x[2]])).collect()
+        // positions and slopes turn alike; sections don't spin
+        let turn = |x: &[f64], of: &dyn Fn(&Node) -> usize, out: &mut [f64]| {
+            for node in model.nodes() {
+                let plain = if node.kind == NodeKind::Twist { 6 } else { node.dofs().len() };
+                for i in (0..plain).step_by(3) {
+                    let at = of(node) + i;
+                    out[node.v + i..node.v + i + 3]
+                        .copy_from_slice(&cross(TURN, [x[at], x[at + 1], x[at + 2]]));
+                }
+            }
         };
-        state.v = turned(&state.q);
-        state.a = turned(&state.v);
+        let State { q, v, a, .. } = &mut state;
+        turn(q, &|n| n.q, v);
+        turn(v, &|n| n.v, a);
         state.lambda.fill(1.0);
         Self::at(model, state)
     }

@@ -343,6 +343,9 @@ impl Done {
         observer: &mut dyn Observer,
     ) -> Result<End, Error> {
         let steps = scene.statics.steps.max(1);
+        let model = self.model.clone();
+        let telling: Vec<_> = model.events().iter().filter(|e| e.only_tells()).collect();
+        let mut levels = vec![None; telling.len()];
         for k in 0..=steps {
             let before = self.state.t;
             let found = match k {
@@ -361,6 +364,13 @@ impl Done {
                 if !self.remarks.contains(&remark) {
                     self.remarks.push(remark);
                 }
+            }
+            for (event, level) in telling.iter().zip(&mut levels) {
+                let now = event.value(&model, &self.state);
+                if crossed(*level, now, event.direction()) {
+                    observer.event(&event.report(&model, &self.state), self.state.t);
+                }
+                *level = Some(now);
             }
             self.flutter = self.flutter.max(found.flutter);
             self.counts.steps += 1;
@@ -385,6 +395,16 @@ impl Done {
     fn show(&self, state: &State, observer: &mut dyn Observer) -> ControlFlow<()> {
         let sample = Sample { model: &self.model, at: state.at(), lambda: &state.lambda, audit: &self.audit };
         observer.sample(&sample)
+    }
+}
+
+/// Whether the value of an event has changed its sign the way that it tells of, or begins beyond it.
+fn crossed(before: Option<f64>, now: f64, direction: i8) -> bool {
+    let (up, down) = (before.unwrap_or(-1.0) <= 0.0 && now > 0.0, before.unwrap_or(1.0) >= 0.0 && now < 0.0);
+    match direction {
+        0 => before.is_some() && (up || down),
+        1.. => up,
+        _ => down,
     }
 }
 

@@ -83,6 +83,7 @@ impl CableSpec {
             ("normal", self.normal.is_some(), torsion),
             ("twist", self.twist != 0.0, torsion),
             ("laid_twist", self.laid_twist != 0.0, torsion),
+            ("levers", !self.levers.is_empty(), torsion),
         ];
         if let Some((field, _, message)) = refused.into_iter().find(|(_, is, _)| *is) {
             return Err(BuildError::at(field, message));
