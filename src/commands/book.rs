@@ -66,7 +66,7 @@ const PAGES: &[Text] = pages![
 
 /// What pages include.
 const INCLUDED: &[Text] = files![
-    "controlled-crane.in/crane.toml",
+    "controlled-crane.in/trolley.toml",
     "first-steps.in/line.toml",
     "flexible-arm.in/arm.toml",
     "joints.in/segments.toml",

@@ -26,9 +26,6 @@ const MOST: f64 = 1e3;
 const KICK: u64 = 4;
 /// What is left of a forgotten difference.
 const FORGOTTEN: f64 = 0.02;
-/// Over how many times the time in which it was worth speaking of a difference is followed, and from where on what is left
-/// of it may stay.
-const FOLLOWED: [f64; 2] = [3.5, 3.0];
 /// Most steps of a copy, in parts of those that a measurement is allowed: where they shrink it isn't worth them.
 const DEAR: u64 = 4;
 /// What is left of one that won't be, after half of all steps.
@@ -45,7 +42,7 @@ const FORCES: f64 = 0.5;
 const BLOWN_TENSION: f64 = 0.1;
 
 /// What became of the difference in one part.
-#[derive(Clone, Default)]
+#[derive(Clone, Copy, Default)]
 struct Fading {
     /// The largest so far.
     most: f64,
@@ -55,8 +52,6 @@ struct Fading {
     sum: f64,
     /// When it was last worth speaking of [s].
     alive: f64,
-    /// What it was since: times [s] and sizes.
-    since: Vec<[f64; 2]>,
 }
 
 impl Fading {
@@ -67,21 +62,7 @@ impl Fading {
         // a NaN is alive
         if !(off < FORGOTTEN * self.most) {
             self.alive = t;
-            self.since.clear();
         }
-        self.since.push([t, off]);
-    }
-
-    /// Whether it was followed for long enough.
-    fn is_over(&self, t: f64) -> bool {
-        t > FOLLOWED[0] * self.alive
-    }
-
-    /// Its integral to the end of a run that goes on for another `rest` [s]: what is left of it may stay, as a slow motion
-    /// does under the fast one that hid it.
-    fn sum_with(&self, rest: f64) -> f64 {
-        let late = self.since.iter().filter(|[t, _]| *t > FOLLOWED[1] * self.alive);
-        self.sum + rest.max(0.0) * late.fold(0.0, |m: f64, [_, off]| m.max(*off))
     }
 }
 
@@ -132,10 +113,9 @@ impl Simulation {
             let pulls = (!(tension.most < least)).then_some(&tension);
             let counts = || parts.iter().filter(|p| !(p.most < SMALL * all)).chain(pulls);
             // gone, and gone for as long as it was there
-            if counts().all(|p| p.is_over(now - begun)) && k > 3 * KICK {
-                let rest = end - now;
-                let positions = counts().fold(0.0, |m: f64, p| m.max(p.sum_with(rest) / p.most));
-                let forces = FORCES * self.tolerated() * tension.sum_with(rest) / first;
+            if counts().all(|p| now - begun > 2.0 * p.alive) && k > 3 * KICK {
+                let positions = counts().fold(0.0, |m: f64, p| m.max(p.sum / p.most));
+                let forces = FORCES * self.tolerated() * tension.sum / first;
                 return Ok(Remembers::For(positions.max(forces)));
             }
             if k == most / 2 && counts().any(|p| !(p.last < LASTING * p.most)) {
