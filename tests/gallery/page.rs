@@ -56,7 +56,8 @@ fn every_scene_has_its_place_and_its_picture_in_the_book() {
     }
 }
 
-/// Runs all scenes and takes a picture of each: the shape from the side, from above, from the end, or the first record.
+/// Runs all scenes and takes a picture of each: that of its line `# picture: NAME`, or else the shape from the side, from above,
+/// from the end, or the first record.
 #[test]
 #[ignore = "writes the pictures of the book"]
 fn make_the_pictures() {
@@ -67,13 +68,18 @@ fn make_the_pictures() {
         program.arg("run").arg(&path).arg("--out").arg(&out).arg("--quiet");
         assert!(program.status().unwrap().success(), "{name}");
         let plots = out.join("plots");
-        let shapes = ["shape_side", "shape_top", "shape_end"].map(|shape| plots.join(format!("{shape}.svg")));
-        let chosen = shapes.into_iter().find(|shape| shape.exists()).unwrap_or_else(|| {
-            let mut all: Vec<PathBuf> =
-                std::fs::read_dir(&plots).unwrap().map(|e| e.unwrap().path()).collect();
-            all.sort();
-            all.swap_remove(0)
-        });
+        let text = std::fs::read_to_string(&path).unwrap();
+        let asked = text.lines().filter_map(|line| line.strip_prefix("# picture: "));
+        let shapes = asked.chain(["shape_side", "shape_top", "shape_end"]);
+        let chosen = shapes
+            .map(|name| plots.join(format!("{name}.svg")))
+            .find(|plot| plot.exists())
+            .unwrap_or_else(|| {
+                let mut all: Vec<PathBuf> =
+                    std::fs::read_dir(&plots).unwrap().map(|e| e.unwrap().path()).collect();
+                all.sort();
+                all.swap_remove(0)
+            });
         std::fs::create_dir_all(root().join("book/src/gallery")).unwrap();
         std::fs::copy(chosen, picture(&name)).unwrap();
     }
