@@ -177,8 +177,8 @@ class Parts:
             matter.
         twist: Stress-free twist per length of a cable with torsion, added to that of `stress_free` [rad/m].
         laid_twist: Twist per length with which a cable with torsion is laid [rad/m].
-        levers: Points beside the axis of a cable with torsion, by name, that its sections carry along, such as the end of a
-            crank: `levers.crank = { at = "end", offset = [0, 0, "10 cm"] }` gives a marker `name.crank`.
+        levers: Points beside the axis of a cable with torsion, by name, that its sections carry along, such as the
+            end of a crank: `levers.crank = { at = "end", offset = [0, 0, "10 cm"] }` gives a marker `name.crank`.
         """
         return self._add("elements", "cable", {
             "name": name,
