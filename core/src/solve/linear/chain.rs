@@ -325,6 +325,9 @@ impl<T: Scalar> Chain<T> {
                 (Front::Cable, 6, 6, 0) => {
                     self.forward::<12, FUSED>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
                 }
+                (Front::Twisted, 7, 7, 0) => {
+                    self.forward::<16, FUSED>(&Step { size: 7, next: 7, border: 0, ..*s }, x)
+                }
                 (Front::Cable, ..) => self.forward::<12, FUSED>(s, x),
                 (Front::Twisted, ..) => self.forward::<16, FUSED>(s, x),
                 (Front::Middle, ..) => self.forward::<20, FUSED>(s, x),
@@ -335,6 +338,9 @@ impl<T: Scalar> Chain<T> {
             match (s.width, s.size, s.next, s.border) {
                 (Front::Cable, 6, 6, 0) => {
                     self.backward::<12>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
+                }
+                (Front::Twisted, 7, 7, 0) => {
+                    self.backward::<16>(&Step { size: 7, next: 7, border: 0, ..*s }, x)
                 }
                 (Front::Cable, ..) => self.backward::<12>(s, x),
                 (Front::Twisted, ..) => self.backward::<16>(s, x),
