@@ -32,7 +32,7 @@ impl Simulation {
         if reach < wish {
             return reach;
         }
-        let rest = model.reach(&At { t: at.t + wish, ..at }, wish);
+        let rest = model.told(&At { t: at.t + wish, ..at }, wish);
         if rest < SLIVER * wish && wish + rest < left { 0.5 * (wish + rest) } else { left }
     }
 
@@ -100,17 +100,22 @@ fn missed(reach: impl Fn(f64, f64) -> Option<f64>, h: f64, from: f64, end: f64) 
 impl Model {
     /// The part of a step `h` from a state that leaps over nothing that time does.
     fn reach(&self, at: &At<'_>, h: f64) -> f64 {
+        let h = self.told(at, h);
+        let terms = self.timed_terms().filter(|(_, timed)| timed.reach(at.t, h).is_none());
+        let h = terms.fold(h, |h, (term, _)| self.shown_by(term, at, h));
+        let holding = self.moving_constraints().filter(|(c, _)| self.holds(*c, at.internal));
+        let silent = holding.filter(|(_, c)| c.reach(at.t, h).is_none());
+        silent.fold(h, |h, (_, constraint)| self.shown_in(constraint, at, h))
+    }
+
+    /// The part of it that leaps over nothing that is told.
+    fn told(&self, at: &At<'_>, h: f64) -> f64 {
         // a kink that the last step ended at is passed
         let part = |told: f64, h: f64| if told > SAME * at.t.abs() { told.min(h) } else { h };
-        let h = self.timed_terms().fold(h, |h, (term, timed)| match timed.reach(at.t, h) {
-            Some(told) => part(told, h),
-            None => self.shown_by(term, at, h),
-        });
+        let told = |h: f64, told: Option<f64>| told.map_or(h, |told| part(told, h));
+        let h = self.timed_terms().fold(h, |h, (_, timed)| told(h, timed.reach(at.t, h)));
         let holding = self.moving_constraints().filter(|(c, _)| self.holds(*c, at.internal));
-        holding.fold(h, |h, (_, constraint)| match constraint.reach(at.t, h) {
-            Some(told) => part(told, h),
-            None => self.shown_in(constraint, at, h),
-        })
+        holding.fold(h, |h, (_, constraint)| told(h, constraint.reach(at.t, h)))
     }
 
     /// When a force jumps next.
@@ -142,19 +147,23 @@ impl Model {
     fn shown_in(&self, constraint: &dyn Constraint, at: &At<'_>, h: f64) -> f64 {
         let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
         let m = constraint.rows().len();
-        let see = |t: f64| {
-            let (mut g, mut rate) = (vec![0.0; m], vec![0.0; m]);
-            let at = At { t, ..*at };
-            constraint.jacobian(self.nodes(), &at, &mut g, &mut vec![0.0; m * n]);
-            constraint.rates(self.nodes(), &at, &mut rate, &mut vec![0.0; m]);
-            (g, rate)
+        let mut room = vec![0.0; m * n];
+        let mut value = |t: f64| {
+            let mut g = vec![0.0; m];
+            constraint.violation(self.nodes(), &At { t, ..*at }, &mut g, &mut room);
+            g
         };
-        let (now, slope) = see(at.t);
+        let slope_at = |t: f64| {
+            let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
+            constraint.rates(self.nodes(), &At { t, ..*at }, &mut rate, &mut bias);
+            rate
+        };
+        let (now, slope) = (value(at.t), slope_at(at.t));
         shown(h, |step| {
-            let (end, end_slope) = see(at.t + step);
+            let (end, end_slope) = (value(at.t + step), slope_at(at.t + step));
             let (mut off, mut size) = (0.0, 0.0);
             for x in [0.25, 0.5, 0.75_f64] {
-                let (y, g) = (1.0 - x, see(at.t + x * step).0);
+                let (y, g) = (1.0 - x, value(at.t + x * step));
                 for r in 0..m {
                     let cubic = y * y * (1.0 + 2.0 * x) * now[r]
                         + x * x * (1.0 + 2.0 * y) * end[r]

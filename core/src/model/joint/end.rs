@@ -2,7 +2,7 @@
 
 use crate::algebra::lane::V3;
 use crate::algebra::rotation::{IDENTITY, M3, cross, matrix, product, skew, times, transposed_times};
-use crate::model::joint::equation::Arrow;
+use crate::model::joint::equation::{Arrow, Equation};
 use crate::model::marker::Marker;
 use crate::model::node::{Node, NodeKind};
 use crate::model::state::At;
@@ -199,6 +199,11 @@ pub(super) fn value(arrow: &Arrow, ends: &[End; 2], t: f64) -> V3<f64> {
     }
 }
 
+/// What the vectors of an equation are now.
+pub(super) fn values(equation: &Equation, ends: &[End; 2], t: f64) -> [V3<f64>; 2] {
+    equation.arrows().map_or([[0.0; 3]; 2], |arrows| arrows.map(|arrow| value(arrow, ends, t)))
+}
+
 /// Adds the change of `p·arrow` by the unknowns.
 pub(super) fn add(arrow: &Arrow, ends: &[End; 2], t: f64, p: &V3<f64>, row: &mut [f64]) {
     match arrow {
@@ -282,11 +287,10 @@ pub(super) fn derivatives(arrow: &Arrow, ends: &[End; 2], t: f64) -> Derivatives
 }
 
 pub(super) fn flow(arrow: &Arrow, ends: &[End; 2], at: &At<'_>) -> Flow {
-    let value = value(arrow, ends, at.t);
     let none = [0.0; 3];
     match arrow {
         Arrow::Between => {
-            let mut f = Flow { value, by_t: none, first: none, second: none };
+            let mut f = Flow { value: value(arrow, ends, at.t), by_t: none, first: none, second: none };
             for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
                 if end.kind.is_none() {
                     continue;
@@ -308,14 +312,15 @@ pub(super) fn flow(arrow: &Arrow, ends: &[End; 2], at: &At<'_>) -> Flow {
             match end.kind {
                 Some(NodeKind::Frame | NodeKind::Twist) if !end.is_slope(arrow) => {
                     let [first, second] = end.turning(at, &axis);
+                    let value = times(&end.r, &axis[0]);
                     Flow { value, by_t: times(&end.r, &axis[1]), first, second }
                 }
                 Some(kind) => {
                     let v = end.v + if kind.has_slope() { 3 } else { 0 };
                     let first = [at.v[v], at.v[v + 1], at.v[v + 2]];
-                    Flow { value, by_t: none, first, second: none }
+                    Flow { value: value(arrow, ends, at.t), by_t: none, first, second: none }
                 }
-                None => Flow { value, by_t: axis[1], first: axis[1], second: axis[2] },
+                None => Flow { value: axis[0], by_t: axis[1], first: axis[1], second: axis[2] },
             }
         }
     }

@@ -90,16 +90,23 @@ impl Equation {
         let axis = |i: usize, e: &Equation| matches!(e, Equation::Along { direction, motion: None } if *direction == IDENTITY[i]);
         equations.len() == 3 && equations.iter().enumerate().all(|(i, e)| axis(i, e))
     }
-    /// By how much it is broken, with the vector `d` between the markers.
+    /// The two vectors whose product it prescribes.
+    pub(super) fn arrows(&self) -> Option<[&Arrow; 2]> {
+        match self {
+            Equation::Dot { a, b, .. } => Some([a, b]),
+            Equation::Along { .. } | Equation::Distance { .. } => None,
+        }
+    }
+    /// By how much it is broken, with the vector `d` between the markers and what its [`Equation::arrows`] are.
     #[inline]
-    pub(super) fn violation(&self, d: &V3<f64>, value: impl Fn(&Arrow) -> V3<f64>, t: f64) -> f64 {
+    pub(super) fn violation(&self, d: &V3<f64>, arrows: &[V3<f64>; 2], t: f64) -> f64 {
         match self {
             Equation::Along { direction, motion } => {
                 let x = motion.as_ref().map_or([0.0; 3], |m| m.at(t).x);
                 (0..3).map(|i| direction[i] * (d[i] - x[i])).sum()
             }
-            Equation::Dot { a, b, value: c, motion } => {
-                dot(&value(a), &value(b)) - c - motion.as_ref().map_or(0.0, |m| m.at(t).x[0])
+            Equation::Dot { value, motion, .. } => {
+                dot(&arrows[0], &arrows[1]) - value - motion.as_ref().map_or(0.0, |m| m.at(t).x[0])
             }
             Equation::Distance { length } => dot(d, d).sqrt() - length,
         }

@@ -13,7 +13,7 @@ use crate::algebra::lane::{V3, dot};
 use crate::algebra::rotation::{M3, cross, matrix, product, skew, times, transposed_times};
 use crate::error::{BuildError, finite, need};
 use crate::model::constraint::{Constraint, RowKind};
-use crate::model::joint::end::{End, MOST, add, add_twice, derivatives, flow, value};
+use crate::model::joint::end::{End, MOST, add, add_twice, derivatives, flow, value, values};
 use crate::model::joint::equation::{Arrow, Equation};
 use crate::model::marker::Marker;
 use crate::model::motion::Motion;
@@ -258,12 +258,13 @@ impl Constraint for Joint {
         let ends = self.ends(nodes, at);
         let d = value(&Arrow::Between, &ends, at.t);
         for ((equation, g), row) in self.equations.iter().zip(g).zip(jac.chunks_exact_mut(n)) {
-            *g = equation.violation(&d, |arrow| value(arrow, &ends, at.t), at.t);
+            let arrows = values(equation, &ends, at.t);
+            *g = equation.violation(&d, &arrows, at.t);
             match equation {
                 Equation::Along { direction, .. } => add(&Arrow::Between, &ends, at.t, direction, row),
                 Equation::Dot { a, b, .. } => {
-                    add(a, &ends, at.t, &value(b, &ends, at.t), row);
-                    add(b, &ends, at.t, &value(a, &ends, at.t), row);
+                    add(a, &ends, at.t, &arrows[1], row);
+                    add(b, &ends, at.t, &arrows[0], row);
                 }
                 Equation::Distance { .. } => {
                     let size = dot(&d, &d).sqrt();
@@ -282,7 +283,7 @@ impl Constraint for Joint {
         let ends = self.ends(nodes, at);
         let d = value(&Arrow::Between, &ends, at.t);
         for (equation, g) in self.equations.iter().zip(g) {
-            *g = equation.violation(&d, |arrow| value(arrow, &ends, at.t), at.t);
+            *g = equation.violation(&d, &values(equation, &ends, at.t), at.t);
         }
     }
 
