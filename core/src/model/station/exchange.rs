@@ -88,6 +88,28 @@ impl<R: Real> Station<R> {
 }
 
 impl<R: Real> Load<R> {
+    /// Makes the force and what is given zero again: what else a law may have written is never read.
+    #[inline(always)]
+    fn clear(&mut self, gives: Gives) {
+        let none = [[R::zero(); 3]; 3];
+        self.f = none[0];
+        if gives.x {
+            self.d_x = none;
+        }
+        if gives.slope {
+            self.d_slope = none;
+        }
+        if gives.v {
+            self.d_v = none;
+        }
+        if gives.a {
+            self.d_a = none;
+        }
+        if gives.couple {
+            (self.g, self.d_rate) = (none[0], none);
+            (self.g_x, self.g_slope, self.g_v) = (none, none, none);
+        }
+    }
     #[inline(always)]
     pub(super) fn read(&mut self, row: &[f64], gives: Gives, tangent: bool) {
         self.f = vector(row, 0);
@@ -168,8 +190,9 @@ impl<L: Law> LoadAll<'_, L> {
         let (x, all) = (self.x, self.law.gives());
         let gives = if TANGENT { all } else { Gives { couple: all.couple, ..Gives::NOTHING } };
         let rows = x.stations.chunks_exact(STATION * R::LANES).zip(x.loads.chunks_exact_mut(LOAD * R::LANES));
+        let mut load = Load::zero();
         for (station, out) in rows {
-            let mut load = Load::zero();
+            load.clear(gives);
             self.law.load::<R, TANGENT>(self.t, &Station::read(station), &mut load);
             add(out, 0, x.loaded, &load.f);
             if gives.x {
@@ -247,9 +270,11 @@ struct PowerOf<'a, L> {
 impl<L: Law> LaneTask for PowerOf<'_, L> {
     #[inline(always)]
     fn go<R: Real>(self) {
-        let mut sum = Power::<R>::zero();
+        let (mut sum, mut load) = (Power::<R>::zero(), Load::zero());
         for row in self.x.stations.chunks_exact(STATION * R::LANES) {
-            let (at, mut load) = (Station::read(row), Load::zero());
+            let at = Station::read(row);
+            load.clear(Gives::NOTHING);
+            load.g = [R::zero(); 3];
             self.law.load::<R, false>(self.t, &at, &mut load);
             let power = self.law.power(self.t, &at, &load);
             sum.dissipated = at.weight.fma(power.dissipated, sum.dissipated);
