@@ -510,7 +510,9 @@ fn unbalanced(contact: &LineContact, w: &World, memory: &[f64]) -> f64 {
         let three = |x: &[f64], k: usize| [x[k], x[k + 1], x[k + 2]];
         let (force, second) = (three(&f, n.v), three(&f, n.v + 3));
         let of_second = match n.kind {
-            NodeKind::Frame => times(&matrix(&[w.q[n.q + 3], w.q[n.q + 4], w.q[n.q + 5], w.q[n.q + 6]]), &second),
+            NodeKind::Frame => {
+                times(&matrix(&[w.q[n.q + 3], w.q[n.q + 4], w.q[n.q + 5], w.q[n.q + 6]]), &second)
+            }
             _ => cross(&three(&w.q, n.q + 3), &second),
         };
         let turn = cross(&three(&w.q, n.q), &force);
@@ -533,13 +535,19 @@ fn friction_turns_with_what_it_holds() {
     w.v.fill(0.0);
     let zero = vec![0.0; w.v.len()];
     let force = |w: &World, contact: &LineContact| {
-        dense(contact, &w.nodes, &At { internal: &memory, ..w.at(&w.q, &zero) }, Weights::default(), Width::One).0
+        dense(
+            contact,
+            &w.nodes,
+            &At { internal: &memory, ..w.at(&w.q, &zero) },
+            Weights::default(),
+            Width::One,
+        )
+        .0
     };
     let before = force(&w, &contact);
     let r = matrix(&exp([0.4, -1.1, 0.7]));
-    let turned = |x: &[f64]| -> Vec<f64> {
-        x.chunks_exact(3).flat_map(|x| times(&r, &[x[0], x[1], x[2]])).collect()
-    };
+    let turned =
+        |x: &[f64]| -> Vec<f64> { x.chunks_exact(3).flat_map(|x| times(&r, &[x[0], x[1], x[2]])).collect() };
     w.q = turned(&w.q);
     w.nodes.iter().for_each(|n| (0..3).for_each(|i| w.q[n.q + i] += [3.0, -2.0, 1.0][i]));
     let (wanted, got) = (turned(&before), force(&w, &contact));
@@ -566,8 +574,13 @@ fn slip_is_held_by_coulombs_limit_and_no_more() {
         let k = 1e-3;
         upper.iter().for_each(|n| (0..2).for_each(|i| w.q[n.q + i] += k * way[i]));
         let zero = vec![0.0; w.v.len()];
-        let (f, _) =
-            dense(&contact, &w.nodes, &At { internal: &memory, ..w.at(&w.q, &zero) }, Weights::default(), Width::One);
+        let (f, _) = dense(
+            &contact,
+            &w.nodes,
+            &At { internal: &memory, ..w.at(&w.q, &zero) },
+            Weights::default(),
+            Width::One,
+        );
         let total: V3<f64> = std::array::from_fn(|i| upper.iter().map(|n| f[n.v + i]).sum());
         // the residual pulls back; what presses is counted place by place, each along its own normal
         let mut out = Vec::new();

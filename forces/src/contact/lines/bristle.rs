@@ -216,9 +216,8 @@ impl Bristle {
             }
             for p in 0..n {
                 let bent = |s: usize| dot(&w_q[p], &b_q[s][q]) + dot(&b_q[s][p], &w_q[q]);
-                sum.k[p][q] -= dh[0] * slope[0][p]
-                    + dh[1] * slope[1][p]
-                    + w.q * (h[0] * bent(0) + h[1] * bent(1));
+                sum.k[p][q] -=
+                    dh[0] * slope[0][p] + dh[1] * slope[1][p] + w.q * (h[0] * bent(0) + h[1] * bent(1));
             }
         }
         self.add_turning(h, place, w, sum);

@@ -96,7 +96,8 @@ impl LineContact {
         })
         .map_err(|e| BuildError::at("friction", e.message))?;
         need(friction.equilibrium != AtRest::Pulled, || {
-            "friction between lines isn't known to be used up by a pull: take `equilibrium = \"laid\"`".to_string()
+            "friction between lines isn't known to be used up by a pull: take `equilibrium = \"laid\"`"
+                .to_string()
         })
         .map_err(|e| BuildError::at("friction", e.message))?;
         positive("friction", friction.mu)?;
@@ -152,7 +153,9 @@ impl LineContact {
         let tangent = out.wants_tangent().then(|| out.weights());
         for (cell, pressed) in cells.iter().enumerate().filter(|(_, p)| p.normal > 0.0) {
             let key = key(&self.pieces, pair, facing, cell);
-            let Some((bristle, stretch, anchor)) = self.bristle(rubs, pair, key, at, at.internal) else { continue };
+            let Some((bristle, stretch, anchor)) = self.bristle(rubs, pair, key, at, at.internal) else {
+                continue;
+            };
             let (grip, mu) = (self.grip(rubs, pair), rubs.friction.mu);
             let mut hold = bristle.hold(grip, stretch, mu * pressed.normal);
             if hold.slips

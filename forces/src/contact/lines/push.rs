@@ -143,7 +143,19 @@ impl Push {
         let across = dot(&along.b, &along.b) - dot(&normal, &along.b).powi(2);
         let steep = across / distance - dot(&normal, &second(other, nearest.t, at));
         let free = nearest.free && steep > 0.0 && distance > 0.0;
-        Some(Push { one, other: near, along, normal, distance, free, steep, force, depth, rate, xi: [xi, nearest.t] })
+        Some(Push {
+            one,
+            other: near,
+            along,
+            normal,
+            distance,
+            free,
+            steep,
+            force,
+            depth,
+            rate,
+            xi: [xi, nearest.t],
+        })
     }
 
     /// The force [N], and its elastic part.

@@ -1,7 +1,7 @@
 //! What a scene says about lines that touch each other.
 
-use super::super::law::{ContactLaw, Damping};
 use super::super::friction::Friction;
+use super::super::law::{ContactLaw, Damping};
 use super::super::spec::{Dry, Overlap, dry};
 use super::term::{LineContact, Touching};
 use ropewalk_core::{At, BuildError};

@@ -10,8 +10,8 @@ use super::pieces::{APART, Piece, Pieces};
 use super::push::{Pressed, Push, Sum};
 use ropewalk_core::error::{need, positive};
 use ropewalk_core::{
-    Assembly, At, BuildError, Column, ContactSpan, Couples, Energy, Foresees, Pattern, Power, Relaxed, Remembers,
-    Shows, SpanLine, Term, V3, dot,
+    Assembly, At, BuildError, Column, ContactSpan, Couples, Energy, Foresees, Pattern, Power, Relaxed,
+    Remembers, Shows, SpanLine, Term, V3, dot,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
