@@ -106,8 +106,9 @@ fn a_line_that_is_pulled_a_little_stays_on_others_for_ever() {
         for i in 0..2 {
             assert!((first[i] - last[i]).abs() <= 1e-7, "{first:?}, {last:?}");
         }
+        // bristles of both rails hold a little against each other too
         let [normal, _, _, held, slipping] = shown(&s.model, &s.state);
-        assert!((held - pull).abs() <= 1e-3 * pull && slipping == 0.0, "{held} N of {normal} N");
+        assert!((held - pull).abs() <= 5e-3 * pull && slipping == 0.0, "{held} N of {normal} N");
     }
 }
 

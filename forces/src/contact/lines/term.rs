@@ -69,7 +69,7 @@ impl LineContact {
     /// Contact of these lines with one another, and, if so told, of each with itself, as they lie at a state.
     ///
     /// # Errors
-    /// No two that could touch, a line without thickness, one that feeds, a chain of rigid links, bad numbers.
+    /// No two that could touch, a line without thickness, one that feeds, bad numbers.
     pub fn new(
         label: impl Into<String>,
         lines: &[Touching],
@@ -89,13 +89,6 @@ impl LineContact {
         let mut all = Vec::new();
         for (number, line) in lines.iter().enumerate() {
             let name = &line.name;
-            let chain = line.spans.len() > 1 && matches!(line.spans[0].line, SpanLine::Straight { .. });
-            need(!chain, || {
-                format!(
-                    "`{name}` has corners where its links meet, across which contact between lines isn't known: it acts on \
-                     cables and on bodies with a `hull`"
-                )
-            })?;
             for span in &line.spans {
                 need(span.flow.is_none(), || {
                     format!(
@@ -126,11 +119,13 @@ impl LineContact {
         self.near.couples.iter().map(|c| c.pieces)
     }
 
-    /// The middle lines of the pieces that are near others.
+    /// The middle lines of the pieces that are near others, and of the links next to those.
     pub(super) fn curves(&self, near: &Near, at: &At<'_>) -> Vec<Option<Curve>> {
         let mut curves = vec![None; self.pieces.all.len()];
         for &k in &near.active {
-            curves[k] = Some(Curve::of(&self.pieces.all[k].span, at));
+            let mut see = |k: usize| curves[k] = Some(Curve::of(&self.pieces.all[k].span, at));
+            see(k);
+            self.pieces.links(k).into_iter().flatten().for_each(see);
         }
         curves
     }
@@ -144,7 +139,8 @@ impl LineContact {
         let all = self.pieces.clone();
         [([i, j], true), ([j, i], false)].into_iter().filter_map(move |(pair, ahead)| {
             let (Some(a), Some(b)) = (&curves[pair[0]], &curves[pair[1]]) else { return None };
-            Some((pair, all.facing(pair, [a, b], ahead)?))
+            let facing = all.facing(pair, [a, b], ahead)?;
+            Some((pair, Facing { corners: all.corners(pair[1], curves), ..facing }))
         })
     }
 
