@@ -326,3 +326,71 @@ fn a_knot_with_friction_is_drawn_tight_less_far() {
     let (smooth, rough) = (apart(None), apart(Some(Friction::new(MU))));
     assert!(rough > 1.02 * smooth && rough < 2.0 * smooth, "{rough} m with friction, {smooth} m without");
 }
+
+/// What a line says that is bent to a loop as tight as this, and touches itself or doesn't.
+fn told_of_loop(radius: f64, itself: bool) -> Option<String> {
+    let n = 24;
+    let curve = (0..=n).map(|k| {
+        let phi = std::f64::consts::PI * k as f64 / n as f64;
+        [radius * phi.sin(), radius * phi.cos(), 0.0]
+    });
+    let line = CableSpec {
+        points: Vec::new(),
+        curve: curve.collect(),
+        elements: 24,
+        ..CableSpec::straight(
+            "line",
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            1,
+            Section { diameter: THICK, ..Section::new(0.3, 1e4, 0.02) },
+        )
+    };
+    let mut scene = Scene::new();
+    scene
+        .element(line)
+        .element(CableSpec::straight(
+            "far",
+            [0.0, 0.0, 5.0],
+            [1.0, 0.0, 5.0],
+            2,
+            Section { diameter: THICK, ..Section::new(0.3, 1e4, 0.02) },
+        ))
+        .force(LineContactSpec { itself, ..LineContactSpec::new("touch", STIFF) });
+    let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
+    let (state, term) = (model.state(), model.terms().iter().find(|t| t.label() == "touch").unwrap().clone());
+    term.shows().unwrap().remark(&state.at())
+}
+
+#[test]
+fn a_line_bent_tighter_than_its_own_radius_is_remarked() {
+    let told = told_of_loop(0.4 * THICK, true).expect("a remark");
+    println!("{told}");
+    assert!(
+        told.contains("`line` is bent to a radius of 8.0") && told.contains("its own radius of 1.00e-2 m"),
+        "{told}"
+    );
+    assert_eq!(told_of_loop(0.6 * THICK, true), None);
+    assert_eq!(told_of_loop(0.4 * THICK, false), None);
+}
+
+#[test]
+fn a_line_that_slips_over_nodes_of_others_is_held_all_the_same() {
+    // nodes of the rod pass over the rails; where they do nothing is let go
+    struct Least(f64);
+    impl Observer for Least {
+        fn step(&mut self, m: &Model, s: &State, _: &StepReport) -> ControlFlow<()> {
+            let [normal, _, _, held, slipping] = shown(m, s);
+            if s.t > 0.05 && slipping > 0.99 {
+                self.0 = self.0.min(held / (MU * normal));
+            }
+            ControlFlow::Continue(())
+        }
+    }
+    let pull = 1.5 * MU * WEIGHT;
+    let scene = rod_on_rails([0.0, pull, 0.0], &TimeFunction::Constant, Friction::new(MU));
+    let mut s = start(&scene, Stepping::Controlled { tolerance: 1e-5 }, 0.5);
+    let mut least = Least(f64::INFINITY);
+    go(&mut s, 0.5, &mut least);
+    assert!(least.0 >= 1.0 - 1e-9 && least.0.is_finite(), "{}", least.0);
+}

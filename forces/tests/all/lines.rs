@@ -629,13 +629,8 @@ fn the_force_on_a_chain_follows_from_its_energy_around_corners_too() {
         w.cable(0.8, &[[place(-0.4), t], [place(0.4), t]]);
         let contact = w.contact(ContactLaw::default());
         let zero = vec![0.0; w.v.len()];
-        let (r, k) = dense(
-            &contact,
-            &w.nodes,
-            &w.at(&w.q, &zero),
-            Weights { q: 1.0, v: 0.0, a: 0.0 },
-            Width::One,
-        );
+        let (r, k) =
+            dense(&contact, &w.nodes, &w.at(&w.q, &zero), Weights { q: 1.0, v: 0.0, a: 0.0 }, Width::One);
         let size = r.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         assert!(size > 0.1, "nothing touches");
         // the links stay together: both move, or one turns around the joint
@@ -677,21 +672,18 @@ fn the_force_on_a_chain_follows_from_its_energy_around_corners_too() {
             worst = worst.max((slope - work).abs() / size);
             // where a border between links moves, both have the same there: the tangent along such moves is right too
             let residual = |h: f64| {
-                let r = dense(
-                    &contact,
-                    &w.nodes,
-                    &w.at(&moved(h), &zero),
-                    Weights::default(),
-                    Width::One,
-                )
-                .0;
-                vec![moves[9..].iter().map(|m| m.iter().zip(&r).map(|(a, b)| a * b).sum::<f64>()).sum::<f64>() / scale]
+                let r = dense(&contact, &w.nodes, &w.at(&moved(h), &zero), Weights::default(), Width::One).0;
+                vec![
+                    moves[9..].iter().map(|m| m.iter().zip(&r).map(|(a, b)| a * b).sum::<f64>()).sum::<f64>()
+                        / scale,
+                ]
             };
             let by: f64 = moves[9..]
                 .iter()
                 .map(|m| (0..24).map(|i| m[i] * (0..24).map(|j| k[i][j] * way[j]).sum::<f64>()).sum::<f64>())
                 .sum();
-            let off = (difference(residual)[0] - by).abs() / k.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let off = (difference(residual)[0] - by).abs()
+                / k.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
             assert!(off <= 2e-3, "{bend}, {along:?}: tangent {off:.1e}");
         }
         println!("{bend}, {along:?}: {size:.2} N, force {worst:.1e}, {:?}", w.shown(&contact));

@@ -6,12 +6,13 @@
 
 use super::super::friction::{AtRest, Friction};
 use super::bristle::{Bristle, Hold};
-use super::curve::Curve;
+use super::curve::{Curve, size};
 use super::facing::{Facing, Scratch};
 use super::pieces::{Piece, Pieces};
 use super::push::{Pressed, Sum};
 use super::term::LineContact;
 use ropewalk_core::error::{need, positive};
+use ropewalk_core::rotation::cross;
 use ropewalk_core::{Assembly, At, BuildError, Leap, Remembers};
 use std::sync::Arc;
 
@@ -68,13 +69,31 @@ impl Rubs {
     }
 }
 
-/// The number of a bristle, above zero.
-fn key(pieces: &Pieces, [i, j]: [usize; 2], facing: &Facing<'_>, cell: usize) -> f64 {
-    // of a piece that faces itself, ahead and behind
-    let behind = i == j && facing.window.is_some_and(|w| !w.ahead);
-    let pair = (i * pieces.all.len() + j) * 2 + usize::from(behind);
-    (pair * CELLS + cell + 1) as f64
+/// Which bristle one is: of a cell of the first of two pieces.
+#[derive(Clone, Copy)]
+struct Which {
+    pair: [usize; 2],
+    /// Of a piece that faces itself, whether it faces what is behind.
+    behind: bool,
+    cell: usize,
 }
+
+impl Which {
+    fn new(pair: [usize; 2], facing: &Facing<'_>, cell: usize) -> Self {
+        let behind = pair[0] == pair[1] && facing.window.is_some_and(|w| !w.ahead);
+        Which { pair, behind, cell }
+    }
+
+    /// Its number, above zero.
+    fn key(self, pieces: &Pieces) -> f64 {
+        let [i, j] = self.pair;
+        let pair = (i * pieces.all.len() + j) * 2 + usize::from(self.behind);
+        (pair * CELLS + self.cell + 1) as f64
+    }
+}
+
+/// How far beyond a node a place is still told by the piece before it, in parts of the piece.
+const BEYOND: f64 = 1.0 / CELLS as f64;
 
 impl LineContact {
     /// How many numbers friction between the pieces remembers.
@@ -122,16 +141,32 @@ impl LineContact {
         [k, 2.0 * RATIO * (k * mass).sqrt()]
     }
 
+    /// What is remembered of a bristle; of one whose nearest place has gone over a node, what was remembered of it there.
+    fn anchor(&self, rubs: &Rubs, which: Which, memory: &[f64]) -> Option<Anchor> {
+        let all = &self.pieces.all;
+        let own = rubs.anchor(which.key(&self.pieces), memory);
+        let [i, j] = which.pair;
+        if own.is_some() || i == j {
+            return own;
+        }
+        let beside = [j.checked_sub(1), Some(j + 1)].into_iter().flatten();
+        let beside = beside.filter(|&k| k != i && all.get(k).is_some_and(|p| p.line == all[j].line));
+        beside.into_iter().find_map(|k| {
+            let mut anchor = rubs.anchor(Which { pair: [i, k], ..which }.key(&self.pieces), memory)?;
+            anchor.xi[1] = (all[k].s + anchor.xi[1] * all[k].length - all[j].s) / all[j].length;
+            (-BEYOND..=1.0 + BEYOND).contains(&anchor.xi[1]).then_some(anchor)
+        })
+    }
+
     /// The bristle of a cell, if it has taken hold, and how far it is stretched.
     fn bristle(
         &self,
         rubs: &Rubs,
-        pair: [usize; 2],
-        key: f64,
+        which: Which,
         at: &At<'_>,
         memory: &[f64],
     ) -> Option<(Bristle, [f64; 2], Anchor)> {
-        let anchor = rubs.anchor(key, memory)?;
+        let (anchor, pair) = (self.anchor(rubs, which, memory)?, which.pair);
         let lines = pair.map(|k| &self.pieces.all[k].span);
         let bristle = Bristle::new(lines, anchor.xi, at);
         let stretch = [0, 1].map(|k| bristle.alpha[k] - anchor.from[k]);
@@ -152,8 +187,8 @@ impl LineContact {
     ) {
         let tangent = out.wants_tangent().then(|| out.weights());
         for (cell, pressed) in cells.iter().enumerate().filter(|(_, p)| p.normal > 0.0) {
-            let key = key(&self.pieces, pair, facing, cell);
-            let Some((bristle, stretch, anchor)) = self.bristle(rubs, pair, key, at, at.internal) else {
+            let which = Which::new(pair, facing, cell);
+            let Some((bristle, stretch, anchor)) = self.bristle(rubs, which, at, at.internal) else {
                 continue;
             };
             let (grip, mu) = (self.grip(rubs, pair), rubs.friction.mu);
@@ -192,8 +227,8 @@ impl LineContact {
         cells
     }
 
-    /// Sees each cell that is pressed: the pair of pieces, its number as a bristle, and what presses it.
-    fn each_cell(&self, at: &At<'_>, mut see: impl FnMut([usize; 2], f64, &Pressed)) {
+    /// Sees each cell that is pressed, and what presses it.
+    fn each_cell(&self, at: &At<'_>, mut see: impl FnMut(Which, &Pressed)) {
         let near = self.near(at);
         let curves: Vec<Option<Curve>> = self.curves(&near, at);
         let mut scratch = Scratch::default();
@@ -201,7 +236,7 @@ impl LineContact {
             for (pair, facing) in self.facings(couple.pieces, &curves) {
                 let cells = self.press(pair, &facing, at, &mut scratch);
                 for (cell, pressed) in cells.iter().enumerate().filter(|(_, p)| p.normal > 0.0) {
-                    see(pair, key(&self.pieces, pair, &facing, cell), pressed);
+                    see(Which::new(pair, &facing, cell), pressed);
                 }
             }
         }
@@ -210,9 +245,10 @@ impl LineContact {
     /// Sees each bristle that holds, with the normal force on its cell.
     pub(super) fn each_bristle(&self, at: &At<'_>, mut see: impl FnMut(&Bristle, &Hold, f64)) {
         let Some(rubs) = &self.rubs else { return };
-        self.each_cell(at, |pair, key, pressed| {
-            if let Some((bristle, stretch, _)) = self.bristle(rubs, pair, key, at, at.internal) {
-                let hold = bristle.hold(self.grip(rubs, pair), stretch, rubs.friction.mu * pressed.normal);
+        self.each_cell(at, |which, pressed| {
+            if let Some((bristle, stretch, _)) = self.bristle(rubs, which, at, at.internal) {
+                let hold =
+                    bristle.hold(self.grip(rubs, which.pair), stretch, rubs.friction.mu * pressed.normal);
                 see(&bristle, &hold, pressed.normal);
             }
         });
@@ -222,10 +258,11 @@ impl LineContact {
     /// those that touch anew without any. What holds stays as it is.
     fn move_anchors(&self, rubs: &Rubs, at: &At<'_>, memory: &mut [f64]) {
         let mut all: Vec<[f64; MEMORY]> = Vec::new();
-        self.each_cell(at, |pair, key, pressed| {
+        self.each_cell(at, |which, pressed| {
+            let (pair, key) = (which.pair, which.key(&self.pieces));
             let Some(xi) = pressed.place() else { return };
             let mut stretch = [0.0; 2];
-            if let Some((bristle, whole, anchor)) = self.bristle(rubs, pair, key, at, memory) {
+            if let Some((bristle, whole, anchor)) = self.bristle(rubs, which, at, memory) {
                 let limit = rubs.friction.mu * pressed.normal;
                 let size = bristle.size(self.grip(rubs, pair)[0], whole);
                 if size <= limit {
@@ -245,6 +282,33 @@ impl LineContact {
         let own = &mut memory[first..first + MEMORY * rubs.room];
         own.fill(0.0);
         own.iter_mut().zip(all.as_flattened()).for_each(|(own, x)| *own = *x);
+    }
+
+    /// What to say where a line that touches itself is bent tighter than its own radius: what is next to each other there would be
+    /// in each other, and isn't looked at.
+    pub(super) fn tight(&self, at: &At<'_>) -> Option<String> {
+        if !self.pieces.itself {
+            return None;
+        }
+        let bent = |k: usize| {
+            let curve = Curve::of(&self.pieces.all[k].span, at);
+            [0.0, 0.5, 1.0].map(|xi| {
+                let (slope, bend) = (curve.cubic.slope(xi), curve.cubic.second(xi));
+                let (speed, turn) = (size(&slope), cross(&slope, &bend));
+                (size(&turn) / speed.powi(3), k, xi)
+            })
+        };
+        let all = (0..self.pieces.all.len()).flat_map(bent);
+        let tight = all.filter(|(curvature, k, _)| curvature * self.pieces.all[*k].radius > 1.0);
+        let (curvature, k, xi) = tight.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (line, s) = self.place(k, xi);
+        Some(format!(
+            "`{}`: `{line}` is bent to a radius of {:.2e} m at {s:.4} m, tighter than its own radius of {:.2e} m, so that it is in \
+             itself there, which contact doesn't see. More bending stiffness, or a finer mesh, would keep it open",
+            self.label,
+            1.0 / curvature,
+            self.pieces.all[k].radius
+        ))
     }
 
     /// What to say where more cells touch each other than can be remembered.

@@ -95,6 +95,7 @@ impl Pieces {
             }
         }
         let [one, other] = curves;
-        Facing { one, other, thick: self.thick(i, j), tips: b.tips, corners: [None; 2], window, range }.narrowed()
+        Facing { one, other, thick: self.thick(i, j), tips: b.tips, corners: [None; 2], window, range }
+            .narrowed()
     }
 }

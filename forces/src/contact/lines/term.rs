@@ -407,6 +407,7 @@ impl Shows for LineContact {
         }
     }
     fn remark(&self, at: &At<'_>) -> Option<String> {
-        self.crowded(at)
+        let all = [self.crowded(at), self.tight(at)];
+        all.into_iter().flatten().reduce(|a, b| format!("{a}. {b}"))
     }
 }
