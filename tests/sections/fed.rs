@@ -261,3 +261,46 @@ fn a_section_is_reeled_in_to_its_shortest_whatever_the_other_end_does() {
         assert!((own / 3.5 - least).abs() < 1e-3, "{end}: {own} m are left");
     }
 }
+
+#[test]
+fn slack_lines_laid_straight_find_their_shape() {
+    // a straight line that is too long is compressed, and folds within its elements if the search isn't careful
+    for case in cases() {
+        if case["loads"].as_array().is_some_and(|all| all.iter().any(|x| number(x) != 0.0)) {
+            continue;
+        }
+        let length: f64 = case["sections"].as_array().expect("sections").iter().map(|s| number(&s[0])).sum();
+        let rows = case["rows"].as_array().expect("rows");
+        let last = &rows[rows.len() - 1];
+        let straight = format!("points = [[0, 0, 0], [{}, 0, {}]]", number(&last[1]), number(&last[2]));
+        for ends in [&[0][..], &[1], &[0, 1]] {
+            for (n, within) in [(5, 1.5e-4), (10, 1e-4), (20, 1e-4)] {
+                for part in [0.01, 0.05, 0.1] {
+                    let d = part * length;
+                    let laid =
+                        |l: &str| if l.trim().starts_with("curve") { straight.clone() } else { l.into() };
+                    let text: Vec<String> = fed(&case, ends, d, n).lines().map(laid).collect();
+                    let model = scene(&text.join("\n")).build().unwrap_or_else(|e| panic!("{e}"));
+                    let mut state = model.state();
+                    for &end in ends {
+                        let boundary =
+                            model.part("line").and_then(|line| line.boundary(end)).expect("a boundary");
+                        state.q[boundary.q] += boundary.sign * d;
+                    }
+                    state.t = 500.0;
+                    let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
+                    let what = format!("{} {ends:?}, {n} elements, {d} m", case["name"]);
+                    statics.find(&mut state, true).unwrap_or_else(|e| panic!("{what}: {e}"));
+                    drop(statics);
+                    let (part, at) = (model.part("line").expect("line"), state.at());
+                    for row in rows {
+                        let [s, x, z] = [0, 1, 2].map(|i| number(&row[i]));
+                        let (r, _) = part.point(s, &at).expect("a place on it");
+                        let off = (r[0] - x).hypot(r[2] - z) / length;
+                        assert!(off <= within, "{what}: {off:.1e} at {s} m");
+                    }
+                }
+            }
+        }
+    }
+}

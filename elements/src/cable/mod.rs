@@ -12,6 +12,7 @@ mod directed;
 mod elastic;
 mod element;
 pub mod flow;
+mod guess;
 mod l1;
 mod l1n;
 mod l2;

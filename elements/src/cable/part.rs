@@ -2,6 +2,7 @@
 
 use super::flow::change::{self, Snapshot};
 use super::flow::{self, push};
+use super::guess;
 use super::layout::Layout;
 use super::longitudinal::Longitudinal;
 use super::output::{Reading, read};
@@ -10,7 +11,6 @@ use super::shape::{hermite, hermite_slope, natural, second};
 use super::transmitted::{self, Unstressed};
 use super::twisted::{self, Twisted};
 use super::{CableModel, CableParams};
-use ropewalk_core::model::twist::tangent;
 use ropewalk_core::{
     At, Change, ContactSpan, DeadEntry, DeadLoad, Line, Marker, Mesh, MeshState, MovingBoundary, Node,
     NodeId, Part, Per, Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
@@ -69,7 +69,7 @@ impl CablePart {
     }
 
     /// Material coordinates of the nodes [m].
-    fn material(&self, q: &[f64]) -> Cow<'_, [f64]> {
+    pub(super) fn material(&self, q: &[f64]) -> Cow<'_, [f64]> {
         match &self.line {
             None => Cow::Borrowed(&self.along),
             Some(line) => Cow::Owned((0..self.along.len()).map(|k| line.p(k, q)).collect()),
@@ -555,24 +555,13 @@ impl Line for CablePart {
     }
 
     fn straighten(&self, q: &mut [f64]) {
-        let (first, last) = (self.seats[0].0, self.seats[self.seats.len() - 1].0);
-        let from: V3<f64> = std::array::from_fn(|i| q[first + i]);
-        let mut way: V3<f64> = std::array::from_fn(|i| q[last + i] - from[i]);
-        if way.iter().all(|x| x.abs() < 1e-3 * self.length()) {
-            // ends that coincide give no direction; any will do
-            way = [1e-3 * self.length(), 0.0, 0.0];
-        }
-        let tangents: Vec<V3<f64>> = self.seats.iter().map(|s| tangent(&q[s.0..])).collect();
-        for (k, &(at, _)) in self.seats.iter().enumerate() {
-            for i in 0..3 {
-                q[at + i] = from[i] + way[i] * self.along[k] / self.length();
-                q[at + 3 + i] = way[i] / self.length();
-            }
-        }
-        if self.twisted.is_some() {
-            let seats: Vec<usize> = self.seats.iter().map(|s| s.0).collect();
-            twisted::follow(q, &seats, &tangents);
-        }
+        guess::straighten(self, q);
+    }
+    fn hang(&self, q: &mut [f64], pull: &V3<f64>) -> bool {
+        guess::hang(self, q, pull)
+    }
+    fn unfold(&self, q: &mut [f64], ends: bool) -> bool {
+        guess::unfold(self, q, ends)
     }
 
     fn twisted(&self) -> Vec<Vec<(usize, usize)>> {

@@ -5,6 +5,8 @@ use super::problem::Statics;
 use super::search::FOLD;
 use crate::model::state::State;
 
+/// How often lines are unfolded.
+const UNFOLDINGS: u32 = 3;
 /// How often the arc of a path is tried before shorter steps are.
 const ARCS: u32 = 3;
 
@@ -18,7 +20,11 @@ impl Statics<'_> {
         self.model.relabel(&mut state.q);
         self.run_material(state)?;
         let before = state.clone();
-        let found = self.seek(state, cold)?;
+        let found = match self.seek(state, cold).and_then(|found| self.unfold(state, found)) {
+            Err(e) if cold && !e.interrupted => self.find_hanging(state, &before, e),
+            found => found,
+        };
+        let found = found.inspect_err(|_| state.clone_from(&before))?;
         self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
         let mut found = found;
         if self.model.settle(state) {
@@ -48,6 +54,27 @@ impl Statics<'_> {
             first = self.find_straight(state, &before, first);
         }
         first.or_else(|e| self.find_otherwise(state, before, cold, e))
+    }
+
+    /// Unfolds what an iteration has folded within elements, which no equation forbids where a line hardly resists bending, and
+    /// finds the equilibrium beside it.
+    fn unfold(&mut self, state: &mut State, mut found: Found) -> Result<Found, StaticsError> {
+        for k in 0..UNFOLDINGS {
+            if !self.turn_back(state, k == 0) {
+                return Ok(found);
+            }
+            found.add(&self.search(state, false, true, true)?);
+        }
+        if self.turn_back(&mut state.clone(), false) {
+            let why = "a line lies folded within its elements, where its tangent looks back; take more elements there";
+            return Err(self.fail(state, why, found.iterations));
+        }
+        Ok(found)
+    }
+
+    fn turn_back(&self, state: &mut State, ends: bool) -> bool {
+        let lines = self.model.parts().iter().filter_map(|p| p.line());
+        lines.fold(false, |folded, line| line.unfold(&mut state.q, ends) || folded)
     }
 
     /// A guess can lead into a fold or nowhere; straight cables between their ends rarely do.
@@ -82,6 +109,56 @@ impl Statics<'_> {
             }
             (Err(e), Err(_)) => Err(e),
         }
+    }
+
+    /// Where lines are longer than the way between their ends, straight ones are compressed, and any small disturbance folds
+    /// them: the search starts as they would sag. It comes last, for it takes no care of what lines lie on.
+    fn find_hanging(
+        &mut self,
+        state: &mut State,
+        before: &State,
+        first: StaticsError,
+    ) -> Result<Found, StaticsError> {
+        let Some(hanging) = self.hung(before) else { return Err(first) };
+        let mut found = Found { straightened: true, ..Found::default() };
+        for (cold, careful) in [(true, true), (false, true), (false, false)] {
+            let mut there = hanging.clone();
+            if let Ok(more) = self.search(&mut there, cold, careful, true)
+                && self.folded(&there) >= FOLD
+            {
+                *state = there;
+                found.add(&more);
+                return Ok(found);
+            }
+        }
+        let mut there = hanging;
+        if self.options.stable
+            && self.creep(&mut there, &mut found, false).is_ok()
+            && self.folded(&there) >= FOLD
+        {
+            *state = there;
+            return Ok(found);
+        }
+        Err(first)
+    }
+
+    /// A guess with all lines hung up by their ends as their loads pull; `None` if none of them is slack.
+    fn hung(&mut self, guess: &State) -> Option<State> {
+        let mut state = guess.clone();
+        state.lambda.fill(0.0);
+        for line in self.model.parts().iter().filter_map(|part| part.line()) {
+            line.straighten(&mut state.q);
+        }
+        self.assemble(&state, &state.q, &state.lambda, None, false);
+        let mut sags = false;
+        for (part, line) in self.model.parts().iter().filter_map(|part| Some((part, part.line()?))) {
+            // forces within a line have no sum
+            let seats = part.seats();
+            let load = |i: usize, v: usize| -self.system.residual[self.structure.position[v + i]];
+            let pull = std::array::from_fn(|i| seats.iter().map(|&(_, v)| load(i, v)).sum());
+            sags |= line.hang(&mut state.q, &pull);
+        }
+        sags.then_some(state)
     }
 
     /// Where Newton's method finds nothing from a guess: something may be free to move, or the guess is far away.
