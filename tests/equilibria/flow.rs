@@ -365,6 +365,21 @@ fn a_run_starts_from_the_equilibrium_of_its_flow_at_that_instant() {
     // what accelerates it is m u̇ = 5.9 N/m, as much as its weight
     println!("{still} {steady} {changing}");
     assert!(still < -4.0 && (steady - still).abs() < 1e-9 && (changing - still).abs() < 1e-9);
+
+    // its modes and its linear equations are those about the same shape
+    let found = |time: &str| {
+        let scene = scene(&hose("", time));
+        let modes = ropewalk::modes(&scene, &ropewalk::ModesOptions { count: 4, ..Default::default() })
+            .unwrap_or_else(|e| panic!("{e}"));
+        let linear = ropewalk::linearise(&scene, &ropewalk::LineariseOptions::default());
+        let end = modes.model.parts()[0].point(4.0, &modes.state.at()).expect("its end").0[2];
+        let frequencies: Vec<f64> = modes.modes.iter().map(|m| m.omega).collect();
+        (end, frequencies, linear.unwrap_or_else(|e| panic!("{e}")))
+    };
+    let ((a, f, l), (b, g, k)) = (found(""), found(faster));
+    assert!((a - still).abs() < 1e-9 && (b - still).abs() < 1e-9, "{a} {b}");
+    assert!(f.len() == 4 && f == g, "{f:?} {g:?}");
+    assert_eq!(l.stiffness.val(), k.stiffness.val());
 }
 
 /// A hose that hangs in water from 20 m below its surface, which is far enough for no element to feel it, open below: its wall, the pressure in it, and those to be.

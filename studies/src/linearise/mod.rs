@@ -4,7 +4,7 @@ mod files;
 
 use crate::error::Error;
 use crate::modes::balance;
-use crate::run::{NewFolder, Started, prepare};
+use crate::run::{NewFolder, Started, at_rest, prepare};
 use ropewalk_core::{Linearised, Model, State, linearise as about};
 use ropewalk_report::{RunFolder, Watch};
 use ropewalk_scene::{Analysis, Fault, Scene, SceneFile};
@@ -109,6 +109,7 @@ fn find(scene: &Scene, model: Model, options: &LineariseOptions) -> Result<Linea
             at(&done.model, &done.state)
         }
         time => {
+            let model = at_rest(scene)?.unwrap_or(model);
             let (state, _) = balance(scene, &model, time.unwrap_or(end), options.watch)?;
             at(&model, &state)
         }

@@ -5,7 +5,7 @@ mod pictures;
 mod report;
 
 use crate::error::Error;
-use crate::run::{NewFolder, prepare};
+use crate::run::{NewFolder, at_rest, prepare};
 use ropewalk_core::modes::{self as core, Critical, Mode, ModesError, OnLook};
 use ropewalk_core::statics::{Found, Statics, StaticsError};
 use ropewalk_core::{Model, SolveError, State};
@@ -131,6 +131,7 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
     if model.velocities() == 0 {
         return Err(ModesError::Held.into());
     }
+    let model = at_rest(scene)?.unwrap_or(model);
     let run = &scene.run;
     let end = if run.analysis == Analysis::Statics { run.duration } else { 0.0 };
     let time = options.time.unwrap_or(end);
