@@ -122,15 +122,10 @@ pub trait Line: Send + Sync {
     }
     /// Lays its nodes evenly along the straight line between its ends, as the start of another search for equilibrium.
     fn straighten(&self, _q: &mut [f64]) {}
-    /// Lays its nodes along a parabola between its ends that is as long as itself and sags the way the sum of its loads pulls;
-    /// whether it is longer than the way.
-    fn hang(&self, _q: &mut [f64], _pull: &V3<f64>) -> bool {
-        false
-    }
-    /// Unfolds elements: turns back tangents that look against the chords beside them, and elements that lie against the
-    /// tangents at both ends; whether there were any. Of the tangents at its ends, which may be held, only with `ends`.
-    fn unfold(&self, _q: &mut [f64], _ends: bool) -> bool {
-        false
+    /// Turns round what is folded inside its elements, as no cable is, and tells where the first of that was: unstretched
+    /// arc length from the start [m]. Another search for equilibrium begins there.
+    fn unfold(&self, _q: &mut [f64]) -> Option<f64> {
+        None
     }
     /// First coordinate and velocity of its nodes, if it can be twisted and they are [`NodeKind::Twist`](crate::NodeKind): in
     /// order along each piece of it, between splices.

@@ -12,7 +12,6 @@ mod directed;
 mod elastic;
 mod element;
 pub mod flow;
-mod guess;
 mod l1;
 mod l1n;
 mod l2;
@@ -47,6 +46,7 @@ pub(crate) mod transmitted;
 pub mod transverse;
 mod twisted;
 mod twisting;
+mod unfold;
 
 pub use bending_damping::{BendingDamping, BendingDampingLanes};
 pub use damping::{AxialDamping, AxialDampingLanes};

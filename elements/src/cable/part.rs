@@ -2,7 +2,6 @@
 
 use super::flow::change::{self, Snapshot};
 use super::flow::{self, push};
-use super::guess;
 use super::layout::Layout;
 use super::longitudinal::Longitudinal;
 use super::output::{Reading, read};
@@ -10,7 +9,9 @@ use super::section::Section;
 use super::shape::{hermite, hermite_slope, natural, second};
 use super::transmitted::{self, Unstressed};
 use super::twisted::{self, Twisted};
+use super::unfold::{Between, unfold};
 use super::{CableModel, CableParams};
+use ropewalk_core::model::twist::tangent;
 use ropewalk_core::{
     At, Change, ContactSpan, DeadEntry, DeadLoad, Line, Marker, Mesh, MeshState, MovingBoundary, Node,
     NodeId, Part, Per, Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
@@ -69,7 +70,7 @@ impl CablePart {
     }
 
     /// Material coordinates of the nodes [m].
-    pub(super) fn material(&self, q: &[f64]) -> Cow<'_, [f64]> {
+    fn material(&self, q: &[f64]) -> Cow<'_, [f64]> {
         match &self.line {
             None => Cow::Borrowed(&self.along),
             Some(line) => Cow::Owned((0..self.along.len()).map(|k| line.p(k, q)).collect()),
@@ -555,13 +556,51 @@ impl Line for CablePart {
     }
 
     fn straighten(&self, q: &mut [f64]) {
-        guess::straighten(self, q);
+        let (first, last) = (self.seats[0].0, self.seats[self.seats.len() - 1].0);
+        let mesh = self.material(q).into_owned();
+        let length = mesh[mesh.len() - 1] - mesh[0];
+        let from: V3<f64> = std::array::from_fn(|i| q[first + i]);
+        let mut way: V3<f64> = std::array::from_fn(|i| q[last + i] - from[i]);
+        if way.iter().all(|x| x.abs() < 1e-3 * length) {
+            // ends that coincide give no direction; any will do
+            way = [1e-3 * length, 0.0, 0.0];
+        }
+        let tangents: Vec<V3<f64>> = self.seats.iter().map(|s| tangent(&q[s.0..])).collect();
+        for (k, &(at, _)) in self.seats.iter().enumerate() {
+            for i in 0..3 {
+                q[at + i] = from[i] + way[i] * (mesh[k] - mesh[0]) / length;
+                q[at + 3 + i] = way[i] / length;
+            }
+        }
+        if self.twisted.is_some() {
+            let seats: Vec<usize> = self.seats.iter().map(|s| s.0).collect();
+            twisted::follow(q, &seats, &tangents);
+        }
     }
-    fn hang(&self, q: &mut [f64], pull: &V3<f64>) -> bool {
-        guess::hang(self, q, pull)
-    }
-    fn unfold(&self, q: &mut [f64], ends: bool) -> bool {
-        guess::unfold(self, q, ends)
+
+    fn unfold(&self, q: &mut [f64]) -> Option<f64> {
+        let mesh = self.material(q).into_owned();
+        let of = |k: usize| Between { first: k, length: mesh[k + 1] - mesh[k] };
+        let elements: Vec<Between> = self.layout.elements().map(of).collect();
+        let seat = |s: &(usize, usize)| -> [f64; 6] { std::array::from_fn(|i| q[s.0 + i]) };
+        let mut places: Vec<[f64; 6]> = self.seats.iter().map(seat).collect();
+        // what pushes by no force has no strain of its own where it is slack
+        let stiff = |e: &Between| {
+            let section = self.layout.section(e.first);
+            !section.tension_only && section.axial_force.is_none()
+        };
+        let folded: Vec<bool> = elements.iter().map(|e| stiff(e) && e.is_folded(&places)).collect();
+        let first = elements[folded.iter().position(|is| *is)?].first;
+        unfold(&mut places, &elements, &folded);
+        let tangents: Vec<V3<f64>> = self.seats.iter().map(|s| tangent(&q[s.0..])).collect();
+        for (place, seat) in places.iter().zip(&self.seats) {
+            q[seat.0..seat.0 + 6].copy_from_slice(place);
+        }
+        if self.twisted.is_some() {
+            let seats: Vec<usize> = self.seats.iter().map(|s| s.0).collect();
+            twisted::follow(q, &seats, &tangents);
+        }
+        Some(mesh[first] - mesh[0])
     }
 
     fn twisted(&self) -> Vec<Vec<(usize, usize)>> {

@@ -38,13 +38,6 @@ pub(crate) struct Done {
 /// A label with calls and time.
 type Spent = (String, u64, Duration);
 
-/// The model of a scene in which equilibria are looked for, where that is another: a flow that starts or stops pushes the cable
-/// along, which is no equilibrium, so that it is steady there.
-pub(crate) fn at_rest(scene: &Scene) -> Result<Option<Model>, Error> {
-    let flows = scene.forces.iter().any(|f| f.typetag_name() == "internal_flow");
-    Ok(if flows { Some(scene.build_at_rest()?) } else { None })
-}
-
 /// An analysis that is ready to go.
 pub enum Started {
     /// Motion in time, and what is to be said about the equilibrium that it starts from.
@@ -53,6 +46,14 @@ pub enum Started {
     Statics(Box<Done>),
     /// A problem of its own, beside a model without anything in it.
     Process(Box<dyn Process>, Box<Done>),
+}
+
+/// The model in which a scene that runs in time has its equilibria, where it isn't the one that runs: a flow that starts or
+/// stops pushes its hose along, which is no equilibrium, but at rest it is steady.
+pub(crate) fn steady(scene: &Scene) -> Result<Option<Model>, Error> {
+    let flows = scene.forces.iter().any(|f| f.typetag_name() == "internal_flow");
+    let changes = flows && scene.run.analysis == Analysis::Dynamics;
+    Ok(if changes { Some(scene.build_at_rest()?) } else { None })
 }
 
 impl Started {
@@ -70,7 +71,7 @@ impl Started {
         let (mut state, mut flutter, mut remarks) = (model.state(), 0.0, Vec::new());
         if run.from_equilibrium {
             state.v.fill(0.0);
-            let steady = at_rest(scene)?;
+            let steady = steady(scene)?;
             let mut search =
                 Statics::new(steady.as_ref().unwrap_or(&model), &scene.statics).map_err(no_memory)?;
             search.stop_if(move || watch.is_over());

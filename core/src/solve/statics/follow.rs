@@ -5,8 +5,8 @@ use super::problem::Statics;
 use super::search::FOLD;
 use crate::model::state::State;
 
-/// How often lines are unfolded.
-const UNFOLDINGS: u32 = 3;
+/// How often a search goes on from what was folded.
+const UNFOLDED: u32 = 8;
 /// How often the arc of a path is tried before shorter steps are.
 const ARCS: u32 = 3;
 
@@ -20,11 +20,7 @@ impl Statics<'_> {
         self.model.relabel(&mut state.q);
         self.run_material(state)?;
         let before = state.clone();
-        let found = match self.seek(state, cold).and_then(|found| self.unfold(state, found)) {
-            Err(e) if cold && !e.interrupted => self.find_hanging(state, &before, e),
-            found => found,
-        };
-        let found = found.inspect_err(|_| state.clone_from(&before))?;
+        let found = self.seek(state, cold)?;
         self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
         let mut found = found;
         if self.model.settle(state) {
@@ -46,6 +42,7 @@ impl Statics<'_> {
             state.clone_from(&before);
             first = self.search(state, false, true, true);
         }
+        first = first.and_then(|found| self.unfold(state, found));
         let suspicious = match &first {
             Ok(_) => cold && self.options.stable && self.folded(state) < FOLD,
             Err(_) => cold,
@@ -54,27 +51,6 @@ impl Statics<'_> {
             first = self.find_straight(state, &before, first);
         }
         first.or_else(|e| self.find_otherwise(state, before, cold, e))
-    }
-
-    /// Unfolds what an iteration has folded within elements, which no equation forbids where a line hardly resists bending, and
-    /// finds the equilibrium beside it.
-    fn unfold(&mut self, state: &mut State, mut found: Found) -> Result<Found, StaticsError> {
-        for k in 0..UNFOLDINGS {
-            if !self.turn_back(state, k == 0) {
-                return Ok(found);
-            }
-            found.add(&self.search(state, false, true, true)?);
-        }
-        if self.turn_back(&mut state.clone(), false) {
-            let why = "a line lies folded within its elements, where its tangent looks back; take more elements there";
-            return Err(self.fail(state, why, found.iterations));
-        }
-        Ok(found)
-    }
-
-    fn turn_back(&self, state: &mut State, ends: bool) -> bool {
-        let lines = self.model.parts().iter().filter_map(|p| p.line());
-        lines.fold(false, |folded, line| line.unfold(&mut state.q, ends) || folded)
     }
 
     /// A guess can lead into a fold or nowhere; straight cables between their ends rarely do.
@@ -92,7 +68,8 @@ impl Statics<'_> {
                 line.straighten(&mut other.q);
             }
         }
-        let second = self.search(&mut other, true, true, true);
+        let second =
+            self.search(&mut other, true, true, true).and_then(|found| self.unfold(&mut other, found));
         match (first, second) {
             (Ok(found), Ok(again)) if self.folded(&other) <= self.folded(state) => {
                 _ = again;
@@ -111,54 +88,30 @@ impl Statics<'_> {
         }
     }
 
-    /// Where lines are longer than the way between their ends, straight ones are compressed, and any small disturbance folds
-    /// them: the search starts as they would sag. It comes last, for it takes no care of what lines lie on.
-    fn find_hanging(
-        &mut self,
-        state: &mut State,
-        before: &State,
-        first: StaticsError,
-    ) -> Result<Found, StaticsError> {
-        let Some(hanging) = self.hung(before) else { return Err(first) };
-        let mut found = Found { straightened: true, ..Found::default() };
-        for (cold, careful) in [(true, true), (false, true), (false, false)] {
-            let mut there = hanging.clone();
-            if let Ok(more) = self.search(&mut there, cold, careful, true)
-                && self.folded(&there) >= FOLD
-            {
-                *state = there;
-                found.add(&more);
+    /// Searches on from what was found for as long as it is folded inside elements, which no cable is.
+    fn unfold(&mut self, state: &mut State, mut found: Found) -> Result<Found, StaticsError> {
+        for _ in 0..UNFOLDED {
+            if !self.options.stable {
                 return Ok(found);
             }
+            let mut other = state.clone();
+            let lines = self.model.parts().iter().filter_map(|part| Some((part.name(), part.line()?)));
+            let folds = lines.filter_map(|(name, line)| Some((name, line.unfold(&mut other.q)?)));
+            let Some((name, s)) = folds.collect::<Vec<_>>().into_iter().next() else { return Ok(found) };
+            let why = format!("`{name}` is folded at {s:.4} m, inside an element");
+            other.lambda.fill(0.0);
+            let mut more = self.search(&mut other, false, true, true);
+            if more.is_err() {
+                // stiff lines that were laid anew are far from their length
+                let mut cold = State { lambda: vec![0.0; other.lambda.len()], ..other.clone() };
+                more = self.search(&mut cold, true, true, true);
+                other = cold;
+            }
+            found.add(&more.map_err(|e| StaticsError { why, ..e })?);
+            *state = other;
         }
-        let mut there = hanging;
-        if self.options.stable
-            && self.creep(&mut there, &mut found, false).is_ok()
-            && self.folded(&there) >= FOLD
-        {
-            *state = there;
-            return Ok(found);
-        }
-        Err(first)
-    }
-
-    /// A guess with all lines hung up by their ends as their loads pull; `None` if none of them is slack.
-    fn hung(&mut self, guess: &State) -> Option<State> {
-        let mut state = guess.clone();
-        state.lambda.fill(0.0);
-        for line in self.model.parts().iter().filter_map(|part| part.line()) {
-            line.straighten(&mut state.q);
-        }
-        self.assemble(&state, &state.q, &state.lambda, None, false);
-        let mut sags = false;
-        for (part, line) in self.model.parts().iter().filter_map(|part| Some((part, part.line()?))) {
-            // forces within a line have no sum
-            let seats = part.seats();
-            let load = |i: usize, v: usize| -self.system.residual[self.structure.position[v + i]];
-            let pull = std::array::from_fn(|i| seats.iter().map(|&(_, v)| load(i, v)).sum());
-            sags |= line.hang(&mut state.q, &pull);
-        }
-        sags.then_some(state)
+        let why = "what was found is folded inside elements again and again";
+        Err(self.fail(state, why, found.iterations))
     }
 
     /// Where Newton's method finds nothing from a guess: something may be free to move, or the guess is far away.
@@ -179,12 +132,14 @@ impl Statics<'_> {
             && let Ok(more) = self.search(state, cold, cold, true)
         {
             found.add(&more);
-            return Ok(found);
+            return self.unfold(state, found);
         }
         self.free.clear();
         if cold && self.options.stable {
             state.clone_from(&before);
-            if self.creep(state, &mut found, true).is_ok() {
+            if self.creep(state, &mut found, true).is_ok()
+                && let Ok(found) = self.unfold(state, found)
+            {
                 return Ok(found);
             }
         }
