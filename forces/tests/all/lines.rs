@@ -1,13 +1,13 @@
 //! Lines that touch each other: force and tangent against differences of the energy, closed forms, what is left out.
 
 use crate::random::Random;
-use ropewalk_core::rotation::{cross, exp};
+use ropewalk_core::rotation::{cross, exp, matrix, times};
 use ropewalk_core::testing::{dense, difference};
 use ropewalk_core::{
     At, ContactSpan, Couples, Foresees, Node, NodeKind, Shows, SpanLine, Term, V3, Weights, Width, dot,
     retract,
 };
-use ropewalk_forces::contact::{ContactLaw, Damping, LineContact, Touching, nearest_points};
+use ropewalk_forces::contact::{ContactLaw, Damping, Friction, LineContact, Touching, nearest_points};
 use serde_json::Value;
 use std::f64::consts::PI;
 
@@ -407,5 +407,190 @@ fn the_nearest_points_of_two_curves_are_found() {
         let off = (distance - number(&case["distance"])).abs();
         println!("{distance:.9} m, off by {off:.1e}");
         assert!(off < 1e-9, "{distance} at {xi:?} instead of {case}");
+    }
+}
+
+/// The same places with friction, as they have taken hold where they are now; and what they remember.
+fn rubbing(w: &World, law: ContactLaw) -> (LineContact, Vec<f64>) {
+    let contact = w.contact(law);
+    let size = contact.memory();
+    let contact = contact.with_friction(&vec![0.3; w.lines.len()], 0).unwrap_or_else(|e| panic!("{e}"));
+    let (mut memory, zero) = (vec![0.0; size], vec![0.0; w.v.len()]);
+    contact.remembers().unwrap().remember(&w.at(&w.q, &zero), &mut memory);
+    (contact, memory)
+}
+
+fn rough(mu: f64, damping: Damping) -> ContactLaw {
+    ContactLaw { friction: Some(Friction::new(mu)), damping, ..ContactLaw::default() }
+}
+
+#[test]
+fn friction_has_exact_tangents_and_moves_nothing_as_a_whole() {
+    let mut r = Random(17);
+    // pulled a little, and far beyond what holds; steep, shallow and parallel crossings; a hull below
+    for (far, slipping) in [(1e-5, 0.0), (2e-3, 1.0)] {
+        for (angle, hull) in [(1.2_f64, false), (2.4, false), (0.3, false), (0.0, false), (0.9, true)] {
+            let mut w = crossing(angle, 5e-4);
+            if hull {
+                w.hull([0.4, 0.0, -0.019], [0.1, 0.0, 0.7], 0.9);
+            }
+            w.shake(&mut r, 1e-5);
+            let (contact, memory) = rubbing(&w, rough(0.4, Damping::HuntCrossley(0.3)));
+            let held: Vec<f64> = w.q.clone();
+            // the second line is drawn along and across
+            for n in w.nodes[2..4].iter().filter(|n| n.kind == NodeKind::Slope) {
+                w.q[n.q] += far;
+                w.q[n.q + 1] += 0.7 * far;
+            }
+            assert!(w.q != held);
+            w.v.iter_mut().for_each(|v| *v *= 1e-2 * far / 2e-3);
+            let shown = {
+                let mut out = Vec::new();
+                let zero = vec![0.0; w.v.len()];
+                contact.observe(&At { internal: &memory, ..w.at(&w.q, &zero) }, &mut out);
+                out
+            };
+            println!("{angle}, hull {hull}, {far}: {shown:?}");
+            assert!(shown[3] > 0.0, "nothing holds: {shown:?}");
+            assert!((shown[4] - slipping).abs() <= if slipping > 0.0 { 0.5 } else { 0.0 }, "{shown:?}");
+            let error = remembered_error(&contact, &w, &memory);
+            let off = unbalanced(&contact, &w, &memory);
+            println!("  tangent {error:.1e}, balance {off:.1e}");
+            assert!(error <= 2e-3, "{angle}, {far}: {error:.1e}");
+            assert!(off <= 1e-12, "{angle}, {far}: {off:.1e}");
+        }
+    }
+}
+
+/// Stiffness and damping against differences along increments.
+fn remembered_error(contact: &LineContact, w: &World, memory: &[f64]) -> f64 {
+    let n = w.v.len();
+    let zero = vec![0.0; n];
+    let residual = |q: &[f64], v: &[f64]| {
+        let at = At { t: 0.0, q, v, a: &zero, internal: memory, relaxed: None };
+        dense(contact, &w.nodes, &at, Weights::default(), Width::One).0
+    };
+    let mut worst = 0.0_f64;
+    let kinds = [Weights { q: 1.0, v: 0.0, a: 0.0 }, Weights { q: 0.0, v: 1.0, a: 0.0 }];
+    for (kind, weights) in kinds.into_iter().enumerate() {
+        let at = At { internal: memory, ..w.at(&w.q, &zero) };
+        let (_, k) = dense(contact, &w.nodes, &at, weights, Width::One);
+        let size = k.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        assert!(size > 0.0);
+        for j in 0..n {
+            let scale = if kind == 0 { 1e-3 } else { 1e-1 };
+            let column = difference(|h| {
+                let mut d = vec![0.0; n];
+                d[j] = scale * h;
+                let (mut q, mut v) = (w.q.clone(), w.v.clone());
+                if kind == 0 {
+                    retract(&w.nodes, &w.q, &d, &mut q);
+                } else {
+                    v[j] += scale * h;
+                }
+                residual(&q, &v).into_iter().map(|r| r / scale).collect()
+            });
+            for (i, x) in column.iter().enumerate() {
+                let off = (k[i][j] - x).abs() / size;
+                assert!(off.is_finite());
+                worst = worst.max(off);
+            }
+        }
+    }
+    worst
+}
+
+/// The sum of forces and moments, in parts of the largest force.
+fn unbalanced(contact: &LineContact, w: &World, memory: &[f64]) -> f64 {
+    let zero = vec![0.0; w.v.len()];
+    let at = At { internal: memory, ..w.at(&w.q, &zero) };
+    let (f, _) = dense(contact, &w.nodes, &at, Weights::default(), Width::One);
+    let (mut sum, mut moment, mut size) = ([0.0; 3], [0.0; 3], 0.0_f64);
+    for n in &w.nodes {
+        let three = |x: &[f64], k: usize| [x[k], x[k + 1], x[k + 2]];
+        let (force, second) = (three(&f, n.v), three(&f, n.v + 3));
+        let of_second = match n.kind {
+            NodeKind::Frame => {
+                times(&matrix(&[w.q[n.q + 3], w.q[n.q + 4], w.q[n.q + 5], w.q[n.q + 6]]), &second)
+            }
+            _ => cross(&three(&w.q, n.q + 3), &second),
+        };
+        let turn = cross(&three(&w.q, n.q), &force);
+        for i in 0..3 {
+            sum[i] += force[i];
+            moment[i] += turn[i] + of_second[i];
+            size = size.max(force[i].abs());
+        }
+    }
+    (dot(&sum, &sum) + dot(&moment, &moment)).sqrt() / size
+}
+
+#[test]
+fn friction_turns_with_what_it_holds() {
+    let mut r = Random(23);
+    let mut w = crossing(1.1, 5e-4);
+    w.shake(&mut r, 1e-5);
+    let (contact, memory) = rubbing(&w, rough(0.4, Damping::None));
+    w.nodes[2..4].iter().for_each(|n| w.q[n.q] += 1e-3);
+    w.v.fill(0.0);
+    let zero = vec![0.0; w.v.len()];
+    let force = |w: &World, contact: &LineContact| {
+        dense(
+            contact,
+            &w.nodes,
+            &At { internal: &memory, ..w.at(&w.q, &zero) },
+            Weights::default(),
+            Width::One,
+        )
+        .0
+    };
+    let before = force(&w, &contact);
+    let r = matrix(&exp([0.4, -1.1, 0.7]));
+    let turned =
+        |x: &[f64]| -> Vec<f64> { x.chunks_exact(3).flat_map(|x| times(&r, &[x[0], x[1], x[2]])).collect() };
+    w.q = turned(&w.q);
+    w.nodes.iter().for_each(|n| (0..3).for_each(|i| w.q[n.q + i] += [3.0, -2.0, 1.0][i]));
+    let (wanted, got) = (turned(&before), force(&w, &contact));
+    let size = before.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    for (a, b) in got.iter().zip(&wanted) {
+        // depths are differences of places that are farther away now
+        assert!((a - b).abs() <= 1e-8 * size, "{a} instead of {b}");
+    }
+}
+
+#[test]
+fn slip_is_held_by_coulombs_limit_and_no_more() {
+    // two lines that cross: one is drawn along itself, along the other, and askew
+    for way in [[1.0, 0.0], [0.0, 1.0], [0.6, -0.8_f64]] {
+        let mut w = World::default();
+        w.straight([-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], 0.25, 4).straight(
+            [0.013, -0.5, THICK - 2e-4],
+            [0.0, 1.0, 0.0],
+            0.25,
+            4,
+        );
+        let (contact, memory) = rubbing(&w, rough(0.3, Damping::None));
+        let upper = w.nodes[5..].to_vec();
+        let k = 1e-3;
+        upper.iter().for_each(|n| (0..2).for_each(|i| w.q[n.q + i] += k * way[i]));
+        let zero = vec![0.0; w.v.len()];
+        let (f, _) = dense(
+            &contact,
+            &w.nodes,
+            &At { internal: &memory, ..w.at(&w.q, &zero) },
+            Weights::default(),
+            Width::One,
+        );
+        let total: V3<f64> = std::array::from_fn(|i| upper.iter().map(|n| f[n.v + i]).sum());
+        // the residual pulls back; what presses is counted place by place, each along its own normal
+        let mut out = Vec::new();
+        contact.observe(&At { internal: &memory, ..w.at(&w.q, &zero) }, &mut out);
+        let (normal, along) = (out[0], total[0] * way[0] + total[1] * way[1]);
+        assert!((out[3] / (0.3 * normal) - 1.0).abs() <= 1e-12 && out[4] == 1.0, "{out:?}");
+        assert!((-total[2] / normal - 1.0).abs() <= 3e-3, "{total:?}");
+        let across = total[0] * way[1] - total[1] * way[0];
+        println!("{way:?}: {:.3e} off, {across:.1e} N", along / (0.3 * normal) - 1.0);
+        assert!(normal > 1.0 && (along / (0.3 * normal) - 1.0).abs() <= 1e-9, "{along} N of {normal} N");
+        assert!(across.abs() <= 1e-9 * normal, "{across} N");
     }
 }

@@ -181,6 +181,22 @@ pub(crate) struct Scratch {
     pub found: Vec<[f64; 2]>,
 }
 
+impl Scratch {
+    /// Cuts what was found at the borders of so many equal cells.
+    pub fn cut(&mut self, cells: usize) {
+        let whole = std::mem::take(&mut self.found);
+        for [mut from, to] in whole {
+            for border in (1..cells).map(|k| k as f64 / cells as f64) {
+                if from < border && border < to {
+                    self.found.push([from, border]);
+                    from = border;
+                }
+            }
+            self.found.push([from, to]);
+        }
+    }
+}
+
 /// A cubic number: its values and its derivatives at 0 and 1.
 struct Heights([f64; 4]);
 
