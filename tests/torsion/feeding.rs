@@ -60,6 +60,42 @@ fn a_coil_brings_a_turn_per_wrap() {
     }
 }
 
+/// A rope whose torque and tension are coupled, and a shaft that swings while it spins, from a coil: what comes and goes over the
+/// end is all that changes their energy.
+#[test]
+fn ropes_and_shafts_that_feed_keep_their_energy() {
+    for (more, aside) in [
+        ("torque_tension = 5", 0.0),
+        ("gyroscopic = true", 0.3),
+        ("torque_tension = -8, gyroscopic = true", 0.3),
+    ] {
+        let text = FED
+            .replace(
+                "rotary_inertia = \"$inertia\"",
+                &format!("axial_retardation_time = 1e-2, rotary_inertia = \"$inertia\", {more}"),
+            )
+            .replace(
+                "velocity = [0,0,-0.5]\nmass",
+                &format!("velocity = [{aside},0,-0.5]\nangular_velocity = [0, {aside}, 9]\nmass"),
+            )
+            .replace("ei = 5", "ei = 0.02")
+            + "[[forces]]\ntype = \"gravity\"";
+        for wrap in ["2 m", "1e9 m"] {
+            let set = [format!("wrap={wrap}"), "inertia=1e-3".into(), "n=4".into()];
+            let lost = [0.01, 0.0025].map(|h| {
+                let text =
+                    text.replace("controlled = { tolerance = \"$tol\" }", &format!("fixed = {{ h = {h} }}"));
+                let text = text.replace("duration = 10", "duration = 3");
+                let h = run(&text, &set);
+                println!("{:?}", h.summary().energy);
+                h.summary().energy.imbalance.abs()
+            });
+            println!("{more} {wrap}: {lost:?}");
+            assert!(lost[1] <= 1e-4 && lost[0] >= 8.0 * lost[1], "{more} {wrap}: {lost:?}");
+        }
+    }
+}
+
 /// From a coil at one end to a drum at the other that takes cable with the twist that it has: the twist of the cable between them
 /// goes towards a turn per wrap, as a first-order lag; the grip of the drum tells how much of it slips.
 #[test]

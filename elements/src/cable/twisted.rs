@@ -1,7 +1,7 @@
 //! A cable with torsion: how its sections are laid, what is added to its elements, and what can be observed of it.
 
 use super::directed::{Directed, DirectedParams, curvature};
-use super::flow::{FlowTorsion, Line};
+use super::flow::{FlowSpin, FlowTorqueTension, FlowTorsion, Line};
 use super::layout::Layout;
 use super::quadrature::{MOST, Point, Quadrature, Rule};
 use super::rest::STRAIGHT;
@@ -244,19 +244,8 @@ impl CableSpec {
             // told with what else a winch can't feed
             return Ok(());
         }
-        let refused = [
-            ("section.ei", self.section.ei.has_direction(), "bends alike to all sides: give it one `ei`"),
-            (
-                "section.torque_tension",
-                self.section.torque_tension != 0.0,
-                "doesn't couple torque with tension: leave `torque_tension` out",
-            ),
-            (
-                "section.gyroscopic",
-                self.section.gyroscopic,
-                "isn't turned aside by its spin: leave `gyroscopic` out",
-            ),
-        ];
+        let refused =
+            [("section.ei", self.section.ei.has_direction(), "bends alike to all sides: give it one `ei`")];
         match refused.into_iter().find(|(_, is, _)| *is) {
             Some((field, _, why)) => Err(BuildError::at(field, format!("what a winch feeds {why}"))),
             None => Ok(()),
@@ -327,9 +316,28 @@ impl Twisted {
             if let Some(line) = flows(k) {
                 let boundaries = line.boundaries.iter().map(|(_, boundary)| boundary.node);
                 let on: Vec<NodeId> = [nodes[k], nodes[k + 1]].into_iter().chain(boundaries).collect();
-                match line.boundaries.len() {
-                    1 => b.element(self.flowing::<1>(k, line), &on)?,
-                    _ => b.element(self.flowing::<2>(k, line), &on)?,
+                let one = line.boundaries.len() == 1;
+                if one {
+                    b.element(self.flowing::<1>(k, line), &on)?;
+                } else {
+                    b.element(self.flowing::<2>(k, line), &on)?;
+                }
+                match (self.lay != 0.0, one) {
+                    (true, true) => b.element(self.flowing_coupled::<1>(k, line), &on)?,
+                    (true, false) => b.element(self.flowing_coupled::<2>(k, line), &on)?,
+                    _ => {}
+                }
+                let rho_j = self.bars[k].rho_j;
+                match (self.bars[k].gyroscopic, one) {
+                    (true, true) => {
+                        let (by, turns) = (line.embedding(k), line.turns(k));
+                        b.element(FlowSpin::<1> { rho_j, by, turns }, &on)?;
+                    }
+                    (true, false) => {
+                        let (by, turns) = (line.embedding(k), line.turns(k));
+                        b.element(FlowSpin::<2> { rho_j, by, turns }, &on)?;
+                    }
+                    _ => {}
                 }
                 continue;
             }
@@ -372,6 +380,21 @@ impl Twisted {
             by: line.embedding(k),
             turns: line.turns(k),
             grip: line.grips(k),
+        }
+    }
+
+    /// What couples its torque and its tension.
+    fn flowing_coupled<const F: usize>(&self, k: usize, line: &Line) -> FlowTorqueTension<F> {
+        let mut open = [0.0; 2];
+        line.opens(k).for_each(|(end, _)| open[end] = 1.0);
+        FlowTorqueTension {
+            gj: self.bars[k].gj,
+            lay: self.lay,
+            twist0: self.per_length,
+            by: line.embedding(k),
+            turns: line.turns(k),
+            open,
+            points: self.points,
         }
     }
 
@@ -421,7 +444,8 @@ impl Twisted {
         let mut twist = Share::<f64, 14>::zero();
         let local = Local { q: pair(&x), v: [0.0; 14], a: [0.0; 14], last: [0.0; 14], relaxed: None };
         match self.coupled(k, l) {
-            Some(own) => {
+            Some(mut own) => {
+                own.params.twist0 -= self.turned(k, q);
                 let lanes =
                     TorqueTension::lanes::<f64>(&ropewalk_core::Batch::of(std::slice::from_ref(&own)));
                 TorqueTension::add::<f64, false>(&lanes, &local, &w, &mut twist);
