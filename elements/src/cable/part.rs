@@ -221,7 +221,7 @@ impl CablePart {
     /// Bending moment [N m], of which an element reads this much.
     fn moment(&self, k: usize, l: f64, xi: f64, read: f64, at: &At<'_>) -> f64 {
         match &self.twisted {
-            Some(twisted) if twisted.is_directed() => {
+            Some(twisted) if twisted.is_directed(k) => {
                 let [_, moment] = twisted.bends(k, l, xi, at.q, self.around(k));
                 moment[0].hypot(moment[1])
             }
