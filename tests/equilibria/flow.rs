@@ -320,51 +320,84 @@ fn the_wall_carries_what_friction_and_its_own_weight_ask_for() {
     }
 }
 
+/// A hose that hangs from a clamp and carries a flow, such that its inertia would weigh as much as the hose where it speeds up
+/// as `FASTER` says.
+fn hose(more: &str, time: &str) -> String {
+    format!(
+        r#"
+        run = {{ duration = 1e-3, output = 1e-3, {more} }}
+        [[elements]]
+        type = "cable"
+        name = "hose"
+        points = [[0, 0, 0], [0, 0, -4]]
+        elements = 4
+        section = {{ mass = 0.5, ea = 1e4, ei = 1 }}
+        [[constraints]]
+        type = "clamp"
+        name = "top"
+        marker = "hose.start"
+        [[forces]]
+        type = "gravity"
+        [[forces]]
+        type = "internal_flow"
+        cable = "hose"
+        density = 1000
+        bore = 0.02
+        speed = 3
+        {time}
+        [[records]]
+        type = "position"
+        of = "hose.end"
+        "#
+    )
+}
+
+const FASTER: &str = "time = { harmonic = { mean = 1, amplitude = 0.5, frequency = 2, phase = 0 } }";
+
 /// A pump whose flow changes from the first moment on: the hose hangs at first as with the flow that it has then, and what its
 /// speeding up pushes along it is felt from then on.
 #[test]
 fn a_run_starts_from_the_equilibrium_of_its_flow_at_that_instant() {
-    let hose = |more: &str, time: &str| {
-        format!(
-            r#"
-            run = {{ duration = 1e-3, output = 1e-3, {more} }}
-            [[elements]]
-            type = "cable"
-            name = "hose"
-            points = [[0, 0, 0], [0, 0, -4]]
-            elements = 4
-            section = {{ mass = 0.5, ea = 1e4, ei = 1 }}
-            [[constraints]]
-            type = "clamp"
-            name = "top"
-            marker = "hose.start"
-            [[forces]]
-            type = "gravity"
-            [[forces]]
-            type = "internal_flow"
-            cable = "hose"
-            density = 1000
-            bore = 0.02
-            speed = 3
-            {time}
-            [[records]]
-            type = "position"
-            of = "hose.end"
-            "#
-        )
-    };
     let start = |more: &str, time: &str| {
         let history = ropewalk::simulate(&scene(&hose(more, time))).unwrap_or_else(|e| panic!("{e}"));
         history.column("hose.end.z").expect("a position")[0]
     };
-    let faster = "time = { harmonic = { mean = 1, amplitude = 0.5, frequency = 2, phase = 0 } }";
     let rest = "analysis = \"statics\"";
     let [still, steady, changing] =
-        [(rest, ""), ("from_equilibrium = true", ""), ("from_equilibrium = true", faster)]
+        [(rest, ""), ("from_equilibrium = true", ""), ("from_equilibrium = true", FASTER)]
             .map(|(more, time)| start(more, time));
     // what accelerates it is m u̇ = 5.9 N/m, as much as its weight
     println!("{still} {steady} {changing}");
     assert!(still < -4.0 && (steady - still).abs() < 1e-9 && (changing - still).abs() < 1e-9);
+}
+
+/// What speeds up is left out of what vibrates too: only then is it about an equilibrium.
+#[test]
+fn modes_and_linearised_equations_are_about_the_equilibrium_that_a_run_starts_from() {
+    let scenes =
+        [("", ""), ("", FASTER), ("analysis = \"statics\"", "")].map(|(more, time)| scene(&hose(more, time)));
+    let options = ModesOptions { count: 6, ..ModesOptions::default() };
+    let found = scenes.each_ref().map(|s| modes(s, &options).unwrap_or_else(|e| panic!("{e}")));
+    let about = ropewalk::LineariseOptions::default();
+    let linear = scenes.each_ref().map(|s| ropewalk::linearise(s, &about).unwrap_or_else(|e| panic!("{e}")));
+    let (still, of) = (&found[0], &linear[0]);
+    assert!(still.modes.len() == 6 && !still.unstable);
+    for (other, equations) in found.iter().zip(&linear).skip(1) {
+        let moved = still.state.q.iter().zip(&other.state.q).map(|(a, b)| (a - b).abs());
+        let changed = still
+            .modes
+            .iter()
+            .zip(&other.modes)
+            .map(|(a, b)| (a.growth - b.growth).hypot(a.omega - b.omega) / a.omega);
+        let (moved, changed): (Vec<f64>, Vec<f64>) = (moved.collect(), changed.collect());
+        println!("{moved:?} {changed:?}");
+        assert!(moved.iter().all(|x| *x <= 1e-9) && changed.iter().all(|x| *x <= 1e-7));
+        for (a, b) in [(&of.stiffness, &equations.stiffness), (&of.damping, &equations.damping)] {
+            let largest = a.val().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let same = a.val().iter().zip(b.val()).all(|(a, b)| (a - b).abs() <= 1e-9 * largest);
+            assert!(largest > 0.0 && a.val().len() == b.val().len() && same);
+        }
+    }
 }
 
 /// A hose that hangs in water from 20 m below its surface, which is far enough for no element to feel it, open below: its wall, the pressure in it, and those to be.

@@ -109,6 +109,44 @@ fn equilibrium(scene: &Scene) -> (Model, State, Found) {
     (model, state, found)
 }
 
+/// A slope that points backwards strains none of the points at which an element is asked, if a third of its length is missing:
+/// an equilibrium of the equations, and of no cable.
+#[test]
+fn a_search_leaves_what_is_folded_inside_elements() {
+    for (turned, back) in [(7, false), (0, false), (19, true), (3, true)] {
+        let model =
+            hung(20, 12.0, [10.0, 0.0, -1.0], Section::new(2.0, 1e5, 0.0), false).build().expect("model");
+        let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
+        let mut sound = model.state();
+        statics.find(&mut sound, true).unwrap_or_else(|e| panic!("{e}"));
+        let mut state = sound.clone();
+        let seats = model.part("cable").expect("cable").seats();
+        let seat = |k: usize| seats[k].0;
+        if back {
+            // a chord of a third of its length backwards, both slopes as they were
+            let chord: [f64; 3] =
+                std::array::from_fn(|i| sound.q[seat(turned + 1) + i] - sound.q[seat(turned) + i]);
+            for k in turned + 1..seats.len() - 1 {
+                (0..3).for_each(|i| state.q[seat(k) + i] -= 4.0 / 3.0 * chord[i]);
+            }
+            if turned + 2 == seats.len() {
+                (0..3).for_each(|i| state.q[seat(turned) + i] += 4.0 / 3.0 * chord[i]);
+            }
+        } else {
+            (3..6).for_each(|i| state.q[seat(turned) + i] *= -1.0);
+        }
+        for cold in [false, true] {
+            let mut state = state.clone();
+            let found =
+                statics.find(&mut state, cold).unwrap_or_else(|e| panic!("{turned} {back} {cold}: {e}"));
+            let off = state.q.iter().zip(&sound.q).map(|(a, b)| (a - b).abs());
+            let worst = off.fold(0.0_f64, |m, x| if x <= m { m } else { x });
+            println!("{turned} {back} {cold}: {worst:e} {found:?}");
+            assert!(state.q.iter().zip(&sound.q).all(|(a, b)| (a - b).abs() <= 1e-7));
+        }
+    }
+}
+
 #[test]
 fn elastic_catenaries_of_irvine_from_straight_and_folded_guesses() {
     // L0, span, h, EA; H, tension at the upper support, midpoint

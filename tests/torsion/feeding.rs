@@ -60,6 +60,33 @@ fn a_coil_brings_a_turn_per_wrap() {
     }
 }
 
+/// A rope whose torque and tension are coupled, and a shaft that swings while it spins, from a coil: what comes and goes over the
+/// end is all that changes their energy.
+#[test]
+fn ropes_and_shafts_that_feed_keep_their_energy() {
+    let forces = "\n[[forces]]\ntype = \"gravity\"\n[[forces]]\ntype = \"point_force\"\nmarker = \"disc\"\nforce = [1, 0.5, 0]";
+    for more in ["torque_tension = 2", "gyroscopic = true", "torque_tension = -3, gyroscopic = true"] {
+        let damped = format!("axial_retardation_time = 1e-2, rotary_inertia = \"$inertia\", {more}");
+        let text = FED
+            .replace("rotary_inertia = \"$inertia\"", &damped)
+            .replace("ea = 1e4, ei = 5", "ea = 300, ei = 0.02")
+            .replace("duration = 10", "duration = 3")
+            + forces;
+        for wrap in ["2 m", "1e9 m"] {
+            let set = [format!("wrap={wrap}"), "inertia=1e-4".into(), "disc=2e-4".into(), "n=4".into()];
+            let lost = [0.005, 0.00125].map(|h| {
+                let fixed = format!("fixed = {{ h = {h} }}");
+                let text = text.replace("controlled = { tolerance = \"$tol\" }", &fixed);
+                let energy = run(&text, &set).summary().energy;
+                println!("{energy:?}");
+                energy.imbalance.abs()
+            });
+            println!("{more} {wrap}: {lost:?}");
+            assert!(lost[1] <= 2e-5 && lost[0] >= 4.0 * lost[1], "{more} {wrap}: {lost:?}");
+        }
+    }
+}
+
 /// From a coil at one end to a drum at the other that takes cable with the twist that it has: the twist of the cable between them
 /// goes towards a turn per wrap, as a first-order lag; the grip of the drum tells how much of it slips.
 #[test]

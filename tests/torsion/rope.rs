@@ -2,6 +2,8 @@
 
 use super::{last, run, scene};
 use ropewalk::{ModesOptions, modes};
+use ropewalk_core::Quantity;
+use ropewalk_core::statics::{Statics, StaticsOptions};
 
 const EA: f64 = 900.0;
 const GJ: f64 = 0.4;
@@ -156,4 +158,35 @@ fn couplings_that_no_rope_has_are_refused() {
     assert!(says.contains("L4"), "{says}");
     let says = build("ei = 1", "ei = [1, 2]");
     assert!(says.contains("direction") || says.contains("normal"), "{says}");
+}
+
+/// The same for a rope that a winch has paid out: what is fed is coupled as what was laid is.
+#[test]
+fn a_rope_that_is_paid_out_is_exact_at_its_nodes() {
+    let (w, out) = (5.0, 0.6);
+    for n in [2, 4] {
+        let text = rope(
+            n,
+            SLIDER,
+            &format!("[[forces]]\ntype = \"line_load\"\non = [\"rope\"]\nforce = [{w}, 0, 0]"),
+        )
+        .replace("analysis = \"statics\"", "duration = 1000")
+        .replace("[1.6, 0, 0]", &format!("[{}, 0, 0]", L - out))
+            + &format!(
+                "[[constraints]]\ntype = \"winch\"\nname = \"winch\"\nmarker = \"rope.start\"\nspeed = 1\npayout = {out}\nramp = 1e-3"
+            );
+        let model = scene(&text, &[]).build().unwrap_or_else(|e| panic!("{e}"));
+        let (part, mut state) = (model.part("rope").expect("rope"), model.state());
+        let boundary = part.boundary(0).expect("a boundary");
+        state.q[boundary.q] += boundary.sign * out;
+        state.t = 500.0;
+        Statics::new(&model, &StaticsOptions::default())
+            .expect("statics")
+            .find(&mut state, true)
+            .unwrap_or_else(|e| panic!("{e}"));
+        let see = |what: Quantity, s: f64| part.observe(what, s, &state.at()).expect("a value");
+        let middle = -C * w * L * L / 8.0 / (EA * GJ - C * C);
+        close("angle", see(Quantity::Angle, 0.5 * L), middle, 1e-8);
+        close("torque", see(Quantity::Torque, 0.0), C * w * L / (2.0 * EA), 1e-8);
+    }
 }

@@ -122,6 +122,11 @@ pub trait Line: Send + Sync {
     }
     /// Lays its nodes evenly along the straight line between its ends, as the start of another search for equilibrium.
     fn straighten(&self, _q: &mut [f64]) {}
+    /// Turns round what is folded inside its elements, as no cable is, and tells where the first of that was: unstretched
+    /// arc length from the start [m]. Another search for equilibrium begins there.
+    fn unfold(&self, _q: &mut [f64]) -> Option<f64> {
+        None
+    }
     /// First coordinate and velocity of its nodes, if it can be twisted and they are [`NodeKind::Twist`](crate::NodeKind): in
     /// order along each piece of it, between splices.
     fn twisted(&self) -> Vec<Vec<(usize, usize)>> {

@@ -211,7 +211,10 @@ impl Layout {
 fn splice(a: &Section, along: &SectionAlong, node: usize) -> Option<Splice> {
     let b = &along.section;
     let limp = [a, b].map(|s| s.ei.largest() == 0.0 && s.bending_moment.is_none());
-    let stretches = |s: &Section| (s.ea, s.axial_force.clone(), s.tension_only, s.axial_retardation_time);
+    // of ropes that turn when they are pulled, equal strains are equal tensions only if all of this is equal
+    let laid = |s: &Section| (s.torque_tension, if s.torque_tension == 0.0 { None } else { s.gj });
+    let stretches =
+        |s: &Section| (s.ea, s.axial_force.clone(), s.tension_only, s.axial_retardation_time, laid(s));
     let alike = stretches(a) == stretches(b);
     if alike && limp[0] == limp[1] && !along.hinged {
         return None;
@@ -284,11 +287,6 @@ impl CableSpec {
                 "other sections of this cable have torsion: give this one a torsional stiffness, `gj`, too";
             return Err(BuildError::at(format!("sections[{i}].section"), message));
         }
-        if self.curvature != 0.0 {
-            let message = "a cable of several sections with torsion is straight when free of stress: leave `curvature` out, or \
-                           make it several cables with welded ends";
-            return Err(BuildError::at("curvature", message));
-        }
         Ok(())
     }
 
@@ -297,13 +295,6 @@ impl CableSpec {
         s.check()?;
         self.check_laws(s)?;
         let Some(field) = s.asks_for_torsion() else { return Ok(()) };
-        if let Some(field) = s.asks_for_direction() {
-            let message = format!(
-                "the sections of a cable bend alike to all sides and don't couple torque with tension: leave `{field}` out, or \
-                 make it several cables with welded ends"
-            );
-            return Err(BuildError::at(field, message));
-        }
         if s.gj.is_none() {
             let message = "this asks for torsion: give the section a torsional stiffness, `gj`";
             return Err(BuildError::at(field, message));
@@ -341,6 +332,11 @@ impl CableSpec {
                 "EA and EI change linearly, and tables don't: give both ends `ea` and `ei`",
             ),
             (from.tension_only != to.tension_only, "`tension_only` is the same at both ends of a section"),
+            (
+                [from, to].iter().any(|s| s.asks_for_direction().is_some()),
+                "what changes linearly along a section bends alike to all sides and doesn't couple torque with tension: leave \
+                 `torque_tension` out and give one `ei`, or give several sections",
+            ),
             (
                 limp(from) != limp(to),
                 "`ei` is 0 at one end only: give a small number there, or 0 at both ends",

@@ -46,6 +46,7 @@ pub(crate) mod transmitted;
 pub mod transverse;
 mod twisted;
 mod twisting;
+mod unfold;
 
 pub use bending_damping::{BendingDamping, BendingDampingLanes};
 pub use damping::{AxialDamping, AxialDampingLanes};

@@ -9,6 +9,7 @@ use super::section::Section;
 use super::shape::{hermite, hermite_slope, natural, second};
 use super::transmitted::{self, Unstressed};
 use super::twisted::{self, Twisted};
+use super::unfold::{Between, unfold};
 use super::{CableModel, CableParams};
 use ropewalk_core::model::twist::tangent;
 use ropewalk_core::{
@@ -220,7 +221,7 @@ impl CablePart {
     /// Bending moment [N m], of which an element reads this much.
     fn moment(&self, k: usize, l: f64, xi: f64, read: f64, at: &At<'_>) -> f64 {
         match &self.twisted {
-            Some(twisted) if twisted.is_directed() => {
+            Some(twisted) if twisted.is_directed(k) => {
                 let [_, moment] = twisted.bends(k, l, xi, at.q, self.around(k));
                 moment[0].hypot(moment[1])
             }
@@ -556,23 +557,50 @@ impl Line for CablePart {
 
     fn straighten(&self, q: &mut [f64]) {
         let (first, last) = (self.seats[0].0, self.seats[self.seats.len() - 1].0);
+        let mesh = self.material(q).into_owned();
+        let length = mesh[mesh.len() - 1] - mesh[0];
         let from: V3<f64> = std::array::from_fn(|i| q[first + i]);
         let mut way: V3<f64> = std::array::from_fn(|i| q[last + i] - from[i]);
-        if way.iter().all(|x| x.abs() < 1e-3 * self.length()) {
+        if way.iter().all(|x| x.abs() < 1e-3 * length) {
             // ends that coincide give no direction; any will do
-            way = [1e-3 * self.length(), 0.0, 0.0];
+            way = [1e-3 * length, 0.0, 0.0];
         }
         let tangents: Vec<V3<f64>> = self.seats.iter().map(|s| tangent(&q[s.0..])).collect();
         for (k, &(at, _)) in self.seats.iter().enumerate() {
             for i in 0..3 {
-                q[at + i] = from[i] + way[i] * self.along[k] / self.length();
-                q[at + 3 + i] = way[i] / self.length();
+                q[at + i] = from[i] + way[i] * (mesh[k] - mesh[0]) / length;
+                q[at + 3 + i] = way[i] / length;
             }
         }
         if self.twisted.is_some() {
             let seats: Vec<usize> = self.seats.iter().map(|s| s.0).collect();
             twisted::follow(q, &seats, &tangents);
         }
+    }
+
+    fn unfold(&self, q: &mut [f64]) -> Option<f64> {
+        let mesh = self.material(q).into_owned();
+        let of = |k: usize| Between { first: k, length: mesh[k + 1] - mesh[k] };
+        let elements: Vec<Between> = self.layout.elements().map(of).collect();
+        let seat = |s: &(usize, usize)| -> [f64; 6] { std::array::from_fn(|i| q[s.0 + i]) };
+        let mut places: Vec<[f64; 6]> = self.seats.iter().map(seat).collect();
+        // what pushes by no force has no strain of its own where it is slack
+        let stiff = |e: &Between| {
+            let section = self.layout.section(e.first);
+            !section.tension_only && section.axial_force.is_none()
+        };
+        let folded: Vec<bool> = elements.iter().map(|e| stiff(e) && e.is_folded(&places)).collect();
+        let first = elements[folded.iter().position(|is| *is)?].first;
+        unfold(&mut places, &elements, &folded);
+        let tangents: Vec<V3<f64>> = self.seats.iter().map(|s| tangent(&q[s.0..])).collect();
+        for (place, seat) in places.iter().zip(&self.seats) {
+            q[seat.0..seat.0 + 6].copy_from_slice(place);
+        }
+        if self.twisted.is_some() {
+            let seats: Vec<usize> = self.seats.iter().map(|s| s.0).collect();
+            twisted::follow(q, &seats, &tangents);
+        }
+        Some(mesh[first] - mesh[0])
     }
 
     fn twisted(&self) -> Vec<Vec<(usize, usize)>> {

@@ -36,11 +36,11 @@ pub struct TorqueTensionLanes<R> {
 }
 
 /// First coordinate and first velocity of the vectors that the curve depends on: positions and slopes of both nodes.
-const AT: [[usize; 2]; 4] = [[0, 0], [3, 3], [10, SECOND], [13, SECOND + 3]];
+pub(super) const AT: [[usize; 2]; 4] = [[0, 0], [3, 3], [10, SECOND], [13, SECOND + 3]];
 
 /// Slope at a point of an element, one over its length, and by how much it changes with each of the four vectors.
 #[inline(always)]
-fn slope<R: Real>(q: &[R; COORDINATES], at: &Point, il: R) -> (V3<R>, R, [R; 4]) {
+pub(super) fn slope<R: Real>(q: &[R; COORDINATES], at: &Point, il: R) -> (V3<R>, R, [R; 4]) {
     let by = hermite_slope(at.xi, il);
     let p: V3<R> = std::array::from_fn(|c| {
         let [r1, p1, r2, p2] = AT.map(|[first, _]| q[first + c]);

@@ -1,7 +1,7 @@
 //! A cable with torsion: how its sections are laid, what is added to its elements, and what can be observed of it.
 
 use super::directed::{Directed, DirectedParams, curvature};
-use super::flow::{FlowTorsion, Line};
+use super::flow::{FlowSpin, FlowTorqueTension, FlowTorsion, Line};
 use super::layout::Layout;
 use super::quadrature::{MOST, Point, Quadrature, Rule};
 use super::rest::STRAIGHT;
@@ -27,8 +27,7 @@ pub(crate) struct Twisted {
     integration: Integration,
     /// Twist of each element when free of stress [rad].
     twist0: Vec<f64>,
-    /// Torque and tension of a laid rope: `C/GJ` [1/m], where the strain is taken, its mean in each element when free of stress.
-    lay: f64,
+    /// Where the strain of a laid rope is taken, and its mean in each element when free of stress.
     points: &'static [Point],
     strain0: Vec<f64>,
     /// The nodes without twist, in whose shape the cable is free of stress if `as_laid`.
@@ -39,9 +38,8 @@ pub(crate) struct Twisted {
     /// How material flows through it, if an end feeds, and its twist per length when free of stress then [rad/m].
     flow: Option<Line>,
     per_length: f64,
-    /// Whether bending has a direction, and then the bubble of each element: node, coordinate and velocity.
-    directed: bool,
-    bubbles: Vec<(NodeId, usize, usize)>,
+    /// The bubble of each element whose bending has a direction: node, coordinate and velocity.
+    bubbles: Vec<Option<(NodeId, usize, usize)>>,
 }
 
 /// What an element with torsion is made of.
@@ -53,6 +51,10 @@ struct Bar {
     rho_j: f64,
     gyroscopic: bool,
     ei: BendingStiffness,
+    /// Torque and tension of a laid rope: `C/GJ` [1/m].
+    lay: f64,
+    /// Whether bending has a direction.
+    directed: bool,
 }
 
 impl Bar {
@@ -62,7 +64,8 @@ impl Bar {
             .map_err(|e| BuildError::at(format!("{field}.gj"), e.message))?;
         let rho_j = rotary_inertia(s).map_err(|e| e.of(format!("{field}.rotary_inertia")))?;
         let eta_gj = s.torsional_retardation_time * gj;
-        Ok(Bar { gj, eta_gj, rho_j, gyroscopic: s.gyroscopic, ei: s.ei })
+        let (lay, directed) = (s.torque_tension / gj, s.ei.has_direction());
+        Ok(Bar { gj, eta_gj, rho_j, gyroscopic: s.gyroscopic, ei: s.ei, lay, directed })
     }
 }
 
@@ -170,11 +173,9 @@ impl CableSpec {
             self.refuse_twist()?;
             return Ok(None);
         }
-        if feeds {
-            self.feeds_twisted()?;
-        }
         let bar = |k: usize| {
-            if sections { Bar::of(layout.section(k), "sections") } else { Bar::of(s, "section") }
+            let own = if sections { Bar::of(layout.section(k), "sections") } else { Bar::of(s, "section") };
+            own.map(|bar| Bar { directed: bar.directed || springy || self.curvature != 0.0, ..bar })
         };
         let bars = (0..mesh.len() - 1).map(bar).collect::<Result<Vec<_>, _>>()?;
         let tangents: Vec<V3<f64>> = places.iter().map(|x| unit(&[x[3], x[4], x[5]])).collect();
@@ -208,7 +209,6 @@ impl CableSpec {
             self.strain + if as_laid && l > 0.0 { own() } else { 0.0 }
         };
         let twisted = Twisted {
-            lay: s.torque_tension / bars[0].gj,
             points,
             strain0: (0..mesh.len() - 1).map(strain0).collect(),
             bars,
@@ -219,10 +219,10 @@ impl CableSpec {
             curvature: self.curvature,
             flow: None,
             per_length: self.twist,
-            directed: s.ei.has_direction() || springy || self.curvature != 0.0,
             bubbles: Vec::new(),
         };
-        if twisted.directed && self.transverse != TransverseModel::T3 {
+        let directed = |bar: &Bar| bar.directed;
+        if twisted.bars.iter().any(directed) && self.transverse != TransverseModel::T3 {
             let message = format!(
                 "the curvature of {:?} has no direction: a cable that is bent when free of stress, or that has two bending \
                  stiffnesses, needs T3",
@@ -230,37 +230,13 @@ impl CableSpec {
             );
             return Err(BuildError::at("transverse", message));
         }
-        if twisted.directed && twisted.lay != 0.0 {
+        if twisted.bars.iter().any(|bar| bar.directed && bar.lay != 0.0) {
             let message = "a cable whose bending has a direction can't couple torque and tension: leave `torque_tension` out, or \
                            let it be straight when free of stress, with one `ei`";
-            return Err(BuildError::at("section.torque_tension", message));
+            let field = if sections { "sections" } else { "section.torque_tension" };
+            return Err(BuildError::at(field, message));
         }
         Ok(Some((twisted, nodes)))
-    }
-
-    /// Refuses what can't be fed, though it could be twisted.
-    fn feeds_twisted(&self) -> Result<(), BuildError> {
-        if self.stress_free == StressFree::AsLaid || self.curvature != 0.0 {
-            // told with what else a winch can't feed
-            return Ok(());
-        }
-        let refused = [
-            ("section.ei", self.section.ei.has_direction(), "bends alike to all sides: give it one `ei`"),
-            (
-                "section.torque_tension",
-                self.section.torque_tension != 0.0,
-                "doesn't couple torque with tension: leave `torque_tension` out",
-            ),
-            (
-                "section.gyroscopic",
-                self.section.gyroscopic,
-                "isn't turned aside by its spin: leave `gyroscopic` out",
-            ),
-        ];
-        match refused.into_iter().find(|(_, is, _)| *is) {
-            Some((field, _, why)) => Err(BuildError::at(field, format!("what a winch feeds {why}"))),
-            None => Ok(()),
-        }
     }
 
     /// Refuses what only a cable with torsion can have.
@@ -292,7 +268,9 @@ impl CableSpec {
             if let Some(bent) = bent {
                 return Ok(bent);
             }
-            if self.section.ei.has_direction() || self.curvature != 0.0 {
+            let directed = |s: &Section| s.ei.has_direction();
+            let any = directed(&self.section) || self.sections.iter().any(|along| directed(&along.section));
+            if any || self.curvature != 0.0 {
                 let message = "which way does the section look? Give the direction in space, at the start of the cable, of \
                                the axis that the first of both bending stiffnesses is about";
                 return Err(BuildError::at("normal", message));
@@ -325,11 +303,35 @@ impl Twisted {
         let flows = |k: usize| line.filter(|line| line.flows(k));
         for k in layout.elements() {
             if let Some(line) = flows(k) {
+                if self.bars[k].directed {
+                    let message = "what a winch feeds bends alike to all sides: give it one `ei`";
+                    let field = if layout.changes() { "sections" } else { "section.ei" };
+                    return Err(BuildError::at(field, message));
+                }
                 let boundaries = line.boundaries.iter().map(|(_, boundary)| boundary.node);
                 let on: Vec<NodeId> = [nodes[k], nodes[k + 1]].into_iter().chain(boundaries).collect();
-                match line.boundaries.len() {
-                    1 => b.element(self.flowing::<1>(k, line), &on)?,
-                    _ => b.element(self.flowing::<2>(k, line), &on)?,
+                let one = line.boundaries.len() == 1;
+                if one {
+                    b.element(self.flowing::<1>(k, line), &on)?;
+                } else {
+                    b.element(self.flowing::<2>(k, line), &on)?;
+                }
+                match (self.bars[k].lay != 0.0, one) {
+                    (true, true) => b.element(self.flowing_coupled::<1>(k, line), &on)?,
+                    (true, false) => b.element(self.flowing_coupled::<2>(k, line), &on)?,
+                    _ => {}
+                }
+                let rho_j = self.bars[k].rho_j;
+                match (self.bars[k].gyroscopic, one) {
+                    (true, true) => {
+                        let (by, turns) = (line.embedding(k), line.turns(k));
+                        b.element(FlowSpin::<1> { rho_j, by, turns }, &on)?;
+                    }
+                    (true, false) => {
+                        let (by, turns) = (line.embedding(k), line.turns(k));
+                        b.element(FlowSpin::<2> { rho_j, by, turns }, &on)?;
+                    }
+                    _ => {}
                 }
                 continue;
             }
@@ -347,11 +349,11 @@ impl Twisted {
                 b.element(SpinInertia { l, rho_j }, &on)?;
             }
         }
-        // those that have a direction are the same all along
-        for k in (0..mesh.len() - 1).filter(|_| self.directed) {
+        self.bubbles = vec![None; mesh.len() - 1];
+        for k in layout.elements().filter(|&k| self.bars[k].directed) {
             let bubble = b.node(NodeKind::Scalars(1), &[0.0], &[0.0])?;
             let own = b.nodes()[bubble.0 as usize];
-            self.bubbles.push((bubble, own.q, own.v));
+            self.bubbles[k] = Some((bubble, own.q, own.v));
             b.element(self.bending(k, mesh[k + 1] - mesh[k]), &[nodes[k], nodes[k + 1], bubble])?;
         }
         Ok(())
@@ -375,6 +377,21 @@ impl Twisted {
         }
     }
 
+    /// What couples its torque and its tension.
+    fn flowing_coupled<const F: usize>(&self, k: usize, line: &Line) -> FlowTorqueTension<F> {
+        let mut open = [0.0; 2];
+        line.opens(k).for_each(|(end, _)| open[end] = 1.0);
+        FlowTorqueTension {
+            gj: self.bars[k].gj,
+            lay: self.bars[k].lay,
+            twist0: self.per_length,
+            by: line.embedding(k),
+            turns: line.turns(k),
+            open,
+            points: self.points,
+        }
+    }
+
     /// Twist of element `k` of length `l` when free of stress [rad].
     fn free(&self, k: usize, l: f64) -> f64 {
         if self.flow.is_some() { self.per_length * l } else { self.twist0[k] }
@@ -387,7 +404,7 @@ impl Twisted {
 
     /// Element `k` of a rope that turns when it is pulled.
     fn coupled(&self, k: usize, l: f64) -> Option<TorqueTension> {
-        let Twisted { lay, points, .. } = *self;
+        let (lay, points) = (self.bars[k].lay, self.points);
         let params = self.params(k, l);
         (lay != 0.0).then(|| TorqueTension { params, lay, strain0: self.strain0[k], points })
     }
@@ -406,7 +423,7 @@ impl Twisted {
     /// The coordinates (or velocities) of an element with its bubble: 10 (or 7) of each node.
     fn gather<const N: usize>(&self, k: usize, x: &[f64], seats: [usize; 2], rates: bool) -> [f64; N] {
         let half = N / 2;
-        let bubble = self.bubbles.get(k).map(|&(_, q, v)| x[if rates { v } else { q }]);
+        let bubble = self.bubbles.get(k).copied().flatten().map(|(_, q, v)| x[if rates { v } else { q }]);
         std::array::from_fn(|i| match i {
             i if i < half => x[seats[0] + i],
             i if i < 2 * half => x[seats[1] + i - half],
@@ -421,7 +438,8 @@ impl Twisted {
         let mut twist = Share::<f64, 14>::zero();
         let local = Local { q: pair(&x), v: [0.0; 14], a: [0.0; 14], last: [0.0; 14], relaxed: None };
         match self.coupled(k, l) {
-            Some(own) => {
+            Some(mut own) => {
+                own.params.twist0 -= self.turned(k, q);
                 let lanes =
                     TorqueTension::lanes::<f64>(&ropewalk_core::Batch::of(std::slice::from_ref(&own)));
                 TorqueTension::add::<f64, false>(&lanes, &local, &w, &mut twist);
@@ -433,7 +451,7 @@ impl Twisted {
             }
         }
         let mut bent = Share::<f64, 15>::zero();
-        if self.directed {
+        if self.bars[k].directed {
             let local = Local { q: x, v: [0.0; 15], a: [0.0; 15], last: [0.0; 15], relaxed: None };
             let own = self.bending(k, l);
             let lanes = Directed::lanes::<f64>(&ropewalk_core::Batch::of(std::slice::from_ref(&own)));
@@ -463,14 +481,14 @@ impl Twisted {
         [now, std::array::from_fn(|i| ei[i] * (now[i] - then[i]))]
     }
 
-    /// Whether bending has a direction.
-    pub(super) fn is_directed(&self) -> bool {
-        self.directed
+    /// Whether the bending of element `k` has a direction.
+    pub(super) fn is_directed(&self, k: usize) -> bool {
+        self.bars[k].directed
     }
 
     /// The element that a node is the bubble of.
     pub(super) fn bubble(&self, node: NodeId) -> Option<usize> {
-        self.bubbles.iter().position(|b| b.0 == node)
+        self.bubbles.iter().position(|b| b.is_some_and(|b| b.0 == node))
     }
 
     /// First director of the section at a place of element `k` with this tangent, and the angle that it has been turned by

@@ -6,7 +6,7 @@ use ropewalk_core::{At, Element, Node, NodeId, NodeKind, Pool, Term, Weights, Wi
 use ropewalk_elements::cable::flow::{Embedding, FlowTorsion};
 use ropewalk_elements::cable::{Torsion, TorsionDamping, TorsionParams};
 
-fn nodes(boundaries: usize) -> Vec<Node> {
+pub fn nodes(boundaries: usize) -> Vec<Node> {
     let mut all: Vec<Node> = Vec::new();
     for kind in [NodeKind::Twist, NodeKind::Twist, NodeKind::Scalars(1), NodeKind::Scalars(1)] {
         let (q, v) = all.last().map_or((0, 0), |n| (n.coords().end, n.dofs().end));
@@ -16,7 +16,7 @@ fn nodes(boundaries: usize) -> Vec<Node> {
     all
 }
 
-fn pool<E: Element<Q, N>, const Q: usize, const N: usize>(element: E, boundaries: usize) -> Box<dyn Term> {
+pub fn pool<E: Element<Q, N>, const Q: usize, const N: usize>(element: E, boundaries: usize) -> Box<dyn Term> {
     let mut pool = Pool::new();
     let on: Vec<NodeId> = (0..2 + boundaries as u32).map(NodeId).collect();
     for _ in 0..3 {
@@ -25,11 +25,11 @@ fn pool<E: Element<Q, N>, const Q: usize, const N: usize>(element: E, boundaries
     Box::new(pool)
 }
 
-const ONE: Embedding<1> = Embedding { fixed: [0.4, 1.3], by: [[0.8, 0.35]] };
-const TWO: Embedding<2> = Embedding { fixed: [0.02, 0.1], by: [[0.8, 0.35], [0.2, 0.65]] };
+pub const ONE: Embedding<1> = Embedding { fixed: [0.4, 1.3], by: [[0.8, 0.35]] };
+pub const TWO: Embedding<2> = Embedding { fixed: [0.02, 0.1], by: [[0.8, 0.35], [0.2, 0.65]] };
 /// What comes in twisted at the start, and at both ends.
-const COIL: Embedding<1> = Embedding { fixed: [0.3, 0.0], by: [[1.7, 0.0]] };
-const COILS: Embedding<2> = Embedding { fixed: [0.3, -0.1], by: [[1.7, 0.0], [0.0, -2.1]] };
+pub const COIL: Embedding<1> = Embedding { fixed: [0.3, 0.0], by: [[1.7, 0.0]] };
+pub const COILS: Embedding<2> = Embedding { fixed: [0.3, -0.1], by: [[1.7, 0.0], [0.0, -2.1]] };
 
 /// With inertia and grip, or with elasticity and damping alone.
 fn terms(rho_j: f64) -> Vec<(usize, Box<dyn Term>)> {
@@ -41,14 +41,14 @@ fn terms(rho_j: f64) -> Vec<(usize, Box<dyn Term>)> {
 }
 
 /// Coordinates, velocities and accelerations of an element in motion.
-fn motion(q: &[f64], boundaries: usize) -> [Vec<f64>; 3] {
+pub fn motion(q: &[f64], boundaries: usize) -> [Vec<f64>; 3] {
     let mut q = q[..20].to_vec();
     q.extend_from_slice(&[-0.3, 0.9][..boundaries]);
     let wave = |k: f64| (0..14 + boundaries).map(|i| (k * i as f64 + 0.3).sin()).collect::<Vec<f64>>();
     [q, wave(1.7), wave(2.9)]
 }
 
-fn at(x: &[Vec<f64>; 3]) -> At<'_> {
+pub fn at(x: &[Vec<f64>; 3]) -> At<'_> {
     At { t: 0.0, q: &x[0], v: &x[1], a: &x[2], internal: &[], relaxed: None }
 }
 

@@ -4,7 +4,7 @@ mod files;
 
 use crate::error::Error;
 use crate::modes::balance;
-use crate::run::{NewFolder, Started, prepare};
+use crate::run::{NewFolder, Started, prepare, steady};
 use ropewalk_core::{Linearised, Model, State, linearise as about};
 use ropewalk_report::{RunFolder, Watch};
 use ropewalk_scene::{Analysis, Fault, Scene, SceneFile};
@@ -13,7 +13,8 @@ use std::path::PathBuf;
 /// The state that equations are linearised about.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum About {
-    /// The equilibrium: of a run in time that at its start, of a statics scene the end of its load path.
+    /// The equilibrium: of a run in time that at its start, of a statics scene the end of its load path. A flow inside a hose
+    /// stays as fast as it is there.
     #[default]
     Equilibrium,
     /// The start, made consistent.
@@ -109,6 +110,7 @@ fn find(scene: &Scene, model: Model, options: &LineariseOptions) -> Result<Linea
             at(&done.model, &done.state)
         }
         time => {
+            let model = steady(scene)?.unwrap_or(model);
             let (state, _) = balance(scene, &model, time.unwrap_or(end), options.watch)?;
             at(&model, &state)
         }

@@ -5,7 +5,7 @@ mod pictures;
 mod report;
 
 use crate::error::Error;
-use crate::run::{NewFolder, prepare};
+use crate::run::{NewFolder, prepare, steady};
 use ropewalk_core::modes::{self as core, Critical, Mode, ModesError, OnLook};
 use ropewalk_core::statics::{Found, Statics, StaticsError};
 use ropewalk_core::{Model, SolveError, State};
@@ -57,7 +57,8 @@ impl Default for ModesOptions {
 /// The vibration modes about the equilibrium of a scene, in memory; nothing is written.
 ///
 /// A scene that is in balance as it is laid vibrates about that. Else its equilibrium is searched: of a run in time the
-/// one at its start, of a statics scene the end of its load path, in the frame that it names.
+/// one at its start, of a statics scene the end of its load path, in the frame that it names. What changes with time, such
+/// as the speed of a flow inside a hose, stays as it is then.
 ///
 /// # Errors
 /// The scene can't be built, has no equilibrium, moves, or has something without mass.
@@ -141,6 +142,7 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
         );
         return Err(Fault::new(message).into());
     }
+    let model = steady(scene)?.unwrap_or(model);
     let mut warnings = Vec::new();
     let start = State { t: time, ..model.state() };
     core::check_at_rest(&model, &start, &scene.statics, run.frame)?;

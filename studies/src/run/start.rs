@@ -48,6 +48,14 @@ pub enum Started {
     Process(Box<dyn Process>, Box<Done>),
 }
 
+/// The model in which a scene that runs in time has its equilibria, where it isn't the one that runs: a flow that starts or
+/// stops pushes its hose along, which is no equilibrium, but at rest it is steady.
+pub(crate) fn steady(scene: &Scene) -> Result<Option<Model>, Error> {
+    let flows = scene.forces.iter().any(|f| f.typetag_name() == "internal_flow");
+    let changes = flows && scene.run.analysis == Analysis::Dynamics;
+    Ok(if changes { Some(scene.build_at_rest()?) } else { None })
+}
+
 impl Started {
     /// Brings the model to its start, unless that is stopped.
     pub(crate) fn new(scene: &Scene, model: Model, watch: Watch) -> Result<Self, Error> {
@@ -63,9 +71,7 @@ impl Started {
         let (mut state, mut flutter, mut remarks) = (model.state(), 0.0, Vec::new());
         if run.from_equilibrium {
             state.v.fill(0.0);
-            // a flow that starts or stops pushes the cable along, which is no equilibrium: at rest it is steady
-            let flows = scene.forces.iter().any(|f| f.typetag_name() == "internal_flow");
-            let steady = if flows { Some(scene.build_at_rest()?) } else { None };
+            let steady = steady(scene)?;
             let mut search =
                 Statics::new(steady.as_ref().unwrap_or(&model), &scene.statics).map_err(no_memory)?;
             search.stop_if(move || watch.is_over());

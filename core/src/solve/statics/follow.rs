@@ -5,6 +5,8 @@ use super::problem::Statics;
 use super::search::FOLD;
 use crate::model::state::State;
 
+/// How often a search goes on from what was folded.
+const UNFOLDED: u32 = 8;
 /// How often the arc of a path is tried before shorter steps are.
 const ARCS: u32 = 3;
 
@@ -40,6 +42,7 @@ impl Statics<'_> {
             state.clone_from(&before);
             first = self.search(state, false, true, true);
         }
+        first = first.and_then(|found| self.unfold(state, found));
         let suspicious = match &first {
             Ok(_) => cold && self.options.stable && self.folded(state) < FOLD,
             Err(_) => cold,
@@ -65,7 +68,8 @@ impl Statics<'_> {
                 line.straighten(&mut other.q);
             }
         }
-        let second = self.search(&mut other, true, true, true);
+        let second =
+            self.search(&mut other, true, true, true).and_then(|found| self.unfold(&mut other, found));
         match (first, second) {
             (Ok(found), Ok(again)) if self.folded(&other) <= self.folded(state) => {
                 _ = again;
@@ -82,6 +86,32 @@ impl Statics<'_> {
             }
             (Err(e), Err(_)) => Err(e),
         }
+    }
+
+    /// Searches on from what was found for as long as it is folded inside elements, which no cable is.
+    fn unfold(&mut self, state: &mut State, mut found: Found) -> Result<Found, StaticsError> {
+        for _ in 0..UNFOLDED {
+            if !self.options.stable {
+                return Ok(found);
+            }
+            let mut other = state.clone();
+            let lines = self.model.parts().iter().filter_map(|part| Some((part.name(), part.line()?)));
+            let folds = lines.filter_map(|(name, line)| Some((name, line.unfold(&mut other.q)?)));
+            let Some((name, s)) = folds.collect::<Vec<_>>().into_iter().next() else { return Ok(found) };
+            let why = format!("`{name}` is folded at {s:.4} m, inside an element");
+            other.lambda.fill(0.0);
+            let mut more = self.search(&mut other, false, true, true);
+            if more.is_err() {
+                // stiff lines that were laid anew are far from their length
+                let mut cold = State { lambda: vec![0.0; other.lambda.len()], ..other.clone() };
+                more = self.search(&mut cold, true, true, true);
+                other = cold;
+            }
+            found.add(&more.map_err(|e| StaticsError { why, ..e })?);
+            *state = other;
+        }
+        let why = "what was found is folded inside elements again and again";
+        Err(self.fail(state, why, found.iterations))
     }
 
     /// Where Newton's method finds nothing from a guess: something may be free to move, or the guess is far away.
@@ -102,12 +132,14 @@ impl Statics<'_> {
             && let Ok(more) = self.search(state, cold, cold, true)
         {
             found.add(&more);
-            return Ok(found);
+            return self.unfold(state, found);
         }
         self.free.clear();
         if cold && self.options.stable {
             state.clone_from(&before);
-            if self.creep(state, &mut found, true).is_ok() {
+            if self.creep(state, &mut found, true).is_ok()
+                && let Ok(found) = self.unfold(state, found)
+            {
                 return Ok(found);
             }
         }

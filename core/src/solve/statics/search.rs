@@ -346,8 +346,10 @@ impl Statics<'_> {
     pub(super) fn folded(&self, state: &State) -> f64 {
         let mut least = 1.0;
         for part in self.model.parts() {
+            let Some(line) = part.line() else { continue };
+            let mesh = line.mesh_now(&state.at());
             let points: Vec<V3<f64>> =
-                part.mesh().iter().filter_map(|&s| part.point(s, &state.at()).map(|p| p.0)).collect();
+                mesh.iter().filter_map(|&s| part.point(s, &state.at()).map(|p| p.0)).collect();
             for w in points.windows(3) {
                 let a: V3<f64> = std::array::from_fn(|i| w[1][i] - w[0][i]);
                 let b: V3<f64> = std::array::from_fn(|i| w[2][i] - w[1][i]);

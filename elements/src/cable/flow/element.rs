@@ -9,6 +9,7 @@ use crate::cable::longitudinal::{Longitudinal, add_axial, axial_energy};
 use crate::cable::model::Models;
 use crate::cable::quadrature::Rule;
 use crate::cable::reduced::Reduced;
+use crate::cable::relaxed::{add_relaxed, capped};
 use crate::cable::shape::natural;
 use crate::cable::transverse::{Transverse, bending_energy};
 use ropewalk_core::{Batch, Dual, Element, Energy, Local, Power, Real, Share, V3, Weights, dot};
@@ -157,11 +158,23 @@ fn add_elastic<
     let q = natural(&e, g.il);
     let Models { longitudinal, transverse, rule } = p.models;
     let mut local = Reduced::zero();
-    add_axial::<L, Q::Axial, R, TANGENT>(longitudinal, rule.axial(), p.params.ea * g.l, &q, &mut local);
-    transverse.add::<Q::Bending, R, TANGENT>(rule.bending(), p.params.ei, g.l, g.il, &q, &mut local);
+    let mut params = CableParams { l: g.l, ..p.params };
+    // the pool relaxes in scalar only, as that of cables that don't feed
+    if R::LANES == 1
+        && let Some(how) = &x.relaxed
+    {
+        let mut last = [R::zero(); 12];
+        last.copy_from_slice(&x.last[..12]);
+        let last = natural(&last, g.il);
+        add_relaxed::<L, T, Q, R, TANGENT>(p.models, &params, how, g.il, &q, &last, &mut local);
+        params.ea = capped(&params, how.ramp, how.load);
+    } else {
+        add_axial::<L, Q::Axial, R, TANGENT>(longitudinal, rule.axial(), params.ea * g.l, &q, &mut local);
+        transverse.add::<Q::Bending, R, TANGENT>(rule.bending(), params.ei, g.l, g.il, &q, &mut local);
+    }
     let mut own = Share::<R, 12>::zero();
     local.spread_force::<true>(g.il, &mut own);
-    let (params, fixed) = (lift(&p.params), Dual::constants(&e));
+    let (params, fixed) = (lift(&params), Dual::constants(&e));
     if TANGENT {
         let wq = R::of(w.q);
         local.spread_tangent::<true>(g.il, wq, &mut own);

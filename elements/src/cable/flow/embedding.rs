@@ -71,6 +71,20 @@ impl<R: Real> Grid<R> {
         Grid { l, il: R::of(1.0) / l, p: p[0], ld: pd[1] - pd[0], pd, pdd }
     }
 
+    /// The same as what stays while something else changes.
+    #[inline(always)]
+    pub(super) fn lifted(&self) -> Grid<Dual<R>> {
+        let c = Dual::constant;
+        Grid {
+            l: c(self.l),
+            il: c(self.il),
+            p: c(self.p),
+            ld: c(self.ld),
+            pd: self.pd.map(c),
+            pdd: self.pdd.map(c),
+        }
+    }
+
     /// The same as it changes with boundary `k` in the direction that the tangent is weighted by: the boundary itself by
     /// `w.q`, its rate by `w.v`, its acceleration by `w.a`.
     #[inline(always)]

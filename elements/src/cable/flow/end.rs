@@ -6,6 +6,7 @@ use crate::cable::element::CableParams;
 use crate::cable::longitudinal::{Longitudinal, axial_energy};
 use crate::cable::model::Models;
 use crate::cable::quadrature::{Point, Quadrature};
+use crate::cable::relaxed::capped;
 use crate::cable::shape::natural;
 use crate::cable::transverse::{Transverse, bending_energy};
 use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, Weights};
@@ -113,7 +114,14 @@ macro_rules! element {
                 let by = p.by.spread::<R>();
                 let (g, row) = (Grid::new(&by, x), 12 + p.boundary);
                 let sign = R::of(if p.end == 0 { 1.0 } else { -1.0 });
-                let (ea, ei) = (R::of(p.params.ea), R::of(p.params.ei));
+                let (mut ea, ei) = (R::of(p.params.ea), R::of(p.params.ei));
+                if R::LANES == 1
+                    && let Some(how) = &x.relaxed
+                {
+                    // as soft as the element inside
+                    let inside = CableParams { l: g.l, ea, ei, rho_a: R::of(p.params.rho_a) };
+                    ea = capped(&inside, how.ramp, how.load);
+                }
                 let mut e = [R::zero(); 12];
                 e.copy_from_slice(&x.q[..12]);
                 out.r[row] += sign * density((p.longitudinal, p.transverse), ea, ei, &e, g.l, p.end);

@@ -66,22 +66,13 @@ impl<R: Real> Motion<R> {
     #[inline(always)]
     fn lifted(&self) -> Motion<Dual<R>> {
         let c = Dual::constant;
-        let pair = |x: [R; 2]| [c(x[0]), c(x[1])];
-        let grid = |g: &Grid<R>| Grid {
-            l: c(g.l),
-            il: c(g.il),
-            p: c(g.p),
-            ld: c(g.ld),
-            pd: pair(g.pd),
-            pdd: pair(g.pdd),
-        };
         Motion {
             twist: c(self.twist),
             rate: c(self.rate),
-            w: pair(self.w),
-            wd: pair(self.wd),
-            grid: grid(&self.grid),
-            turns: grid(&self.turns),
+            w: self.w.map(c),
+            wd: self.wd.map(c),
+            grid: self.grid.lifted(),
+            turns: self.turns.lifted(),
         }
     }
 
