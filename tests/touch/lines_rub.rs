@@ -67,7 +67,7 @@ fn rod_on_rails(pull: [f64; 3], time: &TimeFunction, friction: Friction) -> Scen
         4,
         stiff(1.0, 1e6, 1e3),
     );
-    scene.element(rod).force(GravitySpec { on: vec!["rod".into()], ..GravitySpec::default() });
+    scene.element(rod).force(GravitySpec { on: vec!["rod".into()] });
     for end in ["rod.start", "rod.end"] {
         let half = pull.map(|x| 0.5 * x);
         scene.force(PointForceSpec::new(end, half, time.clone()));
