@@ -67,7 +67,7 @@ fn rod_on_rails(pull: [f64; 3], time: &TimeFunction, friction: Friction) -> Scen
         4,
         stiff(1.0, 1e6, 1e3),
     );
-    scene.element(rod).force(GravitySpec { on: vec!["rod".into()], ..GravitySpec::default() });
+    scene.element(rod).force(GravitySpec { on: vec!["rod".into()] });
     for end in ["rod.start", "rod.end"] {
         let half = pull.map(|x| 0.5 * x);
         scene.force(PointForceSpec::new(end, half, time.clone()));
@@ -366,10 +366,10 @@ fn told_of_loop(radius: f64, itself: bool) -> Option<String> {
 fn a_line_bent_tighter_than_its_own_radius_is_remarked() {
     let told = told_of_loop(0.4 * THICK, true).expect("a remark");
     println!("{told}");
-    assert!(
-        told.contains("`line` is bent to a radius of 8.0") && told.contains("its own radius of 1.00e-2 m"),
-        "{told}"
-    );
+    // a spline through its points is a little more bent at its end
+    let radius: f64 = told.split("a radius of ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!((radius / (0.4 * THICK) - 1.0).abs() <= 2e-2, "{told}");
+    assert!(told.contains("`line`") && told.contains("its own radius of 1.00e-2 m"), "{told}");
     assert_eq!(told_of_loop(0.6 * THICK, true), None);
     assert_eq!(told_of_loop(0.4 * THICK, false), None);
 }
