@@ -606,7 +606,8 @@ fn a_rope_that_leaves_its_sheave_ends_the_run_with_an_error() {
                x = [0, 1.9, 1.3, -0.4]\nz = [0, 1.84, 3.24, 3.84]\nends = \"at-rest\"\n";
     let text = format!("run = {{ duration = 6, output = 0.1 }}\n{scene}{led}");
     let message = simulate(&read(&text)).err().map(|e| e.to_string()).unwrap_or_default();
-    assert!(message.contains("leaves `wheel`"), "{message}");
+    assert_eq!(message.matches("leaves `wheel`").count(), 1, "{message}");
+    assert!(message.contains("leave the sheave out"), "{message}");
 }
 
 #[test]

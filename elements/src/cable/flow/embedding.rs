@@ -1,5 +1,6 @@
 //! How the nodes of an element follow the boundaries of their line.
 
+use crate::cable::twisting::{COORDINATES, VELOCITIES};
 use ropewalk_core::{Dual, Local, Real, Weights};
 
 /// Where the two nodes of an element stand on the material: `p_i = fixed_i + Σ_k by_ki π_k`, linear in the `F` boundaries
@@ -69,6 +70,16 @@ impl<R: Real> Grid<R> {
         }
         let l = p[1] - p[0];
         Grid { l, il: R::of(1.0) / l, p: p[0], ld: pd[1] - pd[0], pd, pdd }
+    }
+
+    /// In a local state whose boundaries stand behind two nodes with torsion.
+    #[inline(always)]
+    pub(super) fn behind<const F: usize, const Q: usize, const N: usize>(
+        e: &Embedding<F, R>,
+        x: &Local<R, Q, N>,
+    ) -> Self {
+        let of = |x: &[R], from: usize| -> [R; F] { std::array::from_fn(|f| x[from + f]) };
+        Grid::of(e, of(&x.q, COORDINATES), of(&x.v, VELOCITIES), of(&x.a, VELOCITIES))
     }
 
     /// The same as what stays while something else changes.

@@ -73,13 +73,6 @@ impl<R: Real> Motion<R> {
     }
 }
 
-macro_rules! at {
-    ($boundaries:literal, $by:expr, $x:ident) => {{
-        let of = |x: &[R], from: usize| -> [R; $boundaries] { std::array::from_fn(|f| x[from + f]) };
-        Grid::of(&$by, of(&$x.q, COORDINATES), of(&$x.v, VELOCITIES), of(&$x.a, VELOCITIES))
-    }};
-}
-
 macro_rules! element {
     ($boundaries:literal, $coordinates:literal, $velocities:literal) => {
         impl Element<$coordinates, $velocities> for FlowSpin<$boundaries> {
@@ -107,7 +100,7 @@ macro_rules! element {
                 w: &Weights,
                 out: &mut Share<R, $velocities>,
             ) {
-                let (grid, turns) = (at!($boundaries, p.by, x), at!($boundaries, p.turns, x));
+                let (grid, turns) = (Grid::behind(&p.by, x), Grid::behind(&p.turns, x));
                 let mut q = [R::zero(); COORDINATES];
                 q.copy_from_slice(&x.q[..COORDINATES]);
                 let twisting = Twisting::new(&q, grid.il);

@@ -79,17 +79,10 @@ impl<const F: usize, R: Real> FlowTorqueTensionLanes<F, R> {
     }
 }
 
-macro_rules! at {
-    ($boundaries:literal, $by:expr, $x:ident) => {{
-        let of = |x: &[R], from: usize| -> [R; $boundaries] { std::array::from_fn(|f| x[from + f]) };
-        Grid::of(&$by, of(&$x.q, COORDINATES), of(&$x.v, VELOCITIES), of(&$x.a, VELOCITIES))
-    }};
-}
-
 /// Twist beyond the stress-free one, mean strain, and the nodes' coordinates.
 macro_rules! strained {
     ($boundaries:literal, $p:ident, $x:ident) => {{
-        let (grid, turns) = (at!($boundaries, $p.by, $x), at!($boundaries, $p.turns, $x));
+        let (grid, turns) = (Grid::behind(&$p.by, $x), Grid::behind(&$p.turns, $x));
         let mut q = [R::zero(); COORDINATES];
         q.copy_from_slice(&$x.q[..COORDINATES]);
         let twisting = Twisting::new(&q, grid.il);

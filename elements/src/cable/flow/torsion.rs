@@ -126,18 +126,10 @@ impl<const F: usize, R: Real> FlowTorsionLanes<F, R> {
     }
 }
 
-/// The material coordinates of a local state, whose boundaries stand behind both nodes.
-macro_rules! at {
-    ($boundaries:literal, $by:expr, $x:ident) => {{
-        let of = |x: &[R], from: usize| -> [R; $boundaries] { std::array::from_fn(|f| x[from + f]) };
-        Grid::of(&$by, of(&$x.q, COORDINATES), of(&$x.v, VELOCITIES), of(&$x.a, VELOCITIES))
-    }};
-}
-
 /// The motion of a local state, with the derivatives of the twist.
 macro_rules! motion {
     ($boundaries:literal, $p:ident, $x:ident) => {{
-        let (grid, turns) = (at!($boundaries, $p.by, $x), at!($boundaries, $p.turns, $x));
+        let (grid, turns) = (Grid::behind(&$p.by, $x), Grid::behind(&$p.turns, $x));
         let (mut q, mut v) = ([R::zero(); COORDINATES], [R::zero(); VELOCITIES]);
         q.copy_from_slice(&$x.q[..COORDINATES]);
         v.copy_from_slice(&$x.v[..VELOCITIES]);
@@ -232,8 +224,8 @@ macro_rules! element {
                     } else {
                         let f = j - VELOCITIES;
                         let moved = |m: &mut Motion<Dual<R>>| {
-                            m.grid = at!($boundaries, p.by, x).towards(&p.by, f, w);
-                            m.turns = at!($boundaries, p.turns, x).towards(&p.turns, f, w);
+                            m.grid = Grid::behind(&p.by, x).towards(&p.by, f, w);
+                            m.turns = Grid::behind(&p.turns, x).towards(&p.turns, f, w);
                         };
                         add(&seen(&moved), one);
                     }

@@ -57,14 +57,9 @@ impl Rubs {
     }
 
     fn anchor(&self, key: f64, memory: &[f64]) -> Option<Anchor> {
-        let all = self.entries(memory);
-        let named = |k: usize| if all[MEMORY * k] == 0.0 { f64::INFINITY } else { all[MEMORY * k] };
-        let (mut low, mut high) = (0, all.len() / MEMORY);
-        while low < high {
-            let middle = (low + high) / 2;
-            if named(middle) < key { low = middle + 1 } else { high = middle }
-        }
-        let own = all.get(MEMORY * low..MEMORY * (low + 1))?;
+        let all = self.entries(memory).as_chunks::<MEMORY>().0;
+        // in order, and room that is empty behind them
+        let own = all.get(all.partition_point(|own| own[0] != 0.0 && own[0] < key))?;
         (own[0] == key).then(|| Anchor { xi: [own[1], own[2]], from: [own[3], own[4]] })
     }
 }
@@ -174,7 +169,6 @@ impl LineContact {
     }
 
     /// Adds the forces of the bristles of one piece that faces another.
-    #[allow(clippy::too_many_arguments)]
     pub(super) fn add_friction(
         &self,
         rubs: &Rubs,
