@@ -4,9 +4,10 @@
 //! - a step of the same scene in this program and in one without water, drag and the like, which must be equal: what
 //!   a scene doesn't ask for costs nothing, not even where the program could do it;
 //! - an iteration of a cable with torsion with that of one without, of which it must not take more than 1.8;
-//! - the full Newton iteration with those in `benches/instructions.csv`, which must not be exceeded by more than 5 %.
+//! - a full iteration with everything in water with what it took in version 0.1, of which it must not take more than 1.3;
+//! - iterations and steps with those in `benches/instructions.csv`, which must not be exceeded by more than 5 %.
 //!
-//! `cargo bench --bench instructions -- --record` writes that file anew.
+//! `cargo bench --bench instructions -- --record` writes that file anew; what 0.1 took stays in it.
 
 mod free_fall;
 
@@ -31,6 +32,8 @@ const TOLERANCE: f64 = 0.05;
 const EQUAL: f64 = 1e-4;
 /// Most instructions of an iteration with torsion, in those of one without.
 const TORSION: f64 = 1.8;
+/// Most instructions of a full iteration in water, in those of 0.1, whose water had no energy and no surface.
+const WATER: f64 = 1.3;
 /// Repetitions that are counted.
 const REPEATS: usize = 5;
 
@@ -133,8 +136,9 @@ fn all(record: bool) -> Result<bool> {
     }
 
     let known = read(Path::new(RECORD))?;
+    let of_first = |case: &str| known.get(case).and_then(|k| k.first);
     let mut counts = BTreeMap::new();
-    println!("\ninstructions per element, and against the record");
+    println!("\ninstructions per element, in parts of those of 0.1, and against the record");
     let lanes: &[&str] = if Width::best() == Width::One { &["one"] } else { &["one", "four"] };
     for work in ["iteration", "step"] {
         for scene in ["dry", "damped", "twisted", "water"] {
@@ -143,14 +147,15 @@ fn all(record: bool) -> Result<bool> {
                     let case = format!("{work}-{scene}-{elements}-{width}");
                     let times = if work == "step" { STEPS } else { REPEATS };
                     let each = count(&me, Some(&case))? / (times * elements) as f64;
-                    let change = known.get(&case).map(|before| each / before - 1.0);
+                    let change = known.get(&case).map(|before| each / before.now - 1.0);
+                    let share = of_first(&case).map_or(String::new(), |first| format!("{:.2}", each / first));
                     let verdict = match change {
                         None => "  new".to_string(),
                         Some(c) if c > TOLERANCE => format!("{:+7.1} %  too expensive", 100.0 * c),
                         Some(c) => format!("{:+7.1} %", 100.0 * c),
                     };
                     fine &= record || change.is_none_or(|c| c <= TOLERANCE);
-                    println!("  {case:<44}{each:>12.1}{verdict}");
+                    println!("  {case:<44}{each:>12.1}{share:>8}{verdict}");
                     counts.insert(case, each);
                 }
             }
@@ -161,11 +166,19 @@ fn all(record: bool) -> Result<bool> {
         let times = of("twisted") / of("dry");
         println!("  an iteration with torsion, {width} at a time, takes {times:.2} of one without");
         fine &= times <= TORSION;
+        for elements in [64, 512] {
+            let case = format!("iteration-water-{elements}-{width}");
+            let Some(first) = of_first(&case) else { continue };
+            let times = counts[&case] / first;
+            println!("  {case} takes {times:.2} of what it took in 0.1");
+            fine &= times <= WATER;
+        }
     }
     if record {
-        let mut text = String::from("case,instructions per element\n");
-        for (case, each) in counts {
-            _ = writeln!(text, "{case},{each:.1}");
+        let mut text = String::from("case,instructions per element,those of 0.1\n");
+        for (case, each) in &counts {
+            let first = of_first(case).map_or(String::new(), |first| format!("{first:.1}"));
+            _ = writeln!(text, "{case},{each:.1},{first}");
         }
         std::fs::write(RECORD, text)?;
         println!("\nwritten to {RECORD}");
@@ -173,12 +186,20 @@ fn all(record: bool) -> Result<bool> {
     Ok(fine)
 }
 
+/// What is recorded of a case: its count, and that of version 0.1 if it could do it.
+struct Known {
+    now: f64,
+    first: Option<f64>,
+}
+
 /// The recorded counts; none where nothing was recorded yet.
-fn read(path: &Path) -> Result<BTreeMap<String, f64>> {
+fn read(path: &Path) -> Result<BTreeMap<String, Known>> {
     let Ok(text) = std::fs::read_to_string(path) else { return Ok(BTreeMap::new()) };
-    let line = |line: &str| -> Result<(String, f64)> {
-        let (case, each) = line.split_once(',').ok_or_else(|| format!("{RECORD}: no number in {line}"))?;
-        Ok((case.into(), each.parse()?))
+    let line = |line: &str| -> Result<(String, Known)> {
+        let bad = || format!("{RECORD}: three columns are needed in {line}");
+        let [case, now, first] = line.split(',').collect::<Vec<_>>()[..] else { return Err(bad().into()) };
+        let first = if first.is_empty() { None } else { Some(first.parse()?) };
+        Ok((case.into(), Known { now: now.parse()?, first }))
     };
     text.lines().skip(1).map(line).collect()
 }

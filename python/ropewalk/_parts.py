@@ -1678,16 +1678,18 @@ class Parts:
         itself: Boolean | None = None,
         exponent: Number | None = None,
         damping: Union[Literal['none'], Mapping[str, Any]] | None = None,
+        friction: Union[Mapping[str, Any], Number] | None = None,
         overlap: Literal['allow', 'refuse'] | None = None,
     ) -> Part:
         """Contact of cables and of bodies with a hull with each other, and of cables with themselves: lines that cross,
         coils, knots, a line that falls onto itself.
 
         They touch anywhere along their length where their middle lines are nearer than both radii; ends are round.
-        There is no friction between lines. An end that starts in another line, more than half of the radius deep, is
-        taken as tied to it, and both leave each other alone there. Along one line, what is nearer than 1.6 diameters
-        along it isn't looked at. A record of type `force` shows what presses, how deep and over which length; a
-        record `clearance` shows how near two lines are.
+        With `friction` they hold on to each other. An end that starts in another line, more than half of the radius
+        deep, is taken as tied to it, and both leave each other alone there. Along one line, what is nearer than 1.6
+        diameters along it isn't looked at. A record of type `force` shows what presses, how deep and over which
+        length, and with friction what holds and which part of what presses slips; a record `clearance` shows how near
+        two lines are.
 
         name: Name.
         stiffness_per_length: Contact stiffness per length [N/m²]; with an exponent other than 1, at a depth of 1 m.
@@ -1695,6 +1697,10 @@ class Parts:
         itself: Whether each cable touches itself too. Default True.
         exponent: Exponent `p` of the elastic force `k d^p`. Default 1.0.
         damping: Damping law along the normal. Default none.
+        friction: Dry friction: a coefficient, or `{ mu, elastic_slip, equilibrium }`; `elastic_slip` is how far it
+            gives way where lines press a hundredth of their thickness into each other. Lines that cross at less than
+            30° hold less across, down to nothing where they are parallel: they roll on each other. Equilibria are
+            computed without friction unless `equilibrium` is `laid`.
         overlap: What to do with lines that start deep in each other. Default refuse.
         """
         return self._add("forces", "line_contact", {
@@ -1704,6 +1710,7 @@ class Parts:
             "itself": itself,
             "exponent": exponent,
             "damping": damping,
+            "friction": friction,
             "overlap": overlap,
         })
 

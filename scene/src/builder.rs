@@ -482,7 +482,8 @@ impl Builder {
         self.guides.get(name).cloned().ok_or_else(|| {
             let names: Vec<String> = self.guides.keys().map(|n| format!("`{n}`")).collect();
             let names = if names.is_empty() { "none".into() } else { names.join(", ") };
-            let message = format!("there is no sheave or ring `{name}`; those of the scene are {names}");
+            let message =
+                format!("there is no sheave, ring or drum `{name}`; those of the scene are {names}");
             BuildError::at("route", message)
         })
     }

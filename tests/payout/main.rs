@@ -11,6 +11,7 @@ mod births;
 mod drum;
 mod eyelet;
 mod falls;
+mod passing;
 mod reeling;
 mod reeving;
 mod route;

@@ -569,7 +569,10 @@ fn a_wheel_on_two_ropes_keeps_its_angle_in_an_equilibrium() {
 fn what_cannot_be_reeved_is_refused_with_its_reason() {
     let scene = over("", 0.1, [0.0; 2], "elements = 1");
     let cases = [
-        (scene.replace("{ over = \"wheel\" }", "{ over = \"whee\" }"), "there is no sheave or ring `whee`"),
+        (
+            scene.replace("{ over = \"wheel\" }", "{ over = \"whee\" }"),
+            "there is no sheave, ring or drum `whee`",
+        ),
         (
             scene.replace("{ over = \"wheel\" }", "{ under = \"wheel\" }"),
             "can't run as its route says at `wheel`",

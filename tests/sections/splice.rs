@@ -77,7 +77,11 @@ fn what_is_wrong_with_sections_is_said_where_it_stands() {
         ("sections = [{ to = 3, section = \"rope\" }]\nlength = 4", "ends at 3 m, but `length` is 4 m", ""),
         ("sections = [{ section = \"rope\", elements = 3 }]", "leave `elements` of the cable out", ""),
         ("sections = [{ section = { mass = 1, ea = 0 } }]", "`ea` must be positive", ""),
-        ("sections = [{ section = { mass = 1, ea = 1, ei = [1, 2], gj = 1 } }]", "alike to all sides", ""),
+        (
+            "sections = [{ section = { mass = 1, ea = 1, ei = [1, 2], gj = 1 } }]",
+            "which way does the section look?",
+            "",
+        ),
         ("sections = [{ section = \"rope\" }]\ntension = 5", "stretch differently", ""),
     ];
     for (made_of, message, help) in cases {

@@ -9,3 +9,4 @@ mod contact_along;
 mod feeding_contact;
 mod friction;
 mod lines;
+mod lines_rub;

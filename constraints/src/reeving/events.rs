@@ -67,11 +67,11 @@ impl Event for Watch {
     fn act(&self, _: &Model, _: &mut State) -> Action {
         match self.what {
             What::Slack | What::Flung => Action::Continue,
-            What::Leaves => Action::Fail(format!(
-                "{}. A cable that leaves a sheave and comes back isn't known: shorten the run, or leave the sheave out",
-                self.name()
-            )),
-            What::Whole => Action::Fail(format!("{}: several turns aren't known", self.name())),
+            What::Leaves => Action::Fail(
+                "a cable that leaves a sheave and comes back isn't known: shorten the run, or leave the sheave out"
+                    .into(),
+            ),
+            What::Whole => Action::Fail("several turns on a sheave aren't known".into()),
         }
     }
 }

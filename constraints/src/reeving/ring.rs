@@ -2,6 +2,7 @@
 
 use super::arc::direction;
 use super::events::Short;
+use super::sheave::passes;
 use num_dual::Dual64;
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::{
@@ -237,7 +238,9 @@ impl Term for Kink {
         out.add_square(0, &block);
     }
     fn power(&self, at: &At<'_>) -> Power {
-        Power { dissipated: self.now(at).lost, ..Power::default() }
+        // the turn at the ring changes the speed of the material, but nothing of the cable is outside
+        let carried = passes(&self.ends, &[0.0; 3], at);
+        Power { dissipated: self.now(at).lost, carried, ..Power::default() }
     }
     fn shows(&self) -> Option<&dyn Shows> {
         Some(self)

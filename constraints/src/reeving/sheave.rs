@@ -86,6 +86,19 @@ pub(super) struct Sheave {
     pub solid: Solid,
 }
 
+/// Power with which material passes these ends of two spans into what lies between them [W]: its kinetic energy and that of
+/// its weight, of which each span says that it is carried over its end.
+pub(super) fn passes(ends: &[MovingBoundary; 2], gravity: &V3<f64>, at: &At<'_>) -> f64 {
+    let leaves = |end: &MovingBoundary| {
+        let (place, slope) = (&at.q[end.end_q..end.end_q + 3], &at.q[end.end_q + 3..end.end_q + 6]);
+        let (rate, velocity) = (at.v[end.v], &at.v[end.end_v..end.end_v + 3]);
+        let square: f64 = velocity.iter().zip(slope).map(|(v, s)| (v - s * rate).powi(2)).sum();
+        let weight: f64 = place.iter().zip(gravity).map(|(x, g)| x * g).sum();
+        end.rho_a * rate * (weight - 0.5 * square)
+    };
+    leaves(&ends[0]) - leaves(&ends[1])
+}
+
 /// Stiffness that keeps a free wheel in an equilibrium, as a share of `EA R`.
 const STILL: f64 = 1e-9;
 
@@ -296,7 +309,9 @@ impl Term for Sheave {
     fn power(&self, at: &At<'_>) -> Power {
         let dissipated = (0..self.grooves.len()).map(|k| self.instant(k, at).dissipated).sum();
         let supplied = self.angle.as_ref().map_or(0.0, |a| a.torque.at(at.t) * at.v[a.place.1]);
-        Power { dissipated, supplied, ..Power::default() }
+        // what leaves a span is on the wheel, whose energy counts: nothing comes from outside or goes there
+        let carried = self.grooves.iter().map(|g| passes(&g.ends, &g.arc.gravity, at)).sum();
+        Power { dissipated, supplied, carried }
     }
     fn timed(&self) -> Option<&dyn Timed> {
         let driven = self.angle.as_ref().is_some_and(|angle| !angle.torque.is_constant());

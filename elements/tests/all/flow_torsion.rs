@@ -16,7 +16,10 @@ pub fn nodes(boundaries: usize) -> Vec<Node> {
     all
 }
 
-pub fn pool<E: Element<Q, N>, const Q: usize, const N: usize>(element: E, boundaries: usize) -> Box<dyn Term> {
+pub fn pool<E: Element<Q, N>, const Q: usize, const N: usize>(
+    element: E,
+    boundaries: usize,
+) -> Box<dyn Term> {
     let mut pool = Pool::new();
     let on: Vec<NodeId> = (0..2 + boundaries as u32).map(NodeId).collect();
     for _ in 0..3 {

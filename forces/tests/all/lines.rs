@@ -1,13 +1,13 @@
 //! Lines that touch each other: force and tangent against differences of the energy, closed forms, what is left out.
 
 use crate::random::Random;
-use ropewalk_core::rotation::{cross, exp};
+use ropewalk_core::rotation::{cross, exp, matrix, times};
 use ropewalk_core::testing::{dense, difference};
 use ropewalk_core::{
     At, ContactSpan, Couples, Foresees, Node, NodeKind, Shows, SpanLine, Term, V3, Weights, Width, dot,
     retract,
 };
-use ropewalk_forces::contact::{ContactLaw, Damping, LineContact, Touching, nearest_points};
+use ropewalk_forces::contact::{ContactLaw, Damping, Friction, LineContact, Touching, nearest_points};
 use serde_json::Value;
 use std::f64::consts::PI;
 
@@ -407,5 +407,286 @@ fn the_nearest_points_of_two_curves_are_found() {
         let off = (distance - number(&case["distance"])).abs();
         println!("{distance:.9} m, off by {off:.1e}");
         assert!(off < 1e-9, "{distance} at {xi:?} instead of {case}");
+    }
+}
+
+/// The same places with friction, as they have taken hold where they are now; and what they remember.
+fn rubbing(w: &World, law: ContactLaw) -> (LineContact, Vec<f64>) {
+    let contact = w.contact(law);
+    let size = contact.memory();
+    let contact = contact.with_friction(&vec![0.3; w.lines.len()], 0).unwrap_or_else(|e| panic!("{e}"));
+    let (mut memory, zero) = (vec![0.0; size], vec![0.0; w.v.len()]);
+    contact.remembers().unwrap().remember(&w.at(&w.q, &zero), &mut memory);
+    (contact, memory)
+}
+
+fn rough(mu: f64, damping: Damping) -> ContactLaw {
+    ContactLaw { friction: Some(Friction::new(mu)), damping, ..ContactLaw::default() }
+}
+
+#[test]
+fn friction_has_exact_tangents_and_moves_nothing_as_a_whole() {
+    let mut r = Random(17);
+    // pulled a little, and far beyond what holds; steep, shallow and parallel crossings; a hull below
+    for (far, slipping) in [(1e-5, 0.0), (2e-3, 1.0)] {
+        for (angle, hull) in [(1.2_f64, false), (2.4, false), (0.3, false), (0.0, false), (0.9, true)] {
+            let mut w = crossing(angle, 5e-4);
+            if hull {
+                w.hull([0.4, 0.0, -0.019], [0.1, 0.0, 0.7], 0.9);
+            }
+            w.shake(&mut r, 1e-5);
+            let (contact, memory) = rubbing(&w, rough(0.4, Damping::HuntCrossley(0.3)));
+            let held: Vec<f64> = w.q.clone();
+            // the second line is drawn along and across
+            for n in w.nodes[2..4].iter().filter(|n| n.kind == NodeKind::Slope) {
+                w.q[n.q] += far;
+                w.q[n.q + 1] += 0.7 * far;
+            }
+            assert!(w.q != held);
+            w.v.iter_mut().for_each(|v| *v *= 1e-2 * far / 2e-3);
+            let shown = {
+                let mut out = Vec::new();
+                let zero = vec![0.0; w.v.len()];
+                contact.observe(&At { internal: &memory, ..w.at(&w.q, &zero) }, &mut out);
+                out
+            };
+            println!("{angle}, hull {hull}, {far}: {shown:?}");
+            assert!(shown[3] > 0.0, "nothing holds: {shown:?}");
+            assert!((shown[4] - slipping).abs() <= if slipping > 0.0 { 0.5 } else { 0.0 }, "{shown:?}");
+            let error = remembered_error(&contact, &w, &memory);
+            let off = unbalanced(&contact, &w, &memory);
+            println!("  tangent {error:.1e}, balance {off:.1e}");
+            assert!(error <= 2e-3, "{angle}, {far}: {error:.1e}");
+            assert!(off <= 1e-12, "{angle}, {far}: {off:.1e}");
+        }
+    }
+}
+
+/// Stiffness and damping against differences along increments.
+fn remembered_error(contact: &LineContact, w: &World, memory: &[f64]) -> f64 {
+    let n = w.v.len();
+    let zero = vec![0.0; n];
+    let residual = |q: &[f64], v: &[f64]| {
+        let at = At { t: 0.0, q, v, a: &zero, internal: memory, relaxed: None };
+        dense(contact, &w.nodes, &at, Weights::default(), Width::One).0
+    };
+    let mut worst = 0.0_f64;
+    let kinds = [Weights { q: 1.0, v: 0.0, a: 0.0 }, Weights { q: 0.0, v: 1.0, a: 0.0 }];
+    for (kind, weights) in kinds.into_iter().enumerate() {
+        let at = At { internal: memory, ..w.at(&w.q, &zero) };
+        let (_, k) = dense(contact, &w.nodes, &at, weights, Width::One);
+        let size = k.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        assert!(size > 0.0);
+        for j in 0..n {
+            let scale = if kind == 0 { 1e-3 } else { 1e-1 };
+            let column = difference(|h| {
+                let mut d = vec![0.0; n];
+                d[j] = scale * h;
+                let (mut q, mut v) = (w.q.clone(), w.v.clone());
+                if kind == 0 {
+                    retract(&w.nodes, &w.q, &d, &mut q);
+                } else {
+                    v[j] += scale * h;
+                }
+                residual(&q, &v).into_iter().map(|r| r / scale).collect()
+            });
+            for (i, x) in column.iter().enumerate() {
+                let off = (k[i][j] - x).abs() / size;
+                assert!(off.is_finite());
+                worst = worst.max(off);
+            }
+        }
+    }
+    worst
+}
+
+/// The sum of forces and moments, in parts of the largest force.
+fn unbalanced(contact: &LineContact, w: &World, memory: &[f64]) -> f64 {
+    let zero = vec![0.0; w.v.len()];
+    let at = At { internal: memory, ..w.at(&w.q, &zero) };
+    let (f, _) = dense(contact, &w.nodes, &at, Weights::default(), Width::One);
+    let (mut sum, mut moment, mut size) = ([0.0; 3], [0.0; 3], 0.0_f64);
+    for n in &w.nodes {
+        let three = |x: &[f64], k: usize| [x[k], x[k + 1], x[k + 2]];
+        let (force, second) = (three(&f, n.v), three(&f, n.v + 3));
+        let of_second = match n.kind {
+            NodeKind::Frame => {
+                times(&matrix(&[w.q[n.q + 3], w.q[n.q + 4], w.q[n.q + 5], w.q[n.q + 6]]), &second)
+            }
+            _ => cross(&three(&w.q, n.q + 3), &second),
+        };
+        let turn = cross(&three(&w.q, n.q), &force);
+        for i in 0..3 {
+            sum[i] += force[i];
+            moment[i] += turn[i] + of_second[i];
+            size = size.max(force[i].abs());
+        }
+    }
+    (dot(&sum, &sum) + dot(&moment, &moment)).sqrt() / size
+}
+
+#[test]
+fn friction_turns_with_what_it_holds() {
+    let mut r = Random(23);
+    let mut w = crossing(1.1, 5e-4);
+    w.shake(&mut r, 1e-5);
+    let (contact, memory) = rubbing(&w, rough(0.4, Damping::None));
+    w.nodes[2..4].iter().for_each(|n| w.q[n.q] += 1e-3);
+    w.v.fill(0.0);
+    let zero = vec![0.0; w.v.len()];
+    let force = |w: &World, contact: &LineContact| {
+        dense(
+            contact,
+            &w.nodes,
+            &At { internal: &memory, ..w.at(&w.q, &zero) },
+            Weights::default(),
+            Width::One,
+        )
+        .0
+    };
+    let before = force(&w, &contact);
+    let r = matrix(&exp([0.4, -1.1, 0.7]));
+    let turned =
+        |x: &[f64]| -> Vec<f64> { x.chunks_exact(3).flat_map(|x| times(&r, &[x[0], x[1], x[2]])).collect() };
+    w.q = turned(&w.q);
+    w.nodes.iter().for_each(|n| (0..3).for_each(|i| w.q[n.q + i] += [3.0, -2.0, 1.0][i]));
+    let (wanted, got) = (turned(&before), force(&w, &contact));
+    let size = before.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    for (a, b) in got.iter().zip(&wanted) {
+        // depths are differences of places that are farther away now
+        assert!((a - b).abs() <= 1e-8 * size, "{a} instead of {b}");
+    }
+}
+
+#[test]
+fn slip_is_held_by_coulombs_limit_and_no_more() {
+    // two lines that cross: one is drawn along itself, along the other, and askew
+    for way in [[1.0, 0.0], [0.0, 1.0], [0.6, -0.8_f64]] {
+        let mut w = World::default();
+        w.straight([-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], 0.25, 4).straight(
+            [0.013, -0.5, THICK - 2e-4],
+            [0.0, 1.0, 0.0],
+            0.25,
+            4,
+        );
+        let (contact, memory) = rubbing(&w, rough(0.3, Damping::None));
+        let upper = w.nodes[5..].to_vec();
+        let k = 1e-3;
+        upper.iter().for_each(|n| (0..2).for_each(|i| w.q[n.q + i] += k * way[i]));
+        let zero = vec![0.0; w.v.len()];
+        let (f, _) = dense(
+            &contact,
+            &w.nodes,
+            &At { internal: &memory, ..w.at(&w.q, &zero) },
+            Weights::default(),
+            Width::One,
+        );
+        let total: V3<f64> = std::array::from_fn(|i| upper.iter().map(|n| f[n.v + i]).sum());
+        // the residual pulls back; what presses is counted place by place, each along its own normal
+        let mut out = Vec::new();
+        contact.observe(&At { internal: &memory, ..w.at(&w.q, &zero) }, &mut out);
+        let (normal, along) = (out[0], total[0] * way[0] + total[1] * way[1]);
+        assert!((out[3] / (0.3 * normal) - 1.0).abs() <= 1e-12 && out[4] == 1.0, "{out:?}");
+        assert!((-total[2] / normal - 1.0).abs() <= 3e-3, "{total:?}");
+        let across = total[0] * way[1] - total[1] * way[0];
+        println!("{way:?}: {:.3e} off, {across:.1e} N", along / (0.3 * normal) - 1.0);
+        assert!(normal > 0.5 && (along / (0.3 * normal) - 1.0).abs() <= 1e-9, "{along} N of {normal} N");
+        assert!(across.abs() <= 1e-9 * normal, "{across} N");
+    }
+}
+
+/// A chain of two links that meet at the origin, each of half a metre, from the first of these places and to the second.
+fn corner(ends: [V3<f64>; 2]) -> World {
+    let mut w = World::default();
+    let spans = ends.iter().enumerate().map(|(k, end)| {
+        let way: V3<f64> = if k == 0 { end.map(|x| -x) } else { *end };
+        // turned from the x axis into the way
+        let axis = cross(&[1.0, 0.0, 0.0], &way.map(|x| 2.0 * x));
+        let sine = dot(&axis, &axis).sqrt();
+        let angle = sine.atan2(2.0 * way[0]);
+        let turned = exp(if sine > 0.0 { axis.map(|a| a * angle / sine) } else { [0.0; 3] });
+        let q: Vec<f64> = end.map(|x| 0.5 * x).into_iter().chain(turned).collect();
+        let (q, v) = w.node(NodeKind::Frame, &q);
+        let line =
+            SpanLine::Straight { q, v, ends: [[-0.25, 0.0, 0.0], [0.25, 0.0, 0.0]], along: [1.0, 0.0, 0.0] };
+        let tips = [k == 0, k == 1];
+        ContactSpan { line, radius: 0.5 * THICK, length: 0.5, s: 0.5 * k as f64, tips, flow: None }
+    });
+    let spans = spans.collect();
+    w.line(spans);
+    w
+}
+
+#[test]
+fn the_force_on_a_chain_follows_from_its_energy_around_corners_too() {
+    let half = |x: f64, y: f64| [0.5 * x, 0.5 * y, 0.0].map(|c: f64| c / x.hypot(y));
+    for (bend, along) in [(0.5_f64, [0.2, 1.0]), (0.5, [1.0, 0.1]), (-0.4, [1.0, 0.0]), (0.0, [1.0, 0.05])] {
+        let mut w = corner([half(-1.0, bend), half(1.0, bend)]);
+        let t = [along[0], along[1], 0.01];
+        let length = dot(&t, &t).sqrt();
+        let t = t.map(|x| x / length);
+        let place = |s: f64| [s * t[0] + 0.004, s * t[1] + 0.003, s * t[2] + THICK - 6e-4];
+        w.cable(0.8, &[[place(-0.4), t], [place(0.4), t]]);
+        let contact = w.contact(ContactLaw::default());
+        let zero = vec![0.0; w.v.len()];
+        let (r, k) =
+            dense(&contact, &w.nodes, &w.at(&w.q, &zero), Weights { q: 1.0, v: 0.0, a: 0.0 }, Width::One);
+        let size = r.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        assert!(size > 0.1, "nothing touches");
+        // the links stay together: both move, or one turns around the joint
+        let mut moves = Vec::new();
+        for axis in 0..3 {
+            let e: V3<f64> = std::array::from_fn(|i| if i == axis { 1.0 } else { 0.0 });
+            let mut all = vec![0.0; zero.len()];
+            for n in &w.nodes[..2] {
+                all[n.v + axis] = 1.0;
+            }
+            moves.push(all);
+            for n in &w.nodes[..2] {
+                let at = |k: usize| w.q[n.q + k];
+                let shift = cross(&e, &[at(0), at(1), at(2)]);
+                let turn = matrix(&[at(3), at(4), at(5), at(6)]);
+                let mut all = vec![0.0; zero.len()];
+                for i in 0..3 {
+                    all[n.v + i] = shift[i];
+                    all[n.v + 3 + i] = (0..3).map(|j| turn[j][i] * e[j]).sum();
+                }
+                moves.push(all);
+            }
+        }
+        for k in 12..24 {
+            moves.push((0..24).map(|i| if i == k { 1.0 } else { 0.0 }).collect());
+        }
+        let mut worst = 0.0_f64;
+        for way in &moves {
+            let scale = 1e-3;
+            let moved = |h: f64| {
+                let d: Vec<f64> = way.iter().map(|x| scale * h * x).collect();
+                let mut q = w.q.clone();
+                retract(&w.nodes, &w.q, &d, &mut q);
+                q
+            };
+            let of = |h: f64| vec![contact.energy(&w.at(&moved(h), &zero)).potential / scale];
+            let (slope, work) = (difference(of)[0], way.iter().zip(&r).map(|(a, b)| a * b).sum::<f64>());
+            assert!(slope.is_finite());
+            worst = worst.max((slope - work).abs() / size);
+            // where a border between links moves, both have the same there: the tangent along such moves is right too
+            let residual = |h: f64| {
+                let r = dense(&contact, &w.nodes, &w.at(&moved(h), &zero), Weights::default(), Width::One).0;
+                vec![
+                    moves[9..].iter().map(|m| m.iter().zip(&r).map(|(a, b)| a * b).sum::<f64>()).sum::<f64>()
+                        / scale,
+                ]
+            };
+            let by: f64 = moves[9..]
+                .iter()
+                .map(|m| (0..24).map(|i| m[i] * (0..24).map(|j| k[i][j] * way[j]).sum::<f64>()).sum::<f64>())
+                .sum();
+            let off = (difference(residual)[0] - by).abs()
+                / k.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+            assert!(off <= 2e-3, "{bend}, {along:?}: tangent {off:.1e}");
+        }
+        println!("{bend}, {along:?}: {size:.2} N, force {worst:.1e}, {:?}", w.shown(&contact));
+        assert!(worst <= 3e-4, "{bend}, {along:?}: {worst:.1e}");
     }
 }

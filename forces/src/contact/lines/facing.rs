@@ -2,7 +2,8 @@
 //!
 //! Neighbouring pieces of a line share the plane across their common node. What is nearest beyond it belongs to the
 //! neighbour, so that nothing is counted twice; along a single line, what is nearer along it than a loop could be
-//! isn't looked at.
+//! isn't looked at. Where links of a chain meet at a corner the plane is that between both, in which all places are as far
+//! from one as from the other.
 
 use super::super::search::{Cubic, DETAIL, Depth, Look};
 use super::super::seat::minus;
@@ -33,6 +34,8 @@ pub(crate) struct Facing<'a> {
     pub thick: f64,
     /// Whether the second ends at its ends, rather than going on.
     pub tips: [bool; 2],
+    /// Where the second meets a neighbour at a corner, the direction across the plane that parts them.
+    pub corners: [Option<V3<f64>>; 2],
     pub window: Option<Window>,
     /// The part of the first that counts.
     pub range: [f64; 2],
@@ -67,8 +70,11 @@ impl Facing<'_> {
     }
 
     fn limits(&self, xi: f64) -> ([f64; 2], f64) {
-        let [mut lo, mut hi] =
-            [if self.tips[0] { 0.0 } else { -BEYOND }, if self.tips[1] { 1.0 } else { 1.0 + BEYOND }];
+        let beyond = [0, 1].map(|end| {
+            let goes_on = !self.tips[end] && self.corners[end].is_none();
+            if goes_on { BEYOND } else { 0.0 }
+        });
+        let [mut lo, mut hi] = [-beyond[0], 1.0 + beyond[1]];
         let mut border = f64::NAN;
         if let Some(Window { at, rate, ahead }) = self.window {
             let own = (at + rate * xi).clamp(lo, hi);
@@ -115,10 +121,7 @@ impl Facing<'_> {
             if self.tips[end] {
                 continue;
             }
-            let Cubic([p0, d0, p1, d1]) = self.one.cubic;
-            let shift = SHIFT * size(&along) * self.thick;
-            let height = |p: &V3<f64>| dot(&minus(p, &node), &along) + shift;
-            let plane = Heights([height(&p0), dot(&d0, &along), height(&p1), dot(&d1, &along)]);
+            let plane = self.plane(&node, &self.corners[end].unwrap_or(along));
             let whole = std::mem::take(found);
             for [from, to] in whole {
                 let mut borders = plane.zeros(from, to);
@@ -134,6 +137,33 @@ impl Facing<'_> {
                     }
                     from = border;
                 }
+            }
+        }
+        self.cut_at_corners(found);
+    }
+
+    /// How far the first is beyond the plane across a direction at a node.
+    fn plane(&self, node: &V3<f64>, across: &V3<f64>) -> Heights {
+        let Cubic([p0, d0, p1, d1]) = self.one.cubic;
+        let shift = SHIFT * size(across) * self.thick;
+        let height = |p: &V3<f64>| dot(&minus(p, node), across) + shift;
+        Heights([height(&p0), dot(&d0, across), height(&p1), dot(&d1, across)])
+    }
+
+    /// Cuts where the corner itself begins to be the nearest place, from which on the distance is bent otherwise.
+    fn cut_at_corners(&self, found: &mut Vec<[f64; 2]>) {
+        let Cubic([a, da, b, db]) = self.other.cubic;
+        for (end, node, along) in [(0, a, da), (1, b, db)] {
+            if self.corners[end].is_none() {
+                continue;
+            }
+            let plane = self.plane(&node, &along);
+            for [mut from, to] in std::mem::take(found) {
+                for border in plane.zeros(from, to).into_iter().filter(|x| *x < to) {
+                    found.push([from, border]);
+                    from = border;
+                }
+                found.push([from, to]);
             }
         }
     }
@@ -179,6 +209,22 @@ impl Depth for Facing<'_> {
 pub(crate) struct Scratch {
     pieces: Vec<[Look; 2]>,
     pub found: Vec<[f64; 2]>,
+}
+
+impl Scratch {
+    /// Cuts what was found at the borders of so many equal cells.
+    pub fn cut(&mut self, cells: usize) {
+        let whole = std::mem::take(&mut self.found);
+        for [mut from, to] in whole {
+            for border in (1..cells).map(|k| k as f64 / cells as f64) {
+                if from < border && border < to {
+                    self.found.push([from, border]);
+                    from = border;
+                }
+            }
+            self.found.push([from, to]);
+        }
+    }
 }
 
 /// A cubic number: its values and its derivatives at 0 and 1.

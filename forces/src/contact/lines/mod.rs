@@ -5,13 +5,15 @@
 //! curve. Each of two pieces is searched along the other with half of the stiffness, which treats both alike.
 //!
 //! [`pieces`] knows what can touch what, [`near`] keeps the list of pieces that are near each other, [`facing`] finds where
-//! one touches the other, [`push`] turns that into forces, [`ahead`] keeps steps short enough, and [`LineContact`] puts it
+//! one touches the other, [`push`] turns that into forces, [`bristle`] and [`friction`] hold what would slip, [`ahead`] keeps steps short enough, and [`LineContact`] puts it
 //! all into the equations of motion.
 
 mod ahead;
+mod bristle;
 mod clearance;
 mod curve;
 mod facing;
+mod friction;
 mod near;
 mod pieces;
 mod push;

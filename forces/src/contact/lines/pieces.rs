@@ -1,8 +1,8 @@
 //! What can touch what.
 
-use super::curve::Curve;
+use super::curve::{Curve, size};
 use super::facing::{Facing, Window};
-use ropewalk_core::SpanLine;
+use ropewalk_core::{SpanLine, V3};
 use std::f64::consts::PI;
 
 /// A slender piece of a line.
@@ -58,6 +58,26 @@ impl Pieces {
         self.itself && b.s + b.length - a.s > self.apart(i, j)
     }
 
+    /// The neighbours of a link of a chain, before and behind it.
+    pub fn links(&self, k: usize) -> [Option<usize>; 2] {
+        let piece = &self.all[k];
+        let link = matches!(piece.span, SpanLine::Straight { .. });
+        [(link && !piece.tips[0]).then(|| k - 1), (link && !piece.tips[1]).then(|| k + 1)]
+    }
+
+    /// The directions across the planes that part a link from its neighbours.
+    pub fn corners(&self, k: usize, curves: &[Option<Curve>]) -> [Option<V3<f64>>; 2] {
+        let way = |k: usize| {
+            let slope = curves[k].as_ref()?.cubic.slope(0.5);
+            let length = size(&slope);
+            Some(slope.map(|x| x / length))
+        };
+        self.links(k).map(|neighbour| {
+            let (own, other) = (way(k)?, way(neighbour?)?);
+            Some(std::array::from_fn(|i| own[i] + other[i]))
+        })
+    }
+
     /// The first piece as it faces the second; of one that faces itself, what is `ahead` or behind.
     pub fn facing<'a>(&self, [i, j]: [usize; 2], curves: [&'a Curve; 2], ahead: bool) -> Option<Facing<'a>> {
         let (a, b) = (&self.all[i], &self.all[j]);
@@ -75,6 +95,7 @@ impl Pieces {
             }
         }
         let [one, other] = curves;
-        Facing { one, other, thick: self.thick(i, j), tips: b.tips, window, range }.narrowed()
+        Facing { one, other, thick: self.thick(i, j), tips: b.tips, corners: [None; 2], window, range }
+            .narrowed()
     }
 }

@@ -30,6 +30,32 @@ pub(crate) struct Push {
     force: Normal,
     pub depth: f64,
     pub rate: f64,
+    /// Where it is along both.
+    pub xi: [f64; 2],
+}
+
+/// What presses a cell of one piece on another.
+#[derive(Clone, Copy)]
+pub(crate) struct Pressed {
+    /// Normal force [N].
+    pub normal: f64,
+    /// The same times the place on each.
+    at: [f64; 2],
+    /// Its weighted derivative by the unknowns of both.
+    pub by: [f64; BOTH],
+}
+
+impl Pressed {
+    pub const NONE: Pressed = Pressed { normal: 0.0, at: [0.0; 2], by: [0.0; BOTH] };
+
+    pub fn add(&mut self, push: &Push) {
+        self.normal += push.force.force;
+        (0..2).for_each(|k| self.at[k] += push.force.force * push.xi[k]);
+    }
+    /// Where it presses in the mean, if anything does.
+    pub fn place(&self) -> Option<[f64; 2]> {
+        (self.normal > 0.0).then(|| self.at.map(|x| x / self.normal))
+    }
 }
 
 /// How the derivative of a point by its place moves.
@@ -117,7 +143,19 @@ impl Push {
         let across = dot(&along.b, &along.b) - dot(&normal, &along.b).powi(2);
         let steep = across / distance - dot(&normal, &second(other, nearest.t, at));
         let free = nearest.free && steep > 0.0 && distance > 0.0;
-        Some(Push { one, other: near, along, normal, distance, free, steep, force, depth, rate })
+        Some(Push {
+            one,
+            other: near,
+            along,
+            normal,
+            distance,
+            free,
+            steep,
+            force,
+            depth,
+            rate,
+            xi: [xi, nearest.t],
+        })
     }
 
     /// The force [N], and its elastic part.
@@ -126,8 +164,15 @@ impl Push {
     }
 
     /// Adds it to the residual, and its derivative to the tangent where weights are given. `place` says which of the
-    /// unknowns those of each piece are, `n` how many there are.
-    pub fn add(&self, place: [&[usize]; 2], n: usize, w: Option<Weights>, sum: &mut Sum) {
+    /// unknowns those of each piece are, `n` how many there are; `pressed` is what it presses.
+    pub fn add(
+        &self,
+        place: [&[usize]; 2],
+        n: usize,
+        w: Option<Weights>,
+        sum: &mut Sum,
+        pressed: Option<&mut Pressed>,
+    ) {
         let Push { one, other, along, normal, force, .. } = self;
         sum.touched = true;
         let zero = [[0.0; 3]; BOTH];
@@ -161,10 +206,14 @@ impl Push {
         let slip = minus(&one.v, &other.v);
         let p_slip = across(&slip);
         let turned = dot(&p_b, &slip) + dot(normal, &along.rate);
+        let mut by_all = pressed.map(|p| &mut p.by);
         for b in 0..n {
             let by_q = -force.by_depth * s_n[b]
                 - force.by_rate * (dot(&s[b], &p_slip) + dot(normal, &v_q[b]) + turned * per * c[b]);
             let by = w.q * by_q - w.v * force.by_rate * s_n[b];
+            if let Some(all) = &mut by_all {
+                all[b] += by;
+            }
             let bent = across(&s[b]);
             let share = per * c[b];
             for a in 0..n {

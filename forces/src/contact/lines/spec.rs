@@ -1,7 +1,8 @@
 //! What a scene says about lines that touch each other.
 
+use super::super::friction::Friction;
 use super::super::law::{ContactLaw, Damping};
-use super::super::spec::Overlap;
+use super::super::spec::{Dry, Overlap, dry};
 use super::term::{LineContact, Touching};
 use ropewalk_core::{At, BuildError};
 use ropewalk_scene::{Builder, ForceSpec, quantity, register_spec};
@@ -11,10 +12,11 @@ use serde::{Deserialize, Serialize};
 /// Contact of cables and of bodies with a hull with each other, and of cables with themselves: lines that cross, coils,
 /// knots, a line that falls onto itself.
 ///
-/// They touch anywhere along their length where their middle lines are nearer than both radii; ends are round. There is
-/// no friction between lines. An end that starts in another line, more than half of the radius deep, is taken as tied to
+/// They touch anywhere along their length where their middle lines are nearer than both radii; ends are round. With
+/// `friction` they hold on to each other. An end that starts in another line, more than half of the radius deep, is taken as tied to
 /// it, and both leave each other alone there. Along one line, what is nearer than 1.6 diameters along it isn't looked at.
-/// A record of type `force` shows what presses, how deep and over which length; a record `clearance` shows how near two
+/// A record of type `force` shows what presses, how deep and over which length, and with friction what holds and which part of
+/// what presses slips; a record `clearance` shows how near two
 /// lines are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -36,6 +38,13 @@ pub struct LineContactSpec {
     /// Damping law along the normal.
     #[serde(default)]
     pub damping: Damping,
+    /// Dry friction: a coefficient, or `{ mu, elastic_slip, equilibrium }`; `elastic_slip` is how far it gives way where lines
+    /// press a hundredth of their thickness into each other. Lines that cross at less than 30° hold less across, down to
+    /// nothing where they are parallel: they roll on each other. Equilibria are computed without friction unless `equilibrium` is
+    /// `laid`.
+    #[serde(default, deserialize_with = "dry", skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Dry>")]
+    pub friction: Option<Friction>,
     /// What to do with lines that start deep in each other.
     #[serde(default)]
     pub overlap: Overlap,
@@ -59,11 +68,14 @@ impl LineContactSpec {
             stiffness_per_length,
             exponent: 1.0,
             damping: Damping::None,
+            friction: None,
             overlap: Overlap::Refuse,
         }
     }
 
-    fn lines(&self, b: &Builder) -> Result<Vec<Touching>, BuildError> {
+    /// The lines, and their masses per length.
+    fn lines(&self, b: &Builder) -> Result<(Vec<Touching>, Vec<f64>), BuildError> {
+        let mut densities = Vec::new();
         let mut lines = Vec::new();
         for (k, name) in self.on.iter().enumerate() {
             if self.on[..k].contains(name) {
@@ -74,6 +86,8 @@ impl LineContactSpec {
             let spans = part.contact_spans();
             let slim = spans.is_empty() || spans.iter().any(|s| s.radius == 0.0);
             if !slim {
+                let length: f64 = spans.iter().map(|s| s.length).sum();
+                densities.push(part.mass() / length);
                 lines.push(Touching { name: part.name().to_string(), spans });
             } else if !self.on.is_empty() {
                 let what = if part.contact_spans().is_empty() {
@@ -88,15 +102,16 @@ impl LineContactSpec {
             let message = "there is no cable with a `diameter` and no body with a `hull` in the scene that could touch another";
             return Err(BuildError::new(message));
         }
-        Ok(lines)
+        Ok((lines, densities))
     }
 }
 
 #[typetag::serde(name = "line_contact")]
 impl ForceSpec for LineContactSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
-        let lines = self.lines(b)?;
-        let law = ContactLaw { exponent: self.exponent, damping: self.damping, friction: None };
+        let (lines, densities) = self.lines(b)?;
+        let friction = self.friction.filter(|f| f.mu != 0.0);
+        let law = ContactLaw { exponent: self.exponent, damping: self.damping, friction };
         let still = vec![0.0; b.coordinates().len()];
         let at = At { t: 0.0, q: b.coordinates(), v: &still, a: &still, internal: &[], relaxed: None };
         let contact = LineContact::new(&self.name, &lines, self.itself, self.stiffness_per_length, law, &at)?;
@@ -110,6 +125,13 @@ impl ForceSpec for LineContactSpec {
             );
             return Err(BuildError::at("overlap", message));
         }
+        let contact = match friction {
+            Some(_) => {
+                let memory = b.memory(&format!("{}: friction", self.name), contact.memory());
+                contact.with_friction(&densities, memory)?
+            }
+            None => contact,
+        };
         b.term(Box::new(contact));
         Ok(())
     }

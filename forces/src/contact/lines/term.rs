@@ -4,13 +4,14 @@ use super::super::law::ContactLaw;
 use super::super::search::{Depth, gauss};
 use super::curve::Curve;
 use super::facing::{Facing, Scratch};
-use super::near::{Couple, Near};
+use super::friction::{CELLS, Rubs};
+use super::near::Near;
 use super::pieces::{APART, Piece, Pieces};
-use super::push::{Push, Sum};
+use super::push::{Pressed, Push, Sum};
 use ropewalk_core::error::{need, positive};
 use ropewalk_core::{
-    Assembly, At, BuildError, Column, ContactSpan, Couples, Energy, Foresees, Pattern, Power, Relaxed, Shows,
-    SpanLine, Term, V3, dot,
+    Assembly, At, BuildError, Column, ContactSpan, Couples, Energy, Foresees, Pattern, Power, Relaxed,
+    Remembers, Shows, SpanLine, Term, V3, dot,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -19,8 +20,8 @@ use std::sync::Arc;
 ///
 /// Use it for: lines that cross, coils, knots, bundles, a line that falls onto itself, cables beside a hull. Where the middle
 /// lines are nearer than both radii, by `d`, they are pushed apart with `k d^p` per length and damped by the
-/// [`ContactLaw`], each of both with half of the stiffness along its own length. There is no friction. The force follows
-/// from an energy and doesn't depend on where nodes are. Only pieces that are near each other are coupled: which these are
+/// [`ContactLaw`], each of both with half of the stiffness along its own length. The force follows from an energy and
+/// doesn't depend on where nodes are. [`LineContact::with_friction`] holds what would slip. Only pieces that are near each other are coupled: which these are
 /// is looked at anew as they move.
 #[derive(Clone)]
 pub struct LineContact {
@@ -29,9 +30,11 @@ pub struct LineContact {
     /// Elasticity and damping.
     pub law: ContactLaw,
     /// Stiffness per length [N/m^p/m].
-    per_length: f64,
+    pub(super) per_length: f64,
     pub(super) pieces: Arc<Pieces>,
     pub(super) near: Near,
+    /// What holds them where they would slip.
+    pub(super) rubs: Option<Arc<Rubs>>,
 }
 
 /// A line with what it touches by.
@@ -66,7 +69,7 @@ impl LineContact {
     /// Contact of these lines with one another, and, if so told, of each with itself, as they lie at a state.
     ///
     /// # Errors
-    /// No two that could touch, a line without thickness, one that feeds, a chain of rigid links, bad numbers.
+    /// No two that could touch, a line without thickness, one that feeds, bad numbers.
     pub fn new(
         label: impl Into<String>,
         lines: &[Touching],
@@ -77,9 +80,6 @@ impl LineContact {
     ) -> Result<Self, BuildError> {
         let label = label.into();
         law.check()?;
-        need(law.friction.is_none(), || {
-            format!("{label}: friction between lines isn't known here; leave it out")
-        })?;
         let per_length = positive("stiffness_per_length", per_length)?;
         need(lines.len() > 1 || itself, || {
             format!(
@@ -89,13 +89,6 @@ impl LineContact {
         let mut all = Vec::new();
         for (number, line) in lines.iter().enumerate() {
             let name = &line.name;
-            let chain = line.spans.len() > 1 && matches!(line.spans[0].line, SpanLine::Straight { .. });
-            need(!chain, || {
-                format!(
-                    "`{name}` has corners where its links meet, across which contact between lines isn't known: it acts on \
-                     cables and on bodies with a `hull`"
-                )
-            })?;
             for span in &line.spans {
                 need(span.flow.is_none(), || {
                     format!(
@@ -118,7 +111,7 @@ impl LineContact {
         let mut pieces = Pieces { all, names, itself, margin };
         tie(&mut pieces, at);
         let near = Near::new(&pieces, at);
-        Ok(LineContact { label, law, per_length, pieces: Arc::new(pieces), near })
+        Ok(LineContact { label, law, per_length, pieces: Arc::new(pieces), near, rubs: None })
     }
 
     /// The pairs of pieces that are coupled, by number along the lines, one line after the other.
@@ -126,11 +119,13 @@ impl LineContact {
         self.near.couples.iter().map(|c| c.pieces)
     }
 
-    /// The middle lines of the pieces that are near others.
+    /// The middle lines of the pieces that are near others, and of the links next to those.
     pub(super) fn curves(&self, near: &Near, at: &At<'_>) -> Vec<Option<Curve>> {
         let mut curves = vec![None; self.pieces.all.len()];
         for &k in &near.active {
-            curves[k] = Some(Curve::of(&self.pieces.all[k].span, at));
+            let mut see = |k: usize| curves[k] = Some(Curve::of(&self.pieces.all[k].span, at));
+            see(k);
+            self.pieces.links(k).into_iter().flatten().for_each(see);
         }
         curves
     }
@@ -144,39 +139,41 @@ impl LineContact {
         let all = self.pieces.clone();
         [([i, j], true), ([j, i], false)].into_iter().filter_map(move |(pair, ahead)| {
             let (Some(a), Some(b)) = (&curves[pair[0]], &curves[pair[1]]) else { return None };
-            Some((pair, all.facing(pair, [a, b], ahead)?))
+            let facing = all.facing(pair, [a, b], ahead)?;
+            Some((pair, Facing { corners: all.corners(pair[1], curves), ..facing }))
         })
     }
 
-    /// Sees every place that touches.
-    fn each_of(
+    /// Sees every place where one piece touches another.
+    pub(super) fn each_of(
         &self,
-        couple: &Couple,
-        curves: &[Option<Curve>],
+        pair: [usize; 2],
+        facing: &Facing<'_>,
         at: &At<'_>,
         scratch: &mut Scratch,
-        see: &mut impl FnMut([usize; 2], Push),
+        see: &mut impl FnMut(Push),
     ) {
-        for (pair, facing) in self.facings(couple.pieces, curves) {
-            facing.find(scratch);
-            let [one, other] = pair.map(|k| &self.pieces.all[k]);
-            for &[from, to] in &scratch.found {
-                for &(place, weight) in gauss(POINTS) {
-                    let xi = from + (to - from) * place;
-                    let Some(nearest) = facing.nearest(xi, &facing.one.cubic.at(xi)) else { continue };
-                    let share = 0.5 * one.length * (to - from) * weight;
-                    let lines = [&one.span, &other.span];
-                    let k = self.softened(lines, [xi, nearest.t], share, facing.thick, at);
-                    if let Some(push) = Push::new(&self.law, lines, (xi, nearest), facing.thick, k, at) {
-                        see(pair, push);
-                    }
+        facing.find(scratch);
+        if self.rubs.is_some() {
+            scratch.cut(CELLS);
+        }
+        let [one, other] = pair.map(|k| &self.pieces.all[k]);
+        for &[from, to] in &scratch.found {
+            for &(place, weight) in gauss(POINTS) {
+                let xi = from + (to - from) * place;
+                let Some(nearest) = facing.nearest(xi, &facing.one.cubic.at(xi)) else { continue };
+                let share = 0.5 * one.length * (to - from) * weight;
+                let lines = [&one.span, &other.span];
+                let k = self.softened(lines, [xi, nearest.t], share, facing.thick, at);
+                if let Some(push) = Push::new(&self.law, lines, (xi, nearest), facing.thick, k, at) {
+                    see(push);
                 }
             }
         }
     }
 
     /// What is near at a state: as listed, or, for one that somebody else has found, as it is.
-    fn near(&self, at: &At<'_>) -> Cow<'_, Near> {
+    pub(super) fn near(&self, at: &At<'_>) -> Cow<'_, Near> {
         if self.near.holds(&self.pieces, at) {
             Cow::Borrowed(&self.near)
         } else {
@@ -188,7 +185,9 @@ impl LineContact {
         let near = self.near(at);
         let (curves, mut scratch) = (self.curves(&near, at), Scratch::default());
         for couple in &near.couples {
-            self.each_of(couple, &curves, at, &mut scratch, &mut |_, push| see(push));
+            for (pair, facing) in self.facings(couple.pieces, &curves) {
+                self.each_of(pair, &facing, at, &mut scratch, &mut see);
+            }
         }
     }
 
@@ -301,11 +300,22 @@ impl Term for LineContact {
         let mut sum = Sum::default();
         for (clique, couple) in near.couples.iter().enumerate() {
             let n = couple.dofs.len();
-            self.each_of(couple, &curves, at, &mut scratch, &mut |pair, push| {
+            for (pair, facing) in self.facings(couple.pieces, &curves) {
                 let turned = pair != couple.pieces;
-                let [a, b] = [usize::from(turned), usize::from(!turned)].map(|k| &couple.place[k][..]);
-                push.add([a, b], n, tangent, &mut sum);
-            });
+                let place = [usize::from(turned), usize::from(!turned)].map(|k| &couple.place[k][..]);
+                let Some(rubs) = &self.rubs else {
+                    let see = &mut |push: Push| push.add(place, n, tangent, &mut sum, None);
+                    self.each_of(pair, &facing, at, &mut scratch, see);
+                    continue;
+                };
+                let mut cells = [Pressed::NONE; CELLS];
+                self.each_of(pair, &facing, at, &mut scratch, &mut |push| {
+                    let cell = &mut cells[Rubs::cell(push.xi[0])];
+                    cell.add(&push);
+                    push.add(place, n, tangent, &mut sum, Some(cell));
+                });
+                self.add_friction(rubs, (pair, &facing), &cells, (place, n), at, out, &mut sum);
+            }
             if sum.touched {
                 for (dof, r) in couple.dofs.iter().zip(&sum.r) {
                     out.add(*dof, *r);
@@ -329,7 +339,14 @@ impl Term for LineContact {
             let (force, elastic) = push.normal();
             dissipated += (force - elastic) * push.rate;
         });
+        self.each_bristle(at, |bristle, hold, _| dissipated += bristle.heat(hold));
         Power { dissipated, ..Power::default() }
+    }
+    fn kinked(&self) -> bool {
+        self.rubs.is_some()
+    }
+    fn remembers(&self) -> Option<&dyn Remembers> {
+        if self.rubs.is_some() { Some(self) } else { None }
     }
     fn acts(&self) -> Option<&'static str> {
         Some("contact")
@@ -356,7 +373,11 @@ impl Couples for LineContact {
 
 impl Shows for LineContact {
     fn columns(&self) -> Vec<Column> {
-        vec![Column::new("normal", "N"), Column::new("depth", "m"), Column::new("length", "m")]
+        let mut all = vec![Column::new("normal", "N"), Column::new("depth", "m"), Column::new("length", "m")];
+        if self.rubs.is_some() {
+            all.extend([Column::new("friction", "N"), Column::new("slipping", "1")]);
+        }
+        all
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
         let mut normal = 0.0;
@@ -375,5 +396,18 @@ impl Shows for LineContact {
             }
         }
         out.extend([normal, deepest, length]);
+        if self.rubs.is_some() {
+            let (mut held, mut slipping, mut all) = (0.0, 0.0, 0.0);
+            self.each_bristle(at, |bristle, hold, pressed| {
+                held += bristle.force(hold.h);
+                all += pressed;
+                slipping += if hold.slips { pressed } else { 0.0 };
+            });
+            out.extend([held, if all > 0.0 { slipping / all } else { 0.0 }]);
+        }
+    }
+    fn remark(&self, at: &At<'_>) -> Option<String> {
+        let all = [self.crowded(at), self.tight(at)];
+        all.into_iter().flatten().reduce(|a, b| format!("{a}. {b}"))
     }
 }
