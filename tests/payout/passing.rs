@@ -107,7 +107,7 @@ fn friction_of_a_sheave_on_a_driven_body_balances_until_the_rope_lifts_off() {
     println!("{off} J of {all} J");
     assert!(off <= 1e-3 * all, "{off} J of {all} J");
     let message =
-        history(&format!("run = {{ duration = 4, output = 0.05 }}\n{text}")).expect_err("it lifts off");
+        history(&format!("run = {{ duration = 4, output = 0.05 }}\n{text}")).err().expect("it lifts off");
     println!("{message}");
     assert_eq!(message.matches("leaves `guide`").count(), 1, "{message}");
     assert!(message.contains("comes back isn't known"), "{message}");
