@@ -3,6 +3,7 @@
 use super::{case, number, run, scene};
 use ropewalk::{Options, RunOptions, Simulation};
 use ropewalk_core::integrator::{Scheme, Stepping};
+use ropewalk_core::statics::{Statics, StaticsOptions};
 use ropewalk_core::{Observer, Quantity, dot};
 use ropewalk_scene::{Format, SceneFile};
 use std::f64::consts::TAU;
@@ -65,13 +66,20 @@ fn a_coil_brings_a_turn_per_wrap() {
 #[test]
 fn ropes_and_shafts_that_feed_keep_their_energy() {
     let forces = "\n[[forces]]\ntype = \"gravity\"\n[[forces]]\ntype = \"point_force\"\nmarker = \"disc\"\nforce = [1, 0.5, 0]";
-    for more in ["torque_tension = 2", "gyroscopic = true", "torque_tension = -3, gyroscopic = true"] {
+    for more in ["torque_tension = 2", "gyroscopic = true", "torque_tension = -3, gyroscopic = true", "FLAT"]
+    {
         let damped = format!("axial_retardation_time = 1e-2, rotary_inertia = \"$inertia\", {more}");
         let text = FED
             .replace("rotary_inertia = \"$inertia\"", &damped)
             .replace("ea = 1e4, ei = 5", "ea = 300, ei = 0.02")
             .replace("duration = 10", "duration = 3")
             + forces;
+        // a strip instead of a round bar
+        let text = text.replace(", FLAT", "").replace(
+            "laid_twist = 2",
+            if more == "FLAT" { "laid_twist = 2\nnormal = [1, 0, 0]" } else { "laid_twist = 2" },
+        );
+        let text = if more == "FLAT" { text.replace("ei = 0.02", "ei = [0.02, 0.06]") } else { text };
         for wrap in ["2 m", "1e9 m"] {
             let set = [format!("wrap={wrap}"), "inertia=1e-4".into(), "disc=2e-4".into(), "n=4".into()];
             let lost = [0.005, 0.00125].map(|h| {
@@ -84,6 +92,61 @@ fn ropes_and_shafts_that_feed_keep_their_energy() {
             println!("{more} {wrap}: {lost:?}");
             assert!(lost[1] <= 2e-5 && lost[0] >= 4.0 * lost[1], "{more} {wrap}: {lost:?}");
         }
+    }
+}
+
+/// A flat bar that a winch has paid out bends as one that was laid as long, with the same elements.
+#[test]
+fn a_flat_bar_that_is_paid_out_bends_as_one_that_was_laid_so() {
+    let out = 0.7;
+    let bar = |length: f64, more: &str| {
+        format!(
+            r#"
+            run = {{ duration = 1000 }}
+            [[elements]]
+            type = "cable"
+            name = "bar"
+            points = [[0, 0, 0], [{length}, 0, 0]]
+            elements = 4
+            normal = [0, 0.6, 0.8]
+            section = {{ mass = 1, ea = 1e4, ei = [1, 4], gj = 0.8, rotary_inertia = 0.02 }}
+            [[constraints]]
+            type = "clamp"
+            name = "root"
+            marker = "bar.start"
+            [[forces]]
+            type = "point_force"
+            marker = "bar.end"
+            force = [0.1, 0.3, -0.5]
+            {more}
+            "#
+        )
+    };
+    let winch = format!(
+        "[[constraints]]\ntype = \"winch\"\nname = \"winch\"\nmarker = \"bar.start\"\nspeed = 1\npayout = {out}\nramp = 1e-3"
+    );
+    let rest = |text: &str, out: f64| {
+        let model = scene(text, &[]).build().unwrap_or_else(|e| panic!("{e}"));
+        let (part, mut state) = (model.part("bar").expect("bar"), model.state());
+        if let Some(boundary) = part.boundary(0) {
+            state.q[boundary.q] += boundary.sign * out;
+        }
+        state.t = 500.0;
+        let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("statics");
+        statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
+        [1.0, 1.4, 2.0].map(|s| {
+            let at = state.at();
+            let [a, b] = [Quantity::MomentNormal, Quantity::Angle]
+                .map(|what| part.observe(what, s, &at).expect("a value"));
+            let (r, _) = part.point(s, &at).expect("a place");
+            [r[0], r[1], r[2], a, b]
+        })
+    };
+    let (laid, fed) = (rest(&bar(2.0, ""), 0.0), rest(&bar(2.0 - out, &winch), out));
+    println!("{laid:?} {fed:?}");
+    assert!(laid[2][4].abs() > 1e-3 && laid[2][2] < -0.1);
+    for (a, b) in laid.iter().flatten().zip(fed.iter().flatten()) {
+        assert!((a - b).abs() <= 1e-8, "{a} {b}");
     }
 }
 

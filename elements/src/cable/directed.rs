@@ -23,16 +23,16 @@ use ropewalk_core::rotation::cross;
 use ropewalk_core::{Batch, Element, Energy, Local, Power, Real, Share, V3, Weights, dot};
 
 /// Two nodes with torsion and the bubble.
-const COORDINATES: usize = 21;
-const VELOCITIES: usize = 15;
+pub(super) const COORDINATES: usize = 21;
+pub(super) const VELOCITIES: usize = 15;
 /// What the energy depends on: both slopes with `Δ` between them, both angles, the bubble.
-const VARIABLES: usize = 12;
-const ANGLES: usize = 9;
-const BUBBLE: usize = 11;
+pub(super) const VARIABLES: usize = 12;
+pub(super) const ANGLES: usize = 9;
+pub(super) const BUBBLE: usize = 11;
 /// Energy of the bubble over `GJ/L β²`.
-const BUBBLE_ENERGY: f64 = 8.0 / 3.0;
+pub(super) const BUBBLE_ENERGY: f64 = 8.0 / 3.0;
 /// Inertia of the bubble, and of it and a node together, over `ρJ L`.
-const BUBBLE_MASS: [f64; 2] = [8.0 / 15.0, 1.0 / 3.0];
+pub(super) const BUBBLE_MASS: [f64; 2] = [8.0 / 15.0, 1.0 / 3.0];
 
 /// What makes the bending of a cable element, which resists it by `EI_e` in every direction, one with a direction: with the
 /// elastic element and its torsion the energy is the one above.
@@ -72,7 +72,7 @@ pub struct DirectedLanes<R> {
 }
 
 /// The curve and its section at a point.
-struct Section<R> {
+pub(super) struct Section<R> {
     /// Shares of the slopes and of `Δ` in `r'`, and in `L r''`.
     first: [R; 3],
     second: [R; 3],
@@ -83,7 +83,7 @@ struct Section<R> {
     d: V3<R>,
     e: V3<R>,
     /// Curvature about both.
-    k: [R; 2],
+    pub k: [R; 2],
     /// From the tangent of the first node to this one.
     holonomy: Holonomy<R>,
     /// Shares of `m`, `A` and the bubble in the angle.
@@ -94,7 +94,7 @@ struct Section<R> {
 
 impl<R: Real> Section<R> {
     #[inline(always)]
-    fn new(x: &[R; COORDINATES], twisting: &Twisting<R>, at: &Point, il: R) -> Self {
+    pub fn new(x: &[R; COORDINATES], twisting: &Twisting<R>, at: &Point, il: R) -> Self {
         let [f0, f1, f2] = at.phi;
         let [s1, s2] = at.psi;
         let first = [R::of(f1), R::of(f0 - f1 - f2), R::of(f2)];
@@ -166,7 +166,7 @@ impl<R: Real> Section<R> {
     /// Adds `s` times a force, with the moments `m` about both directors, to `f`; and `s` times its derivative to `h`,
     /// moments that stay and those of the stiffness `stiff` about the first director.
     #[inline(always)]
-    fn add<const TANGENT: bool>(
+    pub fn add<const TANGENT: bool>(
         &self,
         twisting: &Twisting<R>,
         s: R,
@@ -270,7 +270,7 @@ fn add_block<R: Real>(h: &mut [[R; VARIABLES]; VARIABLES], i: usize, j: usize, s
 
 /// The increments that a variable is made of, with their shares.
 #[inline(always)]
-fn dofs<R: Real>(variable: usize, il: R) -> [(usize, R); 2] {
+pub(super) fn dofs<R: Real>(variable: usize, il: R) -> [(usize, R); 2] {
     let one = |dof| [(dof, R::of(1.0)), (dof, R::zero())];
     match variable {
         c @ 0..3 => one(3 + c),
@@ -284,11 +284,11 @@ fn dofs<R: Real>(variable: usize, il: R) -> [(usize, R); 2] {
 
 /// How many of them count.
 #[inline(always)]
-fn count(variable: usize) -> usize {
+pub(super) fn count(variable: usize) -> usize {
     if (3..6).contains(&variable) { 2 } else { 1 }
 }
 
-fn twisting<R: Real>(x: &[R; COORDINATES], il: R) -> Twisting<R> {
+pub(super) fn twisting<R: Real>(x: &[R; COORDINATES], il: R) -> Twisting<R> {
     let mut nodes = [R::zero(); 20];
     nodes.copy_from_slice(&x[..20]);
     Twisting::new(&nodes, il)

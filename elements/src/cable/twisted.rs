@@ -1,9 +1,9 @@
 //! A cable with torsion: how its sections are laid, what is added to its elements, and what can be observed of it.
 
 use super::directed::{Directed, DirectedParams, curvature};
-use super::flow::{FlowSpin, FlowTorqueTension, FlowTorsion, Line};
+use super::flow::{FlowDirected, FlowSpin, FlowTorqueTension, FlowTorsion, Line};
 use super::layout::Layout;
-use super::quadrature::{MOST, Point, Quadrature, Rule};
+use super::quadrature::{MOST, Point, Points, Quadrature, Rule};
 use super::rest::STRAIGHT;
 use super::section::Section;
 use super::shape::{combine, natural, second};
@@ -303,11 +303,6 @@ impl Twisted {
         let flows = |k: usize| line.filter(|line| line.flows(k));
         for k in layout.elements() {
             if let Some(line) = flows(k) {
-                if self.bars[k].directed {
-                    let message = "what a winch feeds bends alike to all sides: give it one `ei`";
-                    let field = if layout.changes() { "sections" } else { "section.ei" };
-                    return Err(BuildError::at(field, message));
-                }
                 let boundaries = line.boundaries.iter().map(|(_, boundary)| boundary.node);
                 let on: Vec<NodeId> = [nodes[k], nodes[k + 1]].into_iter().chain(boundaries).collect();
                 let one = line.boundaries.len() == 1;
@@ -354,7 +349,17 @@ impl Twisted {
             let bubble = b.node(NodeKind::Scalars(1), &[0.0], &[0.0])?;
             let own = b.nodes()[bubble.0 as usize];
             self.bubbles[k] = Some((bubble, own.q, own.v));
-            b.element(self.bending(k, mesh[k + 1] - mesh[k]), &[nodes[k], nodes[k + 1], bubble])?;
+            let on = [nodes[k], nodes[k + 1], bubble];
+            let Some(line) = flows(k) else {
+                b.element(self.bending(k, mesh[k + 1] - mesh[k]), &on)?;
+                continue;
+            };
+            let boundaries = line.boundaries.iter().map(|(_, boundary)| boundary.node);
+            let on: Vec<NodeId> = on.into_iter().chain(boundaries).collect();
+            match line.boundaries.len() {
+                1 => b.element(self.flowing_directed::<1>(k, line), &on)?,
+                _ => b.element(self.flowing_directed::<2>(k, line), &on)?,
+            }
         }
         Ok(())
     }
@@ -377,17 +382,30 @@ impl Twisted {
         }
     }
 
+    /// What gives its bending a direction.
+    fn flowing_directed<const F: usize>(&self, k: usize, line: &Line) -> FlowDirected<F> {
+        let Bar { gj, eta_gj, rho_j, ei, .. } = self.bars[k];
+        FlowDirected {
+            more: ei.about_normal - ei.across,
+            gj,
+            eta_gj,
+            rho_j,
+            by: line.embedding(k),
+            turns: line.turns(k),
+            open: line.open(k),
+            rule: Points::of(self.integration.bending()),
+        }
+    }
+
     /// What couples its torque and its tension.
     fn flowing_coupled<const F: usize>(&self, k: usize, line: &Line) -> FlowTorqueTension<F> {
-        let mut open = [0.0; 2];
-        line.opens(k).for_each(|(end, _)| open[end] = 1.0);
         FlowTorqueTension {
             gj: self.bars[k].gj,
             lay: self.bars[k].lay,
             twist0: self.per_length,
             by: line.embedding(k),
             turns: line.turns(k),
-            open,
+            open: line.open(k),
             points: self.points,
         }
     }
@@ -400,6 +418,14 @@ impl Twisted {
     /// What element `k` is twisted by that came in with the material [rad].
     fn turned(&self, k: usize, q: &[f64]) -> f64 {
         self.flow.as_ref().map_or(0.0, |line| line.turned(k, q))
+    }
+
+    /// The coordinates of element `k` as the material is turned at its nodes.
+    fn turned_both(&self, k: usize, mut x: [f64; 21], q: &[f64]) -> [f64; 21] {
+        let turned = self.flow.as_ref().map_or([0.0; 2], |line| line.turned_both(k, q));
+        x[9] += turned[0];
+        x[19] += turned[1];
+        x
     }
 
     /// Element `k` of a rope that turns when it is pulled.
@@ -452,7 +478,8 @@ impl Twisted {
         }
         let mut bent = Share::<f64, 15>::zero();
         if self.bars[k].directed {
-            let local = Local { q: x, v: [0.0; 15], a: [0.0; 15], last: [0.0; 15], relaxed: None };
+            let q = self.turned_both(k, x, q);
+            let local = Local { q, v: [0.0; 15], a: [0.0; 15], last: [0.0; 15], relaxed: None };
             let own = self.bending(k, l);
             let lanes = Directed::lanes::<f64>(&ropewalk_core::Batch::of(std::slice::from_ref(&own)));
             Directed::add::<f64, false>(&lanes, &local, &w, &mut bent);
@@ -474,7 +501,7 @@ impl Twisted {
     /// Curvature about both directors at a point of element `k` [1/m], and the moments [N m].
     pub(super) fn bends(&self, k: usize, l: f64, xi: f64, q: &[f64], seats: [usize; 2]) -> [[f64; 2]; 2] {
         let at = Point::new(xi, 1.0);
-        let now = curvature(&self.gather(k, q, seats, false), l, &at);
+        let now = curvature(&self.turned_both(k, self.gather(k, q, seats, false), q), l, &at);
         let mut then = if self.as_laid { curvature(&element(&self.straight, k), l, &at) } else { [0.0; 2] };
         then[0] += self.curvature;
         let ei = [self.bars[k].ei.about_normal, self.bars[k].ei.across];

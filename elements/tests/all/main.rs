@@ -5,6 +5,7 @@ mod clamp;
 mod common;
 mod directed;
 mod flow;
+mod flow_directed;
 mod flow_rope;
 mod flow_torsion;
 mod lay;

@@ -141,10 +141,24 @@ impl Line {
         }
         turns
     }
+    /// By how much the section of the material at both nodes is turned against those of the nodes [rad].
+    pub fn turned_both(&self, k: usize, q: &[f64]) -> [f64; 2] {
+        let mut turned = [0.0; 2];
+        for (end, b) in self.boundaries.iter().filter(|(end, _)| self.is_at(*end, k)) {
+            turned[*end] = self.twist[*end] * (q[b.q] - b.home);
+        }
+        turned
+    }
     /// What that adds to the twist of the element [rad].
     pub fn turned(&self, k: usize, q: &[f64]) -> f64 {
-        let at = self.boundaries.iter().filter(|(end, _)| self.is_at(*end, k));
-        at.map(|(end, b)| (if *end == 0 { -1.0 } else { 1.0 }) * self.twist[*end] * (q[b.q] - b.home)).sum()
+        let [start, end] = self.turned_both(k, q);
+        end - start
+    }
+    /// The ends of the element behind node `k` that are open ends of the line: 1, else 0.
+    pub fn open(&self, k: usize) -> [f64; 2] {
+        let mut open = [0.0; 2];
+        self.opens(k).for_each(|(end, _)| open[end] = 1.0);
+        open
     }
     /// What resists the spin of the material at either end of it [N m s].
     pub fn grips(&self, k: usize) -> [f64; 2] {

@@ -15,6 +15,7 @@
 mod axial_damping;
 pub(super) mod change;
 mod damping;
+mod directed;
 mod element;
 mod embedding;
 mod end;
@@ -31,6 +32,7 @@ mod weight;
 
 pub use axial_damping::FlowAxialDamping;
 pub use damping::{FlowDamping, Material};
+pub use directed::FlowDirected;
 pub use element::FlowCable;
 pub use embedding::{Embedding, Grid};
 pub use end::FlowEnd;
