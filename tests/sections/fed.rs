@@ -219,6 +219,51 @@ fn wire_and_chain_that_hang_from_a_winch_have_their_own_weight_and_stretch() {
     }
 }
 
+/// Length of the line at the end of a run [m], what holds both its ends [N], and how far its balance of energy is off [J].
+fn at_the_end(h: &ropewalk::History) -> [f64; 4] {
+    let energy = h.summary().energy;
+    [last(h, "line.length"), last(h, "left.magnitude"), last(h, "right.magnitude"), energy.imbalance.abs()]
+}
+
+/// Elements are born and swallowed in the sections at both ends, and the line goes where it goes when these grow and shrink as a whole.
+#[test]
+fn elements_of_sections_are_born_and_swallowed() {
+    let go = |element: &str, [start, end]: [f64; 2], h: f64| {
+        let text = between(start, end, h).replace("ramp = 1\n", &format!("ramp = 1\n{element}\n")).replace(
+            "records = [",
+            "records = [{ type = \"reaction\", of = \"left\" }, { type = \"reaction\", of = \"right\" }, ",
+        );
+        run(&text)
+    };
+    for ways in [[-1.5, 2.0], [2.5, 2.5], [2.0, -1.8]] {
+        let whole = at_the_end(&go("", ways, 0.01));
+        let born = at_the_end(&go("element_length = 0.6\nfade = 0.4", ways, 0.01));
+        let finer = at_the_end(&go("element_length = 0.6\nfade = 0.4", ways, 0.005));
+        println!("{ways:?}: {whole:?} {born:?} {finer:?}");
+        assert!((whole[0] - born[0]).abs() <= 1e-8 * whole[0], "{ways:?}");
+        for i in 1..3 {
+            assert!((whole[i] - born[i]).abs() <= 1e-2 * whole[i], "{ways:?}: {whole:?} {born:?}");
+        }
+        assert!(born[3] <= 2e-2 && finer[3] <= 2e-2, "{ways:?}: {born:?} {finer:?}");
+    }
+}
+
+/// Chain is never taken for the wire that a winch reels in: a line of both that is paid out with new elements has its tension.
+#[test]
+fn wire_that_is_born_above_chain_has_its_own_weight() {
+    let g = 9.81;
+    for (speed, payout) in [(0.5, 1.5), (-0.5, -1.5)] {
+        let h = run(&hanging(speed, payout, 0.02, "element_length = 0.5\nfade = 0.3"));
+        let (wire, chain) = (3.0 + payout, 2.0);
+        let top = 0.5 * g * wire + 4.0 * g * chain;
+        let stretch = (4.0 * g * chain * wire + 0.25 * g * wire * wire) / 2e4 + 2.0 * g * chain * chain / 1e5;
+        let off =
+            [last(&h, "fairlead.magnitude") / top - 1.0, last(&h, "line.end.z") + wire + chain + stretch];
+        println!("{payout}: {off:?} {} changes", h.summary().status);
+        assert!(off.iter().all(|x| x.abs() < 1e-6), "{payout}: {off:?}");
+    }
+}
+
 #[test]
 fn what_a_line_of_sections_can_not_feed_is_said() {
     let says = |text: &str, message: &str| {
@@ -229,7 +274,7 @@ fn what_a_line_of_sections_can_not_feed_is_said() {
         };
         assert!(error.contains(message), "{error}");
     };
-    says(&hanging(0.5, 1.0, 0.1, "element_length = 0.5"), "leave `element_length` of its winch out");
+    says(&hanging(0.5, 1.0, 0.1, "element_length = 1.5"), "take elements of less than half of that");
     says(&hanging(-0.5, -1.0, 0.1, "shortest = 1.5"), "2 m lie behind the section");
 }
 

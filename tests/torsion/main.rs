@@ -1,5 +1,6 @@
 //! Cables with torsion against closed forms and geometrically exact rods of independent programs.
 
+mod births;
 mod closed;
 mod dynamics;
 mod feeding;

@@ -323,16 +323,18 @@ impl ConstraintSpec for WinchSpec {
         if self.stored_length.is_finite() {
             b.event(limit(Side::Empty, positive("stored_length", self.stored_length)?));
         }
-        if self.element_length.is_some_and(|e| e >= 0.5 * whole) {
-            let message =
-                format!("the cable is {whole} m long at the start: take elements of less than half of that");
-            return Err(BuildError::at("element_length", message));
-        }
         // an element can't be swallowed by the last one
         let riding: f64 = [0, 1].map(|end| part.line().map_or(0.0, |line| line.riding(end))).iter().sum();
         let kept = part.line().map_or(0.0, |line| line.kept(usize::from(boundary.sign > 0.0)));
-        let least = kept + 0.05 * (whole - kept);
-        let least = self.element_length.map_or(least, |e| (riding + 2.0 * e).max(least));
+        let own = whole - kept;
+        if self.element_length.is_some_and(|e| e >= 0.5 * own) {
+            let message = format!(
+                "{own} m of what is fed are out at the start: take elements of less than half of that"
+            );
+            return Err(BuildError::at("element_length", message));
+        }
+        let least = kept + 0.05 * own;
+        let least = self.element_length.map_or(least, |e| (kept + riding + 2.0 * e).max(least));
         let shortest = positive("shortest", self.shortest.unwrap_or(least))?;
         if shortest <= kept {
             let message = format!(

@@ -28,6 +28,10 @@ pub struct MeshState {
     pub q: Vec<Vec<f64>>,
     /// Velocities of each node.
     pub v: Vec<Vec<f64>>,
+    /// What elements have of their own besides (the bubble of those whose bending has a direction), and its rate, element by
+    /// element; empty where there is nothing.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub inner: Vec<[f64; 2]>,
     /// For the start and the end, where they feed: rate of the material coordinate there [m/s].
     pub boundaries: [f64; 2],
 }

@@ -170,6 +170,21 @@ impl Layout {
         [all().next().unwrap_or(self.of.len()), all().next_back().unwrap_or(0)]
     }
 
+    /// Fits it to another mesh of the same cable, whose ends have more elements or fewer than those of `old`.
+    pub fn refit(&mut self, old: &[f64], new: &[f64]) {
+        let [behind, _] = self.holds();
+        // what doesn't feed stands where it stood, in numbers that are the same to the last bit
+        let stands = |node: usize| new.iter().position(|&p| p == old[node]);
+        let moved = if self.changes() { stands(behind).unwrap_or(behind) } else { behind };
+        let mut of = vec![self.of[0]; moved];
+        of.extend_from_slice(&self.of[behind..]);
+        of.resize(new.len() - 1, *self.of.last().unwrap_or(&0));
+        let shift = |node: usize| node + moved - behind;
+        self.of = of;
+        self.starts.iter_mut().for_each(|start| *start = shift(*start));
+        self.splices.iter_mut().for_each(|splice| splice.node = shift(splice.node));
+    }
+
     /// Where it is spliced.
     pub fn splices(&self) -> &[Splice] {
         &self.splices

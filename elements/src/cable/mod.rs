@@ -29,6 +29,7 @@ mod part;
 pub mod quadrature;
 pub mod reduced;
 mod relaxed;
+mod remesh;
 mod rest;
 pub(crate) mod route;
 mod section;

@@ -1,7 +1,6 @@
 //! A cable as a part of a model: its markers, its stations, what can be observed along it.
 
-use super::flow::change::{self, Snapshot};
-use super::flow::{self, push};
+use super::flow::{self, change, push};
 use super::layout::Layout;
 use super::longitudinal::Longitudinal;
 use super::output::{Reading, read};
@@ -13,8 +12,8 @@ use super::unfold::{Between, unfold};
 use super::{CableModel, CableParams};
 use ropewalk_core::model::twist::tangent;
 use ropewalk_core::{
-    At, Change, ContactSpan, DeadEntry, DeadLoad, Line, Marker, Mesh, MeshState, MovingBoundary, Node,
-    NodeId, Part, Per, Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
+    At, Change, ContactSpan, DeadEntry, DeadLoad, Line, Marker, Mesh, MovingBoundary, Node, NodeId, Part,
+    Per, Prestrain, Quantity, Slender, SpanLine, Spot, Stations, Term, Tip, V3,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -70,7 +69,7 @@ impl CablePart {
     }
 
     /// Material coordinates of the nodes [m].
-    fn material(&self, q: &[f64]) -> Cow<'_, [f64]> {
+    pub(super) fn material(&self, q: &[f64]) -> Cow<'_, [f64]> {
         match &self.line {
             None => Cow::Borrowed(&self.along),
             Some(line) => Cow::Owned((0..self.along.len()).map(|k| line.p(k, q)).collect()),
@@ -194,30 +193,6 @@ impl CablePart {
         .sum()
     }
 
-    /// The state of a line, node by node.
-    fn snapshot(&self, line: &flow::Line, at: &At<'_>) -> Result<Snapshot, String> {
-        let three = |x: &[f64], i: usize| [x[i], x[i + 1], x[i + 2]];
-        let nodes = 0..self.along.len();
-        let mut snapshot = Snapshot {
-            p: nodes.clone().map(|k| line.p(k, at.q)).collect(),
-            pd: nodes.clone().map(|k| line.rate(k, at.v)).collect(),
-            r: self.seats.iter().map(|s| three(at.q, s.0)).collect(),
-            s: self.seats.iter().map(|s| three(at.q, s.0 + 3)).collect(),
-            rd: self.seats.iter().map(|s| three(at.v, s.1)).collect(),
-            sd: self.seats.iter().map(|s| three(at.v, s.1 + 3)).collect(),
-            stress: Vec::new(),
-        };
-        for k in 0..self.along.len() - 1 {
-            let mut stress = change::strains(self.model, &snapshot.dofs(k), snapshot.l(k))?;
-            for p in self.prestrain.iter().filter(|p| p.element == k) {
-                let left = p.left(at.t).0;
-                stress.iter_mut().zip(&p.strain).for_each(|(s, p)| *s -= left * p);
-            }
-            snapshot.stress.push(stress);
-        }
-        Ok(snapshot)
-    }
-
     /// Bending moment [N m], of which an element reads this much.
     fn moment(&self, k: usize, l: f64, xi: f64, read: f64, at: &At<'_>) -> f64 {
         match &self.twisted {
@@ -268,21 +243,6 @@ impl CablePart {
         let mesh = self.material(q);
         let (l, e) = (mesh[k + 1] - mesh[k], natural(&self.dofs(k, q), 1.0 / (mesh[k + 1] - mesh[k])));
         Some(second(if at_start { &[-4.0, -2.0] } else { &[2.0, 4.0] }, 1.0 / l, &e))
-    }
-
-    /// The mesh and the state of a line whose own mesh doesn't change.
-    fn as_it_is(&self, line: &flow::Line, at: &At<'_>) -> Result<Mesh, String> {
-        let count = if self.twisted.is_some() { [10, 7] } else { [6, 6] };
-        let mut boundaries = [0.0; 2];
-        for (end, boundary) in &line.boundaries {
-            boundaries[*end] = at.v[boundary.v];
-        }
-        let state = MeshState {
-            q: self.seats.iter().map(|s| at.q[s.0..s.0 + count[0]].to_vec()).collect(),
-            v: self.seats.iter().map(|s| at.v[s.1..s.1 + count[1]].to_vec()).collect(),
-            boundaries,
-        };
-        Ok(Mesh { nodes: self.material(at.q).into_owned(), state: Some(state), prestrain: Vec::new() })
     }
 
     fn places(&self) -> String {
@@ -692,54 +652,6 @@ impl Line for CablePart {
     }
 
     fn remesh(&self, what: Change, at: &At<'_>) -> Result<Option<Mesh>, String> {
-        let Some(line) = &self.line else { return Ok(None) };
-        if self.twisted.is_some() || self.layout.changes() {
-            return self.as_it_is(line, at).map(Some);
-        }
-        let (mut new, last) = (self.snapshot(line, at)?, self.along.len() - 1);
-        // elements whose strain goes on fading, by their new numbers, and those that are new
-        let mut fading: Vec<Prestrain> =
-            self.prestrain.iter().filter(|p| p.left(at.t).0 > 0.0).cloned().collect();
-        let mut born: Vec<(usize, Vec<f64>)> = Vec::new();
-        let mut time = 0.0;
-        match what {
-            Change::None => {}
-            Change::Split { end, keep, fade } => {
-                let k = line.grows(end);
-                let p = if end == 0 { new.p[k + 1] - keep } else { new.p[k] + keep };
-                fading.retain(|p| p.element != k);
-                fading.iter_mut().filter(|p| p.element > k).for_each(|p| p.element += 1);
-                let [a, b] = new.split(k, p, self.model)?;
-                (born, time) = (vec![(k, a), (k + 1, b)], fade);
-            }
-            Change::Merge { end, fade } => {
-                if last < 2 + line.rides[0] + line.rides[1] {
-                    return Err("there is but one element left, which can't be merged".into());
-                }
-                let k = if end == 0 { line.grows(0) + 1 } else { line.grows(1) };
-                // the slope at the end changes, which the element that rides beside it feels too
-                let beside = match end {
-                    0 => (k > 1).then(|| k - 2),
-                    _ => (k + 1 < last).then_some(k),
-                };
-                fading.retain(|p| p.element + 1 != k && p.element != k);
-                fading.iter_mut().filter(|p| p.element >= k).for_each(|p| p.element -= 1);
-                (born, time) = (vec![(k - 1, new.merge(k, end, self.model)?)], fade);
-                if let Some(beside) = beside {
-                    fading.retain(|p| p.element != beside);
-                    born.push((beside, new.stress[beside].clone()));
-                }
-            }
-        }
-        for (element, stress) in born {
-            let strain = new.prestrain(element, &stress, self.model)?;
-            fading.push(Prestrain { element, strain, since: at.t, fade: time });
-        }
-        let both = |a: &[V3<f64>], b: &[V3<f64>]| -> Vec<Vec<f64>> {
-            a.iter().zip(b).map(|(a, b)| [*a, *b].concat()).collect()
-        };
-        let boundaries = new.rates(line);
-        let state = MeshState { q: both(&new.r, &new.s), v: both(&new.rd, &new.sd), boundaries };
-        Ok(Some(Mesh { nodes: new.p, state: Some(state), prestrain: fading }))
+        self.remeshed(what, at)
     }
 }

@@ -332,12 +332,7 @@ impl CableSpec {
     }
 
     /// Refuses what of a section a winch at this end can't feed.
-    fn feeds_section(&self, end: usize, layout: &Layout, makes_elements: bool) -> Result<(), BuildError> {
-        if !self.sections.is_empty() && makes_elements {
-            let message = "elements of a cable of several sections grow and shrink together where it feeds: leave \
-                           `element_length` of its winch out, or give it one `section`";
-            return Err(BuildError::at("sections", message));
-        }
+    fn feeds_section(&self, end: usize, layout: &Layout) -> Result<(), BuildError> {
         let along = if end == 0 { self.sections.first() } else { self.sections.last() };
         if along.is_some_and(|along| along.end_section.is_some()) {
             let message = "what a winch feeds is the same all along its section: leave `end_section` out, or put a section \
@@ -512,12 +507,10 @@ impl ElementSpec for CableSpec {
         // a wheel holds the direction of an end
         let goes_on = feeding.map(|feed| feed.is_some_and(|feed| feed.passes));
         for end in (0..2).filter(|&end| feeding[end].is_some()) {
-            self.feeds_section(end, &layout, feeding[end].is_some_and(|feed| feed.element.is_some()))?;
+            self.feeds_section(end, &layout)?;
         }
         if let Some(given) = &given {
-            if self.sections.is_empty() {
-                layout = Layout::uniform(&self.section, given.nodes.len() - 1)?;
-            }
+            layout.refit(&mesh, &given.nodes);
             mesh.clone_from(&given.nodes);
         }
         if mesh.len() < 2 || (mesh[0] != 0.0 && !feeds) || layout.elements().any(|k| !(mesh[k + 1] > mesh[k]))
@@ -571,10 +564,6 @@ impl ElementSpec for CableSpec {
             integration: self.integration,
         };
         let rates = state.map_or([0.0; 2], |s| s.boundaries);
-        if twisted.is_some() && feeding.iter().flatten().any(|feed| feed.element.is_some()) {
-            let message = "elements of a cable with torsion all grow and shrink together: leave `element_length` of its winch out";
-            return Err(BuildError::at("section.gj", message));
-        }
         if twisted.is_none() && feeding.iter().flatten().any(|feed| feed.grip != 0.0) {
             let message = "this cable doesn't know whether it turns about its own axis: give its section a torsional stiffness, `gj`, \
                            or leave `grip` out where it feeds";
@@ -640,6 +629,7 @@ impl ElementSpec for CableSpec {
             None => stations(b.nodes(), &mesh, &nodes, &layout)?,
         };
         if let Some(twisted) = &mut twisted {
+            twisted.inner = state.map(|state| state.inner.clone()).unwrap_or_default();
             twisted.push(b, &mesh, &nodes, &layout, line.as_ref())?;
         }
         let prestrain = given.as_ref().map_or_else(Vec::new, |m| m.prestrain.clone());
@@ -647,7 +637,7 @@ impl ElementSpec for CableSpec {
             for strain in &prestrain {
                 let k = strain.element;
                 let piece = Piece { line, k, on: [nodes[k], nodes[k + 1]] };
-                push::fading(b, model, strain, &self.section, &self.name, &piece)?;
+                push::fading(b, model, strain, layout.section(k), &self.name, &piece)?;
             }
         }
         if twisted.is_some() {

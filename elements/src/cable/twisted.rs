@@ -40,6 +40,8 @@ pub(crate) struct Twisted {
     per_length: f64,
     /// The bubble of each element whose bending has a direction: node, coordinate and velocity.
     bubbles: Vec<Option<(NodeId, usize, usize)>>,
+    /// What the bubbles begin with, element by element, and their rates; empty: at rest.
+    pub(super) inner: Vec<[f64; 2]>,
 }
 
 /// What an element with torsion is made of.
@@ -220,6 +222,7 @@ impl CableSpec {
             flow: None,
             per_length: self.twist,
             bubbles: Vec::new(),
+            inner: Vec::new(),
         };
         let directed = |bar: &Bar| bar.directed;
         if twisted.bars.iter().any(directed) && self.transverse != TransverseModel::T3 {
@@ -346,7 +349,8 @@ impl Twisted {
         }
         self.bubbles = vec![None; mesh.len() - 1];
         for k in layout.elements().filter(|&k| self.bars[k].directed) {
-            let bubble = b.node(NodeKind::Scalars(1), &[0.0], &[0.0])?;
+            let [q, v] = self.inner.get(k).copied().unwrap_or_default();
+            let bubble = b.node(NodeKind::Scalars(1), &[q], &[v])?;
             let own = b.nodes()[bubble.0 as usize];
             self.bubbles[k] = Some((bubble, own.q, own.v));
             let on = [nodes[k], nodes[k + 1], bubble];
@@ -511,6 +515,12 @@ impl Twisted {
     /// Whether the bending of element `k` has a direction.
     pub(super) fn is_directed(&self, k: usize) -> bool {
         self.bars[k].directed
+    }
+
+    /// The bubble of element `k` and its rate; zero where it has none.
+    pub(super) fn within(&self, k: usize, at: &At<'_>) -> [f64; 2] {
+        let bubble = self.bubbles.get(k).copied().flatten();
+        bubble.map_or([0.0; 2], |(_, q, v)| [at.q[q], at.v[v]])
     }
 
     /// The element that a node is the bubble of.

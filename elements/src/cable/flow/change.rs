@@ -4,7 +4,7 @@
 //! the sense of their slopes. Neither keeps the tension, since an element filters the ripple of its strain: the new ones
 //! get a stress-free strain, point by point, that keeps it, and that fades out.
 
-use super::line::Line;
+use super::turning::Sections;
 use crate::cable::longitudinal::{Longitudinal, Strain};
 use crate::cable::model::CableModel;
 use crate::cable::quadrature::Gauss5;
@@ -25,6 +25,8 @@ pub(crate) struct Snapshot {
     pub sd: Vec<V3<f64>>,
     /// Stress at the quadrature points of each element over its axial stiffness, prestrain included.
     pub stress: Vec<Vec<f64>>,
+    /// The sections, of a cable with torsion.
+    pub sections: Option<Sections>,
 }
 
 /// What there was at a point of a piece: weight, place in the new element, slope of shape and of velocity.
@@ -70,7 +72,7 @@ impl Snapshot {
     pub fn split(&mut self, k: usize, p: f64, model: CableModel) -> Result<[Vec<f64>; 2], String> {
         let (l, e) = (self.l(k), [self.r[k], self.s[k], self.r[k + 1], self.s[k + 1]]);
         let xi = (p - self.p[k]) / l;
-        let v = self.material(k);
+        let (v, turning) = (self.material(k), self.turning(k));
         let (shape, slope) = (hermite(xi, l), hermite_slope(xi, 1.0 / l));
         let at = k + 1;
         let old = self.stress[k].clone();
@@ -87,6 +89,9 @@ impl Snapshot {
         let both = [piece(0.0, xi), piece(xi, 1.0)];
         self.stress[k].clone_from(&both[0]);
         self.stress.insert(at, both[1].clone());
+        if let Some(turning) = turning {
+            self.split_twist(k, xi, turning);
+        }
         Ok(both)
     }
 
@@ -109,6 +114,8 @@ impl Snapshot {
         }
         let old = [self.material(k - 1), self.material(k)];
         let stress = self.merged_stress(k, model)?;
+        let turning = self.turning(k - 1).zip(self.turning(k));
+        let tangents = [self.node_tangent(k - 1), self.node_tangent(k + 1)];
         for list in [&mut self.r, &mut self.s, &mut self.rd, &mut self.sd] {
             list.remove(k);
         }
@@ -144,6 +151,9 @@ impl Snapshot {
         self.sd[node] = std::array::from_fn(|c| slope[c] + self.pd[node] * bend[c]);
         self.stress.remove(k);
         self.stress[k - 1].clone_from(&stress);
+        if let Some((first, second)) = turning {
+            self.merge_twist(k, (p[1] - p[0]) / l, [first, second], tangents)?;
+        }
         Ok(stress)
     }
 
@@ -170,15 +180,6 @@ impl Snapshot {
     pub fn prestrain(&self, k: usize, stress: &[f64], model: CableModel) -> Result<Vec<f64>, String> {
         let strain = strains(model, &self.dofs(k), self.l(k))?;
         Ok(strain.iter().zip(stress).map(|(e, n)| e - n).collect())
-    }
-
-    /// How far a line has come, to be remembered by the nodes that follow its boundaries.
-    pub fn rates(&self, line: &Line) -> [f64; 2] {
-        let mut rates = [0.0; 2];
-        for (end, _) in &line.boundaries {
-            rates[*end] = self.pd[if *end == 0 { 0 } else { self.pd.len() - 1 }];
-        }
-        rates
     }
 }
 

@@ -28,6 +28,7 @@ mod stations;
 mod torque_tension;
 mod torsion;
 mod transport;
+pub(super) mod turning;
 mod weight;
 
 pub use axial_damping::FlowAxialDamping;

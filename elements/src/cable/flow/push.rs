@@ -116,8 +116,9 @@ pub(crate) fn fading(
     let place = Place {
         label: format!("{name}: prestrain"),
         ea: section.ea,
-        q: nodes.iter().flat_map(Node::coords).collect(),
-        v: nodes.iter().flat_map(Node::dofs).collect(),
+        // of nodes with torsion, those of the curve
+        q: nodes.iter().flat_map(|node| node.coords().take(6)).collect(),
+        v: nodes.iter().flat_map(|node| node.dofs().take(6)).collect(),
         by,
         end: line.opens(k).next(),
     };
