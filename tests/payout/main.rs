@@ -11,6 +11,7 @@ mod births;
 mod drum;
 mod eyelet;
 mod falls;
+mod gripping;
 mod passing;
 mod reeling;
 mod reeving;

@@ -12,7 +12,7 @@ fn read(text: &str) -> Scene {
     SceneFile::parse(text, "scene", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}")).into_scene()
 }
 
-fn run(text: &str) -> History {
+pub(super) fn run(text: &str) -> History {
     simulate(&read(text)).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -23,17 +23,17 @@ fn refused(text: &str) -> String {
         .expect_err("it builds")
 }
 
-fn at(history: &History, column: &str, t: f64) -> f64 {
+pub(super) fn at(history: &History, column: &str, t: f64) -> f64 {
     let k = history.times().iter().position(|x| (x - t).abs() < 1e-6).unwrap_or_else(|| panic!("no {t} s"));
     history.column(column).unwrap_or_else(|| panic!("no {column}"))[k]
 }
 
 /// The reference of this name, and its values.
-fn reference(name: &str) -> serde_json::Value {
+pub(super) fn reference(name: &str) -> serde_json::Value {
     data(&format!("reeving/{name}.json"))["reference"].clone()
 }
 
-fn values(of: &serde_json::Value) -> Vec<f64> {
+pub(super) fn values(of: &serde_json::Value) -> Vec<f64> {
     of.as_array().expect("a list").iter().map(number).collect()
 }
 
