@@ -189,22 +189,22 @@ impl Statics<'_> {
         factored && self.solver.negative_pivots() == Some(self.held(there))
     }
 
-    /// Whether the constraints allow an increment; their Jacobian stands in the assembled tangent.
+    /// Whether the constraints allow an increment; their Jacobian stands in the assembled tangent. What is left of an equation is
+    /// compared with what the largest part of the increment could bring there: parts that should be zero are but rounding.
     fn is_allowed(&self, d: &[f64]) -> bool {
         let s = &self.structure;
         let mut x = vec![0.0; s.n];
         s.order(d, &mut x);
-        let (mut against, mut size) = (vec![0.0; s.n], vec![0.0; s.n]);
-        for (r, columns, at) in s.rows().filter(|(r, ..)| s.is_multiplier[*r]) {
-            for (k, p) in at.enumerate() {
-                let c = columns.get(k);
-                against[r] += self.system.values[p] * x[c];
-                size[r] += (self.system.values[p] * x[c]).abs();
-            }
-        }
         let largest = x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let multipliers = (0..s.n).filter(|&r| s.is_multiplier[r]);
-        multipliers.map(|r| (against[r], size[r])).all(|(g, size)| g.abs() <= 1e-6 * size.max(1e-6 * largest))
+        s.rows().filter(|(r, ..)| s.is_multiplier[*r]).all(|(_, columns, at)| {
+            let (mut against, mut reach) = (0.0, 0.0);
+            for (k, p) in at.enumerate() {
+                let j = self.system.values[p];
+                against += j * x[columns.get(k)];
+                reach += j.abs() * largest;
+            }
+            against.abs() <= 1e-6 * reach
+        })
     }
 
     /// Whether the assembled tangent is its own mirror image, to rounding. The rotations of a body don't commute: what
