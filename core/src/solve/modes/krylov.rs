@@ -4,6 +4,7 @@
 //! Math. Comp. 33 (1979) 680). Several start vectors find eigenvalues that occur several times, and more of them may
 //! be added at any time. All vectors are kept and orthogonalised twice.
 
+use super::dense::{self, Eigenpair};
 use crate::solve::linear::SolveError;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side, c64};
@@ -182,11 +183,7 @@ impl Arnoldi {
                 keep(c64::new(values[k], 0.0), [vector, Vec::new()]);
             }
         } else {
-            let eigen = h.eigen().ok()?;
-            let values = eigen.S().column_vector();
-            let upper: Vec<usize> = (0..j).filter(|&k| values[k].im >= 0.0).collect();
-            let vector = |k: &usize| (0..j).map(|i| eigen.U()[(i, *k)]).collect();
-            let mut pairs: Vec<Eigenpair> = upper.iter().map(|k| (values[*k], vector(k))).collect();
+            let mut pairs = dense::eigen(&h)?;
             pairs.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
             mend(&h, &mut pairs, leading);
             for (value, vector) in &pairs {
@@ -217,9 +214,6 @@ impl Arnoldi {
         })
     }
 }
-
-/// An eigenvalue of a projection and its vector.
-type Eigenpair = (c64, Vec<c64>);
 
 /// Eigenvalues that differ by less than this part of themselves are one.
 const ONE: f64 = 1e-8;
@@ -343,11 +337,7 @@ mod tests {
         // neither orthogonal nor normal
         let basis = Mat::from_fn(j, j, |r, c| start(r, c) + if r == c { 4.0 } else { 0.0 });
         let h = &basis * &turns * basis.partial_piv_lu().inverse();
-        let eigen = h.eigen().unwrap();
-        let values = eigen.S().column_vector();
-        let upper = (0..j).filter(|&k| values[k].im >= 0.0);
-        let mut pairs: Vec<Eigenpair> =
-            upper.map(|k| (values[k], (0..j).map(|i| eigen.U()[(i, k)]).collect())).collect();
+        let mut pairs = dense::eigen(&h).unwrap();
         pairs.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
         mend(&h, &mut pairs, j);
         assert_eq!(pairs.len(), rates.len());

@@ -6,6 +6,7 @@
 
 mod align;
 mod buckling;
+mod dense;
 mod krylov;
 mod outcome;
 mod pencil;

@@ -22,6 +22,8 @@ pub(super) struct Pencil {
     pub damped: bool,
     /// Equations of constraints that hold.
     held: usize,
+    /// Independent motions that they leave.
+    pub motions: usize,
     /// Largest ratio of stiffness to mass: about the fastest that the mesh can resolve [1/s²]; 1 without stiffness.
     pub fastest: f64,
 }
@@ -42,15 +44,26 @@ impl Pencil {
             return Err(ModesError::Solver(SolveError::NotFinite));
         }
         let holding = (0..model.constraints().len()).filter(|&c| model.holds(c, internal));
-        let held = holding.map(|c| model.rows_of(c).len()).sum();
+        let held: usize = holding.map(|c| model.rows_of(c).len()).sum();
+        let redundant = model.redundancy().map_or(0, |r| r.equations);
+        let motions = model.velocities() - held.saturating_sub(redundant).min(model.velocities());
         let symmetric = s.symmetric || (is_symmetric(s, &linear.stiffness) && is_symmetric(s, &linear.mass));
         // below the diagonal of symmetric matrices nothing counts
         let damped = s.rows().any(|(_, _, at)| linear.damping[at].iter().any(|x| *x != 0.0));
         let solver = Guard::new(s).map_err(ModesError::Solver)?;
         let softening = model.redundancy().map(|_| Softening::new(model, s));
         let fastest = fastest(&linear);
-        let mut pencil =
-            Pencil { linear, softening, solver, values: Vec::new(), symmetric, damped, held, fastest };
+        let mut pencil = Pencil {
+            linear,
+            softening,
+            solver,
+            values: Vec::new(),
+            symmetric,
+            damped,
+            held,
+            motions,
+            fastest,
+        };
         pencil.refuse_massless(model)?;
         Ok(pencil)
     }

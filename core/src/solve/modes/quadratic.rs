@@ -75,15 +75,17 @@ pub(super) fn find(
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
     }
     let (mut next_look, mut tried) = ((2 * count).min(60), None::<Vec<[f64; 2]>>);
+    // displacements and velocities of all motions; what a larger space holds is rounding
+    let whole = 2 * op.p.motions;
     let all = loop {
-        while space.turns() < next_look && !space.is_closed() {
+        while space.turns() < next_look.min(whole) && !space.is_closed() {
             space.step(&mut op).map_err(ModesError::Solver)?;
         }
         if space.is_closed() && !closed {
             closed = !space.start(&mut op).map_err(ModesError::Solver)?;
             continue;
         }
-        closed &= space.is_closed();
+        closed = closed && space.is_closed() || space.turns() >= whole;
         let mut all = space.ritz(false, 2 * count + 8).ok_or(ModesError::Eigen)?;
         all.retain(|r| r.size() > 0.0);
         all.sort_by(|a, b| size(rate(a, sigma)).total_cmp(&size(rate(b, sigma))));
