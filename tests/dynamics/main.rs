@@ -27,3 +27,4 @@ mod pendulums;
 mod radau;
 mod running;
 mod scales;
+mod tolerance;

@@ -37,6 +37,8 @@ pub struct Checkpoint {
     ringing: f64,
     change: Vec<f64>,
     created: Option<f64>,
+    #[cfg_attr(feature = "serde", serde(default))]
+    rung: (u64, f64),
     keep_audit: bool,
     /// Whether constraints had to be solved as if some were redundant.
     softened: bool,
@@ -96,6 +98,7 @@ impl Simulation {
             ringing: self.ringing,
             change: self.change.clone(),
             created: self.created,
+            rung: self.rung,
             keep_audit: self.keep_audit,
             softened: self.work.softening.is_some(),
             sampled: self.sampled,
@@ -150,6 +153,7 @@ impl Simulation {
             ringing: c.ringing,
             change: c.change,
             created: c.created,
+            rung: c.rung,
             keep_audit: c.keep_audit,
             power,
             events,

@@ -208,6 +208,7 @@ impl Simulation {
             audit: Audit::default(),
             ringing: 0.0,
             change: Vec::new(),
+            rung: (0, 0.0),
             created: None,
             keep_audit: false,
             power: self.power,

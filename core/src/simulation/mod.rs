@@ -115,6 +115,8 @@ pub struct Simulation {
     /// measured with a scheme that had to be allowed.
     pub ringing: f64,
     change: Vec<f64>,
+    /// Steps in which tension swung to and fro from step to step, and their time [s].
+    rung: (u64, f64),
     /// When energy was first seen to have appeared from nowhere [s].
     created: Option<f64>,
     keep_audit: bool,
@@ -178,6 +180,7 @@ impl Simulation {
             audit,
             ringing: 0.0,
             change: Vec::new(),
+            rung: (0, 0.0),
             created: None,
             keep_audit: true,
             power,
@@ -285,6 +288,7 @@ impl Simulation {
             broken::take_failed().map_or(Ok(()), |b| Err(StepError::Function(b)))?;
             let energy = self.watch_energy(end, observer);
             self.watch_steps(end, observer);
+            self.watch_ringing(&report, end, observer);
             self.measure_ringing();
             self.remember(&report);
             // whoever wants to stop gets what this step has brought first

@@ -2,7 +2,7 @@
 
 use super::{Observer, Simulation};
 use crate::simulation::audit::Created;
-use crate::solve::integrator::{Limit, StepError, Stepping};
+use crate::solve::integrator::{Limit, StepError, StepReport, Stepping};
 
 /// What may be left of constraints after a step, in parts of the model's length: ten times what Newton's method leaves.
 const LEFT: f64 = 1e-9;
@@ -17,6 +17,9 @@ const BEGUN: u64 = 50;
 const BEGUN_TIME: f64 = 0.05;
 /// So many steps are worth a word.
 const MANY: u64 = 100_000;
+/// Steps in which tension rings that are worth a word, and their share of the time.
+const RUNG: u64 = 8;
+const RUNG_SHARE: f64 = 0.1;
 /// What has moved by no more than this since the run began, in parts of its own length, has no energy to speak of.
 const REST: f64 = 1e-7;
 
@@ -106,6 +109,31 @@ impl Simulation {
             "{MANY} steps so far, at t = {t:.4} s of {end} s, the last of {h:.1e} s: fast motion that nothing damps asks for \
              them. {damping}, a looser `tolerance`, a shorter `horizon` or Radau IIA need fewer"
         ));
+    }
+
+    /// Warns at the end of a run in which tension has swung to and fro from step to step: the record shows the steps, not the
+    /// motion.
+    pub(super) fn watch_ringing(&mut self, report: &StepReport, end: f64, observer: &mut dyn Observer) {
+        if report.rings {
+            self.rung.0 += 1;
+            self.rung.1 += report.h;
+        }
+        let ((steps, time), t) = (self.rung, self.state.t);
+        if t < end || steps < RUNG || time < RUNG_SHARE * t {
+            return;
+        }
+        let remedy = match self.integrator.options().stepping {
+            Stepping::Fixed { .. } => "a smaller `h`",
+            Stepping::Controlled { .. } => "a smaller `tolerance`",
+        };
+        observer.warn(&format!(
+            "for {:.0} % of the time the tension of a cable swings to and fro from step to step: waves along or across it that the \
+             steps don't resolve and the scheme hardly damps. Tensions between them mean little. Take {remedy}, \
+             `rho_inf = 0.5`, Radau IIA, or a little `axial_retardation_time` or `bending_retardation_time`",
+            100.0 * time / t
+        ));
+        // who advances bit by bit hears of it once
+        self.rung = (0, 0.0);
     }
 
     /// Looks for energy that has appeared from nowhere: warns the first time that it is too much for an error of the

@@ -458,10 +458,11 @@ impl Integrator for Alpha {
             let h = steps.h;
             let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
                 Attempt::Good { rate, error, by } => {
+                    let rings = work.forces.ring(state.control.h_last);
                     self.accept(state, work, h, &rate);
                     steps.accepted(&mut state.control, error, rate.iterations, by);
                     let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
-                    return Ok(StepReport { h, iterations, rejected, error, limit });
+                    return Ok(StepReport { h, iterations, rejected, error, limit, rings });
                 }
                 Attempt::TooLarge { error, iterations, by } => {
                     work.counts.rejected += 1;

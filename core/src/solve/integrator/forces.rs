@@ -20,6 +20,11 @@ pub(crate) struct Forces {
     rows: Vec<(f64, Vec<usize>)>,
     /// The cables: tension is looked at in some places.
     cables: Vec<Line>,
+    /// Tension in these places at the start of the step, cable by cable [N].
+    seen: Vec<f64>,
+    /// Of each such place tension at the start of the step before [N], its rate over the one before that [N/s], and by how much
+    /// it missed the line through the two before [N].
+    past: Vec<[f64; 3]>,
     /// Sums over the groups: of squares of the residual, of those of inertia; and the largest multipliers.
     residual: Vec<f64>,
     inertia: Vec<f64>,
@@ -40,6 +45,8 @@ struct Line {
 
 /// In how many places tension is looked at.
 const PLACES: usize = 9;
+/// What tension may swing by from step to step, in parts of the largest.
+const SWING: f64 = 0.05;
 /// What is kept of the largest force from one step to the next: forces that pass through zero are no reason to iterate.
 const MEMORY: f64 = 0.9;
 /// Residuals below so many units of rounding wander instead of falling.
@@ -87,6 +94,8 @@ impl Forces {
             rounding: none.clone(),
             rows,
             cables: cables.collect(),
+            seen: Vec::new(),
+            past: Vec::new(),
             residual: none.clone(),
             inertia: none.clone(),
             reaction: none,
@@ -105,11 +114,13 @@ impl Forces {
             let present = &mut self.present[norms.of(node.v)];
             *present = present.max(spin);
         }
+        self.seen.clear();
         for Line { part, places, .. } in &self.cables {
             for &s in places {
                 let line = model.parts()[*part].line();
                 let tension = line.and_then(|line| line.pulls(s, &state.at())).unwrap_or(0.0);
                 self.present[*part] = self.present[*part].max(tension.abs());
+                self.seen.push(tension);
             }
         }
     }
@@ -186,6 +197,29 @@ impl Forces {
     /// The largest force in a group as of the last [`Forces::ratio`] [N].
     fn at_work(&self, g: usize) -> f64 {
         self.present[g].max(self.inertia[g].sqrt()).max(self.reaction[g])
+    }
+
+    /// Whether tension swings to and fro from step to step in some cable, as seen at the start of the step that ends; `h` is the
+    /// one before [s]. Waves that steps resolve bend to the other side now and then, those that they don't in every step.
+    pub fn ring(&mut self, h: f64) -> bool {
+        if self.past.len() != self.seen.len() || !(h > 0.0) {
+            self.past.clear();
+            self.past.extend(self.seen.iter().map(|&tension| [tension, 0.0, 0.0]));
+            return false;
+        }
+        let mut rings = false;
+        let mut places = self.past.iter_mut().zip(&self.seen);
+        for line in &self.cables {
+            let largest = self.present[line.part];
+            for ([last, rate, missed], &tension) in places.by_ref().take(line.places.len()) {
+                let misses = tension - (*last + *rate * h);
+                // a swing of one to either side misses by four
+                let swing = if misses * *missed < 0.0 { 0.25 * misses.abs().min(missed.abs()) } else { 0.0 };
+                rings |= swing > SWING * largest + self.rounding[line.part];
+                (*last, *rate, *missed) = (tension, (tension - *last) / h, misses);
+            }
+        }
+        rings
     }
 
     /// Remembers the forces of an accepted step.
