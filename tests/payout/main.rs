@@ -12,6 +12,7 @@ mod drum;
 mod eyelet;
 mod falls;
 mod gripping;
+mod hoisting;
 mod passing;
 mod reeling;
 mod reeving;

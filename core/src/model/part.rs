@@ -87,9 +87,14 @@ pub trait Part: Send + Sync {
     fn tips(&self) -> Vec<Tip> {
         Vec::new()
     }
-    /// Position and velocity at unstretched arc length `s`.
+    /// Position at unstretched arc length `s` from the start, and the velocity of the material there.
     fn point(&self, _s: f64, _at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         None
+    }
+    /// Acceleration of the material at unstretched arc length `s` from the start [m/s²]. Where material doesn't flow, a point is
+    /// a linear function of its nodes' coordinates: accelerations go the way of velocities.
+    fn accelerates(&self, s: f64, at: &At<'_>) -> Option<V3<f64>> {
+        self.point(s, &At { v: at.a, ..*at }).map(|(_, a)| a)
     }
     /// The parts that it is made of, from start to end, if it is a cable that runs over wheels or through rings.
     fn spans(&self) -> &[Arc<dyn Part>] {

@@ -1,6 +1,6 @@
 //! A cable as a part of a model: its markers, its stations, what can be observed along it.
 
-use super::flow::{self, change, push};
+use super::flow::{self, Grid, Transport, change, push};
 use super::layout::Layout;
 use super::longitudinal::Longitudinal;
 use super::output::{Reading, read};
@@ -97,6 +97,16 @@ impl CablePart {
     /// First coordinates of the nodes of an element.
     fn around(&self, k: usize) -> [usize; 2] {
         [self.seats[k].0, self.seats[k + 1].0]
+    }
+
+    /// Velocity and acceleration of the material in element `k` of length `l`; `None` if none flows through it.
+    fn transported(&self, k: usize, l: f64, at: &At<'_>) -> Option<Transport<f64>> {
+        let line = self.line.as_ref().filter(|line| line.flows(k))?;
+        let [pd, pdd] = [at.v, at.a].map(|v| [line.rate(k, v), line.rate(k + 1, v)]);
+        let grid = Grid { l, il: 1.0 / l, p: line.p(k, at.q), ld: pd[1] - pd[0], pd, pdd };
+        let [e, ed, edd] = [self.dofs(k, at.q), self.velocities(k, at.v), self.velocities(k, at.a)]
+            .map(|x| std::array::from_fn(|i| [x[3 * i], x[3 * i + 1], x[3 * i + 2]]));
+        Some(Transport::new(&grid, &e, &ed, &edd))
     }
 
     fn velocities(&self, k: usize, v: &[f64]) -> [f64; 12] {
@@ -256,6 +266,11 @@ fn interpolate(c: [f64; 4], e: &[f64; 12]) -> V3<f64> {
     std::array::from_fn(|i| (0..4).map(|n| c[n] * e[3 * n + i]).sum())
 }
 
+/// The same of nodal vectors.
+fn blend(c: [f64; 4], e: &[V3<f64>; 4]) -> V3<f64> {
+    std::array::from_fn(|i| (0..4).map(|n| c[n] * e[n][i]).sum())
+}
+
 impl Part for CablePart {
     fn name(&self) -> &str {
         &self.name
@@ -390,7 +405,20 @@ impl Part for CablePart {
     fn point(&self, s: f64, at: &At<'_>) -> Option<(V3<f64>, V3<f64>)> {
         let (k, l, xi) = self.find(s, at.q)?;
         let c = hermite::<f64>(xi, l);
-        Some((interpolate(c, &self.dofs(k, at.q)), interpolate(c, &self.velocities(k, at.v))))
+        let velocity = match self.transported(k, l, at) {
+            Some(material) => blend(c, &material.v),
+            None => interpolate(c, &self.velocities(k, at.v)),
+        };
+        Some((interpolate(c, &self.dofs(k, at.q)), velocity))
+    }
+
+    fn accelerates(&self, s: f64, at: &At<'_>) -> Option<V3<f64>> {
+        let (k, l, xi) = self.find(s, at.q)?;
+        let c = hermite::<f64>(xi, l);
+        Some(match self.transported(k, l, at) {
+            Some(material) => blend(c, &material.a),
+            None => interpolate(c, &self.velocities(k, at.a)),
+        })
     }
 
     fn centre_line(&self, at: &At<'_>) -> Vec<V3<f64>> {

@@ -25,7 +25,7 @@ pub struct PositionSpec {
     pub title: Option<String>,
 }
 
-/// Velocity of a point: columns `hose.end.vx`, `.vy` and `.vz` in m/s.
+/// Velocity of a point: columns `hose.end.vx`, `.vy` and `.vz` in m/s. Along a cable that a winch feeds, of the material there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VelocitySpec {
@@ -39,7 +39,8 @@ pub struct VelocitySpec {
     pub title: Option<String>,
 }
 
-/// Acceleration of a point: columns `hose.end.ax`, `.ay` and `.az` in m/s².
+/// Acceleration of a point: columns `hose.end.ax`, `.ay` and `.az` in m/s². Along a cable that a winch feeds, of the material
+/// there.
 ///
 /// It satisfies the equations of motion at the given positions and velocities, and is less noisy than the
 /// integrator's own.

@@ -65,10 +65,8 @@ impl Spotted {
     pub(super) fn acceleration(&self, s: &Sample<'_>) -> V3<f64> {
         match self {
             Self::Marker(m) => m.acceleration(s.model.nodes(), &s.at),
-            // a point is a linear function of its nodes' coordinates: accelerations go the way of velocities
             Self::Along(part, place) => {
-                let at = At { v: s.at.a, ..s.at };
-                part.point(place.now(part.as_ref(), &s.at), &at).map_or([f64::NAN; 3], |(_, a)| a)
+                part.accelerates(place.now(part.as_ref(), &s.at), &s.at).unwrap_or([f64::NAN; 3])
             }
         }
     }
