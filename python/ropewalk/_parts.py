@@ -2232,8 +2232,8 @@ class Parts:
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """Acceleration of a point: columns `hose.end.ax`, `.ay` and `.az` in m/s². Along a cable that a winch feeds,
-        of the material there.
+        """Acceleration of a point: columns `hose.end.ax`, `.ay` and `.az` in m/s². Along a cable that a winch feeds, of
+        the material there.
 
         It satisfies the equations of motion at the given positions and velocities, and is less noisy than the
         integrator's own.
@@ -2692,8 +2692,8 @@ class Parts:
         name: str | None = None,
         title: str | None = None,
     ) -> Part:
-        """Velocity of a point: columns `hose.end.vx`, `.vy` and `.vz` in m/s. Along a cable that a winch feeds, of
-        the material there.
+        """Velocity of a point: columns `hose.end.vx`, `.vy` and `.vz` in m/s. Along a cable that a winch feeds, of the
+        material there.
 
         of: The point: a marker like `hose.end`, or an arc length like `hose@12.5m`.
         name: Name in results. Default: that of the point and `.velocity`.
