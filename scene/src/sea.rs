@@ -109,21 +109,14 @@ impl Sea {
     /// # Errors
     /// Numbers that make no sense; a table that can't be as exact as asked for.
     pub fn new(spec: &WavesSpec, level: f64, g: f64, drift: V3<f64>) -> Result<Self, BuildError> {
-        let of = |e: ropewalk_sea::SeaError| spec.fault(e);
-        let all = spec.components()?;
-        let depth = spec.depth.unwrap_or(f64::INFINITY);
-        let mut waves = Waves::new(&all, depth, g, spec.stretching.into()).map_err(of)?;
-        waves = waves.with_ramp(spec.ramp).map_err(of)?;
-        if spec.doppler {
-            waves = waves.on_current([drift[0], drift[1]]).map_err(of)?;
-        }
+        let waves = spec.waves(g, drift)?;
         let (lattice, how) = Self::lattice(spec, &waves)?;
-        let [slowest, fastest] = all
+        let [slowest, fastest] = waves
             .iter()
-            .fold([f64::INFINITY, 0.0_f64], |[slow, fast], w| [w.omega.min(slow), w.omega.max(fast)]);
+            .fold([f64::INFINITY, 0.0_f64], |[slow, fast], (.., omega, _)| [omega.min(slow), omega.max(fast)]);
         let about = format!(
             "waves: {} of {:.3} to {:.3} s, significant height {:.4} m, in water {}; {how}",
-            all.len(),
+            waves.len(),
             TAU / fastest,
             TAU / slowest,
             4.0 * waves.deviation(),

@@ -1,9 +1,9 @@
 //! `[water.waves]`: a sea state, and how its motion is found.
 
 use crate::file;
-use ropewalk_core::BuildError;
+use ropewalk_core::{BuildError, V3};
 use ropewalk_core::error::positive;
-use ropewalk_sea::{Regular, Sampling, SeaError, Spectrum, Spreading, Stretching, measured, sample};
+use ropewalk_sea::{Regular, Sampling, SeaError, Spectrum, Spreading, Stretching, Waves, measured, sample};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -335,6 +335,18 @@ impl WavesSpec {
         }
         positive("lattice_error", self.lattice_error).map_err(|e| e.of("water.waves.lattice_error"))?;
         Ok(())
+    }
+
+    /// The waves under gravity `g` [m/s²], on a current of velocity `drift` [m/s] if they are told to feel it.
+    ///
+    /// # Errors
+    /// Numbers that make no sense.
+    pub fn waves(&self, g: f64, drift: V3<f64>) -> Result<Waves, BuildError> {
+        let of = |e: SeaError| self.fault(e);
+        let depth = self.depth.unwrap_or(f64::INFINITY);
+        let waves = Waves::new(&self.components()?, depth, g, self.stretching.into()).map_err(of)?;
+        let waves = waves.with_ramp(self.ramp).map_err(of)?;
+        if self.doppler { waves.on_current([drift[0], drift[1]]).map_err(of) } else { Ok(waves) }
     }
 
     /// The regular waves that make it.

@@ -164,6 +164,11 @@ impl Waves {
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
+    /// Its waves, each as amplitude [m], wavenumbers along x and y [1/m], frequency [rad/s] and phase at the origin at `t = 0`
+    /// [rad].
+    pub fn iter(&self) -> impl Iterator<Item = (f64, [f64; 2], f64, f64)> + '_ {
+        self.all.iter().map(|c| (c.a, c.way.map(|w| c.k * w), c.omega, c.phase))
+    }
     /// Largest wavenumber [1/m].
     pub fn shortest(&self) -> f64 {
         self.all.iter().fold(0.0, |m, c| c.k.max(m))
