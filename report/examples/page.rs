@@ -11,8 +11,8 @@ use std::path::PathBuf;
 
 use ropewalk_core::rotation::exp;
 use ropewalk_report::{
-    BodyRecord, Column, Entry, Event, FieldRecord, ForceRecord, LineRecord, LineSnapshot, Mesh, OutputError,
-    Listing, Page, Panel, Pose, Quantity, RangeGraph, Shape, Solid, Steps, Table, Wave, Waves, vtk,
+    BodyRecord, Column, Entry, Event, FieldRecord, ForceRecord, LineRecord, LineSnapshot, Listing, Mesh,
+    OutputError, Page, Panel, Pose, Quantity, RangeGraph, Shape, Solid, Steps, Table, Wave, Waves, vtk,
 };
 
 const POINTS: usize = 161;

@@ -111,9 +111,10 @@ impl Sea {
     pub fn new(spec: &WavesSpec, level: f64, g: f64, drift: V3<f64>) -> Result<Self, BuildError> {
         let waves = spec.waves(g, drift)?;
         let (lattice, how) = Self::lattice(spec, &waves)?;
-        let [slowest, fastest] = waves
-            .iter()
-            .fold([f64::INFINITY, 0.0_f64], |[slow, fast], (.., omega, _)| [omega.min(slow), omega.max(fast)]);
+        let [slowest, fastest] =
+            waves.iter().fold([f64::INFINITY, 0.0_f64], |[slow, fast], (.., omega, _)| {
+                [omega.min(slow), omega.max(fast)]
+            });
         let about = format!(
             "waves: {} of {:.3} to {:.3} s, significant height {:.4} m, in water {}; {how}",
             waves.len(),

@@ -18,10 +18,7 @@ pub struct StatisticsSpec {
     #[serde(deserialize_with = "ropewalk_quantity::time")]
     pub from: f64,
     /// Up to what time [s]. Default: the end of the run.
-    #[serde(
-        deserialize_with = "ropewalk_quantity::optional::time",
-        skip_serializing_if = "Option::is_none"
-    )]
+    #[serde(deserialize_with = "ropewalk_quantity::optional::time", skip_serializing_if = "Option::is_none")]
     pub to: Option<f64>,
     /// How many cycles what they show endures. Default: cycles aren't counted.
     #[serde(skip_serializing_if = "Option::is_none")]

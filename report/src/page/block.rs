@@ -130,7 +130,8 @@ fn waves(arrays: &mut Arrays, waves: &Waves, origin: &[f64; 3]) -> Value {
 }
 
 fn range(arrays: &mut Arrays, range: &RangeGraph) -> Value {
-    let mut text = json!({"name": range.name, "quantity": range.quantity, "unit": range.unit, "window": range.window});
+    let mut text =
+        json!({"name": range.name, "quantity": range.quantity, "unit": range.unit, "window": range.window});
     let columns = [
         ("s", &range.s),
         ("start", &range.start),

@@ -303,7 +303,8 @@ impl Job<'_> {
         let mut page = None;
         if leaves.report {
             let (field, warn) = (field.unwrap_or_default(), &mut |text: &str| warnings.say(text));
-            page = leave::write_page(&folder, file, &summary, &mut recorder, (field, told), warn).map(Box::new);
+            page =
+                leave::write_page(&folder, file, &summary, &mut recorder, (field, told), warn).map(Box::new);
         }
         summary.warnings = warnings.all;
         if summary.status.is_complete() && recorder.saver.is_some() {

@@ -134,7 +134,15 @@ impl Range {
         let places =
             mesh.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).chain(mesh.last().copied()).collect();
         let name = spec.name.clone().unwrap_or_else(|| of.to_string());
-        Ok(Range { of: of.into(), name, window: [spec.from, to], places, courses: Vec::new(), before: None, around: None })
+        Ok(Range {
+            of: of.into(),
+            name,
+            window: [spec.from, to],
+            places,
+            courses: Vec::new(),
+            before: None,
+            around: None,
+        })
     }
 
     /// What is there now.
@@ -147,15 +155,13 @@ impl Range {
         let last = points.len() - 1;
         let one = |k: usize| {
             let s = places[k];
-            let [tension, curvature, moment] =
-                part.line().map_or([f64::NAN; 3], |line| line.measure(s, at));
+            let [tension, curvature, moment] = part.line().map_or([f64::NAN; 3], |line| line.measure(s, at));
             let in_wall = match &around.water[k] {
                 Some(outside) => tension + wall.pressed(outside, s, at),
                 None if around.flows => wall.tension(s, model, at),
                 None => f64::NAN,
             };
-            let [declination, azimuth] =
-                direction(&points[k.saturating_sub(1)], &points[(k + 1).min(last)]);
+            let [declination, azimuth] = direction(&points[k.saturating_sub(1)], &points[(k + 1).min(last)]);
             let above = |term: &usize| clearance(model, *term, part.name(), s, at);
             let clearance = around.grounds.iter().filter_map(above).fold(f64::NAN, f64::min);
             let [x, y, z] = points[k];
@@ -276,7 +282,8 @@ pub(crate) fn all(scene: &Scene, model: &Model) -> Result<Vec<Range>, BuildError
 pub(crate) fn on_pages(folder: &RunFolder, scene: &Scene) -> Vec<RangeGraph> {
     let graphs = |spec: &RangeSpec| {
         let name = spec.name.as_deref().unwrap_or(spec.of.trim());
-        let table = Table::read(&folder.table_file(&format!("range-{name}")).ok().filter(|p| p.is_file())?).ok()?;
+        let table =
+            Table::read(&folder.table_file(&format!("range-{name}")).ok().filter(|p| p.is_file())?).ok()?;
         Some(RangeGraph::of_table(name, [spec.from, spec.to.unwrap_or(scene.run.duration)], &table))
     };
     scene.run.ranges.iter().filter_map(graphs).flatten().collect()

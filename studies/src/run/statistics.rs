@@ -34,7 +34,8 @@ pub(crate) fn check(scene: &Scene, history: &Table) -> Result<(), (String, Strin
             .map_err(|e| at(BuildError::at("of", e.to_string())))?;
         let Some(Ok((_, unit))) = spec.fatigue.map(|fatigue| fatigue.strength()) else { continue };
         if columns.iter().all(|c| c.unit != unit) {
-            let message = format!("none of these records is in {unit}, so that no cycles of it can be counted");
+            let message =
+                format!("none of these records is in {unit}, so that no cycles of it can be counted");
             return Err(at(BuildError::at("fatigue", message)));
         }
     }

@@ -7,7 +7,7 @@ use ropewalk_report::statistics::{
 use ropewalk_report::{
     Column, Csv, LinePlot, Listing, OutputError, RunFolder, Series, Table, number, write_atomic,
 };
-use ropewalk_scene::{Fault, FatigueSpec, StatisticsSpec, did_you_mean};
+use ropewalk_scene::{FatigueSpec, Fault, StatisticsSpec, did_you_mean};
 
 /// Seconds of a year, over which damage is told.
 const YEAR: f64 = 365.25 * 86_400.0;
@@ -93,14 +93,21 @@ impl<'a> Set<'a> {
     pub fn new(asked: Asked, history: &'a Table) -> Result<Self, Fault> {
         let columns = chosen(history, &asked.records)?;
         let t: &[f64] = history.columns.first().map_or(&[], |c| &c.values);
-        let courses: Vec<Course<'_>> =
-            columns.iter().filter_map(|c| course(t, c, asked.window)).collect();
+        let courses: Vec<Course<'_>> = columns.iter().filter_map(|c| course(t, c, asked.window)).collect();
         if courses.is_empty() {
             let [from, to] = asked.window;
             return Err(Fault::new(format!("there are fewer than four rows from {from} s to {to} s")));
         }
         let mut headings: Vec<String> = [
-            "record", "mean", "deviation", "least", "largest", "skewness", "kurtosis", "crossings", "period [s]",
+            "record",
+            "mean",
+            "deviation",
+            "least",
+            "largest",
+            "skewness",
+            "kurtosis",
+            "crossings",
+            "period [s]",
             "significant range",
         ]
         .map(String::from)
@@ -175,9 +182,8 @@ impl<'a> Set<'a> {
 fn curve(life: &Life) -> String {
     let Life { strength, k, m, beyond, mean_load } = life;
     let [strength, k, m] = [strength, k, m].map(|x| number(*x));
-    let second = beyond.map_or(String::new(), |(knee, m)| {
-        format!(", slope {} beyond {} cycles", number(m), number(knee))
-    });
+    let second = beyond
+        .map_or(String::new(), |(knee, m)| format!(", slope {} beyond {} cycles", number(m), number(knee)));
     let mean = if *mean_load { ", means by Goodman" } else { "" };
     format!("N = {k} (range/{strength})^-{m}{second}{mean}, cycles by rainflow counting, damage by Miner")
 }
