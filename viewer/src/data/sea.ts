@@ -13,6 +13,8 @@ export class Surface {
   readonly shortest: number;
   /** How many waves are too short to be shown, and their share of the energy. */
   readonly left: { count: number; share: number };
+  /** Standard deviation of what is shown, once the waves have risen [m]. */
+  readonly deviation: number;
   private kept: number[] = [];
 
   /** A square of water with its corner at `low` and sides of this length [m]. */
@@ -30,6 +32,7 @@ export class Surface {
         energy += a * a;
       }
     }
+    this.deviation = Math.sqrt((whole - energy) / 2);
     this.left = { count, share: whole > 0 ? energy / whole : 0 };
   }
 

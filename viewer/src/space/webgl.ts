@@ -159,21 +159,30 @@ export class Webgl implements Picture {
   private surface({ low, side }: Surface, z: number): Mesh {
     const shape = new PlaneGeometry(side, side, CELLS, CELLS);
     (shape.getAttribute("position") as BufferAttribute).setUsage(DynamicDrawUsage);
+    shape.setAttribute("color", new BufferAttribute(new Float32Array(3 * (CELLS + 1) ** 2), 3).setUsage(DynamicDrawUsage));
     shape.boundingSphere = new Sphere();
-    const mesh = new Mesh(shape, this.material("--sea", { transparent: true, opacity: 0.4, side: DoubleSide, depthWrite: false }));
+    const mesh = new Mesh(shape, this.material("--sea", { transparent: true, opacity: 0.45, side: DoubleSide, depthWrite: false, vertexColors: true }));
     mesh.frustumCulled = false;
     mesh.position.set(low[0] + side / 2, low[1] + side / 2, z);
     this.ground.add(mesh);
     return mesh;
   }
 
-  private drawWaves({ heights }: Surface): void {
+  private drawWaves({ heights, deviation }: Surface): void {
     const shape = this.waves!.geometry;
-    const place = shape.getAttribute("position") as BufferAttribute;
+    const [place, colour] = ["position", "color"].map((name) => shape.getAttribute(name) as BufferAttribute) as [BufferAttribute, BufferAttribute];
     const n = CELLS + 1;
-    // three.js begins with the row of the largest y
-    for (let j = 0; j < n; j++) for (let k = 0; k < n; k++) place.setZ((n - 1 - j) * n + k, heights[j * n + k]!);
-    place.needsUpdate = true;
+    for (let j = 0; j < n; j++) {
+      for (let k = 0; k < n; k++) {
+        // three.js begins with the row of the largest y
+        const [i, height] = [(n - 1 - j) * n + k, heights[j * n + k]!];
+        place.setZ(i, height);
+        // crests are light and troughs are dark: light alone shows little of slopes as low as these
+        const light = 0.75 + 0.35 * Math.max(-1.5, Math.min(1.5, height / (deviation || 1)));
+        colour.setXYZ(i, light, light, light);
+      }
+    }
+    place.needsUpdate = colour.needsUpdate = true;
     shape.computeVertexNormals();
   }
 
