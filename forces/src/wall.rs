@@ -6,6 +6,7 @@ use ropewalk_core::{At, Model, Part, Quantity, Term};
 use std::sync::Arc;
 
 /// The wall of a cable, between the fluid in it and the water around: `T_w = T_e + p_i A_i - p_o A_o`.
+#[derive(Clone)]
 pub struct Wall {
     /// The cable.
     pub part: Arc<dyn Part>,

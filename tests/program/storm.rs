@@ -58,7 +58,8 @@ fn ten_minutes_of_the_storm_are_resumed_to_the_last_bit() {
 fn the_chain_in_the_tank_has_its_equilibrium_and_its_data() {
     let folder = tempfile::tempdir().unwrap();
     let chain = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/sea/chain.toml");
-    let ran = run(folder.path(), &["run", chain, "--set", "turns=0.1", "--set", "elements=12", "--out", "out"]);
+    let ran =
+        run(folder.path(), &["run", chain, "--set", "turns=0.1", "--set", "elements=12", "--out", "out"]);
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     let text = fs::read_to_string(folder.path().join("out/history.csv")).unwrap();
     let first: Vec<f64> = text.lines().nth(1).unwrap().split(',').map(|x| x.parse().unwrap()).collect();

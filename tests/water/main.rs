@@ -7,6 +7,7 @@ mod afloat;
 mod all_round;
 mod fluid;
 mod one_world;
+mod tank;
 mod towing;
 mod vortices;
 mod wall;

@@ -7,6 +7,7 @@ use ropewalk_forces::{Outside, Wall};
 use ropewalk_report::{Column, LinePlot, RangeGraph, RunFolder, Series, Table};
 use ropewalk_scene::{Analysis, RangeSpec, Scene};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use std::sync::Arc;
 
 /// What is looked at, with its unit.
@@ -79,28 +80,47 @@ pub(crate) struct Range {
     around: Option<Around>,
 }
 
-/// What presses on a line and lies below it.
-#[derive(Clone, Debug, PartialEq)]
+/// What presses on a line and lies below it, in one model.
+#[derive(Clone)]
 struct Around {
+    /// Address of the model: another one has other terms.
+    model: usize,
+    wall: Wall,
     /// The water at each place; none where there is none, or a fluid flows in it.
     water: Vec<Option<Outside>>,
-    /// Whether a fluid flows in it.
-    flows: bool,
     /// Numbers of the beds and contact shapes.
     grounds: Vec<usize>,
 }
 
 impl Around {
-    fn of(wall: &Wall, places: &[f64], model: &Model, at: &At<'_>) -> Self {
-        let tells = |k: &usize| clearance(model, *k, wall.part.name(), places[0], at).is_some();
-        let flows = wall.flows();
-        let water = |s: &f64| if flows { None } else { wall.outside(*s, model, at) };
+    fn of(part: &Arc<dyn Part>, places: &[f64], model: &Model, at: &At<'_>) -> Self {
+        let wall = Wall::new(model, part.clone());
+        let tells = |k: &usize| clearance(model, *k, part.name(), places[0], at).is_some();
+        let water = |s: &f64| if wall.flows() { None } else { wall.outside(*s, model, at) };
         Around {
+            model: address(model),
             water: places.iter().map(water).collect(),
-            flows,
             grounds: (0..model.terms().len()).filter(tells).collect(),
+            wall,
         }
     }
+}
+
+/// It follows from the model.
+impl PartialEq for Around {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl fmt::Debug for Around {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Around").field("grounds", &self.grounds).finish_non_exhaustive()
+    }
+}
+
+fn address(model: &Model) -> usize {
+    std::ptr::from_ref(model) as usize
 }
 
 fn clearance(model: &Model, term: usize, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
@@ -147,9 +167,11 @@ impl Range {
 
     /// What is there now.
     fn values(&mut self, model: &Model, part: &Arc<dyn Part>, at: &At<'_>) -> Vec<Values> {
-        let wall = Wall::new(model, part.clone());
         let places = &self.places;
-        let around = &*self.around.get_or_insert_with(|| Around::of(&wall, places, model, at));
+        if self.around.as_ref().is_none_or(|around| around.model != address(model)) {
+            self.around = Some(Around::of(part, places, model, at));
+        }
+        let Some(around) = &self.around else { return Vec::new() };
         let points: Vec<V3<f64>> =
             places.iter().map(|&s| part.point(s, at).map_or([f64::NAN; 3], |(x, _)| x)).collect();
         let last = points.len() - 1;
@@ -157,8 +179,8 @@ impl Range {
             let s = places[k];
             let [tension, curvature, moment] = part.line().map_or([f64::NAN; 3], |line| line.measure(s, at));
             let in_wall = match &around.water[k] {
-                Some(outside) => tension + wall.pressed(outside, s, at),
-                None if around.flows => wall.tension(s, model, at),
+                Some(outside) => tension + around.wall.pressed(outside, s, at),
+                None if around.wall.flows() => around.wall.tension(s, model, at),
                 None => f64::NAN,
             };
             let [declination, azimuth] = direction(&points[k.saturating_sub(1)], &points[(k + 1).min(last)]);
