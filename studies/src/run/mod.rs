@@ -117,9 +117,7 @@ pub(crate) fn run_showing(
             return Err(file.document().fault_at(path, e.message).into());
         }
     };
-    if let Err((path, message)) = statistics::check(scene, &recorder.table) {
-        return Err(file.document().fault_at(&path, message).into());
-    }
+    statistics::check(file, &recorder.table)?;
     if let Some(name) = &options.follow {
         recorder.follow(name)?;
     }

@@ -4,7 +4,7 @@ use super::ranges::on_pages;
 use crate::statistics::{Asked, Set};
 use ropewalk_core::BuildError;
 use ropewalk_report::{Listing, Page, RangeGraph, RunFolder, Sheet, TERMINAL, Table};
-use ropewalk_scene::{Analysis, Scene, SceneFile};
+use ropewalk_scene::{Analysis, Fault, Scene, SceneFile};
 
 /// What a run tells of its records in few numbers.
 #[derive(Default)]
@@ -13,13 +13,14 @@ pub(crate) struct Told {
     pub ranges: Vec<RangeGraph>,
 }
 
-/// What is wrong with the statistics that a scene asks for, if anything: the path of a field, and a message.
-pub(crate) fn check(scene: &Scene, history: &Table) -> Result<(), (String, String)> {
+/// What is wrong with the statistics that a scene asks for, if anything, pointing at its line.
+pub(crate) fn check(file: &SceneFile, history: &Table) -> Result<(), Fault> {
+    let scene = file.scene();
     let all = &scene.run.statistics;
     for (k, spec) in all.iter().enumerate() {
         let at = |e: BuildError| {
             let field = e.field.map_or(String::new(), |field| format!(".{field}"));
-            (format!("run.statistics[{k}]{field}"), e.message)
+            file.document().fault_at(&format!("run.statistics[{k}]{field}"), e.message)
         };
         if scene.run.analysis != Analysis::Dynamics {
             return Err(at(BuildError::new("statistics are of runs in time, not of equilibria")));
@@ -30,8 +31,10 @@ pub(crate) fn check(scene: &Scene, history: &Table) -> Result<(), (String, Strin
             let message = format!("two tables of statistics are named `{name}`: give one of them a `name`");
             return Err(at(BuildError::at("name", message)));
         }
-        let columns = crate::statistics::chosen(history, &spec.of)
-            .map_err(|e| at(BuildError::at("of", e.to_string())))?;
+        let columns = crate::statistics::chosen(history, &spec.of).map_err(|fault| {
+            let there = at(BuildError::at("of", fault.message));
+            Fault { help: fault.help, notes: fault.notes, ..there }
+        })?;
         let Some(Ok((_, unit))) = spec.fatigue.map(|fatigue| fatigue.strength()) else { continue };
         if columns.iter().all(|c| c.unit != unit) {
             let message =
