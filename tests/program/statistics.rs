@@ -167,7 +167,7 @@ fn a_run_tells_its_statistics_and_its_ranges() {
         assert!(within(*x, of("wall_tension.least"), of("wall_tension.largest")), "{t} {x}");
     }
     let start = column(&range, "declination.start")[0];
-    assert!((start - column(&history, "line.start.declination")[0]).abs() < 0.02, "{start}");
+    assert!((start - column(&history, "line.start.declination")[0]).abs() < 1e-12, "{start}");
     assert!(column(&range, "azimuth.start").iter().all(|a| a.abs() < 1e-9));
     assert!(range.iter().all(|(name, _)| !name.starts_with("clearance")), "there is no bed");
 

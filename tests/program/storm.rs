@@ -27,7 +27,7 @@ fn killed_and_resumed(duration: &str, elements: usize, checkpoint: &str) {
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    let done = run(here, &["resume", "killed"]);
+    let done = run(here, &["resume", "killed", "--no-report"]);
     assert_eq!(done.code, Some(0), "{done:?}");
     for file in [
         "history.csv",

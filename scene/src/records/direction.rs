@@ -59,8 +59,8 @@ struct Direction {
 /// Part of an element over which differences stand for the tangent.
 const NEAR: f64 = 1e-3;
 
-/// The tangent at an arc length, not of unit length; from the element around it alone.
-fn tangent(part: &dyn Part, s: f64, at: &At<'_>) -> Option<V3<f64>> {
+/// The tangent of a line at an arc length, not of unit length; from the element around it alone.
+pub fn tangent(part: &dyn Part, s: f64, at: &At<'_>) -> Option<V3<f64>> {
     let mut mesh = part.line().map_or_else(|| part.mesh().to_vec(), |line| line.mesh_now(at));
     if mesh.len() < 2 {
         mesh = vec![0.0, part.length()];

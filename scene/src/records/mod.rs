@@ -21,7 +21,7 @@ mod touchdown;
 mod turning;
 
 pub use along::AlongSpec;
-pub use direction::DirectionSpec;
+pub use direction::{DirectionSpec, tangent};
 pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
 pub use force::ForceRecordSpec;

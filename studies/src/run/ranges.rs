@@ -5,6 +5,7 @@ use crate::error::Error;
 use ropewalk_core::{At, BuildError, Model, Part, V3};
 use ropewalk_forces::{Outside, Wall};
 use ropewalk_report::{Column, LinePlot, RangeGraph, RunFolder, Series, Table};
+use ropewalk_scene::records::tangent;
 use ropewalk_scene::{Analysis, RangeSpec, Scene};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -128,9 +129,8 @@ fn clearance(model: &Model, term: usize, part: &str, s: f64, at: &At<'_>) -> Opt
 }
 
 /// Angle from upright, and from x to y.
-fn direction(a: &V3<f64>, b: &V3<f64>) -> [f64; 2] {
-    let [x, y, z] = [0, 1, 2].map(|i| b[i] - a[i]);
-    [x.hypot(y).atan2(z), y.atan2(x)]
+fn direction([x, y, z]: &V3<f64>) -> [f64; 2] {
+    [x.hypot(*y).atan2(*z), y.atan2(*x)]
 }
 
 impl Range {
@@ -174,7 +174,6 @@ impl Range {
         let Some(around) = &self.around else { return Vec::new() };
         let points: Vec<V3<f64>> =
             places.iter().map(|&s| part.point(s, at).map_or([f64::NAN; 3], |(x, _)| x)).collect();
-        let last = points.len() - 1;
         let one = |k: usize| {
             let s = places[k];
             let [tension, curvature, moment] = part.line().map_or([f64::NAN; 3], |line| line.measure(s, at));
@@ -183,13 +182,13 @@ impl Range {
                 None if around.wall.flows() => around.wall.tension(s, model, at),
                 None => f64::NAN,
             };
-            let [declination, azimuth] = direction(&points[k.saturating_sub(1)], &points[(k + 1).min(last)]);
+            let [declination, azimuth] = direction(&tangent(part.as_ref(), s, at).unwrap_or([f64::NAN; 3]));
             let above = |term: &usize| clearance(model, *term, part.name(), s, at);
             let clearance = around.grounds.iter().filter_map(above).fold(f64::NAN, f64::min);
             let [x, y, z] = points[k];
             [tension, in_wall, curvature, moment, declination, azimuth, clearance, x, y, z]
         };
-        (0..=last).map(one).collect()
+        (0..places.len()).map(one).collect()
     }
 
     /// Takes up an accepted state, or a row of the history, which may lie within a step: its extremes count alone.
