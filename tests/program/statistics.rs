@@ -177,6 +177,7 @@ fn a_run_tells_its_statistics_and_its_ranges() {
         "{}",
         ran.stdout
     );
+    assert!(ran.stdout.contains("damage a year"), "all columns are told, however narrow the terminal");
     let asked = table(&out.join("tables/statistics.csv"));
     assert!(out.join("tables/cycles-right.magnitude.csv").is_file());
     assert!(!out.join("tables/cycles-middle.z.csv").exists(), "heights have no breaking load");

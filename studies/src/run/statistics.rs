@@ -3,7 +3,7 @@
 use super::ranges::on_pages;
 use crate::statistics::{Asked, Set};
 use ropewalk_core::BuildError;
-use ropewalk_report::{Listing, Page, RangeGraph, RunFolder, Sheet, TERMINAL, Table};
+use ropewalk_report::{Listing, Page, RangeGraph, RunFolder, Sheet, Table};
 use ropewalk_scene::{Analysis, Fault, Scene, SceneFile};
 
 /// What a run tells of its records in few numbers.
@@ -76,7 +76,7 @@ pub(crate) fn text(listings: &[Listing]) -> String {
     let mut text = String::new();
     for listing in listings {
         let mut sheet = Sheet::new(format!("{} {}", listing.title, listing.note));
-        sheet.table_within(TERMINAL, &listing.headings, &listing.rows);
+        crate::statistics::tables(&mut sheet, &listing.headings, &listing.rows);
         text += &sheet.to_string();
     }
     text

@@ -25,6 +25,16 @@ pub struct StatisticsOptions {
     pub life: Option<Life>,
 }
 
+/// A table for the terminal: columns that it has no room for follow below, with the names of the rows again.
+pub(crate) fn tables(sheet: &mut Sheet, headings: &[String], rows: &[Vec<String>]) {
+    let shown = sheet.table_within(TERMINAL, headings, rows).max(1);
+    if shown < headings.len() {
+        let rest = |cells: &[String]| [&cells[..1], &cells[shown..]].concat();
+        let rows: Vec<Vec<String>> = rows.iter().map(|row| rest(row)).collect();
+        sheet.table_within(TERMINAL, &rest(headings), &rows);
+    }
+}
+
 /// Writes `tables/statistics.csv`, a spectrum of each record as table and picture, and with a life the cycles of each, into the
 /// folder of a run; puts the table on its page, if it has one; and tells of them in a table for people.
 ///
@@ -61,7 +71,7 @@ pub fn statistics(source: &Path, options: &StatisticsOptions) -> Result<String, 
     let mut sheet =
         Sheet::new(format!("Statistics of {} from {} s to {} s", source.display(), window[0], window[1]));
     let (headings, rows) = set.cells();
-    sheet.table_within(TERMINAL, headings, &rows);
+    tables(&mut sheet, headings, &rows);
     sheet.entries("warning", told);
     sheet.entry("tables", format!("{}/tables/statistics.csv, spectrum-*.csv", source.display()));
     sheet.entry("pictures", format!("{}/plots/spectrum-*.svg", source.display()));
