@@ -106,7 +106,7 @@ fn page(path: &Path) -> Value {
         };
         let sextets: Vec<u32> = data.bytes().filter_map(code).map(u32::from).collect();
         let bytes = |four: &[u32]| {
-            let word = (0..4).fold(0, |word, k| word << 6 | four.get(k).copied().unwrap_or(0));
+            let word = (0..4).fold(0, |word, k| (word << 6) | four.get(k).copied().unwrap_or(0));
             word.to_be_bytes()[1..four.len()].to_vec()
         };
         sextets.chunks(4).flat_map(bytes).collect()

@@ -75,6 +75,8 @@ pub fn statistics(source: &Path, options: &StatisticsOptions) -> Result<String, 
     sheet.entries("warning", told);
     sheet.entry("tables", format!("{}/tables/statistics.csv, spectrum-*.csv", source.display()));
     sheet.entry("pictures", format!("{}/plots/spectrum-*.svg", source.display()));
-    sheet.entry("page", page.is_file().then(|| page.display().to_string()).unwrap_or("none".into()));
+    if page.is_file() {
+        sheet.entry("page", page.display());
+    }
     Ok(sheet.to_string())
 }
