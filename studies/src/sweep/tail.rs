@@ -21,13 +21,11 @@ pub enum Report {
     Least,
     /// The largest of the last part
     Largest,
-    /// The mean of the peaks in the last part, the largest values between upward crossings of its mean
-    Peak,
 }
 
 impl Report {
     /// All of them.
-    pub const ALL: [Report; 5] = [Report::Last, Report::Mean, Report::Least, Report::Largest, Report::Peak];
+    pub const ALL: [Report; 4] = [Report::Last, Report::Mean, Report::Least, Report::Largest];
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -35,7 +33,6 @@ impl Report {
             Report::Mean => "mean",
             Report::Least => "least",
             Report::Largest => "largest",
-            Report::Peak => "peak",
         }
     }
     /// What it is, in a few words.
@@ -45,9 +42,6 @@ impl Report {
             Report::Mean => "The mean over the last part of the run",
             Report::Least => "The least of the last part",
             Report::Largest => "The largest of the last part",
-            Report::Peak => {
-                "The mean of the peaks in the last part, the largest values between upward crossings of its mean"
-            }
         }
     }
     /// What it is called in names of files.
@@ -57,7 +51,6 @@ impl Report {
             Report::Mean => "mean",
             Report::Least => "least",
             Report::Largest => "largest",
-            Report::Peak => "peak",
         }
     }
     /// The value that it takes of a column's last one and its last part.
@@ -67,7 +60,6 @@ impl Report {
             Report::Mean => tail.mean,
             Report::Least => tail.least,
             Report::Largest => tail.largest,
-            Report::Peak => tail.peak,
         }
     }
     /// What it is called in titles and in the report: `at the end`.
@@ -77,7 +69,6 @@ impl Report {
             Report::Mean => "mean at the end",
             Report::Least => "least at the end",
             Report::Largest => "largest at the end",
-            Report::Peak => "mean peak at the end",
         }
     }
 }
@@ -122,8 +113,6 @@ pub(crate) struct Tail {
     pub mean: f64,
     pub least: f64,
     pub largest: f64,
-    /// The mean of the largest values between upward crossings of the mean; NaN of what doesn't cross it twice.
-    pub peak: f64,
     /// Its range over the largest size that the column has in the whole run; zero where that is rounding.
     pub unsteady: f64,
 }
@@ -150,8 +139,7 @@ impl Over {
             let size = size(c);
             let counts = time.name == "t" && size > NOISE * of_unit(&c.unit);
             let unsteady = if counts { (largest - least) / size } else { 0.0 };
-            let mean = mean(t, values);
-            Tail { mean, least, largest, peak: peak(values, mean), unsteady }
+            Tail { mean: mean(t, values), least, largest, unsteady }
         };
         history.columns.iter().map(tail).collect()
     }
@@ -172,21 +160,6 @@ pub(super) fn extremes(values: &[f64]) -> (f64, f64) {
         values.iter().copied().reduce(both).unwrap_or(f64::NAN)
     };
     (fold(f64::min), fold(f64::max))
-}
-
-/// The mean of the largest values between upward crossings of a level.
-fn peak(values: &[f64], level: f64) -> f64 {
-    let (mut sum, mut count, mut top) = (0.0, 0.0, None::<f64>);
-    for w in values.windows(2) {
-        if w[0] < level && w[1] >= level {
-            if let Some(top) = top {
-                (sum, count) = (sum + top, count + 1.0);
-            }
-            top = Some(w[1]);
-        }
-        top = top.map(|top| top.max(w[1]));
-    }
-    if count > 0.0 && level.is_finite() { sum / count } else { f64::NAN }
 }
 
 /// The mean over time, by the trapezoidal rule.
@@ -225,10 +198,6 @@ mod tests {
         assert!((tails[2].unsteady - 2.0 / 3.0).abs() < 0.05, "{tails:?}");
         assert!((tails[2].mean - 2.0).abs() < 1e-12, "{tails:?}");
         assert!(tails[2].least < 1.06 && tails[2].largest > 2.94);
-        // peaks count one by one: here 1, 3 and 2, and what comes before and after them doesn't
-        let swings = [9.0, -1.0, 1.0, -1.0, 3.0, 0.5, -1.0, 2.0, -1.0, 7.0];
-        assert_eq!(peak(&swings, 0.0), 2.0);
-        assert!(peak(&[1.0, 2.0, 3.0], 2.0).is_nan());
     }
 
     #[test]
