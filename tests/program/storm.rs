@@ -13,7 +13,7 @@ fn killed_and_resumed(duration: &str, elements: usize, checkpoint: &str) {
     let here = folder.path();
     let (duration, elements) = (format!("duration={duration}"), format!("elements={elements}"));
     let sets = ["--set", &duration, "--set", &elements, "--set", "ramp=10 s"];
-    let start = [&["run", STORM], &sets[..], &["--checkpoint", checkpoint, "--no-report", "--out"]].concat();
+    let start = [&["run", STORM], &sets[..], &["--checkpoint", checkpoint, "--out"]].concat();
     let whole = run(here, &[&start[..], &["whole"]].concat());
     assert_eq!(whole.code, Some(0), "{whole:?}");
     let mut child = program(here, &[&start[..], &["killed"]].concat())
@@ -27,7 +27,7 @@ fn killed_and_resumed(duration: &str, elements: usize, checkpoint: &str) {
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    let done = run(here, &["resume", "killed", "--no-report"]);
+    let done = run(here, &["resume", "killed"]);
     assert_eq!(done.code, Some(0), "{done:?}");
     for file in [
         "history.csv",
