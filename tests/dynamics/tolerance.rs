@@ -286,7 +286,7 @@ fn tension_that_swings_from_step_to_step_is_said_to() {
             .summary()
             .warnings
             .iter()
-            .any(|w| w.contains("swings to and fro from step to step"))
+            .any(|w| w.contains("the tension of `hose` swings to and fro from step to step"))
     };
     assert!(warned(&controlled(1e-3)) && warned("stepping = { fixed = { h = 0.5 } }\n"));
     assert!(!warned("") && !warned(SCHEMES[1]) && !warned("stepping = { fixed = { h = 0.02 } }\n"));

@@ -159,7 +159,7 @@ impl Radau {
                     (c.eta, c.theta) = (rate.eta, rate.theta.unwrap_or(c.theta));
                     work.counts.steps += 1;
                     let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
-                    return Ok(StepReport { h, iterations, rejected, error, limit, rings: false });
+                    return Ok(StepReport { h, iterations, rejected, error, limit, rings: None });
                 }
                 Ok((rate, error)) => {
                     work.counts.rejected += 1;
