@@ -17,6 +17,8 @@ pub struct Sea {
     /// Height of the surface without waves [m].
     level: f64,
     about: String,
+    /// How far apart places are that a table is asked for [m].
+    grain: f64,
     memory: Mutex<Memory>,
 }
 
@@ -24,12 +26,39 @@ pub struct Sea {
 struct Memory {
     lattice: Option<Lattice>,
     latest: Vec<([u64; 4], Here)>,
+    packs: Vec<Found>,
 }
 
-/// Number of places that are remembered, a power of two.
+/// Places side by side and the motion there, number by number over all of them: several laws ask for the same, one after the other.
+#[derive(Clone)]
+struct Found {
+    /// Time and places.
+    t: f64,
+    places: [[f64; MOST]; 3],
+    lanes: usize,
+    rows: [[f64; MOST]; ROWS],
+}
+
+/// Number of places that are remembered, and of packs of them: powers of two.
 const PLACES: usize = 2048;
+const PACKS: usize = 256;
 /// As many lanes as the widest carrier has.
 const MOST: usize = 8;
+/// Numbers that tell the motion at a place, in this order: velocity and by the place, its rate and what the rise of the surface adds,
+/// acceleration and by the place, gradient in the water, elevation, slopes, rate of elevation.
+const ROWS: usize = 43;
+const BY_X: usize = 3;
+const RATE: usize = 12;
+const BY_T: usize = 15;
+const ACCELERATION: usize = 18;
+const ACCELERATION_BY_X: usize = 21;
+const GRADIENT: usize = 30;
+const SURFACE: usize = 39;
+/// From a table the motion is found at places that are this part of the shortest wave apart, and goes on from there straight: what
+/// that is off, 2e-5 at most, is far less than what the table is. So what a step asks for once, its iterations have.
+const GRAIN: f64 = 1e-3;
+/// So many grains below the surface and above it, all is found where it is.
+const SKIN: f64 = 4.0;
 /// Up to so many waves are summed up unless asked otherwise.
 const FEW: usize = 8;
 /// Places at which a table is compared with the sum.
@@ -130,8 +159,10 @@ impl Sea {
             spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
         let nowhere = ([u64::MAX; 4], Here::default());
-        let memory = Mutex::new(Memory { lattice, latest: vec![nowhere; PLACES] });
-        Ok(Sea { waves, level, about, memory })
+        let none = Found { t: f64::NAN, places: [[f64::NAN; MOST]; 3], lanes: 0, rows: [[0.0; MOST]; ROWS] };
+        let grain = GRAIN * TAU / waves.shortest();
+        let memory = Mutex::new(Memory { lattice, latest: vec![nowhere; PLACES], packs: vec![none; PACKS] });
+        Ok(Sea { waves, level, about, grain, memory })
     }
 
     /// The table that stands for many waves, if there is to be one, and how the sum is found in words.
@@ -194,54 +225,102 @@ impl Sea {
     /// The motion of the water at time `t` [s] at places.
     #[inline(always)]
     pub fn at<R: Real>(&self, t: f64, x: &V3<R>) -> Swell<R> {
-        let mut here = [Here::default(); MOST];
-        let places: [V3<f64>; MOST] = std::array::from_fn(|lane| {
-            let lane = lane.min(R::LANES - 1);
-            [x[0].lane(lane), x[1].lane(lane), x[2].lane(lane)]
-        });
-        self.find(t, &places[..R::LANES], &mut here);
-        let off = [
-            x[0] - R::each(|l| places[l][0]),
-            x[1] - R::each(|l| places[l][1]),
-            x[2] - R::each(|l| places[l][2]),
-        ];
-        let matrix = |of: &dyn Fn(&Here) -> &[[f64; 3]; 3]| -> [V3<R>; 3] {
-            [0, 1, 2].map(|i| [0, 1, 2].map(|j| R::each(|l| of(&here[l])[i][j])))
-        };
-        let by_x = matrix(&|h| &h.by_x);
-        let acceleration_by_x = matrix(&|h| &h.acceleration_by_x);
-        let gradient = matrix(&|h| &h.flow.gradient);
+        let mut places = [[0.0_f64; MOST]; 3];
+        for i in 0..3 {
+            x[i].write(&mut places[i]);
+        }
+        let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+        let slot = mixed([places[0][0], places[1][0], places[2][0], t].map(f64::to_bits)) % PACKS;
+        let found = &memory.packs[slot];
+        // what is no number is never found
+        if (found.t, found.lanes) != (t, R::LANES) || found.places != places {
+            self.find(t, &places, R::LANES, slot, &mut memory);
+        }
+        let rows = &memory.packs[slot].rows;
         // numbers that know their derivative get it from here; of all others the distance is nothing
-        let along =
-            |rows: &V3<R>, value: R| rows[0].fma(off[0], rows[1].fma(off[1], rows[2].fma(off[2], value)));
-        let u = [0, 1, 2].map(|i| along(&by_x[i], R::each(|l| here[l].flow.velocity[i])));
-        let acceleration =
-            [0, 1, 2].map(|i| along(&acceleration_by_x[i], R::each(|l| here[l].flow.acceleration[i])));
-        let rate = [0, 1, 2].map(|i| along(&acceleration_by_x[i], R::each(|l| here[l].flow.rate[i])));
-        let by_t = [0, 1, 2].map(|i| rate[i] + R::each(|l| here[l].by_t[i]));
-        let slope = [0, 1].map(|i| R::each(|l| here[l].flow.slope[i]));
-        let elevation = R::each(|l| here[l].flow.elevation);
-        let elevation = slope[0].fma(off[0], slope[1].fma(off[1], elevation));
-        let rising = R::each(|l| here[l].flow.rising);
+        let off = [x[0] - R::read(&places[0]), x[1] - R::read(&places[1]), x[2] - R::read(&places[2])];
+        let [by_x, acceleration_by_x, gradient] =
+            [matrix(rows, BY_X), matrix(rows, ACCELERATION_BY_X), matrix(rows, GRADIENT)];
+        let u = moved(&by_x, &off, three(rows, 0));
+        let acceleration = moved(&acceleration_by_x, &off, three(rows, ACCELERATION));
+        let rate = moved(&acceleration_by_x, &off, three(rows, RATE));
+        let (mut by_t, more): (V3<R>, V3<R>) = (rate, three(rows, BY_T));
+        for i in 0..3 {
+            by_t[i] += more[i];
+        }
+        let [elevation, sx, sy]: V3<R> = three(rows, SURFACE);
+        let (slope, rising) = ([sx, sy], R::read(&rows[SURFACE + 3]));
+        let elevation = sx.fma(off[0], sy.fma(off[1], elevation));
         Swell { u, by_x, by_t, rate, gradient, acceleration, acceleration_by_x, elevation, slope, rising }
     }
 
-    /// The motion at some places, from what is remembered or anew.
+    /// Finds the motion at some places and puts it into a slot of the memory.
     #[inline(never)]
-    fn find(&self, t: f64, places: &[V3<f64>], out: &mut [Here; MOST]) {
-        let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        for (x, out) in places.iter().zip(out) {
-            let key = [x[0].to_bits(), x[1].to_bits(), x[2].to_bits(), t.to_bits()];
-            let mixed = key
-                .iter()
-                .fold(0_u64, |mixed, k| (mixed ^ k).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
-            let slot = (mixed >> 40) as usize % PLACES;
-            if memory.latest[slot].0 != key {
-                let here = self.anew(memory.lattice.as_mut(), *x, t);
-                memory.latest[slot] = (key, here);
-            }
-            *out = memory.latest[slot].1;
+    fn find(&self, t: f64, places: &[[f64; MOST]; 3], lanes: usize, slot: usize, memory: &mut Memory) {
+        let Memory { lattice, latest, packs } = memory;
+        let found = &mut packs[slot];
+        (found.t, found.places, found.lanes) = (t, *places, lanes);
+        for lane in 0..lanes {
+            let x: V3<f64> = [0, 1, 2].map(|i| places[i][lane]);
+            let here = match lattice {
+                Some(_) => self.near(lattice.as_mut(), x, t, latest),
+                None => self.known(None, x, t, latest),
+            };
+            let rows = here
+                .flow
+                .velocity
+                .into_iter()
+                .chain(here.by_x.into_iter().flatten())
+                .chain(here.flow.rate)
+                .chain(here.by_t)
+                .chain(here.flow.acceleration)
+                .chain(here.acceleration_by_x.into_iter().flatten())
+                .chain(here.flow.gradient.into_iter().flatten())
+                .chain([here.flow.elevation])
+                .chain(here.flow.slope)
+                .chain([here.flow.rising]);
+            found.rows.iter_mut().zip(rows).for_each(|(row, value)| row[lane] = value);
         }
+    }
+
+    /// The motion at a place, going on straight from one nearby; near the surface, where it has a kink, at the place itself.
+    fn near(
+        &self,
+        mut lattice: Option<&mut Lattice>,
+        x: V3<f64>,
+        t: f64,
+        latest: &mut [([u64; 4], Here)],
+    ) -> Here {
+        let there = x.map(|x| (x / self.grain).round() * self.grain);
+        let mut here = self.known(lattice.as_deref_mut(), there, t, latest);
+        if (there[2] - self.level - here.flow.elevation).abs() < SKIN * self.grain {
+            return self.known(lattice, x, t, latest);
+        }
+        let off: V3<f64> = std::array::from_fn(|i| x[i] - there[i]);
+        for i in 0..3 {
+            let changed = dot(&here.acceleration_by_x[i], &off);
+            here.flow.velocity[i] += dot(&here.by_x[i], &off);
+            here.flow.acceleration[i] += changed;
+            here.flow.rate[i] += changed;
+        }
+        here.flow.elevation += here.flow.slope[0] * off[0] + here.flow.slope[1] * off[1];
+        here
+    }
+
+    /// The motion at a place, from what is remembered or anew.
+    fn known(
+        &self,
+        lattice: Option<&mut Lattice>,
+        x: V3<f64>,
+        t: f64,
+        latest: &mut [([u64; 4], Here)],
+    ) -> Here {
+        let key = [x[0].to_bits(), x[1].to_bits(), x[2].to_bits(), t.to_bits()];
+        let slot = mixed(key) % PLACES;
+        if latest[slot].0 != key {
+            latest[slot] = (key, self.anew(lattice, x, t));
+        }
+        latest[slot].1
     }
 
     fn anew(&self, lattice: Option<&mut Lattice>, [x, y, z]: V3<f64>, t: f64) -> Here {
@@ -263,6 +342,33 @@ impl Sea {
         }
         Here { flow, by_t, by_x, acceleration_by_x }
     }
+}
+
+/// Three numbers from the rows of a pack, and nine.
+#[inline(always)]
+fn three<R: Real>(rows: &[[f64; MOST]; ROWS], row: usize) -> V3<R> {
+    [R::read(&rows[row]), R::read(&rows[row + 1]), R::read(&rows[row + 2])]
+}
+#[inline(always)]
+fn matrix<R: Real>(rows: &[[f64; MOST]; ROWS], row: usize) -> [V3<R>; 3] {
+    [three(rows, row), three(rows, row + 3), three(rows, row + 6)]
+}
+
+/// A vector a little farther on.
+#[inline(always)]
+fn moved<R: Real>(by: &[V3<R>; 3], off: &V3<R>, mut x: V3<R>) -> V3<R> {
+    for i in 0..3 {
+        x[i] = by[i][0].fma(off[0], by[i][1].fma(off[1], by[i][2].fma(off[2], x[i])));
+    }
+    x
+}
+
+/// A number that looks like none of these.
+#[inline(always)]
+fn mixed(key: [u64; 4]) -> usize {
+    let all =
+        key.iter().fold(0_u64, |mixed, k| (mixed ^ k).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
+    (all >> 40) as usize
 }
 
 /// The motion at a height above still water, or that at the surface where that is lower; and whether it is.

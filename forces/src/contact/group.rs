@@ -1,6 +1,6 @@
 //! What touches: single balls, and slender pieces whose places of contact are found anew at every evaluation.
 
-use super::friction::Grip;
+use super::friction::{CELLS, Grip};
 use super::search::{Cubic, Look, Search, gauss};
 use super::seat::{Fixed, Frame};
 use ropewalk_core::held::Held;
@@ -45,11 +45,32 @@ pub(crate) enum What {
 /// The bristles of a group.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bristles {
-    /// One of them.
+    /// All of them together.
     pub grip: Grip,
     /// The place of what the first remembers.
     pub at: usize,
     pub cells: usize,
+}
+
+impl Bristles {
+    /// The one of a cell.
+    pub fn of(&self, cell: usize) -> Grip {
+        let share = if self.cells == CELLS { gauss(CELLS)[cell].1 } else { 1.0 };
+        Grip { stiffness: share * self.grip.stiffness, damping: share * self.grip.damping, ..self.grip }
+    }
+}
+
+/// Where a cell of a slender piece is held: cells are what the points of a Gauss rule stand for.
+pub(crate) fn place_of(cell: usize) -> f64 {
+    gauss(CELLS)[cell].0
+}
+
+/// Where the cells of a slender piece end.
+fn ends() -> impl Iterator<Item = f64> {
+    gauss(CELLS).iter().scan(0.0, |end, (_, weight)| {
+        *end += weight;
+        Some(*end)
+    })
 }
 
 /// A slender piece.
@@ -86,14 +107,11 @@ impl Group {
         }
     }
 
-    /// The middle of a cell.
+    /// Where a cell is held.
     pub fn station(&self, cell: usize) -> Held {
         match &self.what {
             What::Ball(ball) => ball.held,
-            What::Span(span) => {
-                let cells = self.bristles.map_or(1, |b| b.cells);
-                span.line.held((cell as f64 + 0.5) / cells as f64)
-            }
+            What::Span(span) => span.line.held(place_of(cell)),
         }
     }
 
@@ -118,22 +136,32 @@ impl Group {
             Search::new(&fixed.shape, &curve, span.radius).find(&mut scratch.pieces, &mut scratch.found);
         }
         for &[from, to] in &scratch.found {
+            let ball = |cell, (from, part): (f64, f64), (place, weight): (f64, f64)| Ball {
+                held: span.line.held(from + part * place),
+                radius: span.radius,
+                k: span.k * part * weight,
+                cell,
+            };
+            if cells == 1 {
+                let all = gauss(span.points).iter();
+                scratch.balls.extend(all.map(|point| ball(0, (from, to - from), *point)));
+                continue;
+            }
+            if [from, to] == [0.0, 1.0] && span.points == CELLS {
+                let all = gauss(CELLS).iter().enumerate();
+                scratch.balls.extend(all.map(|(cell, point)| ball(cell, (0.0, 1.0), *point)));
+                continue;
+            }
             // cut where one cell ends and the next begins
-            let borders = (1..cells).map(|c| c as f64 / cells as f64).filter(|&b| b > from && b < to);
-            let mut from = from;
-            for to in borders.chain([to]) {
-                let part = to - from;
-                let cell = ((0.5 * (from + to) * cells as f64) as usize).min(cells - 1);
+            let mut begin = 0.0;
+            for (cell, end) in ends().enumerate() {
+                let (a, b) = (from.max(begin), to.min(end));
                 // a cell all of which touches is as good as straight
-                let whole = cells > 1 && part * cells as f64 > 1.0 - 1e-9;
-                let points = if whole { 2 } else { span.points };
-                scratch.balls.extend(gauss(points).iter().map(|&(place, weight)| Ball {
-                    held: span.line.held(from + part * place),
-                    radius: span.radius,
-                    k: span.k * part * weight,
-                    cell,
-                }));
-                from = to;
+                let points = if b - a > (1.0 - 1e-9) * (end - begin) { 2 } else { span.points };
+                if b > a {
+                    scratch.balls.extend(gauss(points).iter().map(|point| ball(cell, (a, b - a), *point)));
+                }
+                begin = end;
             }
         }
         scratch
