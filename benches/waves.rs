@@ -63,7 +63,9 @@ fn run(waves: &str) -> Result<(BTreeMap<String, f64>, f64), Box<dyn std::error::
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let sea = |how: &str, count: usize| {
-        format!("[water.waves]\njonswap = {{ hs = 4, tp = 10 }}\ndepth = 150\ncount = {count}\nevaluation = \"{how}\"")
+        format!(
+            "[water.waves]\njonswap = {{ hs = 4, tp = 10 }}\ndepth = 150\ncount = {count}\nevaluation = \"{how}\""
+        )
     };
     let cases = [
         ("still water", String::new()),

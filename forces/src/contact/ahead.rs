@@ -10,7 +10,7 @@ use ropewalk_core::rotation::{cross, times, transposed_times};
 use ropewalk_core::{At, V3, dot};
 
 /// The part of the radius that a point may go on by in a step once it touches.
-pub(super) const PRESS: f64 = 0.25;
+const PRESS: f64 = 0.25;
 
 /// A point as seen from the shape's body: where it is, its velocity and its acceleration.
 struct Seen {

@@ -5,7 +5,7 @@
 //! forces is `n ⊗ n` times a number for each pair of vectors that move it. All is as [`Contact`] has it for any shape, but for
 //! the search.
 
-use super::ahead::{PRESS, time};
+use super::ahead::time;
 use super::block::Block;
 use super::bristles::Bristle;
 use super::friction::{CELLS, Pressed};
@@ -17,6 +17,10 @@ use super::shape::Shape;
 use super::term::Contact;
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::{Assembly, At, SpanLine, V3, Weights, dot};
+
+/// The part of the radius that an element may go on by in a step once it touches. Behind a plane there is nothing else: how exact
+/// the step is its error tells.
+const PRESS: f64 = 1.0;
 
 /// The plane `n · x = height`.
 pub(crate) struct Level {
@@ -84,9 +88,7 @@ impl Level {
         let third = l / 3.0;
         let controls = |[a, da, b, db]: [f64; 4]| [a, a + third * da, b - third * db, b];
         let [x, u, a] = [self.of(&q, at.q), self.of(&v, at.v), self.of(&v, at.a)].map(controls);
-        static KNOB: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
-        let knob = KNOB.get_or_init(|| std::env::var("MOOR_PRESS").ok().and_then(|x| x.parse().ok()).unwrap_or(PRESS));
-        let press = knob * span.radius;
+        let press = PRESS * span.radius;
         let one = |i: usize| time((x[i] - self.height - span.radius).max(press), -u[i], -a[i]);
         Some((0..4).map(one).fold(f64::INFINITY, f64::min))
     }
