@@ -330,6 +330,20 @@ def off(found: np.ndarray, right: np.ndarray) -> tuple[float, float]:
     )
 
 
+def least(runs: list[tuple[float, float]], error: float) -> float | None:
+    """CPU time that a code takes for an error, by a power law between its runs with more and less; `None` beyond them."""
+    enough = [cpu for far, cpu in runs if far <= error]
+    if not enough:
+        return None
+    best = min(enough)
+    for far, cpu in runs:
+        for better, dearer in runs:
+            if better <= error < far and cpu < dearer:
+                share = math.log(far / error) / math.log(far / better)
+                best = min(best, cpu * (dearer / cpu) ** share)
+    return best
+
+
 def main() -> None:
     program, wanted = sys.argv[1], sys.argv[2:]
     fine = '[solver]\nstepping = { controlled = { tolerance = 1e-6 } }\nforce_tolerance = 1e-4'
@@ -357,25 +371,32 @@ def main() -> None:
                 [(f"{k} segments", lambda k=k: moordyn(case, k)) for k in (n // 2, n, 2 * n)[: 1 + most]],
             ),
         }
-        print("| case | code | mesh | error | at the maximum | CPU time [s] |\n| --- | --- | --- | --- | --- | --- |")
+        own: list[tuple[float, float]] = []
+        print("| case | code | mesh | error | at the maximum | CPU time [s] | times Ropewalk's |\n| --- | --- | --- | --- | --- | --- | --- |")
         for code, (finest, runs) in codes.items():
             try:
                 right = sampled(case, finest()[0])
             except RuntimeError as why:
-                print(f"| {name} | {code} | refined | fails: {str(why)[-80:]!r} | | |", flush=True)
+                print(f"| {name} | {code} | refined | fails: {str(why)[-80:]!r} | | | |", flush=True)
                 continue
             far, top = off(right, independent)
-            row = f"| {name} | {code} | refined, to the independent one | {100 * far:.2f} % | {100 * top:.2f} % | |"
+            row = f"| {name} | {code} | refined, to the independent one | {100 * far:.2f} % | {100 * top:.2f} % | | |"
             print(row, flush=True)
             for mesh, run in runs:
                 try:
                     table, *times = run()
                 except RuntimeError:
-                    print(f"| {name} | {code} | {mesh} | its steps fail | | |", flush=True)
+                    print(f"| {name} | {code} | {mesh} | its steps fail | | | |", flush=True)
                     continue
                 far, top = off(sampled(case, table), right)
                 cpu = f"{times[0]:.2f}" + (f" ({times[1]:.2f})" if len(times) > 1 else "")
-                print(f"| {name} | {code} | {mesh} | {100 * far:.2f} % | {100 * top:.2f} % | {cpu} |", flush=True)
+                if code == "Ropewalk":
+                    own.append((far, times[0]))
+                    factor = ""
+                else:
+                    same = least(own, far)
+                    factor = f"{sum(times) / same:.1f}" if same else "-"
+                print(f"| {name} | {code} | {mesh} | {100 * far:.2f} % | {100 * top:.2f} % | {cpu} | {factor} |", flush=True)
         print(flush=True)
 
 

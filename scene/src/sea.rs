@@ -17,7 +17,7 @@ pub struct Sea {
     /// Height of the surface without waves [m].
     level: f64,
     about: String,
-    /// How far apart places are that a table is asked for [m].
+    /// How far apart places are that a table is asked for [m]; 0 without one.
     grain: f64,
     memory: Mutex<Memory>,
 }
@@ -25,23 +25,26 @@ pub struct Sea {
 /// What was found lately, and the table that stands for many waves.
 struct Memory {
     lattice: Option<Lattice>,
-    latest: Vec<([u64; 4], Here)>,
     packs: Vec<Found>,
 }
 
-/// Places side by side and the motion there, number by number over all of them: several laws ask for the same, one after the other.
+/// The motion at places side by side, number by number over all of them: several laws ask for the same, one after the other, and
+/// iterations for nearly the same.
 #[derive(Clone)]
 struct Found {
-    /// Time and places.
     t: f64,
-    places: [[f64; MOST]; 3],
     lanes: usize,
+    /// The places that were asked for, as far as they are told apart.
+    near: Places,
+    /// The places that this is the motion at.
+    at: Places,
     rows: [[f64; MOST]; ROWS],
 }
 
-/// Number of places that are remembered, and of packs of them: powers of two.
-const PLACES: usize = 2048;
-const PACKS: usize = 256;
+type Places = [[f64; MOST]; 3];
+
+/// Number of packs that are remembered, a power of two.
+const PACKS: usize = 512;
 /// As many lanes as the widest carrier has.
 const MOST: usize = 8;
 /// Numbers that tell the motion at a place, in this order: velocity and by the place, its rate and what the rise of the surface adds,
@@ -57,8 +60,10 @@ const SURFACE: usize = 39;
 /// From a table the motion is found at places that are this part of the shortest wave apart, and goes on from there straight: what
 /// that is off, 2e-5 at most, is far less than what the table is. So what a step asks for once, its iterations have.
 const GRAIN: f64 = 1e-3;
-/// So many grains below the surface and above it, all is found where it is.
+/// So many grains below the surface and above it, where it has a kink, all is found where it is.
 const SKIN: f64 = 4.0;
+/// Numbers below 2^51 lose what is behind the point when this is added.
+const ROUNDS: f64 = 1.5 * 4_503_599_627_370_496.0;
 /// Up to so many waves are summed up unless asked otherwise.
 const FEW: usize = 8;
 /// Places at which a table is compared with the sum.
@@ -158,10 +163,10 @@ impl Sea {
             4.0 * waves.deviation(),
             spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
-        let nowhere = ([u64::MAX; 4], Here::default());
-        let none = Found { t: f64::NAN, places: [[f64::NAN; MOST]; 3], lanes: 0, rows: [[0.0; MOST]; ROWS] };
-        let grain = GRAIN * TAU / waves.shortest();
-        let memory = Mutex::new(Memory { lattice, latest: vec![nowhere; PLACES], packs: vec![none; PACKS] });
+        let nowhere = [[f64::NAN; MOST]; 3];
+        let none = Found { t: f64::NAN, lanes: 0, near: nowhere, at: nowhere, rows: [[0.0; MOST]; ROWS] };
+        let grain = if lattice.is_some() { GRAIN * TAU / waves.shortest() } else { 0.0 };
+        let memory = Mutex::new(Memory { lattice, packs: vec![none; PACKS] });
         Ok(Sea { waves, level, about, grain, memory })
     }
 
@@ -230,15 +235,18 @@ impl Sea {
             x[i].write(&mut places[i]);
         }
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        let slot = mixed([places[0][0], places[1][0], places[2][0], t].map(f64::to_bits)) % PACKS;
+        let near = self.grains(&places);
+        let slot = mixed([near[0][0], near[1][0], near[2][0], t].map(f64::to_bits)) % PACKS;
         let found = &memory.packs[slot];
         // what is no number is never found
-        if (found.t, found.lanes) != (t, R::LANES) || found.places != places {
-            self.find(t, &places, R::LANES, slot, &mut memory);
+        let known = (found.t, found.lanes) == (t, R::LANES)
+            && (found.near == near && found.at == near || found.at == places);
+        if !known {
+            self.find(t, (&places, &near), R::LANES, slot, &mut memory);
         }
-        let rows = &memory.packs[slot].rows;
-        // numbers that know their derivative get it from here; of all others the distance is nothing
-        let off = [x[0] - R::read(&places[0]), x[1] - R::read(&places[1]), x[2] - R::read(&places[2])];
+        let Found { at, rows, .. } = &memory.packs[slot];
+        // so far it goes on straight; and numbers that know their derivative get it from here
+        let off = [x[0] - R::read(&at[0]), x[1] - R::read(&at[1]), x[2] - R::read(&at[2])];
         let [by_x, acceleration_by_x, gradient] =
             [matrix(rows, BY_X), matrix(rows, ACCELERATION_BY_X), matrix(rows, GRADIENT)];
         let u = moved(&by_x, &off, three(rows, 0));
@@ -254,73 +262,48 @@ impl Sea {
         Swell { u, by_x, by_t, rate, gradient, acceleration, acceleration_by_x, elevation, slope, rising }
     }
 
-    /// Finds the motion at some places and puts it into a slot of the memory.
+    /// The places that these are taken for.
+    #[inline(always)]
+    fn grains(&self, places: &Places) -> Places {
+        let mut near = *places;
+        if self.grain > 0.0 {
+            let per = 1.0 / self.grain;
+            for row in &mut near {
+                for x in row {
+                    *x = ((*x * per + ROUNDS) - ROUNDS) * self.grain;
+                }
+            }
+        }
+        near
+    }
+
+    /// Finds the motion at some places, or near them, and puts it into a slot of the memory.
     #[inline(never)]
-    fn find(&self, t: f64, places: &[[f64; MOST]; 3], lanes: usize, slot: usize, memory: &mut Memory) {
-        let Memory { lattice, latest, packs } = memory;
+    fn find(
+        &self,
+        t: f64,
+        (places, near): (&Places, &Places),
+        lanes: usize,
+        slot: usize,
+        memory: &mut Memory,
+    ) {
+        let Memory { lattice, packs } = memory;
         let found = &mut packs[slot];
-        (found.t, found.places, found.lanes) = (t, *places, lanes);
+        (found.t, found.lanes, found.near, found.at) = (t, lanes, *near, *near);
         for lane in 0..lanes {
-            let x: V3<f64> = [0, 1, 2].map(|i| places[i][lane]);
-            let here = match lattice {
-                Some(_) => self.near(lattice.as_mut(), x, t, latest),
-                None => self.known(None, x, t, latest),
-            };
-            let rows = here
-                .flow
-                .velocity
-                .into_iter()
-                .chain(here.by_x.into_iter().flatten())
-                .chain(here.flow.rate)
-                .chain(here.by_t)
-                .chain(here.flow.acceleration)
-                .chain(here.acceleration_by_x.into_iter().flatten())
-                .chain(here.flow.gradient.into_iter().flatten())
-                .chain([here.flow.elevation])
-                .chain(here.flow.slope)
-                .chain([here.flow.rising]);
-            found.rows.iter_mut().zip(rows).for_each(|(row, value)| row[lane] = value);
+            let here = self.anew(lattice.as_mut(), near.map(|row| row[lane]), t);
+            let above = near[2][lane] - self.level - here.flow.elevation;
+            if self.grain > 0.0 && above.abs() < SKIN * self.grain {
+                found.at = *places;
+                break;
+            }
+            found.put(lane, &here);
         }
-    }
-
-    /// The motion at a place, going on straight from one nearby; near the surface, where it has a kink, at the place itself.
-    fn near(
-        &self,
-        mut lattice: Option<&mut Lattice>,
-        x: V3<f64>,
-        t: f64,
-        latest: &mut [([u64; 4], Here)],
-    ) -> Here {
-        let there = x.map(|x| (x / self.grain).round() * self.grain);
-        let mut here = self.known(lattice.as_deref_mut(), there, t, latest);
-        if (there[2] - self.level - here.flow.elevation).abs() < SKIN * self.grain {
-            return self.known(lattice, x, t, latest);
+        if found.at != *near {
+            for lane in 0..lanes {
+                found.put(lane, &self.anew(lattice.as_mut(), places.map(|row| row[lane]), t));
+            }
         }
-        let off: V3<f64> = std::array::from_fn(|i| x[i] - there[i]);
-        for i in 0..3 {
-            let changed = dot(&here.acceleration_by_x[i], &off);
-            here.flow.velocity[i] += dot(&here.by_x[i], &off);
-            here.flow.acceleration[i] += changed;
-            here.flow.rate[i] += changed;
-        }
-        here.flow.elevation += here.flow.slope[0] * off[0] + here.flow.slope[1] * off[1];
-        here
-    }
-
-    /// The motion at a place, from what is remembered or anew.
-    fn known(
-        &self,
-        lattice: Option<&mut Lattice>,
-        x: V3<f64>,
-        t: f64,
-        latest: &mut [([u64; 4], Here)],
-    ) -> Here {
-        let key = [x[0].to_bits(), x[1].to_bits(), x[2].to_bits(), t.to_bits()];
-        let slot = mixed(key) % PLACES;
-        if latest[slot].0 != key {
-            latest[slot] = (key, self.anew(lattice, x, t));
-        }
-        latest[slot].1
     }
 
     fn anew(&self, lattice: Option<&mut Lattice>, [x, y, z]: V3<f64>, t: f64) -> Here {
@@ -341,6 +324,28 @@ impl Sea {
             }
         }
         Here { flow, by_t, by_x, acceleration_by_x }
+    }
+}
+
+impl Found {
+    /// Puts the motion at one of its places into the rows.
+    fn put(&mut self, lane: usize, here: &Here) {
+        let Flow { velocity, rate, acceleration, gradient, elevation, slope, rising, .. } = &here.flow;
+        let rows = &mut self.rows;
+        for i in 0..3 {
+            rows[i][lane] = velocity[i];
+            rows[RATE + i][lane] = rate[i];
+            rows[BY_T + i][lane] = here.by_t[i];
+            rows[ACCELERATION + i][lane] = acceleration[i];
+            for j in 0..3 {
+                rows[BY_X + 3 * i + j][lane] = here.by_x[i][j];
+                rows[ACCELERATION_BY_X + 3 * i + j][lane] = here.acceleration_by_x[i][j];
+                rows[GRADIENT + 3 * i + j][lane] = gradient[i][j];
+            }
+        }
+        for (k, x) in [*elevation, slope[0], slope[1], *rising].into_iter().enumerate() {
+            rows[SURFACE + k][lane] = x;
+        }
     }
 }
 

@@ -34,8 +34,7 @@ struct Column {
     key: (i64, i64),
     /// Elevation, its slope, and the time derivatives of both.
     surface: [f64; 4],
-    /// Sine and cosine of the phase of each wave.
-    phases: Vec<[f64; 2]>,
+    phases: Phases,
     corners: Vec<Option<Corner>>,
 }
 
@@ -58,6 +57,9 @@ impl Hasher for Mixed {
     }
 }
 
+/// Sine and cosine of a phase of each wave.
+type Phases = Vec<[f64; 2]>;
+
 /// What is left of a wave at a height: the amplitudes of its velocities along it and upwards [m/s].
 type Amplitudes = Vec<[f64; 2]>;
 
@@ -75,6 +77,9 @@ pub struct Lattice {
     heights: Vec<f64>,
     /// Of each height what is left of the waves there.
     amplitudes: Vec<Amplitudes>,
+    /// Phases that each line adds, and that each instant takes off: those of a column are their differences.
+    lines: HashMap<i64, Phases, BuildHasherDefault<Mixed>>,
+    instants: HashMap<i64, Phases, BuildHasherDefault<Mixed>>,
     columns: Vec<Column>,
     /// Where those are of a line and an instant.
     places: HashMap<(i64, i64), usize, BuildHasherDefault<Mixed>>,
@@ -122,6 +127,8 @@ impl Lattice {
             time,
             heights,
             columns: Vec::new(),
+            lines: HashMap::default(),
+            instants: HashMap::default(),
             places: HashMap::default(),
             latest: None,
             waves,
@@ -285,6 +292,10 @@ impl Lattice {
         self.columns.retain(|column| column.key.1 == n || column.key.1 == n + 1);
         self.places = self.columns.iter().enumerate().map(|(k, column)| (column.key, k)).collect();
         self.latest = None;
+        self.instants.retain(|k, _| *k == n || *k == n + 1);
+        if self.lines.len() > MOST {
+            self.lines.clear();
+        }
     }
 
     /// The number of a column, which is made if there is none.
@@ -293,11 +304,14 @@ impl Lattice {
             return *place;
         }
         let (x, t) = (i as f64 * self.along, n as f64 * self.time);
-        let phase = |c: &Component| {
-            let (sin, cos) = (c.k * x - c.omega * t + c.phase).sin_cos();
-            [sin, cos]
+        let of = |phase: &dyn Fn(&Component) -> f64| -> Phases {
+            let pair = |c| <[f64; 2]>::from(phase(c).sin_cos());
+            self.waves.all.iter().map(pair).collect()
         };
-        let phases: Vec<[f64; 2]> = self.waves.all.iter().map(phase).collect();
+        let line = self.lines.entry(i).or_insert_with(|| of(&|c| c.k * x + c.phase));
+        let instant = self.instants.entry(n).or_insert_with(|| of(&|c| c.omega * t));
+        let minus = |([a, b], [c, d]): (&[f64; 2], &[f64; 2])| [a * d - b * c, b * d + a * c];
+        let phases: Phases = line.iter().zip(instant.iter()).map(minus).collect();
         let mut surface = [0.0; 4];
         for (c, [sin, cos]) in self.waves.all.iter().zip(&phases) {
             let own = [c.a * cos, -c.a * c.k * sin, c.a * c.omega * sin, c.a * c.k * c.omega * cos];

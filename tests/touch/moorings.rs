@@ -4,7 +4,7 @@ use super::bed::{number, reference, run};
 use serde_json::Value;
 
 /// The scene of a case: its line between its two ends, with the damping of the refined solution's own mesh.
-fn mooring(case: &Value, elements: usize, friction: f64) -> String {
+fn mooring(case: &Value, elements: usize) -> String {
     let chain = !case["chain"].is_null();
     let of = &case[if chain { "chain" } else { "line" }];
     let [d, mass, ea, ei, cn, ca, ct, ratio] =
@@ -21,9 +21,8 @@ fn mooring(case: &Value, elements: usize, friction: f64) -> String {
     let depth = number(&case["depth"]);
     let mut more = String::new();
     if chain {
-        let rubs = if friction > 0.0 { format!("friction = {friction}") } else { String::new() };
         more += &format!(
-            "[[forces]]\ntype = \"bed\"\npoint = [0, 0, {}]\nstiffness = {}\ndamping = {}\n{rubs}\n",
+            "[[forces]]\ntype = \"bed\"\npoint = [0, 0, {}]\nstiffness = {}\ndamping = {}\n",
             -depth - 0.5 * d,
             number(&case["kBot"]),
             number(&case["cBot"]),
@@ -41,7 +40,7 @@ fn mooring(case: &Value, elements: usize, friction: f64) -> String {
         "type = \"driving\"\nmotion = \"top\""
     } else {
         more += &format!(
-            "[water.waves]\nregular = {{ height = 10, period = 10, phase = \"{} deg\" }}\ndirection = \"{} deg\"\ndepth = {depth}\nstretching = \"none\"\n",
+            "[water.waves]\nregular = {{ height = 10, period = 10, phase = \"{} deg\" }}\ndirection = \"{} deg\"\ndepth = {depth}\nstretching = \"none\"\nramp = 10\n",
             number(&motion["phase_deg"]),
             number(&motion["direction_deg"]),
         );
@@ -85,15 +84,9 @@ fn mooring(case: &Value, elements: usize, friction: f64) -> String {
         theory = "morison"
         {more}
         [[records]]
-        type = "along"
-        of = "line"
-        what = "tension"
-        at = "end"
-        [[records]]
-        type = "along"
-        of = "line"
-        what = "tension"
-        at = "start"
+        type = "reaction"
+        of = "upper"
+        what = "magnitude"
         "#,
         -number(&case["g"]),
         number(&case["rho"]),
@@ -150,8 +143,8 @@ fn moved_moorings_and_jumpers_pull_as_fine_lines_of_segments() {
             // an experiment, which is laid over a computed one elsewhere
             _ => continue,
         };
-        let h = run(&mooring(&case, elements, 0.0));
-        let (t, pull) = (h.times(), h.column("line.tension@end").expect("column"));
+        let h = run(&mooring(&case, elements));
+        let (t, pull) = (h.times(), h.column("upper.magnitude").expect("column"));
         let [rms, most] = off(t, pull, trace, begin(&case), 1);
         println!("{name}: off by {:.2} % rms, {:.2} % at the most", 100.0 * rms, 100.0 * most);
         assert!(rms < bands[0] && most < bands[1], "{name}: {rms} {most}");

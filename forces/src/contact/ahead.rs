@@ -153,8 +153,9 @@ impl Contact {
             // inside, the distance is least at a control point; across its ends, near the curve
             let near = [0.0, 0.5, 1.0].map(|xi| span.line.held(xi));
             let all = span.line.controls().into_iter().chain(near);
-            let one =
-                |held| self.free_ball(&Ball { held, radius: span.radius, k: span.k, cell: 0 }, frame, at);
+            let one = |held| {
+                self.free_ball(&Ball { held, radius: span.radius, k: span.k, cell: 0, next: 0.0 }, frame, at)
+            };
             return all.map(one).fold(f64::INFINITY, f64::min);
         }
         if self.fixed.shape.concave() {

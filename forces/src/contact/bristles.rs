@@ -17,6 +17,13 @@ pub(super) struct Bristle {
     pub hold: Hold,
 }
 
+/// Notes what presses some cells, each with its share.
+fn press_on(cells: &mut [Pressed; CELLS], on: [(usize, f64); 2], touch: &Touch) {
+    for (cell, share) in on.into_iter().filter(|(_, share)| *share > 0.0) {
+        cells[cell].add(share * touch.normal, &touch.gap.normal);
+    }
+}
+
 /// The rotation that undoes one.
 fn back([w, x, y, z]: [f64; 4]) -> [f64; 4] {
     [w, -x, -y, -z]
@@ -175,8 +182,8 @@ impl Contact {
         scratch: &mut Scratch,
     ) -> [Pressed; CELLS] {
         let mut cells = [Pressed::NONE; CELLS];
-        self.each_of(self.level_in(at).as_ref(), group, (frame, at), scratch, |_, cell, touch| {
-            cells[cell].add(touch.normal, &touch.gap.normal);
+        self.each_of(self.level_in(at).as_ref(), group, (frame, at), scratch, |_, on, touch| {
+            press_on(&mut cells, on, touch)
         });
         cells
     }
@@ -205,10 +212,10 @@ impl Contact {
         let level = self.level_in(at);
         for group in &self.groups {
             let mut cells = [Pressed::NONE; CELLS];
-            self.each_of(level.as_ref(), group, (&frame, at), &mut scratch, |_, cell, touch| {
+            self.each_of(level.as_ref(), group, (&frame, at), &mut scratch, |_, on, touch| {
                 see(touch);
                 if rubs {
-                    cells[cell].add(touch.normal, &touch.gap.normal);
+                    press_on(&mut cells, on, touch);
                 }
             });
             if rubs {

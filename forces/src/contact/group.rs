@@ -14,8 +14,16 @@ pub(crate) struct Ball {
     pub radius: f64,
     /// Stiffness of its contact [N/m^p].
     pub k: f64,
-    /// The cell that it presses, of those of its group.
+    /// The cell that it presses, of those of its group, and the share of the one behind it.
     pub cell: usize,
+    pub next: f64,
+}
+
+impl Ball {
+    /// The cells that it presses, each with its share.
+    pub fn cells(&self) -> [(usize, f64); 2] {
+        [(self.cell, 1.0 - self.next), (self.cell + 1, self.next)]
+    }
 }
 
 /// What the same unknowns move.
@@ -65,12 +73,15 @@ pub(crate) fn place_of(cell: usize) -> f64 {
     gauss(CELLS)[cell].0
 }
 
-/// Where the cells of a slender piece end.
-fn ends() -> impl Iterator<Item = f64> {
-    gauss(CELLS).iter().scan(0.0, |end, (_, weight)| {
-        *end += weight;
-        Some(*end)
-    })
+/// What presses a slender piece at `ξ` presses the cells held before and behind it, the nearer one more: the first of them, and the
+/// share of the second.
+fn pressed(xi: f64) -> (usize, f64) {
+    let behind = gauss(CELLS).partition_point(|(place, _)| *place <= xi);
+    if behind == 0 || behind == CELLS {
+        return (behind.min(CELLS - 1), 0.0);
+    }
+    let (a, b) = (place_of(behind - 1), place_of(behind));
+    (behind - 1, (xi - a) / (b - a))
 }
 
 /// A slender piece.
@@ -130,39 +141,18 @@ impl Group {
             What::Ball(ball) => return scratch.balls.push(*ball),
             What::Span(span) => span,
         };
-        let cells = self.bristles.map_or(1, |b| b.cells);
+        let (rubs, cells) = (self.bristles.is_some(), self.bristles.map_or(1, |b| b.cells));
         if span.is_near(fixed, frame, at) {
             let curve = span.curve(fixed, frame, at);
             Search::new(&fixed.shape, &curve, span.radius).find(&mut scratch.pieces, &mut scratch.found);
         }
         for &[from, to] in &scratch.found {
-            let ball = |cell, (from, part): (f64, f64), (place, weight): (f64, f64)| Ball {
-                held: span.line.held(from + part * place),
-                radius: span.radius,
-                k: span.k * part * weight,
-                cell,
-            };
-            if cells == 1 {
-                let all = gauss(span.points).iter();
-                scratch.balls.extend(all.map(|point| ball(0, (from, to - from), *point)));
-                continue;
-            }
-            if [from, to] == [0.0, 1.0] && span.points == CELLS {
-                let all = gauss(CELLS).iter().enumerate();
-                scratch.balls.extend(all.map(|(cell, point)| ball(cell, (0.0, 1.0), *point)));
-                continue;
-            }
-            // cut where one cell ends and the next begins
-            let mut begin = 0.0;
-            for (cell, end) in ends().enumerate() {
-                let (a, b) = (from.max(begin), to.min(end));
-                // a cell all of which touches is as good as straight
-                let points = if b - a > (1.0 - 1e-9) * (end - begin) { 2 } else { span.points };
-                if b > a {
-                    scratch.balls.extend(gauss(points).iter().map(|point| ball(cell, (a, b - a), *point)));
-                }
-                begin = end;
-            }
+            let part = to - from;
+            scratch.balls.extend(gauss(span.points).iter().map(|&(place, weight)| {
+                let xi = from + part * place;
+                let (cell, next) = if rubs { pressed(xi) } else { (0, 0.0) };
+                Ball { held: span.line.held(xi), radius: span.radius, k: span.k * part * weight, cell, next }
+            }));
         }
         scratch
             .balls

@@ -108,7 +108,7 @@ impl Contact {
             })?;
             let (radius, k) =
                 (positive("radius", p.radius)?, positive("stiffness", stiffness.of_point(p.radius))?);
-            groups.push(What::Ball(Ball { held: p.held, radius, k, cell: 0 }));
+            groups.push(What::Ball(Ball { held: p.held, radius, k, cell: 0, next: 0.0 }));
         }
         for s in spans {
             let radius = positive("radius", s.radius)?;
@@ -119,7 +119,13 @@ impl Contact {
             };
             let tip = |end_of: usize| {
                 let held = s.line.beyond(end_of, radius);
-                (s.tips[end_of] && end > 0.0).then_some(Ball { held, radius: 0.0, k: end, cell: end_of })
+                (s.tips[end_of] && end > 0.0).then_some(Ball {
+                    held,
+                    radius: 0.0,
+                    k: end,
+                    cell: end_of,
+                    next: 0.0,
+                })
             };
             let span = Span {
                 line: s.line,
@@ -295,14 +301,14 @@ impl Contact {
         group: &Group,
         (frame, at): (&Frame, &At<'_>),
         scratch: &mut Scratch,
-        mut see: impl FnMut(f64, usize, &Touch),
+        mut see: impl FnMut(f64, [(usize, f64); 2], &Touch),
     ) {
         match (Self::lies(level, group, at), level) {
             (Lies::Above, _) => return,
             (Lies::Within(points), Some(level)) => {
                 for (cell, p) in points.iter().enumerate() {
                     let normal = self.law.normal(p.k, p.depth, p.rate);
-                    see(p.k, cell, &Touch::lying(level.n, &normal, p.depth, p.rate));
+                    see(p.k, [(cell, 1.0), (cell, 0.0)], &Touch::lying(level.n, &normal, p.depth, p.rate));
                 }
                 return;
             }
@@ -311,7 +317,7 @@ impl Contact {
         group.gather(&self.fixed, frame, at, scratch);
         for ball in &scratch.balls {
             if let Some((touch, _)) = self.touch(ball, frame, at) {
-                see(ball.k, ball.cell, &touch);
+                see(ball.k, ball.cells(), &touch);
             }
         }
     }
@@ -346,19 +352,25 @@ impl Contact {
     ) {
         let Some((touch, pair)) = self.touch(ball, frame, at) else { return };
         self.add_force(&ball.held, &pair, &touch, || touch.slopes(), tangent, block);
-        let Some(cell) = cells.get_mut(ball.cell) else { return };
-        cell.add(touch.normal, &touch.gap.normal);
-        if let Some(w) = tangent {
-            let by = -(w.q * touch.by_depth + w.v * touch.by_rate);
-            let n = &touch.gap.normal;
-            if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
-                for (sum, weight) in cell.by.chunks_exact_mut(3).zip(weights(&ball.held)) {
-                    (0..3).for_each(|i| sum[i] += by * weight * n[i]);
-                }
-            } else {
-                let force = self.spread(&ball.held, &pair, n, n);
-                cell.by.iter_mut().zip(&force).for_each(|(sum, f)| *sum += by * f);
+        if cells.is_empty() {
+            return;
+        }
+        let n = &touch.gap.normal;
+        for (cell, share) in ball.cells().into_iter().filter(|c| c.1 > 0.0) {
+            cells[cell].add(share * touch.normal, n);
+        }
+        let Some(w) = tangent else { return };
+        let by = -(w.q * touch.by_depth + w.v * touch.by_rate);
+        let mut force = [0.0; MOST];
+        if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
+            for (force, weight) in force.chunks_exact_mut(3).zip(weights(&ball.held)) {
+                (0..3).for_each(|i| force[i] = weight * n[i]);
             }
+        } else {
+            force = self.spread(&ball.held, &pair, n, n);
+        }
+        for (cell, share) in ball.cells().into_iter().filter(|c| c.1 > 0.0) {
+            cells[cell].by.iter_mut().zip(&force).for_each(|(sum, f)| *sum += share * by * f);
         }
     }
 

@@ -108,9 +108,9 @@ fn tension_in_waves_converges() {
     assert!(deviation < 2e-3 && most < 5e-3, "{deviation} {most}");
     // other numbers of waves are other seas of the same spectrum: of some seeds the mean deviation
     let mean = |count: usize| {
-        let seeds = 11..17;
+        let seeds = 11_u64..17;
         let one = |seed| spread(&tension(20, 1e-4, &format!("count = {count}"), seed, END))[0];
-        seeds.clone().map(one).sum::<f64>() / seeds.len() as f64
+        seeds.clone().map(one).sum::<f64>() / seeds.count() as f64
     };
     let many = mean(800);
     for count in [50, 100, 200, 400] {
