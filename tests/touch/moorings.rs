@@ -136,10 +136,13 @@ fn off(times: &[f64], found: &[f64], trace: &Value, begin: f64, column: usize) -
 fn moved_moorings_and_jumpers_pull_as_fine_lines_of_segments() {
     for case in reference(include_str!("../data/sea/dynamic_moorings.json")) {
         let name = case["name"].as_str().expect("a name").to_string();
-        let (trace, elements, bands) = match &name[..6] {
-            "WD0050" => (&case["refined_mu0"]["trace_every_0p2s"], 40, [0.03, 0.03]),
-            "WD0600" => (&case["refined_mu0"]["trace_every_0p2s"], 40, [0.02, 0.02]),
-            "lowe_l" => (&case["refined_trace"], 20, [0.04, 0.04]),
+        // as far as the fine lines are known: the two finest meshes differ by a sixth of the deviation where the fairlead moves little,
+        // and the jumper, of 68 segments, by 3 to 6 % from what twice as many lead to
+        let (trace, elements, bands) = match name.as_str() {
+            "WD0050_ZZP1_A1" => (&case["refined_mu0"]["trace_every_0p2s"], 40, [0.12, 0.15]),
+            "WD0050_ZZP1_A2" => (&case["refined_mu0"]["trace_every_0p2s"], 40, [0.03, 0.03]),
+            "WD0600_ZZP1_A2" => (&case["refined_mu0"]["trace_every_0p2s"], 40, [0.02, 0.02]),
+            _ if name.starts_with("lowe_langley") => (&case["refined_trace"], 20, [0.07, 0.07]),
             // an experiment, which is laid over a computed one elsewhere
             _ => continue,
         };

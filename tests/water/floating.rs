@@ -88,7 +88,7 @@ fn hoses_float_and_swing_far_as_their_equation_says() {
         assert!((z + depth).abs() < 1e-6 && (period / small - 1.0).abs() < 1e-5);
         for large in case["large"].as_array().expect("large") {
             let [from, lowest, period] = ["released_at", "lowest", "period"].map(|k| number(&large[k]));
-            let steps = "[run]\nduration = 2.5\noutput = 0.002\n[solver]\nstepping = { controlled = { tolerance = 1e-6 } }\n";
+            let steps = "[run]\nduration = 5\noutput = 0.002\n[solver]\nstepping = { controlled = { tolerance = 1e-6 } }\n";
             let h = run(&format!("{}{UPWARDS}", hose(case, from - depth, steps)));
             let (t, z) = (h.times(), h.column("it.z").expect("column"));
             let low = z.iter().fold(f64::INFINITY, |m, z| m.min(z + depth));
