@@ -17,8 +17,6 @@ pub struct Sea {
     /// Height of the surface without waves [m].
     level: f64,
     about: String,
-    /// How far apart places are that a table is asked for [m]; 0 without one.
-    grain: f64,
     memory: Mutex<Memory>,
 }
 
@@ -28,15 +26,11 @@ struct Memory {
     packs: Vec<Found>,
 }
 
-/// The motion at places side by side, number by number over all of them: several laws ask for the same, one after the other, and
-/// iterations for nearly the same.
+/// The motion at places side by side, number by number over all of them: several laws ask for the same, one after the other.
 #[derive(Clone)]
 struct Found {
     t: f64,
     lanes: usize,
-    /// The places that were asked for, as far as they are told apart.
-    near: Places,
-    /// The places that this is the motion at.
     at: Places,
     rows: [[f64; MOST]; ROWS],
 }
@@ -57,13 +51,6 @@ const ACCELERATION: usize = 18;
 const ACCELERATION_BY_X: usize = 21;
 const GRADIENT: usize = 30;
 const SURFACE: usize = 39;
-/// From a table the motion is found at places that are this part of the shortest wave apart, and goes on from there straight: what
-/// that is off, 2e-5 at most, is far less than what the table is. So what a step asks for once, its iterations have.
-const GRAIN: f64 = 1e-3;
-/// So many grains below the surface and above it, where it has a kink, all is found where it is.
-const SKIN: f64 = 4.0;
-/// Numbers below 2^51 lose what is behind the point when this is added.
-const ROUNDS: f64 = 1.5 * 4_503_599_627_370_496.0;
 /// Up to so many waves are summed up unless asked otherwise.
 const FEW: usize = 8;
 /// Places at which a table is compared with the sum.
@@ -164,10 +151,9 @@ impl Sea {
             spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
         let nowhere = [[f64::NAN; MOST]; 3];
-        let none = Found { t: f64::NAN, lanes: 0, near: nowhere, at: nowhere, rows: [[0.0; MOST]; ROWS] };
-        let grain = if lattice.is_some() { GRAIN * TAU / waves.shortest() } else { 0.0 };
+        let none = Found { t: f64::NAN, lanes: 0, at: nowhere, rows: [[0.0; MOST]; ROWS] };
         let memory = Mutex::new(Memory { lattice, packs: vec![none; PACKS] });
-        Ok(Sea { waves, level, about, grain, memory })
+        Ok(Sea { waves, level, about, memory })
     }
 
     /// The table that stands for many waves, if there is to be one, and how the sum is found in words.
@@ -235,17 +221,14 @@ impl Sea {
             x[i].write(&mut places[i]);
         }
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        let near = self.grains(&places);
-        let slot = mixed([near[0][0], near[1][0], near[2][0], t].map(f64::to_bits)) % PACKS;
+        let slot = mixed([places[0][0], places[1][0], places[2][0], t].map(f64::to_bits)) % PACKS;
         let found = &memory.packs[slot];
         // what is no number is never found
-        let known = (found.t, found.lanes) == (t, R::LANES)
-            && (found.near == near && found.at == near || found.at == places);
-        if !known {
-            self.find(t, (&places, &near), R::LANES, slot, &mut memory);
+        if (found.t, found.lanes) != (t, R::LANES) || found.at != places {
+            self.find(t, &places, R::LANES, slot, &mut memory);
         }
         let Found { at, rows, .. } = &memory.packs[slot];
-        // so far it goes on straight; and numbers that know their derivative get it from here
+        // numbers that know their derivative get it from here; of all others the distance is nothing
         let off = [x[0] - R::read(&at[0]), x[1] - R::read(&at[1]), x[2] - R::read(&at[2])];
         let [by_x, acceleration_by_x, gradient] =
             [matrix(rows, BY_X), matrix(rows, ACCELERATION_BY_X), matrix(rows, GRADIENT)];
@@ -262,47 +245,14 @@ impl Sea {
         Swell { u, by_x, by_t, rate, gradient, acceleration, acceleration_by_x, elevation, slope, rising }
     }
 
-    /// The places that these are taken for.
-    #[inline(always)]
-    fn grains(&self, places: &Places) -> Places {
-        let mut near = *places;
-        if self.grain > 0.0 {
-            let per = 1.0 / self.grain;
-            for row in &mut near {
-                for x in row {
-                    *x = ((*x * per + ROUNDS) - ROUNDS) * self.grain;
-                }
-            }
-        }
-        near
-    }
-
-    /// Finds the motion at some places, or near them, and puts it into a slot of the memory.
+    /// Finds the motion at some places and puts it into a slot of the memory.
     #[inline(never)]
-    fn find(
-        &self,
-        t: f64,
-        (places, near): (&Places, &Places),
-        lanes: usize,
-        slot: usize,
-        memory: &mut Memory,
-    ) {
+    fn find(&self, t: f64, places: &Places, lanes: usize, slot: usize, memory: &mut Memory) {
         let Memory { lattice, packs } = memory;
         let found = &mut packs[slot];
-        (found.t, found.lanes, found.near, found.at) = (t, lanes, *near, *near);
+        (found.t, found.lanes, found.at) = (t, lanes, *places);
         for lane in 0..lanes {
-            let here = self.anew(lattice.as_mut(), near.map(|row| row[lane]), t);
-            let above = near[2][lane] - self.level - here.flow.elevation;
-            if self.grain > 0.0 && above.abs() < SKIN * self.grain {
-                found.at = *places;
-                break;
-            }
-            found.put(lane, &here);
-        }
-        if found.at != *near {
-            for lane in 0..lanes {
-                found.put(lane, &self.anew(lattice.as_mut(), places.map(|row| row[lane]), t));
-            }
+            found.put(lane, &self.anew(lattice.as_mut(), places.map(|row| row[lane]), t));
         }
     }
 
