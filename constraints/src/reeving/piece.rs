@@ -4,12 +4,11 @@
 //! `s = (r_s - r_e)/A` the material at an end moves by `dr - s dP`, so a force `F` on it acts as `F` on the point and as
 //! `-s·F` on the material coordinate.
 
-use super::arc::{End, Grip, Instant, Residual};
-use ropewalk_core::{Assembly, At, Energy, Jet, MovingBoundary, Pattern, Term, V3};
-use ropewalk_scene::Strand;
-
+use super::arc::{End, Instant, Residual};
 use super::hold::{Mode, chord};
 use num_dual::HyperDual64;
+use ropewalk_core::{Assembly, At, Energy, Jet, MovingBoundary, Pattern, Term, V3};
+use ropewalk_scene::Strand;
 
 fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -25,7 +25,8 @@ const MOST: usize = 100;
 /// wheel do. With `friction` the cable sticks, creeps and slips on the groove by the capstan equation, and turns a wheel with
 /// `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable. `efficiency` is for tables of cranes.
 ///
-/// Not known: several turns round it, torsion of the cable, a cable that leaves the wheel and comes back; runs end there.
+/// A cable may lift off from the wheel and come down on it again, which is told; what an impact takes counts in the balance of
+/// energy as a change of mesh. Not known: several turns round it, torsion of the cable; runs end there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheaveSpec {
