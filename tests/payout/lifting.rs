@@ -41,10 +41,10 @@ fn string(times: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let [g, g_before] = [-f[n - steps], -f[n - steps - 1]];
         let [h, rate] = height(t);
         let free = f[n - 1] + g - g_before;
-        if on && rate < 2.0 * (g - g_before) / dt {
-            (on, _) = (false, switches.push(t));
-        } else if !on && free + g < h {
-            (on, _) = (true, switches.push(t));
+        let parts = if on { rate < 2.0 * (g - g_before) / dt } else { free + g < h };
+        if parts {
+            on = !on;
+            switches.push(t);
         }
         f.push(if on { h - g } else { free });
         all.push(f[n] + g);
