@@ -65,7 +65,7 @@ impl Event for Watch {
             What::Whole => format!("the cable has wrapped all round `{name}` and would cross itself"),
             What::Slack => format!("the cable is slack on `{name}`; it is kept in its groove"),
             What::Flung => {
-                format!("the cable runs so fast that it lifts off from `{name}`; it is kept in its groove")
+                format!("the cable is so fast that nothing presses it on `{name}`; it is kept in its groove")
             }
         }
     }
