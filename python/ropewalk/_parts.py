@@ -946,8 +946,9 @@ class Parts:
         equation, and turns a wheel with `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable.
         `efficiency` is for tables of cranes.
 
-        Not known: several turns round it, torsion of the cable, a cable that leaves the wheel and comes back; runs
-        end there.
+        A cable may lift off from the wheel and come down on it again, which is told; what an impact takes counts in
+        the balance of energy as a change of mesh. Not known: several turns round it, torsion of the cable; runs end
+        there.
 
         name: Name; routes and records refer to it.
         marker: Its centre: a point in space, or of a rigid body, which stands above the cable in the scene.

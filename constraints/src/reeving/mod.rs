@@ -8,6 +8,8 @@
 mod arc;
 mod drum;
 mod events;
+mod hold;
+mod piece;
 mod record;
 mod ring;
 mod sheave;
@@ -16,6 +18,8 @@ mod tangent;
 
 pub use arc::{Arc, End, Grip, Instant, Residual, Wheel, direction};
 pub use drum::{DrumRecordSpec, DrumSpec};
+pub use hold::{Hold, Mode};
+pub use piece::Piece;
 pub use record::SheaveRecordSpec;
 pub use ring::RingSpec;
 pub use spec::{BearingSpec, SheaveSpec};

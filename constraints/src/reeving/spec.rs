@@ -2,12 +2,13 @@
 
 use super::arc::{Arc, Grip};
 use super::events::{Short, Watch, What};
+use super::hold::Hold;
+use super::piece::Stiff;
 use super::sheave::{Angle, Groove, Seat, Sheave};
-use super::tangent::Tangent;
 use crate::check::unit;
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::rotation::around;
-use ropewalk_core::{BuildError, Marker, NodeKind, Related, Signal, Solid, V3, dot};
+use ropewalk_core::{BuildError, Marker, NodeKind, Signal, Solid, V3, dot};
 use ropewalk_scene::quantity::{Setting, kind};
 use ropewalk_scene::{Builder, ConstraintSpec, Guide, MarkerRef, Passage, quantity, register_spec};
 use schemars::JsonSchema;
@@ -24,7 +25,8 @@ const MOST: usize = 100;
 /// wheel do. With `friction` the cable sticks, creeps and slips on the groove by the capstan equation, and turns a wheel with
 /// `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable. `efficiency` is for tables of cranes.
 ///
-/// Not known: several turns round it, torsion of the cable, a cable that leaves the wheel and comes back; runs end there.
+/// A cable may lift off from the wheel and come down on it again, which is told; what an impact takes counts in the balance of
+/// energy as a change of mesh. Not known: several turns round it, torsion of the cable; runs end there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheaveSpec {
@@ -205,12 +207,10 @@ impl SheaveSpec {
         };
         let mut grooves = Vec::new();
         for (k, passage) in passages.iter().enumerate() {
-            for (end, which) in passage.boundaries.iter().zip(["in", "out"]) {
-                let number = if k == 0 { String::new() } else { format!("{}.", k + 1) };
-                let tangent = Tangent { radius: self.radius };
-                let markers = vec![Marker::node(end.end), marker];
-                b.constraint(Related::new(format!("{name}.{number}{which}"), tangent, markers))?;
-            }
+            let number = if k == 0 { String::new() } else { format!(".{}", k + 1) };
+            let mode = b.internal_variable(format!("{name}{number}: mode"));
+            let ends = passage.boundaries.map(|end| end.end);
+            b.constraint(Hold::new(format!("{name}{number}"), b.nodes(), ends, marker, self.radius, mode))?;
             let (strand, gravity) = (passage.strand, b.gravity());
             let share = |x: f64| if k == 0 { x } else { 0.0 };
             let grip = match grip {
@@ -226,7 +226,11 @@ impl SheaveSpec {
                 bearing: [share(bearing[0]), bearing[1], share(bearing[2])],
             };
             let back = dot(&passage.axis, &axis) < 0.0;
-            grooves.push(Groove::new(arc, passage.stored, passage.boundaries, back));
+            if strand.ei > 0.0 {
+                let (ends, name) = (passage.boundaries, name.to_string());
+                b.term(Box::new(Stiff { name, mode, ends, ei: strand.ei, radius: self.radius }));
+            }
+            grooves.push(Groove::new(arc, passage.stored, passage.boundaries, back, mode));
         }
         if turns && passages.len() > 1 {
             let message = format!(
@@ -255,7 +259,7 @@ impl SheaveSpec {
         let sheave = Sheave { name: name.into(), seat, grooves, angle, solid };
         let shared = std::sync::Arc::new(sheave.clone());
         for groove in 0..shared.grooves.len() {
-            for what in [What::Leaves, What::Whole, What::Slack, What::Flung] {
+            for what in What::ALL {
                 b.event(Watch { what, sheave: shared.clone(), groove });
             }
         }
