@@ -128,7 +128,7 @@ impl Sample {
                 }
             }
             let nodes = members.iter().map(|&k| NodeId(k as u32)).collect();
-            rows.push(Rows { count: 3, nodes, jacobian });
+            rows.push(Rows { count: 3, nodes, jacobian, behind: Vec::new() });
         }
         let s = Structure::new(&nodes, &rows, &p, symmetric);
         let (mut values, mut rng) = (vec![T::default(); s.entries()], Rng(0x9E37_79B9_7F4A_7C15 ^ self.seed));
