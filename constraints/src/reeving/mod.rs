@@ -6,15 +6,19 @@
 //! is on the wheel or in the next.
 
 mod arc;
+mod at_rest;
 mod drum;
 mod events;
+mod fleet;
 mod record;
 mod ring;
 mod sheave;
 mod spec;
 mod tangent;
+mod turns;
 
 pub use arc::{Arc, End, Grip, Instant, Residual, Wheel, direction};
+pub use at_rest::AtRest;
 pub use drum::{DrumRecordSpec, DrumSpec};
 pub use record::SheaveRecordSpec;
 pub use ring::RingSpec;
