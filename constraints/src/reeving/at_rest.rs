@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// What friction of a wheel or a ring does at equilibria, which aren't unique with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum AtRest {
+pub enum Sliding {
     /// Nothing: they are those without friction.
     #[default]
     None,
@@ -22,19 +22,19 @@ pub enum AtRest {
     ToEnd,
 }
 
-impl AtRest {
+impl Sliding {
     pub(super) fn is_none(&self) -> bool {
-        *self == AtRest::None
+        *self == Sliding::None
     }
 
     /// What the equilibrium is called.
     pub(super) fn name(self) -> Option<&'static str> {
         match self {
-            AtRest::None => None,
-            AtRest::Hoisting => Some("hoisting"),
-            AtRest::Lowering => Some("lowering"),
-            AtRest::ToStart => Some("cables that go to their start"),
-            AtRest::ToEnd => Some("cables that go to their end"),
+            Sliding::None => None,
+            Sliding::Hoisting => Some("hoisting"),
+            Sliding::Lowering => Some("lowering"),
+            Sliding::ToStart => Some("cables that go to their start"),
+            Sliding::ToEnd => Some("cables that go to their end"),
         }
     }
 
@@ -46,11 +46,11 @@ impl AtRest {
             _ => None,
         };
         let (word, sign) = match self {
-            AtRest::None => return Ok(0.0),
-            AtRest::ToStart => return Ok(1.0),
-            AtRest::ToEnd => return Ok(-1.0),
-            AtRest::Hoisting => ("hoisting", 1.0),
-            AtRest::Lowering => ("lowering", -1.0),
+            Sliding::None => return Ok(0.0),
+            Sliding::ToStart => return Ok(1.0),
+            Sliding::ToEnd => return Ok(-1.0),
+            Sliding::Hoisting => ("hoisting", 1.0),
+            Sliding::Lowering => ("lowering", -1.0),
         };
         to_drum.map(|way: f64| way * sign).ok_or_else(|| {
             let number = if passage.fed[0] { "one at each end" } else { "none" };

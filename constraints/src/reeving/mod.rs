@@ -18,7 +18,7 @@ mod tangent;
 mod turns;
 
 pub use arc::{Arc, End, Grip, Instant, Residual, Wheel, direction};
-pub use at_rest::AtRest;
+pub use at_rest::Sliding;
 pub use drum::{DrumRecordSpec, DrumSpec};
 pub use record::SheaveRecordSpec;
 pub use ring::RingSpec;

@@ -1,7 +1,7 @@
 //! `type = "ring"`: a small eyelet that a cable runs through somewhere on its way.
 
 use super::arc::direction;
-use super::at_rest::{self, AtRest};
+use super::at_rest::{self, Sliding};
 use super::events::Short;
 use super::sheave::passes;
 use num_dual::Dual64;
@@ -33,8 +33,8 @@ pub struct RingSpec {
     #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
     pub slip_speed: f64,
     /// What friction does at equilibria, which aren't unique with it.
-    #[serde(default, skip_serializing_if = "AtRest::is_none")]
-    pub equilibrium: AtRest,
+    #[serde(default, skip_serializing_if = "Sliding::is_none")]
+    pub equilibrium: Sliding,
 }
 register_spec!(Constraint, "ring", RingSpec);
 
@@ -80,7 +80,7 @@ impl ConstraintSpec for RingSpec {
         }
         let ends = passage.boundaries;
         b.constraint(Joined { name: self.name.clone(), ends, nodes: [ends[0].node, ends[1].node] })?;
-        if self.equilibrium != AtRest::None && self.friction == 0.0 {
+        if self.equilibrium != Sliding::None && self.friction == 0.0 {
             let message = "it says what friction does, and this ring has none: give its `friction`";
             return Err(BuildError::at("equilibrium", message));
         }
@@ -147,7 +147,7 @@ struct Kink {
     strand: Strand,
     friction: f64,
     slip_speed: f64,
-    equilibrium: AtRest,
+    equilibrium: Sliding,
     /// Where the cable goes at an equilibrium: 1 to its start, -1 to its end; 0 without friction.
     way: f64,
     /// Place of the internal variable that says whether it does.

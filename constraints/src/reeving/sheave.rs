@@ -1,7 +1,7 @@
 //! A wheel that cables run over, as a term of a model.
 
 use super::arc::{Arc, End, Grip, Instant, Residual, Wheel};
-use super::at_rest::{self, AtRest};
+use super::at_rest::{self, Sliding};
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
@@ -115,7 +115,7 @@ pub(super) struct Sheave {
     pub grooves: Vec<Groove>,
     pub angle: Option<Angle>,
     /// What friction does at equilibria, and place of the internal variable that says whether it does.
-    pub at_rest: (AtRest, Option<usize>),
+    pub at_rest: (Sliding, Option<usize>),
     pub solid: Solid,
 }
 

@@ -1,7 +1,7 @@
 //! `type = "sheave"`: what a scene says about a wheel that cables run over.
 
 use super::arc::{Arc, Grip};
-use super::at_rest::AtRest;
+use super::at_rest::Sliding;
 use super::events::{Short, Watch, What};
 use super::fleet::Fleet;
 use super::sheave::{Angle, Groove, Seat, Sheave};
@@ -85,8 +85,8 @@ pub struct SheaveSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turns: Option<u32>,
     /// What friction does at equilibria, which aren't unique with it.
-    #[serde(default, skip_serializing_if = "AtRest::is_none")]
-    pub equilibrium: AtRest,
+    #[serde(default, skip_serializing_if = "Sliding::is_none")]
+    pub equilibrium: Sliding,
 }
 register_spec!(Constraint, "sheave", SheaveSpec);
 
@@ -181,7 +181,7 @@ impl SheaveSpec {
         ];
         let rubs = self.bearing.is_some_and(|b| b.torque > 0.0 || b.friction * b.radius > 0.0);
         let resists = slides && self.locked || self.efficiency.is_some() || rubs;
-        if self.equilibrium != AtRest::None && !resists {
+        if self.equilibrium != Sliding::None && !resists {
             let message = "it says what friction does, and this wheel turns without: give its `efficiency`, a dry `bearing`, or \
                            `friction` and `locked = true`";
             return Err(BuildError::at("equilibrium", message));
@@ -255,7 +255,7 @@ impl SheaveSpec {
             let way = self.equilibrium.way(passage)?;
             grooves.push(Groove { way, turns, ..Groove::new(arc, passage.stored, passage.boundaries, back) });
         }
-        let rests = (self.equilibrium != AtRest::None).then(|| b.memory(&format!("{name}: equilibrium"), 1));
+        let rests = (self.equilibrium != Sliding::None).then(|| b.memory(&format!("{name}: equilibrium"), 1));
         if turns && passages.len() > 1 {
             let message = format!(
                 "{} cables on `{name}` would be held together by a wheel that turns with them: give its `friction`",
