@@ -3,6 +3,7 @@
 use super::Simulation;
 use super::inputs::Controlling;
 use super::memory::Memory;
+use super::watch::Rung;
 use crate::model::Model;
 use crate::model::input::Course;
 use crate::model::remesh::Plan;
@@ -38,7 +39,7 @@ pub struct Checkpoint {
     change: Vec<f64>,
     created: Option<f64>,
     #[cfg_attr(feature = "serde", serde(default))]
-    rung: (u64, f64),
+    rung: Rung,
     keep_audit: bool,
     /// Whether constraints had to be solved as if some were redundant.
     softened: bool,

@@ -8,6 +8,7 @@
 
 use super::Simulation;
 use super::memory::Remembers;
+use super::watch::Rung;
 use crate::model::node::{difference, retract};
 use crate::model::state::State;
 use crate::simulation::audit::Audit;
@@ -208,7 +209,7 @@ impl Simulation {
             audit: Audit::default(),
             ringing: 0.0,
             change: Vec::new(),
-            rung: (0, 0.0),
+            rung: Rung::default(),
             created: None,
             keep_audit: false,
             power: self.power,

@@ -35,6 +35,7 @@ use inputs::Controlling;
 use memory::Memory;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use watch::Rung;
 
 /// Sees every accepted step and every sample, read-only: recorders, progress bars.
 pub trait Observer {
@@ -115,8 +116,7 @@ pub struct Simulation {
     /// measured with a scheme that had to be allowed.
     pub ringing: f64,
     change: Vec<f64>,
-    /// Steps in which tension swung to and fro from step to step, and their time [s].
-    rung: (u64, f64),
+    rung: Rung,
     /// When energy was first seen to have appeared from nowhere [s].
     created: Option<f64>,
     keep_audit: bool,
@@ -180,7 +180,7 @@ impl Simulation {
             audit,
             ringing: 0.0,
             change: Vec::new(),
-            rung: (0, 0.0),
+            rung: Rung::default(),
             created: None,
             keep_audit: true,
             power,

@@ -23,6 +23,18 @@ const RUNG_SHARE: f64 = 0.1;
 /// What has moved by no more than this since the run began, in parts of its own length, has no energy to speak of.
 const REST: f64 = 1e-7;
 
+/// Steps in which the tension of a cable swung to and fro from one to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Rung {
+    steps: u64,
+    /// Their time [s], and when the first of them was [s].
+    time: f64,
+    first: f64,
+    /// The last cable in which it did.
+    part: usize,
+}
+
 impl Simulation {
     /// Where constraints are solved as redundant they are met as well as they can be: checks that this is well enough.
     /// If not, the state is that before the step.
@@ -114,11 +126,13 @@ impl Simulation {
     /// Warns at the end of a run in which tension has swung to and fro from step to step: the record shows the steps, not the
     /// motion.
     pub(super) fn watch_ringing(&mut self, report: &StepReport, end: f64, observer: &mut dyn Observer) {
-        if report.rings {
-            self.rung.0 += 1;
-            self.rung.1 += report.h;
+        let t = self.state.t;
+        if let Some(part) = report.rings {
+            let rung = &mut self.rung;
+            rung.first = if rung.steps == 0 { t } else { rung.first };
+            *rung = Rung { steps: rung.steps + 1, time: rung.time + report.h, part, ..*rung };
         }
-        let ((steps, time), t) = (self.rung, self.state.t);
+        let Rung { steps, time, first, part } = self.rung;
         if t < end || steps < RUNG || time < RUNG_SHARE * t {
             return;
         }
@@ -126,14 +140,15 @@ impl Simulation {
             Stepping::Fixed { .. } => "a smaller `h`",
             Stepping::Controlled { .. } => "a smaller `tolerance`",
         };
+        let name = self.model.parts().get(part).map_or("a cable", |p| p.name());
         observer.warn(&format!(
-            "for {:.0} % of the time the tension of a cable swings to and fro from step to step: waves along or across it that the \
-             steps don't resolve and the scheme hardly damps. Tensions between them mean little. Take {remedy}, \
+            "for {:.0} % of the time, first at t = {first:.4} s, the tension of `{name}` swings to and fro from step to step: waves \
+             along or across it that the steps don't resolve and the scheme hardly damps. Tensions between them mean little. Take {remedy}, \
              `rho_inf = 0.5`, Radau IIA, or a little `axial_retardation_time` or `bending_retardation_time`",
             100.0 * time / t
         ));
         // who advances bit by bit hears of it once
-        self.rung = (0, 0.0);
+        self.rung = Rung::default();
     }
 
     /// Looks for energy that has appeared from nowhere: warns the first time that it is too much for an error of the

@@ -199,15 +199,15 @@ impl Forces {
         self.present[g].max(self.inertia[g].sqrt()).max(self.reaction[g])
     }
 
-    /// Whether tension swings to and fro from step to step in some cable, as seen at the start of the step that ends; `h` is the
-    /// one before [s]. Waves that steps resolve bend to the other side now and then, those that they don't in every step.
-    pub fn ring(&mut self, h: f64) -> bool {
+    /// The part, if it is a cable whose tension swings to and fro from step to step, as seen at the start of the step that ends; `h`
+    /// is the one before [s]. Of several the last. Waves that steps resolve bend to the other side now and then, those that they don't in every step.
+    pub fn ring(&mut self, h: f64) -> Option<usize> {
         if self.past.len() != self.seen.len() || !(h > 0.0) {
             self.past.clear();
             self.past.extend(self.seen.iter().map(|&tension| [tension, 0.0, 0.0]));
-            return false;
+            return None;
         }
-        let mut rings = false;
+        let mut rings = None;
         let mut places = self.past.iter_mut().zip(&self.seen);
         for line in &self.cables {
             let largest = self.present[line.part];
@@ -215,7 +215,9 @@ impl Forces {
                 let misses = tension - (*last + *rate * h);
                 // a swing of one to either side misses by four
                 let swing = if misses * *missed < 0.0 { 0.25 * misses.abs().min(missed.abs()) } else { 0.0 };
-                rings |= swing > SWING * largest + self.rounding[line.part];
+                if swing > SWING * largest + self.rounding[line.part] {
+                    rings = Some(line.part);
+                }
                 (*last, *rate, *missed) = (tension, (tension - *last) / h, misses);
             }
         }

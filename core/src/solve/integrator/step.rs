@@ -23,8 +23,8 @@ pub struct StepReport {
     /// What kept it from being longer. A scheme calls whatever is left to go [`Limit::Ahead`]; a
     /// [`Simulation`](crate::Simulation) knows what is there.
     pub limit: Limit,
-    /// Whether the tension of some cable swings to and fro from step to step.
-    pub rings: bool,
+    /// The number of the part whose tension swings to and fro from step to step, if one does.
+    pub rings: Option<usize>,
 }
 
 /// Why a step could not be taken. The state is as it was before.

@@ -18,6 +18,7 @@ use super::step::{Integrator, StepError, StepReport, linear, too_strict};
 use super::workspace::Workspace;
 use crate::model::Model;
 use crate::model::limit::Limit;
+use crate::model::node::{NodeId, NodeKind};
 use crate::model::state::State;
 use crate::solve::integrator::workspace::Which;
 use crate::solve::linear::SolveError;
@@ -41,6 +42,8 @@ const VELOCITY: f64 = 0.1;
 /// What the iteration may leave, in parts of the tolerance. It adds up over the steps: 0.03 left loops of stiff joints off
 /// by hundreds of times the tolerance.
 const ITERATION: f64 = 0.003;
+/// The same where a body turns freely: what an iteration leaves of its spin adds up over the run.
+const SPINNING: f64 = 1e-7;
 /// The tolerance whose iteration error fixed steps are given.
 const FIXED: f64 = 1e-7;
 
@@ -91,6 +94,8 @@ impl Radau {
             Stepping::Controlled { tolerance } => tolerance.min(1e-3),
         };
         let time = VELOCITY * self.horizon;
+        let controlled = matches!(self.options.stepping, Stepping::Controlled { .. });
+        let left = if controlled && self.spins(model, state) { SPINNING } else { ITERATION };
         // velocities are increments over the step: their tolerance asks for a tighter one in shorter steps
         let newton = Newton {
             model,
@@ -98,7 +103,7 @@ impl Radau {
             h,
             policy: self.options.newton,
             max_iterations: self.options.max_iterations.min(MOST_ITERATIONS),
-            tolerance: self.options.newton_tolerance * ITERATION * tolerance * (h / time).min(1.0),
+            tolerance: self.options.newton_tolerance * left * tolerance * (h / time).min(1.0),
             force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
             linear_constraints: !model.is_mechanism(),
         };
@@ -125,6 +130,15 @@ impl Radau {
         Ok((converged, error))
     }
 
+    /// Whether a body that nothing holds turns by more than a radian within the horizon.
+    fn spins(&self, model: &Model, state: &State) -> bool {
+        let held = |id: NodeId| model.constraints().iter().any(|c| c.nodes().contains(&id));
+        model.nodes().iter().enumerate().filter(|(_, n)| n.kind == NodeKind::Frame).any(|(k, n)| {
+            let square: f64 = n.dofs().skip(3).map(|i| state.v[i] * state.v[i]).sum();
+            square * self.horizon * self.horizon > 1.0 && !held(NodeId(k as u32))
+        })
+    }
+
     fn advance(
         &self,
         model: &Model,
@@ -145,7 +159,7 @@ impl Radau {
                     (c.eta, c.theta) = (rate.eta, rate.theta.unwrap_or(c.theta));
                     work.counts.steps += 1;
                     let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
-                    return Ok(StepReport { h, iterations, rejected, error, limit, rings: false });
+                    return Ok(StepReport { h, iterations, rejected, error, limit, rings: None });
                 }
                 Ok((rate, error)) => {
                     work.counts.rejected += 1;
