@@ -169,7 +169,7 @@ impl Record for Stress {
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
         for place in &self.at {
             let at = place.now(self.wall.part.as_ref(), &s.at);
-            let axial = self.wall.tension(at, s) / self.area;
+            let axial = self.wall.tension(at, s.model, &s.at) / self.area;
             let [first, second] = self.bending(at, &s.at).unwrap_or([f64::NAN; 2]);
             out.extend((0..self.points).map(|k| {
                 let (sin, cos) = (TAU * k as f64 / self.points as f64).sin_cos();

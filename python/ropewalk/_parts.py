@@ -946,8 +946,9 @@ class Parts:
         equation, and turns a wheel with `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable.
         `efficiency` is for tables of cranes.
 
-        Not known: several turns round it, torsion of the cable, a cable that leaves the wheel and comes back; runs
-        end there.
+        A cable may lift off from the wheel and come down on it again, which is told; what an impact takes counts in
+        the balance of energy as a change of mesh. Not known: several turns round it, torsion of the cable; runs end
+        there.
 
         name: Name; routes and records refer to it.
         marker: Its centre: a point in space, or of a rigid body, which stands above the cable in the scene.
@@ -2328,6 +2329,39 @@ class Parts:
             "name": name,
         })
 
+    def direction_record(
+        self,
+        *,
+        of: str,
+        at: Sequence[Number] | None = None,
+        axis: Sequence[Number] | None = None,
+        body: str | None = None,
+        degrees: Boolean | None = None,
+        name: str | None = None,
+        title: str | None = None,
+    ) -> Part:
+        """Direction of a line at places of it, from its start towards its end: columns `riser.start.declination`, the
+        angle from upright (0 up, 90 level, 180 down), and `riser.start.azimuth`, from x to y, in rad. With an `axis`
+        also `riser.start.angle`, between the line and that axis, such as that of the fitting that holds its end.
+
+        of: The cable, or the chain.
+        at: Where: as for `along`. Default: at both ends. Default ['start', 'end'].
+        axis: A direction to which the angle is told. Default: none is told.
+        body: The body that the axis turns with, in whose axes it is given. Default: it stands still.
+        degrees: Whether the angles are in degrees. Default False.
+        name: Name in results. Default: that of the cable.
+        title: Title of its plots. Default: the quantity.
+        """
+        return self._add("records", "direction", {
+            "of": of,
+            "at": at,
+            "axis": axis,
+            "body": body,
+            "degrees": degrees,
+            "name": name,
+            "title": title,
+        })
+
     def drag_coefficient(
         self,
         *,
@@ -3030,6 +3064,7 @@ class Parts:
         shape_titles: Mapping[str, Any] | None = None,
         tables: Sequence[Mapping[str, Any]] | None = None,
         ranges: Sequence[Mapping[str, Any]] | None = None,
+        statistics: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
         """Analysis, duration and output.
 
@@ -3057,6 +3092,7 @@ class Parts:
             radial: z over the distance from the z axis; drawn only if it has a title.
         tables: Tables of a few columns of the history, each a CSV file of its own.
         ranges: Range graphs of lines: between what tension, curvature and the like were along them.
+        statistics: Statistics of records over a time, and the fatigue of their cycles.
         """
         self._set("run", {
             "analysis": analysis,
@@ -3070,6 +3106,7 @@ class Parts:
             "shape_titles": shape_titles,
             "tables": tables,
             "ranges": ranges,
+            "statistics": statistics,
         })
 
     def set_solver(

@@ -11,8 +11,8 @@ use std::path::PathBuf;
 
 use ropewalk_core::rotation::exp;
 use ropewalk_report::{
-    BodyRecord, Column, Entry, Event, FieldRecord, ForceRecord, LineRecord, LineSnapshot, Mesh, OutputError,
-    Page, Panel, Pose, Quantity, Shape, Solid, Steps, Table, vtk,
+    BodyRecord, Column, Entry, Event, FieldRecord, ForceRecord, LineRecord, LineSnapshot, Listing, Mesh,
+    OutputError, Page, Panel, Pose, Quantity, RangeGraph, Shape, Solid, Steps, Table, Wave, Waves, vtk,
 };
 
 const POINTS: usize = 161;
@@ -110,6 +110,14 @@ fn field() -> FieldRecord {
             Shape::new("rock", Solid::Mesh(rock), Pose::at([4.0, -8.0, -28.0])),
         ],
         water: Some(0.0),
+        waves: Some(Waves {
+            all: vec![
+                Wave { amplitude: 0.5, k: [0.28, 0.05], omega: 1.66, phase: 0.0 },
+                Wave { amplitude: 0.3, k: [0.4, -0.2], omega: 2.09, phase: 1.0 },
+                Wave { amplitude: 0.1, k: [4.0, 0.0], omega: 6.26, phase: 2.0 },
+            ],
+            ramp: 10.0,
+        }),
         bed: Some(-28.0),
     }
 }
@@ -139,6 +147,41 @@ fn steps() -> Steps {
         causes: ["position error", "force error"].map(String::from).to_vec(),
         counts: vec![2900, 3400],
         t,
+    }
+}
+
+fn statistics() -> Listing {
+    let strings = |all: &[&str]| all.iter().map(|s| (*s).to_string()).collect::<Vec<_>>();
+    Listing {
+        title: "Statistics".into(),
+        headings: strings(&["record", "mean", "deviation", "least", "largest", "period [s]"]),
+        rows: vec![
+            strings(&["hose.start.tension [N]", "1550", "84.85", "1430", "1670", "7"]),
+            strings(&["ship.z [m]", "1.2", "0.2121", "0.9", "-1.5", "7"]),
+        ],
+        note: "From 10 s to 60 s.".into(),
+    }
+}
+
+/// The tension over whole periods, as it is made up.
+fn range() -> RangeGraph {
+    let s: Vec<f64> = (0..=60).map(|k| LENGTH * f64::from(k) / 60.0).collect();
+    let over = |of: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+        s.iter().map(|s| of(40.0 * (LENGTH - s) + 350.0, 120.0 * (1.0 - s / 60.0))).collect()
+    };
+    RangeGraph {
+        name: "hose".into(),
+        quantity: "tension".into(),
+        unit: "N".into(),
+        window: [10.0, 60.0],
+        start: over(&|mean, _| mean),
+        least: over(&|mean, swing| mean - swing),
+        mean: over(&|mean, _| mean),
+        greatest: over(&|mean, swing| mean + swing),
+        deviation: over(&|_, swing| swing / 2f64.sqrt()),
+        t_least: over(&|_, _| 12.25),
+        t_greatest: over(&|_, _| 15.75),
+        s,
     }
 }
 
@@ -186,6 +229,8 @@ fn main() -> Result<(), OutputError> {
             panel("Tension", &["hose.start.tension", "hose.middle.tension"]),
         ],
         field: field(),
+        listings: vec![statistics()],
+        ranges: vec![range()],
         ..Page::default()
     };
     page.write(&path)?;

@@ -28,14 +28,15 @@ mod watch;
 
 pub use error::OutputError;
 pub use field::{
-    BodyRecord, FieldRecord, ForceRecord, LineRecord, LineSnapshot, Mesh, Pose, Quantity, Shape, Solid,
+    BodyRecord, FieldRecord, ForceRecord, LineRecord, LineSnapshot, Mesh, Pose, Quantity, Shape, Solid, Wave,
+    Waves,
 };
 pub(crate) use folder::write_atomic_bytes;
 pub use folder::{RUNS, RunFolder, cannot_create, plain, write_atomic, write_durable, write_json};
 pub use interrupt::Interrupt;
 pub use lock::FolderLock;
 pub use number::{number, rough};
-pub use page::{Entry, Event, Page, Panel, Section, Steps, StillPage, escaped};
+pub use page::{Entry, Event, Listing, Page, Panel, RangeGraph, Section, Steps, StillPage, escaped};
 pub use plot::{Bar, BarPlot, LinePlot, Mark, Panels, Plane, Series, ShapePlot, Snapshot};
 pub use progress::{Progress, ProgressMode, SweepProgress, new_bar};
 pub use sheet::{Sheet, TERMINAL};

@@ -21,6 +21,7 @@ mod scene;
 mod scene_file;
 mod sea;
 pub mod spec;
+mod statistics;
 mod water;
 mod waves;
 
@@ -44,6 +45,7 @@ pub use spec::{
     ConstraintSpec, ControllerSpec, ElementSpec, ForceSpec, ListInfo, MotionSpec, RecordSpec, SECTIONS,
     SpecInfo, SpecKind, lists, registered,
 };
+pub use statistics::{FatigueSpec, SecondSlope, StatisticsSpec};
 pub use water::{Air, Level, Water, ball_below};
 pub use waves::{
     Evaluation, Jonswap, MeasuredSea, PiersonMoskowitz, RegularWave, SpreadingSpec, WaveComponent,

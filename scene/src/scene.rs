@@ -6,6 +6,7 @@ use crate::inputs::{InputSpec, Inputs};
 use crate::motions::build_all;
 use crate::process::{Process, ProcessSpec, Steered, Surroundings};
 use crate::spec::{ConstraintSpec, ControllerSpec, ElementSpec, ForceSpec, MotionSpec, RecordSpec, SpecKind};
+use crate::statistics::StatisticsSpec;
 use crate::water::{Air, Water};
 use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::StaticsOptions;
@@ -63,6 +64,9 @@ pub struct Run {
     /// Range graphs of lines: between what tension, curvature and the like were along them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub ranges: Vec<RangeSpec>,
+    /// Statistics of records over a time, and the fatigue of their cycles.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub statistics: Vec<StatisticsSpec>,
 }
 
 /// A range graph: least, mean and largest value of tension, curvature, bending moment, declination and position along a line
@@ -136,6 +140,7 @@ impl Default for Run {
             shape_titles: ShapeTitles::default(),
             tables: Vec::new(),
             ranges: Vec::new(),
+            statistics: Vec::new(),
         }
     }
 }

@@ -127,6 +127,18 @@ impl Water {
         let (drift, _) = self.current()?.at(level);
         Sea::new(waves, level, -g, drift).map(|sea| Some(Arc::new(sea)))
     }
+    /// What one should know of its waves under the gravity of a scene [m/s²]: that they are higher than waves can be.
+    pub fn steep(&self, [.., g]: V3<f64>) -> Option<String> {
+        let (drift, _) = self.current().ok()?.at(self.level?);
+        let waves = self.waves.as_ref()?.waves(-g, drift).ok()?;
+        let (height, most) = (waves.height(), waves.breaking_height());
+        (height > most).then(|| {
+            format!(
+                "waves of their length break when they are {most:.3} m high (Miche), and these are {height:.3} m: linear theory \
+                 says little of them"
+            )
+        })
+    }
     /// What is wrong with the numbers, if anything.
     pub fn check(&self) -> Result<(), BuildError> {
         positive("density", self.density).map_err(|e| e.of("water.density"))?;

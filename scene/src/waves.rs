@@ -1,9 +1,9 @@
 //! `[water.waves]`: a sea state, and how its motion is found.
 
 use crate::file;
-use ropewalk_core::BuildError;
-use ropewalk_core::error::positive;
-use ropewalk_sea::{Regular, Sampling, SeaError, Spectrum, Spreading, Stretching, measured, sample};
+use ropewalk_core::error::{not_negative, positive};
+use ropewalk_core::{BuildError, V3};
+use ropewalk_sea::{Regular, Sampling, SeaError, Spectrum, Spreading, Stretching, Waves, measured, sample};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -185,7 +185,7 @@ fn shortest() -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredSea {
-    /// A CSV file with rows `t, elevation` [s, m] at equal intervals; its path is relative to the scene file.
+    /// A file with rows `t, elevation` [s, m] at equal intervals, parted by commas or blanks; its path is relative to the scene file.
     pub file: PathBuf,
     /// Shorter waves are left out [s].
     #[serde(default = "shortest", deserialize_with = "ropewalk_quantity::time")]
@@ -199,7 +199,11 @@ impl MeasuredSea {
         file::open(&self.file)?.read_to_string(&mut text).map_err(|e| e.to_string())?;
         let mut rows: Vec<[f64; 2]> = Vec::new();
         for (k, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-            let cells: Vec<Option<f64>> = line.split(',').map(|c| c.trim().parse().ok()).collect();
+            let cells: Vec<Option<f64>> = line
+                .split(|c: char| c == ',' || c.is_whitespace())
+                .filter(|cell| !cell.is_empty())
+                .map(|cell| cell.parse().ok())
+                .collect();
             match cells[..] {
                 [Some(t), Some(x)] => rows.push([t, x]),
                 _ if rows.is_empty() && cells.iter().all(Option::is_none) => {}
@@ -337,6 +341,25 @@ impl WavesSpec {
         Ok(())
     }
 
+    /// The waves under gravity `g` [m/s²], on a current of velocity `drift` [m/s] if they are told to feel it.
+    ///
+    /// # Errors
+    /// Numbers that make no sense.
+    pub fn waves(&self, g: f64, drift: V3<f64>) -> Result<Waves, BuildError> {
+        let of = |e: SeaError| self.fault(e);
+        let depth = self.depth.unwrap_or(f64::INFINITY);
+        let waves = Waves::new(&self.components()?, depth, g, self.stretching.into()).map_err(of)?;
+        let waves = waves.with_ramp(self.ramp).map_err(of)?;
+        let trough = 0.5 * waves.height();
+        if !(trough < 0.95 * depth) {
+            let message = format!(
+                "the troughs of these waves are {trough:.3} m deep, and the water is only {depth} m: take lower waves, or more `depth`"
+            );
+            return Err(BuildError::at("water.waves.depth", message));
+        }
+        if self.doppler { waves.on_current([drift[0], drift[1]]).map_err(of) } else { Ok(waves) }
+    }
+
     /// The regular waves that make it.
     ///
     /// # Errors
@@ -345,6 +368,7 @@ impl WavesSpec {
         self.check()?;
         let omega = |period: f64| positive("period", period).map(|t| TAU / t);
         if let Some(wave) = self.regular {
+            not_negative("height", wave.height).map_err(|e| e.of("water.waves.regular.height"))?;
             let of = |e: BuildError| e.of("water.waves.regular.period");
             let (amplitude, omega) = (0.5 * wave.height, omega(wave.period).map_err(of)?);
             return Ok(vec![Regular { amplitude, omega, phase: wave.phase, direction: self.direction }]);

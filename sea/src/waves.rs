@@ -82,6 +82,9 @@ pub struct Waves {
     pub(crate) current: [f64; 2],
 }
 
+/// Up to so many waves are looked at one by one.
+const FEW: usize = 8;
+
 /// The least share of the depth that is taken to be left under a trough.
 const DRY: f64 = 0.05;
 
@@ -164,6 +167,11 @@ impl Waves {
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
+    /// Its waves, each as amplitude [m], wavenumbers along x and y [1/m], frequency [rad/s] and phase at the origin at `t = 0`
+    /// [rad].
+    pub fn iter(&self) -> impl Iterator<Item = (f64, [f64; 2], f64, f64)> + '_ {
+        self.all.iter().map(|c| (c.a, c.way.map(|w| c.k * w), c.omega, c.phase))
+    }
     /// Largest wavenumber [1/m].
     pub fn shortest(&self) -> f64 {
         self.all.iter().fold(0.0, |m, c| c.k.max(m))
@@ -175,6 +183,24 @@ impl Waves {
     /// Standard deviation of the elevation once they have risen [m].
     pub fn deviation(&self) -> f64 {
         self.all.iter().map(|c| 0.5 * c.a * c.a).sum::<f64>().sqrt()
+    }
+    /// Height that single waves reach [m]: the sum of a few, the significant height of many.
+    pub fn height(&self) -> f64 {
+        let sum: f64 = self.all.iter().map(|c| 2.0 * c.a.abs()).sum();
+        if self.all.len() <= FEW { sum } else { sum.min(4.0 * self.deviation()) }
+    }
+    /// The height at which waves of their length break, by Miche (1944): `0.142 λ tanh kh`, with the wavenumber that halves their
+    /// energy [m].
+    pub fn breaking_height(&self) -> f64 {
+        let mut all: Vec<(f64, f64)> = self.all.iter().map(|c| (c.k, c.a * c.a)).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let half = 0.5 * all.iter().map(|(_, energy)| energy).sum::<f64>();
+        let mut sum = 0.0;
+        let median = all.iter().find(|(_, energy)| {
+            sum += energy;
+            sum >= half
+        });
+        median.map_or(f64::INFINITY, |(k, _)| 0.142 * 2.0 * PI / k * (k * self.depth).tanh())
     }
     /// The direction of all of them, if they have one.
     pub(crate) fn way(&self) -> Option<[f64; 2]> {

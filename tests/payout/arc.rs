@@ -1,7 +1,7 @@
 //! Cables on wheels: what lies on the wheel, against Lagrange's equations and closed forms.
 
 use approx::assert_relative_eq;
-use ropewalk_constraints::reeving::{Arc, End, Grip, Instant, Residual, Tangent, Wheel};
+use ropewalk_constraints::reeving::{Arc, End, Grip, Hold, Instant, Mode, Piece, Residual, Tangent, Wheel};
 use ropewalk_core::rotation::{around, cross};
 use ropewalk_core::testing::{check_constraint, difference};
 use ropewalk_core::{At, Marker, Node, NodeId, NodeKind, Related, V3, dot};
@@ -193,4 +193,63 @@ fn derivatives_of_tangency_are_those_of_its_equations() {
     let wheel = Marker::beside(NodeId(1), [0.05, 0.1, -0.2]);
     let tangent = Related::new("tangent", Tangent { radius: 0.5 }, vec![Marker::node(NodeId(0)), wheel]);
     assert!(check_constraint(&tangent, &nodes, &at) < 1e-7);
+}
+
+#[test]
+fn derivatives_of_all_ways_to_hold_a_cable_are_those_of_their_equations() {
+    let nodes = [
+        Node { kind: NodeKind::Slope, q: 0, v: 0, shared: false },
+        Node { kind: NodeKind::Slope, q: 6, v: 6, shared: false },
+        Node { kind: NodeKind::Frame, q: 12, v: 12, shared: false },
+    ];
+    let q =
+        [0.3, 0.1, 0.4, 0.6, 0.5, -0.7, 0.5, 0.15, 0.3, 0.7, 0.3, -0.6, 0.1, -0.2, 0.3, 0.8, 0.36, 0.48, 0.0];
+    let v: Vec<f64> = (0..18).map(|k| (1.7 * f64::from(k)).sin()).collect();
+    let wheel = Marker::beside(NodeId(2), [0.05, 0.1, -0.2]);
+    let hold = Hold::new("hold", &nodes, [NodeId(0), NodeId(1)], wheel, 0.5, 0);
+    for mode in [Mode::Wraps, Mode::Touches, Mode::Off] {
+        let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 18], internal: &[mode.value()], relaxed: None };
+        let off = check_constraint(&hold, &nodes, &at);
+        assert!(off < 1e-6, "{mode:?}: {off}");
+    }
+}
+
+#[test]
+fn what_a_straight_piece_takes_it_stores_or_turns_into_heat() {
+    let strand = Strand { mass: 1.3, ea: 2e3, ei: 0.0, damping: 3.0, weighs: true };
+    let piece = Piece { strand, gravity: [0.3, -0.2, -9.81] };
+    let state = |t: f64| {
+        let first = [0.1 + 0.5 * t - t * t, 0.3 * t, 0.2 - 0.7 * t + 0.2 * t * t];
+        let last = plus(&first, 1.0, &[0.5 + 0.1 * t * t, 0.1 - 0.3 * t, -0.2 + 0.4 * t]);
+        let mut all: Vec<f64> = first.to_vec();
+        all.push(0.02 - 0.6 * t + 0.4 * t * t);
+        all.extend(last);
+        all.push(0.13 - 0.5 * t - 0.3 * t * t);
+        all
+    };
+    let eval = |t: f64| {
+        let (now, v) = (state(t), difference(|h| state(t + h)));
+        let a = ropewalk_core::testing::second(|h| state(t + h));
+        let three = |x: &[f64], i: usize| [x[i], x[i + 1], x[i + 2]];
+        let ends = [0, 4].map(|i| End {
+            r: [three(&now, i), three(&v, i), three(&a, i)],
+            p: [now[i + 3], v[i + 3], a[i + 3]],
+        });
+        (ends, piece.eval(STORED, &ends))
+    };
+    let t = 0.05;
+    let (ends, (out, now)) = eval(t);
+    let taken: f64 = (0..2).map(|k| dot(&out.r[k], &ends[k].r[1]) + out.p[k] * ends[k].p[1]).sum();
+    let slope: V3<f64> = std::array::from_fn(|i| (ends[1].r[0][i] - ends[0].r[0][i]) / now.length);
+    let carried: f64 = (0..2)
+        .map(|k| {
+            let v = plus(&ends[k].r[1], -ends[k].p[1], &slope);
+            let rate = if k == 0 { -ends[k].p[1] } else { ends[k].p[1] };
+            strand.mass * rate * (0.5 * dot(&v, &v) - dot(&piece.gravity, &ends[k].r[0]))
+        })
+        .sum();
+    let stored = difference(|h| vec![eval(t + h).1.1.energy.iter().sum::<f64>()])[0];
+    assert!(now.dissipated > 0.1 && now.tension > 50.0);
+    let off = (taken + carried - stored - now.dissipated).abs() / now.tension;
+    assert!(off < 1e-6, "{off}");
 }

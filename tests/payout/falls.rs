@@ -7,6 +7,14 @@ use std::fmt::Write as _;
 
 /// A hook block of 2 t on so many falls, hoisted by a drum after a second.
 fn tackle(falls: usize, wheel: &str) -> Scene {
+    read(&text(falls, wheel))
+}
+
+fn read(text: &str) -> Scene {
+    SceneFile::parse(text, "tackle", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}")).into_scene()
+}
+
+fn text(falls: usize, wheel: &str) -> String {
     let wheels = falls / 2;
     let mut route = String::from("{ wound = \"drum\" }");
     for k in 1..=wheels {
@@ -14,7 +22,7 @@ fn tackle(falls: usize, wheel: &str) -> Scene {
     }
     let spacing = 0.06;
     let side = 0.5 * spacing * (wheels as f64 - 1.0);
-    let text = format!(
+    format!(
         r#"
         run = {{ duration = 6, output = 0.1, from_equilibrium = true }}
         [[elements]]
@@ -81,8 +89,7 @@ fn tackle(falls: usize, wheel: &str) -> Scene {
         -side,
         -0.3 * falls as f64,
         2300.0 * 9.81 / falls as f64,
-    );
-    SceneFile::parse(&text, "tackle", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}")).into_scene()
+    )
 }
 
 fn run(scene: &Scene) -> History {
@@ -143,4 +150,36 @@ fn steady_hoisting_cuts_no_steps() {
     let history = run(&scene);
     let counts = &history.counts;
     assert!(counts.rejected as f64 <= 0.05 * counts.steps as f64, "{counts:?}");
+}
+
+/// Up and down by 5.7 m of rope, sixty times.
+#[test]
+#[ignore = "an hour of hoisting takes two minutes"]
+fn an_hour_of_hoisting_keeps_its_energy() {
+    let text = text(4, "efficiency = 0.98");
+    let drive = r#"
+        solver = { stepping = { controlled = { tolerance = 2e-3 } }, horizon = "20 s" }
+        [[inputs]]
+        name = "hoist"
+        unit = "m/s"
+        min = -1
+        max = 1
+        join = "smooth"
+        [[controllers]]
+        type = "expression"
+        input = "hoist"
+        value = "0.6 m/s * sin(t * 6.283185307179586 / 60 s)"
+        every = "1 s"
+        [[elements]]"#;
+    let text = text.replace("duration = 6, output = 0.1", "duration = 3600, output = 60");
+    let text = text.replacen("[[elements]]", drive, 1).replace("start = 0.5\n", "").replace("ramp = 1\n", "");
+    let text = text.replace("speed = -1.2", "speed = { input = \"hoist\" }");
+    let history = run(&read(&text));
+    let most = |name: &str| history.column(name).expect(name).iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let (imbalance, lost) = (most("energy.imbalance"), most("energy.dissipated"));
+    println!("{imbalance} J of {lost} J, {} iterations per step, {:?}", per_step(&history), history.counts);
+    assert!(imbalance < 1e-4 * lost, "{imbalance} J of {lost} J");
+    assert!(history.warnings.is_empty(), "{:?}", history.warnings);
+    let rise = history.last("block.z").expect("block") - history.column("block.z").expect("block")[0];
+    assert!(rise.abs() < 0.1, "{rise} m");
 }

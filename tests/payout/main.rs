@@ -13,6 +13,7 @@ mod eyelet;
 mod falls;
 mod gripping;
 mod hoisting;
+mod lifting;
 mod passing;
 mod reeling;
 mod reeving;

@@ -112,6 +112,23 @@ fn ropes_over_wheels_go_on_to_the_last_bit() {
     same_from_checkpoint(&scene, &scene.solver, 20, 4);
 }
 
+/// The rope is off its wheel where the checkpoint is, and comes back behind it.
+#[test]
+fn rope_that_lifts_off_from_its_wheel_goes_on_to_the_last_bit() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lifting.toml");
+    let mut scene = ropewalk::read(&path).expect("the scene");
+    scene.run.duration = 0.4;
+    let controlled = Stepping::Controlled { tolerance: 1e-4 };
+    for (scheme, stepping, every) in [
+        (Scheme::default(), controlled, 300),
+        (Scheme::default(), Stepping::Fixed { h: 1e-3 }, 70),
+        (Scheme::RadauIia5, controlled, 30),
+    ] {
+        let options = Options { scheme, stepping, ..Options::default() };
+        same_from_checkpoint(&scene, &options, every, 3);
+    }
+}
+
 #[test]
 fn drum_that_its_motor_turns_goes_on_to_the_last_bit() {
     let text = r#"
@@ -173,6 +190,36 @@ fn a_crane_operators_day_goes_on_to_the_last_bit() {
     let [supplied, imbalance] = ["supplied", "imbalance"].map(|what| at(&format!("energy.{what}"), 20.0));
     assert!(imbalance.abs() < 0.01 * supplied, "{imbalance} J of {supplied} J");
     same_from_checkpoint(&scene, &scene.solver, 500, 4);
+}
+
+/// Three lifts: the block up from the ground with its rope slack, a load from a slack sling, hoisted, slewed, braked hard, set
+/// down, and the block set down until its rope is slack.
+#[test]
+#[ignore = "600 s of a crane take minutes"]
+fn a_long_day_of_a_crane_operator_goes_on_to_the_last_bit() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/crane_day_long.toml");
+    let scene = ropewalk::read(&path).expect("the scene");
+    let history = ropewalk::simulate(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let column = |name: &str| history.column(name).unwrap_or_else(|| panic!("no {name}"));
+    let at = |name: &str, t: f64| {
+        let k =
+            history.times().iter().position(|x| (x - t).abs() < 1e-6).unwrap_or_else(|| panic!("no {t} s"));
+        column(name)[k]
+    };
+    let weight = 2000.0 * 9.81;
+    for lift in [0.0, 200.0, 400.0] {
+        // hanging from the sling, and on the ground beside the block
+        assert!(at("ground.normal", lift + 26.0) == 0.0 && at("sling.tension", lift + 26.0) > 0.5 * weight);
+        assert!((at("ground.normal", lift + 5.0) / weight - 1.0).abs() < 0.05 || lift == 0.0);
+    }
+    // the block stands on its feet, and its rope is slack
+    let stands = column("feet.normal").iter().filter(|f| **f > 1000.0).count();
+    assert!(stands > 30, "{stands}");
+    let [supplied, imbalance] = ["supplied", "imbalance"]
+        .map(|what| column(&format!("energy.{what}")).iter().fold(0.0_f64, |most, x| most.max(x.abs())));
+    println!("{imbalance} J of {supplied} J, {:?}", history.counts);
+    assert!(imbalance < 0.01 * supplied, "{imbalance} J of {supplied} J");
+    same_from_checkpoint(&scene, &scene.solver, 5000, 10);
 }
 
 #[test]

@@ -140,7 +140,9 @@ fn what_has_no_counterpart_is_refused_where_it_stands() {
     refused("1   main     1 ", "1   chain    1 ", "there is no line type `chain`");
     refused("AttachA AttachB UnstrLen", "UnstrLen NumSegs NodeA", "MoorDyn's version 1");
     refused("kBot", "kBed", "the option `kBed` has no counterpart");
-    refused("320     WtrDpth", "3 WaveKin\n320 WtrDpth", "waves of this kind");
+    refused("320     WtrDpth", "4 WaveKin\n320 WtrDpth", "waves of this kind");
+    refused("320     WtrDpth", "3 WaveKin\n320 WtrDpth", "wave_elevation.txt`, which the deck needs");
+    refused("2   main     2 ", "1   main     2 ", "another line of the deck has the number 1 too");
     refused("320     WtrDpth", "1 Currents\n320 WtrDpth", "current_profile.txt`, which the deck needs");
     refused("902.2    20      -", "", "this row ends before its unstretched length");
     refused("--------- OPTIONS", "--- RODS ---\nID\n(#)\n1 can\n--- OPTIONS", "there is no rod type `can`");
@@ -148,6 +150,56 @@ fn what_has_no_counterpart_is_refused_where_it_stands() {
     let here = folder(&[("deck.txt", "nothing\n")]);
     let told = run(here.path(), &["import", "deck.txt"]);
     assert!(told.stderr.contains("has no lines: it isn't a MoorDyn deck"), "{}", told.stderr);
+}
+
+#[test]
+fn waves_of_all_kinds_that_are_sums_are_taken_over() {
+    let deck = |kind: &str| SPAR.replacen("320     WtrDpth", &format!("{kind} WaveKin\n320 WtrDpth"), 1);
+    let import = |kind: &str, file: &str, text: &str| {
+        let here = folder(&[("deck.txt", &deck(kind)), (file, text)]);
+        let told = run(here.path(), &["import", "deck.txt", "--out", "scene.toml"]);
+        let scene = fs::read_to_string(here.path().join("scene.toml")).unwrap_or_default();
+        (told, scene)
+    };
+    let even = "0.0 0 0\n0.5 1.5 0.0 0.25\n1.0 0.0 2.0\n";
+    let period = 2.0 * std::f64::consts::TAU;
+    // kind 2: A cos(ωt - kx + arg A), kind 7: A sin(…)
+    let (told, scene) = import("2", "wave_frequencies.txt", even);
+    assert_eq!(told.code, Some(0), "{}", told.stderr);
+    assert!(
+        scene.contains(&format!("{{ amplitude = 1.5, period = {period:?}, phase = 0.0, direction = 0.25 }}")),
+        "{scene}"
+    );
+    assert!(scene.contains("phase = -1.5707963267948966 }"), "{scene}");
+    let (_, scene) = import("7", "wave_frequencies.txt", even);
+    assert!(scene.contains("phase = 1.5707963267948966, direction = 0.25 }"), "{scene}");
+    let (told, _) = import("2", "wave_frequencies.txt", &even.replace("1.0 0.0", "1.3 0.0"));
+    assert!(told.code == Some(2) && told.stderr.contains("at equal intervals"), "{}", told.stderr);
+    // kind 3: a record, which the scene reads
+    let record: String = (0..400)
+        .map(|k| format!("{} {}\n", 0.25 * f64::from(k), (0.25 * f64::from(k) * 0.628).sin()))
+        .collect();
+    let (told, scene) = import("3", "wave_elevation.txt", &record);
+    assert_eq!(told.code, Some(0), "{}", told.stderr);
+    assert!(scene.contains("measured = { file = "), "{scene}");
+}
+
+#[test]
+fn what_drifts_starts_where_the_deck_puts_it_and_bodies_without_mass_are_held() {
+    let rod = HANGING.replace("1 rope 1 R1A 450 45 -\n2 rope 2 R1B 450 45 -\n", "3 rope 1 2 1000 10 -\n");
+    assert!(HANGING.len() > rod.len());
+    let here = folder(&[("rod.txt", &rod)]);
+    let told = run(here.path(), &["import", "rod.txt"]);
+    assert!(told.stdout.contains("from_equilibrium = false"), "{}{}", told.stdout, told.stderr);
+    let body = "--- BODIES ---\nID\n(#)\n1 Coupled 0 0 -70 0 0 0 0 0 0 0 0 0\n--- POINTS";
+    let here = folder(&[("deck.txt", &SPAR.replacen("--------- POINTS", body, 1))]);
+    let told = run(here.path(), &["import", "deck.txt", "--out", "scene.toml"]);
+    assert_eq!(told.code, Some(0), "{}", told.stderr);
+    let ran = run(here.path(), &["check", "scene.toml"]);
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    let here =
+        folder(&[("deck.txt", &SPAR.replacen("--------- POINTS", &body.replace("Coupled", "Free"), 1))]);
+    run(here.path(), &["import", "deck.txt"]).refused(&["a free body without mass"]);
 }
 
 const HANGING: &str = "\

@@ -13,4 +13,5 @@ mod pages;
 mod plugin;
 mod statistics;
 mod stopping;
+mod storm;
 mod verification;

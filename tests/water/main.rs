@@ -5,8 +5,10 @@ mod common;
 
 mod afloat;
 mod all_round;
+mod floating;
 mod fluid;
 mod one_world;
+mod tank;
 mod towing;
 mod vortices;
 mod wall;

@@ -6,10 +6,11 @@ import { derive } from "./data/derive.ts";
 import { short, timeText } from "./data/text.ts";
 import { $, choices, h } from "./page/dom.ts";
 import { facts } from "./page/facts.ts";
+import { listing } from "./page/listings.ts";
 import { Player } from "./page/player.ts";
 import { themed } from "./page/theme.ts";
 import { View } from "./page/view.ts";
-import { Envelopes } from "./plots/envelopes.ts";
+import { Envelopes, type Drawn } from "./plots/envelopes.ts";
 import { Histories } from "./plots/histories.ts";
 import { Spectra } from "./plots/spectra.ts";
 import { StepPlot } from "./plots/steps.ts";
@@ -66,6 +67,8 @@ function start(run: Run): void {
   };
 
   facts(run, span, seek);
+  $("listings").append(...run.listings.map(listing));
+  $("listings").hidden = run.listings.length === 0;
   document.body.classList.toggle("still", !moves);
   if (moves) {
     view = new View(run);
@@ -146,16 +149,23 @@ function windowInputs(part: TimeWindow, span: number): void {
 }
 
 function chooseEnvelope(run: Run, part: TimeWindow, seek: (t: number) => void): Envelopes | null {
-  const all = run.field.lines.flatMap((line) => line.quantities.map((quantity) => ({ line, quantity })));
+  const { lines } = run.field;
+  const several = lines.length > 1;
+  const ranges = run.ranges.map((range): Drawn => {
+    const { name, quantity: what, unit } = range;
+    const line = lines.find((line) => line.quantities.some((q) => q.name === what) && line.name === name);
+    const quantity = line?.quantities.find((q) => q.name === what && q.unit === unit);
+    return { title: `range of ${name}: ${what.replaceAll("_", " ")} [${unit || "-"}]`, unit, range, ...(line && quantity && { line, quantity }) };
+  });
+  const seen = lines.flatMap((line) => line.quantities.map((quantity): Drawn => {
+    const { name, unit } = quantity;
+    return { title: `${several ? `${line.name}: ` : ""}${name} [${unit || "-"}]`, unit, line, quantity };
+  }));
+  const all = [...ranges, ...seen];
   if (all.length === 0) return null;
-  const { line, quantity } = all[0]!;
-  const envelopes = new Envelopes(run, $("envelope"), $("envelope-told"), part, line, quantity, seek);
-  const several = run.field.lines.length > 1;
-  choices($("envelope-of"), all.map((a) => `${several ? `${a.line.name}: ` : ""}${a.quantity.name} [${a.quantity.unit || "-"}]`), 0);
-  $("envelope-of").onchange = (e) => {
-    const chosen = all[Number((e.target as HTMLSelectElement).value)]!;
-    envelopes.choose(chosen.line, chosen.quantity);
-  };
+  const envelopes = new Envelopes(run, $("envelope"), $("envelope-told"), part, all[0]!, seek);
+  choices($("envelope-of"), all.map((a) => a.title), 0);
+  $("envelope-of").onchange = (e) => envelopes.choose(all[Number((e.target as HTMLSelectElement).value)]!);
   return envelopes;
 }
 

@@ -176,6 +176,8 @@ async function works(page) {
   await forces(page);
   await spectra(page);
   await steps(page);
+  await sea(page);
+  await tables(page);
   // records
   await page.click("#panels-count");
   const shown = await page.locator("#histories figure").count();
@@ -189,6 +191,30 @@ async function works(page) {
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
   await page.click("#theme");
   if (shots) await page.pdf({ path: `${shots}/print.pdf`, format: "A4" });
+}
+
+/** The surface of waves moves, and says which of them it leaves out. */
+async function sea(page) {
+  if (!(await page.evaluate(() => window.ropewalk.run.field.waves !== null))) return;
+  const at = (t) => page.evaluate((t) => {
+    window.ropewalk.player.seek(t);
+    const { heights, left } = window.ropewalk.view.stage.sea;
+    return { range: Math.max(...heights) - Math.min(...heights), first: heights[0], left: left.count };
+  }, t);
+  const last = await page.evaluate(() => window.ropewalk.part.last);
+  const [one, other] = [await at(last), await at(0.95 * last)];
+  assert.ok(one.range > 0 && one.first !== other.first, "the water moves");
+  assert.equal(await page.locator("#short-waves").isVisible(), one.left > 0);
+}
+
+/** Tables and range graphs of the run are there. */
+async function tables(page) {
+  const { listings, ranges } = await page.evaluate(() => window.ropewalk.run);
+  assert.equal(await page.locator("#listings table").count(), listings.length);
+  if (listings.length > 0) assert.equal(await page.locator("#listings table").first().locator("tbody tr").count(), listings[0].rows.length);
+  if (ranges.length === 0) return;
+  await page.selectOption("#envelope-of", "0");
+  assert.match(await page.textContent("#envelope-told"), /over all steps from/);
 }
 
 /** Arrows are drawn, and as long as is wished; kinds can be left out. */

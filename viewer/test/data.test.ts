@@ -48,7 +48,7 @@ test("a block becomes a run", async () => {
   const plane = { name: "", solid: { type: "plane" }, pose: { position: [100, 50, -3], orientation: [1, 0, 0, 0] } };
   const text = JSON.stringify({
     version: 1, title: "ü </script>", history: [{ name: "t", unit: "s", values: put([0, 0.5], 1, 1e6) }],
-    field: { origin: [0, 0, 0], times: put([0, 1], 1), lines: [line], bodies: [], shapes: [plane], water: null, bed: null },
+    field: { origin: [0, 0, 0], times: put([0, 1], 1), lines: [line], bodies: [], shapes: [plane], water: null, waves: null, bed: null },
   });
   const json = new TextEncoder().encode(text);
   const head = new Uint8Array(4);
@@ -108,7 +108,7 @@ test("a body turns by the shorter way", () => {
   assert.ok(Math.abs(heading(middle.q) - Math.PI / 4) < 1e-6, "an eighth of a turn, not three eighths");
   const x = turned([half, 0, 0, half], [1, 0, 0]);
   assert.ok(Math.abs(x[1] - 1) < 1e-12 && Math.abs(x[0]) < 1e-12);
-  const [start] = points({ origin: [0, 0, 0], times: new Float64Array(3), lines: [line], bodies: [], forces: [], shapes: [], water: null, bed: null });
+  const [start] = points({ origin: [0, 0, 0], times: new Float64Array(3), lines: [line], bodies: [], forces: [], shapes: [], water: null, waves: null, bed: null });
   assert.deepEqual(start!.at({ k: 1, f: 0 }), [0, 2, 0]);
 });
 

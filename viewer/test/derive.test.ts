@@ -12,7 +12,7 @@ function line(x: number[]): Line {
 }
 
 function field(over: Partial<Field>): Field {
-  return { origin: [0, 0, 0], times: Float64Array.of(0), lines: [], bodies: [], forces: [], shapes: [], water: null, bed: null, ...over };
+  return { origin: [0, 0, 0], times: Float64Array.of(0), lines: [], bodies: [], forces: [], shapes: [], water: null, waves: null, bed: null, ...over };
 }
 
 test("angles are those of the line's direction", () => {

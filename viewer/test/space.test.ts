@@ -104,7 +104,7 @@ function field(): Field {
   const x = Float32Array.from({ length: 5 * 6 }, (_, i) => (i % 3 === 0 ? 100 * Math.floor(i / 6) + (i % 6 === 0 ? 0 : 1) : 0));
   const line = { name: "hose", kind: "cable", place: "", diameter: 0.001, counts: Array(5).fill(2), starts: [0, 2, 4, 6, 8], s: Float32Array.of(0, 1), x,
     quantities: [{ name: "tension", unit: "N", values: Float32Array.from({ length: 10 }, (_, i) => i) }] };
-  return { origin: [0, 0, 0], times, lines: [line], bodies: [], forces: [], shapes: [], water: 0, bed: null };
+  return { origin: [0, 0, 0], times, lines: [line], bodies: [], forces: [], shapes: [], water: 0, waves: null, bed: null };
 }
 
 test("the stage stays with a line that is small beside its path", () => {
@@ -130,7 +130,7 @@ test("in the frame of its own point a trail stands still", () => {
 });
 
 test("a stage without anything, and one of points that aren't there", () => {
-  const empty = new Stage({ origin: [0, 0, 0], times: new Float64Array(), lines: [], bodies: [], forces: [], shapes: [], water: null, bed: null });
+  const empty = new Stage({ origin: [0, 0, 0], times: new Float64Array(), lines: [], bodies: [], forces: [], shapes: [], water: null, waves: null, bed: null });
   empty.to(3);
   empty.fit("all", 1);
   assert.ok(Number.isFinite(empty.orbit.distance));

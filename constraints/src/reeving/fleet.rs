@@ -1,5 +1,6 @@
 //! A cable that meets its wheel from the side: what turns it into the groove.
 
+use super::hold::Mode;
 use super::sheave::Seat;
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
@@ -21,6 +22,8 @@ pub(super) struct Fleet {
     pub boundary: MovingBoundary,
     pub seat: Seat,
     pub strand: Strand,
+    /// Place of the internal variable that says whether the cable is on the wheel, if it may leave it.
+    pub mode: Option<usize>,
 }
 
 /// Unknowns: the end of the span and its slope, the material coordinate there, what carries the wheel.
@@ -113,6 +116,9 @@ impl Fleet {
 
     /// Whether there is something to turn.
     fn acts(&self, at: &At<'_>) -> bool {
+        if self.mode.is_some_and(|mode| Mode::of(at.internal, mode) != Mode::Wraps) {
+            return false;
+        }
         let slope: V3<f64> = std::array::from_fn(|i| at.q[self.boundary.end_q + 3 + i]);
         let axis = self.seat.axis_now(at);
         along(&axis, &slope).powi(2) > NONE * NONE * along(&slope, &slope)

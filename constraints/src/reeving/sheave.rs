@@ -2,6 +2,8 @@
 
 use super::arc::{Arc, End, Grip, Instant, Residual, Wheel};
 use super::at_rest::{self, Sliding};
+use super::hold::Mode;
+use super::piece::Piece;
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
@@ -86,13 +88,23 @@ pub(super) struct Groove {
     pub way: f64,
     /// Of several turns: the wrap at the start, and place of the internal variable by how much it differs since [rad].
     pub turns: Option<(f64, usize)>,
+    /// Place of the internal variable with its [`Mode`].
+    pub mode: usize,
 }
 
 impl Groove {
     /// Of a cable that has this length on the wheel at the start.
-    pub fn new(arc: Arc, stored: f64, ends: [MovingBoundary; 2], back: bool) -> Self {
+    pub fn new(arc: Arc, stored: f64, ends: [MovingBoundary; 2], back: bool, mode: usize) -> Self {
         let stored = stored - ends[1].home + ends[0].home;
-        Groove { arc, stored, ends, back, closed: false, way: 0.0, turns: None }
+        Groove { arc, stored, ends, back, closed: false, way: 0.0, turns: None, mode }
+    }
+
+    /// The angle of a kink between both spans, as the cable turns about the axis of the wheel in space [rad].
+    pub fn kink(&self, axis: &V3<f64>, at: &At<'_>) -> f64 {
+        let [a, b]: [V3<f64>; 2] = self.ends.map(|end| std::array::from_fn(|i| at.q[end.end_q + 3 + i]));
+        let flat = dot(&a, &b) - dot(axis, &a) * dot(axis, &b);
+        let angle = dot(axis, &cross(&a, &b)).atan2(flat);
+        if self.back { -angle } else { angle }
     }
 }
 
@@ -219,8 +231,8 @@ impl Sheave {
             }
         };
         let size = self.seat.size();
-        let dot = |a: &V3<S>, b: &V3<S>| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let (carried, carried_rate) = (dot(&omega, &own), dot(&alpha, &own));
+        let of = |a: &V3<S>| a[0] * own[0] + a[1] * own[1] + a[2] * own[2];
+        let (carried, carried_rate) = (of(&omega), of(&alpha));
         let (own_spin, own_rate) = match &self.angle {
             Some(_) => (x.v[8 + size], x.a[8 + size]),
             None => (S::zero(), S::zero()),
@@ -233,7 +245,13 @@ impl Sheave {
             carrier: carried * side,
         };
         let arc = self.arc(groove, at);
-        let (Residual { r, p, centre, groove: moment }, mut instant) = arc.eval(groove.stored, &ends, &wheel);
+        let (Residual { r, p, centre, groove: moment }, mut instant) =
+            match Mode::of(at.internal, groove.mode) {
+                Mode::Wraps => arc.eval(groove.stored, &ends, &wheel),
+                // what the wheel does to it then, its constraint does
+                Mode::Touches | Mode::Off => Piece { strand: groove.arc.strand, gravity: groove.arc.gravity }
+                    .eval(groove.stored, &ends),
+            };
         let mut out = [S::zero(); MOST];
         for end in 0..2 {
             out[4 * end..4 * end + 3].copy_from_slice(&r[end]);
@@ -301,7 +319,42 @@ impl Sheave {
 
     /// What there is to know of a groove now.
     pub fn instant(&self, k: usize, at: &At<'_>) -> Instant<f64> {
-        self.eval(k, at, &self.local(&self.grooves[k], at)).1
+        let groove = &self.grooves[k];
+        let mut now = self.eval(k, at, &self.local(groove, at)).1;
+        if Mode::of(at.internal, groove.mode) == Mode::Touches {
+            now.wrap = groove.kink(&self.seat.axis_now(at), at);
+            // presses on the axle by the kink
+            let inwards = cross(&self.seat.axis_now(at), &self.chord(groove, at));
+            let side = if groove.back { -1.0 } else { 1.0 };
+            now.axle = inwards.map(|x| side * 2.0 * now.tension * (0.5 * now.wrap).sin() * x);
+        }
+        now
+    }
+
+    /// The centre in space.
+    fn centre(&self, at: &At<'_>) -> V3<f64> {
+        let Some((q, _, turns)) = self.seat.on else { return self.seat.point };
+        let out = match turns {
+            true => times(&matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]), &self.seat.point),
+            false => self.seat.point,
+        };
+        std::array::from_fn(|i| at.q[q + i] + out[i])
+    }
+
+    /// Direction from one end to the other.
+    fn chord(&self, groove: &Groove, at: &At<'_>) -> V3<f64> {
+        let [a, b] = groove.ends;
+        let c: V3<f64> = std::array::from_fn(|i| at.q[b.end_q + i] - at.q[a.end_q + i]);
+        let size = dot(&c, &c).sqrt();
+        c.map(|x| x / size)
+    }
+
+    /// Where the middle between both ends of a groove is, as seen from the centre: along the axis, and how far from it [m].
+    pub fn middle(&self, groove: &Groove, at: &At<'_>) -> [f64; 2] {
+        let ([a, b], c, axis) = (groove.ends, self.centre(at), self.seat.axis_now(at));
+        let d: V3<f64> = std::array::from_fn(|i| 0.5 * (at.q[a.end_q + i] + at.q[b.end_q + i]) - c[i]);
+        let beside = dot(&d, &axis);
+        [beside, (dot(&d, &d) - beside * beside).sqrt()]
     }
 
     /// What the cable does to the axle besides, since it comes and goes by a fleet angle [N].

@@ -4,13 +4,14 @@ use super::arc::{Arc, Grip};
 use super::at_rest::Sliding;
 use super::events::{Short, Watch, What};
 use super::fleet::Fleet;
+use super::hold::Hold;
+use super::piece::Stiff;
 use super::sheave::{Angle, Groove, Seat, Sheave};
-use super::tangent::Tangent;
 use super::turns::Unwound;
 use crate::check::unit;
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::rotation::around;
-use ropewalk_core::{BuildError, Marker, NodeKind, Related, Signal, Solid, V3, dot};
+use ropewalk_core::{BuildError, Marker, NodeKind, Signal, Solid, V3, dot};
 use ropewalk_scene::quantity::{Setting, kind};
 use ropewalk_scene::{Builder, ConstraintSpec, Guide, MarkerRef, Passage, quantity, register_spec};
 use schemars::JsonSchema;
@@ -27,7 +28,8 @@ const MOST: usize = 100;
 /// wheel do. With `friction` the cable sticks, creeps and slips on the groove by the capstan equation, and turns a wheel with
 /// `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable. `efficiency` is for tables of cranes.
 ///
-/// Not known: torsion of the cable, a cable that leaves the wheel and comes back; runs end there.
+/// A cable may lift off from the wheel and come down on it again, which is told, but for one of several `turns`; what an impact
+/// takes counts in the balance of energy as a change of mesh. Not known: torsion of the cable; runs end there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheaveSpec {
@@ -226,13 +228,13 @@ impl SheaveSpec {
         };
         let mut grooves = Vec::new();
         for (k, passage) in passages.iter().enumerate() {
-            for (end, which) in passage.boundaries.iter().zip(["in", "out"]) {
-                let number = if k == 0 { String::new() } else { format!("{}.", k + 1) };
-                let tangent = Tangent { radius: self.radius };
-                let markers = vec![Marker::node(end.end), marker];
-                let label = format!("{name}.{number}{which}");
-                b.constraint(Related::new(label.clone(), tangent, markers))?;
-                b.term(Box::new(Fleet { name: label, boundary: *end, seat, strand: passage.strand }));
+            let number = if k == 0 { String::new() } else { format!(".{}", k + 1) };
+            let mode = b.internal_variable(format!("{name}{number}: mode"));
+            let ends = passage.boundaries.map(|end| end.end);
+            b.constraint(Hold::new(format!("{name}{number}"), b.nodes(), ends, marker, self.radius, mode))?;
+            for (&boundary, which) in passage.boundaries.iter().zip(["in", "out"]) {
+                let (name, strand) = (format!("{name}{number}.{which}"), passage.strand);
+                b.term(Box::new(Fleet { name, boundary, seat, strand, mode: Some(mode) }));
             }
             let (strand, gravity) = (passage.strand, b.gravity());
             let share = |x: f64| if k == 0 { x } else { 0.0 };
@@ -251,9 +253,17 @@ impl SheaveSpec {
                 bearing: [share(bearing[0]), bearing[1], share(bearing[2])],
             };
             let back = dot(&passage.axis, &axis) < 0.0;
+            if strand.ei > 0.0 {
+                let (ends, name) = (passage.boundaries, name.to_string());
+                b.term(Box::new(Stiff { name, mode, ends, ei: strand.ei, radius: self.radius }));
+            }
             let turns = self.turns.map(|_| (passage.wrap, b.memory(&format!("{name}: wrap"), 1)));
             let way = self.equilibrium.way(passage)?;
-            grooves.push(Groove { way, turns, ..Groove::new(arc, passage.stored, passage.boundaries, back) });
+            grooves.push(Groove {
+                way,
+                turns,
+                ..Groove::new(arc, passage.stored, passage.boundaries, back, mode)
+            });
         }
         let rests = (self.equilibrium != Sliding::None).then(|| b.memory(&format!("{name}: equilibrium"), 1));
         if turns && passages.len() > 1 {
@@ -285,7 +295,7 @@ impl SheaveSpec {
         let shared = std::sync::Arc::new(sheave.clone());
         for groove in 0..shared.grooves.len() {
             let watched: &[What] = match shared.grooves[groove].turns {
-                None => &[What::Leaves, What::Whole, What::Slack, What::Flung],
+                None => &What::ALL,
                 Some(_) => {
                     b.event(Unwound { sheave: shared.clone(), groove });
                     &[What::Slack, What::Flung]

@@ -25,6 +25,11 @@ pub trait Constraint: Send + Sync {
     fn markers(&self) -> &[Marker];
     /// The nodes that it touches, each once.
     fn nodes(&self) -> &[NodeId];
+    /// The nodes behind which its rows can be eliminated whatever it becomes during a run. Left out, that is judged by its
+    /// Jacobian at the start.
+    fn behind(&self) -> &[NodeId] {
+        &[]
+    }
     /// Whether it has no geometric stiffness.
     fn linear(&self) -> bool;
     /// Whether one of its equations has none.

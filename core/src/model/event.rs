@@ -10,6 +10,9 @@ pub enum Action {
     Continue,
     /// The state (an internal variable, a velocity) was changed: the integrator starts anew from it.
     Restart,
+    /// As [`Action::Restart`], but other equations hold from here on: what energy this takes or gives, such as by an impact, is
+    /// told and counts as that of a change of mesh.
+    Switch,
     /// The mesh changes: the simulation goes on with another model.
     Remesh(Box<Model>),
     /// The run is over.

@@ -169,7 +169,8 @@ impl Model {
             pattern.clique(dofs.chain((first..first + count).map(|r| velocities + r)));
             cliques.push(at..at + 1);
             rows.push(first + count);
-            touched.push(Rows { count, nodes: c.nodes().to_vec(), jacobian });
+            let behind = c.behind().to_vec();
+            touched.push(Rows { count, nodes: c.nodes().to_vec(), jacobian, behind });
         }
         // the forces of a constraint on a body turn it, and rotations one after the other don't commute
         let turns = |c: &dyn Constraint| {

@@ -22,6 +22,8 @@ pub(crate) struct Rows {
     pub count: usize,
     pub nodes: Vec<NodeId>,
     pub jacobian: Vec<f64>,
+    /// Nodes behind which the rows can be eliminated, if that isn't judged by the Jacobian.
+    pub behind: Vec<NodeId>,
 }
 
 /// How well a node has to be held for rows to follow it before others that they touch: the least that is left of each
@@ -162,11 +164,12 @@ fn fill(graph: &[Vec<u32>], order: &[usize]) -> usize {
     total
 }
 
-/// For each constraint the place of the last node that it touches.
+/// For each constraint the place of the last node that it touches, or of the last that it says it can follow.
 fn last(constraints: &[Rows], order: &[usize]) -> Vec<usize> {
     let place = places(order);
     // a constraint between fixed things only is refused by the model; its place doesn't matter
-    let last = |c: &Rows| c.nodes.iter().map(|k| place[k.0 as usize]).max();
+    let of = |nodes: &[NodeId]| nodes.iter().map(|k| place[k.0 as usize]).max();
+    let last = |c: &Rows| of(&c.behind).or_else(|| of(&c.nodes));
     constraints.iter().map(|c| last(c).unwrap_or(order.len().saturating_sub(1))).collect()
 }
 
@@ -196,6 +199,7 @@ fn first_held(nodes: &[Node], constraints: &[Rows], order: &[usize]) -> Vec<usiz
             let before = held.len();
             let rows = constraints[c].of_node(nodes, k);
             let well = !rows.is_empty()
+                && constraints[c].behind.is_empty()
                 && constraints[c].moves_well(nodes, k)
                 && rows.into_iter().all(|row| hold(&mut held, row));
             if well {

@@ -137,6 +137,9 @@ impl Simulation {
         let Fired { event: k, action, after, changed } = fired;
         observer.event(&self.events[k].0.name(), self.state.t);
         let h = self.state.control.h_last;
+        let switches = matches!(action, Action::Switch);
+        let event = self.events[k].0.clone();
+        let before = switches.then(|| self.measure(event.as_ref()));
         self.state = after;
         match action {
             Action::Continue => {
@@ -160,9 +163,8 @@ impl Simulation {
             Action::Fail(why) => {
                 return Err(StepError::Event { t: self.state.t, event: self.events[k].0.name(), why });
             }
-            Action::Restart => {}
+            Action::Restart | Action::Switch => {}
             Action::Remesh(model) => {
-                let event = self.events[k].0.clone();
                 let before = self.measure(event.as_ref());
                 self.state = model.carry(&self.model, &self.state);
                 self.aside = None;
@@ -183,6 +185,9 @@ impl Simulation {
         let now = self.state.internal.clone();
         restart(&self.model, &mut self.state, &mut self.work, self.integrator.as_ref())?;
         self.state.internal = now;
+        if let Some(before) = before {
+            self.report(event.as_ref(), before, observer);
+        }
         (self.state.control.h_next, self.state.control.limit) = (0.1 * h, Limit::Event);
         self.resume(k, changed);
         Ok(None)

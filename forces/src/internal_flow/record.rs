@@ -61,9 +61,9 @@ impl Record for WallTension {
     }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
         let places = || self.at.iter().map(|place| place.now(self.wall.part.as_ref(), &s.at));
-        out.extend(places().map(|at| self.wall.tension(at, s)));
+        out.extend(places().map(|at| self.wall.tension(at, s.model, &s.at)));
         if self.wall.flows() {
-            out.extend(places().map(|at| self.wall.pressure(at, s)));
+            out.extend(places().map(|at| self.wall.pressure(at, s.model, &s.at)));
         }
     }
 }

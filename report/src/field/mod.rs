@@ -7,10 +7,12 @@ mod force;
 mod mesh;
 mod npy;
 mod solid;
+mod wave;
 
 pub use force::ForceRecord;
 pub use mesh::Mesh;
 pub use solid::{Pose, Shape, Solid};
+pub use wave::{Wave, Waves};
 
 use crate::OutputError;
 
@@ -44,6 +46,8 @@ pub struct FieldRecord {
     pub shapes: Vec<Shape>,
     /// Height of the water's surface [m], if there is one.
     pub water: Option<f64>,
+    /// The waves on it, if there are some.
+    pub waves: Option<Waves>,
     /// Height of the sea bed [m], if there is one.
     pub bed: Option<f64>,
 }

@@ -3,8 +3,9 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Page, Steps, pack, panel};
-use crate::{BodyRecord, FieldRecord, ForceRecord, LineRecord, Pose, Shape, Solid};
+use super::{Page, RangeGraph, Steps, pack, panel};
+use crate::{BodyRecord, FieldRecord, ForceRecord, LineRecord, Pose, Shape, Solid, Wave, Waves};
+use std::f64::consts::TAU;
 
 /// Version of the format, for a page that is older than its data.
 const VERSION: u32 = 1;
@@ -84,6 +85,8 @@ pub(super) fn deflated(page: &Page, thinned: &[String]) -> Vec<u8> {
         "settings": page.settings,
         "energy": page.energy,
         "sections": page.sections,
+        "listings": page.listings,
+        "ranges": page.ranges.iter().map(|r| range(&mut arrays, r)).collect::<Vec<_>>(),
         "axis": {"name": axis.0, "unit": axis.1},
         "history": history,
         "panels": panel::drawn(columns, &page.panels),
@@ -112,8 +115,37 @@ fn field(arrays: &mut Arrays, record: &FieldRecord) -> Value {
         "forces": record.forces.iter().map(|f| force(arrays, f, &origin)).collect::<Vec<_>>(),
         "shapes": record.shapes.iter().map(|s| shape(arrays, s, &origin)).collect::<Vec<_>>(),
         "water": record.water,
+        "waves": record.waves.as_ref().map(|w| waves(arrays, w, &origin)),
         "bed": record.bed,
     })
+}
+
+/// Rows of amplitude, wavenumbers, frequency and phase, that of the field's origin.
+fn waves(arrays: &mut Arrays, waves: &Waves, origin: &[f64; 3]) -> Value {
+    let row = |w: &Wave| {
+        let phase = (w.k[0] * origin[0] + w.k[1] * origin[1] + w.phase).rem_euclid(TAU);
+        [w.amplitude, w.k[0], w.k[1], w.omega, phase]
+    };
+    json!({"ramp": waves.ramp, "all": arrays.add(waves.all.iter().flat_map(row), 5, 0.0)})
+}
+
+fn range(arrays: &mut Arrays, range: &RangeGraph) -> Value {
+    let mut text =
+        json!({"name": range.name, "quantity": range.quantity, "unit": range.unit, "window": range.window});
+    let columns = [
+        ("s", &range.s),
+        ("start", &range.start),
+        ("least", &range.least),
+        ("mean", &range.mean),
+        ("greatest", &range.greatest),
+        ("deviation", &range.deviation),
+        ("t_least", &range.t_least),
+        ("t_greatest", &range.t_greatest),
+    ];
+    for (name, values) in columns {
+        text[name] = json!(arrays.series(values));
+    }
+    text
 }
 
 /// A line whose points are always as many has a row for each snapshot, else a row for each point.
@@ -204,7 +236,7 @@ fn shape(arrays: &mut Arrays, shape: &Shape, origin: &[f64; 3]) -> Value {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::{Column, Event, LineSnapshot, Mesh, Quantity, Table};
+    use crate::{Column, Event, LineSnapshot, Listing, Mesh, Quantity, Table};
     use std::io::Read;
 
     /// The JSON text and the arrays of a page's data, as the page reads them.
@@ -271,8 +303,28 @@ pub(super) mod tests {
                 }],
                 shapes: vec![Shape::new("hole", endless, Pose::at([0.0, 0.0, 2.0]))],
                 water: Some(0.0),
+                waves: Some(Waves {
+                    all: vec![Wave { amplitude: 1.5, k: [0.5, -0.25], omega: 2.0, phase: 0.25 }],
+                    ramp: 20.0,
+                }),
                 bed: None,
             },
+            listings: vec![Listing {
+                title: "Statistics".into(),
+                headings: vec!["record".into(), "mean".into()],
+                rows: vec![vec!["end.x [m]".into(), "1.5".into()]],
+                note: "from 5 s on".into(),
+            }],
+            ranges: vec![RangeGraph {
+                name: "steady".into(),
+                quantity: "tension".into(),
+                unit: "N".into(),
+                window: [5.0, 20.0],
+                s: vec![0.0, 1.0],
+                least: vec![1.0, 2.0],
+                greatest: vec![4.0, f64::NAN],
+                ..RangeGraph::default()
+            }],
             ..Page::default()
         }
     }
@@ -317,6 +369,15 @@ pub(super) mod tests {
         assert_eq!((&text["steps"]["counts"], &text["restarts"]), (&json!([3, 7]), &json!([0.0, 1.0])));
         assert_eq!(text["field"]["shapes"][0]["solid"], json!({"type": "tube", "radius": 0.5, "half": null}));
         assert_eq!(text["field"]["shapes"][0]["pose"]["position"][0], -origin[0]);
+        let sea = get(&text["field"]["waves"]["all"]);
+        let phase = (0.5 * origin[0] - 0.25 * origin[1] + 0.25).rem_euclid(TAU);
+        assert_eq!(sea[..4], [1.5, 0.5, -0.25, 2.0]);
+        assert!((sea[4] - phase).abs() < 1e-6, "waves are counted from the origin of the field");
+        assert_eq!(text["listings"][0]["rows"][0][1], "1.5");
+        let range = &text["ranges"][0];
+        assert_eq!((&range["quantity"], &range["window"]), (&json!("tension"), &json!([5.0, 20.0])));
+        assert_eq!(get(&range["least"]), [1.0, 2.0]);
+        assert!(get(&range["greatest"])[1].is_nan());
     }
 
     #[test]

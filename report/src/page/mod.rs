@@ -7,10 +7,12 @@
 mod block;
 mod pack;
 mod panel;
+mod range;
 mod steps;
 mod still;
 mod thin;
 
+pub use range::RangeGraph;
 pub use steps::Steps;
 pub use still::StillPage;
 
@@ -77,6 +79,10 @@ pub struct Page {
     pub energy: Vec<Entry>,
     /// What else is to be told, such as last values: sections of their own.
     pub sections: Vec<Section>,
+    /// Tables of texts, such as statistics.
+    pub listings: Vec<Listing>,
+    /// Range graphs along lines, over all steps of the solver.
+    pub ranges: Vec<RangeGraph>,
     /// The histories; the first column is the time [s] or the load factor.
     pub history: Table,
     /// What is drawn together. Columns that are in none get panels of their own, by name and unit.
@@ -104,6 +110,8 @@ impl Default for Page {
             events: Vec::new(),
             settings: Vec::new(),
             sections: Vec::new(),
+            listings: Vec::new(),
+            ranges: Vec::new(),
             energy: Vec::new(),
             history: Table::default(),
             panels: Vec::new(),
@@ -122,6 +130,19 @@ pub struct Section {
     pub title: String,
     /// The entries.
     pub entries: Vec<Entry>,
+}
+
+/// A table of texts under a title.
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Listing {
+    /// What it is, such as "Statistics".
+    pub title: String,
+    /// One for each column.
+    pub headings: Vec<String>,
+    /// As many cells each; the first of them names the row.
+    pub rows: Vec<Vec<String>>,
+    /// What is said below it, such as of which time it is.
+    pub note: String,
 }
 
 /// A name and a value with its unit, such as "CPU time" and "0.52 s".

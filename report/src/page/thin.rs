@@ -86,6 +86,8 @@ impl Page {
             events: self.events.clone(),
             settings: self.settings.clone(),
             sections: self.sections.clone(),
+            listings: self.listings.clone(),
+            ranges: self.ranges.clone(),
             energy: self.energy.clone(),
             panels: self.panels.clone(),
             steps: self.steps.clone(),
@@ -123,6 +125,7 @@ fn field(record: &FieldRecord, snapshots: usize, points: usize, meshes: usize) -
         times: kept.iter().map(|k| record.times[*k]).collect(),
         shapes: record.shapes.clone(),
         water: record.water,
+        waves: record.waves.clone(),
         bed: record.bed,
         ..FieldRecord::default()
     };

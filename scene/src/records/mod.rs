@@ -5,6 +5,7 @@
 //! A record only looks: it never puts a node anywhere, so a scene moves in the same way with and without it.
 
 mod along;
+mod direction;
 mod driving;
 mod energy;
 mod force;
@@ -20,6 +21,7 @@ mod touchdown;
 mod turning;
 
 pub use along::AlongSpec;
+pub use direction::{DirectionSpec, tangent};
 pub use driving::DrivingCheckSpec;
 pub use energy::EnergySpec;
 pub use force::ForceRecordSpec;

@@ -152,6 +152,27 @@ fn tension_is_observed_at_ends_and_arc_lengths() {
 }
 
 #[test]
+fn a_direction_is_told_by_its_angles() {
+    let json =
+        r#"{"direction": {"of": "line", "at": ["start", "50 cm"], "degrees": true, "axis": [-1, 0, 1]}}"#;
+    let (name, columns, out) = sampled(spec(json).as_ref()).unwrap();
+    assert_eq!(name, "line.direction");
+    assert_eq!(columns[0], "line.start.declination [deg]");
+    assert_eq!(columns[5], "line@0.5m.angle [deg]");
+    for (k, angle) in [90.0, 0.0, 135.0, 90.0, 0.0, 135.0].into_iter().enumerate() {
+        assert!((out[k] - angle).abs() < 1e-9, "{columns:?} {out:?}");
+    }
+    for (json, field) in [
+        (r#"{"direction": {"of": "line", "axis": [0, 0, 0]}}"#, "axis"),
+        (r#"{"direction": {"of": "line", "body": "line"}}"#, "body"),
+        (r#"{"direction": {"of": "line", "at": []}}"#, "at"),
+        (r#"{"direction": {"of": "line", "at": [9]}}"#, "at"),
+    ] {
+        assert_eq!(sampled(spec(json).as_ref()).unwrap_err().field.as_deref(), Some(field));
+    }
+}
+
+#[test]
 fn the_reaction_acts_on_the_marker_that_moves() {
     let (name, columns, out) = sampled(spec(r#"{"reaction": {"of": "rail"}}"#).as_ref()).unwrap();
     assert_eq!((name.as_str(), out), ("rail.reaction", vec![-3.0, 0.0, 4.0, 5.0]));

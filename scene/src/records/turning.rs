@@ -78,7 +78,7 @@ struct Turning {
     title: String,
 }
 
-fn quaternion(s: &Sample<'_>, node: NodeId) -> [f64; 4] {
+pub(super) fn quaternion(s: &Sample<'_>, node: NodeId) -> [f64; 4] {
     let Node { kind, q, .. } = *s.model.node(node);
     if kind == NodeKind::Twist {
         return from_matrix(&twist::section(&s.at.q[q..]));

@@ -41,12 +41,20 @@ pub(super) fn body(
     let centre = three(several(9, "centre of mass")?, |z| [0.0, 0.0, z]);
     let inertia = three(several(10, "inertia")?, |x| [x; 3]);
     let volume = deck.number(row, 11, "volume")?;
+    // what is held needs no mass in the deck, and its mass says nothing here
+    let weightless = mass == 0.0 && inertia == [0.0; 3];
+    if weightless && free {
+        let word = deck.word(row, 8, "mass")?;
+        return Err(deck.word_fault("a free body without mass of its own isn't taken over", word));
+    }
+    let (mass, inertia) = if weightless { (1.0, [1.0; 3]) } else { (mass, inertia) };
+    let held = if weightless { "# it is held, and its mass means nothing\n" } else { "" };
     if [12, 13].iter().any(|k| several(*k, "coefficient").is_ok_and(|all| all.iter().any(|x| *x != 0.0))) {
         notes.push(format!("drag and added mass of body {} are left out: a `hull` would have them", id.text));
     }
     let _ = write!(
         out,
-        "\n# {}\n[[elements]]\ntype = \"rigid_body\"\nname = \"body{}\"\nposition = {:?}\nmass = {mass:?}\ninertia = {inertia:?}\n\
+        "\n# {}\n[[elements]]\ntype = \"rigid_body\"\nname = \"body{}\"\nposition = {:?}\n{held}mass = {mass:?}\ninertia = {inertia:?}\n\
          centre = {centre:?}\nvolume = {volume:?}\n",
         row.line,
         id.text,

@@ -18,7 +18,7 @@ pub(super) struct Imported {
 }
 
 /// What an option stands for in a scene, if anything.
-const IGNORED: [&str; 26] = [
+const IGNORED: [&str; 27] = [
     "dtm",
     "dt",
     "cfl",
@@ -38,6 +38,7 @@ const IGNORED: [&str; 26] = [
     "fileic",
     "icfile",
     "dtwave",
+    "outswitch",
     "disableoutput",
     "disableouttime",
     "fricdamp",
@@ -73,6 +74,17 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
             return Err(deck
                 .word_fault(&format!("the option `{}` has no counterpart", word.text), word)
                 .with_help("take it out of the deck if the scene can do without"));
+        }
+    }
+    for (rows, what) in
+        [(&deck.points, "point"), (&deck.lines, "line"), (&deck.rods, "rod"), (&deck.bodies, "body")]
+    {
+        for (k, row) in rows.iter().enumerate() {
+            let id = deck.word(row, 0, "number")?;
+            if rows[..k].iter().any(|other| other.words[0].text == id.text) {
+                return Err(deck
+                    .word_fault(&format!("another {what} of the deck has the number {} too", id.text), id));
+            }
         }
     }
     let density = deck.option_number(&["rho", "wtrdnsty"], 1025.0)?;

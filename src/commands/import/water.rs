@@ -1,7 +1,8 @@
 //! The run, the water, its bed and what it does to lines.
 
-use super::deck::Deck;
+use super::deck::{Deck, Row};
 use super::parts::Line;
+use super::rod::rod_end;
 use ropewalk_scene::Fault;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;
@@ -19,11 +20,17 @@ pub(super) fn head(
     let output = deck.option_number(&["dtout"], 0.0)?;
     let output = if output > 0.0 { output } else { 0.1 };
     let depth = deck.option_number(&["wtrdpth"], 0.0)?;
+    let start = match drifts(deck) {
+        true => {
+            "from_equilibrium = false         # something drifts freely: all starts where the deck puts it"
+        }
+        false => "from_equilibrium = true",
+    };
     let title = deck.title.replace(['"', '\\'], "'");
     let _ = write!(
         out,
         "# {name}, a MoorDyn deck, as a scene.\ntitle = \"{title}\"\ngravity = [0, 0, {:?}]\n\n[run]\n\
-         # the deck doesn't say how long\nduration = \"60 s\"\noutput = {output:?}\nfrom_equilibrium = true\n\n[water]\n\
+         # the deck doesn't say how long\nduration = \"60 s\"\noutput = {output:?}\n{start}\n\n[water]\n\
          density = {density:?}\nlevel = 0\n",
         0.0 - g
     );
@@ -51,19 +58,42 @@ pub(super) fn head(
     }
     match deck.option_number(&["wavekin"], 0.0)? {
         0.0 => {}
-        7.0 => {
+        3.0 => {
+            let file = folder.join("wave_elevation.txt");
+            if !file.is_file() {
+                let message = format!("`{}`, which the deck needs, is no file", file.display());
+                return Err(unknown(deck, "wavekin", &message));
+            }
+            let file = file.display().to_string().replace('\\', "/").replace('"', "");
             let _ = write!(
                 out,
-                "\n[water.waves]\ndepth = {depth:?}\nramp = 20.0                      # from the equilibrium in still water\ncomponents = [\n"
+                "\n[water.waves]\ndepth = {depth:?}\nramp = 20.0                      # from the equilibrium in still water\n\
+                 # the deck's record of the elevation; summed up, without the deck's grid\nmeasured = {{ file = \"{file}\" }}\n"
             );
-            for w in table(folder, "wave_frequencies.txt", 3, 0)? {
-                // the deck's sum is of |A| sin(ωt - kx + arg A), the scene's of cos(kx - ωt + φ)
+        }
+        kind @ (2.0 | 7.0) => {
+            let _ = write!(
+                out,
+                "\n[water.waves]\ndepth = {depth:?}\nramp = 20.0                      # from the equilibrium in still water\n{}components = [\n",
+                if kind == 2.0 { "# summed up, without the deck's grid\n" } else { "" }
+            );
+            let rows = table(folder, "wave_frequencies.txt", 3, 0)?;
+            if kind == 2.0 && !even(&rows) {
+                let message = "waves on a grid (WaveKin 2) are taken over only if their frequencies are at equal intervals: the deck \
+                               puts others between them";
+                return Err(unknown(deck, "wavekin", message));
+            }
+            for w in rows {
                 let [omega, re, im] = [w[0], w[1], w[2]];
-                let (amplitude, phase) = (re.hypot(im), FRAC_PI_2 - im.atan2(re));
+                // kind 7 sums up |A| sin(ωt - kx + arg A), kind 2 |A| cos(ωt - kx + arg A), the scene cos(kx - ωt + φ)
+                let turn = if kind == 2.0 { 0.0 } else { FRAC_PI_2 };
+                let (amplitude, phase) = (re.hypot(im), turn - im.atan2(re));
                 if omega > 0.0 && amplitude > 0.0 {
+                    let way = w.get(3).filter(|b| **b != 0.0);
+                    let way = way.map_or(String::new(), |b| format!(", direction = {b:?}"));
                     let _ = writeln!(
                         out,
-                        "    {{ amplitude = {amplitude:?}, period = {:?}, phase = {phase:?} }},",
+                        "    {{ amplitude = {amplitude:?}, period = {:?}, phase = {phase:?}{way} }},",
                         TAU / omega
                     );
                 }
@@ -74,11 +104,34 @@ pub(super) fn head(
             return Err(unknown(
                 deck,
                 "wavekin",
-                "waves of this kind aren't taken over: only 0 and 7, a sum of components, are",
+                "waves of this kind aren't taken over: only 0, and 2, 3 and 7, which are sums of components, are",
             ));
         }
     }
     Ok(())
+}
+
+/// Whether a rod or body has no line, so that it has no equilibrium that could be found.
+fn drifts(deck: &Deck<'_>) -> bool {
+    let word = |row: &Row, k: usize| row.words.get(k).map_or(String::new(), |w| w.text.to_lowercase());
+    let ends = || deck.lines.iter().flat_map(|row| [word(row, 2), word(row, 3)]);
+    let lone_rod = |row: &Row| {
+        let free = matches!(word(row, 2).as_str(), "free" | "pinned" | "pin");
+        free && !ends().any(|id| rod_end(deck, &id).is_some_and(|(rod, _)| std::ptr::eq(rod, row)))
+    };
+    let lone_body = |row: &Row| {
+        let own = format!("body{}", word(row, 0));
+        let points: Vec<String> =
+            deck.points.iter().filter(|p| word(p, 1) == own).map(|p| word(p, 0)).collect();
+        word(row, 1) == "free" && !ends().any(|id| points.contains(&id))
+    };
+    deck.rods.iter().any(lone_rod) || deck.bodies.iter().any(lone_body)
+}
+
+/// Whether the first numbers of rows are at equal intervals.
+fn even(rows: &[Vec<f64>]) -> bool {
+    let steps: Vec<f64> = rows.windows(2).map(|w| w[1][0] - w[0][0]).collect();
+    steps.iter().all(|step| (step - steps[0]).abs() <= 1e-6 * steps[0].abs())
 }
 
 /// An option with a value that has no counterpart.

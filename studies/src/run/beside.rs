@@ -159,6 +159,8 @@ fn together(fields: [&FieldRecord; 2], labels: &[String; 2]) -> FieldRecord {
     let mut both = FieldRecord {
         water: fields[0].water.or(fields[1].water),
         bed: fields[0].bed.or(fields[1].bed),
+        // one surface is drawn, so it must be that of both
+        waves: fields[0].waves.clone().filter(|waves| fields[1].waves.as_ref() == Some(waves)),
         ..FieldRecord::default()
     };
     for (field, label) in fields.iter().zip(labels) {

@@ -1,6 +1,7 @@
 //! What a run leaves behind for the eye: the field record, the page of the browser, files for ParaView.
 
 use super::recorder::Recorder;
+use super::statistics::Told;
 use super::summary::Summary;
 use super::{Outcome, page};
 use crate::certificate::statement::Certificate;
@@ -53,12 +54,13 @@ pub(super) fn write_page(
     file: &SceneFile,
     summary: &Summary,
     recorder: &mut Recorder<'_>,
-    field: FieldRecord,
+    (field, told): (FieldRecord, Told),
     warn: &mut dyn FnMut(&str),
 ) -> Option<Page> {
     let history = std::mem::take(&mut recorder.table);
     let steps = recorder.steps.take();
     let mut page = page::page(file, summary, history, &recorder.figures, field, steps);
+    told.onto(&mut page);
     let written = page.write(&folder.report_file());
     // one copy of it is enough
     recorder.table = std::mem::take(&mut page.history);

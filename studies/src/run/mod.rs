@@ -15,6 +15,7 @@ mod report;
 mod scenery;
 mod shapes;
 mod start;
+mod statistics;
 mod steps;
 mod summary;
 mod surfacing;
@@ -111,8 +112,12 @@ pub(crate) fn run_showing(
     }
     recorder.ranges = match ranges::all(scene, &model) {
         Ok(ranges) => ranges,
-        Err(e) => return Err(file.document().fault_at("run.ranges", e.message).into()),
+        Err(e) => {
+            let path = e.field.as_deref().unwrap_or("run.ranges");
+            return Err(file.document().fault_at(path, e.message).into());
+        }
     };
+    statistics::check(file, &recorder.table)?;
     if let Some(name) = &options.follow {
         recorder.follow(name)?;
     }
@@ -276,6 +281,14 @@ impl Job<'_> {
         let (ranges, drawn) = ranges::write(&folder, &recorder.ranges, leaves.plots, &mut warn);
         tables.extend(ranges);
         pictures.extend(drawn);
+        let told = {
+            let sets = statistics::sets(file.scene(), &recorder.table);
+            let (written, drawn) = statistics::write(&folder, &sets, leaves.plots, &mut warn);
+            tables.extend(written);
+            pictures.extend(drawn);
+            statistics::Told::of_folder(&folder, file, &recorder.table)
+        };
+        let statistics = statistics::text(&told.listings);
         let field = recorder.kept.field();
         if let Some(field) = &field {
             leave::write_field(&folder, leaves, field, &mut warn);
@@ -288,7 +301,8 @@ impl Job<'_> {
         let mut page = None;
         if leaves.report {
             let (field, warn) = (field.unwrap_or_default(), &mut |text: &str| warnings.say(text));
-            page = leave::write_page(&folder, file, &summary, &mut recorder, field, warn).map(Box::new);
+            page =
+                leave::write_page(&folder, file, &summary, &mut recorder, (field, told), warn).map(Box::new);
         }
         summary.warnings = warnings.all;
         if summary.status.is_complete() && recorder.saver.is_some() {
@@ -302,7 +316,7 @@ impl Job<'_> {
         let pages: Vec<&str> =
             page.iter().map(|_| "report.html").chain(leaves.vtk.then_some("vtk.pvd")).collect();
         let files = report::Files { pictures: &pictures, tables: &tables, pages: &pages };
-        let report = report::report(file, &summary, &recorder, &folder, files);
+        let report = report::report(file, &summary, &recorder, &folder, files) + &statistics;
         Outcome { folder, summary, history: recorder.table, pictures, page, report, error: None }
     }
 }

@@ -3,16 +3,23 @@
 use super::recorder::Recorder;
 use crate::error::Error;
 use ropewalk_core::{At, BuildError, Model, Part, V3};
-use ropewalk_report::{Column, LinePlot, RunFolder, Series, Table};
+use ropewalk_forces::{Outside, Wall};
+use ropewalk_report::{Column, LinePlot, RangeGraph, RunFolder, Series, Table};
+use ropewalk_scene::records::tangent;
 use ropewalk_scene::{Analysis, RangeSpec, Scene};
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::Arc;
 
 /// What is looked at, with its unit.
-const QUANTITIES: [(&str, &str); 7] = [
+const QUANTITIES: [(&str, &str); 10] = [
     ("tension", "N"),
+    ("wall_tension", "N"),
     ("curvature", "1/m"),
     ("moment", "N m"),
     ("declination", "rad"),
+    ("azimuth", "rad"),
+    ("clearance", "m"),
     ("x", "m"),
     ("y", "m"),
     ("z", "m"),
@@ -69,10 +76,61 @@ pub(crate) struct Range {
     courses: Vec<[Course; COUNT]>,
     /// What was there at the step before, and when.
     before: Option<(f64, Vec<Values>)>,
+    /// What is known of the surroundings, which stay as they are.
+    #[serde(skip)]
+    around: Option<Around>,
 }
 
-fn direction(a: &V3<f64>, b: &V3<f64>) -> f64 {
-    (b[0] - a[0]).hypot(b[1] - a[1]).atan2(b[2] - a[2])
+/// What presses on a line and lies below it, in one model.
+#[derive(Clone)]
+struct Around {
+    /// Address of the model: another one has other terms.
+    model: usize,
+    wall: Wall,
+    /// The water at each place; none where there is none, or a fluid flows in it.
+    water: Vec<Option<Outside>>,
+    /// Numbers of the beds and contact shapes.
+    grounds: Vec<usize>,
+}
+
+impl Around {
+    fn of(part: &Arc<dyn Part>, places: &[f64], model: &Model, at: &At<'_>) -> Self {
+        let wall = Wall::new(model, part.clone());
+        let tells = |k: &usize| clearance(model, *k, part.name(), places[0], at).is_some();
+        let water = |s: &f64| if wall.flows() { None } else { wall.outside(*s, model, at) };
+        Around {
+            model: address(model),
+            water: places.iter().map(water).collect(),
+            grounds: (0..model.terms().len()).filter(tells).collect(),
+            wall,
+        }
+    }
+}
+
+/// It follows from the model.
+impl PartialEq for Around {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl fmt::Debug for Around {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Around").field("grounds", &self.grounds).finish_non_exhaustive()
+    }
+}
+
+fn address(model: &Model) -> usize {
+    std::ptr::from_ref(model) as usize
+}
+
+fn clearance(model: &Model, term: usize, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
+    model.terms()[term].shows()?.local("clearance", part, s, at)
+}
+
+/// Angle from upright, and from x to y.
+fn direction([x, y, z]: &V3<f64>) -> [f64; 2] {
+    [x.hypot(*y).atan2(*z), y.atan2(*x)]
 }
 
 impl Range {
@@ -96,22 +154,41 @@ impl Range {
         let places =
             mesh.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).chain(mesh.last().copied()).collect();
         let name = spec.name.clone().unwrap_or_else(|| of.to_string());
-        Ok(Range { of: of.into(), name, window: [spec.from, to], places, courses: Vec::new(), before: None })
+        Ok(Range {
+            of: of.into(),
+            name,
+            window: [spec.from, to],
+            places,
+            courses: Vec::new(),
+            before: None,
+            around: None,
+        })
     }
 
     /// What is there now.
-    fn values(&self, part: &dyn Part, at: &At<'_>) -> Vec<Values> {
+    fn values(&mut self, model: &Model, part: &Arc<dyn Part>, at: &At<'_>) -> Vec<Values> {
+        let places = &self.places;
+        if self.around.as_ref().is_none_or(|around| around.model != address(model)) {
+            self.around = Some(Around::of(part, places, model, at));
+        }
+        let Some(around) = &self.around else { return Vec::new() };
         let points: Vec<V3<f64>> =
-            self.places.iter().map(|&s| part.point(s, at).map_or([f64::NAN; 3], |(x, _)| x)).collect();
-        let last = points.len() - 1;
+            places.iter().map(|&s| part.point(s, at).map_or([f64::NAN; 3], |(x, _)| x)).collect();
         let one = |k: usize| {
-            let [tension, curvature, moment] =
-                part.line().map_or([f64::NAN; 3], |line| line.measure(self.places[k], at));
-            let declination = direction(&points[k.saturating_sub(1)], &points[(k + 1).min(last)]);
+            let s = places[k];
+            let [tension, curvature, moment] = part.line().map_or([f64::NAN; 3], |line| line.measure(s, at));
+            let in_wall = match &around.water[k] {
+                Some(outside) => tension + around.wall.pressed(outside, s, at),
+                None if around.wall.flows() => around.wall.tension(s, model, at),
+                None => f64::NAN,
+            };
+            let [declination, azimuth] = direction(&tangent(part.as_ref(), s, at).unwrap_or([f64::NAN; 3]));
+            let above = |term: &usize| clearance(model, *term, part.name(), s, at);
+            let clearance = around.grounds.iter().filter_map(above).fold(f64::NAN, f64::min);
             let [x, y, z] = points[k];
-            [tension, curvature, moment, declination, x, y, z]
+            [tension, in_wall, curvature, moment, declination, azimuth, clearance, x, y, z]
         };
-        (0..=last).map(one).collect()
+        (0..places.len()).map(one).collect()
     }
 
     /// Takes up an accepted state, or a row of the history, which may lie within a step: its extremes count alone.
@@ -122,7 +199,7 @@ impl Range {
         if !inside && !self.courses.is_empty() {
             return;
         }
-        let now = self.values(part.as_ref(), at);
+        let now = self.values(model, part, at);
         if self.courses.is_empty() {
             self.courses = now.iter().map(|v| v.map(Course::at)).collect();
         }
@@ -146,9 +223,14 @@ impl Range {
         }
     }
 
+    /// The quantities that this line has.
+    fn known(&self) -> impl Iterator<Item = (usize, &'static (&'static str, &'static str))> {
+        QUANTITIES.iter().enumerate().filter(|(q, _)| self.courses.iter().any(|c| c[*q].start.is_finite()))
+    }
+
     fn table(&self) -> Table {
         let mut columns = vec![Column { values: self.places.clone(), ..Column::new("s", "m") }];
-        for (q, (quantity, unit)) in QUANTITIES.iter().enumerate() {
+        for (q, (quantity, unit)) in self.known() {
             type Of = fn(&Course) -> f64;
             let all: [(&str, &str, Of); 7] = [
                 ("start", unit, |c| c.start),
@@ -198,17 +280,34 @@ pub(crate) fn all(scene: &Scene, model: &Model) -> Result<Vec<Range>, BuildError
         return Ok(Vec::new());
     }
     if scene.run.analysis != Analysis::Dynamics || !scene.processes.is_empty() {
-        return Err(BuildError::new("range graphs are of runs in time of lines"));
+        return Err(BuildError::at("run.ranges", "range graphs are of runs in time of lines"));
     }
-    let all: Vec<Range> =
-        wanted.iter().map(|spec| Range::new(spec, model, scene.run.duration)).collect::<Result<_, _>>()?;
-    for (k, range) in all.iter().enumerate() {
-        if all[..k].iter().any(|other| other.name == range.name) {
+    let mut all: Vec<Range> = Vec::new();
+    for (k, spec) in wanted.iter().enumerate() {
+        // so that a message points at its line
+        let at = |e: BuildError| {
+            let field = e.field.as_deref().map_or(String::new(), |field| format!(".{field}"));
+            e.of(format!("run.ranges[{k}]{field}"))
+        };
+        let range = Range::new(spec, model, scene.run.duration).map_err(at)?;
+        if all.iter().any(|other| other.name == range.name) {
             let message = format!("two range graphs are named `{}`: give one of them a `name`", range.name);
-            return Err(BuildError::at("name", message));
+            return Err(at(BuildError::at("name", message)));
         }
+        all.push(range);
     }
     Ok(all)
+}
+
+/// The range graphs that a folder has, for its page.
+pub(crate) fn on_pages(folder: &RunFolder, scene: &Scene) -> Vec<RangeGraph> {
+    let graphs = |spec: &RangeSpec| {
+        let name = spec.name.as_deref().unwrap_or(spec.of.trim());
+        let table =
+            Table::read(&folder.table_file(&format!("range-{name}")).ok().filter(|p| p.is_file())?).ok()?;
+        Some(RangeGraph::of_table(name, [spec.from, spec.to.unwrap_or(scene.run.duration)], &table))
+    };
+    scene.run.ranges.iter().filter_map(graphs).flatten().collect()
 }
 
 impl Recorder<'_> {
@@ -233,7 +332,7 @@ pub(crate) fn write(
             Ok(()) => tables.push(name.clone()),
             Err(e) => warn(&e.to_string()),
         }
-        for (q, (quantity, _)) in QUANTITIES.iter().enumerate().filter(|_| plots) {
+        for (q, (quantity, _)) in range.known().filter(|_| plots) {
             let picture = format!("{name}-{quantity}");
             if folder.draw(&picture, |path| range.plot(q).write(path), warn) {
                 pictures.push(picture);

@@ -5,8 +5,10 @@ use super::shapes::{Line, MEASURED, Shape};
 use ropewalk_core::rotation::{from_matrix, matrix, transposed_times};
 use ropewalk_core::{At, Attitude, Marker, Model, NodeKind, Part, Quantity, Solid, Surface, V3};
 use ropewalk_report as output;
-use ropewalk_report::{BodyRecord, FieldRecord, LineRecord, LineSnapshot, Mesh, Plane, Pose, ShapePlot};
-use ropewalk_scene::{Analysis, Process, SceneFile};
+use ropewalk_report::{
+    BodyRecord, FieldRecord, LineRecord, LineSnapshot, Mesh, Plane, Pose, ShapePlot, Wave, Waves,
+};
+use ropewalk_scene::{Analysis, Process, SceneFile, Water};
 
 const SPEED: &str = "speed";
 
@@ -81,6 +83,7 @@ impl Scenery {
         let of_constraints = model.constraints().iter().flat_map(|c| c.solids());
         let of_process = process.into_iter().flat_map(|p| p.solids());
         scenery.still.water = scene.water.as_ref().and_then(|water| water.level);
+        scenery.still.waves = scene.water.as_ref().and_then(|water| waves(water, scene.gravity));
         for solid in of_terms.chain(of_constraints).chain(of_process) {
             scenery.add_solid(model, &solid);
         }
@@ -256,10 +259,19 @@ impl Scenery {
         FieldRecord {
             shapes: self.still.shapes.clone(),
             water: self.still.water,
+            waves: self.still.waves.clone(),
             bed: self.still.bed,
             ..read
         }
     }
+}
+
+/// The waves on the water, if there are some that can be.
+fn waves(water: &Water, [.., g]: V3<f64>) -> Option<Waves> {
+    let (drift, _) = water.current().ok()?.at(water.level?);
+    let waves = water.waves.as_ref()?.waves(-g, drift).ok()?;
+    let all = waves.iter().map(|(amplitude, k, omega, phase)| Wave { amplitude, k, omega, phase });
+    Some(Waves { all: all.collect(), ramp: waves.ramp() })
 }
 
 /// Unit of what is measured along lines.

@@ -113,6 +113,7 @@ impl Started {
                 ));
             }
         }
+        all.extend(scene.water.as_ref().and_then(|water| water.steep(scene.gravity)));
         if !scene.run.audit && scene.records.iter().any(|r| r.typetag_name() == "energy") {
             all.push("energy is recorded but not followed: set `audit = true` in [run]".into());
         }

@@ -3,6 +3,7 @@
 use super::page;
 use super::recorder::{Figure, Recorder};
 use super::scenery::Scenery;
+use super::statistics::Told;
 use super::summary::Summary;
 use crate::error::Error;
 use ropewalk_report::{FieldRecord, Page, RunFolder, Steps, Table};
@@ -36,6 +37,10 @@ pub fn page_of(folder: &Path) -> Result<Page, Error> {
     let mut run = Held::open(folder)?;
     let missing = std::mem::take(&mut run.missing);
     let (file, summary) = (run.file, run.summary);
+    let told = match &file {
+        Some(file) => Told::of_folder(&RunFolder::earlier(folder.to_path_buf()), file, &run.history),
+        None => Told::default(),
+    };
     let mut page = match &file {
         Some(file) => page::page(file, &summary, run.history, &run.figures, run.field, run.steps),
         None => Page {
@@ -49,6 +54,7 @@ pub fn page_of(folder: &Path) -> Result<Page, Error> {
             ..Page::default()
         },
     };
+    told.onto(&mut page);
     page::without(&mut page, &missing);
     Ok(page)
 }

@@ -372,6 +372,8 @@ fn seas_that_make_no_sense_are_refused_by_name() {
         ("level = 0", "regular = { height = 1, period = 0 }", "", "`period` must be positive"),
         ("level = 0", &format!("{jonswap}\ndepth = 0"), "", "`depth` must be above 0"),
         ("level = 0", &format!("{jonswap}\nramp = -1"), "", "`ramp` must not be negative"),
+        ("level = 0", "regular = { height = -1, period = 5 }", "", "`height` must not be negative"),
+        ("level = 0", "regular = { height = 8, period = 8 }\ndepth = 3", "", "the water is only 3 m"),
         ("level = 0", &format!("{jonswap}\ncount = 0"), "", "at least one component"),
         (
             "level = 0",

@@ -28,6 +28,9 @@ export async function decode(text: string): Promise<Run> {
   if (run.steps) for (const key of ["t", "least", "greatest", "cause"]) run.steps[key] = wide(get(run.steps[key]), run.steps[key]);
   run.steps ??= null;
   run.restarts ??= [];
+  run.listings ??= [];
+  run.ranges ??= [];
+  for (const range of run.ranges) for (const key of ["s", "start", "least", "mean", "greatest", "deviation", "t_least", "t_greatest"]) range[key] = wide(get(range[key]), range[key]);
   run.field = field(run.field, get);
   return run as Run;
 }
@@ -72,7 +75,8 @@ function field(raw: any, get: (place: Place) => Float32Array): Field {
     return { name, kind, place, shapes, x: get(body.position), q: get(body.orientation) };
   });
   const forces = (raw.forces ?? []).map((force: any): Force => ({ name: force.name, kind: force.kind, x: get(force.position), f: get(force.force) }));
-  return { ...raw, times, lines, bodies, forces, shapes: raw.shapes.map((s: any) => near(shape(s, get))) };
+  const waves = raw.waves ? { ramp: raw.waves.ramp, all: get(raw.waves.all) } : null;
+  return { ...raw, waves, times, lines, bodies, forces, shapes: raw.shapes.map((s: any) => near(shape(s, get))) };
 }
 
 /** A plane has no middle: the foot of the field's origin will do. */

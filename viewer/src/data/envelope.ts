@@ -1,6 +1,6 @@
 // Least, mean and greatest value and the standard deviation at each place of a line, over all or some of the snapshots.
 
-import { firstS, type Line, type Quantity } from "./run.ts";
+import { firstS, type Line, type Quantity, type Range } from "./run.ts";
 
 export interface Extreme {
   value: number;
@@ -65,6 +65,17 @@ export function envelope(line: Line, of: Quantity, times: ArrayLike<number>, fro
   const deviation = mean.map((m, i) => Math.sqrt(Math.max(0, squares[i]! / weights[i]! - (m - first[i]!) ** 2)));
   const gap = (x: number) => (Number.isFinite(x) ? x : NaN);
   return { s: places, least: least.map(gap), mean, greatest: greatest.map(gap), deviation, lowest, highest };
+}
+
+/** The envelope of a range graph, which has seen all steps of its own time. */
+export function ranged({ s, least, mean, greatest, deviation, t_least, t_greatest }: Range): Envelope | null {
+  const lowest: Extreme = { value: Infinity, s: NaN, t: NaN };
+  const highest: Extreme = { value: -Infinity, s: NaN, t: NaN };
+  for (let i = 0; i < s.length; i++) {
+    if (least[i]! < lowest.value) Object.assign(lowest, { value: least[i]!, s: s[i]!, t: t_least[i]! });
+    if (greatest[i]! > highest.value) Object.assign(highest, { value: greatest[i]!, s: s[i]!, t: t_greatest[i]! });
+  }
+  return Number.isFinite(lowest.value) ? { s, least, mean, greatest, deviation, lowest, highest } : null;
 }
 
 /** Half of the time to the neighbours that count. */

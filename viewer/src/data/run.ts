@@ -15,6 +15,10 @@ export interface Run {
   energy: Entry[];
   /** What else there is to tell, each with a title. */
   sections: { title: string; entries: Entry[] }[];
+  /** Tables, such as statistics. */
+  listings: Listing[];
+  /** Range graphs along lines. */
+  ranges: Range[];
   /** Time or load factor. */
   axis: { name: string; unit: string };
   /** The first column is the axis. */
@@ -75,7 +79,41 @@ export interface Field {
   forces: Force[];
   shapes: Shape[];
   water: number | null;
+  /** The waves on it; null where it is still. */
+  waves: Waves | null;
   bed: number | null;
+}
+
+/** Regular waves `a cos(k·x - ω t + φ)`, counted from the origin of the field. */
+export interface Waves {
+  /** Amplitude [m], wavenumbers along x and y [1/m], frequency [rad/s] and phase [rad] of each. */
+  all: Float32Array;
+  /** Time in which they rise from still water [s]. */
+  ramp: number;
+}
+
+/** Between what a quantity was along a line, over all steps of the solver from `window[0]` to `window[1]` [s]. */
+export interface Range {
+  name: string;
+  quantity: string;
+  unit: string;
+  window: [number, number];
+  s: Float64Array;
+  start: Float64Array;
+  least: Float64Array;
+  mean: Float64Array;
+  greatest: Float64Array;
+  deviation: Float64Array;
+  t_least: Float64Array;
+  t_greatest: Float64Array;
+}
+
+/** A table of texts; the first cell names its row. */
+export interface Listing {
+  title: string;
+  headings: string[];
+  rows: string[][];
+  note: string;
 }
 
 export interface Line {

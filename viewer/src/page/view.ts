@@ -31,6 +31,7 @@ export class View {
     this.stage.dark = dark();
     this.picture = this.start();
     this.box.prepend(this.picture.canvas);
+    this.sayWaves();
     this.labels = new Labels($("labels"), this.stage);
     gestures(this.box, this.stage.orbit, {
       moved: () => this.soon(),
@@ -50,6 +51,15 @@ export class View {
       $("flat").hidden = false;
       return new Flat(this.stage);
     }
+  }
+
+  /** What the surface of the water doesn't show. */
+  private sayWaves(): void {
+    const { sea } = this.stage;
+    if (!sea || sea.left.count === 0) return;
+    const share = withUnit(100 * sea.left.share, "%", 2);
+    $("short-waves").textContent = `Waves shorter than ${short(sea.shortest, 2)} m, ${share} of the energy, aren't drawn.`;
+    $("short-waves").hidden = false;
   }
 
   private choices(): void {

@@ -22,12 +22,15 @@ export function axisStyle(): Pick<uPlot.Axis, "stroke" | "grid" | "ticks" | "fon
 
 /** Axes that say little: numbers below and at the left. */
 export function axes(label: string, log: { x?: boolean; y?: boolean } = {}): uPlot.Axis[] {
-  // of a logarithmic axis the powers of ten alone are written
-  const power = (x: number) => Math.abs(Math.log10(x) - Math.round(Math.log10(x))) < 1e-6;
-  const filter = (_: uPlot, splits: number[]) => splits.map((x) => (power(x) ? x : null));
+  // a logarithmic axis has powers of ten alone, at most a dozen; uPlot's own end in rounding far below 1
+  const splits = (_: uPlot, _axis: number, low: number, high: number) => {
+    const [first, last] = [Math.ceil(Math.log10(low) - 1e-6), Math.floor(Math.log10(high) + 1e-6)];
+    const step = Math.max(1, Math.ceil((last - first) / 11));
+    return Array.from({ length: Math.max(0, Math.floor((last - first) / step) + 1) }, (_, k) => 10 ** (first + step * k));
+  };
   const values = (_: uPlot, splits: (number | null)[]) => splits.map((x) => (x === null ? "" : short(x)));
   const style = axisStyle();
-  const own = (log?: boolean) => (log ? { ...style, filter, grid: { ...style.grid, filter }, ticks: { ...style.ticks, filter } } : style);
+  const own = (log?: boolean) => (log ? { ...style, splits, filter: (_: uPlot, all: number[]) => all } : style);
   return [
     { ...own(log.x), values, size: 24, gap: 3, label, labelSize: 15, labelGap: 2, labelFont: "11px system-ui, sans-serif" },
     { ...own(log.y), values, size: 58, gap: 3 },

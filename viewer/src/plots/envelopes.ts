@@ -1,9 +1,9 @@
 // Least, mean, greatest and standard deviation along a line, with the present curve over them.
 
 import uPlot from "uplot";
-import { envelope, type Envelope } from "../data/envelope.ts";
+import { envelope, ranged, type Envelope } from "../data/envelope.ts";
 import { along, moment } from "../data/motion.ts";
-import { firstS, type Line, type Quantity, type Run } from "../data/run.ts";
+import { firstS, type Line, type Quantity, type Range, type Run } from "../data/run.ts";
 import { timeText, withUnit } from "../data/text.ts";
 import { h } from "../page/dom.ts";
 import { styled } from "../space/picture.ts";
@@ -11,6 +11,15 @@ import { axes } from "./chart.ts";
 import type { TimeWindow } from "./window.ts";
 
 const HEIGHT = 230;
+
+/** What is drawn: a quantity over the snapshots of the window, or a range graph over all steps of its own time. */
+export interface Drawn {
+  title: string;
+  unit: string;
+  line?: Line;
+  quantity?: Quantity;
+  range?: Range;
+}
 
 export class Envelopes {
   private plot: uPlot | null = null;
@@ -22,7 +31,7 @@ export class Envelopes {
 
   constructor(
     private run: Run, private box: HTMLElement, private told: HTMLElement, private part: TimeWindow,
-    public line: Line, public quantity: Quantity, private seek: (t: number) => void,
+    public drawn: Drawn, private seek: (t: number) => void,
   ) {
     this.now.className = "overlay";
     this.now.setAttribute("aria-hidden", "true");
@@ -35,16 +44,16 @@ export class Envelopes {
     this.again();
   }
 
-  choose(line: Line, quantity: Quantity): void {
-    [this.line, this.quantity] = [line, quantity];
+  choose(drawn: Drawn): void {
+    this.drawn = drawn;
     this.again();
   }
 
   /** Everything anew: another line, quantity or window. */
   again(): void {
-    const { line, quantity, part } = this;
-    this.found = envelope(line, quantity, this.run.field.times, part.from, part.to);
-    this.values = new Float32Array(Math.max(0, ...line.counts));
+    const { drawn: { line, quantity, range }, part } = this;
+    this.found = range ? ranged(range) : line && quantity ? envelope(line, quantity, this.run.field.times, part.from, part.to) : null;
+    this.values = new Float32Array(Math.max(0, ...(line?.counts ?? [])));
     this.plot?.destroy();
     this.plot = null;
     this.say();
@@ -69,7 +78,7 @@ export class Envelopes {
   }
 
   private say(): void {
-    const { found, quantity: { unit }, part } = this;
+    const { found, drawn: { unit, range }, part } = this;
     if (!found) {
       this.told.replaceChildren("No values in this window.");
       return;
@@ -81,7 +90,8 @@ export class Envelopes {
       button.addEventListener("click", () => this.seek(t));
       return h("span", {}, h("b", {}, `${what} ${withUnit(value, unit)}`), ` at s = ${withUnit(s, "m")}, `, button);
     };
-    const over = part.whole ? "over the whole run" : `from ${timeText(part.from, span)} to ${timeText(part.to, span)} ${axis}`;
+    const [from, to] = range?.window.map((t) => timeText(t, span)) ?? [];
+    const over = range ? `over all steps from ${from} to ${to} ${axis}` : part.whole ? "over the whole run" : `from ${timeText(part.from, span)} to ${timeText(part.to, span)} ${axis}`;
     this.told.replaceChildren(place("Greatest", found.highest), place("Least", found.lowest), h("span", { class: "muted" }, over), h("span", { class: "hovered-value" }));
   }
 
@@ -94,7 +104,7 @@ export class Envelopes {
       return;
     }
     const { s, least, mean, greatest, deviation } = this.found;
-    const { unit } = this.quantity;
+    const { unit } = this.drawn;
     const text = (of: Float64Array) => withUnit(of[i]!, unit, 3);
     out.textContent = `s = ${withUnit(s[i]!, "m")}: ${text(least)} · ${text(mean)} ± ${text(deviation)} · ${text(greatest)}`;
   }
@@ -106,7 +116,7 @@ export class Envelopes {
 
   /** The present curve, on a canvas of its own: the plot below stays as it is. */
   private curve(): void {
-    const { plot, line } = this;
+    const { plot, drawn: { line, quantity } } = this;
     // drawn by the processor: small, and often before a slow graphics card
     const pen = this.now.getContext("2d", { willReadFrequently: true });
     if (!plot || !pen || !this.seen || !plot.over.clientWidth) return;
@@ -118,8 +128,10 @@ export class Envelopes {
     }
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
+    // a range graph may be of what snapshots don't know
+    if (!line || !quantity) return;
     const at = moment(this.run.field.times, this.t);
-    const count = along(line, this.quantity.values, 1, at, this.values);
+    const count = along(line, quantity.values, 1, at, this.values);
     const k = line.counts[at.k] === count ? at.k : Math.min(at.k + 1, line.counts.length - 1);
     const start = firstS(line, k);
     pen.strokeStyle = styled("--now");

@@ -2,11 +2,12 @@
 
 import { turned } from "../data/motion.ts";
 import type { Shape, V3 } from "../data/run.ts";
+import { CELLS, type Surface } from "../data/sea.ts";
 import { edges } from "./edges.ts";
 import { seen } from "./frame.ts";
 import { ANGLE, project } from "./orbit.ts";
 import { kindColour, styled, type Picture } from "./picture.ts";
-import type { Stage } from "./stage.ts";
+import { WATER, type Stage } from "./stage.ts";
 
 type Put = (x: V3) => V3;
 
@@ -110,9 +111,9 @@ export class Flat implements Picture {
     this.pen.fill();
   }
 
-  private levels({ field, whole: [low, high], size }: Stage, put: Put): void {
+  private levels({ field, whole: [low, high], size, sea }: Stage, put: Put): void {
     const [x, y] = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
-    const half = 0.8 * size;
+    const half = (WATER / 2) * size;
     const level = (z: number, name: string, alpha: number) => {
       const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([i, j]) => put([x + half * i!, y + half * j!, z]));
       this.pen.globalAlpha = alpha;
@@ -132,7 +133,22 @@ export class Flat implements Picture {
       this.pen.globalAlpha = 1;
     };
     if (field.bed !== null) level(field.bed - field.origin[2], "bed", 0.25);
-    if (field.water !== null) level(field.water - field.origin[2], "sea", 0.12);
+    if (field.water !== null && sea) this.waves(sea, field.water - field.origin[2], put);
+    else if (field.water !== null) level(field.water - field.origin[2], "sea", 0.12);
+  }
+
+  /** Every fourth row and column of the surface. */
+  private waves({ heights, low, side }: Surface, z: number, put: Put): void {
+    const [n, cell] = [CELLS + 1, side / CELLS];
+    const corner = (k: number, j: number) => put([low[0] + cell * k, low[1] + cell * j, z + heights[j * n + k]!]);
+    const all = Array.from({ length: n }, (_, i) => i);
+    this.pen.strokeStyle = this.colours.sea!;
+    this.pen.globalAlpha = 0.45;
+    for (let i = 0; i < n; i += 4) {
+      this.path(all.map((k) => corner(k, i)));
+      this.path(all.map((j) => corner(i, j)));
+    }
+    this.pen.globalAlpha = 1;
   }
 
   private trail(stage: Stage, put: Put): void {

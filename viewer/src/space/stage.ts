@@ -3,6 +3,7 @@
 import { range } from "../data/envelope.ts";
 import { along, moment, points, pose, settle, type Moment, type Point, type Pose } from "../data/motion.ts";
 import type { Field, Line, Quantity, V3 } from "../data/run.ts";
+import { Surface } from "../data/sea.ts";
 import { Arrows } from "./arrows.ts";
 import { DARK, LIGHT, viridis } from "./colour.ts";
 import { seen, stand, type Frame, type Stand } from "./frame.ts";
@@ -26,6 +27,9 @@ export interface LineActor {
   /** Three for each point, 0 … 1. */
   colour: Float32Array;
 }
+
+/** How large the square of water is, in sizes of all that happens. */
+export const WATER = 1.6;
 
 export class Stage {
   readonly field: Field;
@@ -53,6 +57,8 @@ export class Stage {
   /** Size of all that happens on the ground [m]. */
   readonly size: number;
   readonly whole: Box;
+  /** The water where there are waves on it. */
+  readonly sea: Surface | null;
   private values: Float32Array;
   private last: V3 | null = null;
   private at: Moment = { k: 0, f: 0 };
@@ -71,6 +77,10 @@ export class Stage {
     this.arrows = new Arrows([], 1);
     this.whole = this.wholeBox();
     this.size = diagonal(this.whole);
+    const [low, high] = this.whole;
+    const side = WATER * this.size;
+    const corner = [0, 1].map((i) => (low[i]! + high[i]! - side) / 2) as [number, number];
+    this.sea = field.waves && new Surface(field.waves, corner, side);
     this.trailed = this.points.find((p) => p.name.endsWith(", end")) ?? this.points[0] ?? null;
     this.to(field.times[0] ?? 0);
     this.arrows = new Arrows(field.forces, diagonal(this.box()));
@@ -99,6 +109,7 @@ export class Stage {
   /** Puts everything where it is at a time. */
   to(t: number): void {
     const at = moment(this.field.times, t);
+    this.sea?.to(t);
     this.at = at;
     this.stand = stand(this.frame, at);
     this.poses = this.field.bodies.map((body) => pose(body, at));

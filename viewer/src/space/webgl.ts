@@ -9,7 +9,8 @@ import type { Shape } from "../data/run.ts";
 import { ANGLE, eye } from "./orbit.ts";
 import { kindColour, styled, type Picture } from "./picture.ts";
 import { geometry } from "./solids.ts";
-import type { LineActor, Stage } from "./stage.ts";
+import { CELLS, type Surface } from "../data/sea.ts";
+import { WATER, type LineActor, type Stage } from "./stage.ts";
 import { SIDES, tube, tubeIndex, type Tube } from "./tube.ts";
 
 interface TubeMesh {
@@ -48,6 +49,8 @@ export class Webgl implements Picture {
   private grids: GridHelper[] = [];
   private solids: MeshLambertMaterial[] = [];
   private seas: MeshBasicMaterial[] = [];
+  /** The surface of waves. */
+  private waves: Mesh | null = null;
   private light = new DirectionalLight(0xffffff, 1.6);
 
   constructor(stage: Stage) {
@@ -127,7 +130,7 @@ export class Webgl implements Picture {
     const { field, size, whole } = stage;
     const [low, high] = whole;
     const [x, y] = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
-    const side = 1.6 * size;
+    const side = WATER * size;
     const put = (z: number, sea: boolean) => {
       const plane = new Mesh(new PlaneGeometry(side, side), new MeshBasicMaterial({ transparent: true, opacity: sea ? 0.13 : 0.3, side: DoubleSide, depthWrite: false }));
       plane.material.userData.colour = sea ? "--sea" : "--bed";
@@ -144,11 +147,43 @@ export class Webgl implements Picture {
       this.ground.add(lines);
     };
     const { water, bed, origin } = field;
-    if (water !== null) put(water - origin[2], true);
+    if (water !== null && stage.sea) this.waves = this.surface(stage.sea, water - origin[2]);
+    else if (water !== null) put(water - origin[2], true);
     if (bed !== null) put(bed - origin[2], false);
     if (bed !== null) grid(bed - origin[2]);
     else if (water !== null) grid(water - origin[2]);
     else grid(low[2] - 0.02 * size);
+  }
+
+  /** A square of water whose corners rise and fall. */
+  private surface({ low, side }: Surface, z: number): Mesh {
+    const shape = new PlaneGeometry(side, side, CELLS, CELLS);
+    (shape.getAttribute("position") as BufferAttribute).setUsage(DynamicDrawUsage);
+    shape.setAttribute("color", new BufferAttribute(new Float32Array(3 * (CELLS + 1) ** 2), 3).setUsage(DynamicDrawUsage));
+    shape.boundingSphere = new Sphere();
+    const mesh = new Mesh(shape, this.material("--sea", { transparent: true, opacity: 0.45, side: DoubleSide, depthWrite: false, vertexColors: true }));
+    mesh.frustumCulled = false;
+    mesh.position.set(low[0] + side / 2, low[1] + side / 2, z);
+    this.ground.add(mesh);
+    return mesh;
+  }
+
+  private drawWaves({ heights, deviation }: Surface): void {
+    const shape = this.waves!.geometry;
+    const [place, colour] = ["position", "color"].map((name) => shape.getAttribute(name) as BufferAttribute) as [BufferAttribute, BufferAttribute];
+    const n = CELLS + 1;
+    for (let j = 0; j < n; j++) {
+      for (let k = 0; k < n; k++) {
+        // three.js begins with the row of the largest y
+        const [i, height] = [(n - 1 - j) * n + k, heights[j * n + k]!];
+        place.setZ(i, height);
+        // crests are light and troughs are dark: light alone shows little of slopes as low as these
+        const light = 0.75 + 0.35 * Math.max(-1.5, Math.min(1.5, height / (deviation || 1)));
+        colour.setXYZ(i, light, light, light);
+      }
+    }
+    place.needsUpdate = colour.needsUpdate = true;
+    shape.computeVertexNormals();
   }
 
   resize(width: number, height: number, ratio: number): void {
@@ -173,6 +208,7 @@ export class Webgl implements Picture {
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
     this.ground.rotation.z = -angle;
     this.ground.position.set(-c * x[0] - s * x[1], s * x[0] - c * x[1], -x[2]);
+    if (stage.sea && this.waves) this.drawWaves(stage.sea);
     for (const one of this.tubes) this.drawTube(one, stage.drawn(one.actor.line) / 2);
     const from = eye(stage.orbit);
     this.bodies.forEach(({ group, point }, i) => {

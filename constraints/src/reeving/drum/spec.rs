@@ -389,7 +389,7 @@ impl ConstraintSpec for DrumSpec {
         };
         b.constraint(Winds::new(rope(&self.name), winding, markers))?;
         let seat = Seat::new(b.nodes(), &marker)?;
-        b.term(Box::new(Fleet { name: self.name.clone(), boundary, seat, strand }));
+        b.term(Box::new(Fleet { name: self.name.clone(), boundary, seat, strand, mode: None }));
         b.term(Box::new(Loosens {
             name: self.name.clone(),
             boundary,

@@ -13,7 +13,7 @@ fn chain_keeps_its_order_and_rows_follow_their_last_node() {
         p.clique(3 * k..3 * k + 6);
     }
     p.clique((3..6).chain(12..15));
-    let rows = vec![Rows { count: 3, nodes: vec![NodeId(1)], jacobian: Vec::new() }];
+    let rows = vec![Rows { count: 3, nodes: vec![NodeId(1)], jacobian: Vec::new(), behind: Vec::new() }];
     let s = Structure::new(&nodes, &rows, &p, true);
     assert!(s.chain);
     assert_eq!(&s.position[..6], &[0, 1, 2, 3, 4, 5]);
@@ -71,10 +71,15 @@ fn joints_of_a_hub_follow_its_lines_and_what_they_hold_already_does_not_count() 
         .map(|line| {
             let own = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
             if line == 5 {
-                return Rows { count: 3, nodes: vec![NodeId(1)], jacobian: own.to_vec() };
+                return Rows { count: 3, nodes: vec![NodeId(1)], jacobian: own.to_vec(), behind: Vec::new() };
             }
             let both = own.chunks(3).flat_map(|row| row.iter().map(|x| -x).chain(row.iter().copied()));
-            Rows { count: 3, nodes: vec![NodeId(0), NodeId(line)], jacobian: both.collect() }
+            Rows {
+                count: 3,
+                nodes: vec![NodeId(0), NodeId(line)],
+                jacobian: both.collect(),
+                behind: Vec::new(),
+            }
         })
         .collect();
     let multiplier = |c: usize| 15 + 3 * c..18 + 3 * c;
