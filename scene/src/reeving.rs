@@ -20,6 +20,8 @@ pub struct Guide {
     pub axis: V3<f64>,
     /// Radius of a wheel to the middle of the cable [m]; 0 of a ring.
     pub radius: f64,
+    /// Whole turns about a wheel besides the angle by which the cable turns there.
+    pub turns: f64,
     /// Whether cable ends on it and is wound, as on a drum that pays out as it turns about its axis.
     pub winds: bool,
 }
@@ -46,6 +48,10 @@ pub struct Passage {
     pub guide: String,
     /// The spans before and behind it.
     pub spans: [String; 2],
+    /// Whether a drum or a winch is at the start and at the end of the cable.
+    pub fed: [bool; 2],
+    /// Whether the cable has no ends.
+    pub closed: bool,
     /// The end of the one and the start of the other.
     pub boundaries: [MovingBoundary; 2],
     /// The centre of the guide.
@@ -54,6 +60,8 @@ pub struct Passage {
     pub axis: V3<f64>,
     /// Radius to the middle of the cable [m]; 0 of a ring.
     pub radius: f64,
+    /// Angle by which it lies on a wheel at the start [rad].
+    pub wrap: f64,
     /// Unstretched length between the spans at the start [m].
     pub stored: f64,
     /// What it is made of.

@@ -13,7 +13,16 @@ const STORED: f64 = 0.4;
 fn arc(grip: Grip) -> Arc {
     let strand = Strand { mass: 1.3, ea: 2e3, ei: 0.7, damping: 3.0, weighs: true };
     let bearing = [0.2, 0.003, 0.05];
-    Arc { radius: RADIUS, strand, gravity: [0.3, -0.2, -9.81], grip, slip_speed: 0.01, bearing }
+    Arc {
+        radius: RADIUS,
+        strand,
+        gravity: [0.3, -0.2, -9.81],
+        grip,
+        slip_speed: 0.01,
+        sliding: 0.0,
+        near: None,
+        bearing,
+    }
 }
 
 fn plus(a: &V3<f64>, x: f64, b: &V3<f64>) -> V3<f64> {
@@ -123,7 +132,16 @@ fn sliding_at_a_speed_follows_the_capstan_equation_to_the_last_digit() {
     ];
     for (speed, out) in exact {
         let grip = Grip::Slides(mu);
-        let arc = Arc { radius, strand, gravity: [0.0; 3], grip, slip_speed: 1e-9, bearing: [0.0; 3] };
+        let arc = Arc {
+            radius,
+            strand,
+            gravity: [0.0; 3],
+            grip,
+            slip_speed: 1e-9,
+            sliding: 0.0,
+            near: None,
+            bearing: [0.0; 3],
+        };
         // the speed that turns the momentum is in space, the mass per stretched length: m v²/λ with λ of the arc
         let inner = |stretch: f64| 100.0 - strand.mass * speed * speed / stretch;
         let mut stretch = 1.0;

@@ -20,6 +20,7 @@ mod reeving;
 mod route;
 mod running;
 mod shear_pin;
+mod standing;
 mod unwinding;
 mod unwinding_scene;
 mod winch;

@@ -621,6 +621,8 @@ fn tangents_are_the_derivatives_of_the_forces() {
         "friction = 0.3\ninertia = 0.4\nbearing = { friction = 0.1, radius = 0.05, torque = 3, damping = 0.2 }",
         "inertia = 0.4\nbearing = { friction = 0.1, radius = 0.05, torque = 3, damping = 0.2 }",
         "efficiency = 0.9",
+        "efficiency = 0.9\nequilibrium = \"to_end\"",
+        "inertia = 0.4\nfriction = 0.3\nbearing = { friction = 0.1, radius = 0.05 }\nequilibrium = \"to_start\"",
     ] {
         let scene =
             hook_block(1e5).replace("mass = 1e-4", "mass = 1.5, ei = 2, axial_retardation_time = 0.01");
@@ -639,8 +641,15 @@ fn tangents_are_the_derivatives_of_the_forces() {
         let a: Vec<f64> = state.v.iter().map(|_| random(5.0)).collect();
         let mut q = state.q.clone();
         retract(model.nodes(), &state.q, &d, &mut q);
-        let at = At { t: 0.0, q: &q, v: &v, a: &a, internal: &[], relaxed: None };
+        // where it says so, friction acts in full
+        let internal = vec![1.0; state.internal.len()];
+        let at = At { t: 0.0, q: &q, v: &v, a: &a, internal: &internal, relaxed: None };
         let off = check_tangent(wheel.as_ref(), model.nodes(), &at, Width::One);
         assert!(off < 1e-6, "{sort}: {off}");
+        for end in ["wheel.in: fleet", "wheel.out: fleet"] {
+            let fleet = model.terms().iter().find(|t| t.label() == end).expect("the end");
+            let off = check_tangent(fleet.as_ref(), model.nodes(), &at, Width::One);
+            assert!(off < 1e-6, "{sort}, {end}: {off}");
+        }
     }
 }

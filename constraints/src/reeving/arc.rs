@@ -59,6 +59,11 @@ pub struct Arc {
     pub grip: Grip,
     /// Speed of sliding below which friction fades [m/s].
     pub slip_speed: f64,
+    /// At an equilibrium, which way the cable goes that friction resists in full: 1 to its start, -1 to its end. Otherwise
+    /// 0: friction is by the speed.
+    pub sliding: f64,
+    /// Angle within half a turn of which the wrap is, of a cable that may lie in several turns [rad].
+    pub near: Option<f64>,
     /// Moment of friction in the bearing, of a wheel that turns with the cable: a constant part [N m], one by the force on
     /// the axle [m], one by the spin [N m s].
     pub bearing: [f64; 3],
@@ -110,6 +115,13 @@ fn minus<S: Jet>(a: &V3<S>, b: &V3<S>) -> V3<S> {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
+/// The angle of a point of the plane, regular all round, a quarter turn too: derivatives are taken where it is small.
+pub(super) fn angle<S: Jet>(y: S, x: S) -> S {
+    let now = y.re().atan2(x.re());
+    let (sin, cos) = now.sin_cos();
+    ((y * cos - x * sin) / (x * cos + y * sin)).atan() + now
+}
+
 /// `x / √(x² + x0²)`: the direction of sliding, rounded where it turns.
 pub fn direction<S: Jet>(x: S, x0: f64) -> S {
     x / (x * x + x0 * x0).sqrt()
@@ -128,6 +140,11 @@ struct Half<S> {
 }
 
 impl<S: Jet> Half<S> {
+    /// Friction on the cable along the groove that is used up in this direction [N].
+    fn full(&self, way: f64) -> S {
+        ((self.angle * (way * self.sign)).exp() - 1.0) * self.presses * self.sign
+    }
+
     /// Friction on the cable along the groove where the groove is faster by this [N].
     fn sliding(&self, slip: S) -> S {
         ((direction(slip, self.slip_speed) * self.angle * self.sign).exp() - 1.0) * self.presses * self.sign
@@ -187,8 +204,12 @@ impl Arc {
         let (radius, [c, cd, cdd], a) = (self.radius, &wheel.c, &wheel.axis);
         let e = ends.each_ref().map(|end| minus(&end.r[0], c).map(|x| x / radius));
         let f = e.each_ref().map(|e| cross(a, e));
-        let wrap = along(a, &cross(&e[0], &e[1])).atan2(along(&e[0], &e[1]));
-        let wrap = if wrap.re() < LEAST { wrap + TAU } else { wrap };
+        let wrap = angle(along(a, &cross(&e[0], &e[1])), along(&e[0], &e[1]));
+        let wrap = match self.near {
+            Some(near) => wrap + TAU * ((near - wrap.re()) / TAU).round(),
+            None if wrap.re() < LEAST => wrap + TAU,
+            None => wrap,
+        };
         let length = ends[1].p[0] - ends[0].p[0] + stored;
         let stretch = wrap * radius / length;
 
@@ -255,8 +276,11 @@ impl Arc {
                             sign: if k == 0 { 1.0 } else { -1.0 },
                             slip_speed: self.slip_speed,
                         };
-                        let flow = -ends[k].p[1] / ea;
-                        friction[k] = half.sticking(rim - v[k], flow);
+                        friction[k] = if self.sliding == 0.0 {
+                            half.sticking(rim - v[k], -ends[k].p[1] / ea)
+                        } else {
+                            half.full(self.sliding)
+                        };
                         // it acts where the stretch is on its way to that beside the wheel
                         strain[k] = friction[k] * (0.5 * half.sign / ea);
                     }
@@ -266,7 +290,10 @@ impl Arc {
             Grip::Turns(wheel_mass) => {
                 let spin = mean / radius - wheel.carrier;
                 let pressed = (tension - (lift[0] + lift[1]) * 0.5) * ((wrap * 0.5).sin() * 2.0);
-                let moment = self.moment(spin, pressed);
+                let moment = match self.sliding {
+                    0.0 => self.moment(spin, pressed),
+                    way => -(self.rubbing(pressed) * way),
+                };
                 axle_friction = moment * spin;
                 for k in 0..2 {
                     friction[k] = -moment / (2.0 * radius);
@@ -319,8 +346,12 @@ impl Arc {
 
     /// Moment with which the bearing resists a spin under a force on the axle [N m].
     pub fn moment<S: Jet>(&self, spin: S, pressed: S) -> S {
-        let [constant, by_force, viscous] = self.bearing;
-        let pressed = if pressed.re() > 0.0 { pressed * by_force } else { S::zero() };
-        direction(spin, self.slip_speed / self.radius) * (pressed + constant) + spin * viscous
+        direction(spin, self.slip_speed / self.radius) * self.rubbing(pressed) + spin * self.bearing[2]
+    }
+
+    /// Its dry friction under a force on the axle [N m].
+    fn rubbing<S: Jet>(&self, pressed: S) -> S {
+        let pressed = if pressed.re() > 0.0 { pressed * self.bearing[1] } else { S::zero() };
+        pressed + self.bearing[0]
     }
 }

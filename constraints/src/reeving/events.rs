@@ -75,7 +75,7 @@ impl Event for Watch {
         if self.what.held().is_some_and(|held| held != mode) {
             return -1.0;
         }
-        let kink = || groove.kink(&self.sheave.axis(&at), &at);
+        let kink = || groove.kink(&self.sheave.seat.axis_now(&at), &at);
         let (ea, radius) = (groove.arc.strand.ea, groove.arc.radius);
         match self.what {
             What::Wraps => return kink() - LEAST_WRAP,

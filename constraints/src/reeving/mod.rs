@@ -6,8 +6,10 @@
 //! is on the wheel or in the next.
 
 mod arc;
+mod at_rest;
 mod drum;
 mod events;
+mod fleet;
 mod hold;
 mod piece;
 mod record;
@@ -15,8 +17,10 @@ mod ring;
 mod sheave;
 mod spec;
 mod tangent;
+mod turns;
 
 pub use arc::{Arc, End, Grip, Instant, Residual, Wheel, direction};
+pub use at_rest::Sliding;
 pub use drum::{DrumRecordSpec, DrumSpec};
 pub use hold::{Hold, Mode};
 pub use piece::Piece;

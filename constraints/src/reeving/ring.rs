@@ -1,13 +1,14 @@
 //! `type = "ring"`: a small eyelet that a cable runs through somewhere on its way.
 
 use super::arc::direction;
+use super::at_rest::{self, Sliding};
 use super::events::Short;
 use super::sheave::passes;
 use num_dual::Dual64;
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::{
     Assembly, At, BuildError, Column, Constraint, Equation, Jet, Joint, Marker, MovingBoundary, Node, NodeId,
-    Pattern, Power, RowKind, Shows, Term, V3,
+    Pattern, Power, Remembers, RowKind, Shows, Term, V3,
 };
 use ropewalk_scene::{Builder, ConstraintSpec, Guide, MarkerRef, Strand, quantity, register_spec};
 use schemars::JsonSchema;
@@ -31,6 +32,9 @@ pub struct RingSpec {
     /// Speed of sliding below which friction fades, so that a held cable creeps at a part of it [m/s].
     #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
     pub slip_speed: f64,
+    /// What friction does at equilibria, which aren't unique with it.
+    #[serde(default, skip_serializing_if = "Sliding::is_none")]
+    pub equilibrium: Sliding,
 }
 register_spec!(Constraint, "ring", RingSpec);
 
@@ -52,7 +56,8 @@ impl ConstraintSpec for RingSpec {
     }
     fn guides(&self) -> Vec<Guide> {
         let (name, marker) = (self.name.clone(), self.marker.clone());
-        vec![Guide { name, marker, beside: 0.0, axis: [0.0, 0.0, 1.0], radius: 0.0, winds: false }]
+        let axis = [0.0, 0.0, 1.0];
+        vec![Guide { name, marker, beside: 0.0, axis, radius: 0.0, turns: 0.0, winds: false }]
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         not_negative("friction", self.friction)?;
@@ -75,6 +80,12 @@ impl ConstraintSpec for RingSpec {
         }
         let ends = passage.boundaries;
         b.constraint(Joined { name: self.name.clone(), ends, nodes: [ends[0].node, ends[1].node] })?;
+        if self.equilibrium != Sliding::None && self.friction == 0.0 {
+            let message = "it says what friction does, and this ring has none: give its `friction`";
+            return Err(BuildError::at("equilibrium", message));
+        }
+        let way = self.equilibrium.way(passage)?;
+        let memory = (way != 0.0).then(|| b.memory(&format!("{}: equilibrium", self.name), 1));
         for span in &passage.spans {
             let length = 0.05 * b.parts(std::slice::from_ref(span))?[0].1.length();
             b.event(Short { span: span.clone(), length });
@@ -85,6 +96,9 @@ impl ConstraintSpec for RingSpec {
             strand: passage.strand,
             friction: self.friction,
             slip_speed: self.slip_speed,
+            equilibrium: self.equilibrium,
+            way,
+            memory,
         }));
         Ok(())
     }
@@ -133,6 +147,11 @@ struct Kink {
     strand: Strand,
     friction: f64,
     slip_speed: f64,
+    equilibrium: Sliding,
+    /// Where the cable goes at an equilibrium: 1 to its start, -1 to its end; 0 without friction.
+    way: f64,
+    /// Place of the internal variable that says whether it does.
+    memory: Option<usize>,
 }
 
 /// Residual: of both points, and of both material coordinates; with what records show.
@@ -145,8 +164,9 @@ struct Turned<S> {
 }
 
 impl Kink {
-    /// With the slopes before and behind the ring, and the rate of the material coordinate there.
-    fn eval<S: Jet>(&self, slope: &[V3<S>; 2], rate: S) -> Turned<S> {
+    /// With the slopes before and behind the ring, the rate of the material coordinate there, and which way the cable goes if
+    /// not by that.
+    fn eval<S: Jet>(&self, slope: &[V3<S>; 2], rate: S, sliding: f64) -> Turned<S> {
         let Strand { mass, ea, .. } = self.strand;
         let size = slope.each_ref().map(|s| (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]).sqrt());
         let flux = rate * rate * mass;
@@ -164,7 +184,8 @@ impl Kink {
         let presses = before - speed * speed * mass / size[0];
         let mut friction = S::zero();
         if self.friction > 0.0 && presses.re() > 0.0 {
-            let exponent = direction(speed, self.slip_speed) * angle * self.friction;
+            let way = if sliding == 0.0 { direction(speed, self.slip_speed) } else { S::from(-sliding) };
+            let exponent = way * angle * self.friction;
             friction = presses * (exponent.exp() - 1.0);
         }
         let work = friction * ((before * 2.0 + friction) / (2.0 * ea) + 1.0);
@@ -176,7 +197,13 @@ impl Kink {
 
     fn now(&self, at: &At<'_>) -> Turned<f64> {
         let slope = self.ends.map(|end| std::array::from_fn(|i| at.q[end.end_q + 3 + i]));
-        self.eval(&slope, self.rate(at))
+        self.eval(&slope, self.rate(at), self.way_now(at))
+    }
+
+    /// Which way the cable goes, at an equilibrium with friction.
+    fn way_now(&self, at: &At<'_>) -> f64 {
+        let on = self.memory.and_then(|place| at.internal.get(place)).is_some_and(|x| *x != 0.0);
+        if on { self.way } else { 0.0 }
     }
 
     /// Both material coordinates move alike; each is asked for its half.
@@ -229,7 +256,8 @@ impl Term for Kink {
                     Dual64::new(at.q[self.ends[end].end_q + 3 + i], one(j == 6 * end + 3 + i, w.q))
                 })
             });
-            let x = self.eval(&slope, Dual64::new(self.rate(at), one(j >= 12, 0.5 * w.v)));
+            let rate = Dual64::new(self.rate(at), one(j >= 12, 0.5 * w.v));
+            let x = self.eval(&slope, rate, self.way_now(at));
             for i in 0..3 {
                 (block[i][j], block[6 + i][j]) = (x.r[0][i].eps, x.r[1][i].eps);
             }
@@ -242,8 +270,26 @@ impl Term for Kink {
         let carried = passes(&self.ends, &[0.0; 3], at);
         Power { dissipated: self.now(at).lost, carried, ..Power::default() }
     }
+    fn remembers(&self) -> Option<&dyn Remembers> {
+        if self.friction > 0.0 { Some(self) } else { None }
+    }
     fn shows(&self) -> Option<&dyn Shows> {
         Some(self)
+    }
+}
+
+impl Remembers for Kink {
+    fn remember(&self, _: &At<'_>, memory: &mut [f64]) {
+        at_rest::set(self.memory, memory, 0.0);
+    }
+    fn rests(&self) -> bool {
+        self.memory.is_some()
+    }
+    fn sliding(&self) -> Option<&'static str> {
+        self.equilibrium.name()
+    }
+    fn settle(&self, _: &At<'_>, memory: &mut [f64]) -> bool {
+        at_rest::set(self.memory, memory, 1.0)
     }
 }
 

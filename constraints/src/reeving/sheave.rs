@@ -1,23 +1,24 @@
 //! A wheel that cables run over, as a term of a model.
 
 use super::arc::{Arc, End, Grip, Instant, Residual, Wheel};
+use super::at_rest::{self, Sliding};
 use super::hold::Mode;
 use super::piece::Piece;
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
     Assembly, At, BuildError, Column, Energy, Jet, Marker, MovingBoundary, Node, NodeKind, Pattern, Power,
-    Shows, Signal, Solid, Term, Timed, V3, dot,
+    Remembers, Shows, Signal, Solid, Term, Timed, V3, dot,
 };
 
 /// What carries a wheel: a point and an axis of space, of a point, or of a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Seat {
     /// First coordinate and velocity of what carries it, and whether that has an orientation.
-    on: Option<(usize, usize, bool)>,
+    pub on: Option<(usize, usize, bool)>,
     /// Place of the centre and axis, in the axes of what carries it.
-    point: V3<f64>,
-    axis: V3<f64>,
+    pub point: V3<f64>,
+    pub axis: V3<f64>,
 }
 
 impl Seat {
@@ -42,8 +43,31 @@ impl Seat {
     }
 
     /// Number of velocities of what carries it.
-    fn size(&self) -> usize {
+    pub fn size(&self) -> usize {
         self.on.map_or(0, |(_, _, turns)| if turns { 6 } else { 3 })
+    }
+
+    /// Its axis in space.
+    pub fn axis_now(&self, at: &At<'_>) -> V3<f64> {
+        match self.on {
+            Some((q, _, true)) => {
+                times(&matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]), &self.axis)
+            }
+            _ => self.axis,
+        }
+    }
+
+    /// Velocity of what carries it at a place in space [m/s].
+    pub fn velocity(&self, at: &At<'_>, place: &V3<f64>) -> V3<f64> {
+        let Some((q, v, turns)) = self.on else { return [0.0; 3] };
+        let mut velocity: V3<f64> = std::array::from_fn(|i| at.v[v + i]);
+        if turns {
+            let m = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
+            let spin = times(&m, &std::array::from_fn(|i| at.v[v + 3 + i]));
+            let swing = cross(&spin, &std::array::from_fn(|i| place[i] - at.q[q + i]));
+            (0..3).for_each(|i| velocity[i] += swing[i]);
+        }
+        velocity
     }
 }
 
@@ -58,6 +82,12 @@ pub(super) struct Groove {
     pub ends: [MovingBoundary; 2],
     /// Whether the axis of this cable is that of the wheel turned round.
     pub back: bool,
+    /// Whether the cable has no ends.
+    pub closed: bool,
+    /// Which way the cable goes at an equilibrium with friction: 1 to its start, -1 to its end.
+    pub way: f64,
+    /// Of several turns: the wrap at the start, and place of the internal variable by how much it differs since [rad].
+    pub turns: Option<(f64, usize)>,
     /// Place of the internal variable with its [`Mode`].
     pub mode: usize,
 }
@@ -65,7 +95,8 @@ pub(super) struct Groove {
 impl Groove {
     /// Of a cable that has this length on the wheel at the start.
     pub fn new(arc: Arc, stored: f64, ends: [MovingBoundary; 2], back: bool, mode: usize) -> Self {
-        Groove { arc, stored: stored - ends[1].home + ends[0].home, ends, back, mode }
+        let stored = stored - ends[1].home + ends[0].home;
+        Groove { arc, stored, ends, back, closed: false, way: 0.0, turns: None, mode }
     }
 
     /// The angle of a kink between both spans, as the cable turns about the axis of the wheel in space [rad].
@@ -95,6 +126,8 @@ pub(super) struct Sheave {
     pub seat: Seat,
     pub grooves: Vec<Groove>,
     pub angle: Option<Angle>,
+    /// What friction does at equilibria, and place of the internal variable that says whether it does.
+    pub at_rest: (Sliding, Option<usize>),
     pub solid: Solid,
 }
 
@@ -113,6 +146,10 @@ pub(super) fn passes(ends: &[MovingBoundary; 2], gravity: &V3<f64>, at: &At<'_>)
 
 /// Stiffness that keeps a free wheel in an equilibrium, as a share of `EA R`.
 const STILL: f64 = 1e-9;
+
+/// The same of a closed cable, which could run round and round, as a share of `EA/R`. More, since rounding has nothing to
+/// lean against along all of it.
+const STILL_BELT: f64 = 1e-6;
 
 /// Most unknowns of a groove: two points, two material coordinates, a body, the angle of the wheel.
 const MOST: usize = 15;
@@ -207,9 +244,10 @@ impl Sheave {
             spin: (own_spin + carried) * side,
             carrier: carried * side,
         };
+        let arc = self.arc(groove, at);
         let (Residual { r, p, centre, groove: moment }, mut instant) =
             match Mode::of(at.internal, groove.mode) {
-                Mode::Wraps => groove.arc.eval(groove.stored, &ends, &wheel),
+                Mode::Wraps => arc.eval(groove.stored, &ends, &wheel),
                 // what the wheel does to it then, its constraint does
                 Mode::Touches | Mode::Off => Piece { strand: groove.arc.strand, gravity: groove.arc.gravity }
                     .eval(groove.stored, &ends),
@@ -237,7 +275,8 @@ impl Sheave {
                 instant.energy[0] += spin * spin * (0.5 * angle.inertia);
                 out[8 + size] -= angle.torque.at(at.t);
             }
-            out[8 + size] += about + resists;
+            // where it turns slowly with its cable, its bearing takes what this leaves to it
+            out[8 + size] += if arc.sliding == 0.0 { about + resists } else { S::zero() };
         }
         if size == 6 {
             let lever = cross(&arm, &transposed_times(&turn, &centre));
@@ -246,6 +285,28 @@ impl Sheave {
             }
         }
         (out, instant)
+    }
+
+    /// The numbers of a groove in this state.
+    fn arc(&self, groove: &Groove, at: &At<'_>) -> Arc {
+        let mut arc = groove.arc;
+        let recalls = |place: usize| at.internal.get(place).copied().unwrap_or(0.0);
+        arc.near = groove.turns.map(|(wrap, place)| wrap + recalls(place));
+        if self.at_rest.1.is_some_and(|place| recalls(place) != 0.0) {
+            arc.sliding = groove.way;
+            if self.angle.is_some() {
+                arc.grip = Grip::Turns(0.0);
+            }
+        }
+        arc
+    }
+
+    /// Whether it has friction.
+    fn rubs(&self) -> bool {
+        self.grooves.iter().any(|g| match g.arc.grip {
+            Grip::Slides(mu) => mu > 0.0,
+            Grip::Turns(_) => g.arc.bearing[0] > 0.0 || g.arc.bearing[1] > 0.0,
+        })
     }
 
     fn local(&self, groove: &Groove, at: &At<'_>) -> Local<f64> {
@@ -261,23 +322,13 @@ impl Sheave {
         let groove = &self.grooves[k];
         let mut now = self.eval(k, at, &self.local(groove, at)).1;
         if Mode::of(at.internal, groove.mode) == Mode::Touches {
-            now.wrap = groove.kink(&self.axis(at), at);
+            now.wrap = groove.kink(&self.seat.axis_now(at), at);
             // presses on the axle by the kink
-            let inwards = cross(&self.axis(at), &self.chord(groove, at));
+            let inwards = cross(&self.seat.axis_now(at), &self.chord(groove, at));
             let side = if groove.back { -1.0 } else { 1.0 };
             now.axle = inwards.map(|x| side * 2.0 * now.tension * (0.5 * now.wrap).sin() * x);
         }
         now
-    }
-
-    /// The axis in space.
-    pub fn axis(&self, at: &At<'_>) -> V3<f64> {
-        match self.seat.on {
-            Some((q, _, true)) => {
-                times(&matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]), &self.seat.axis)
-            }
-            _ => self.seat.axis,
-        }
     }
 
     /// The centre in space.
@@ -300,10 +351,25 @@ impl Sheave {
 
     /// Where the middle between both ends of a groove is, as seen from the centre: along the axis, and how far from it [m].
     pub fn middle(&self, groove: &Groove, at: &At<'_>) -> [f64; 2] {
-        let ([a, b], c, axis) = (groove.ends, self.centre(at), self.axis(at));
+        let ([a, b], c, axis) = (groove.ends, self.centre(at), self.seat.axis_now(at));
         let d: V3<f64> = std::array::from_fn(|i| 0.5 * (at.q[a.end_q + i] + at.q[b.end_q + i]) - c[i]);
         let beside = dot(&d, &axis);
         [beside, (dot(&d, &d) - beside * beside).sqrt()]
+    }
+
+    /// What the cable does to the axle besides, since it comes and goes by a fleet angle [N].
+    fn aside(&self, groove: &Groove, at: &At<'_>, x: &Instant<f64>) -> V3<f64> {
+        let (axis, mut sum) = (self.seat.axis_now(at), [0.0; 3]);
+        for (end, boundary) in groove.ends.iter().enumerate() {
+            let q = boundary.end_q + 3;
+            let slope: V3<f64> = std::array::from_fn(|i| at.q[q + i]);
+            let [beside, size] = [dot(&axis, &slope), dot(&slope, &slope).sqrt()];
+            let flat: V3<f64> = std::array::from_fn(|i| slope[i] - axis[i] * beside);
+            let straight = dot(&flat, &flat).sqrt();
+            let pull = x.beside[end] - groove.arc.strand.mass * size * at.v[boundary.v].powi(2);
+            (0..3).for_each(|i| sum[i] -= boundary.sign * pull * (slope[i] / size - flat[i] / straight));
+        }
+        sum
     }
 
     /// Speed of the groove at its bottom, as the cable runs [m/s].
@@ -357,6 +423,11 @@ impl Term for Sheave {
                 let arc = &groove.arc;
                 block[i][i] += w.q * STILL * arc.strand.ea * arc.radius;
             }
+            if groove.closed && w.v == 0.0 && w.a == 0.0 {
+                for i in [3, 7] {
+                    block[i][i] += w.q * STILL_BELT * groove.arc.strand.ea / groove.arc.radius;
+                }
+            }
             out.add_square(k, &block);
         }
     }
@@ -379,8 +450,37 @@ impl Term for Sheave {
         let driven = self.angle.as_ref().is_some_and(|angle| !angle.torque.is_constant());
         if driven { Some(self) } else { None }
     }
+    fn remembers(&self) -> Option<&dyn Remembers> {
+        let turns = self.grooves.iter().any(|g| g.turns.is_some());
+        if turns || self.rubs() { Some(self) } else { None }
+    }
     fn shows(&self) -> Option<&dyn Shows> {
         Some(self)
+    }
+}
+
+impl Remembers for Sheave {
+    fn remember(&self, at: &At<'_>, memory: &mut [f64]) {
+        for (k, groove) in self.grooves.iter().enumerate() {
+            let Some((wrap, place)) = groove.turns else { continue };
+            let at = At { internal: memory, ..*at };
+            let now = self.instant(k, &at).wrap;
+            if let Some(x) = memory.get_mut(place) {
+                *x = now - wrap;
+            }
+        }
+        at_rest::set(self.at_rest.1, memory, 0.0);
+    }
+    fn rests(&self) -> bool {
+        self.at_rest.1.is_some() || !self.rubs()
+    }
+    fn sliding(&self) -> Option<&'static str> {
+        self.at_rest.0.name()
+    }
+    fn settle(&self, at: &At<'_>, memory: &mut [f64]) -> bool {
+        let before = self.at_rest.1.and_then(|place| memory.get(place)).is_some_and(|x| *x != 0.0);
+        self.remember(at, memory);
+        at_rest::set(self.at_rest.1, memory, 1.0) && !before
     }
 }
 
@@ -409,7 +509,8 @@ impl Shows for Sheave {
                 Grip::Slides(_) => speed - self.rim(groove, at),
                 Grip::Turns(_) => 0.0,
             };
-            let axle = x.axle.iter().map(|f| f * f).sum::<f64>().sqrt();
+            let aside = self.aside(groove, at, &x);
+            let axle = (0..3).map(|i| (x.axle[i] + aside[i]).powi(2)).sum::<f64>().sqrt();
             out.extend([x.wrap, x.length, x.beside[0], x.beside[1], speed, slip, axle]);
         }
         if let Some(angle) = &self.angle {

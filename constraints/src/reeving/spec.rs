@@ -1,10 +1,13 @@
 //! `type = "sheave"`: what a scene says about a wheel that cables run over.
 
 use super::arc::{Arc, Grip};
+use super::at_rest::Sliding;
 use super::events::{Short, Watch, What};
+use super::fleet::Fleet;
 use super::hold::Hold;
 use super::piece::Stiff;
 use super::sheave::{Angle, Groove, Seat, Sheave};
+use super::turns::Unwound;
 use crate::check::unit;
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::rotation::around;
@@ -25,8 +28,8 @@ const MOST: usize = 100;
 /// wheel do. With `friction` the cable sticks, creeps and slips on the groove by the capstan equation, and turns a wheel with
 /// `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable. `efficiency` is for tables of cranes.
 ///
-/// A cable may lift off from the wheel and come down on it again, which is told; what an impact takes counts in the balance of
-/// energy as a change of mesh. Not known: several turns round it, torsion of the cable; runs end there.
+/// A cable may lift off from the wheel and come down on it again, which is told, but for one of several `turns`; what an impact
+/// takes counts in the balance of energy as a change of mesh. Not known: torsion of the cable; runs end there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheaveSpec {
@@ -78,6 +81,14 @@ pub struct SheaveSpec {
     /// Speed of sliding below which friction fades, so that a held cable creeps at a part of it [m/s].
     #[serde(default = "slip_speed", deserialize_with = "quantity::speed")]
     pub slip_speed: f64,
+    /// Whole turns of the cable about it, besides the angle by which it turns there, as on a capstan or a bollard. They lie
+    /// side by side, and are taken to come and go in one plane. The wrap may then become any angle. Default: none; a
+    /// cable that wraps all round ends the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turns: Option<u32>,
+    /// What friction does at equilibria, which aren't unique with it.
+    #[serde(default, skip_serializing_if = "Sliding::is_none")]
+    pub equilibrium: Sliding,
 }
 register_spec!(Constraint, "sheave", SheaveSpec);
 
@@ -170,6 +181,16 @@ impl SheaveSpec {
                 "a wheel is driven against its cable by `friction`, and needs an `inertia`",
             ),
         ];
+        let rubs = self.bearing.is_some_and(|b| b.torque > 0.0 || b.friction * b.radius > 0.0);
+        let resists = slides && self.locked || self.efficiency.is_some() || rubs;
+        if self.equilibrium != Sliding::None && !resists {
+            let message = "it says what friction does, and this wheel turns without: give its `efficiency`, a dry `bearing`, or \
+                           `friction` and `locked = true`";
+            return Err(BuildError::at("equilibrium", message));
+        }
+        if self.turns.is_some_and(|turns| turns > MOST as u32) {
+            return Err(BuildError::at("turns", format!("`turns` must be at most {MOST}")));
+        }
         if let Some((field, _, message)) = wrong.into_iter().find(|(_, is, _)| *is) {
             return Err(BuildError::at(field, message));
         }
@@ -211,6 +232,10 @@ impl SheaveSpec {
             let mode = b.internal_variable(format!("{name}{number}: mode"));
             let ends = passage.boundaries.map(|end| end.end);
             b.constraint(Hold::new(format!("{name}{number}"), b.nodes(), ends, marker, self.radius, mode))?;
+            for (&boundary, which) in passage.boundaries.iter().zip(["in", "out"]) {
+                let (name, strand) = (format!("{name}{number}.{which}"), passage.strand);
+                b.term(Box::new(Fleet { name, boundary, seat, strand, mode: Some(mode) }));
+            }
             let (strand, gravity) = (passage.strand, b.gravity());
             let share = |x: f64| if k == 0 { x } else { 0.0 };
             let grip = match grip {
@@ -223,6 +248,8 @@ impl SheaveSpec {
                 gravity: if strand.weighs { gravity } else { [0.0; 3] },
                 grip,
                 slip_speed: self.slip_speed,
+                sliding: 0.0,
+                near: None,
                 bearing: [share(bearing[0]), bearing[1], share(bearing[2])],
             };
             let back = dot(&passage.axis, &axis) < 0.0;
@@ -230,8 +257,15 @@ impl SheaveSpec {
                 let (ends, name) = (passage.boundaries, name.to_string());
                 b.term(Box::new(Stiff { name, mode, ends, ei: strand.ei, radius: self.radius }));
             }
-            grooves.push(Groove::new(arc, passage.stored, passage.boundaries, back, mode));
+            let turns = self.turns.map(|_| (passage.wrap, b.memory(&format!("{name}: wrap"), 1)));
+            let way = self.equilibrium.way(passage)?;
+            grooves.push(Groove {
+                way,
+                turns,
+                ..Groove::new(arc, passage.stored, passage.boundaries, back, mode)
+            });
         }
+        let rests = (self.equilibrium != Sliding::None).then(|| b.memory(&format!("{name}: equilibrium"), 1));
         if turns && passages.len() > 1 {
             let message = format!(
                 "{} cables on `{name}` would be held together by a wheel that turns with them: give its `friction`",
@@ -256,10 +290,18 @@ impl SheaveSpec {
             lengths.push((span, (SHORT[0] * length).max(SHORT[1] * self.radius).min(0.5 * length)));
         }
         let solid = drawn(name, &marker, b, self.radius);
-        let sheave = Sheave { name: name.into(), seat, grooves, angle, solid };
+        let sheave =
+            Sheave { name: name.into(), seat, grooves, angle, at_rest: (self.equilibrium, rests), solid };
         let shared = std::sync::Arc::new(sheave.clone());
         for groove in 0..shared.grooves.len() {
-            for what in What::ALL {
+            let watched: &[What] = match shared.grooves[groove].turns {
+                None => &What::ALL,
+                Some(_) => {
+                    b.event(Unwound { sheave: shared.clone(), groove });
+                    &[What::Slack, What::Flung]
+                }
+            };
+            for &what in watched {
                 b.event(Watch { what, sheave: shared.clone(), groove });
             }
         }
@@ -305,6 +347,7 @@ impl ConstraintSpec for SheaveSpec {
             beside,
             axis: self.axis,
             radius: self.radius,
+            turns: f64::from(self.turns.unwrap_or(0)),
             winds: false,
         };
         self.wheels().into_iter().map(guide).collect()

@@ -43,6 +43,10 @@ pub trait Remembers {
     fn rests(&self) -> bool {
         false
     }
+    /// Which way what it resists goes at equilibria, if it takes part in those so: a word such as `hoisting`.
+    fn sliding(&self) -> Option<&'static str> {
+        None
+    }
     /// Brings what it remembers up to date at an equilibrium, if it takes part in those; whether the equilibrium is another one
     /// now and has to be found anew.
     fn settle(&self, _at: &At<'_>, _memory: &mut [f64]) -> bool {

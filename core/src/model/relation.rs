@@ -40,6 +40,11 @@ pub trait Relation: Send + Sync + 'static {
     /// Sets the value of each equation, given where the markers are. A time-dependent relation evaluates its
     /// motion with [`lift`], and tells it as [`Relation::follows`].
     fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]);
+    /// The same where it depends on what terms of the model remember: [`State::internal`](crate::State::internal), which may
+    /// be empty.
+    fn recall<S: Jet>(&self, _internal: &[f64], t: S, at: &[Place<S>], g: &mut [S]) {
+        self.g(t, at, g);
+    }
 }
 
 /// A function of time known by value and two derivatives, continued over the carrier of `t`.
@@ -99,7 +104,8 @@ impl<R: Relation> Related<R> {
             let start = marker.on().map_or(0, |n| self.local_start(nodes, n));
             *place = marker.place(nodes, at.q, |i| d(start + i));
         }
-        self.relation.g(t, &places[..self.markers.len().min(MOST_MARKERS)], &mut out[..self.rows.len()]);
+        let places = &places[..self.markers.len().min(MOST_MARKERS)];
+        self.relation.recall(at.internal, t, places, &mut out[..self.rows.len()]);
     }
 
     fn local_start(&self, nodes: &[Node], node: NodeId) -> usize {

@@ -77,7 +77,7 @@ impl Started {
             search.stop_if(move || watch.is_over());
             flutter = search.find(&mut state, true)?.flutter;
             remarks = remarks_on(&search);
-            remarks.extend(without_friction(&model));
+            remarks.extend(by_friction(&model));
         }
         let mut simulation = Simulation::from(model, state, &scene.solver, run.duration)?;
         simulation.keep_audit(run.audit);
@@ -145,7 +145,7 @@ impl Started {
             Started::Process(process, _) => return process.warnings(),
             Started::Statics(done) => {
                 all.extend(unstable(done.flutter));
-                all.extend(done.remarks.iter().cloned().chain(without_friction(&done.model)));
+                all.extend(done.remarks.iter().cloned().chain(by_friction(&done.model)));
                 all.extend(done.model.remarks(&done.state.at()));
             }
             Started::Dynamics(s, flutter, _) => {
@@ -431,16 +431,30 @@ fn no_memory(source: SolveError) -> Error {
     Error::Step(StepError::Linear { t: 0.0, source, unknown: "the structure of the equations".into() })
 }
 
-/// What to say of an equilibrium that dry friction takes no part in.
-fn without_friction(model: &Model) -> Option<String> {
-    let without = |t: &&Arc<dyn Term>| t.remembers().is_some_and(|r| !r.rests());
-    let rough = model.terms().iter().filter(without).map(|t| format!("`{}`", t.label()));
-    let rough: Vec<String> = rough.collect();
-    (!rough.is_empty()).then(|| {
-        format!(
+/// What to say of dry friction at an equilibrium: that it takes no part, or which way it acts.
+fn by_friction(model: &Model) -> Vec<String> {
+    let mut kinds: Vec<(Option<&str>, Vec<String>)> = Vec::new();
+    for term in model.terms() {
+        let Some(remembers) = term.remembers() else { continue };
+        let kind = remembers.sliding();
+        if remembers.rests() && kind.is_none() {
+            continue;
+        }
+        let label = format!("`{}`", term.label());
+        match kinds.iter_mut().find(|(other, _)| *other == kind) {
+            Some((_, labels)) => labels.push(label),
+            None => kinds.push((kind, vec![label])),
+        }
+    }
+    let say = |(kind, labels): (Option<&str>, Vec<String>)| match kind {
+        None => format!(
             "the equilibrium is that without the friction of {}: with it there are many, and which one is reached depends on \
              the way there. From here on in time friction holds what it can",
-            rough.join(", ")
-        )
-    })
+            labels.join(", ")
+        ),
+        Some(kind) => {
+            format!("the equilibrium is that of {kind}, with the friction of {}", labels.join(", "))
+        }
+    };
+    kinds.into_iter().map(say).collect()
 }

@@ -13,8 +13,6 @@ pub(super) enum What {
     Full(f64),
     /// The fleet angle exceeds this one [rad].
     Fleet(f64),
-    /// The stretch of the cable differs from that of what is wound by more than this share.
-    Stretch(f64),
 }
 
 /// Watches a drum.
@@ -38,13 +36,6 @@ impl Event for Watch {
                     "the cable arrives at `{name}` by more than {degrees:.3} degrees from the side: it winds badly"
                 )
             }
-            What::Stretch(most) => {
-                let percent = 100.0 * most;
-                format!(
-                    "the stretch of the cable at `{name}` differs from that of what is wound by more than {percent} %, and its \
-                     tension and place are as wrong: give a `wound_tension` nearer to its tension"
-                )
-            }
         }
     }
     fn value(&self, _: &Model, state: &State) -> f64 {
@@ -53,7 +44,6 @@ impl Event for Watch {
             What::Empty(left) => left - self.drum.angle(&at),
             What::Full(most) => self.drum.angle(&at) - most,
             What::Fleet(most) => self.drum.fleet(&at).abs() - most,
-            What::Stretch(most) => (self.drum.boundary.stretch(&at) / self.drum.stretch - 1.0).abs() - most,
         }
     }
     fn direction(&self) -> i8 {
@@ -61,7 +51,7 @@ impl Event for Watch {
     }
     fn act(&self, _: &Model, _: &mut State) -> Action {
         match self.what {
-            What::Fleet(_) | What::Stretch(_) => Action::Continue,
+            What::Fleet(_) => Action::Continue,
             What::Empty(_) | What::Full(_) => Action::Stop,
         }
     }

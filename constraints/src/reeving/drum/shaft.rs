@@ -1,6 +1,7 @@
 //! A drum as a term of a model: its inertia with the cable on it, its motor and its brake.
 
 use super::layers::Layers;
+use super::locked::Locked;
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times};
 use ropewalk_core::{
@@ -44,7 +45,7 @@ pub(super) struct Shaft {
     /// Angle wound at the start [rad].
     pub wound: f64,
     /// Stretch of what is wound.
-    pub stretch: f64,
+    pub locked: Locked,
     /// Mass per unstretched length of what is wound, or 0 where it isn't counted [kg/m].
     pub mass: f64,
     /// First coordinate and velocity of the rigid body that carries it, if one does.
@@ -61,8 +62,8 @@ const MOST: usize = 5;
 impl Shaft {
     /// Angle that is wound now, by what is fed out [rad].
     pub fn angle(&self, at: &At<'_>) -> f64 {
-        let all = self.layers.at(self.wound).length;
-        self.layers.angle(all - self.stretch * self.boundary.fed(at))
+        let (all, fed) = (self.layers.at(self.wound).length, self.boundary.fed(at));
+        self.layers.angle(all - self.locked.at(at.internal, fed).length(fed))
     }
 
     /// Angle of the drum and its rate.
@@ -99,7 +100,10 @@ impl Shaft {
         }
         let angle = self.angle(at);
         let radius = self.layers.at(angle).radius;
-        [self.mass / self.stretch * self.layers.inertia(angle), self.mass * radius * radius]
+        let density = self.mass / self.locked.base(at.internal);
+        let fed = self.boundary.fed(at);
+        let passes = self.locked.at(at.internal, fed).stretch(fed);
+        [density * self.layers.inertia(angle), density * passes * radius * radius]
     }
 
     /// Residual of its unknowns after the increment `p` of the material coordinate.
@@ -224,8 +228,9 @@ impl Shows for Shaft {
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
         let angle = self.angle(at);
         let lies = self.layers.at(Dual64::new(angle, 1.0));
-        let [turned, rate] = self.turned(at);
-        out.extend([turned, rate, self.boundary.fed(at), lies.length.re / self.stretch]);
+        let ([turned, rate], fed) = (self.turned(at), self.boundary.fed(at));
+        let all = self.layers.at(self.wound).length;
+        out.extend([turned, rate, fed, all / self.locked.base(at.internal) - fed]);
         out.extend([
             self.layers.number(angle) + 1.0,
             lies.radius.re,

@@ -2,10 +2,13 @@
 
 use super::events::{Watch, What};
 use super::layers::{self, Layers};
+use super::locked::{Locked, Loosens};
 use super::shaft::{Drive, Free, Shaft};
 use super::winding::{Winding, Winds};
 use crate::check::unit;
 use crate::reeving::events::Short;
+use crate::reeving::fleet::Fleet;
+use crate::reeving::sheave::Seat;
 use crate::winch::{self, WinchSpec, resisting};
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::rotation::{around, cross};
@@ -14,20 +17,17 @@ use ropewalk_scene::quantity::{Setting, kind};
 use ropewalk_scene::{Builder, ConstraintSpec, Guide, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Turns that stay on a drum when it is empty.
 const DEAD: f64 = 3.0;
 
-/// Difference of stretch that is told.
-const STRETCH: f64 = 0.005;
-
 /// A drum on which an end of a cable is wound that names it in its `route`.
 ///
 /// The cable leaves it as a tangent, wherever it goes to, and is wound without slip. The drum pays out as it turns by the
 /// right-hand rule about its `axis`; so about [0, 1, 0] it leaves from the top towards x. Its `speed` or angle is prescribed,
-/// or it is turned by `torque`, its cable and `brake`. What is wound keeps the stretch of `wound_tension`.
+/// or it is turned by `torque`, its cable and `brake`. What is wound keeps the stretch with which it was wound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrumSpec {
@@ -95,9 +95,8 @@ pub struct DrumSpec {
         skip_serializing_if = "Option::is_none"
     )]
     pub wound: Option<f64>,
-    /// Tension with which that was wound [N], which tells its stretch; what is wound later has the same. The tension of the
-    /// free cable may differ from it by little beside its stiffness: the share of its stretch is the error. Default: the
-    /// tension at which the cable is laid.
+    /// Tension with which that was wound [N], which tells its stretch; what is wound later keeps the tension that it has then.
+    /// Default: the tension at the start, of the equilibrium if the run begins with one, or else at which the cable is laid.
     #[serde(
         default,
         deserialize_with = "quantity::optional::force",
@@ -311,6 +310,7 @@ impl ConstraintSpec for DrumSpec {
             beside: if sound { self.beside() } else { 0.0 },
             axis: self.axis,
             radius: if sound { self.helix().at(angle).radius } else { self.radius },
+            turns: 0.0,
             winds: true,
         }]
     }
@@ -352,6 +352,8 @@ impl ConstraintSpec for DrumSpec {
         let phi = dot(&d, &cross(&z, &x)).atan2(dot(&d, &x));
         let strand = end.strand;
         let stretch = self.wound_tension.map_or(end.stretch, |tension| 1.0 + tension / strand.ea);
+        let memory = b.memory(&format!("{}: stretch", self.name), Locked::memory());
+        let locked = Locked::new(memory, stretch, PI * self.radius);
         let motion = self.given(b, lies.radius)?;
         let mut markers = vec![Marker::node(boundary.end), marker, Marker::node(boundary.node)];
         let drive = match &motion {
@@ -382,16 +384,25 @@ impl ConstraintSpec for DrumSpec {
             phi,
             home: boundary.home,
             sign: boundary.sign,
-            stretch,
+            locked,
             motion,
         };
         b.constraint(Winds::new(rope(&self.name), winding, markers))?;
+        let seat = Seat::new(b.nodes(), &marker)?;
+        b.term(Box::new(Fleet { name: self.name.clone(), boundary, seat, strand, mode: None }));
+        b.term(Box::new(Loosens {
+            name: self.name.clone(),
+            boundary,
+            locked,
+            ea: strand.ea,
+            settles: self.wound_tension.is_none(),
+        }));
         let shaft = Shaft {
             name: self.name.clone(),
             boundary,
             layers: helix,
             wound,
-            stretch,
+            locked,
             mass: if self.wound.is_some() { strand.mass } else { 0.0 },
             on,
             axis: own,
@@ -401,9 +412,7 @@ impl ConstraintSpec for DrumSpec {
         let shared = Arc::new(shaft.clone());
         let empty = self.wound.map(|_| What::Empty(DEAD * TAU));
         let full = self.layers.zip(helix.turns).map(|(n, turns)| What::Full(TAU * turns * n as f64));
-        for what in
-            [empty, full, Some(What::Fleet(self.fleet)), Some(What::Stretch(STRETCH))].into_iter().flatten()
-        {
+        for what in [empty, full, Some(What::Fleet(self.fleet))].into_iter().flatten() {
             b.event(Watch { what, drum: shared.clone() });
         }
         let free = b.parts(std::slice::from_ref(&end.span))?[0].1.length();

@@ -1,6 +1,8 @@
 //! The point at which a cable leaves a drum, and the cable that this winds.
 
 use super::layers::Layers;
+use super::locked::Locked;
+use crate::reeving::arc::angle;
 use ropewalk_core::{
     At, Constraint, Jet, Marker, Motion, Node, NodeId, Place, Related, Relation, RowKind, lift,
 };
@@ -12,7 +14,8 @@ use std::sync::Arc;
 /// With `d = r - c`, the slope `s`, the angle `ψ` of the drum and `φ` of the tangent point about its axis since the start,
 /// both in the sense that pays out: `a·d = x`, and of the part of `d` normal to the axis `|d| = R` and `d·s = 0`; and
 /// `Λ(fed) = L(θ₀) - L(θ)`, where `θ = θ₀ - (ψ - φ)` is the angle that is still wound, `L(θ)` the length of cable in it, `x`
-/// and `R` where it lies. What is fed out has the stretch it was wound with. Turns of `φ` are counted by what is fed out.
+/// and `R` where it lies. `Λ` is what is fed out with the stretch that it was wound with. Turns of `φ` are counted by what is fed
+/// out.
 ///
 /// The markers: the end of the cable, the drum with its axis as the third, the material coordinate, and the angle if it is an
 /// unknown.
@@ -29,7 +32,7 @@ pub(super) struct Winding {
     pub home: f64,
     pub sign: f64,
     /// Stretch of what is wound.
-    pub stretch: f64,
+    pub locked: Locked,
     /// The angle of the drum, if it is prescribed.
     pub motion: Option<Arc<dyn Motion>>,
 }
@@ -42,6 +45,9 @@ impl Relation for Winding {
         self.motion.as_deref()
     }
     fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]) {
+        self.recall(&[], t, at, g);
+    }
+    fn recall<S: Jet>(&self, internal: &[f64], t: S, at: &[Place<S>], g: &mut [S]) {
         let (end, drum, front) = (&at[0], &at[1], &at[2]);
         let [x, y, axis] = &drum.axes;
         let along = |a: &[S; 3], b: &[S; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -55,7 +61,8 @@ impl Relation for Winding {
             }
             None => at[3].x[0],
         };
-        let fed = (front.x[0] - self.home) * (self.sign * self.stretch);
+        let fed = (front.x[0] - self.home) * self.sign;
+        let fed = self.locked.at(internal, fed.re()).length(fed);
         let all = self.layers.at(self.wound).length;
         let off = psi - angle(along(&flat, y), along(&flat, x)) + self.phi;
         let wanted = self.wound - self.layers.angle(all - fed.re());
@@ -66,13 +73,6 @@ impl Relation for Winding {
         g[2] = along(&flat, &end.axes[0]) / self.layers.radius;
         g[3] = fed + lies.length - all;
     }
-}
-
-/// The angle of a point of the plane, regular all round: derivatives are taken where it is small.
-fn angle<S: Jet>(y: S, x: S) -> S {
-    let now = y.re().atan2(x.re());
-    let (sin, cos) = now.sin_cos();
-    ((y * cos - x * sin) / (x * cos + y * sin)).atan() + now
 }
 
 /// That as a constraint, of which only the end of the cable and the drum are places.

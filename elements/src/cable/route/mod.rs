@@ -17,6 +17,7 @@ use ropewalk_core::{BuildError, Equation, Feed, Joint, Marker, Spot, V3, dot};
 use ropewalk_scene::{Builder, ElementSpec, Guide, MarkerRef, Passage, Strand, Winding};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// An entry of a route, in the order in which the cable comes by from its start.
@@ -225,13 +226,16 @@ impl CableSpec {
         let stops = self.stops(b, &guided)?;
         let closed = self.closed();
         let laid = if closed { lay_closed(&stops) } else { lay(&stops) };
-        let turns = laid.map_err(|Fault { stop, what }| {
+        let mut turns = laid.map_err(|Fault { stop, what }| {
             let message = match self.route[stop].guide() {
                 Some(name) => format!("the cable can't run as its route says at `{name}`: {what}"),
                 None => what.to_string(),
             };
             BuildError::at(format!("route[{stop}]"), message)
         })?;
+        for (turn, guided) in turns.iter_mut().zip(&guided) {
+            turn.wrap += guided.as_ref().map_or(0.0, |g| TAU * g.guide.turns);
+        }
         let number = turns.len() - usize::from(!closed);
         let next = |k: usize| (k + 1) % turns.len();
         let spans: Vec<[V3<f64>; 2]> = (0..number).map(|k| [turns[k].at[1], turns[next(k)].at[0]]).collect();
@@ -280,6 +284,7 @@ impl CableSpec {
             damping: s.axial_retardation_time * s.ea,
             weighs: b.weighs(&self.name),
         };
+        let fed = b.feeding(&self.name).map(|feed| feed.is_some());
         let mut passages = Vec::new();
         for (k, turn) in turns.iter().enumerate() {
             let Some(Guided { guide, marker }) = &guided[k] else { continue };
@@ -306,10 +311,13 @@ impl CableSpec {
             let passage = Passage {
                 guide: guide.name.clone(),
                 spans: [names[before].clone(), names[k].clone()],
+                fed,
+                closed,
                 boundaries: [end, start],
                 marker: *marker,
                 axis: turn.axis,
                 radius: guide.radius,
+                wrap: turn.wrap,
                 stored: guide.radius * turn.wrap / stretch,
                 strand,
             };
