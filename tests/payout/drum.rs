@@ -270,12 +270,12 @@ fn what_is_wound_under_tension_comes_off_as_it_was_wound() {
     // and below what was wound without tension
     let [from, to] = [k(20.5), k(21.5)];
     let stretch = radius * (angle[to] - angle[from]) / (payout[to] - payout[from]);
-    assert!((stretch - 1.0).abs() <= 1e-6, "{stretch}");
-    // the moment is that of the load, whatever the stretch of what comes off
-    for t in [1.5, 9.5, 15.0, 21.5] {
-        let pull = if t < 2.0 { weight } else { 2.0 * weight };
+    assert!((stretch - 1.0).abs() <= 1e-4, "{stretch}");
+    // the moment is that of the load but for its inertia, whatever the stretch of what comes off
+    for (t, loads) in [(5.0, 1.5), (15.0, 2.0), (20.0, 2.0)] {
+        let pull = loads * weight;
         let off = torque[k(t)] / radius / pull - 1.0;
-        assert!(off.abs() <= 2e-3, "{off} at {t} s");
+        assert!(off.abs() <= 5e-3, "{off} at {t} s");
     }
     let lost = last(&history, "energy.imbalance").abs() / (2.0 * weight * radius * 9.0);
     assert!(lost <= 1e-3, "{lost} of the work is unaccounted for");

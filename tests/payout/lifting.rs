@@ -175,7 +175,12 @@ fn a_rope_lifts_off_from_wheels_of_every_kind() {
         ("", ", ei = 0.05, axial_retardation_time = \"1 ms\", bending_retardation_time = \"1 ms\""),
     ] {
         let text = swings(2).replace("radius = 0.05", &format!("radius = 0.05\n{wheel}"));
-        let text = text.replace("ea = 20e3", &format!("ea = 20e3{more}"));
+        let mut text = text.replace("ea = 20e3", &format!("ea = 20e3{more}"));
+        // what is stiff lifts off and comes down again and again for a while: too fast for the trapezoidal rule of the balance
+        // at the default tolerance, where 0.1 J of 2.4 J are missing
+        if more.contains("ei") {
+            text = "solver = { stepping = { controlled = { tolerance = 1e-5 } } }\n".to_string() + &text;
+        }
         let (most, told, s) = off(&read(&text), 0.45);
         println!("{wheel} {more}: {most} m, imbalance {} J", s.audit.imbalance());
         assert!(most < 3e-3, "{wheel} {more}: {most} m");

@@ -16,19 +16,20 @@ const BALANCED: f64 = 0.1;
 const FINE: f64 = 1e-5;
 /// Iterations that should do for that.
 const MOST_ITERATIONS: usize = 10;
-/// What an iteration with the factors of the last step may leave of the one before, for them to serve once more.
-const SERVES: f64 = 0.3;
 
 impl Simulation {
     /// Gives the scratch state, which lies inside the last step or at its end, the forces of the motion.
     pub(super) fn find_forces(&mut self) -> Result<(), SolveError> {
         let weights = self.work.factored.filter(|weights| weights.q > 0.0);
+        // what an evaluation with the mass matrix leaves of the equations of motion tells of the balance too
+        assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
         if let Some(weights) = weights
             && self.scratch.t < self.state.t
+            && !self.balances()
         {
             self.balance(weights)?;
+            assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
         }
-        assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
         if consistent_by_mass(&self.model, &mut self.scratch, &mut self.work)? {
             return Ok(());
         }
@@ -37,6 +38,14 @@ impl Simulation {
         let done = consistent_by_iteration(&self.model, &mut self.scratch, &mut aside, weights);
         self.aside = Some(aside);
         done
+    }
+
+    /// Whether the scratch state, which the mass matrix was just assembled at, meets the equations of motion well enough
+    /// for its forces to be those of the motion.
+    fn balances(&mut self) -> bool {
+        let (state, work) = (&self.scratch, &mut self.work);
+        let tolerance = BALANCED * self.integrator.options().force_tolerance;
+        work.forces.ratio(&work.norms, &work.mass.residual, &state.a, &state.lambda, tolerance) <= 1.0
     }
 
     /// Moves the scratch state into balance as Newton's method would at the end of a step like the last one: stiff
@@ -55,32 +64,19 @@ impl Simulation {
         let (model, s) = (&self.model, &mut self.scratch);
         let (nv, start) = (model.velocities(), s.clone());
         let mut d = vec![0.0; nv];
-        // the factors of the last step, as long as they serve
-        let (mut kept, mut before, mut fresh) = (true, f64::INFINITY, 0);
-        let enough = BALANCED * self.integrator.options().force_tolerance / FINE;
         for k in 0..MOST_ITERATIONS {
             // where the interpolation is far off, no matrix serves twice
-            let mut renew = !kept && (fresh < 2 || fresh % 2 == 0);
+            let renew = k < 2 || k % 2 == 0;
             model.assemble(&s.at(), &s.lambda, renew.then_some(weights), &mut aside.system);
-            let work = &mut self.work;
-            let left = work.forces.ratio(&work.norms, &aside.system.residual, &s.a, &s.lambda, FINE);
-            if left <= if k > 0 { 1.0 } else { enough } {
+            let (work, residual) = (&mut self.work, &aside.system.residual);
+            let left = work.forces.ratio(&work.norms, residual, &s.a, &s.lambda, FINE);
+            if k > 0 && left <= 1.0 {
                 return Ok(());
             }
-            if kept && !(left < SERVES * before) {
-                (kept, renew) = (false, true);
-                model.assemble(&s.at(), &s.lambda, Some(weights), &mut aside.system);
-            }
-            fresh += usize::from(!kept);
-            before = left;
-            let mut x: Vec<f64> = aside.system.residual.iter().map(|r| -r).collect();
+            let mut x: Vec<f64> = residual.iter().map(|r| -r).collect();
             x[nv..].iter_mut().for_each(|x| *x /= weights.q);
-            let solved = match kept {
-                true => work.solve_iteration(model, &mut x),
-                false if renew && aside.factor(model, weights).is_err() => break,
-                false => aside.solve_iteration(model, &mut x),
-            };
-            if solved.is_err() {
+            if renew && aside.factor(model, weights).is_err() || aside.solve_iteration(model, &mut x).is_err()
+            {
                 break;
             }
             for i in 0..nv {

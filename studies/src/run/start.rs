@@ -6,9 +6,7 @@ use super::summary::{Counts, CriticalLoad, Ending, ProfileEntry};
 use crate::error::{Error, caught};
 use ropewalk_core::integrator::{Limit, StepError, StepReport, Stepping};
 use ropewalk_core::statics::{Critical, Statics};
-use ropewalk_core::{
-    Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Term, Unfit,
-};
+use ropewalk_core::{Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit};
 use ropewalk_report::Watch;
 use ropewalk_scene::{Analysis, Fault, Process, Scene, SceneFile};
 use std::ops::ControlFlow;

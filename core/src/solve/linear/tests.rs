@@ -19,7 +19,8 @@ fn chain_with(n: usize, shared: usize, stiff: f64, symmetric: bool) -> (Structur
     }
     p.clique((0..3).chain(nv..nv + 3));
     p.clique((6 * n - 6..6 * n - 3).chain(nv + 3..nv + 6));
-    let rows = |k: usize| Rows { count: 3, nodes: vec![NodeId(k as u32)], jacobian: Vec::new(), behind: Vec::new() };
+    let rows =
+        |k: usize| Rows { count: 3, nodes: vec![NodeId(k as u32)], jacobian: Vec::new(), behind: Vec::new() };
     let rows = [rows(0), rows(n - 1)];
     let s = Structure::new(&nodes, &rows, &p, symmetric);
     assert!(s.chain && s.border == shared);
@@ -209,7 +210,8 @@ fn what_goes_unchecked_is_right_and_the_rest_is_mended() {
 fn small<const N: usize>(multipliers: usize, a: [[f64; N]; N], symmetric: bool) -> (Structure, Vec<f64>) {
     let free = N - multipliers;
     let nodes = [Node { kind: NodeKind::Scalars(free), q: 0, v: 0, shared: false }];
-    let rows = [Rows { count: multipliers, nodes: vec![NodeId(0)], jacobian: Vec::new(), behind: Vec::new() }];
+    let rows =
+        [Rows { count: multipliers, nodes: vec![NodeId(0)], jacobian: Vec::new(), behind: Vec::new() }];
     let mut p = Pattern::default();
     p.clique(0..N);
     let s = Structure::new(&nodes, &rows[..multipliers.min(1)], &p, symmetric);
