@@ -24,7 +24,7 @@ fn size(x: &V3<f64>) -> f64 {
 }
 
 /// When the room is used up by what approaches with `w` and gains `b`: `w t + b t²/2` reaches it.
-pub(super) fn time(room: f64, w: f64, b: f64) -> f64 {
+fn time(room: f64, w: f64, b: f64) -> f64 {
     let (w, b) = (w.max(0.0), b.max(0.0));
     2.0 * room / (w + (w * w + 2.0 * b * room).sqrt())
 }
@@ -34,10 +34,7 @@ impl Contact {
     pub(super) fn free(&self, group: &Group, frame: &Frame, at: &At<'_>) -> f64 {
         match &group.what {
             What::Ball(ball) => self.free_ball(ball, frame, at),
-            What::Span(span) => match self.level().and_then(|level| level.free(span, at)) {
-                Some(free) => free,
-                None => self.free_span(span, frame, at),
-            },
+            What::Span(span) => self.free_span(span, frame, at),
         }
     }
 
@@ -153,9 +150,8 @@ impl Contact {
             // inside, the distance is least at a control point; across its ends, near the curve
             let near = [0.0, 0.5, 1.0].map(|xi| span.line.held(xi));
             let all = span.line.controls().into_iter().chain(near);
-            let one = |held| {
-                self.free_ball(&Ball { held, radius: span.radius, k: span.k, cell: 0, next: 0.0 }, frame, at)
-            };
+            let one =
+                |held| self.free_ball(&Ball { held, radius: span.radius, k: span.k, cell: 0 }, frame, at);
             return all.map(one).fold(f64::INFINITY, f64::min);
         }
         if self.fixed.shape.concave() {

@@ -6,7 +6,7 @@
 
 use super::block::{Block, MOST, Slopes};
 use super::friction::{Brake, Friction, MEMORY, Pressed};
-use super::group::{Bristles, Group, Scratch, What, place_of};
+use super::group::{Bristles, Group, Scratch, What};
 use super::seat::{Frame, Seat, minus};
 use super::term::Contact;
 use super::touch::Touch;
@@ -81,13 +81,13 @@ impl Contact {
         (frame, at): (&Frame, &At<'_>),
         memory: &[f64],
     ) -> Option<Braked> {
-        let (What::Span(span), Some(Bristles { grip, at: first, .. })) = (&group.what, &group.bristles)
+        let (What::Span(span), Some(Bristles { grip, cells, at: first })) = (&group.what, &group.bristles)
         else {
             return None;
         };
         let (brake, SpanLine::Cubic { q, l, .. }) = (grip.brake?, span.line) else { return None };
         let own = memory.get(first + MEMORY * cell..)?.get(..MEMORY)?;
-        let weights = slope_weights(place_of(cell), l);
+        let weights = slope_weights((cell as f64 + 0.5) / *cells as f64, l);
         let slope: V3<f64> = std::array::from_fn(|i| (0..4).map(|a| weights[a] * at.q[q[a] + i]).sum());
         let seen = |x: &V3<f64>| match self.fixed.seat {
             Seat::Ground => *x,
@@ -190,7 +190,7 @@ impl Contact {
         memory: &[f64],
     ) -> Option<V3<f64>> {
         let braked = self.braked(self.law.friction.as_ref()?, group, cell, pressed, (frame, at), memory)?;
-        let stiffness = group.bristles.as_ref()?.of(cell).stiffness;
+        let stiffness = group.bristles.as_ref()?.grip.stiffness;
         let normal = dot(&braked.f, &pressed.n);
         Some(std::array::from_fn(|i| (normal * pressed.n[i] - braked.f[i]) / stiffness))
     }

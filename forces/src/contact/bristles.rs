@@ -11,17 +11,10 @@ use ropewalk_core::rotation::{cross, log, then, transposed_times};
 use ropewalk_core::{Assembly, At, Leap, V3};
 
 /// A bristle that holds: where it is on what touches, how that moves, and what it does.
-pub(super) struct Bristle {
-    pub held: Held,
-    pub pair: Pair,
-    pub hold: Hold,
-}
-
-/// Notes what presses some cells, each with its share.
-fn press_on(cells: &mut [Pressed; CELLS], on: [(usize, f64); 2], touch: &Touch) {
-    for (cell, share) in on.into_iter().filter(|(_, share)| *share > 0.0) {
-        cells[cell].add(share * touch.normal, &touch.gap.normal);
-    }
+struct Bristle {
+    held: Held,
+    pair: Pair,
+    hold: Hold,
 }
 
 /// The rotation that undoes one.
@@ -40,7 +33,9 @@ impl Contact {
                 What::Ball(_) => 1,
                 What::Span(_) => CELLS,
             };
-            group.bristles = Some(Bristles { grip: *grip, at, cells });
+            let share = 1.0 / cells as f64;
+            let grip = Grip { stiffness: share * grip.stiffness, damping: share * grip.damping, ..*grip };
+            group.bristles = Some(Bristles { grip, at, cells });
             at += MEMORY * cells;
         }
         self
@@ -99,47 +94,12 @@ impl Contact {
         }
         let u = pair.velocity(&pressed.n);
         let axis = self.directed(friction, group, frame, at);
-        let hold = friction.hold(&bristles.of(cell), pressed, &e, &u, axis.as_ref());
+        let hold = friction.hold(&bristles.grip, pressed, &e, &u, axis.as_ref());
         Some(Bristle { held, pair, hold })
     }
 
     fn directed(&self, friction: &Friction, group: &Group, frame: &Frame, at: &At<'_>) -> Option<V3<f64>> {
         friction.across.and_then(|_| self.axis(group, frame, at))
-    }
-
-    /// The bristle of a cell that something presses, as an iteration has to see it.
-    pub(super) fn holding(
-        &self,
-        group: &Group,
-        cell: usize,
-        pressed: &Pressed,
-        (frame, at): (&Frame, &At<'_>),
-        out: &mut Assembly<'_>,
-    ) -> Option<Bristle> {
-        let mut bristle = self.bristle(group, cell, pressed, frame, at, at.internal)?;
-        let Bristle { held, pair, hold } = &mut bristle;
-        if hold.slips
-            && out.wants_tangent()
-            && let Some(leap) = out.leap()
-            && let Some(bristles) = &group.bristles
-        {
-            let grip = &bristles.of(cell);
-            let turned = |before: &[f64]| {
-                let before = At { v: before, ..*at };
-                let was =
-                    self.pair(held, group.radius(), &self.fixed.frame(&before), &before).velocity(&pressed.n);
-                hold.turned(grip, &minus(&pair.velocity(&pressed.n), &was), out.weights())
-            };
-            // what slips may have stopped on the way, of which the tangent of slip knows nothing
-            if match leap {
-                Leap::Predicted => true,
-                Leap::From(before) => turned(before),
-            } {
-                hold.stick(grip, &pressed.n);
-                out.approximates();
-            }
-        }
-        Some(bristle)
     }
 
     /// Adds the forces of the bristles of a group.
@@ -161,10 +121,32 @@ impl Contact {
                 self.add_braked(group, cell, pressed, (frame, at), out, block);
                 continue;
             }
-            let Some(Bristle { held, pair, hold }) = self.holding(group, cell, pressed, (frame, at), out)
+            let Some(Bristle { held, pair, mut hold }) =
+                self.bristle(group, cell, pressed, frame, at, at.internal)
             else {
                 continue;
             };
+            if hold.slips
+                && out.wants_tangent()
+                && let Some(leap) = out.leap()
+                && let Some(Bristles { grip, .. }) = &group.bristles
+            {
+                let turned = |before: &[f64]| {
+                    let before = At { v: before, ..*at };
+                    let was = self
+                        .pair(&held, group.radius(), &self.fixed.frame(&before), &before)
+                        .velocity(&pressed.n);
+                    hold.turned(grip, &minus(&pair.velocity(&pressed.n), &was), out.weights())
+                };
+                // what slips may have stopped on the way, of which the tangent of slip knows nothing
+                if match leap {
+                    Leap::Predicted => true,
+                    Leap::From(before) => turned(before),
+                } {
+                    hold.stick(grip, &pressed.n);
+                    out.approximates();
+                }
+            }
             let touch = Touch::at_point(pressed.n, hold.f);
             self.add_force(&held, &pair, &touch, || hold.slopes(), tangent, block);
             if out.wants_tangent() && hold.by_normal != [0.0; 3] {
@@ -182,9 +164,12 @@ impl Contact {
         scratch: &mut Scratch,
     ) -> [Pressed; CELLS] {
         let mut cells = [Pressed::NONE; CELLS];
-        self.each_of(self.level_in(at).as_ref(), group, (frame, at), scratch, |_, on, touch| {
-            press_on(&mut cells, on, touch)
-        });
+        group.gather(&self.fixed, frame, at, scratch);
+        for ball in &scratch.balls {
+            if let Some((touch, _)) = self.touch(ball, frame, at) {
+                cells[ball.cell].add(touch.normal, &touch.gap.normal);
+            }
+        }
         cells
     }
 
@@ -209,15 +194,17 @@ impl Contact {
     ) {
         let rubs = self.law.friction.is_some() && !self.brakes(at.internal);
         let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
-        let level = self.level_in(at);
         for group in &self.groups {
             let mut cells = [Pressed::NONE; CELLS];
-            self.each_of(level.as_ref(), group, (&frame, at), &mut scratch, |_, on, touch| {
-                see(touch);
-                if rubs {
-                    press_on(&mut cells, on, touch);
+            group.gather(&self.fixed, &frame, at, &mut scratch);
+            for ball in &scratch.balls {
+                if let Some((touch, _)) = self.touch(ball, &frame, at) {
+                    see(&touch);
+                    if rubs {
+                        cells[ball.cell].add(touch.normal, &touch.gap.normal);
+                    }
                 }
-            });
+            }
             if rubs {
                 self.bristles_of(group, &mut cells, &frame, at, &mut see_bristle);
             }

@@ -1,6 +1,6 @@
 //! What touches: single balls, and slender pieces whose places of contact are found anew at every evaluation.
 
-use super::friction::{CELLS, Grip};
+use super::friction::Grip;
 use super::search::{Cubic, Look, Search, gauss};
 use super::seat::{Fixed, Frame};
 use ropewalk_core::held::Held;
@@ -14,16 +14,8 @@ pub(crate) struct Ball {
     pub radius: f64,
     /// Stiffness of its contact [N/m^p].
     pub k: f64,
-    /// The cell that it presses, of those of its group, and the share of the one behind it.
+    /// The cell that it presses, of those of its group.
     pub cell: usize,
-    pub next: f64,
-}
-
-impl Ball {
-    /// The cells that it presses, each with its share.
-    pub fn cells(&self) -> [(usize, f64); 2] {
-        [(self.cell, 1.0 - self.next), (self.cell + 1, self.next)]
-    }
 }
 
 /// What the same unknowns move.
@@ -53,35 +45,11 @@ pub(crate) enum What {
 /// The bristles of a group.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bristles {
-    /// All of them together.
+    /// One of them.
     pub grip: Grip,
     /// The place of what the first remembers.
     pub at: usize,
     pub cells: usize,
-}
-
-impl Bristles {
-    /// The one of a cell.
-    pub fn of(&self, cell: usize) -> Grip {
-        let share = if self.cells == CELLS { gauss(CELLS)[cell].1 } else { 1.0 };
-        Grip { stiffness: share * self.grip.stiffness, damping: share * self.grip.damping, ..self.grip }
-    }
-}
-
-/// Where a cell of a slender piece is held: cells are what the points of a Gauss rule stand for.
-pub(crate) fn place_of(cell: usize) -> f64 {
-    gauss(CELLS)[cell].0
-}
-
-/// What presses a slender piece at `ξ` presses the cells held before and behind it, the nearer one more: the first of them, and the
-/// share of the second.
-fn pressed(xi: f64) -> (usize, f64) {
-    let behind = gauss(CELLS).partition_point(|(place, _)| *place <= xi);
-    if behind == 0 || behind == CELLS {
-        return (behind.min(CELLS - 1), 0.0);
-    }
-    let (a, b) = (place_of(behind - 1), place_of(behind));
-    (behind - 1, (xi - a) / (b - a))
 }
 
 /// A slender piece.
@@ -118,11 +86,14 @@ impl Group {
         }
     }
 
-    /// Where a cell is held.
+    /// The middle of a cell.
     pub fn station(&self, cell: usize) -> Held {
         match &self.what {
             What::Ball(ball) => ball.held,
-            What::Span(span) => span.line.held(place_of(cell)),
+            What::Span(span) => {
+                let cells = self.bristles.map_or(1, |b| b.cells);
+                span.line.held((cell as f64 + 0.5) / cells as f64)
+            }
         }
     }
 
@@ -141,18 +112,29 @@ impl Group {
             What::Ball(ball) => return scratch.balls.push(*ball),
             What::Span(span) => span,
         };
-        let (rubs, cells) = (self.bristles.is_some(), self.bristles.map_or(1, |b| b.cells));
+        let cells = self.bristles.map_or(1, |b| b.cells);
         if span.is_near(fixed, frame, at) {
             let curve = span.curve(fixed, frame, at);
             Search::new(&fixed.shape, &curve, span.radius).find(&mut scratch.pieces, &mut scratch.found);
         }
         for &[from, to] in &scratch.found {
-            let part = to - from;
-            scratch.balls.extend(gauss(span.points).iter().map(|&(place, weight)| {
-                let xi = from + part * place;
-                let (cell, next) = if rubs { pressed(xi) } else { (0, 0.0) };
-                Ball { held: span.line.held(xi), radius: span.radius, k: span.k * part * weight, cell, next }
-            }));
+            // cut where one cell ends and the next begins
+            let borders = (1..cells).map(|c| c as f64 / cells as f64).filter(|&b| b > from && b < to);
+            let mut from = from;
+            for to in borders.chain([to]) {
+                let part = to - from;
+                let cell = ((0.5 * (from + to) * cells as f64) as usize).min(cells - 1);
+                // a cell all of which touches is as good as straight
+                let whole = cells > 1 && part * cells as f64 > 1.0 - 1e-9;
+                let points = if whole { 2 } else { span.points };
+                scratch.balls.extend(gauss(points).iter().map(|&(place, weight)| Ball {
+                    held: span.line.held(from + part * place),
+                    radius: span.radius,
+                    k: span.k * part * weight,
+                    cell,
+                }));
+                from = to;
+            }
         }
         scratch
             .balls

@@ -5,7 +5,6 @@ use super::flowing::Flowing;
 use super::friction::{AtRest, CELLS, Pressed};
 use super::group::{Ball, Group, Place, Scratch, Span, What};
 use super::law::ContactLaw;
-use super::level::{Level, Lies};
 use super::search::{Depth, Search};
 use super::seat::{Fixed, Frame, Seat, minus, rotation};
 use super::shape::Shape;
@@ -108,7 +107,7 @@ impl Contact {
             })?;
             let (radius, k) =
                 (positive("radius", p.radius)?, positive("stiffness", stiffness.of_point(p.radius))?);
-            groups.push(What::Ball(Ball { held: p.held, radius, k, cell: 0, next: 0.0 }));
+            groups.push(What::Ball(Ball { held: p.held, radius, k, cell: 0 }));
         }
         for s in spans {
             let radius = positive("radius", s.radius)?;
@@ -119,13 +118,7 @@ impl Contact {
             };
             let tip = |end_of: usize| {
                 let held = s.line.beyond(end_of, radius);
-                (s.tips[end_of] && end > 0.0).then_some(Ball {
-                    held,
-                    radius: 0.0,
-                    k: end,
-                    cell: end_of,
-                    next: 0.0,
-                })
+                (s.tips[end_of] && end > 0.0).then_some(Ball { held, radius: 0.0, k: end, cell: end_of })
             };
             let span = Span {
                 line: s.line,
@@ -281,45 +274,18 @@ impl Contact {
         }
     }
 
-    /// Sees the stiffness of all that touches, and how it does.
-    fn each(&self, at: &At<'_>, mut see: impl FnMut(f64, &Touch, &Frame)) {
+    fn each(&self, at: &At<'_>, mut see: impl FnMut(&Ball, &Touch, &Frame)) {
         let frame = self.fixed.frame(at);
         let mut scratch = Scratch::default();
-        let level = self.level_in(at);
         for group in &self.groups {
-            self.each_of(level.as_ref(), group, (&frame, at), &mut scratch, |k, _, touch| {
-                see(k, touch, &frame)
-            });
-        }
-        self.each_flowing_ball(at, |ball, touch| see(ball.k, touch, &frame));
-    }
-
-    /// The same of one group, with the cell that is touched.
-    pub(super) fn each_of(
-        &self,
-        level: Option<&Level>,
-        group: &Group,
-        (frame, at): (&Frame, &At<'_>),
-        scratch: &mut Scratch,
-        mut see: impl FnMut(f64, [(usize, f64); 2], &Touch),
-    ) {
-        match (Self::lies(level, group, at), level) {
-            (Lies::Above, _) => return,
-            (Lies::Within(points), Some(level)) => {
-                for (cell, p) in points.iter().enumerate() {
-                    let normal = self.law.normal(p.k, p.depth, p.rate);
-                    see(p.k, [(cell, 1.0), (cell, 0.0)], &Touch::lying(level.n, &normal, p.depth, p.rate));
+            group.gather(&self.fixed, &frame, at, &mut scratch);
+            for ball in &scratch.balls {
+                if let Some((touch, _)) = self.touch(ball, &frame, at) {
+                    see(ball, &touch, &frame);
                 }
-                return;
-            }
-            _ => {}
-        }
-        group.gather(&self.fixed, frame, at, scratch);
-        for ball in &scratch.balls {
-            if let Some((touch, _)) = self.touch(ball, frame, at) {
-                see(ball.k, ball.cells(), &touch);
             }
         }
+        self.each_flowing_ball(at, |ball, touch| see(ball, touch, &frame));
     }
 
     /// Sees all that touches of cables that feed.
@@ -352,25 +318,19 @@ impl Contact {
     ) {
         let Some((touch, pair)) = self.touch(ball, frame, at) else { return };
         self.add_force(&ball.held, &pair, &touch, || touch.slopes(), tangent, block);
-        if cells.is_empty() {
-            return;
-        }
-        let n = &touch.gap.normal;
-        for (cell, share) in ball.cells().into_iter().filter(|c| c.1 > 0.0) {
-            cells[cell].add(share * touch.normal, n);
-        }
-        let Some(w) = tangent else { return };
-        let by = -(w.q * touch.by_depth + w.v * touch.by_rate);
-        let mut force = [0.0; MOST];
-        if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
-            for (force, weight) in force.chunks_exact_mut(3).zip(weights(&ball.held)) {
-                (0..3).for_each(|i| force[i] = weight * n[i]);
+        let Some(cell) = cells.get_mut(ball.cell) else { return };
+        cell.add(touch.normal, &touch.gap.normal);
+        if let Some(w) = tangent {
+            let by = -(w.q * touch.by_depth + w.v * touch.by_rate);
+            let n = &touch.gap.normal;
+            if self.fixed.seat == Seat::Ground && pair.carrier.is_none() {
+                for (sum, weight) in cell.by.chunks_exact_mut(3).zip(weights(&ball.held)) {
+                    (0..3).for_each(|i| sum[i] += by * weight * n[i]);
+                }
+            } else {
+                let force = self.spread(&ball.held, &pair, n, n);
+                cell.by.iter_mut().zip(&force).for_each(|(sum, f)| *sum += by * f);
             }
-        } else {
-            force = self.spread(&ball.held, &pair, n, n);
-        }
-        for (cell, share) in ball.cells().into_iter().filter(|c| c.1 > 0.0) {
-            cells[cell].by.iter_mut().zip(&force).for_each(|(sum, f)| *sum += share * by * f);
         }
     }
 
@@ -455,17 +415,7 @@ impl Term for Contact {
         let mut cells = [Pressed::NONE; CELLS];
         let tangent = out.wants_tangent().then(|| out.weights());
         let body = self.body();
-        let level = self.level_in(at).filter(|_| !self.brakes(at.internal));
         for (clique, group) in self.groups.iter().enumerate() {
-            match (Self::lies(level.as_ref(), group, at), &level) {
-                (Lies::Above, _) => continue,
-                (Lies::Within(points), Some(level)) => {
-                    self.add_lying(level, (group, &points), (&frame, at), out, &mut block);
-                    block.flush(clique, group.held().dofs(), out);
-                    continue;
-                }
-                _ => {}
-            }
             group.gather(&self.fixed, &frame, at, &mut scratch);
             let cells = &mut cells[..group.bristles.map_or(0, |b| b.cells)];
             cells.fill(Pressed::NONE);
@@ -481,7 +431,7 @@ impl Term for Contact {
     }
     fn energy(&self, at: &At<'_>) -> Energy {
         let mut potential = 0.0;
-        self.each(at, |k, touch, _| potential += self.law.stored(k, touch.depth));
+        self.each(at, |ball, touch, _| potential += self.law.stored(ball.k, touch.depth));
         Energy { potential, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
