@@ -112,7 +112,7 @@ fn ropes_over_wheels_go_on_to_the_last_bit() {
     same_from_checkpoint(&scene, &scene.solver, 20, 4);
 }
 
-/// The rope is off its wheel where the checkpoint is, and comes back behind it.
+/// The rope lifts off from its wheel and comes back.
 #[test]
 fn rope_that_lifts_off_from_its_wheel_goes_on_to_the_last_bit() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lifting.toml");
@@ -120,9 +120,9 @@ fn rope_that_lifts_off_from_its_wheel_goes_on_to_the_last_bit() {
     scene.run.duration = 0.4;
     let controlled = Stepping::Controlled { tolerance: 1e-4 };
     for (scheme, stepping, every) in [
-        (Scheme::default(), controlled, 300),
+        (Scheme::default(), controlled, 60),
         (Scheme::default(), Stepping::Fixed { h: 1e-3 }, 70),
-        (Scheme::RadauIia5, controlled, 30),
+        (Scheme::RadauIia5, controlled, 8),
     ] {
         let options = Options { scheme, stepping, ..Options::default() };
         same_from_checkpoint(&scene, &options, every, 3);
