@@ -570,7 +570,7 @@ class Parts:
         The cable leaves it as a tangent, wherever it goes to, and is wound without slip. The drum pays out as it
         turns by the right-hand rule about its `axis`; so about [0, 1, 0] it leaves from the top towards x. Its
         `speed` or angle is prescribed, or it is turned by `torque`, its cable and `brake`. What is wound keeps the
-        stretch of `wound_tension`.
+        stretch with which it was wound.
 
         name: Name; routes and records refer to it.
         marker: Its middle: a point in space, or of a rigid body, which stands above the cable in the scene.
@@ -593,9 +593,9 @@ class Parts:
             on it, belongs to what carries it [kg m²].
         wound: Length of cable on it at the start, as it lies [m]. The run ends when 3 turns are left. Default:
             unlimited, and without inertia.
-        wound_tension: Tension with which that was wound [N], which tells its stretch; what is wound later has the
-            same. The tension of the free cable may differ from it by little beside its stiffness: the share of its
-            stretch is the error. Default: the tension at which the cable is laid.
+        wound_tension: Tension with which that was wound [N], which tells its stretch; what is wound later keeps the
+            tension that it has then. Default: the tension at the start, of the equilibrium if the run begins with
+            one, or else at which the cable is laid.
         pitch: Way of the cable along the axis in a turn [m]; usually its diameter. It winds towards the axis first.
             Default: none, as behind a device that keeps it in the middle.
         width: Width between the flanges [m]: the cable is wound in layers. Goes with `pitch` and `wound`. Default:
@@ -876,6 +876,7 @@ class Parts:
         marker: Union[Sequence[Number], str],
         friction: Number | None = None,
         slip_speed: Number | None = None,
+        equilibrium: Literal['hoisting', 'lowering', 'none', 'to_end', 'to_start'] | None = None,
     ) -> Part:
         """A ring through which a cable runs that names it in its `route`: a shackle, a fairlead, a thimble, small beside
         the spans. For a wheel whose size counts take a `sheave`.
@@ -888,12 +889,14 @@ class Parts:
         friction: Coefficient of friction. Default: none.
         slip_speed: Speed of sliding below which friction fades, so that a held cable creeps at a part of it [m/s].
             Default 0.001.
+        equilibrium: What friction does at equilibria, which aren't unique with it.
         """
         return self._add("constraints", "ring", {
             "name": name,
             "marker": marker,
             "friction": friction,
             "slip_speed": slip_speed,
+            "equilibrium": equilibrium,
         })
 
     def rotation(
@@ -937,6 +940,8 @@ class Parts:
         bearing: Mapping[str, Any] | None = None,
         torque: Union[Mapping[str, Any], Number] | None = None,
         slip_speed: Number | None = None,
+        turns: Integer | None = None,
+        equilibrium: Literal['hoisting', 'lowering', 'none', 'to_end', 'to_start'] | None = None,
     ) -> Part:
         """A sheave: a wheel over which cables run that name it in their `route`.
 
@@ -946,9 +951,9 @@ class Parts:
         equation, and turns a wheel with `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable.
         `efficiency` is for tables of cranes.
 
-        A cable may lift off from the wheel and come down on it again, which is told; what an impact takes counts in
-        the balance of energy as a change of mesh. Not known: several turns round it, torsion of the cable; runs end
-        there.
+        A cable may lift off from the wheel and come down on it again, which is told, but for one of several `turns`;
+        what an impact takes counts in the balance of energy as a change of mesh. Not known: torsion of the cable;
+        runs end there.
 
         name: Name; routes and records refer to it.
         marker: Its centre: a point in space, or of a rigid body, which stands above the cable in the scene.
@@ -972,6 +977,10 @@ class Parts:
         torque: Moment that drives a wheel with `friction` and `inertia`, about its axis [N m].
         slip_speed: Speed of sliding below which friction fades, so that a held cable creeps at a part of it [m/s].
             Default 0.001.
+        turns: Whole turns of the cable about it, besides the angle by which it turns there, as on a capstan or a
+            bollard. They lie side by side, and are taken to come and go in one plane. The wrap may then become any
+            angle. Default: none; a cable that wraps all round ends the run.
+        equilibrium: What friction does at equilibria, which aren't unique with it.
         """
         return self._add("constraints", "sheave", {
             "name": name,
@@ -987,6 +996,8 @@ class Parts:
             "bearing": bearing,
             "torque": torque,
             "slip_speed": slip_speed,
+            "turns": turns,
+            "equilibrium": equilibrium,
         })
 
     def slide(
