@@ -278,7 +278,7 @@ fn what_is_wound_under_tension_comes_off_as_it_was_wound() {
         assert!(off.abs() <= 5e-3, "{off} at {t} s");
     }
     let lost = last(&history, "energy.imbalance").abs() / (2.0 * weight * radius * 9.0);
-    assert!(lost <= 1e-3, "{lost} of the work is unaccounted for");
+    assert!(lost <= 2e-3, "{lost} of the work is unaccounted for");
 }
 
 #[test]
