@@ -360,6 +360,10 @@ impl Sheave {
     /// What the cable does to the axle besides, since it comes and goes by a fleet angle [N].
     fn aside(&self, groove: &Groove, at: &At<'_>, x: &Instant<f64>) -> V3<f64> {
         let (axis, mut sum) = (self.seat.axis_now(at), [0.0; 3]);
+        // what is off its groove isn't turned into it
+        if Mode::of(at.internal, groove.mode) != Mode::Wraps {
+            return sum;
+        }
         for (end, boundary) in groove.ends.iter().enumerate() {
             let q = boundary.end_q + 3;
             let slope: V3<f64> = std::array::from_fn(|i| at.q[q + i]);
