@@ -10,4 +10,3 @@ mod feeding_contact;
 mod friction;
 mod lines;
 mod lines_rub;
-mod moorings;

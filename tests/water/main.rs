@@ -5,7 +5,6 @@ mod common;
 
 mod afloat;
 mod all_round;
-mod floating;
 mod fluid;
 mod one_world;
 mod tank;

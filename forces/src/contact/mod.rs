@@ -16,7 +16,6 @@ mod friction;
 mod group;
 mod heights;
 mod law;
-mod level;
 mod lines;
 mod mesh;
 mod search;

@@ -5,7 +5,6 @@ mod laws;
 mod measured;
 mod reference;
 mod scenes;
-mod tension;
 mod vessels;
 
 use ropewalk::scene::Format;
