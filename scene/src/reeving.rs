@@ -50,8 +50,6 @@ pub struct Passage {
     pub spans: [String; 2],
     /// Whether a drum or a winch is at the start and at the end of the cable.
     pub fed: [bool; 2],
-    /// Whether the cable has no ends.
-    pub closed: bool,
     /// The end of the one and the start of the other.
     pub boundaries: [MovingBoundary; 2],
     /// The centre of the guide.

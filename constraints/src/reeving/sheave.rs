@@ -47,14 +47,23 @@ impl Seat {
         self.on.map_or(0, |(_, _, turns)| if turns { 6 } else { 3 })
     }
 
+    /// A vector in the axes of what carries it, in space.
+    fn turned(&self, at: &At<'_>, x: &V3<f64>) -> V3<f64> {
+        match self.on {
+            Some((q, _, true)) => times(&matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]), x),
+            _ => *x,
+        }
+    }
+
     /// Its axis in space.
     pub fn axis_now(&self, at: &At<'_>) -> V3<f64> {
-        match self.on {
-            Some((q, _, true)) => {
-                times(&matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]), &self.axis)
-            }
-            _ => self.axis,
-        }
+        self.turned(at, &self.axis)
+    }
+
+    /// Its centre in space.
+    fn centre_now(&self, at: &At<'_>) -> V3<f64> {
+        let out = self.turned(at, &self.point);
+        self.on.map_or(out, |(q, _, _)| std::array::from_fn(|i| at.q[q + i] + out[i]))
     }
 
     /// Velocity of what carries it at a place in space [m/s].
@@ -62,8 +71,7 @@ impl Seat {
         let Some((q, v, turns)) = self.on else { return [0.0; 3] };
         let mut velocity: V3<f64> = std::array::from_fn(|i| at.v[v + i]);
         if turns {
-            let m = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
-            let spin = times(&m, &std::array::from_fn(|i| at.v[v + 3 + i]));
+            let spin = self.turned(at, &std::array::from_fn(|i| at.v[v + 3 + i]));
             let swing = cross(&spin, &std::array::from_fn(|i| place[i] - at.q[q + i]));
             (0..3).for_each(|i| velocity[i] += swing[i]);
         }
@@ -82,8 +90,6 @@ pub(super) struct Groove {
     pub ends: [MovingBoundary; 2],
     /// Whether the axis of this cable is that of the wheel turned round.
     pub back: bool,
-    /// Whether the cable has no ends.
-    pub closed: bool,
     /// Which way the cable goes at an equilibrium with friction: 1 to its start, -1 to its end.
     pub way: f64,
     /// Of several turns: the wrap at the start, and place of the internal variable by how much it differs since [rad].
@@ -96,7 +102,7 @@ impl Groove {
     /// Of a cable that has this length on the wheel at the start.
     pub fn new(arc: Arc, stored: f64, ends: [MovingBoundary; 2], back: bool, mode: usize) -> Self {
         let stored = stored - ends[1].home + ends[0].home;
-        Groove { arc, stored, ends, back, closed: false, way: 0.0, turns: None, mode }
+        Groove { arc, stored, ends, back, way: 0.0, turns: None, mode }
     }
 
     /// The angle of a kink between both spans, as the cable turns about the axis of the wheel in space [rad].
@@ -146,10 +152,6 @@ pub(super) fn passes(ends: &[MovingBoundary; 2], gravity: &V3<f64>, at: &At<'_>)
 
 /// Stiffness that keeps a free wheel in an equilibrium, as a share of `EA R`.
 const STILL: f64 = 1e-9;
-
-/// The same of a closed cable, which could run round and round, as a share of `EA/R`. More, since rounding has nothing to
-/// lean against along all of it.
-const STILL_BELT: f64 = 1e-6;
 
 /// Most unknowns of a groove: two points, two material coordinates, a body, the angle of the wheel.
 const MOST: usize = 15;
@@ -331,16 +333,6 @@ impl Sheave {
         now
     }
 
-    /// The centre in space.
-    fn centre(&self, at: &At<'_>) -> V3<f64> {
-        let Some((q, _, turns)) = self.seat.on else { return self.seat.point };
-        let out = match turns {
-            true => times(&matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]), &self.seat.point),
-            false => self.seat.point,
-        };
-        std::array::from_fn(|i| at.q[q + i] + out[i])
-    }
-
     /// Direction from one end to the other.
     fn chord(&self, groove: &Groove, at: &At<'_>) -> V3<f64> {
         let [a, b] = groove.ends;
@@ -351,7 +343,7 @@ impl Sheave {
 
     /// Where the middle between both ends of a groove is, as seen from the centre: along the axis, and how far from it [m].
     pub fn middle(&self, groove: &Groove, at: &At<'_>) -> [f64; 2] {
-        let ([a, b], c, axis) = (groove.ends, self.centre(at), self.seat.axis_now(at));
+        let ([a, b], c, axis) = (groove.ends, self.seat.centre_now(at), self.seat.axis_now(at));
         let d: V3<f64> = std::array::from_fn(|i| 0.5 * (at.q[a.end_q + i] + at.q[b.end_q + i]) - c[i]);
         let beside = dot(&d, &axis);
         [beside, (dot(&d, &d) - beside * beside).sqrt()]
@@ -426,11 +418,6 @@ impl Term for Sheave {
             {
                 let arc = &groove.arc;
                 block[i][i] += w.q * STILL * arc.strand.ea * arc.radius;
-            }
-            if groove.closed && w.v == 0.0 && w.a == 0.0 {
-                for i in [3, 7] {
-                    block[i][i] += w.q * STILL_BELT * groove.arc.strand.ea / groove.arc.radius;
-                }
             }
             out.add_square(k, &block);
         }

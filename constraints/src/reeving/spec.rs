@@ -254,7 +254,7 @@ impl SheaveSpec {
             };
             let back = dot(&passage.axis, &axis) < 0.0;
             if strand.ei > 0.0 {
-                let (ends, name) = (passage.boundaries, name.to_string());
+                let (ends, name) = (passage.boundaries, format!("{name}{number}"));
                 b.term(Box::new(Stiff { name, mode, ends, ei: strand.ei, radius: self.radius }));
             }
             let turns = self.turns.map(|_| (passage.wrap, b.memory(&format!("{name}: wrap"), 1)));

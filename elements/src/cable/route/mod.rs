@@ -312,7 +312,6 @@ impl CableSpec {
                 guide: guide.name.clone(),
                 spans: [names[before].clone(), names[k].clone()],
                 fed,
-                closed,
                 boundaries: [end, start],
                 marker: *marker,
                 axis: turn.axis,
