@@ -56,6 +56,9 @@ const LEVEL: f64 = 0.02;
 const DEEP: f64 = 3.0;
 /// As many lanes as the widest carrier has.
 const MOST: usize = 8;
+/// Numbers that say how a cell is wet, with one to spare, and how it lies.
+const WET: usize = 24;
+const CELL: usize = 8;
 
 impl Surface {
     /// That of still water at a height [m].
@@ -160,35 +163,57 @@ impl<R: Real> Wet<R> {
         wet
     }
 
-    /// Each cell by itself.
-    #[inline(never)]
+    /// Cells some of which the surface cuts, or that are above it: each of those by itself.
+    #[inline(always)]
     fn each(at: &Station<R>, s: R, radius: R) -> Self {
-        let mut cells = [Wet::dry(); MOST];
-        for (lane, cell) in cells.iter_mut().enumerate().take(R::LANES) {
-            let before = at.before.lane(lane);
-            *cell = Cell {
-                s: s.lane(lane),
-                slope: [at.slope[0].lane(lane), at.slope[1].lane(lane), at.slope[2].lane(lane)],
-                before,
-                behind: at.weight.lane(lane) - before,
-                element: at.element.lane(lane),
-                radius: radius.lane(lane),
-            }
-            .wet();
+        let mut rows = [[0.0; MOST]; WET];
+        Wet::below(at, s, radius).write(&mut rows);
+        let mut cells = [[0.0; MOST]; CELL];
+        let numbers = [s, at.slope[0], at.slope[1], at.slope[2], at.before, at.weight, at.element, radius];
+        for k in 0..CELL {
+            numbers[k].write(&mut cells[k]);
         }
-        let vector = |of: &dyn Fn(&Wet<f64>) -> V3<f64>| -> V3<R> {
-            [0, 1, 2].map(|i| R::each(|lane| of(&cells[lane])[i]))
-        };
+        cut(R::LANES, &cells, &mut rows);
+        Wet::read(&rows)
+    }
+
+    /// Its numbers, row by row.
+    #[inline(always)]
+    fn write(self, rows: &mut [[f64; MOST]; WET]) {
+        let [a, b, c] = self.depth_by_slopes;
+        let all = [
+            [self.depth, self.lift, self.lift_by_z],
+            self.depth_by_slope,
+            a,
+            b,
+            c,
+            self.lift_by_slope,
+            self.share_by_slope,
+            [self.share, self.share_by_z, R::zero()],
+        ];
+        for k in 0..WET {
+            all[k / 3][k % 3].write(&mut rows[k]);
+        }
+    }
+
+    #[inline(always)]
+    fn read(rows: &[[f64; MOST]; WET]) -> Self {
+        let mut all = [[R::zero(); 3]; WET / 3];
+        for k in 0..WET {
+            all[k / 3][k % 3] = R::read(&rows[k]);
+        }
+        let [[depth, lift, lift_by_z], depth_by_slope, a, b, c, lift_by_slope, share_by_slope, last] = all;
+        let ([share, share_by_z, _], depth_by_slopes) = (last, [a, b, c]);
         Wet {
-            depth: R::each(|lane| cells[lane].depth),
-            depth_by_slope: vector(&|c| c.depth_by_slope),
-            depth_by_slopes: [0, 1, 2].map(|i| vector(&|c| c.depth_by_slopes[i])),
-            lift: R::each(|lane| cells[lane].lift),
-            lift_by_z: R::each(|lane| cells[lane].lift_by_z),
-            lift_by_slope: vector(&|c| c.lift_by_slope),
-            share: R::each(|lane| cells[lane].share),
-            share_by_z: R::each(|lane| cells[lane].share_by_z),
-            share_by_slope: vector(&|c| c.share_by_slope),
+            depth,
+            depth_by_slope,
+            depth_by_slopes,
+            lift,
+            lift_by_z,
+            lift_by_slope,
+            share,
+            share_by_z,
+            share_by_slope,
         }
     }
 
@@ -213,6 +238,21 @@ impl Wet<f64> {
             share_by_z: 0.0,
             share_by_slope: [0.0; 3],
         }
+    }
+}
+
+/// Puts the cells of some lanes that don't lie below the surface as a whole into their places of the rows.
+#[inline(never)]
+fn cut(lanes: usize, cells: &[[f64; MOST]; CELL], rows: &mut [[f64; MOST]; WET]) {
+    for lane in 0..lanes {
+        let [s, x, y, z, before, weight, element, radius] = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| cells[k][lane]);
+        let behind = weight - before;
+        if s + before * z >= radius && s - behind * z >= radius {
+            continue;
+        }
+        let mut own = [[0.0; MOST]; WET];
+        Cell { s, slope: [x, y, z], before, behind, element, radius }.wet().write(&mut own);
+        rows.iter_mut().zip(&own).for_each(|(row, own)| row[lane] = own[0]);
     }
 }
 

@@ -23,13 +23,34 @@ pub struct Sea {
 /// What was found lately, and the table that stands for many waves.
 struct Memory {
     lattice: Option<Lattice>,
-    latest: Vec<([u64; 4], Here)>,
+    packs: Vec<Found>,
 }
 
-/// Number of places that are remembered, a power of two.
-const PLACES: usize = 2048;
+/// The motion at places side by side, number by number over all of them: several laws ask for the same, one after the other.
+#[derive(Clone)]
+struct Found {
+    t: f64,
+    lanes: usize,
+    at: Places,
+    rows: [[f64; MOST]; ROWS],
+}
+
+type Places = [[f64; MOST]; 3];
+
+/// Number of packs that are remembered, a power of two.
+const PACKS: usize = 512;
 /// As many lanes as the widest carrier has.
 const MOST: usize = 8;
+/// Numbers that tell the motion at a place, in this order: velocity and by the place, its rate and what the rise of the surface adds,
+/// acceleration and by the place, gradient in the water, elevation, slopes, rate of elevation.
+const ROWS: usize = 43;
+const BY_X: usize = 3;
+const RATE: usize = 12;
+const BY_T: usize = 15;
+const ACCELERATION: usize = 18;
+const ACCELERATION_BY_X: usize = 21;
+const GRADIENT: usize = 30;
+const SURFACE: usize = 39;
 /// Up to so many waves are summed up unless asked otherwise.
 const FEW: usize = 8;
 /// Places at which a table is compared with the sum.
@@ -123,8 +144,9 @@ impl Sea {
             4.0 * waves.deviation(),
             spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
-        let nowhere = ([u64::MAX; 4], Here::default());
-        let memory = Mutex::new(Memory { lattice, latest: vec![nowhere; PLACES] });
+        let nowhere = [[f64::NAN; MOST]; 3];
+        let none = Found { t: f64::NAN, lanes: 0, at: nowhere, rows: [[0.0; MOST]; ROWS] };
+        let memory = Mutex::new(Memory { lattice, packs: vec![none; PACKS] });
         Ok(Sea { waves, level, about, memory })
     }
 
@@ -188,53 +210,43 @@ impl Sea {
     /// The motion of the water at time `t` [s] at places.
     #[inline(always)]
     pub fn at<R: Real>(&self, t: f64, x: &V3<R>) -> Swell<R> {
-        let mut here = [Here::default(); MOST];
-        let places: [V3<f64>; MOST] = std::array::from_fn(|lane| {
-            let lane = lane.min(R::LANES - 1);
-            [x[0].lane(lane), x[1].lane(lane), x[2].lane(lane)]
-        });
-        self.find(t, &places[..R::LANES], &mut here);
-        let off = [
-            x[0] - R::each(|l| places[l][0]),
-            x[1] - R::each(|l| places[l][1]),
-            x[2] - R::each(|l| places[l][2]),
-        ];
-        let matrix = |of: &dyn Fn(&Here) -> &[[f64; 3]; 3]| -> [V3<R>; 3] {
-            [0, 1, 2].map(|i| [0, 1, 2].map(|j| R::each(|l| of(&here[l])[i][j])))
-        };
-        let by_x = matrix(&|h| &h.by_x);
-        let acceleration_by_x = matrix(&|h| &h.acceleration_by_x);
-        let gradient = matrix(&|h| &h.flow.gradient);
+        let mut places = [[0.0_f64; MOST]; 3];
+        for i in 0..3 {
+            x[i].write(&mut places[i]);
+        }
+        let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+        let slot = mixed([places[0][0], places[1][0], places[2][0], t].map(f64::to_bits)) % PACKS;
+        let found = &memory.packs[slot];
+        // what is no number is never found
+        if (found.t, found.lanes) != (t, R::LANES) || found.at != places {
+            self.find(t, &places, R::LANES, slot, &mut memory);
+        }
+        let Found { at, rows, .. } = &memory.packs[slot];
         // numbers that know their derivative get it from here; of all others the distance is nothing
-        let along =
-            |rows: &V3<R>, value: R| rows[0].fma(off[0], rows[1].fma(off[1], rows[2].fma(off[2], value)));
-        let u = [0, 1, 2].map(|i| along(&by_x[i], R::each(|l| here[l].flow.velocity[i])));
-        let acceleration =
-            [0, 1, 2].map(|i| along(&acceleration_by_x[i], R::each(|l| here[l].flow.acceleration[i])));
-        let rate = [0, 1, 2].map(|i| along(&acceleration_by_x[i], R::each(|l| here[l].flow.rate[i])));
-        let by_t = [0, 1, 2].map(|i| rate[i] + R::each(|l| here[l].by_t[i]));
-        let slope = [0, 1].map(|i| R::each(|l| here[l].flow.slope[i]));
-        let elevation = R::each(|l| here[l].flow.elevation);
-        let elevation = slope[0].fma(off[0], slope[1].fma(off[1], elevation));
-        let rising = R::each(|l| here[l].flow.rising);
+        let off = [x[0] - R::read(&at[0]), x[1] - R::read(&at[1]), x[2] - R::read(&at[2])];
+        let [by_x, acceleration_by_x, gradient] =
+            [matrix(rows, BY_X), matrix(rows, ACCELERATION_BY_X), matrix(rows, GRADIENT)];
+        let u = moved(&by_x, &off, three(rows, 0));
+        let acceleration = moved(&acceleration_by_x, &off, three(rows, ACCELERATION));
+        let rate = moved(&acceleration_by_x, &off, three(rows, RATE));
+        let (mut by_t, more): (V3<R>, V3<R>) = (rate, three(rows, BY_T));
+        for i in 0..3 {
+            by_t[i] += more[i];
+        }
+        let [elevation, sx, sy]: V3<R> = three(rows, SURFACE);
+        let (slope, rising) = ([sx, sy], R::read(&rows[SURFACE + 3]));
+        let elevation = sx.fma(off[0], sy.fma(off[1], elevation));
         Swell { u, by_x, by_t, rate, gradient, acceleration, acceleration_by_x, elevation, slope, rising }
     }
 
-    /// The motion at some places, from what is remembered or anew.
+    /// Finds the motion at some places and puts it into a slot of the memory.
     #[inline(never)]
-    fn find(&self, t: f64, places: &[V3<f64>], out: &mut [Here; MOST]) {
-        let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        for (x, out) in places.iter().zip(out) {
-            let key = [x[0].to_bits(), x[1].to_bits(), x[2].to_bits(), t.to_bits()];
-            let mixed = key
-                .iter()
-                .fold(0_u64, |mixed, k| (mixed ^ k).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
-            let slot = (mixed >> 40) as usize % PLACES;
-            if memory.latest[slot].0 != key {
-                let here = self.anew(memory.lattice.as_mut(), *x, t);
-                memory.latest[slot] = (key, here);
-            }
-            *out = memory.latest[slot].1;
+    fn find(&self, t: f64, places: &Places, lanes: usize, slot: usize, memory: &mut Memory) {
+        let Memory { lattice, packs } = memory;
+        let found = &mut packs[slot];
+        (found.t, found.lanes, found.at) = (t, lanes, *places);
+        for lane in 0..lanes {
+            found.put(lane, &self.anew(lattice.as_mut(), places.map(|row| row[lane]), t));
         }
     }
 
@@ -257,6 +269,55 @@ impl Sea {
         }
         Here { flow, by_t, by_x, acceleration_by_x }
     }
+}
+
+impl Found {
+    /// Puts the motion at one of its places into the rows.
+    fn put(&mut self, lane: usize, here: &Here) {
+        let Flow { velocity, rate, acceleration, gradient, elevation, slope, rising, .. } = &here.flow;
+        let rows = &mut self.rows;
+        for i in 0..3 {
+            rows[i][lane] = velocity[i];
+            rows[RATE + i][lane] = rate[i];
+            rows[BY_T + i][lane] = here.by_t[i];
+            rows[ACCELERATION + i][lane] = acceleration[i];
+            for j in 0..3 {
+                rows[BY_X + 3 * i + j][lane] = here.by_x[i][j];
+                rows[ACCELERATION_BY_X + 3 * i + j][lane] = here.acceleration_by_x[i][j];
+                rows[GRADIENT + 3 * i + j][lane] = gradient[i][j];
+            }
+        }
+        for (k, x) in [*elevation, slope[0], slope[1], *rising].into_iter().enumerate() {
+            rows[SURFACE + k][lane] = x;
+        }
+    }
+}
+
+/// Three numbers from the rows of a pack, and nine.
+#[inline(always)]
+fn three<R: Real>(rows: &[[f64; MOST]; ROWS], row: usize) -> V3<R> {
+    [R::read(&rows[row]), R::read(&rows[row + 1]), R::read(&rows[row + 2])]
+}
+#[inline(always)]
+fn matrix<R: Real>(rows: &[[f64; MOST]; ROWS], row: usize) -> [V3<R>; 3] {
+    [three(rows, row), three(rows, row + 3), three(rows, row + 6)]
+}
+
+/// A vector a little farther on.
+#[inline(always)]
+fn moved<R: Real>(by: &[V3<R>; 3], off: &V3<R>, mut x: V3<R>) -> V3<R> {
+    for i in 0..3 {
+        x[i] = by[i][0].fma(off[0], by[i][1].fma(off[1], by[i][2].fma(off[2], x[i])));
+    }
+    x
+}
+
+/// A number that looks like none of these.
+#[inline(always)]
+fn mixed(key: [u64; 4]) -> usize {
+    let all =
+        key.iter().fold(0_u64, |mixed, k| (mixed ^ k).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
+    (all >> 40) as usize
 }
 
 /// The motion at a height above still water, or that at the surface where that is lower; and whether it is.

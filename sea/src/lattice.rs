@@ -5,10 +5,12 @@
 //! bicubic Hermite polynomials of velocities, and in time between instants `n τ`, by cubic ones of velocities and
 //! accelerations, whose derivative is the acceleration. The table holds exact sums. Since the flow is irrotational and
 //! free of divergence, `u_z = w_x`, `w_z = -u_x`, six sums make all that is needed of velocities at a corner, and six that
-//! of accelerations.
+//! of accelerations. The phases of a line of the table are the same at all heights, and what is left of a wave at a height
+//! the same at all lines and instants: each is found once, and a corner is a sum of their products.
 
-use crate::waves::{Flow, Stretching, Waves};
+use crate::waves::{Component, Flow, Stretching, Waves};
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// A line of the table is this part of the shortest wave away from the next.
 const ALONG: f64 = 0.2;
@@ -32,8 +34,34 @@ struct Column {
     key: (i64, i64),
     /// Elevation, its slope, and the time derivatives of both.
     surface: [f64; 4],
+    phases: Phases,
     corners: Vec<Option<Corner>>,
 }
+
+/// Numbers of a line and an instant, well mixed: they come from nobody who would wish them to meet.
+#[derive(Clone, Debug, Default)]
+struct Mixed(u64);
+
+impl Hasher for Mixed {
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 32)
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|b| self.write_u64(u64::from(*b)));
+    }
+    fn write_u64(&mut self, x: u64) {
+        self.0 = (self.0.rotate_left(23) ^ x).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+    fn write_i64(&mut self, x: i64) {
+        self.write_u64(x.cast_unsigned());
+    }
+}
+
+/// Sine and cosine of a phase of each wave.
+type Phases = Vec<[f64; 2]>;
+
+/// What is left of a wave at a height: the amplitudes of its velocities along it and upwards [m/s].
+type Amplitudes = Vec<[f64; 2]>;
 
 /// The table of a sea whose waves have one direction. It has a memory of its own, and so is looked at by one at a time.
 #[derive(Clone, Debug)]
@@ -47,9 +75,16 @@ pub struct Lattice {
     time: f64,
     /// Heights [m], descending from the highest.
     heights: Vec<f64>,
+    /// Of each height what is left of the waves there.
+    amplitudes: Vec<Amplitudes>,
+    /// Phases that each line adds, and that each instant takes off: those of a column are their differences.
+    lines: HashMap<i64, Phases, BuildHasherDefault<Mixed>>,
+    instants: HashMap<i64, Phases, BuildHasherDefault<Mixed>>,
     columns: Vec<Column>,
     /// Where those are of a line and an instant.
-    places: HashMap<(i64, i64), usize>,
+    places: HashMap<(i64, i64), usize, BuildHasherDefault<Mixed>>,
+    /// The cell that was looked at last, and the columns around it.
+    latest: Option<((i64, i64), [usize; 4])>,
 }
 
 impl Lattice {
@@ -77,14 +112,25 @@ impl Lattice {
             heights.push(z);
         }
         let current = waves.all.first().map_or(0.0, |c| (c.omega - c.sigma) / c.k);
+        let amplitudes = heights.iter().map(|&z| {
+            let left = waves.all.iter().map(|c| {
+                let [ch, sh, _] = c.depths(z, waves.depth());
+                [c.a * c.sigma * ch, c.a * c.sigma * sh]
+            });
+            left.collect()
+        });
         Some(Lattice {
+            amplitudes: amplitudes.collect(),
             way,
             current,
             along: ALONG * length / finer,
             time,
             heights,
             columns: Vec::new(),
-            places: HashMap::new(),
+            lines: HashMap::default(),
+            instants: HashMap::default(),
+            places: HashMap::default(),
+            latest: None,
             waves,
         })
     }
@@ -109,7 +155,11 @@ impl Lattice {
         if self.columns.len() > MOST {
             self.forget(n);
         }
-        let around = [(i, n), (i + 1, n), (i, n + 1), (i + 1, n + 1)].map(|key| self.column(key));
+        let around = match self.latest {
+            Some((cell, around)) if cell == (i, n) => around,
+            _ => [(i, n), (i + 1, n), (i, n + 1), (i + 1, n + 1)].map(|key| self.column(key)),
+        };
+        self.latest = Some(((i, n), around));
         let [risen, rising] = self.waves.risen(t);
         let [elevation, steep, rate] = self.surface(around, across, late);
         let mut flow = Flow {
@@ -210,26 +260,26 @@ impl Lattice {
         if let Some(corner) = self.columns[column].corners[j] {
             return corner;
         }
-        let (i, n) = self.columns[column].key;
-        let (x, t, z) = (i as f64 * self.along, n as f64 * self.time, self.heights[j]);
         let mut sums = [0.0; 12];
-        for c in &self.waves.all {
-            let (sin, cos) = (c.k * x - c.omega * t + c.phase).sin_cos();
-            let [ch, sh, _] = c.depths(z, self.waves.depth());
-            let (u, w, k, omega) = (c.a * c.sigma * ch, c.a * c.sigma * sh, c.k, c.omega);
+        let waves = self.waves.all.iter().zip(&self.columns[column].phases).zip(&self.amplitudes[j]);
+        for ((c, [sin, cos]), [u, w]) in waves {
+            let (k, omega) = (c.k, c.omega);
+            let (cos_u, sin_u, cos_w, sin_w) = (u * cos, k * u * sin, k * w * cos, w * sin);
+            // by x, and by x again
+            let [u_x, w_x, u_xx, w_xx] = [-sin_u, cos_w, -k * k * cos_u, -k * k * sin_w];
             let own = [
-                u * cos,
-                -u * k * sin,
-                -u * k * k * cos,
-                w * sin,
-                w * k * cos,
-                -w * k * k * sin,
-                u * omega * sin,
-                u * omega * k * cos,
-                -u * omega * k * k * sin,
-                -w * omega * cos,
-                w * omega * k * sin,
-                w * omega * k * k * cos,
+                cos_u,
+                u_x,
+                u_xx,
+                sin_w,
+                w_x,
+                w_xx,
+                omega * u * sin,
+                omega * k * cos_u,
+                -omega * k * sin_u,
+                -omega * w * cos,
+                omega * k * sin_w,
+                omega * k * cos_w,
             ];
             sums.iter_mut().zip(own).for_each(|(sum, x)| *sum += x);
         }
@@ -241,6 +291,11 @@ impl Lattice {
     fn forget(&mut self, n: i64) {
         self.columns.retain(|column| column.key.1 == n || column.key.1 == n + 1);
         self.places = self.columns.iter().enumerate().map(|(k, column)| (column.key, k)).collect();
+        self.latest = None;
+        self.instants.retain(|k, _| *k == n || *k == n + 1);
+        if self.lines.len() > MOST {
+            self.lines.clear();
+        }
     }
 
     /// The number of a column, which is made if there is none.
@@ -249,13 +304,20 @@ impl Lattice {
             return *place;
         }
         let (x, t) = (i as f64 * self.along, n as f64 * self.time);
+        let of = |phase: &dyn Fn(&Component) -> f64| -> Phases {
+            let pair = |c| <[f64; 2]>::from(phase(c).sin_cos());
+            self.waves.all.iter().map(pair).collect()
+        };
+        let line = self.lines.entry(i).or_insert_with(|| of(&|c| c.k * x + c.phase));
+        let instant = self.instants.entry(n).or_insert_with(|| of(&|c| c.omega * t));
+        let minus = |([a, b], [c, d]): (&[f64; 2], &[f64; 2])| [a * d - b * c, b * d + a * c];
+        let phases: Phases = line.iter().zip(instant.iter()).map(minus).collect();
         let mut surface = [0.0; 4];
-        for c in &self.waves.all {
-            let (sin, cos) = (c.k * x - c.omega * t + c.phase).sin_cos();
+        for (c, [sin, cos]) in self.waves.all.iter().zip(&phases) {
             let own = [c.a * cos, -c.a * c.k * sin, c.a * c.omega * sin, c.a * c.k * c.omega * cos];
             surface.iter_mut().zip(own).for_each(|(sum, x)| *sum += x);
         }
-        self.columns.push(Column { key: (i, n), surface, corners: vec![None; self.heights.len()] });
+        self.columns.push(Column { key: (i, n), surface, phases, corners: vec![None; self.heights.len()] });
         self.places.insert((i, n), self.columns.len() - 1);
         self.columns.len() - 1
     }

@@ -10,3 +10,4 @@ mod feeding_contact;
 mod friction;
 mod lines;
 mod lines_rub;
+mod moorings;

@@ -5,6 +5,7 @@ mod common;
 
 mod afloat;
 mod all_round;
+mod floating;
 mod fluid;
 mod one_world;
 mod tank;

@@ -93,6 +93,15 @@ impl SpanLine {
         }
     }
 
+    /// What `r`, `r'` of both nodes weigh at `ξ` of a cubic; nothing of a straight piece.
+    #[inline]
+    pub fn weights(&self, xi: f64) -> [f64; 4] {
+        match *self {
+            SpanLine::Cubic { l, .. } => hermite(xi, l),
+            SpanLine::Straight { .. } => [0.0; 4],
+        }
+    }
+
     /// The point that is `reach` beyond its start (`end` 0) or its end (`end` 1), straight on [m].
     pub fn beyond(&self, end: usize, reach: f64) -> Held {
         match *self {

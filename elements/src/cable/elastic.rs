@@ -64,6 +64,10 @@ impl Bending {
         let linear = [0.5 * square, 0.5, 0.0];
         self.table.as_ref().map_or(linear, |table| table.by_square(square)).map(|x| scale * x)
     }
+    /// Whether there is any.
+    fn is_some(&self) -> bool {
+        self.table.is_some() || self.ends != [0.0; 2]
+    }
     /// The moment at a place of the element and this curvature [N m].
     pub fn moment(&self, xi: f64, kappa: f64) -> f64 {
         2.0 * self.by_square(xi, kappa * kappa)[1] * kappa
@@ -180,7 +184,9 @@ impl Element<12, 12> for Elastic {
         let q = natural(&x.q, il);
         let mut local = Reduced::zero();
         p.stretch::<R, TANGENT>(&q, x, &mut local);
-        p.bend::<R, TANGENT>(&q, x, &mut local);
+        if p.bending.is_some() {
+            p.bend::<R, TANGENT>(&q, x, &mut local);
+        }
         local.spread_force::<false>(il, out);
         if TANGENT {
             local.spread_tangent::<false>(il, R::of(w.q), out);
@@ -194,6 +200,9 @@ impl Element<12, 12> for Elastic {
         for at in p.models.points() {
             let eps = p.models.longitudinal.strain(&q, at).eps();
             potential += eps.map(|eps| l * at.w * p.stretching.at(at.xi, eps)[0]);
+        }
+        if !p.bending.is_some() {
+            return Energy { kinetic: R::zero(), potential };
         }
         for at in p.models.rule.bending().points() {
             let square = Bend::new(p.models.transverse, &q, at, il).square.value;

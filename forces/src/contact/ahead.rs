@@ -24,7 +24,7 @@ fn size(x: &V3<f64>) -> f64 {
 }
 
 /// When the room is used up by what approaches with `w` and gains `b`: `w t + b t²/2` reaches it.
-fn time(room: f64, w: f64, b: f64) -> f64 {
+pub(super) fn time(room: f64, w: f64, b: f64) -> f64 {
     let (w, b) = (w.max(0.0), b.max(0.0));
     2.0 * room / (w + (w * w + 2.0 * b * room).sqrt())
 }
@@ -34,7 +34,10 @@ impl Contact {
     pub(super) fn free(&self, group: &Group, frame: &Frame, at: &At<'_>) -> f64 {
         match &group.what {
             What::Ball(ball) => self.free_ball(ball, frame, at),
-            What::Span(span) => self.free_span(span, frame, at),
+            What::Span(span) => match self.level().and_then(|level| level.free(span, at)) {
+                Some(free) => free,
+                None => self.free_span(span, frame, at),
+            },
         }
     }
 

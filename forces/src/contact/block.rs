@@ -1,6 +1,7 @@
 //! The share of what the same unknowns move in the tangent.
 
 use ropewalk_core::Assembly;
+use ropewalk_core::V3;
 use ropewalk_core::held::Held;
 use ropewalk_core::rotation::M3;
 
@@ -68,6 +69,16 @@ impl Block {
                         row[j] -= w * d[j];
                     }
                 }
+            }
+        }
+    }
+    /// Adds a stiffness along the direction `n`, by pairs of the vectors that move a piece.
+    pub fn add_along(&mut self, n: &V3<f64>, stiff: &[[f64; 4]; 4]) {
+        self.any[1] = true;
+        for (row, k) in self.k.iter_mut().enumerate().take(12) {
+            let (a, i) = (row / 3, row % 3);
+            for (b, s) in stiff[a].iter().enumerate() {
+                (0..3).for_each(|j| k[3 * b + j] += s * n[i] * n[j]);
             }
         }
     }

@@ -11,10 +11,10 @@ use ropewalk_core::rotation::{cross, log, then, transposed_times};
 use ropewalk_core::{Assembly, At, Leap, V3};
 
 /// A bristle that holds: where it is on what touches, how that moves, and what it does.
-struct Bristle {
-    held: Held,
-    pair: Pair,
-    hold: Hold,
+pub(super) struct Bristle {
+    pub held: Held,
+    pub pair: Pair,
+    pub hold: Hold,
 }
 
 /// The rotation that undoes one.
@@ -102,6 +102,41 @@ impl Contact {
         friction.across.and_then(|_| self.axis(group, frame, at))
     }
 
+    /// The bristle of a cell that something presses, as an iteration has to see it.
+    pub(super) fn holding(
+        &self,
+        group: &Group,
+        cell: usize,
+        pressed: &Pressed,
+        (frame, at): (&Frame, &At<'_>),
+        out: &mut Assembly<'_>,
+    ) -> Option<Bristle> {
+        let mut bristle = self.bristle(group, cell, pressed, frame, at, at.internal)?;
+        let Bristle { held, pair, hold } = &mut bristle;
+        if hold.slips
+            && out.wants_tangent()
+            && let Some(leap) = out.leap()
+            && let Some(bristles) = &group.bristles
+        {
+            let grip = &bristles.grip;
+            let turned = |before: &[f64]| {
+                let before = At { v: before, ..*at };
+                let was =
+                    self.pair(held, group.radius(), &self.fixed.frame(&before), &before).velocity(&pressed.n);
+                hold.turned(grip, &minus(&pair.velocity(&pressed.n), &was), out.weights())
+            };
+            // what slips may have stopped on the way, of which the tangent of slip knows nothing
+            if match leap {
+                Leap::Predicted => true,
+                Leap::From(before) => turned(before),
+            } {
+                hold.stick(grip, &pressed.n);
+                out.approximates();
+            }
+        }
+        Some(bristle)
+    }
+
     /// Adds the forces of the bristles of a group.
     pub(super) fn add_friction(
         &self,
@@ -121,32 +156,10 @@ impl Contact {
                 self.add_braked(group, cell, pressed, (frame, at), out, block);
                 continue;
             }
-            let Some(Bristle { held, pair, mut hold }) =
-                self.bristle(group, cell, pressed, frame, at, at.internal)
+            let Some(Bristle { held, pair, hold }) = self.holding(group, cell, pressed, (frame, at), out)
             else {
                 continue;
             };
-            if hold.slips
-                && out.wants_tangent()
-                && let Some(leap) = out.leap()
-                && let Some(Bristles { grip, .. }) = &group.bristles
-            {
-                let turned = |before: &[f64]| {
-                    let before = At { v: before, ..*at };
-                    let was = self
-                        .pair(&held, group.radius(), &self.fixed.frame(&before), &before)
-                        .velocity(&pressed.n);
-                    hold.turned(grip, &minus(&pair.velocity(&pressed.n), &was), out.weights())
-                };
-                // what slips may have stopped on the way, of which the tangent of slip knows nothing
-                if match leap {
-                    Leap::Predicted => true,
-                    Leap::From(before) => turned(before),
-                } {
-                    hold.stick(grip, &pressed.n);
-                    out.approximates();
-                }
-            }
             let touch = Touch::at_point(pressed.n, hold.f);
             self.add_force(&held, &pair, &touch, || hold.slopes(), tangent, block);
             if out.wants_tangent() && hold.by_normal != [0.0; 3] {
@@ -164,12 +177,9 @@ impl Contact {
         scratch: &mut Scratch,
     ) -> [Pressed; CELLS] {
         let mut cells = [Pressed::NONE; CELLS];
-        group.gather(&self.fixed, frame, at, scratch);
-        for ball in &scratch.balls {
-            if let Some((touch, _)) = self.touch(ball, frame, at) {
-                cells[ball.cell].add(touch.normal, &touch.gap.normal);
-            }
-        }
+        self.each_of(self.level_in(at).as_ref(), group, (frame, at), scratch, |_, cell, touch| {
+            cells[cell].add(touch.normal, &touch.gap.normal);
+        });
         cells
     }
 
@@ -194,17 +204,15 @@ impl Contact {
     ) {
         let rubs = self.law.friction.is_some() && !self.brakes(at.internal);
         let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
+        let level = self.level_in(at);
         for group in &self.groups {
             let mut cells = [Pressed::NONE; CELLS];
-            group.gather(&self.fixed, &frame, at, &mut scratch);
-            for ball in &scratch.balls {
-                if let Some((touch, _)) = self.touch(ball, &frame, at) {
-                    see(&touch);
-                    if rubs {
-                        cells[ball.cell].add(touch.normal, &touch.gap.normal);
-                    }
+            self.each_of(level.as_ref(), group, (&frame, at), &mut scratch, |_, cell, touch| {
+                see(touch);
+                if rubs {
+                    cells[cell].add(touch.normal, &touch.gap.normal);
                 }
-            }
+            });
             if rubs {
                 self.bristles_of(group, &mut cells, &frame, at, &mut see_bristle);
             }

@@ -194,6 +194,9 @@ impl Friction {
             std::array::from_fn(|i| x[i] - normal * n[i])
         };
         let (e, u) = (across(e), across(u));
+        if axis.is_none() {
+            return self.hold_alike(grip, pressed, &e, &u);
+        }
         let axis = axis.map(across).and_then(|a| {
             let size = dot(&a, &a).sqrt();
             (size > 1e-6).then(|| along(1.0 / size, &a))
@@ -218,6 +221,33 @@ impl Friction {
         let (by_x, by_u) = (by_e.map(|row| along(-k, &row)), by_e.map(|row| along(-c, &row)));
         let heat = -dot(&f, &u);
         Hold { f, trial, stretch, slips, by_x, by_u, by_normal, heat }
+    }
+}
+
+impl Friction {
+    /// The same where friction is alike in all directions, of a stretch and a velocity across the normal.
+    fn hold_alike(&self, grip: &Grip, pressed: &Pressed, e: &V3<f64>, u: &V3<f64>) -> Hold {
+        let (n, Grip { stiffness: k, damping: c, .. }) = (&pressed.n, *grip);
+        let limit = self.mu * pressed.normal;
+        let trial: V3<f64> = std::array::from_fn(|i| -k * e[i] - c * u[i]);
+        let (size, elastic) = (dot(&trial, &trial).sqrt(), k * dot(e, e).sqrt());
+        let stretch = if elastic > limit { along(limit / elastic, e) } else { *e };
+        let slips = size > limit * (1.0 + SLACK);
+        let (share, way, by_normal) = if slips {
+            let way = along(1.0 / size, &trial);
+            (limit / size, way, along(self.mu, &way))
+        } else {
+            (1.0, [0.0; 3], [0.0; 3])
+        };
+        let f = along(share, &trial);
+        // along the force nothing more comes of a stretch once it slips
+        let turn = |k: f64| -> M3 {
+            std::array::from_fn(|i| {
+                std::array::from_fn(|j| -k * share * (delta(i, j) - n[i] * n[j] - way[i] * way[j]))
+            })
+        };
+        let heat = -dot(&f, u);
+        Hold { f, trial, stretch, slips, by_x: turn(k), by_u: turn(c), by_normal, heat }
     }
 }
 

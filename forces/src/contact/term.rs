@@ -5,6 +5,7 @@ use super::flowing::Flowing;
 use super::friction::{AtRest, CELLS, Pressed};
 use super::group::{Ball, Group, Place, Scratch, Span, What};
 use super::law::ContactLaw;
+use super::level::{Level, Lies};
 use super::search::{Depth, Search};
 use super::seat::{Fixed, Frame, Seat, minus, rotation};
 use super::shape::Shape;
@@ -274,18 +275,45 @@ impl Contact {
         }
     }
 
-    fn each(&self, at: &At<'_>, mut see: impl FnMut(&Ball, &Touch, &Frame)) {
+    /// Sees the stiffness of all that touches, and how it does.
+    fn each(&self, at: &At<'_>, mut see: impl FnMut(f64, &Touch, &Frame)) {
         let frame = self.fixed.frame(at);
         let mut scratch = Scratch::default();
+        let level = self.level_in(at);
         for group in &self.groups {
-            group.gather(&self.fixed, &frame, at, &mut scratch);
-            for ball in &scratch.balls {
-                if let Some((touch, _)) = self.touch(ball, &frame, at) {
-                    see(ball, &touch, &frame);
+            self.each_of(level.as_ref(), group, (&frame, at), &mut scratch, |k, _, touch| {
+                see(k, touch, &frame)
+            });
+        }
+        self.each_flowing_ball(at, |ball, touch| see(ball.k, touch, &frame));
+    }
+
+    /// The same of one group, with the cell that is touched.
+    pub(super) fn each_of(
+        &self,
+        level: Option<&Level>,
+        group: &Group,
+        (frame, at): (&Frame, &At<'_>),
+        scratch: &mut Scratch,
+        mut see: impl FnMut(f64, usize, &Touch),
+    ) {
+        match (Self::lies(level, group, at), level) {
+            (Lies::Above, _) => return,
+            (Lies::Within(points), Some(level)) => {
+                for p in points.all() {
+                    let normal = self.law.normal(p.k, p.depth, p.rate);
+                    see(p.k, p.cell, &Touch::lying(level.n, &normal, p.depth, p.rate));
                 }
+                return;
+            }
+            _ => {}
+        }
+        group.gather(&self.fixed, frame, at, scratch);
+        for ball in &scratch.balls {
+            if let Some((touch, _)) = self.touch(ball, frame, at) {
+                see(ball.k, ball.cell, &touch);
             }
         }
-        self.each_flowing_ball(at, |ball, touch| see(ball, touch, &frame));
     }
 
     /// Sees all that touches of cables that feed.
@@ -415,7 +443,17 @@ impl Term for Contact {
         let mut cells = [Pressed::NONE; CELLS];
         let tangent = out.wants_tangent().then(|| out.weights());
         let body = self.body();
+        let level = self.level_in(at).filter(|_| !self.brakes(at.internal));
         for (clique, group) in self.groups.iter().enumerate() {
+            match (Self::lies(level.as_ref(), group, at), &level) {
+                (Lies::Above, _) => continue,
+                (Lies::Within(points), Some(level)) => {
+                    self.add_lying(level, (group, &points), (&frame, at), out, &mut block);
+                    block.flush(clique, group.held().dofs(), out);
+                    continue;
+                }
+                _ => {}
+            }
             group.gather(&self.fixed, &frame, at, &mut scratch);
             let cells = &mut cells[..group.bristles.map_or(0, |b| b.cells)];
             cells.fill(Pressed::NONE);
@@ -431,7 +469,7 @@ impl Term for Contact {
     }
     fn energy(&self, at: &At<'_>) -> Energy {
         let mut potential = 0.0;
-        self.each(at, |ball, touch, _| potential += self.law.stored(ball.k, touch.depth));
+        self.each(at, |k, touch, _| potential += self.law.stored(k, touch.depth));
         Energy { potential, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {

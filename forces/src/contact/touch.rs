@@ -58,6 +58,14 @@ impl Touch {
         }
     }
 
+    /// What lies on a plane of normal `n`, and is pressed so.
+    pub fn lying(n: V3<f64>, by: &Normal, depth: f64, rate: f64) -> Self {
+        let &Normal { force, by_depth, by_rate, elastic } = by;
+        let gap = Gap::flat(-depth, n);
+        let f = scaled(force, &n);
+        Touch { gap, f, normal: force, elastic, depth, rate, slip: [0.0; 3], by_depth, by_rate }
+    }
+
     /// A force `f` at a point, whatever its depth, where the normal is `n`.
     pub fn at_point(n: V3<f64>, f: V3<f64>) -> Self {
         let gap = Gap::flat(0.0, n);

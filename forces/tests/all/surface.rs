@@ -187,3 +187,53 @@ fn a_deep_body_has_all_of_its_loads_and_a_dry_one_none() {
         assert_eq!((load.f, load.d_v), ([0.0; 3], [[0.0; 3]; 3]));
     }
 }
+
+/// Discs and whole cylinders across still water, by quadrature of their own (`tests/data/partly_wet_cylinder.json`).
+#[test]
+fn partly_wet_cylinders_have_the_volumes_of_the_reference() {
+    let path = format!("{}/tests/data/partly_wet_cylinder.json", env!("CARGO_MANIFEST_DIR"));
+    let all: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(path).expect("file")).expect("JSON");
+    let number = |v: &serde_json::Value| v.as_f64().expect("a number");
+    let mut r = Random(3);
+    let mut worst: f64 = 0.0;
+    for disc in all["disc"].as_array().expect("discs") {
+        let [u, share, integral] = ["depth_over_radius", "disc_share", "integral"].map(|k| number(&disc[k]));
+        let at = Station { element: 0.0, ..station(&mut r, 0.1 * u, [1.0, 0.0, 0.0]) };
+        let wet = SURFACE.wet(&at, None);
+        for off in [wet.share - share, wet.depth / 0.1 - integral] {
+            worst = if off.abs() <= worst { worst } else { off.abs() };
+        }
+    }
+    println!("discs: off by {worst:.1e}");
+    // a disc that lies level is a hundredth of its radius high
+    assert!(worst < 1e-4, "{worst}");
+    for case in all["cylinders"].as_array().expect("cylinders") {
+        let [radius, length, depth, angle, volume] =
+            ["R", "L", "axis_depth_at_lower_end", "angle_above_horizontal_deg", "wet_volume"]
+                .map(|k| number(&case[k]));
+        let (sin, cos) = angle.to_radians().sin_cos();
+        let area = PI * radius * radius;
+        for cells in [1_i32, 4, 16] {
+            let weight = length / f64::from(cells);
+            let found: f64 = (0..cells)
+                .map(|k| {
+                    let s = (f64::from(k) + 0.3) * weight;
+                    let at = Station {
+                        x: [0.0, 0.0, LEVEL - depth + s * sin],
+                        slope: [cos, 0.0, sin],
+                        weight,
+                        before: 0.3 * weight,
+                        element: 0.0,
+                        diameter: 2.0 * radius,
+                        area,
+                        ..station(&mut r, 0.0, [1.0, 0.0, 0.0])
+                    };
+                    SURFACE.wet(&at, None).share * area * weight
+                })
+                .sum();
+            println!("{angle}° in {cells} cells: {:.1e}", found / volume - 1.0);
+            assert!((found / volume - 1.0).abs() < 1e-3, "{angle}° in {cells} cells: {found} for {volume}");
+        }
+    }
+}

@@ -5,6 +5,7 @@ mod laws;
 mod measured;
 mod reference;
 mod scenes;
+mod tension;
 mod vessels;
 
 use ropewalk::scene::Format;

@@ -1,0 +1,88 @@
+//! What waves cost a line: its hydrodynamics in still water, in a sea of 200 waves from a lattice, and summed exactly.
+//! `cargo bench --bench waves`; microseconds per element and evaluation with its tangent, as a run needs them.
+
+use ropewalk::core::Simulation;
+use ropewalk::core::integrator::{Options, Stepping};
+use ropewalk::scene::{Format, SceneFile};
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+const ELEMENTS: usize = 100;
+const STEPS: f64 = 500.0;
+const H: f64 = 0.02;
+
+fn scene(waves: &str) -> String {
+    format!(
+        r#"
+        [water]
+        level = 0
+        {waves}
+        [[elements]]
+        type = "cable"
+        name = "line"
+        points = [[450, 0, -150], [250, 0, -150], [0, 0, -4]]
+        elements = {ELEMENTS}
+        section = {{ mass = 120, ea = 6e8, diameter = 0.15, axial_retardation_time = 0.005 }}
+        [[constraints]]
+        type = "spherical"
+        name = "anchor"
+        marker = "line.start"
+        [[constraints]]
+        type = "spherical"
+        name = "fairlead"
+        marker = "line.end"
+        [[forces]]
+        type = "gravity"
+        [[forces]]
+        type = "buoyancy"
+        [[forces]]
+        type = "drag"
+        [[forces]]
+        type = "added_mass"
+        theory = "morison"
+        "#
+    )
+}
+
+/// Time of a run by its terms, and its iterations.
+fn run(waves: &str) -> Result<(BTreeMap<String, f64>, f64), Box<dyn std::error::Error>> {
+    let file = SceneFile::parse(&scene(waves), "waves", Format::Toml, &[])?;
+    let options = Options { stepping: Stepping::Fixed { h: H }, ..Options::default() };
+    let mut simulation = Simulation::new(file.build()?, &options, STEPS * H)?;
+    simulation.keep_audit(false);
+    simulation.work.profile();
+    let begin = Instant::now();
+    simulation.advance(STEPS * H, STEPS * H, &mut ())?;
+    let all = begin.elapsed().as_secs_f64();
+    let times = simulation.work.times(&simulation.model);
+    let mut by: BTreeMap<String, f64> =
+        times.into_iter().map(|(label, _, time)| (label, time.as_secs_f64())).collect();
+    by.insert("all".into(), all);
+    Ok((by, simulation.work.counts.newton_iterations as f64))
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let sea = |how: &str, count: usize| {
+        format!(
+            "[water.waves]\njonswap = {{ hs = 4, tp = 10 }}\ndepth = 150\ncount = {count}\nevaluation = \"{how}\""
+        )
+    };
+    let cases = [
+        ("still water", String::new()),
+        ("200 waves, lattice", sea("lattice", 200)),
+        ("100 waves, lattice", sea("lattice", 100)),
+        ("200 waves, exact", sea("exact", 200)),
+    ];
+    let mut still = None;
+    for (name, waves) in cases {
+        let mut best = f64::INFINITY;
+        for _ in 0..3 {
+            let (by, iterations) = run(&waves)?;
+            let water: f64 = by.iter().filter(|(label, _)| label.contains("drag")).map(|(_, t)| t).sum();
+            best = best.min(1e6 * water / iterations / ELEMENTS as f64);
+        }
+        let first = *still.get_or_insert(best);
+        println!("{name:20} {best:8.3} us, {:6.1} % on top of still water", 100.0 * (best / first - 1.0));
+    }
+    Ok(())
+}

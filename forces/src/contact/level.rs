@@ -1,0 +1,211 @@
+//! What lies on a plane that is fixed in space, as most of a line does that lies on the sea floor.
+//!
+//! Heights above it are linear in the unknowns, and its normal is the same everywhere. So the control points of an element tell
+//! whether it touches nowhere or all along, the points of the rules that integrate it stand for it if it does, and the tangent of
+//! the normal forces is `n ⊗ n` times a number for each pair of vectors that move it. All is as [`Contact`] has it for any shape,
+//! but for the search.
+
+use super::ahead::time;
+use super::block::{Block, MOST};
+use super::bristles::Bristle;
+use super::friction::{CELLS, Pressed};
+use super::group::{Group, Span, What};
+use super::search::gauss;
+use super::seat::{Frame, Seat};
+use super::shape::Shape;
+use super::term::Contact;
+use ropewalk_core::held::{Held, three};
+use ropewalk_core::{Assembly, At, SpanLine, V3, dot};
+
+/// The part of the radius that an element may go on by in a step once it touches. Behind a plane there is nothing else: how exact
+/// the step is its error tells.
+const PRESS: f64 = 1.0;
+
+/// The plane `n · x = height`.
+pub(crate) struct Level {
+    pub n: V3<f64>,
+    height: f64,
+}
+
+/// How an element lies on it.
+pub(crate) enum Lies {
+    Above,
+    Within(Points),
+    /// Some of it touches, or one can't tell.
+    Partly,
+}
+
+/// The points that stand for an element: two in each cell if it rubs.
+pub(crate) struct Points {
+    points: [Point; 2 * CELLS],
+    count: usize,
+}
+
+impl Points {
+    pub fn all(&self) -> &[Point] {
+        &self.points[..self.count]
+    }
+}
+
+/// One of them.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Point {
+    /// What each vector of the element's nodes weighs there.
+    weight: [f64; 4],
+    pub cell: usize,
+    /// Stiffness [N/m^p], depth [m] and its rate [m/s].
+    pub k: f64,
+    pub depth: f64,
+    pub rate: f64,
+}
+
+fn blend(weight: &[f64; 4], of: &[f64; 4]) -> f64 {
+    weight[0] * of[0] + weight[1] * of[1] + weight[2] * of[2] + weight[3] * of[3]
+}
+
+impl Level {
+    /// The height above it of each vector of an element's nodes, which `first` says where to find in `of`.
+    fn of(&self, first: &[usize; 4], of: &[f64]) -> [f64; 4] {
+        first.map(|i| dot(&self.n, &three(of, i)))
+    }
+
+    /// How an element lies, which has so many cells that rub.
+    pub fn lies(&self, span: &Span, cells: usize, at: &At<'_>) -> Lies {
+        let SpanLine::Cubic { q, v, l } = span.line else { return Lies::Partly };
+        if span.tips.iter().any(Option::is_some) {
+            return Lies::Partly;
+        }
+        let above = self.height + span.radius;
+        let heights = self.of(&q, at.q);
+        let [a, da, b, db] = heights;
+        let third = l / 3.0;
+        let controls = [a, a + third * da, b - third * db, b].map(|h| h - above);
+        if controls.iter().all(|h| *h >= 0.0) {
+            return Lies::Above;
+        }
+        if !controls.iter().all(|h| *h < 0.0) {
+            return Lies::Partly;
+        }
+        let rates = self.of(&v, at.v);
+        let rule = gauss(if cells > 1 { 2 } else { span.points });
+        let mut found = Points { points: [Point::default(); 2 * CELLS], count: cells * rule.len() };
+        for (i, point) in found.points[..found.count].iter_mut().enumerate() {
+            let (cell, (place, share)) = (i / rule.len(), rule[i % rule.len()]);
+            let weight = span.line.weights((cell as f64 + place) / cells as f64);
+            let (depth, rate) = (above - blend(&weight, &heights), -blend(&weight, &rates));
+            *point = Point { weight, cell, k: span.k * share / cells as f64, depth, rate };
+        }
+        Lies::Within(found)
+    }
+
+    /// The longest step from here in which no control point gets deeper than a part of the radius unseen [s].
+    pub fn free(&self, span: &Span, at: &At<'_>) -> Option<f64> {
+        let SpanLine::Cubic { q, v, l } = span.line else { return None };
+        let third = l / 3.0;
+        let controls = |[a, da, b, db]: [f64; 4]| [a, a + third * da, b - third * db, b];
+        let [x, u, a] = [self.of(&q, at.q), self.of(&v, at.v), self.of(&v, at.a)].map(controls);
+        let press = PRESS * span.radius;
+        let one = |i: usize| time((x[i] - self.height - span.radius).max(press), -u[i], -a[i]);
+        Some((0..4).map(one).fold(f64::INFINITY, f64::min))
+    }
+}
+
+impl Contact {
+    /// The plane that it is, if it is one and fixed in space.
+    pub(super) fn level(&self) -> Option<Level> {
+        match (&self.fixed.shape, self.fixed.seat) {
+            (Shape::Plane, Seat::Ground) => {
+                let n = self.fixed.axes[2];
+                Some(Level { n, height: dot(&n, &self.fixed.origin) })
+            }
+            _ => None,
+        }
+    }
+
+    /// The same where it is as stiff as it is: on the way to an equilibrium it may be softer.
+    pub(super) fn level_in(&self, at: &At<'_>) -> Option<Level> {
+        if at.relaxed.is_some() { None } else { self.level() }
+    }
+
+    /// How a group lies on a plane.
+    pub(super) fn lies(level: Option<&Level>, group: &Group, at: &At<'_>) -> Lies {
+        match (level, &group.what) {
+            (Some(level), What::Span(span)) => level.lies(span, group.bristles.map_or(1, |b| b.cells), at),
+            _ => Lies::Partly,
+        }
+    }
+
+    /// Adds what a plane does to an element that lies on it.
+    pub(super) fn add_lying(
+        &self,
+        level: &Level,
+        (group, points): (&Group, &Points),
+        (frame, at): (&Frame, &At<'_>),
+        out: &mut Assembly<'_>,
+        block: &mut Block,
+    ) {
+        let tangent = out.wants_tangent().then(|| out.weights());
+        let (mut force, mut stiff) = ([0.0; 4], [[0.0; 4]; 4]);
+        // what presses each cell, and by which of the vectors that move the element
+        let mut cells = [(0.0, [0.0; 4]); CELLS];
+        for point in points.all() {
+            let normal = self.law.normal(point.k, point.depth, point.rate);
+            let (pressed, by) = &mut cells[point.cell];
+            *pressed += normal.force;
+            let part = tangent.map_or(0.0, |w| w.q * normal.by_depth + w.v * normal.by_rate);
+            for a in 0..4 {
+                force[a] += point.weight[a] * normal.force;
+                let part = part * point.weight[a];
+                by[a] -= part;
+                (0..4).for_each(|b| stiff[a][b] += part * point.weight[b]);
+            }
+        }
+        for a in 0..4 {
+            (0..3).for_each(|i| block.add(3 * a + i, -force[a] * level.n[i]));
+        }
+        if tangent.is_some() {
+            block.add_along(&level.n, &stiff);
+        }
+        for cell in 0..group.bristles.map_or(0, |b| b.cells) {
+            let (pressed, by) = &cells[cell];
+            self.rub(level, group, (cell, *pressed, by), (frame, at), out, block);
+        }
+    }
+
+    /// Adds the force of the bristle of a cell that is pressed so, by the vectors that move the element.
+    fn rub(
+        &self,
+        level: &Level,
+        group: &Group,
+        (cell, normal, by): (usize, f64, &[f64; 4]),
+        (frame, at): (&Frame, &At<'_>),
+        out: &mut Assembly<'_>,
+        block: &mut Block,
+    ) {
+        if !(normal > 0.0) {
+            return;
+        }
+        let pressed = Pressed { normal, n: level.n, ..Pressed::NONE };
+        let Some(Bristle { held, hold, .. }) = self.holding(group, cell, &pressed, (frame, at), out) else {
+            return;
+        };
+        let Held::Between { weight, .. } = held else { return };
+        for (a, w) in weight.iter().enumerate() {
+            (0..3).for_each(|i| block.add(3 * a + i, -w * hold.f[i]));
+        }
+        if !out.wants_tangent() {
+            return;
+        }
+        let w = out.weights();
+        let entry = |i: usize, j: usize| w.q * hold.by_x[i][j] + w.v * hold.by_u[i][j];
+        block.add_point(&held, &std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))));
+        if hold.by_normal != [0.0; 3] {
+            let spread = |by: &[f64; 4], along: &V3<f64>| -> [f64; MOST] {
+                let mut all = [0.0; MOST];
+                (0..12).for_each(|k| all[k] = by[k / 3] * along[k % 3]);
+                all
+            };
+            block.add_outer(&spread(&weight, &hold.by_normal), &spread(by, &level.n));
+        }
+    }
+}
