@@ -1,5 +1,5 @@
 //! What waves cost a line: its hydrodynamics in still water, in a sea of 200 waves from a lattice, and summed exactly.
-//! `cargo bench --bench waves`; microseconds per element and evaluation with its tangent, as a run needs them.
+//! `cargo bench --bench waves`, or `-- lattice` for those alone that are named so; microseconds per element and evaluation with its tangent, as a run needs them.
 
 use ropewalk::core::Simulation;
 use ropewalk::core::integrator::{Options, Stepping};
@@ -22,6 +22,7 @@ fn scene(waves: &str) -> String {
         name = "line"
         points = [[450, 0, -150], [250, 0, -150], [0, 0, -4]]
         elements = {ELEMENTS}
+        stress_free = "as-laid"
         section = {{ mass = 120, ea = 6e8, diameter = 0.15, axial_retardation_time = 0.005 }}
         [[constraints]]
         type = "spherical"
@@ -73,8 +74,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("100 waves, lattice", sea("lattice", 100)),
         ("200 waves, exact", sea("exact", 200)),
     ];
+    let asked = std::env::args().skip(1).find(|arg| !arg.starts_with('-'));
     let mut still = None;
     for (name, waves) in cases {
+        if asked.as_ref().is_some_and(|asked| !name.contains(asked.as_str())) {
+            continue;
+        }
         let mut best = f64::INFINITY;
         for _ in 0..3 {
             let (by, iterations) = run(&waves)?;

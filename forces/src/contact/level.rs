@@ -28,27 +28,40 @@ pub(crate) struct Level {
 }
 
 /// How an element lies on it.
-pub(crate) enum Lies {
+pub(crate) enum Lies<'a> {
     Above,
-    Within(Points),
+    Within(Lying<'a>),
     /// Some of it touches, or one can't tell.
     Partly,
 }
 
-/// The points that stand for an element: two in each cell if it rubs.
-pub(crate) struct Points {
-    points: [Point; 2 * CELLS],
-    count: usize,
+/// An element all of which touches.
+pub(crate) struct Lying<'a> {
+    span: &'a Span,
+    /// How many of its cells rub.
+    cells: usize,
+    /// Height of the axis at which it begins to touch [m].
+    above: f64,
+    /// Of each vector of its nodes, and their rates.
+    heights: [f64; 4],
+    rates: [f64; 4],
 }
 
-impl Points {
-    pub fn all(&self) -> &[Point] {
-        &self.points[..self.count]
+impl Lying<'_> {
+    /// The points that stand for it: two in each cell if it rubs.
+    pub fn points(&self) -> impl Iterator<Item = Point> {
+        let Lying { span, cells, above, heights, rates } = self;
+        let rule = gauss(if *cells > 1 { 2 } else { span.points });
+        (0..cells * rule.len()).map(move |i| {
+            let (cell, (place, share)) = (i / rule.len(), rule[i % rule.len()]);
+            let weight = span.line.weights((cell as f64 + place) / *cells as f64);
+            let (depth, rate) = (above - blend(&weight, heights), -blend(&weight, rates));
+            Point { weight, cell, k: span.k * share / *cells as f64, depth, rate }
+        })
     }
 }
 
 /// One of them.
-#[derive(Clone, Copy, Default)]
 pub(crate) struct Point {
     /// What each vector of the element's nodes weighs there.
     weight: [f64; 4],
@@ -70,7 +83,7 @@ impl Level {
     }
 
     /// How an element lies, which has so many cells that rub.
-    pub fn lies(&self, span: &Span, cells: usize, at: &At<'_>) -> Lies {
+    pub fn lies<'a>(&self, span: &'a Span, cells: usize, at: &At<'_>) -> Lies<'a> {
         let SpanLine::Cubic { q, v, l } = span.line else { return Lies::Partly };
         if span.tips.iter().any(Option::is_some) {
             return Lies::Partly;
@@ -86,16 +99,7 @@ impl Level {
         if !controls.iter().all(|h| *h < 0.0) {
             return Lies::Partly;
         }
-        let rates = self.of(&v, at.v);
-        let rule = gauss(if cells > 1 { 2 } else { span.points });
-        let mut found = Points { points: [Point::default(); 2 * CELLS], count: cells * rule.len() };
-        for (i, point) in found.points[..found.count].iter_mut().enumerate() {
-            let (cell, (place, share)) = (i / rule.len(), rule[i % rule.len()]);
-            let weight = span.line.weights((cell as f64 + place) / cells as f64);
-            let (depth, rate) = (above - blend(&weight, &heights), -blend(&weight, &rates));
-            *point = Point { weight, cell, k: span.k * share / cells as f64, depth, rate };
-        }
-        Lies::Within(found)
+        Lies::Within(Lying { span, cells, above, heights, rates: self.of(&v, at.v) })
     }
 
     /// The longest step from here in which no control point gets deeper than a part of the radius unseen [s].
@@ -128,7 +132,7 @@ impl Contact {
     }
 
     /// How a group lies on a plane.
-    pub(super) fn lies(level: Option<&Level>, group: &Group, at: &At<'_>) -> Lies {
+    pub(super) fn lies<'a>(level: Option<&Level>, group: &'a Group, at: &At<'_>) -> Lies<'a> {
         match (level, &group.what) {
             (Some(level), What::Span(span)) => level.lies(span, group.bristles.map_or(1, |b| b.cells), at),
             _ => Lies::Partly,
@@ -139,7 +143,7 @@ impl Contact {
     pub(super) fn add_lying(
         &self,
         level: &Level,
-        (group, points): (&Group, &Points),
+        (group, lying): (&Group, &Lying<'_>),
         (frame, at): (&Frame, &At<'_>),
         out: &mut Assembly<'_>,
         block: &mut Block,
@@ -148,7 +152,7 @@ impl Contact {
         let (mut force, mut stiff) = ([0.0; 4], [[0.0; 4]; 4]);
         // what presses each cell, and by which of the vectors that move the element
         let mut cells = [(0.0, [0.0; 4]); CELLS];
-        for point in points.all() {
+        for point in lying.points() {
             let normal = self.law.normal(point.k, point.depth, point.rate);
             let (pressed, by) = &mut cells[point.cell];
             *pressed += normal.force;

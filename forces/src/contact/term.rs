@@ -299,8 +299,8 @@ impl Contact {
     ) {
         match (Self::lies(level, group, at), level) {
             (Lies::Above, _) => return,
-            (Lies::Within(points), Some(level)) => {
-                for p in points.all() {
+            (Lies::Within(lying), Some(level)) => {
+                for p in lying.points() {
                     let normal = self.law.normal(p.k, p.depth, p.rate);
                     see(p.k, p.cell, &Touch::lying(level.n, &normal, p.depth, p.rate));
                 }
@@ -447,8 +447,8 @@ impl Term for Contact {
         for (clique, group) in self.groups.iter().enumerate() {
             match (Self::lies(level.as_ref(), group, at), &level) {
                 (Lies::Above, _) => continue,
-                (Lies::Within(points), Some(level)) => {
-                    self.add_lying(level, (group, &points), (&frame, at), out, &mut block);
+                (Lies::Within(lying), Some(level)) => {
+                    self.add_lying(level, (group, &lying), (&frame, at), out, &mut block);
                     block.flush(clique, group.held().dofs(), out);
                     continue;
                 }
