@@ -129,6 +129,51 @@ fn tangents_on_heights_and_of_damping_on_approach_are_exact() {
     }
 }
 
+/// What lies level all along goes a way of its own, which has to be that of any shape.
+#[test]
+fn a_plane_is_what_heights_are_that_make_a_plane() {
+    let friction = Friction::new(0.6);
+    let law = ContactLaw {
+        damping: Damping::Approach { retardation_time: 0.3, over: 0.04 },
+        friction: Some(friction),
+        ..ContactLaw::default()
+    };
+    // all of it lies, half of it does, nothing does; it sticks or slips
+    for (up, lean) in [(0.0, 0.0), (0.05, 0.02), (0.2, 0.0)] {
+        for slip in [0.01, 0.5] {
+            let [one, other] = [Shape::Plane, grid(|_, _| 0.0)].map(|shape| {
+                let (nodes, mut q, contact) = lying(shape, law, 0.01);
+                for (k, x) in q.iter_mut().enumerate().filter(|(k, _)| k % 3 == 2) {
+                    *x += if k % 6 == 2 { up + lean * (k as f64 - 5.0) } else { 0.0 };
+                }
+                let grip = Grip { stiffness: 1e3, damping: 10.0, brake: None };
+                let contact = contact.with_grips(&[grip], 0);
+                let mut memory = vec![0.0; Contact::memory(0, 1)];
+                let still = vec![0.0; 12];
+                let before: Vec<f64> =
+                    q.iter().enumerate().map(|(k, x)| if k % 6 == 1 { x - slip } else { *x }).collect();
+                let at = At { t: 0.0, q: &before, v: &still, a: &still, internal: &[], relaxed: None };
+                contact.remember(&At { internal: &memory.clone(), ..at }, &mut memory);
+                let v: Vec<f64> = (0..12).map(|k| 0.1 * (k as f64).sin()).collect();
+                let at = At { q: &q, v: &v, internal: &memory, ..at };
+                let (force, tangent) =
+                    ropewalk_core::testing::dense(&contact, &nodes, &at, Default::default(), Width::One);
+                (force, tangent.concat(), contact.energy(&at), contact.power(&at).dissipated)
+            });
+            let size = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let apart = |a: &[f64], b: &[f64]| {
+                assert!(a.iter().chain(b).all(|x| x.is_finite()) && a.len() == b.len());
+                a.iter().zip(b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / size(a).max(f64::MIN_POSITIVE)
+            };
+            assert_eq!(size(&one.0) > 0.0, up < 0.1);
+            println!("{up} {slip}: {:e} {:e}", apart(&one.0, &other.0), apart(&one.1, &other.1));
+            assert!(apart(&one.0, &other.0) < 1e-9 && apart(&one.1, &other.1) < 1e-9);
+            assert!(apart(&[one.2.potential], &[other.2.potential]) < 1e-9);
+            assert!(apart(&[one.3], &[other.3]) < 1e-9);
+        }
+    }
+}
+
 #[test]
 fn tangents_of_friction_that_a_pull_uses_up_are_exact() {
     let friction = Friction { equilibrium: AtRest::Pulled, ..Friction::new(0.6) };
