@@ -2,7 +2,7 @@
 
 use crate::current::Current;
 use crate::waves::{Evaluation, WavesSpec};
-use ropewalk_core::{BuildError, Real, V3, dot, reach};
+use ropewalk_core::{BuildError, LaneTask, Real, V3, Width, dot, reach, run};
 use ropewalk_sea::{Flow, Lattice, SplitMix64, Waves};
 use std::f64::consts::TAU;
 use std::fmt;
@@ -57,16 +57,6 @@ const FEW: usize = 8;
 const PROBES: usize = 200;
 /// How much finer than at first a table may become.
 const FINEST: f64 = 4.0;
-
-/// The motion at a place, and what it changes by from place to place; at the surface above it.
-#[derive(Clone, Copy, Default)]
-struct Here {
-    flow: Flow,
-    /// What the rise of the surface adds to the rate above it.
-    by_t: [f64; 3],
-    by_x: [[f64; 3]; 3],
-    acceleration_by_x: [[f64; 3]; 3],
-}
 
 /// The motion of the water in waves at a place, over lanes. Above the surface it is that at the surface.
 #[derive(Clone, Copy, Debug)]
@@ -215,7 +205,8 @@ impl Sea {
             x[i].write(&mut places[i]);
         }
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        let slot = mixed([places[0][0], places[1][0], places[2][0], t].map(f64::to_bits)) % PACKS;
+        // that of the last time, if what asks has moved little
+        let slot = mixed([places[0][0], places[1][0], places[2][0]].map(|x| x.to_bits() >> 40)) % PACKS;
         let found = &memory.packs[slot];
         // what is no number is never found
         if (found.t, found.lanes) != (t, R::LANES) || found.at != places {
@@ -245,50 +236,71 @@ impl Sea {
         let Memory { lattice, packs } = memory;
         let found = &mut packs[slot];
         (found.t, found.lanes, found.at) = (t, lanes, *places);
-        for lane in 0..lanes {
-            found.put(lane, &self.anew(lattice.as_mut(), places.map(|row| row[lane]), t));
+        match lattice {
+            Some(lattice) => {
+                let width = match lanes {
+                    8 => Width::Eight,
+                    4 => Width::Four,
+                    _ => Width::One,
+                };
+                run(width, Look { lattice, level: self.level, found });
+            }
+            None => (0..lanes).for_each(|lane| {
+                let [x, y, z] = places.map(|row| row[lane]);
+                let up = z - self.level;
+                let flow = self.waves.at([x, y, up], t);
+                let above = up > flow.elevation;
+                let flow = if above { self.waves.at([x, y, flow.elevation], t) } else { flow };
+                found.put(lane, flow, f64::from(u8::from(above)));
+            }),
         }
     }
+}
 
-    fn anew(&self, lattice: Option<&mut Lattice>, [x, y, z]: V3<f64>, t: f64) -> Here {
-        let up = z - self.level;
-        let (flow, above) = match lattice {
-            Some(lattice) => at_most(up, |up| lattice.at([x, y, up], t)),
-            None => at_most(up, |up| self.waves.at([x, y, up], t)),
-        };
-        let (mut by_x, mut acceleration_by_x) = (flow.gradient, flow.acceleration_gradient);
-        let mut by_t = [0.0; 3];
-        if above {
-            // there it follows the surface, and doesn't change with height
-            by_t = flow.gradient.map(|row| row[2] * flow.rising);
-            for row in by_x.iter_mut().chain(&mut acceleration_by_x) {
-                row[0] += row[2] * flow.slope[0];
-                row[1] += row[2] * flow.slope[1];
-                row[2] = 0.0;
-            }
-        }
-        Here { flow, by_t, by_x, acceleration_by_x }
+/// Looks up places in a table.
+struct Look<'a> {
+    lattice: &'a mut Lattice,
+    level: f64,
+    found: &'a mut Found,
+}
+
+impl LaneTask for Look<'_> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        let Look { lattice, level, found } = self;
+        let [x, y, z] = [R::read(&found.at[0]), R::read(&found.at[1]), R::read(&found.at[2])];
+        let mut flow = lattice.surface(found.t, [x, y]);
+        let (up, top) = (z - R::of(level), flow.elevation);
+        lattice.within(found.t, [x, y, up.if_gt(top, top, up)], &mut flow);
+        found.put(0, flow, up.if_gt(top, R::of(1.0), R::zero()));
     }
 }
 
 impl Found {
-    /// Puts the motion at one of its places into the rows.
-    fn put(&mut self, lane: usize, here: &Here) {
-        let Flow { velocity, rate, acceleration, gradient, elevation, slope, rising, .. } = &here.flow;
+    /// Puts the motion at places into the rows, from a lane on. Above the surface, where `above` is 1 and not 0, it follows the
+    /// surface, and doesn't change with height.
+    #[inline(always)]
+    fn put<R: Real>(&mut self, lane: usize, flow: Flow<R>, above: R) {
+        let Flow { velocity, rate, acceleration, gradient, acceleration_gradient, slope, rising, .. } = flow;
         let rows = &mut self.rows;
+        let below = R::of(1.0) - above;
         for i in 0..3 {
-            rows[i][lane] = velocity[i];
-            rows[RATE + i][lane] = rate[i];
-            rows[BY_T + i][lane] = here.by_t[i];
-            rows[ACCELERATION + i][lane] = acceleration[i];
+            velocity[i].write(&mut rows[i][lane..]);
+            rate[i].write(&mut rows[RATE + i][lane..]);
+            (above * gradient[i][2] * rising).write(&mut rows[BY_T + i][lane..]);
+            acceleration[i].write(&mut rows[ACCELERATION + i][lane..]);
+            for (first, of) in [(BY_X, &gradient[i]), (ACCELERATION_BY_X, &acceleration_gradient[i])] {
+                let follows = above * of[2];
+                follows.fma(slope[0], of[0]).write(&mut rows[first + 3 * i][lane..]);
+                follows.fma(slope[1], of[1]).write(&mut rows[first + 3 * i + 1][lane..]);
+                (below * of[2]).write(&mut rows[first + 3 * i + 2][lane..]);
+            }
             for j in 0..3 {
-                rows[BY_X + 3 * i + j][lane] = here.by_x[i][j];
-                rows[ACCELERATION_BY_X + 3 * i + j][lane] = here.acceleration_by_x[i][j];
-                rows[GRADIENT + 3 * i + j][lane] = gradient[i][j];
+                gradient[i][j].write(&mut rows[GRADIENT + 3 * i + j][lane..]);
             }
         }
-        for (k, x) in [*elevation, slope[0], slope[1], *rising].into_iter().enumerate() {
-            rows[SURFACE + k][lane] = x;
+        for (k, x) in [flow.elevation, slope[0], slope[1], rising].into_iter().enumerate() {
+            x.write(&mut rows[SURFACE + k][lane..]);
         }
     }
 }
@@ -314,16 +326,10 @@ fn moved<R: Real>(by: &[V3<R>; 3], off: &V3<R>, mut x: V3<R>) -> V3<R> {
 
 /// A number that looks like none of these.
 #[inline(always)]
-fn mixed(key: [u64; 4]) -> usize {
+fn mixed(key: [u64; 3]) -> usize {
     let all =
         key.iter().fold(0_u64, |mixed, k| (mixed ^ k).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
     (all >> 40) as usize
-}
-
-/// The motion at a height above still water, or that at the surface where that is lower; and whether it is.
-fn at_most(up: f64, mut at: impl FnMut(f64) -> Flow) -> (Flow, bool) {
-    let flow = at(up);
-    if up > flow.elevation { (at(flow.elevation), true) } else { (flow, false) }
 }
 
 /// The largest difference of velocities between a table and the sum, in parts of their deviation at still water, at places

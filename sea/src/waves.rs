@@ -2,6 +2,7 @@
 
 use crate::dispersion::{wavenumber, wavenumber_on_current};
 use crate::error::{SeaError, finite, positive};
+use ropewalk_core::Real;
 use std::f64::consts::PI;
 
 /// A regular wave: `η = a cos(k (x cos β + y sin β) - ω t + φ)`.
@@ -29,28 +30,28 @@ pub enum Stretching {
     None,
 }
 
-/// The motion of the water at a place and a time.
+/// The motion of the water at a place and a time; over lanes at several.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Flow {
+pub struct Flow<R = f64> {
     /// Elevation `η` of the surface above still water there [m].
-    pub elevation: f64,
+    pub elevation: R,
     /// `∂η/∂x` and `∂η/∂y`.
-    pub slope: [f64; 2],
+    pub slope: [R; 2],
     /// `∂η/∂t` [m/s].
-    pub rising: f64,
+    pub rising: R,
     /// Velocity [m/s].
-    pub velocity: [f64; 3],
+    pub velocity: [R; 3],
     /// `∂u/∂t` [m/s²]; of waves on a current as one sees it who drifts with it.
-    pub acceleration: [f64; 3],
+    pub acceleration: [R; 3],
     /// What the velocity changes by with time at a fixed place [m/s²]: other than the acceleration, it counts how the column is
     /// stretched as the surface rises.
-    pub rate: [f64; 3],
+    pub rate: [R; 3],
     /// `∂u_i/∂x_j` [1/s], stretching included.
-    pub gradient: [[f64; 3]; 3],
+    pub gradient: [[R; 3]; 3],
     /// What the acceleration changes by from place to place [1/s²], stretching included.
-    pub acceleration_gradient: [[f64; 3]; 3],
+    pub acceleration_gradient: [[R; 3]; 3],
     /// Pressure by the waves over the density of water [m²/s²].
-    pub pressure: f64,
+    pub pressure: R,
 }
 
 /// One wave, ready for sums.
@@ -248,21 +249,18 @@ impl Waves {
 
     /// The height at which linear theory is asked for what happens at `z` [m], and its derivatives by `z` and by the
     /// elevation.
-    pub(crate) fn stretched(&self, z: f64, eta: f64) -> (f64, f64, f64) {
+    #[inline(always)]
+    pub(crate) fn stretched<R: Real>(&self, z: R, eta: R) -> [R; 3] {
+        let (zero, one) = (R::zero(), R::of(1.0));
         match self.stretching {
-            Stretching::None => (z, 1.0, 0.0),
-            Stretching::Constant => {
-                if z > 0.0 {
-                    (0.0, 0.0, 0.0)
-                } else {
-                    (z, 1.0, 0.0)
-                }
-            }
-            Stretching::Wheeler if self.depth.is_infinite() => (z - eta, 1.0, -1.0),
+            Stretching::None => [z, one, zero],
+            Stretching::Constant => [z.if_gt(zero, zero, z), z.if_gt(zero, zero, one), zero],
+            Stretching::Wheeler if self.depth.is_infinite() => [z - eta, one, -one],
             Stretching::Wheeler => {
-                let s = 1.0 / (1.0 + eta / self.depth).max(DRY);
+                let (share, dry) = (one + eta * R::of(1.0 / self.depth), R::of(DRY));
+                let s = one / share.if_gt(dry, share, dry);
                 let up = (z - eta) * s;
-                (up, s, -s * (1.0 + up / self.depth))
+                [up, s, -s * (one + up * R::of(1.0 / self.depth))]
             }
         }
     }
@@ -270,7 +268,7 @@ impl Waves {
     /// The motion of the water at a place, which should be in it, and a time: the sum over all waves.
     pub fn at(&self, [x, y, z]: [f64; 3], t: f64) -> Flow {
         let mut flow = self.surface(x, y, t);
-        let (up, by_z, by_eta) = self.stretched(z, flow.elevation);
+        let [up, by_z, by_eta] = self.stretched(z, flow.elevation);
         for c in &self.all {
             let (sin, cos) = c.angle(x, y, t).sin_cos();
             let [ch, sh, p] = c.depths(up, self.depth);
@@ -307,27 +305,49 @@ fn add_gradient(g: &mut [[f64; 3]; 3], [cx, cy]: [f64; 2], along: f64, up: f64) 
     }
 }
 
-impl Flow {
+impl<R: Real> Flow<R> {
+    /// Of still water.
+    #[inline(always)]
+    pub(crate) fn still() -> Self {
+        let (none, zero) = ([[R::zero(); 3]; 3], R::zero());
+        Flow {
+            elevation: zero,
+            slope: [zero; 2],
+            rising: zero,
+            velocity: none[0],
+            acceleration: none[0],
+            rate: none[0],
+            gradient: none,
+            acceleration_gradient: none,
+            pressure: zero,
+        }
+    }
+
     /// Makes the motion of linear theory at the stretched height, before the waves have risen, that at the place itself;
     /// the surface is known already.
-    pub(crate) fn rise(&mut self, [risen, rising]: [f64; 2], [by_z, by_eta]: [f64; 2], current: [f64; 2]) {
-        for (a, u) in self.acceleration.iter_mut().zip(&self.velocity) {
-            *a = risen * *a + rising * u;
+    #[inline(always)]
+    pub(crate) fn rise(&mut self, risen: [f64; 2], [by_z, by_eta]: [R; 2], current: [f64; 2]) {
+        let ([risen, rising], [cx, cy]) = (risen, current);
+        let (risen, rising) = (R::of(risen), R::of(rising));
+        for i in 0..3 {
+            let (a, u) = (&mut self.acceleration[i], &mut self.velocity[i]);
+            *a = risen.fma(*a, rising * *u);
+            *u = risen * *u;
+            let by = &self.gradient[i];
+            let carried = by[0].fma(R::of(cx), by[1] * R::of(cy));
+            self.rate[i] = risen.fma(by[2] * by_eta * self.rising - carried, *a);
         }
-        self.velocity = self.velocity.map(|u| risen * u);
-        for ((rate, a), by) in self.rate.iter_mut().zip(&self.acceleration).zip(&self.gradient) {
-            let carried = by[0] * current[0] + by[1] * current[1];
-            *rate = a + risen * (by[2] * by_eta * self.rising - carried);
-        }
-        for (of_a, of_u) in self.acceleration_gradient.iter_mut().zip(&mut self.gradient) {
+        for i in 0..3 {
+            let (of_a, of_u) = (&mut self.acceleration_gradient[i], &mut self.gradient[i]);
             for row in [&mut *of_a, &mut *of_u] {
-                row[0] += row[2] * by_eta * self.slope[0];
-                row[1] += row[2] * by_eta * self.slope[1];
-                row[2] *= by_z;
+                let stretched = row[2] * by_eta;
+                row[0] = stretched.fma(self.slope[0], row[0]);
+                row[1] = stretched.fma(self.slope[1], row[1]);
+                row[2] = row[2] * by_z;
             }
-            for (a, u) in of_a.iter_mut().zip(of_u) {
-                *a = risen * *a + rising * *u;
-                *u *= risen;
+            for j in 0..3 {
+                of_a[j] = risen.fma(of_a[j], rising * of_u[j]);
+                of_u[j] = risen * of_u[j];
             }
         }
     }

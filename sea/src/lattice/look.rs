@@ -1,0 +1,269 @@
+//! The motion of the water at stations, over lanes.
+
+use super::{Lattice, SPOTS, hermite, slopes};
+use crate::waves::Flow;
+use ropewalk_core::Real;
+
+/// As many lanes as the widest carrier has.
+const LANES: usize = 8;
+
+/// An instant and how far it is from it to the next, in parts of their distance.
+#[derive(Clone, Copy)]
+struct Instant {
+    n: i64,
+    late: f64,
+}
+
+/// Polynomials in time of values and rates at both instants, and their derivatives [1/s].
+struct Blend {
+    value: [f64; 4],
+    rate: [f64; 4],
+}
+
+impl Blend {
+    #[inline(always)]
+    fn of<R: Real>(weights: &[f64; 4], [a, da, b, db]: [R; 4]) -> R {
+        let [h, dh, g, dg] = *weights;
+        R::of(h).fma(a, R::of(dh).fma(da, R::of(g).fma(b, R::of(dg) * db)))
+    }
+}
+
+impl Lattice {
+    /// The motion of the water, as [`Waves::at`](crate::Waves::at) gives it, but for the pressure, which is left out.
+    pub fn at(&mut self, [x, y, z]: [f64; 3], t: f64) -> Flow {
+        let mut flow = self.surface(t, [x, y]);
+        self.within(t, [x, y, z], &mut flow);
+        flow
+    }
+
+    fn instant(&self, t: f64) -> Instant {
+        let instant = t / self.time;
+        let n = instant.floor();
+        Instant { n: n as i64, late: instant - n }
+    }
+
+    fn blend(&self, late: f64) -> Blend {
+        let tau = self.time;
+        let ([a, da, b, db], [ra, rda, rb, rdb]) = (hermite(late), slopes(late));
+        Blend { value: [a, tau * da, b, tau * db], rate: [ra / tau, rda, rb / tau, rdb] }
+    }
+
+    /// How far spots are apart along the waves [m].
+    fn spot(&self) -> f64 {
+        self.along / SPOTS
+    }
+
+    /// The surface above places, of a flow of which nothing else is known.
+    #[inline(always)]
+    pub fn surface<R: Real>(&mut self, t: f64, place: [R; 2]) -> Flow<R> {
+        let Instant { n, late } = self.instant(t);
+        let (nearest, off) = self.nearest(place);
+        let mut places = [0; LANES];
+        self.edges.begin();
+        for lane in 0..R::LANES {
+            let (place, known) = self.edges.find([nearest[lane], 0, n]);
+            if !known {
+                let edge = self.edge(nearest[lane], n);
+                self.edges.put(place, edge);
+            }
+            places[lane] = place;
+        }
+        let (a, b) = (self.edges.four::<R>(&places, 0), self.edges.four::<R>(&places, 2));
+        let (da, db) = (self.edges.four::<R>(&places, 1), self.edges.four::<R>(&places, 3));
+        let Blend { value, rate } = self.blend(late);
+        let (mut now, mut rates) = ([R::zero(); 3], [R::zero(); 3]);
+        for k in 0..3 {
+            now[k] = Blend::of(&value, [a[k], da[k], b[k], db[k]]);
+            rates[k] = Blend::of(&rate, [a[k], da[k], b[k], db[k]]);
+        }
+        let ([elevation, steep, bend], [rising, steepening, bending]) = (now, rates);
+        let half = R::of(0.5) * off;
+        let elevation = off.fma(half.fma(bend, steep), elevation);
+        let rate = off.fma(half.fma(bending, steepening), rising);
+        let steep = off.fma(bend, steep);
+        let [risen, rises] = self.waves.risen(t);
+        let (risen, rises, [cx, cy]) = (R::of(risen), R::of(rises), self.way);
+        Flow {
+            elevation: risen * elevation,
+            slope: [risen * steep * R::of(cx), risen * steep * R::of(cy)],
+            rising: risen.fma(rate, rises * elevation),
+            ..Flow::still()
+        }
+    }
+
+    /// The numbers of the nearest spots along the waves, and how far places are from them [m].
+    #[inline(always)]
+    fn nearest<R: Real>(&self, [x, y]: [R; 2]) -> ([i64; LANES], R) {
+        let spot = self.spot();
+        let along = x.fma(R::of(self.way[0]), y * R::of(self.way[1]));
+        let (mut numbers, mut nearest) = ([0.0; LANES], [0; LANES]);
+        (along * R::of(1.0 / spot)).write(&mut numbers);
+        for lane in 0..R::LANES {
+            numbers[lane] = (numbers[lane] + 0.5).floor();
+            nearest[lane] = numbers[lane] as i64;
+        }
+        (nearest, along - R::read(&numbers) * R::of(spot))
+    }
+
+    /// Adds to a flow, of which the surface is known, what is under it at places: under still water if stretched so.
+    #[inline(always)]
+    pub fn within<R: Real>(&mut self, t: f64, [x, y, z]: [R; 3], flow: &mut Flow<R>) {
+        let Instant { n, late } = self.instant(t);
+        let (nearest, across) = self.nearest([x, y]);
+        let [up, by_z, by_eta] = self.waves.stretched(z, flow.elevation);
+        let (mut heights, mut at, mut places) = ([0.0; LANES], [0.0; LANES], [0; LANES]);
+        up.write(&mut heights);
+        self.spots.begin();
+        for lane in 0..R::LANES {
+            let (j, down) = self.below(heights[lane]);
+            let part = (self.heights[j] - self.heights[j + 1]) / SPOTS;
+            let number = (down / part + 0.5).floor();
+            at[lane] = self.heights[j] - number * part;
+            // as many spots above the first height and below the last as there may be
+            let key = [nearest[lane], ((j as i64) << 32).wrapping_add(number as i64), n];
+            let (place, known) = self.spots.find(key);
+            if !known {
+                let spot = self.around(nearest[lane], (j, at[lane]), n);
+                self.spots.put(place, spot);
+            }
+            places[lane] = place;
+        }
+        let upwards = up - R::read(&at);
+        let Blend { value, rate } = self.blend(late);
+        // values of u and w, along the waves, upwards, and along them twice; and their rates
+        let (mut now, mut rates) = ([[R::zero(); 2]; 4], [[R::zero(); 2]; 4]);
+        for k in 0..4 {
+            let [u, w, du, dw] = self.spots.four::<R>(&places, k);
+            let [v, x, dv, dx] = self.spots.four::<R>(&places, k + 4);
+            now[k] = [Blend::of(&value, [u, du, v, dv]), Blend::of(&value, [w, dw, x, dx])];
+            rates[k] = [Blend::of(&rate, [u, du, v, dv]), Blend::of(&rate, [w, dw, x, dx])];
+        }
+        let (u, du) = (around(now, [across, upwards]), around(rates, [across, upwards]));
+        let [cx, cy] = [R::of(self.way[0]), R::of(self.way[1])];
+        // as one sees it who drifts with the current
+        let current = R::of(self.current);
+        let [a, b] = [current.fma(u[1][0], du[0][0]), current.fma(u[1][1], du[0][1])];
+        flow.velocity = [u[0][0] * cx, u[0][0] * cy, u[0][1]];
+        flow.acceleration = [a * cx, a * cy, b];
+        // of what drifting adds to the acceleration the change from place to place is left out
+        (flow.gradient, flow.acceleration_gradient) = (turned(&u, [cx, cy]), turned(&du, [cx, cy]));
+        flow.rise(self.waves.risen(t), [by_z, by_eta], self.waves.current);
+    }
+
+    /// The cell in which a height is, and how far it is below its upper end [m].
+    #[inline(always)]
+    fn below(&self, up: f64) -> (usize, f64) {
+        let j = self.heights.partition_point(|h| *h > up).clamp(1, self.heights.len() - 1) - 1;
+        (j, self.heights[j] - up)
+    }
+
+    /// The four columns between which a place is, of those that are so far apart, and where it is between them.
+    fn between(&mut self, x: f64, n: i64, level: u32) -> ([usize; 4], f64) {
+        let apart = 1_i64 << level;
+        let place = x / (self.along * apart as f64);
+        let i = place.floor();
+        let first = i as i64 * apart;
+        let (along, time) = (self.along, self.time);
+        let columns = [(first, n), (first + apart, n), (first, n + 1), (first + apart, n + 1)];
+        self.columns.forget_far(n);
+        let columns = columns.map(|(i, n)| self.columns.number((i, n), i as f64 * along, n as f64 * time));
+        (columns, place - i)
+    }
+
+    /// The surface at a spot at two instants: elevation, slope, its change, and a nought; then the rates of these.
+    #[cold]
+    #[inline(never)]
+    fn edge(&mut self, spot: i64, n: i64) -> [f64; 16] {
+        let (columns, across) = self.between(spot as f64 * self.spot(), n, 0);
+        let (h, dh) = (hermite(across), slopes(across));
+        let mut out = [0.0; 16];
+        for (instant, pair) in columns.chunks_exact(2).enumerate() {
+            let [a, b] = [pair[0], pair[1]].map(|c| self.columns.surface(c));
+            for rate in 0..2 {
+                let k = 3 * rate;
+                let between = |w: &[f64; 4], k: usize, size: f64| {
+                    w[0] * a[k] + w[2] * b[k] + size * (w[1] * a[k + 1] + w[3] * b[k + 1])
+                };
+                let to = &mut out[8 * instant + 4 * rate..];
+                to[0] = between(&h, k, self.along);
+                to[1] = between(&dh, k, self.along) / self.along;
+                to[2] = between(&dh, k + 1, self.along) / self.along;
+            }
+        }
+        out
+    }
+
+    /// The water at a spot below height `j` at two instants: `u`, `w` and their rates; the same along the waves, upwards, and
+    /// along the waves twice.
+    #[cold]
+    #[inline(never)]
+    fn around(&mut self, spot: i64, (j, up): (usize, f64), n: i64) -> [f64; 32] {
+        let mut out = [0.0; 32];
+        let bottom = self.heights[self.heights.len() - 1];
+        if up < bottom && self.waves.depth().is_infinite() {
+            // nothing moves there
+            return out;
+        }
+        let level = self.levels[j];
+        let (columns, across) = self.between(spot as f64 * self.spot(), n, level);
+        let size = self.along * (1_i64 << level) as f64;
+        let height = self.heights[j] - self.heights[j + 1];
+        let depth = (self.heights[j] - up) / height;
+        let (hx, dx, hz, dz) = (hermite(across), slopes(across), hermite(depth), slopes(depth));
+        for instant in 0..2 {
+            for k in 0..2 {
+                // along the waves: u, u_x, w, w_x and their rates, and what each of them changes by
+                let (mut a, mut b) = ([0.0; 8], [0.0; 8]);
+                for end in 0..2 {
+                    let corner = self.columns.corner(columns[2 * instant + end], j + k);
+                    let (value, change) = corner.split_at(8);
+                    let ([x, g], [by, dg]) =
+                        ([hx[2 * end], dx[2 * end] / size], [hx[2 * end + 1] * size, dx[2 * end + 1]]);
+                    for m in 0..8 {
+                        a[m] += x * value[m] + by * change[m];
+                        b[m] += g * value[m] + dg * change[m];
+                    }
+                }
+                // heights count downwards; u_z = w_x, w_z = -u_x
+                let (z, by_z) = (hz[2 * k], -hz[2 * k + 1] * height);
+                let (g, by_g) = (-dz[2 * k] / height, dz[2 * k + 1]);
+                let share = if k == 0 { 1.0 - depth } else { depth };
+                for rate in 0..2 {
+                    let (m, to) = (4 * rate, &mut out[16 * instant + 2 * rate..]);
+                    to[0] += z * a[m] + by_z * a[m + 3];
+                    to[1] += z * a[m + 2] - by_z * a[m + 1];
+                    to[4] += z * b[m] + by_z * b[m + 3];
+                    to[5] += z * b[m + 2] - by_z * b[m + 1];
+                    to[8] += g * a[m] + by_g * a[m + 3];
+                    to[9] += g * a[m + 2] - by_g * a[m + 1];
+                    to[12] += share * b[m + 1];
+                    to[13] += share * b[m + 3];
+                }
+            }
+        }
+        out
+    }
+}
+
+/// `u` and `w` so far from a spot, and what they change by along the waves and upwards. Their second derivatives upwards are
+/// those along the waves with the other sign, `u_xz = w_xx` and `w_xz = -u_xx`.
+#[inline(always)]
+fn around<R: Real>([at, by_x, by_z, bend]: [[R; 2]; 4], [x, z]: [R; 2]) -> [[R; 2]; 3] {
+    let [[u, w], [ux, wx], [uz, wz], [uxx, wxx]] = [at, by_x, by_z, bend];
+    let (square, both) = (R::of(0.5) * (x * x - z * z), x * z);
+    [
+        [
+            x.fma(ux, z.fma(uz, square.fma(uxx, both.fma(wxx, u)))),
+            x.fma(wx, z.fma(wz, square.fma(wxx, w - both * uxx))),
+        ],
+        [x.fma(uxx, z.fma(wxx, ux)), x.fma(wxx, wx - z * uxx)],
+        [x.fma(wxx, uz - z * uxx), wz - x * uxx - z * wxx],
+    ]
+}
+
+/// What a vector in the plane of the waves changes by from place to place, in space.
+#[inline(always)]
+fn turned<R: Real>([_, x, z]: &[[R; 2]; 3], [cx, cy]: [R; 2]) -> [[R; 3]; 3] {
+    let (ux, uy) = (x[0] * cx, x[0] * cy);
+    [[ux * cx, ux * cy, z[0] * cx], [ux * cy, uy * cy, z[0] * cy], [x[1] * cx, x[1] * cy, z[1]]]
+}
