@@ -3,7 +3,7 @@
 use crate::current::Current;
 use crate::waves::{Evaluation, WavesSpec};
 use ropewalk_core::{BuildError, LaneTask, Real, V3, Width, dot, reach, run};
-use ropewalk_sea::{Flow, Lattice, SplitMix64, Waves};
+use ropewalk_sea::{Flow, Lattice, SplitMix64, Stations, Waves};
 use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
@@ -24,6 +24,8 @@ pub struct Sea {
 struct Memory {
     lattice: Option<Lattice>,
     packs: Vec<Found>,
+    /// What is known of the table at each of them.
+    stations: Vec<Stations>,
 }
 
 /// The motion at places side by side, number by number over all of them: several laws ask for the same, one after the other.
@@ -136,7 +138,8 @@ impl Sea {
         );
         let nowhere = [[f64::NAN; MOST]; 3];
         let none = Found { t: f64::NAN, lanes: 0, at: nowhere, rows: [[0.0; MOST]; ROWS] };
-        let memory = Mutex::new(Memory { lattice, packs: vec![none; PACKS] });
+        let stations = vec![Stations::default(); if lattice.is_some() { PACKS } else { 0 }];
+        let memory = Mutex::new(Memory { lattice, packs: vec![none; PACKS], stations });
         Ok(Sea { waves, level, about, memory })
     }
 
@@ -206,7 +209,7 @@ impl Sea {
         }
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
         // that of the last time, if what asks has moved little
-        let slot = mixed([places[0][0], places[1][0], places[2][0]].map(|x| x.to_bits() >> 40)) % PACKS;
+        let slot = mixed([places[0][0], places[1][0], places[2][0]].map(|x| x.to_bits() >> 42)) % PACKS;
         let found = &memory.packs[slot];
         // what is no number is never found
         if (found.t, found.lanes) != (t, R::LANES) || found.at != places {
@@ -233,7 +236,7 @@ impl Sea {
     /// Finds the motion at some places and puts it into a slot of the memory.
     #[inline(never)]
     fn find(&self, t: f64, places: &Places, lanes: usize, slot: usize, memory: &mut Memory) {
-        let Memory { lattice, packs } = memory;
+        let Memory { lattice, packs, stations } = memory;
         let found = &mut packs[slot];
         (found.t, found.lanes, found.at) = (t, lanes, *places);
         match lattice {
@@ -243,7 +246,7 @@ impl Sea {
                     4 => Width::Four,
                     _ => Width::One,
                 };
-                run(width, Look { lattice, level: self.level, found });
+                run(width, Look { lattice, stations: &mut stations[slot], level: self.level, found });
             }
             None => (0..lanes).for_each(|lane| {
                 let [x, y, z] = places.map(|row| row[lane]);
@@ -260,6 +263,7 @@ impl Sea {
 /// Looks up places in a table.
 struct Look<'a> {
     lattice: &'a mut Lattice,
+    stations: &'a mut Stations,
     level: f64,
     found: &'a mut Found,
 }
@@ -267,11 +271,11 @@ struct Look<'a> {
 impl LaneTask for Look<'_> {
     #[inline(always)]
     fn go<R: Real>(self) {
-        let Look { lattice, level, found } = self;
+        let Look { lattice, stations, level, found } = self;
         let [x, y, z] = [R::read(&found.at[0]), R::read(&found.at[1]), R::read(&found.at[2])];
-        let mut flow = lattice.surface(found.t, [x, y]);
+        let mut flow = lattice.surface(found.t, [x, y], stations);
         let (up, top) = (z - R::of(level), flow.elevation);
-        lattice.within(found.t, [x, y, up.if_gt(top, top, up)], &mut flow);
+        lattice.within(found.t, [x, y, up.if_gt(top, top, up)], stations, &mut flow);
         found.put(0, flow, up.if_gt(top, R::of(1.0), R::zero()));
     }
 }

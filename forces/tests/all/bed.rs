@@ -163,7 +163,8 @@ fn a_plane_is_what_heights_are_that_make_a_plane() {
             let size = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             let apart = |a: &[f64], b: &[f64]| {
                 assert!(a.iter().chain(b).all(|x| x.is_finite()) && a.len() == b.len());
-                a.iter().zip(b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / size(a).max(f64::MIN_POSITIVE)
+                a.iter().zip(b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
+                    / size(a).max(f64::MIN_POSITIVE)
             };
             assert_eq!(size(&one.0) > 0.0, up < 0.1);
             println!("{up} {slip}: {:e} {:e}", apart(&one.0, &other.0), apart(&one.1, &other.1));

@@ -28,16 +28,25 @@ type Phases = [Row; 2];
 /// A line of the table at one instant.
 #[derive(Clone, Debug)]
 struct Column {
-    /// Number of the instant.
+    /// Numbers of the line and the instant.
+    line: i64,
     instant: i64,
     /// Elevation, its slope and how that changes; then the rates of these.
     surface: [f64; 6],
     phases: Phases,
-    corners: Vec<Option<Box<Corner>>>,
+    /// Which of its corners are known, by height.
+    known: Vec<bool>,
+    corners: Vec<Corner>,
 }
 
-/// Whether it is the first number of an instant or line.
-type Numbers<T> = HashMap<T, usize, BuildHasherDefault<Mixed>>;
+impl Column {
+    /// Room for one of so many waves and heights.
+    fn new((waves, heights): (usize, usize)) -> Self {
+        let phases = [vec![0.0; waves], vec![0.0; waves]];
+        let (known, corners) = (vec![false; heights], vec![[0.0; 16]; heights]);
+        Column { line: 0, instant: 0, surface: [0.0; 6], phases, known, corners }
+    }
+}
 
 /// All lines that have been looked at.
 #[derive(Clone, Debug)]
@@ -52,8 +61,10 @@ pub(super) struct Columns {
     lines: HashMap<i64, Phases, BuildHasherDefault<Mixed>>,
     instants: HashMap<i64, Phases, BuildHasherDefault<Mixed>>,
     all: Vec<Column>,
+    /// Those that were forgotten, to be filled anew.
+    spare: Vec<Column>,
     /// Where those are of a line and an instant.
-    places: Numbers<(i64, i64)>,
+    places: HashMap<(i64, i64), usize, BuildHasherDefault<Mixed>>,
     latest: i64,
 }
 
@@ -77,6 +88,7 @@ impl Columns {
             lines: HashMap::default(),
             instants: HashMap::default(),
             all: Vec::new(),
+            spare: Vec::new(),
             places: HashMap::default(),
             latest: 0,
         }
@@ -97,11 +109,14 @@ impl Columns {
         };
         let line = self.lines.entry(i).or_insert_with(|| of(&|c| self.k[c] * x + self.phase[c]));
         let instant = self.instants.entry(n).or_insert_with(|| of(&|c| self.omega[c] * t));
-        let (mut phases, mut surface) = ([vec![0.0; self.k.len()], vec![0.0; self.k.len()]], [0.0; 6]);
+        let size = (self.k.len(), self.left.len());
+        let mut column = self.spare.pop().unwrap_or_else(|| Column::new(size));
+        (column.line, column.instant) = (i, n);
+        column.known.fill(false);
         let waves = [&self.k, &self.omega, &self.a].map(Vec::as_slice);
-        run(Width::best(), Meets { line, instant, waves, phases: &mut phases, surface: &mut surface });
-        let corners = vec![None; self.left.len()];
-        self.all.push(Column { instant: n, surface, phases, corners });
+        let Column { phases, surface, .. } = &mut column;
+        run(Width::best(), Meets { line, instant, waves, phases, surface });
+        self.all.push(column);
         self.places.insert((i, n), self.all.len() - 1);
         self.all.len() - 1
     }
@@ -113,14 +128,15 @@ impl Columns {
 
     /// The corner of a column at a height.
     pub fn corner(&mut self, column: usize, j: usize) -> &Corner {
-        let Column { phases, corners, .. } = &mut self.all[column];
-        let waves = [&self.k, &self.omega].map(Vec::as_slice);
-        corners[j].get_or_insert_with(|| {
+        let Column { phases, known, corners, .. } = &mut self.all[column];
+        if !std::mem::replace(&mut known[j], true) {
+            let waves = [&self.k, &self.omega].map(Vec::as_slice);
             let mut sums = [0.0; 12];
             run(Width::best(), Sums { phases, left: &self.left[j], waves, sums: &mut sums });
             let [u, ux, uxx, w, wx, wxx, a, ax, axx, b, bx, bxx] = sums;
-            Box::new([u, ux, w, wx, a, ax, b, bx, ux, uxx, wx, wxx, ax, axx, bx, bxx])
-        })
+            corners[j] = [u, ux, w, wx, a, ax, b, bx, ux, uxx, wx, wxx, ax, axx, bx, bxx];
+        }
+        &corners[j]
     }
 
     /// Forgets all but the columns of instants near this one, if it is far from that when this was done before.
@@ -134,18 +150,10 @@ impl Columns {
         if self.lines.len() > MOST {
             self.lines.clear();
         }
-        let mut kept = vec![None; self.all.len()];
-        let (mut number, mut count) = (0, 0);
-        self.all.retain(|column| {
-            let keep = near(column.instant);
-            if keep {
-                kept[number] = Some(count);
-                count += 1;
-            }
-            number += 1;
-            keep
-        });
-        self.places.retain(|_, place| kept[*place].map(|to| *place = to).is_some());
+        let (kept, gone) = self.all.drain(..).partition::<Vec<_>, _>(|column| near(column.instant));
+        (self.all, self.spare) = (kept, gone);
+        self.places =
+            self.all.iter().enumerate().map(|(k, column)| ((column.line, column.instant), k)).collect();
     }
 }
 

@@ -7,6 +7,48 @@ use ropewalk_core::Real;
 /// As many lanes as the widest carrier has.
 const LANES: usize = 8;
 
+/// What is known of the table around stations side by side: it stays the same until one of them gets to another spot, or the
+/// time to another instant.
+#[derive(Clone, Debug)]
+pub struct Stations {
+    /// The spots along the waves and the instant that the surface was asked for, and those that the water was.
+    nearest: [[f64; LANES]; 2],
+    n: [i64; 2],
+    /// The surface there, number by number.
+    edges: [[f64; LANES]; 16],
+    /// The heights at which the cells begin that they are in, and how high these are [m].
+    tops: [f64; LANES],
+    sizes: [f64; LANES],
+    /// How many spots below that each is.
+    numbers: [f64; LANES],
+    /// The water there.
+    spots: [[f64; LANES]; 32],
+}
+
+impl Default for Stations {
+    /// Of nothing.
+    fn default() -> Self {
+        let nowhere = [f64::NAN; LANES];
+        Stations {
+            nearest: [nowhere; 2],
+            n: [0; 2],
+            edges: [[0.0; LANES]; 16],
+            tops: nowhere,
+            sizes: nowhere,
+            numbers: nowhere,
+            spots: [[0.0; LANES]; 32],
+        }
+    }
+}
+
+impl Stations {
+    /// Whether one of them is still where it was, if it is at this height.
+    fn is_at(&self, lane: usize, up: f64) -> bool {
+        let (down, size) = (self.tops[lane] - up, self.sizes[lane]);
+        down >= 0.0 && down < size && (down * SPOTS / size + 0.5).floor() == self.numbers[lane]
+    }
+}
+
 /// An instant and how far it is from it to the next, in parts of their distance.
 #[derive(Clone, Copy)]
 struct Instant {
@@ -31,8 +73,9 @@ impl Blend {
 impl Lattice {
     /// The motion of the water, as [`Waves::at`](crate::Waves::at) gives it, but for the pressure, which is left out.
     pub fn at(&mut self, [x, y, z]: [f64; 3], t: f64) -> Flow {
-        let mut flow = self.surface(t, [x, y]);
-        self.within(t, [x, y, z], &mut flow);
+        let mut stations = Stations::default();
+        let mut flow = self.surface(t, [x, y], &mut stations);
+        self.within(t, [x, y, z], &mut stations, &mut flow);
         flow
     }
 
@@ -55,26 +98,19 @@ impl Lattice {
 
     /// The surface above places, of a flow of which nothing else is known.
     #[inline(always)]
-    pub fn surface<R: Real>(&mut self, t: f64, place: [R; 2]) -> Flow<R> {
+    pub fn surface<R: Real>(&mut self, t: f64, place: [R; 2], stations: &mut Stations) -> Flow<R> {
         let Instant { n, late } = self.instant(t);
         let (nearest, off) = self.nearest(place);
-        let mut places = [0; LANES];
-        self.edges.begin();
-        for lane in 0..R::LANES {
-            let (place, known) = self.edges.find([nearest[lane], 0, n]);
-            if !known {
-                let edge = self.edge(nearest[lane], n);
-                self.edges.put(place, edge);
-            }
-            places[lane] = place;
+        if stations.n[0] != n || !same::<R>(&nearest, &stations.nearest[0]) {
+            self.meet_surface(&nearest, n, R::LANES, stations);
         }
-        let (a, b) = (self.edges.four::<R>(&places, 0), self.edges.four::<R>(&places, 2));
-        let (da, db) = (self.edges.four::<R>(&places, 1), self.edges.four::<R>(&places, 3));
+        let edges = &stations.edges;
         let Blend { value, rate } = self.blend(late);
         let (mut now, mut rates) = ([R::zero(); 3], [R::zero(); 3]);
         for k in 0..3 {
-            now[k] = Blend::of(&value, [a[k], da[k], b[k], db[k]]);
-            rates[k] = Blend::of(&rate, [a[k], da[k], b[k], db[k]]);
+            let four = read(edges, [k, 4 + k, 8 + k, 12 + k]);
+            now[k] = Blend::of(&value, four);
+            rates[k] = Blend::of(&rate, four);
         }
         let ([elevation, steep, bend], [rising, steepening, bending]) = (now, rates);
         let half = R::of(0.5) * off;
@@ -93,50 +129,48 @@ impl Lattice {
 
     /// The numbers of the nearest spots along the waves, and how far places are from them [m].
     #[inline(always)]
-    fn nearest<R: Real>(&self, [x, y]: [R; 2]) -> ([i64; LANES], R) {
+    fn nearest<R: Real>(&self, [x, y]: [R; 2]) -> ([f64; LANES], R) {
         let spot = self.spot();
         let along = x.fma(R::of(self.way[0]), y * R::of(self.way[1]));
-        let (mut numbers, mut nearest) = ([0.0; LANES], [0; LANES]);
-        (along * R::of(1.0 / spot)).write(&mut numbers);
-        for lane in 0..R::LANES {
-            numbers[lane] = (numbers[lane] + 0.5).floor();
-            nearest[lane] = numbers[lane] as i64;
-        }
-        (nearest, along - R::read(&numbers) * R::of(spot))
+        let numbers = rounded(along * R::of(1.0 / spot));
+        (numbers, along - R::read(&numbers) * R::of(spot))
     }
 
     /// Adds to a flow, of which the surface is known, what is under it at places: under still water if stretched so.
     #[inline(always)]
-    pub fn within<R: Real>(&mut self, t: f64, [x, y, z]: [R; 3], flow: &mut Flow<R>) {
+    pub fn within<R: Real>(
+        &mut self,
+        t: f64,
+        [x, y, z]: [R; 3],
+        stations: &mut Stations,
+        flow: &mut Flow<R>,
+    ) {
         let Instant { n, late } = self.instant(t);
         let (nearest, across) = self.nearest([x, y]);
         let [up, by_z, by_eta] = self.waves.stretched(z, flow.elevation);
-        let (mut heights, mut at, mut places) = ([0.0; LANES], [0.0; LANES], [0; LANES]);
-        up.write(&mut heights);
-        self.spots.begin();
-        for lane in 0..R::LANES {
-            let (j, down) = self.below(heights[lane]);
-            let part = (self.heights[j] - self.heights[j + 1]) / SPOTS;
-            let number = (down / part + 0.5).floor();
-            at[lane] = self.heights[j] - number * part;
-            // as many spots above the first height and below the last as there may be
-            let key = [nearest[lane], ((j as i64) << 32).wrapping_add(number as i64), n];
-            let (place, known) = self.spots.find(key);
-            if !known {
-                let spot = self.around(nearest[lane], (j, at[lane]), n);
-                self.spots.put(place, spot);
-            }
-            places[lane] = place;
+        let (top, size) = (R::read(&stations.tops), R::read(&stations.sizes));
+        let mut numbers = rounded((top - up) * R::of(SPOTS) / size);
+        if stations.n[1] != n
+            || !same::<R>(&nearest, &stations.nearest[1])
+            || !same::<R>(&numbers, &stations.numbers)
+            || !inside(top - up, size)
+        {
+            up.write(&mut numbers);
+            self.meet(&nearest, &numbers, n, R::LANES, stations);
         }
-        let upwards = up - R::read(&at);
+        let (top, size) = (R::read(&stations.tops), R::read(&stations.sizes));
+        let upwards = up - top + R::read(&stations.numbers) * size * R::of(1.0 / SPOTS);
+        let spots = &stations.spots;
         let Blend { value, rate } = self.blend(late);
         // values of u and w, along the waves, upwards, and along them twice; and their rates
         let (mut now, mut rates) = ([[R::zero(); 2]; 4], [[R::zero(); 2]; 4]);
         for k in 0..4 {
-            let [u, w, du, dw] = self.spots.four::<R>(&places, k);
-            let [v, x, dv, dx] = self.spots.four::<R>(&places, k + 4);
-            now[k] = [Blend::of(&value, [u, du, v, dv]), Blend::of(&value, [w, dw, x, dx])];
-            rates[k] = [Blend::of(&rate, [u, du, v, dv]), Blend::of(&rate, [w, dw, x, dx])];
+            for i in 0..2 {
+                let first = 4 * k + i;
+                let four = read(spots, [first, first + 2, first + 16, first + 18]);
+                now[k][i] = Blend::of(&value, four);
+                rates[k][i] = Blend::of(&rate, four);
+            }
         }
         let (u, du) = (around(now, [across, upwards]), around(rates, [across, upwards]));
         let [cx, cy] = [R::of(self.way[0]), R::of(self.way[1])];
@@ -150,11 +184,57 @@ impl Lattice {
         flow.rise(self.waves.risen(t), [by_z, by_eta], self.waves.current);
     }
 
-    /// The cell in which a height is, and how far it is below its upper end [m].
-    #[inline(always)]
-    fn below(&self, up: f64) -> (usize, f64) {
-        let j = self.heights.partition_point(|h| *h > up).clamp(1, self.heights.len() - 1) - 1;
-        (j, self.heights[j] - up)
+    /// Finds the surface at these spots.
+    #[cold]
+    #[inline(never)]
+    fn meet_surface(&mut self, nearest: &[f64; LANES], n: i64, lanes: usize, stations: &mut Stations) {
+        for lane in 0..lanes {
+            if stations.n[0] == n && stations.nearest[0][lane] == nearest[lane] {
+                continue;
+            }
+            let number = nearest[lane] as i64;
+            let (place, known) = self.edges.find([number, 0, n]);
+            if !known {
+                *self.edges.numbers(place) = self.edge(number, n);
+            }
+            let numbers = self.edges.numbers(place);
+            stations.edges.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
+        }
+        (stations.nearest[0], stations.n[0]) = (*nearest, n);
+    }
+
+    /// Finds the spots along the waves and at these heights.
+    #[cold]
+    #[inline(never)]
+    fn meet(
+        &mut self,
+        nearest: &[f64; LANES],
+        up: &[f64; LANES],
+        n: i64,
+        lanes: usize,
+        stations: &mut Stations,
+    ) {
+        for lane in 0..lanes {
+            if stations.n[1] == n
+                && stations.nearest[1][lane] == nearest[lane]
+                && stations.is_at(lane, up[lane])
+            {
+                continue;
+            }
+            let j = self.heights.partition_point(|h| *h > up[lane]).clamp(1, self.heights.len() - 1) - 1;
+            let (top, size) = (self.heights[j], self.heights[j] - self.heights[j + 1]);
+            let number = ((top - up[lane]) * SPOTS / size + 0.5).floor();
+            let along = nearest[lane] as i64;
+            let key = [along, ((j as i64) << 32).wrapping_add(number as i64), n];
+            let (place, known) = self.spots.find(key);
+            if !known {
+                *self.spots.numbers(place) = self.around(along, (j, top - number * size / SPOTS), n);
+            }
+            let numbers = self.spots.numbers(place);
+            stations.spots.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
+            (stations.tops[lane], stations.sizes[lane], stations.numbers[lane]) = (top, size, number);
+        }
+        (stations.nearest[1], stations.n[1]) = (*nearest, n);
     }
 
     /// The four columns between which a place is, of those that are so far apart, and where it is between them.
@@ -171,8 +251,6 @@ impl Lattice {
     }
 
     /// The surface at a spot at two instants: elevation, slope, its change, and a nought; then the rates of these.
-    #[cold]
-    #[inline(never)]
     fn edge(&mut self, spot: i64, n: i64) -> [f64; 16] {
         let (columns, across) = self.between(spot as f64 * self.spot(), n, 0);
         let (h, dh) = (hermite(across), slopes(across));
@@ -195,8 +273,6 @@ impl Lattice {
 
     /// The water at a spot below height `j` at two instants: `u`, `w` and their rates; the same along the waves, upwards, and
     /// along the waves twice.
-    #[cold]
-    #[inline(never)]
     fn around(&mut self, spot: i64, (j, up): (usize, f64), n: i64) -> [f64; 32] {
         let mut out = [0.0; 32];
         let bottom = self.heights[self.heights.len() - 1];
@@ -243,6 +319,46 @@ impl Lattice {
         }
         out
     }
+}
+
+/// Whole numbers next to these.
+#[inline(always)]
+fn rounded<R: Real>(x: R) -> [f64; LANES] {
+    let mut numbers = [0.0; LANES];
+    x.write(&mut numbers);
+    for x in &mut numbers[..R::LANES] {
+        *x = (*x + 0.5).floor();
+    }
+    numbers
+}
+
+/// Whether they are the same in all lanes; what is no number never is.
+#[inline(always)]
+fn same<R: Real>(a: &[f64; LANES], b: &[f64; LANES]) -> bool {
+    let mut same = true;
+    for lane in 0..R::LANES {
+        same &= a[lane] == b[lane];
+    }
+    same
+}
+
+/// Whether all are within cells of these sizes.
+#[inline(always)]
+fn inside<R: Real>(down: R, size: R) -> bool {
+    let (mut all, mut most) = ([0.0; LANES], [0.0; LANES]);
+    down.write(&mut all);
+    size.write(&mut most);
+    let mut inside = true;
+    for lane in 0..R::LANES {
+        inside &= (all[lane] >= 0.0) & (all[lane] < most[lane]);
+    }
+    inside
+}
+
+/// Four rows of numbers.
+#[inline(always)]
+fn read<R: Real, const N: usize>(rows: &[[f64; LANES]; N], [a, b, c, d]: [usize; 4]) -> [R; 4] {
+    [R::read(&rows[a]), R::read(&rows[b]), R::read(&rows[c]), R::read(&rows[d])]
 }
 
 /// `u` and `w` so far from a spot, and what they change by along the waves and upwards. Their second derivatives upwards are

@@ -5,8 +5,8 @@
 //! bicubic Hermite polynomials of velocities, and in time between instants `n τ`, by cubic ones of velocities and
 //! accelerations, whose derivative is the acceleration. The table holds exact sums ([`columns`]). Farther down, where no
 //! short waves come, its cells are larger. Of the polynomials in space what is around a station is kept, to second order, at
-//! both instants ([`spots`]), since a line moves little while the water goes from one to the other; what is left to do for
-//! a station at a time are two polynomials ([`look`]).
+//! both instants ([`spots`], [`Stations`]), since a line moves little while the water goes from one to the other; what is left
+//! to do for a station at a time are two polynomials ([`look`]).
 
 mod columns;
 mod look;
@@ -14,6 +14,7 @@ mod spots;
 
 use crate::waves::{Stretching, Waves};
 use columns::Columns;
+pub use look::Stations;
 use spots::Spots;
 
 /// A line of the table is this part of the shortest wave away from the next.

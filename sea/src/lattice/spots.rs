@@ -1,6 +1,5 @@
 //! What is known of the table around places that were looked at: of cells divided into spots those that stations were in.
 
-use ropewalk_core::Real;
 use std::hash::Hasher;
 
 /// Number of spots that are remembered, a power of two.
@@ -11,56 +10,27 @@ const NOWHERE: [i64; 3] = [i64::MIN; 3];
 /// `N` numbers for each spot, which is told by its place along, downwards and in time.
 #[derive(Clone, Debug)]
 pub(super) struct Spots<const N: usize> {
-    /// Which one it is, and who looked at it last.
-    keys: Vec<([i64; 3], u64)>,
+    keys: Vec<[i64; 3]>,
     all: Vec<[f64; N]>,
-    looks: u64,
 }
 
 impl<const N: usize> Spots<N> {
     pub fn new() -> Self {
-        Spots { keys: vec![(NOWHERE, 0); MOST], all: vec![[0.0; N]; MOST], looks: 0 }
-    }
-
-    /// Begins to look at several at once, which don't put one another out.
-    pub fn begin(&mut self) {
-        self.looks += 1;
+        Spots { keys: vec![NOWHERE; MOST], all: vec![[0.0; N]; MOST] }
     }
 
     /// Where it is kept, and whether it was known already.
-    #[inline(always)]
     pub fn find(&mut self, key: [i64; 3]) -> (usize, bool) {
         let mut mixed = Mixed::default();
         key[..2].iter().for_each(|k| mixed.write_i64(*k));
-        let mut place = mixed.finish() as usize % MOST;
-        loop {
-            let (own, look) = &mut self.keys[place];
-            if *own == key {
-                *look = self.looks;
-                return (place, true);
-            }
-            if *look != self.looks {
-                (*own, *look) = (key, self.looks);
-                return (place, false);
-            }
-            place = (place + 1) % MOST;
-        }
+        let place = mixed.finish() as usize % MOST;
+        let known = self.keys[place] == key;
+        self.keys[place] = key;
+        (place, known)
     }
 
-    pub fn put(&mut self, place: usize, numbers: [f64; N]) {
-        self.all[place] = numbers;
-    }
-
-    /// Four numbers of each of some spots, from the `4 k`-th on.
-    #[inline(always)]
-    pub fn four<R: Real>(&self, places: &[usize; 8], k: usize) -> [R; 4] {
-        R::from_rows(
-            #[inline(always)]
-            |lane| {
-                let all = &self.all[places[lane]];
-                [all[4 * k], all[4 * k + 1], all[4 * k + 2], all[4 * k + 3]]
-            },
-        )
+    pub fn numbers(&mut self, place: usize) -> &mut [f64; N] {
+        &mut self.all[place]
     }
 }
 
@@ -69,18 +39,15 @@ impl<const N: usize> Spots<N> {
 pub(super) struct Mixed(u64);
 
 impl Hasher for Mixed {
-    #[inline(always)]
     fn finish(&self) -> u64 {
         self.0 ^ (self.0 >> 32)
     }
     fn write(&mut self, bytes: &[u8]) {
         bytes.iter().for_each(|b| self.write_u64(u64::from(*b)));
     }
-    #[inline(always)]
     fn write_u64(&mut self, x: u64) {
         self.0 = (self.0.rotate_left(23) ^ x).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     }
-    #[inline(always)]
     fn write_i64(&mut self, x: i64) {
         self.write_u64(x.cast_unsigned());
     }
