@@ -337,15 +337,17 @@ fn mixed(key: [u64; 3]) -> usize {
 }
 
 /// The largest difference of velocities between a table and the sum, in parts of their deviation at still water, at places
-/// down to where short waves end.
+/// down to where long waves end.
 fn off(waves: &Waves, lattice: &mut Lattice) -> f64 {
     let mut random = SplitMix64::new(1);
     let (mut worst, mut square) = (0.0_f64, 0.0);
     let length = TAU / waves.shortest();
+    let longest = TAU / waves.iter().map(|(_, k, ..)| k[0].hypot(k[1])).fold(f64::INFINITY, f64::min);
     for _ in 0..PROBES {
         let mut between = |a: f64, b: f64| a + (b - a) * random.unit();
         let place = [between(-50.0, 50.0) * length, between(-50.0, 50.0) * length];
-        let down = between(-1.0, 0.0) * length.min(waves.depth());
+        // most of them near the surface
+        let down = -between(0.0, 1.0).powi(3) * longest.min(waves.depth());
         let t = between(0.0, 1000.0) * TAU / waves.fastest() + 1e3;
         // below the surface, or below still water where the column isn't stretched
         let down = down + waves.elevation(place[0], place[1], t).0.min(0.0);

@@ -12,7 +12,7 @@ mod columns;
 mod look;
 mod spots;
 
-use crate::waves::{Stretching, Waves};
+use crate::waves::{Component, Stretching, Waves};
 use columns::Columns;
 pub use look::Stations;
 use spots::Spots;
@@ -25,9 +25,8 @@ const DOWN: f64 = 0.1;
 const GROWTH: f64 = 0.07;
 /// Instants are this part of the shortest period apart.
 const TIME: f64 = 1.0 / 12.0;
-/// Lines are twice as far apart where all waves that are shorter than twice as long carry this part of what the velocities vary
-/// by at the surface.
-const GONE: f64 = 1e-4;
+/// Lines are at most `2^COARSEST` times as far apart.
+const COARSEST: f64 = 10.0;
 /// Spots in a cell, along and downwards.
 const SPOTS: f64 = 8.0;
 
@@ -102,15 +101,17 @@ impl Lattice {
     }
 }
 
-/// How many times lines may be twice as far apart below a height.
+/// How many times lines may be twice as far apart below a height for errors to be a quarter of those at the surface: that of a
+/// wave grows with the fourth power of its wavenumber and of their distance.
 fn level(waves: &Waves, z: f64) -> u32 {
-    let square = |u: f64| u * u;
-    let all: f64 = waves.all.iter().map(|c| square(c.a * c.sigma)).sum();
-    let of = |shortest: f64| -> f64 {
-        let shorter = waves.all.iter().filter(|c| c.k > shortest);
-        shorter.map(|c| square(c.a * c.sigma * c.depths(z.min(0.0), waves.depth())[0])).sum()
+    let errors = |z: f64| -> f64 {
+        let of =
+            |c: &Component| c.a * c.sigma * c.depths(z, waves.depth())[0] * (c.k / waves.shortest()).powi(4);
+        waves.all.iter().map(|c| of(c).powi(2)).sum()
     };
-    (0..16).find(|level| of(waves.shortest() / f64::from(2 << level)) > GONE * all).unwrap_or(16)
+    let gained = (0.0625 * errors(0.0) / errors(z.min(0.0))).log2() / 8.0;
+    // no number at all where nothing moves
+    if gained < COARSEST { gained.max(0.0) as u32 } else { COARSEST as u32 }
 }
 
 /// Cubic Hermite polynomials on 0 … 1: value and derivative at the start, value and derivative at the end.

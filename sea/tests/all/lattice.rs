@@ -116,3 +116,49 @@ fn seas_of_several_directions_have_no_table() {
     let waves = Waves::new(&waves, 80.0, 9.81, Stretching::Wheeler).expect("waves");
     assert!(Lattice::new(waves, 1.0).is_none());
 }
+
+#[test]
+fn far_down_larger_cells_do() {
+    let waves = sea(150.0, Stretching::Wheeler);
+    let mut lattice = Lattice::new(waves.clone(), 1.0).expect("one direction");
+    let mut random = SplitMix64::new(7);
+    let size = |u: [f64; 3]| u.iter().map(|u| u * u).sum::<f64>();
+    for [high, low] in [[0.0, -10.0], [-10.0, -30.0], [-30.0, -70.0], [-70.0, -110.0], [-110.0, -150.0]] {
+        let (mut apart, mut all) = ([0.0_f64; 2], [0.0; 2]);
+        for _ in 0..300 {
+            let mut between = |a: f64, b: f64| a + (b - a) * random.unit();
+            let (t, place) = (between(0.0, 500.0), [between(-300.0, 300.0), between(-50.0, 50.0)]);
+            let z =
+                between(low, high) + waves.elevation(place[0], place[1], t).0.min(0.0) * (1.0 + high / 150.0);
+            let x = [place[0], place[1], z.max(-150.0)];
+            let (a, b) = (waves.at(x, t), lattice.at(x, t));
+            let top = waves.at([place[0], place[1], 0.0], t);
+            for (k, [a, b, top]) in
+                [[a.velocity, b.velocity, top.velocity], [a.acceleration, b.acceleration, top.acceleration]]
+                    .into_iter()
+                    .enumerate()
+            {
+                apart[k] += size(std::array::from_fn(|i| a[i] - b[i])) / 300.0;
+                all[k] += size(top) / 300.0;
+            }
+        }
+        let off = [0, 1].map(|k| (apart[k] / all[k]).sqrt());
+        println!("{high} to {low} m: {off:?}");
+        assert!(off[0] < 5e-4 && off[1] < 1e-3, "{high} to {low} m: {off:?}");
+    }
+}
+
+#[test]
+fn stations_that_move_find_what_those_find_that_come_anew() {
+    use ropewalk_sea::Stations;
+    let mut lattice = Lattice::new(sea(80.0, Stretching::Wheeler), 1.0).expect("one direction");
+    let mut known = Stations::default();
+    for k in 0..2000 {
+        let t = 0.013 * f64::from(k) - 0.4 * f64::from(k % 7);
+        let x = [10.0 + 3.0 * (0.3 * t).sin(), 0.2 * t, -20.0 + 19.0 * (0.7 * t).sin()];
+        let anew = lattice.at(x, t);
+        let mut flow = lattice.surface(t, [x[0], x[1]], &mut known);
+        lattice.within(t, x, &mut known, &mut flow);
+        assert_eq!(flow, anew, "{k}");
+    }
+}
