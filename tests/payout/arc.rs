@@ -1,10 +1,12 @@
 //! Cables on wheels: what lies on the wheel, against Lagrange's equations and closed forms.
 
 use approx::assert_relative_eq;
-use ropewalk_constraints::reeving::{Arc, End, Grip, Hold, Instant, Mode, Piece, Residual, Tangent, Wheel};
+use ropewalk_constraints::reeving::{
+    Arc, End, Grip, Hold, Instant, Mode, Piece, Residual, Tangency, Tangent, Wheel,
+};
 use ropewalk_core::rotation::{around, cross};
 use ropewalk_core::testing::{check_constraint, difference};
-use ropewalk_core::{At, Marker, Node, NodeId, NodeKind, Related, V3, dot};
+use ropewalk_core::{At, Constraint, Marker, Node, NodeId, NodeKind, Related, V3, dot};
 use ropewalk_scene::Strand;
 
 const RADIUS: f64 = 0.25;
@@ -190,9 +192,30 @@ fn derivatives_of_tangency_are_those_of_its_equations() {
     let q = [0.3, 0.1, 0.4, 0.6, 0.5, -0.7, 0.1, -0.2, 0.3, 0.8, 0.36, 0.48, 0.0];
     let v = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6, 0.3, 0.2, -0.4, 0.7, -0.6, 0.5];
     let at = At { t: 0.0, q: &q, v: &v, a: &[0.0; 12], internal: &[], relaxed: None };
-    let wheel = Marker::beside(NodeId(1), [0.05, 0.1, -0.2]);
-    let tangent = Related::new("tangent", Tangent { radius: 0.5 }, vec![Marker::node(NodeId(0)), wheel]);
-    assert!(check_constraint(&tangent, &nodes, &at) < 1e-7);
+    let point = Node { kind: NodeKind::Point, q: 6, v: 6, shared: false };
+    let on_body = Marker::beside(NodeId(1), [0.05, 0.1, -0.2]);
+    let in_space = Marker::Ground { point: [0.1, -0.2, 0.3], axes: [[0.0; 3], [0.0; 3], [0.48, 0.6, 0.64]] };
+    for (nodes, wheel) in [(nodes, on_body), (nodes, in_space), ([nodes[0], point], on_body)] {
+        let related = Related::new("tangent", Tangent { radius: 0.5 }, vec![Marker::node(NodeId(0)), wheel]);
+        let closed = Tangency::new("tangent", NodeId(0), wheel, 0.5);
+        for way in [&related as &dyn Constraint, &closed] {
+            assert!(check_constraint(way, &nodes, &at) < 1e-7);
+        }
+        // and one by automatic differentiation as the other in closed form, for each equation by itself
+        let n = related.nodes().iter().map(|k| nodes[k.0 as usize].kind.velocities()).sum::<usize>();
+        for row in 0..3 {
+            let mut lambda = [0.0; 3];
+            lambda[row] = 1.0;
+            let [one, other] = [&related as &dyn Constraint, &closed].map(|way| {
+                let (mut g, mut jacobian, mut bends) = (vec![0.0; 3], vec![0.0; 3 * n], vec![0.0; n * n]);
+                way.jacobian(&nodes, &at, &mut g, &mut jacobian);
+                way.geometric(&nodes, &at, &lambda, &mut bends);
+                [g, jacobian, bends].concat()
+            });
+            let off = one.iter().zip(&other).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
+            assert!(off < 1e-13, "{row}: {off}");
+        }
+    }
 }
 
 #[test]

@@ -107,6 +107,29 @@ pub struct Instant<S> {
     pub dissipated: S,
 }
 
+/// How a cable lies on a wheel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lay<S> {
+    /// Directions from the centre to both ends, and those in which the cable runs there.
+    e: [V3<S>; 2],
+    f: [V3<S>; 2],
+    /// Angle of wrap [rad].
+    pub wrap: S,
+    /// Unstretched length on the wheel [m], and its stretch.
+    length: S,
+    stretch: S,
+    /// Elastic tension [N].
+    pub tension: S,
+    /// Speed of the material along the groove at both ends [m/s].
+    v: [S; 2],
+}
+
+impl<S: Jet> Lay<S> {
+    fn mean(&self) -> S {
+        (self.v[0] + self.v[1]) * 0.5
+    }
+}
+
 fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
@@ -162,23 +185,28 @@ impl<S: Jet> Half<S> {
         }
         let Half { sign, slip_speed, .. } = *self;
         let re = Half { presses: self.presses.re(), angle: self.angle.re(), sign, slip_speed };
-        let excess = |y: f64| y + flow.re() * re.sliding(y) - slip.re();
-        let slope = |y: f64| {
-            let turns = re.slip_speed.powi(2) / (y * y + re.slip_speed.powi(2)).powf(1.5);
-            let pull = re.presses + re.sign * re.sliding(y);
-            1.0 + flow.re() * pull * re.angle * turns
+        // friction, and the slope of the left side
+        let left = |y: f64| {
+            let square = y * y + re.slip_speed.powi(2);
+            let turns = re.slip_speed.powi(2) / (square * square.sqrt());
+            let pull = re.sliding(y);
+            (pull, 1.0 + flow.re() * (re.presses + re.sign * pull) * re.angle * turns)
         };
         let (mut low, mut high) = (slip.re().min(0.0), slip.re().max(0.0));
-        let mut y = 0.5 * (low + high);
+        // where all of it slides that is near
+        let mut y = (slip.re() - flow.re() * re.sliding(slip.re())).clamp(low, high);
+        let mut slope = 1.0;
         for _ in 0..60 {
-            let off = excess(y);
+            let (pull, now) = left(y);
+            slope = now;
+            let off = y + flow.re() * pull - slip.re();
             if off > 0.0 {
                 high = y
             } else {
                 low = y
             }
-            let next = y - off / slope(y);
-            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            let next = y - off / slope;
+            let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
             let done = (next - y).abs() <= 1e-15 * slip.re().abs().max(re.slip_speed);
             y = next;
             if done {
@@ -187,21 +215,16 @@ impl<S: Jet> Half<S> {
         }
         // one more step, which brings the derivatives
         let at = S::from(y);
-        let y = at - (at + flow * self.sliding(at) - slip) / slope(y);
+        let y = at - (at + flow * self.sliding(at) - slip) / slope;
         self.sliding(y)
     }
 }
 
 impl Arc {
-    /// Evaluates all of it; `stored` is the unstretched length for material coordinates of 0.
-    pub fn eval<S: Jet>(
-        &self,
-        stored: f64,
-        ends: &[End<S>; 2],
-        wheel: &Wheel<S>,
-    ) -> (Residual<S>, Instant<S>) {
-        let Strand { mass, ea, ei, damping, .. } = self.strand;
-        let (radius, [c, cd, cdd], a) = (self.radius, &wheel.c, &wheel.axis);
+    /// How the cable lies; `stored` is the unstretched length for material coordinates of 0.
+    pub(super) fn lay<S: Jet>(&self, stored: f64, ends: &[End<S>; 2], wheel: &Wheel<S>) -> Lay<S> {
+        let Strand { ea, ei, .. } = self.strand;
+        let (radius, [c, cd, _], a) = (self.radius, &wheel.c, &wheel.axis);
         let e = ends.each_ref().map(|end| minus(&end.r[0], c).map(|x| x / radius));
         let f = e.each_ref().map(|e| cross(a, e));
         let wrap = angle(along(a, &cross(&e[0], &e[1])), along(&e[0], &e[1]));
@@ -212,10 +235,45 @@ impl Arc {
         };
         let length = ends[1].p[0] - ends[0].p[0] + stored;
         let stretch = wrap * radius / length;
+        let tension = (stretch - 1.0) * ea + wrap * ei / (length * radius);
+        let v = [0, 1].map(|k| along(&f[k], &minus(&ends[k].r[1], cd)) - stretch * ends[k].p[1]);
+        Lay { e, f, wrap, length, stretch, tension, v }
+    }
+
+    /// Tension that doesn't press on the groove, at both ends: that which turns the cable's momentum, less what weight does.
+    pub(super) fn lift<S: Jet>(&self, lay: &Lay<S>, wheel: &Wheel<S>) -> [S; 2] {
+        let Lay { e, f, wrap, .. } = lay;
+        let h = self.falls(wheel);
+        let middle: V3<S> = {
+            let (sin, cos) = ((*wrap * 0.5).sin(), (*wrap * 0.5).cos());
+            std::array::from_fn(|i| e[0][i] * cos + f[0][i] * sin)
+        };
+        let across = cross(&wheel.axis, &middle);
+        let half = [minus(&f[0], &across), minus(&across, &f[1])];
+        let mean = lay.mean();
+        [0, 1].map(|k| {
+            (mean * mean - along(&h, &half[k]) * 2.0 / *wrap * self.radius) * self.strand.mass / lay.stretch
+        })
+    }
+
+    /// Acceleration of the centre against free fall [m/s²].
+    fn falls<S: Jet>(&self, wheel: &Wheel<S>) -> V3<S> {
+        std::array::from_fn(|i| wheel.c[2][i] - self.gravity[i])
+    }
+
+    /// Evaluates all of it; `stored` is the unstretched length for material coordinates of 0.
+    pub fn eval<S: Jet>(
+        &self,
+        stored: f64,
+        ends: &[End<S>; 2],
+        wheel: &Wheel<S>,
+    ) -> (Residual<S>, Instant<S>) {
+        let Strand { mass, ea, ei, damping, .. } = self.strand;
+        let (radius, [c, cd, cdd]) = (self.radius, &wheel.c);
+        let lay = self.lay(stored, ends, wheel);
+        let Lay { e, f, wrap, length, stretch, tension, v } = lay;
 
         // elastic: closed ends, since the energy goes on into the arc
-        let strained = (stretch - 1.0) * ea;
-        let tension = strained + wrap * ei / (length * radius);
         let by_length = -(stretch * stretch - 1.0) * (0.5 * ea) - wrap * wrap * ei / (length * length * 2.0);
         let mut out = Residual {
             r: [f[0].map(|x| -(x * tension)), f[1].map(|x| x * tension)],
@@ -225,17 +283,16 @@ impl Arc {
         };
 
         // speeds and accelerations of the material along the groove
-        let v = [0, 1].map(|k| along(&f[k], &minus(&ends[k].r[1], cd)) - stretch * ends[k].p[1]);
         let rate = (v[1] - v[0]) / length;
         let w = [0, 1].map(|k| {
             let [_, pd, pdd] = ends[k].p;
             along(&f[k], &minus(&ends[k].r[2], cdd)) - stretch * pdd - rate * pd * 2.0
         });
-        let mean = (v[0] + v[1]) * 0.5;
+        let mean = lay.mean();
 
         // inertia and weight, the motion linear along the arc
         let m = length * mass;
-        let h: V3<S> = std::array::from_fn(|i| cdd[i] - self.gravity[i]);
+        let h = self.falls(wheel);
         let turned = minus(&f[0], &f[1]).map(|x| x / (wrap * wrap));
         let b: [V3<S>; 2] = [
             std::array::from_fn(|i| turned[i] - e[0][i] / wrap),
@@ -253,13 +310,7 @@ impl Arc {
         // Kelvin-Voigt damping of the arc
         let viscous = rate * damping;
         // friction; what presses on the groove is less than the tension by that which turns the cable's momentum
-        let middle: V3<S> = {
-            let (sin, cos) = ((wrap * 0.5).sin(), (wrap * 0.5).cos());
-            std::array::from_fn(|i| e[0][i] * cos + f[0][i] * sin)
-        };
-        let across = cross(a, &middle);
-        let half = [minus(&f[0], &across), minus(&across, &f[1])];
-        let lift = [0, 1].map(|k| (mean * mean - along(&h, &half[k]) * 2.0 / wrap * radius) * mass / stretch);
+        let lift = self.lift(&lay, wheel);
         let mut friction = [S::zero(); 2];
         let mut strain = [S::zero(); 2];
         let mut axle_friction = S::zero();

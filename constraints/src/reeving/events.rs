@@ -85,7 +85,10 @@ impl Event for Watch {
             }
             _ => {}
         }
-        let x = self.sheave.instant(self.groove, &at);
+        if mode != Mode::Wraps {
+            return -self.sheave.instant(self.groove, &at).tension / ea - 1e-12;
+        }
+        let (x, wheel) = self.sheave.lay(self.groove, &at);
         match self.what {
             What::Touches => {
                 // a wrap just below none is one just below a whole turn
@@ -93,9 +96,10 @@ impl Event for Watch {
                 LEAST_WRAP - wrap
             }
             What::Whole => x.wrap - (TAU - WHOLE),
+            What::Flung if x.tension <= 0.0 => -1e-12,
             What::Flung => {
-                let lift = x.lift[0].max(x.lift[1]);
-                if x.tension <= 0.0 { -1e-12 } else { (lift - x.tension) / ea }
+                let [before, behind] = groove.arc.lift(&x, &wheel);
+                (before.max(behind) - x.tension) / ea
             }
             _ => -x.tension / ea - 1e-12,
         }

@@ -15,9 +15,11 @@
 //! The piece that is off stays opposite to the wheel while the cable runs on: material goes through it. So it is the place
 //! that meets the wheel again.
 
-use super::tangent::Tangent;
+use super::tangent::{Tangency, Tangent};
 use ropewalk_core::rotation::cross;
-use ropewalk_core::{At, Constraint, Jet, Marker, Node, NodeId, Place, Related, Relation, RowKind, V3};
+use ropewalk_core::{
+    At, Constraint, Jet, Marker, Node, NodeId, NodeKind, Place, Related, Relation, RowKind, V3,
+};
 
 /// The least wrap [rad]: below it the arc is a straight piece.
 pub(super) const LEAST_WRAP: f64 = 0.01;
@@ -177,7 +179,10 @@ impl Hold {
                 .collect())
         };
         let tangent = |end: usize| -> Box<dyn Constraint> {
-            Box::new(Related::new(name.clone(), Tangent { radius }, vec![markers[end], wheel]))
+            match all[ends[end].0 as usize].kind {
+                NodeKind::Slope => Box::new(Tangency::new(name.clone(), ends[end], wheel, radius)),
+                _ => Box::new(Related::new(name.clone(), Tangent { radius }, vec![markers[end], wheel])),
+            }
         };
         let ways = [
             way(vec![tangent(0), tangent(1)]),

@@ -27,4 +27,4 @@ pub use piece::Piece;
 pub use record::SheaveRecordSpec;
 pub use ring::RingSpec;
 pub use spec::{BearingSpec, SheaveSpec};
-pub use tangent::Tangent;
+pub use tangent::{Tangency, Tangent};

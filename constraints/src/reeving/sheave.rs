@@ -1,6 +1,6 @@
 //! A wheel that cables run over, as a term of a model.
 
-use super::arc::{Arc, End, Grip, Instant, Residual, Wheel};
+use super::arc::{Arc, End, Grip, Instant, Lay, Residual, Wheel};
 use super::at_rest::{self, Sliding};
 use super::hold::Mode;
 use super::piece::Piece;
@@ -105,12 +105,17 @@ impl Groove {
         Groove { arc, stored, ends, back, way: 0.0, turns: None, mode }
     }
 
+    /// Whether the cable turns about the axis of the wheel, 1, or about that turned round, -1.
+    fn side(&self) -> f64 {
+        if self.back { -1.0 } else { 1.0 }
+    }
+
     /// The angle of a kink between both spans, as the cable turns about the axis of the wheel in space [rad].
     pub fn kink(&self, axis: &V3<f64>, at: &At<'_>) -> f64 {
         let [a, b]: [V3<f64>; 2] = self.ends.map(|end| std::array::from_fn(|i| at.q[end.end_q + 3 + i]));
         let flat = dot(&a, &b) - dot(axis, &a) * dot(axis, &b);
         let angle = dot(axis, &cross(&a, &b)).atan2(flat);
-        if self.back { -angle } else { angle }
+        angle * self.side()
     }
 }
 
@@ -163,6 +168,17 @@ struct Local<S> {
     a: [S; MOST],
 }
 
+/// Where the ends of a cable and the wheel are, and how they move.
+struct Posed<S> {
+    ends: [End<S>; 2],
+    wheel: Wheel<S>,
+    /// Rotation matrix of what carries it, and its angular velocity in its own axes [rad/s].
+    turn: [V3<S>; 3],
+    omega: V3<S>,
+    /// Angular velocity and acceleration of what carries it about the axis [rad/s, rad/s²].
+    carried: [S; 2],
+}
+
 /// Columns of records of a sheave.
 const COLUMNS: [(&str, &str); 7] = [
     ("wrap", "rad"),
@@ -187,8 +203,8 @@ impl Sheave {
         dofs
     }
 
-    /// Residual of a groove's unknowns, that of the wheel's own inertia with the first.
-    fn eval<S: Jet>(&self, k: usize, at: &At<'_>, x: &Local<S>) -> ([S; MOST], Instant<S>) {
+    /// Where the ends of a groove and the wheel are, and how they move.
+    fn posed<S: Jet>(&self, k: usize, at: &At<'_>, x: &Local<S>) -> Posed<S> {
         let groove = &self.grooves[k];
         let zero = [S::zero(); 3];
         let three = |x: &[S; MOST], i: usize| [x[i], x[i + 1], x[i + 2]];
@@ -235,17 +251,24 @@ impl Sheave {
         let size = self.seat.size();
         let of = |a: &V3<S>| a[0] * own[0] + a[1] * own[1] + a[2] * own[2];
         let (carried, carried_rate) = (of(&omega), of(&alpha));
-        let (own_spin, own_rate) = match &self.angle {
-            Some(_) => (x.v[8 + size], x.a[8 + size]),
-            None => (S::zero(), S::zero()),
-        };
-        let side = if groove.back { -1.0 } else { 1.0 };
+        let own_spin = if self.angle.is_some() { x.v[8 + size] } else { S::zero() };
+        let side = groove.side();
         let wheel = Wheel {
             c,
             axis: axis.map(|x| x * side),
             spin: (own_spin + carried) * side,
             carrier: carried * side,
         };
+        Posed { ends, wheel, turn, omega, carried: [carried, carried_rate] }
+    }
+
+    /// Residual of a groove's unknowns, that of the wheel's own inertia with the first.
+    fn eval<S: Jet>(&self, k: usize, at: &At<'_>, x: &Local<S>) -> ([S; MOST], Instant<S>) {
+        let groove = &self.grooves[k];
+        let Posed { ends, wheel, turn, omega, carried: [carried, carried_rate] } = self.posed(k, at, x);
+        let [arm, own] = [&self.seat.point, &self.seat.axis].map(|x| x.map(S::from));
+        let size = self.seat.size();
+        let side = groove.side();
         let arc = self.arc(groove, at);
         let (Residual { r, p, centre, groove: moment }, mut instant) =
             match Mode::of(at.internal, groove.mode) {
@@ -263,8 +286,9 @@ impl Sheave {
             out[8..11].copy_from_slice(&centre);
         }
         let mut about = moment * side;
-        let mut body = zero;
+        let mut body = [S::zero(); 3];
         if let Some(angle) = &self.angle {
+            let (own_spin, own_rate) = (x.v[8 + size], x.a[8 + size]);
             let pressed = instant.tension - (instant.lift[0] + instant.lift[1]) * 0.5;
             let pressed = pressed * (instant.wrap * 0.5).sin() * 2.0;
             let resists = groove.arc.moment(own_spin, pressed);
@@ -319,6 +343,13 @@ impl Sheave {
         x
     }
 
+    /// How the cable lies in a groove that it wraps.
+    pub fn lay(&self, k: usize, at: &At<'_>) -> (Lay<f64>, Wheel<f64>) {
+        let groove = &self.grooves[k];
+        let Posed { ends, wheel, .. } = self.posed(k, at, &self.local(groove, at));
+        (self.arc(groove, at).lay(groove.stored, &ends, &wheel), wheel)
+    }
+
     /// What there is to know of a groove now.
     pub fn instant(&self, k: usize, at: &At<'_>) -> Instant<f64> {
         let groove = &self.grooves[k];
@@ -327,8 +358,7 @@ impl Sheave {
             now.wrap = groove.kink(&self.seat.axis_now(at), at);
             // presses on the axle by the kink
             let inwards = cross(&self.seat.axis_now(at), &self.chord(groove, at));
-            let side = if groove.back { -1.0 } else { 1.0 };
-            now.axle = inwards.map(|x| side * 2.0 * now.tension * (0.5 * now.wrap).sin() * x);
+            now.axle = inwards.map(|x| groove.side() * 2.0 * now.tension * (0.5 * now.wrap).sin() * x);
         }
         now
     }
@@ -375,7 +405,7 @@ impl Sheave {
             _ => 0.0,
         };
         let own = self.angle.as_ref().map_or(0.0, |angle| at.v[angle.place.1]);
-        (own + carried) * groove.arc.radius * if groove.back { -1.0 } else { 1.0 }
+        (own + carried) * groove.arc.radius * groove.side()
     }
 }
 
