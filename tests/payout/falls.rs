@@ -1,95 +1,20 @@
 //! Tackles of many falls, one element each: what friction and the number of sheaves cost.
 
+use crate::hoist::Hoist;
 use ropewalk::scene::Format;
 use ropewalk::{History, SceneFile, simulate};
 use ropewalk_scene::Scene;
-use std::fmt::Write as _;
+
+/// Sheaves as tables of cranes have them.
+const RUBS: &str = "efficiency = 0.98";
 
 /// A hook block of 2 t on so many falls, hoisted by a drum after a second.
 fn tackle(falls: usize, wheel: &str) -> Scene {
-    read(&text(falls, wheel))
+    read(&Hoist { falls, wheel, ..Hoist::default() }.text())
 }
 
 fn read(text: &str) -> Scene {
     SceneFile::parse(text, "tackle", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}")).into_scene()
-}
-
-fn text(falls: usize, wheel: &str) -> String {
-    let wheels = falls / 2;
-    let mut route = String::from("{ wound = \"drum\" }");
-    for k in 1..=wheels {
-        let _ = write!(route, ", {{ over = \"head.{k}\" }}, {{ under = \"blocks.{k}\" }}");
-    }
-    let spacing = 0.06;
-    let side = 0.5 * spacing * (wheels as f64 - 1.0);
-    format!(
-        r#"
-        run = {{ duration = 6, output = 0.1, from_equilibrium = true }}
-        [[elements]]
-        type = "rigid_body"
-        name = "block"
-        position = [0, 0, 4]
-        mass = 2000
-        inertia = [200, 200, 100]
-        centre = [0, 0, -0.6]
-        [[elements]]
-        type = "cable"
-        name = "hoist"
-        section = {{ mass = 1.5, ea = "15 MN", axial_retardation_time = "2 ms" }}
-        elements = 1
-        tension = {}
-        route = [{route}, {{ end = [-0.25, {side}, 12] }}]
-        [[constraints]]
-        type = "drum"
-        name = "drum"
-        marker = [-6, {}, 2]
-        axis = [0, 1, 0]
-        radius = 0.3
-        speed = {}
-        start = 0.5
-        ramp = 1
-        wound_tension = {}
-        [[constraints]]
-        type = "spherical"
-        name = "dead_end"
-        marker = "hoist.end"
-        [[constraints]]
-        type = "sheave"
-        name = "head"
-        marker = [0, 0, 12]
-        axis = [0, 1, 0]
-        radius = 0.25
-        count = {wheels}
-        spacing = {spacing}
-        {wheel}
-        [[constraints]]
-        type = "sheave"
-        name = "blocks"
-        marker = "block"
-        axis = [0, 1, 0]
-        radius = 0.25
-        count = {wheels}
-        spacing = {spacing}
-        {wheel}
-        [[forces]]
-        type = "gravity"
-        [[records]]
-        type = "position"
-        of = "block"
-        [[records]]
-        type = "drum"
-        of = "drum"
-        [[records]]
-        type = "sheave"
-        of = "head.1"
-        [[records]]
-        type = "energy"
-        "#,
-        2300.0 * 9.81 / falls as f64,
-        -side,
-        -0.3 * falls as f64,
-        2300.0 * 9.81 / falls as f64,
-    )
 }
 
 fn run(scene: &Scene) -> History {
@@ -104,7 +29,7 @@ fn per_step(history: &History) -> f64 {
 #[test]
 fn friction_on_twelve_sheaves_costs_an_iteration_per_step_at_most() {
     let free = run(&tackle(12, ""));
-    let rubs = run(&tackle(12, "efficiency = 0.98"));
+    let rubs = run(&tackle(12, RUBS));
     let [a, b] = [&free, &rubs].map(per_step);
     println!("{a} and {b} iterations per step; {:?}, {:?}", free.counts, rubs.counts);
     assert!(b <= a + 1.0, "{b} iterations per step for {a}");
@@ -130,33 +55,54 @@ fn friction_on_twelve_sheaves_costs_an_iteration_per_step_at_most() {
 #[test]
 fn cost_grows_with_the_number_of_sheaves_and_no_faster() {
     let mut rows = Vec::new();
-    for falls in [4, 8, 12] {
-        let scene = tackle(falls, "efficiency = 0.98");
+    for falls in [2, 4, 8, 12, 24] {
+        let hoist = Hoist { falls, wheel: RUBS, speed: 0.1, ramp: 3.0, guided: true, ..Hoist::default() };
+        let scene = read(&hoist.text());
         let model = scene.build().expect("model");
-        let entries = model.structure().entries();
+        let structure = model.structure();
+        let (unknowns, entries) = (structure.n, structure.entries());
         let history = run(&scene);
-        println!("{falls} falls: {entries} entries, {} per step, {:?}", per_step(&history), history.counts);
-        rows.push((entries as f64, per_step(&history)));
+        println!(
+            "{falls} falls: {unknowns} unknowns, {entries} entries, {} per step, {:?}",
+            per_step(&history),
+            history.counts
+        );
+        rows.push((falls as f64, entries as f64, per_step(&history)));
     }
-    // stored entries of the matrix: each more sheave adds the same
-    let [first, second] = [rows[1].0 - rows[0].0, rows[2].0 - rows[1].0];
-    assert!(second <= 1.15 * first, "{first} and then {second} entries");
-    assert!(rows[2].1 <= rows[0].1 + 1.0, "{rows:?}");
+    // stored entries of the matrix by fall: each more sheave adds the same
+    let by_fall: Vec<f64> = rows.windows(2).map(|w| (w[1].1 - w[0].1) / (w[1].0 - w[0].0)).collect();
+    let (least, most) = by_fall.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(*x), m.max(*x)));
+    assert!(most <= 1.15 * least, "{by_fall:?} entries by fall");
+    // and an iteration doesn't become one of more work by being one of many
+    assert!(rows.iter().all(|row| row.2 <= rows[0].2 + 1.0), "{rows:?}");
+}
+
+#[test]
+fn friction_of_sheaves_cuts_no_steps_in_steady_hoisting() {
+    for falls in [4, 12] {
+        let hoist = |wheel| {
+            let all = Hoist { falls, wheel, speed: 0.1, ramp: 3.0, duration: 20.0, ..Hoist::default() };
+            Hoist { guided: true, ..all }
+        };
+        let [free, rubs] = ["", RUBS].map(|wheel| run(&read(&hoist(wheel).text())));
+        println!("{falls} falls: {:?}, {:?}", free.counts, rubs.counts);
+        assert!(per_step(&rubs) <= per_step(&free) + 1.0);
+        // what is cut is cut by the error of positions, as without friction
+        let [a, b] = [free, rubs].map(|history| history.counts.rejected);
+        assert!(b as f64 <= 1.1 * a as f64, "{b} rejected for {a}");
+    }
 }
 
 #[test]
 fn steady_hoisting_cuts_no_steps() {
-    let scene = tackle(12, "efficiency = 0.98");
+    let scene = tackle(12, RUBS);
     let history = run(&scene);
     let counts = &history.counts;
     assert!(counts.rejected as f64 <= 0.05 * counts.steps as f64, "{counts:?}");
 }
 
-/// Up and down by 5.7 m of rope, sixty times.
-#[test]
-#[ignore = "an hour of hoisting takes two minutes"]
-fn an_hour_of_hoisting_keeps_its_energy() {
-    let text = text(4, "efficiency = 0.98");
+/// The same tackle up and down by 5.7 m of rope every minute.
+pub(super) fn up_and_down(text: &str) -> String {
     let drive = r#"
         solver = { stepping = { controlled = { tolerance = 2e-3 } }, horizon = "20 s" }
         [[inputs]]
@@ -171,15 +117,25 @@ fn an_hour_of_hoisting_keeps_its_energy() {
         value = "0.6 m/s * sin(t * 6.283185307179586 / 60 s)"
         every = "1 s"
         [[elements]]"#;
-    let text = text.replace("duration = 6, output = 0.1", "duration = 3600, output = 60");
     let text = text.replacen("[[elements]]", drive, 1).replace("start = 0.5\n", "").replace("ramp = 1\n", "");
-    let text = text.replace("speed = -1.2", "speed = { input = \"hoist\" }");
+    let (before, rest) = text.split_once("speed = -").expect("the speed of the drum");
+    let (_, after) = rest.split_once('\n').expect("a line");
+    format!("{before}speed = {{ input = \"hoist\" }}\n{after}")
+}
+
+/// Sixty times.
+#[test]
+#[ignore = "an hour of hoisting takes two minutes"]
+fn an_hour_of_hoisting_keeps_its_energy() {
+    let hoist = Hoist { falls: 4, wheel: RUBS, duration: 3600.0, output: 60.0, ..Hoist::default() };
+    let text = up_and_down(&hoist.text());
     let history = run(&read(&text));
     let most = |name: &str| history.column(name).expect(name).iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let (imbalance, lost) = (most("energy.imbalance"), most("energy.dissipated"));
     println!("{imbalance} J of {lost} J, {} iterations per step, {:?}", per_step(&history), history.counts);
     assert!(imbalance < 1e-4 * lost, "{imbalance} J of {lost} J");
-    assert!(history.warnings.is_empty(), "{:?}", history.warnings);
+    // that friction is not in the equilibrium, and how many steps it takes
+    assert!(history.warnings.len() <= 2, "{:?}", history.warnings);
     let rise = history.last("block.z").expect("block") - history.column("block.z").expect("block")[0];
     assert!(rise.abs() < 0.1, "{rise} m");
 }

@@ -2,6 +2,8 @@
 
 #[path = "../common/scenes.rs"]
 mod common;
+#[path = "../common/hoist.rs"]
+mod hoist;
 #[path = "../common/program.rs"]
 mod program;
 
@@ -14,6 +16,7 @@ mod falls;
 mod gripping;
 mod hoisting;
 mod lifting;
+mod momentum;
 mod passing;
 mod reeling;
 mod reeving;

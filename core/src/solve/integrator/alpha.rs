@@ -471,10 +471,11 @@ impl Integrator for Alpha {
                     }
                     let [first, largest] = *rejected.get_or_insert([h, error]);
                     let stays = h <= SHRUNK * first && error > largest * (h / first).sqrt();
-                    let kinked = !model.inputs().is_empty() && model.multipliers() > 0;
-                    // not the error of this step: behind the kink of an input velocities meet the constraints to the order of
-                    // the longer step before it, and where steps change much they may leave them altogether
-                    let behind = stays && kinked && h <= SHRUNK * state.control.h_last;
+                    let driven =
+                        model.is_mechanism() || !model.inputs().is_empty() && model.multipliers() > 0;
+                    // not the error of this step: behind the kink of an input or a motion velocities meet the constraints to
+                    // the order of the longer step before it, and where steps change much they may leave them altogether
+                    let behind = stays && driven && h <= SHRUNK * state.control.h_last;
                     if behind || !renewed && h <= SHRUNK * first && self.drifts(model, state, work) {
                         renewed = true;
                         let internal = state.internal.clone();
