@@ -4,7 +4,7 @@ use super::longitudinal::{Longitudinal, add_axial, axial_energy};
 use super::model::Models;
 use super::quadrature::Rule;
 use super::reduced::Reduced;
-use super::relaxed::{add_relaxed, capped};
+use super::relaxed::{Step, add_relaxed, capped};
 use super::shape::natural;
 use super::transverse::{Transverse, bending_energy};
 use ropewalk_core::{Batch, Element, Energy, Local, Real, Share, Weights};
@@ -106,9 +106,9 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
         if R::LANES == 1
             && let Some(how) = &x.relaxed
         {
-            let last = natural(&x.last, il);
+            let step = Step::new(&q, &natural(&x.last, il));
             ea = capped(p, how.ramp, how.load);
-            add_relaxed::<L, T, Q, R, TANGENT>(models, p, how, il, &q, &last, &mut local);
+            add_relaxed::<L, T, Q, R, TANGENT>(models, p, how, il, &q, &step, &mut local);
         } else {
             add_axial::<L, Q::Axial, R, TANGENT>(longitudinal, rule.axial(), ea * p.l, &q, &mut local);
             transverse.add::<Q::Bending, R, TANGENT>(rule.bending(), p.ei, p.l, il, &q, &mut local);

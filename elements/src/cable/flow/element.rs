@@ -5,11 +5,11 @@ use super::for_fronts;
 use super::rule::close;
 use super::transport::{Row, Transport, nodal};
 use crate::cable::element::{CableParams, mass};
-use crate::cable::longitudinal::{Longitudinal, add_axial, axial_energy};
+use crate::cable::longitudinal::{Longitudinal, Strain, add_axial, axial_energy};
 use crate::cable::model::Models;
 use crate::cable::quadrature::Rule;
 use crate::cable::reduced::Reduced;
-use crate::cable::relaxed::{add_relaxed, capped};
+use crate::cable::relaxed::{Step, add_relaxed, capped};
 use crate::cable::shape::natural;
 use crate::cable::transverse::{Transverse, bending_energy};
 use ropewalk_core::{Batch, Dual, Element, Energy, Local, Power, Real, Share, V3, Weights, dot};
@@ -136,6 +136,22 @@ pub(super) fn nodal_dual<R: Real>(e: &[V3<R>; 4]) -> [V3<Dual<R>>; 4] {
     out
 }
 
+/// How an element came to where a search for equilibrium stands.
+#[inline(always)]
+pub(super) fn last_step<R: Real, const F: usize, const N: usize>(
+    by: &Embedding<F, R>,
+    g: &Grid<R>,
+    x: &Local<R, N, N>,
+) -> Step<R> {
+    let (mut e, mut last, mut grown) = ([R::zero(); 12], [R::zero(); 12], R::zero());
+    e.copy_from_slice(&x.q[..12]);
+    last.copy_from_slice(&x.last[..12]);
+    for k in 0..F {
+        grown += (by.by[k][1] - by.by[k][0]) * x.last[12 + k];
+    }
+    Step::fed(&e, &last, g.l, grown)
+}
+
 /// Elastic force: residual, tangent, and the rows and columns of the boundaries.
 #[inline(always)]
 fn add_elastic<
@@ -159,14 +175,14 @@ fn add_elastic<
     let Models { longitudinal, transverse, rule } = p.models;
     let mut local = Reduced::zero();
     let mut params = CableParams { l: g.l, ..p.params };
+    let mut relaxed = None;
     // the pool relaxes in scalar only, as that of cables that don't feed
     if R::LANES == 1
         && let Some(how) = &x.relaxed
     {
-        let mut last = [R::zero(); 12];
-        last.copy_from_slice(&x.last[..12]);
-        let last = natural(&last, g.il);
-        add_relaxed::<L, T, Q, R, TANGENT>(p.models, &params, how, g.il, &q, &last, &mut local);
+        let step = last_step(&p.by, g, x);
+        add_relaxed::<L, T, Q, R, TANGENT>(p.models, &params, how, g.il, &q, &step, &mut local);
+        relaxed = Some((how, step, params));
         params.ea = capped(&params, how.ramp, how.load);
     } else {
         add_axial::<L, Q::Axial, R, TANGENT>(longitudinal, rule.axial(), params.ea * g.l, &q, &mut local);
@@ -187,14 +203,32 @@ fn add_elastic<
         let l = Dual::new(g.l, R::of(1.0));
         let il = Dual::of(1.0) / l;
         let natural_l = natural(&fixed, il);
+        let twice = Dual::new(l, Dual::constant(R::of(1.0)));
+        let mut energy = strain_energy(p.models, &lift(&params), &Dual::constants(&fixed), twice);
         let mut local = Reduced::zero();
-        add_axial::<L, Q::Axial, Dual<R>, false>(
-            longitudinal,
-            rule.axial(),
-            params.ea * l,
-            &natural_l,
-            &mut local,
-        );
+        if let Some((how, step, of)) = &relaxed {
+            // the energy `s ε + EA (ε - ε₀)²/2` has the derivatives that the geometric stiffness by the stress s takes
+            let natural_twice = natural(&Dual::constants(&fixed), Dual::of(1.0) / twice);
+            let (mut apart, ea) = (Dual::zero(), params.ea);
+            for at in p.models.points() {
+                let strain = longitudinal.strain(&natural_l, at);
+                let here = Dual::constant(strain.eps().re);
+                let s = step.stress(longitudinal, of, how, at, here.re);
+                let w = l * Dual::of(at.w);
+                local.add_force(w * (ea * (strain.eps() - here) + Dual::constant(s)), &strain.gradient());
+                let (eps, wide) = (longitudinal.strain(&natural_twice, at).eps(), twice * Dual::of(at.w));
+                apart += wide * Dual::constant(Dual::constant(s) - ea * here) * eps;
+            }
+            energy.eps.eps += apart.eps.eps;
+        } else {
+            add_axial::<L, Q::Axial, Dual<R>, false>(
+                longitudinal,
+                rule.axial(),
+                params.ea * l,
+                &natural_l,
+                &mut local,
+            );
+        }
         transverse.add::<Q::Bending, Dual<R>, false>(
             rule.bending(),
             params.ei,
@@ -205,8 +239,6 @@ fn add_elastic<
         );
         let mut force = Share::<Dual<R>, 12>::zero();
         local.spread_force::<true>(il, &mut force);
-        let twice = Dual::new(l, Dual::constant(R::of(1.0)));
-        let energy = strain_energy(p.models, &lift(&params), &Dual::constants(&fixed), twice);
         for k in 0..F {
             let grows = p.by.by[k][1] - p.by.by[k][0];
             out.r[12 + k] += grows * energy.re.eps;

@@ -1,9 +1,10 @@
 //! Open ends of a flowing cable: the strain energy of what passes them.
 
+use super::element::last_step;
 use super::embedding::{Embedding, Grid};
 use super::for_fronts;
 use crate::cable::element::CableParams;
-use crate::cable::longitudinal::{Longitudinal, axial_energy};
+use crate::cable::longitudinal::{Longitudinal, Strain, axial_energy};
 use crate::cable::model::Models;
 use crate::cable::quadrature::{Point, Quadrature};
 use crate::cable::relaxed::capped;
@@ -87,6 +88,17 @@ fn density<L: Longitudinal, T: Transverse, R: Real>(
     }
 }
 
+/// Dofs and length as they change with one of the dofs, or behind these with the length.
+#[inline(always)]
+fn towards<R: Real>(e: &[R; 12], l: R, j: usize) -> ([Dual<R>; 12], Dual<R>) {
+    let (mut e, mut l) = (Dual::constants(e), Dual::constant(l));
+    match e.get_mut(j) {
+        Some(e) => e.eps = R::of(1.0),
+        None => l.eps = R::of(1.0),
+    }
+    (e, l)
+}
+
 macro_rules! element {
     ($boundaries:literal, $size:literal) => {
         impl<L: Longitudinal, T: Transverse> Element<$size, $size> for FlowEnd<L, T, $boundaries> {
@@ -115,36 +127,45 @@ macro_rules! element {
                 let (g, row) = (Grid::new(&by, x), 12 + p.boundary);
                 let sign = R::of(if p.end == 0 { 1.0 } else { -1.0 });
                 let (mut ea, ei) = (R::of(p.params.ea), R::of(p.params.ei));
+                let mut e = [R::zero(); 12];
+                e.copy_from_slice(&x.q[..12]);
+                // of the stress for the geometric stiffness, what that of the strain here hasn't
+                let mut apart = [R::zero(); 13];
                 if R::LANES == 1
                     && let Some(how) = &x.relaxed
                 {
                     // as soft as the element inside
                     let inside = CableParams { l: g.l, ea, ei, rho_a: R::of(p.params.rho_a) };
                     ea = capped(&inside, how.ramp, how.load);
+                    if TANGENT {
+                        let step = last_step(&by, &g, x);
+                        let points = if p.end == 0 {
+                            p.longitudinal.points(AtStart)
+                        } else {
+                            p.longitudinal.points(AtEnd)
+                        };
+                        for at in points {
+                            let eps = |j: usize| {
+                                let (e, l) = towards(&e, g.l, j);
+                                p.longitudinal.strain(&natural(&e, Dual::of(1.0) / l), at).eps()
+                            };
+                            let here = eps(12).re;
+                            let more = step.stress(p.longitudinal, &inside, how, at, here) - ea * here;
+                            for j in 0..13 {
+                                apart[j] += R::of(at.w) * more * eps(j).eps;
+                            }
+                        }
+                    }
                 }
-                let mut e = [R::zero(); 12];
-                e.copy_from_slice(&x.q[..12]);
                 out.r[row] += sign * density((p.longitudinal, p.transverse), ea, ei, &e, g.l, p.end);
                 if !TANGENT {
                     return;
                 }
                 let s = sign * R::of(w.q);
                 let derivative = |j: usize| {
-                    let mut e = Dual::constants(&e);
-                    let mut l = Dual::constant(g.l);
-                    match e.get_mut(j) {
-                        Some(e) => e.eps = R::of(1.0),
-                        None => l.eps = R::of(1.0),
-                    }
-                    density(
-                        (p.longitudinal, p.transverse),
-                        Dual::constant(ea),
-                        Dual::constant(ei),
-                        &e,
-                        l,
-                        p.end,
-                    )
-                    .eps
+                    let (e, l) = towards(&e, g.l, j);
+                    let (ea, ei) = (Dual::constant(ea), Dual::constant(ei));
+                    density((p.longitudinal, p.transverse), ea, ei, &e, l, p.end).eps + apart[j]
                 };
                 for j in 0..12 {
                     out.k[row][j] += s * derivative(j);
