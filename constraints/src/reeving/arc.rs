@@ -64,6 +64,9 @@ pub struct Arc {
     pub sliding: f64,
     /// Angle within half a turn of which the wrap is, of a cable that may lie in several turns [rad].
     pub near: Option<f64>,
+    /// In a search for equilibrium, the elastic tension that geometric stiffness is taken with; otherwise that of the arc as
+    /// it is [N].
+    pub stress: Option<f64>,
     /// Moment of friction in the bearing, of a wheel that turns with the cable: a constant part [N m], one by the force on
     /// the axle [m], one by the spin [N m s].
     pub bearing: [f64; 3],
@@ -274,6 +277,7 @@ impl Arc {
         let Lay { e, f, wrap, length, stretch, tension, v } = lay;
 
         // elastic: closed ends, since the energy goes on into the arc
+        let tension = self.stress.map_or(tension, |stress| tension - tension.re() + stress);
         let by_length = -(stretch * stretch - 1.0) * (0.5 * ea) - wrap * wrap * ei / (length * length * 2.0);
         let mut out = Residual {
             r: [f[0].map(|x| -(x * tension)), f[1].map(|x| x * tension)],

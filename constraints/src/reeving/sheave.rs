@@ -263,13 +263,19 @@ impl Sheave {
     }
 
     /// Residual of a groove's unknowns, that of the wheel's own inertia with the first.
-    fn eval<S: Jet>(&self, k: usize, at: &At<'_>, x: &Local<S>) -> ([S; MOST], Instant<S>) {
+    fn eval<S: Jet>(
+        &self,
+        k: usize,
+        at: &At<'_>,
+        x: &Local<S>,
+        stress: Option<f64>,
+    ) -> ([S; MOST], Instant<S>) {
         let groove = &self.grooves[k];
         let Posed { ends, wheel, turn, omega, carried: [carried, carried_rate] } = self.posed(k, at, x);
         let [arm, own] = [&self.seat.point, &self.seat.axis].map(|x| x.map(S::from));
         let size = self.seat.size();
         let side = groove.side();
-        let arc = self.arc(groove, at);
+        let arc = Arc { stress, ..self.arc(groove, at) };
         let (Residual { r, p, centre, groove: moment }, mut instant) =
             match Mode::of(at.internal, groove.mode) {
                 Mode::Wraps => arc.eval(groove.stored, &ends, &wheel),
@@ -350,10 +356,28 @@ impl Sheave {
         (self.arc(groove, at).lay(groove.stored, &ends, &wheel), wheel)
     }
 
+    /// The tension that geometric stiffness takes in a search for equilibrium, linearised at the iterate before as that of the
+    /// spans: what turns the end of one and that of the other has to be the same.
+    fn stress(&self, k: usize, at: &At<'_>) -> Option<f64> {
+        let groove = &self.grooves[k];
+        let relaxed =
+            at.relaxed.filter(|r| r.how.smooth && Mode::of(at.internal, groove.mode) == Mode::Wraps)?;
+        let last = relaxed.last?;
+        let mut d = [Dual64::from(0.0); MOST];
+        for (d, dof) in d.iter_mut().zip(self.dofs(groove)) {
+            *d = Dual64::new(-last[dof], last[dof]);
+        }
+        let Local { v, a, .. } = self.local(groove, at);
+        let before = Local { d, v: v.map(Dual64::from), a: a.map(Dual64::from) };
+        let Posed { ends, wheel, .. } = self.posed(k, at, &before);
+        let tension = self.arc(groove, at).lay(groove.stored, &ends, &wheel).tension;
+        Some(tension.re + tension.eps)
+    }
+
     /// What there is to know of a groove now.
     pub fn instant(&self, k: usize, at: &At<'_>) -> Instant<f64> {
         let groove = &self.grooves[k];
-        let mut now = self.eval(k, at, &self.local(groove, at)).1;
+        let mut now = self.eval(k, at, &self.local(groove, at), None).1;
         if Mode::of(at.internal, groove.mode) == Mode::Touches {
             now.wrap = groove.kink(&self.seat.axis_now(at), at);
             // presses on the axle by the kink
@@ -425,20 +449,21 @@ impl Term for Sheave {
         let w = out.weights();
         for (k, groove) in self.grooves.iter().enumerate() {
             let (dofs, x) = (self.dofs(groove), self.local(groove, at));
-            let (residual, _) = self.eval(k, at, &x);
+            let (residual, _) = self.eval(k, at, &x, None);
             for (dof, r) in dofs.iter().zip(residual) {
                 out.add(*dof, r);
             }
             if !out.wants_tangent() {
                 continue;
             }
+            let stress = self.stress(k, at);
             let mut block = [[0.0; MOST]; MOST];
             for j in 0..dofs.len() {
                 let towards = |x: &[f64; MOST], w: f64| -> [Dual64; MOST] {
                     std::array::from_fn(|i| Dual64::new(x[i], if i == j { w } else { 0.0 }))
                 };
                 let x = Local { d: towards(&x.d, w.q), v: towards(&x.v, w.v), a: towards(&x.a, w.a) };
-                let (column, _) = self.eval(k, at, &x);
+                let (column, _) = self.eval(k, at, &x, stress);
                 for i in 0..dofs.len() {
                     block[i][j] = column[i].eps;
                 }

@@ -250,6 +250,7 @@ impl SheaveSpec {
                 slip_speed: self.slip_speed,
                 sliding: 0.0,
                 near: None,
+                stress: None,
                 bearing: [share(bearing[0]), bearing[1], share(bearing[2])],
             };
             let back = dot(&passage.axis, &axis) < 0.0;
