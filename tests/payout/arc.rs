@@ -23,6 +23,7 @@ fn arc(grip: Grip) -> Arc {
         slip_speed: 0.01,
         sliding: 0.0,
         near: None,
+        stress: None,
         bearing,
     }
 }
@@ -121,6 +122,44 @@ fn what_an_arc_takes_it_stores_or_turns_into_heat() {
 }
 
 #[test]
+fn at_rest_an_arc_without_friction_has_a_potential_also_where_its_ends_are_not_on_the_wheel() {
+    let mut arc = arc(Grip::Slides(0.0));
+    arc.strand.weighs = false;
+    arc.gravity = [0.0; 3];
+    let (ends, wheel) = local(0.05, true);
+    let none = [0.0; 3];
+    // places of both ends and of the centre, coordinates of the material
+    let mut x: Vec<f64> = [ends[0].r[0], ends[1].r[0], wheel.c[0]].concat();
+    x.extend(ends.map(|end| end.p[0]));
+    for (k, x) in x[..9].iter_mut().enumerate() {
+        *x += 0.02 * (1.7 * k as f64).sin();
+    }
+    let force = |x: &[f64]| -> Vec<f64> {
+        let three = |i: usize| [x[i], x[i + 1], x[i + 2]];
+        let wheel = Wheel { c: [three(6), none, none], ..wheel };
+        let ends = [0, 1].map(|k| End { r: [three(3 * k), none, none], p: [x[9 + k], 0.0, 0.0] });
+        let (out, _) = arc.eval(STORED, &ends, &wheel);
+        [out.r[0].to_vec(), out.r[1].to_vec(), out.centre.to_vec(), out.p.to_vec()].concat()
+    };
+    let columns: Vec<Vec<f64>> = (0..x.len())
+        .map(|j| {
+            difference(|h| {
+                let mut moved = x.clone();
+                moved[j] += h;
+                force(&moved)
+            })
+        })
+        .collect();
+    let largest = columns.concat().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    for i in 0..x.len() {
+        for j in 0..i {
+            let off = columns[j][i] - columns[i][j];
+            assert!(off.abs() < 1e-7 * largest, "{i} {j}: {off} of {largest}");
+        }
+    }
+}
+
+#[test]
 fn sliding_at_a_speed_follows_the_capstan_equation_to_the_last_digit() {
     // (T2 - m v²) = (T1 - m v²) exp(mu theta), reference capstan_speed: T1 = 100 N, mu = 0.2, half a turn
     let strand = Strand { mass: 1.0, ea: 1e6, ei: 0.0, damping: 0.0, weighs: false };
@@ -142,6 +181,7 @@ fn sliding_at_a_speed_follows_the_capstan_equation_to_the_last_digit() {
             slip_speed: 1e-9,
             sliding: 0.0,
             near: None,
+            stress: None,
             bearing: [0.0; 3],
         };
         // the speed that turns the momentum is in space, the mass per stretched length: m v²/λ with λ of the arc

@@ -229,8 +229,13 @@ impl Arc {
         let Strand { ea, ei, .. } = self.strand;
         let (radius, [c, cd, _], a) = (self.radius, &wheel.c, &wheel.axis);
         let e = ends.each_ref().map(|end| minus(&end.r[0], c).map(|x| x / radius));
-        let f = e.each_ref().map(|e| cross(a, e));
-        let wrap = angle(along(a, &cross(&e[0], &e[1])), along(&e[0], &e[1]));
+        // `f/R` is what the wrap changes by with an end, wherever that is: so a force along it has a potential
+        let beside = e.each_ref().map(|e| along(a, e));
+        let f = [0, 1].map(|k| {
+            let flat = along(&e[k], &e[k]) - beside[k] * beside[k];
+            cross(a, &e[k]).map(|x| x / flat)
+        });
+        let wrap = angle(along(a, &cross(&e[0], &e[1])), along(&e[0], &e[1]) - beside[0] * beside[1]);
         let wrap = match self.near {
             Some(near) => wrap + TAU * ((near - wrap.re()) / TAU).round(),
             None if wrap.re() < LEAST => wrap + TAU,
