@@ -49,6 +49,7 @@ pub use model::{Model, Recipe, Start, Switches, broken, held, reach};
 pub use simulation::audit::{Audit, Created};
 pub use simulation::layers::Layers;
 pub use simulation::record::{Record, Sample};
+pub use simulation::shock;
 pub use simulation::{Checkpoint, End, Observer, Simulation, Unfit};
 pub use solve::linear::{Chain, Dense as DenseSolver, Fronts, Guard, LinearSolver, Lu, SolveError};
 pub use solve::linearise::{LineariseError, Linearised, Sparse, linearise};

@@ -214,3 +214,47 @@ fn motions_that_make_no_sense_are_refused_where_they_stand() {
     }
     assert!(SceneFile::parse(DRIVEN, "x", Format::Toml, &[]).unwrap().build().is_err());
 }
+
+/// A cable that hangs from a point which heaves, and what its run warns of.
+fn heaved(ramp: &str) -> Vec<String> {
+    let text = format!(
+        r#"
+        run = {{ duration = 0.2, output = 0.1 }}
+        [[motions]]
+        type = "harmonic"
+        name = "heave"
+        amplitude = [0, 0, 2]
+        frequency = 0.1
+        {ramp}
+        [[elements]]
+        type = "cable"
+        name = "umbilical"
+        points = [[0, 0, 0], [0, 0, -1000]]
+        elements = 20
+        section = {{ mass = 3, ea = 2e7, axial_retardation_time = 0.01 }}
+        [[constraints]]
+        type = "driving"
+        name = "top"
+        marker = "umbilical.start"
+        motion = "heave"
+        [[forces]]
+        type = "gravity"
+        [[records]]
+        type = "along"
+        of = "umbilical"
+        what = "tension"
+        at = "start"
+        "#
+    );
+    let file = SceneFile::parse(&text, "heave", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+    simulate(&file.into_scene()).unwrap_or_else(|e| panic!("{e}")).warnings
+}
+
+#[test]
+fn a_cable_that_is_struck_at_the_start_is_told_with_its_shock() {
+    let warnings = heaved("ramp = 0");
+    // 2 m at 0.1 Hz is 1.257 m/s, and √(EA μ) 7746 kg/s
+    let told = warnings.iter().find(|w| w.contains("struck at its start"));
+    assert!(told.is_some_and(|w| w.contains("1.3 m/s") && w.contains("9700 N")), "{warnings:?}");
+    assert!(!heaved("").iter().any(|w| w.contains("struck")));
+}

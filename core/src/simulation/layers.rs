@@ -191,7 +191,7 @@ impl Layers {
 }
 
 /// Two digits.
-fn short(x: f64) -> f64 {
+pub(super) fn short(x: f64) -> f64 {
     format!("{x:.1e}").parse().unwrap_or(x)
 }
 

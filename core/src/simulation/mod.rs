@@ -11,6 +11,7 @@ pub mod layers;
 mod look;
 mod memory;
 pub mod record;
+pub mod shock;
 mod stepping;
 mod watch;
 

@@ -6,7 +6,9 @@ use super::summary::{Counts, CriticalLoad, Ending, ProfileEntry};
 use crate::error::{Error, caught};
 use ropewalk_core::integrator::{Limit, StepError, StepReport, Stepping};
 use ropewalk_core::statics::{Critical, Statics};
-use ropewalk_core::{Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit};
+use ropewalk_core::{
+    Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit, shock,
+};
 use ropewalk_report::Watch;
 use ropewalk_scene::{Analysis, Fault, Process, Scene, SceneFile};
 use std::ops::ControlFlow;
@@ -228,6 +230,11 @@ impl Started {
     pub(crate) fn go(&mut self, recorder: &mut Recorder<'_>, resumed: bool) -> Ending {
         let scene = recorder.scene;
         let (duration, interval) = (scene.run.duration, scene.run.interval());
+        if let (Started::Dynamics(s, ..), false) = (&*self, resumed) {
+            for text in shock::remarks(&s.model, &s.state) {
+                recorder.warnings.say(&text);
+            }
+        }
         // a defect must not take what was computed with it
         let end = caught(|| match self {
             Started::Dynamics(s, ..) if resumed => Ok(s.go_on(duration, interval, recorder)?),

@@ -1,0 +1,61 @@
+//! Cables whose ends begin to move with a jump.
+//!
+//! A motion that starts at full speed, such as a sine, strikes what it moves: a shock of `√(EA μ) v` runs along a cable with
+//! the speed of sound and is reflected at its other end. No mesh resolves its front, and no step is short enough for it, so that
+//! tensions are not as exact behind it as asked for.
+
+use crate::model::Model;
+use crate::model::line::Quantity;
+use crate::model::part::Part;
+use crate::model::state::{At, State};
+use crate::simulation::layers::short;
+use crate::{V3, dot};
+use std::sync::Arc;
+
+/// Shocks below this part of the largest tension are nothing to speak of.
+const SHARE: f64 = 0.1;
+/// So many nodes from the end the rest begins: velocities that were made to meet the constraints carry a little of it on.
+const NEAR: usize = 4;
+/// The rest of a cable moves alike if its velocities differ by this part of the jump.
+const ALIKE: f64 = 0.05;
+
+/// What is struck at the start of a run, and how hard.
+pub fn remarks(model: &Model, state: &State) -> Vec<String> {
+    let at = state.at();
+    let slopes = |q: usize| model.nodes().iter().any(|n| n.q == q && n.kind.has_slope());
+    let bends = |part: &&Arc<dyn Part>| part.seats().first().is_some_and(|(q, _)| slopes(*q));
+    model.parts().iter().filter(bends).filter_map(|part| remark(part.as_ref(), &at)).collect()
+}
+
+fn remark(part: &dyn Part, at: &At<'_>) -> Option<String> {
+    let (line, seats) = (part.line()?, part.seats());
+    let last = seats.len().checked_sub(1)?;
+    // what feeds has an end that moves against its material
+    if last < NEAR || line.mesh_now(at) != line.mesh() {
+        return None;
+    }
+    let along = |k: usize, i: usize| -> f64 {
+        let (q, v) = seats[k];
+        let slope: V3<f64> = std::array::from_fn(|i| at.q[q + 3 + i]);
+        let v: V3<f64> = std::array::from_fn(|j| at.v[v + j] - at.v[seats[i].1 + j]);
+        dot(&slope, &v) / dot(&slope, &slope).sqrt()
+    };
+    let tension = line.mesh().iter().filter_map(|s| line.observe(Quantity::Tension, *s, at));
+    let largest = tension.fold(0.0_f64, f64::max);
+    let of = line.slender();
+    let middle = last / 2;
+    [(0, NEAR.min(middle), "start"), (last, (last - NEAR).max(middle), "end")].into_iter().find_map(|(end, near, word)| {
+        let (jump, rest) = (along(end, middle).abs(), along(near, middle).abs());
+        let shock = (of.ea * of.mass).sqrt() * jump;
+        (rest <= ALIKE * jump && shock > SHARE * largest && shock > 0.0).then(|| {
+            format!(
+                "`{}` is struck at its {word}: that begins to move at {} m/s along it, and the rest doesn't yet. A shock of \
+                 √(EA μ) v = {} N runs along it, behind which tensions are less exact than `force_tolerance` asks. A motion \
+                 that begins gently has none: give it a `ramp`, or let it begin at rest",
+                part.name(),
+                short(jump),
+                short(shock)
+            )
+        })
+    })
+}
