@@ -12,8 +12,9 @@ use crate::simulation::layers::short;
 use crate::{V3, dot};
 use std::sync::Arc;
 
-/// Shocks below this part of the largest tension are nothing to speak of.
+/// Shocks below this part of the largest tension are nothing to speak of, and those that strain the cable by less than that.
 const SHARE: f64 = 0.1;
+const STRAIN: f64 = 1e-6;
 /// So many nodes from the end the rest begins: velocities that were made to meet the constraints carry a little of it on.
 const NEAR: usize = 4;
 /// The rest of a cable moves alike if its velocities differ by this part of the jump.
@@ -44,18 +45,20 @@ fn remark(part: &dyn Part, at: &At<'_>) -> Option<String> {
     let largest = tension.fold(0.0_f64, f64::max);
     let of = line.slender();
     let middle = last / 2;
-    [(0, NEAR.min(middle), "start"), (last, (last - NEAR).max(middle), "end")].into_iter().find_map(|(end, near, word)| {
+    let ends = [(0, NEAR.min(middle), "start"), (last, (last - NEAR).max(middle), "end")];
+    let struck = |(end, near, word): (usize, usize, &'static str)| {
         let (jump, rest) = (along(end, middle).abs(), along(near, middle).abs());
         let shock = (of.ea * of.mass).sqrt() * jump;
-        (rest <= ALIKE * jump && shock > SHARE * largest && shock > 0.0).then(|| {
-            format!(
-                "`{}` is struck at its {word}: that begins to move at {} m/s along it, and the rest doesn't yet. A shock of \
-                 √(EA μ) v = {} N runs along it, behind which tensions are less exact than `force_tolerance` asks. A motion \
-                 that begins gently has none: give it a `ramp`, or let it begin at rest",
-                part.name(),
-                short(jump),
-                short(shock)
-            )
-        })
-    })
+        let counts = shock > SHARE * largest && shock > STRAIN * of.ea;
+        (rest <= ALIKE * jump && counts).then_some((word, jump, shock))
+    };
+    let (word, jump, shock) = ends.into_iter().find_map(struck)?;
+    Some(format!(
+        "`{}` is struck at its {word}: that begins to move at {} m/s along it, and the rest doesn't yet. A shock of √(EA μ) v = {} N \
+         runs along it, behind which tensions are less exact than `force_tolerance` asks. A motion that begins gently has none: \
+         give it a `ramp`, or let it begin at rest",
+        part.name(),
+        short(jump),
+        short(shock)
+    ))
 }
