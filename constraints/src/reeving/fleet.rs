@@ -1,7 +1,7 @@
 //! A cable that meets its wheel from the side: what turns it into the groove.
 
 use super::hold::Mode;
-use super::sheave::Seat;
+use super::seat::Seat;
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{Assembly, At, Jet, MovingBoundary, Pattern, Power, Term, V3};

@@ -14,6 +14,7 @@ mod hold;
 mod piece;
 mod record;
 mod ring;
+mod seat;
 mod sheave;
 mod spec;
 mod tangent;

@@ -1,10 +1,55 @@
 //! What a record shows of a sheave.
 
-use ropewalk_core::{BuildError, Column, Model, Record, Sample};
+use super::arc::Grip;
+use super::sheave::Sheave;
+use ropewalk_core::{At, BuildError, Column, Model, Record, Sample, Shows, Solid};
 use ropewalk_scene::records::named;
 use ropewalk_scene::{RecordSpec, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+/// Columns of records of a sheave.
+const COLUMNS: [(&str, &str); 7] = [
+    ("wrap", "rad"),
+    ("length", "m"),
+    ("in.tension", "N"),
+    ("out.tension", "N"),
+    ("speed", "m/s"),
+    ("slip", "m/s"),
+    ("axle_force", "N"),
+];
+
+impl Shows for Sheave {
+    fn columns(&self) -> Vec<Column> {
+        let prefix = |k: usize| if self.grooves.len() == 1 { String::new() } else { format!("{}.", k + 1) };
+        let of = |k: usize| COLUMNS.map(|(name, unit)| Column::new(format!("{}{name}", prefix(k)), unit));
+        let mut columns: Vec<Column> = (0..self.grooves.len()).flat_map(of).collect();
+        if self.angle.is_some() {
+            columns.push(Column::new("angle", "rad"));
+            columns.push(Column::new("spin", "rad/s"));
+        }
+        columns
+    }
+    fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
+        for (k, groove) in self.grooves.iter().enumerate() {
+            let x = self.instant(k, at);
+            let speed = 0.5 * (x.speed[0] + x.speed[1]);
+            let slip = match groove.arc.grip {
+                Grip::Slides(_) => speed - self.rim(groove, at),
+                Grip::Turns(_) => 0.0,
+            };
+            let aside = self.aside(groove, at, &x);
+            let axle = (0..3).map(|i| (x.axle[i] + aside[i]).powi(2)).sum::<f64>().sqrt();
+            out.extend([x.wrap, x.length, x.beside[0], x.beside[1], speed, slip, axle]);
+        }
+        if let Some(angle) = &self.angle {
+            out.extend([at.q[angle.place.0], at.v[angle.place.1]]);
+        }
+    }
+    fn solids(&self) -> Vec<Solid> {
+        vec![self.solid.clone()]
+    }
+}
 
 /// The cable on a sheave: columns `wheel.wrap` in rad, `.length`, the unstretched length that lies on it in m,
 /// `.in.tension` and `.out.tension` where the cable comes and goes in N, `.speed` along the groove and `.slip` against it in

@@ -4,80 +4,13 @@ use super::arc::{Arc, End, Grip, Instant, Lay, Residual, Wheel};
 use super::at_rest::{self, Sliding};
 use super::hold::Mode;
 use super::piece::Piece;
+use super::seat::Seat;
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Column, Energy, Jet, Marker, MovingBoundary, Node, NodeKind, Pattern, Power,
-    Remembers, Shows, Signal, Solid, Term, Timed, V3, dot,
+    Assembly, At, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Shows, Signal, Solid, Term, Timed,
+    V3, dot,
 };
-
-/// What carries a wheel: a point and an axis of space, of a point, or of a rigid body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Seat {
-    /// First coordinate and velocity of what carries it, and whether that has an orientation.
-    pub on: Option<(usize, usize, bool)>,
-    /// Place of the centre and axis, in the axes of what carries it.
-    pub point: V3<f64>,
-    pub axis: V3<f64>,
-}
-
-impl Seat {
-    /// Of a marker whose third axis is that of the wheel.
-    pub fn new(nodes: &[Node], marker: &Marker) -> Result<Self, BuildError> {
-        match marker {
-            Marker::Ground { point, axes } => Ok(Seat { on: None, point: *point, axis: axes[2] }),
-            Marker::Node { node, point, axes } => {
-                let n = &nodes[node.0 as usize];
-                let turns = match n.kind {
-                    NodeKind::Frame => true,
-                    NodeKind::Point => false,
-                    _ => {
-                        let message = "a sheave is on a rigid body, or at a point in space";
-                        return Err(BuildError::at("marker", message));
-                    }
-                };
-                let point = if turns { *point } else { [0.0; 3] };
-                Ok(Seat { on: Some((n.q, n.v, turns)), point, axis: axes[2] })
-            }
-        }
-    }
-
-    /// Number of velocities of what carries it.
-    pub fn size(&self) -> usize {
-        self.on.map_or(0, |(_, _, turns)| if turns { 6 } else { 3 })
-    }
-
-    /// A vector in the axes of what carries it, in space.
-    fn turned(&self, at: &At<'_>, x: &V3<f64>) -> V3<f64> {
-        match self.on {
-            Some((q, _, true)) => times(&matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]), x),
-            _ => *x,
-        }
-    }
-
-    /// Its axis in space.
-    pub fn axis_now(&self, at: &At<'_>) -> V3<f64> {
-        self.turned(at, &self.axis)
-    }
-
-    /// Its centre in space.
-    fn centre_now(&self, at: &At<'_>) -> V3<f64> {
-        let out = self.turned(at, &self.point);
-        self.on.map_or(out, |(q, _, _)| std::array::from_fn(|i| at.q[q + i] + out[i]))
-    }
-
-    /// Velocity of what carries it at a place in space [m/s].
-    pub fn velocity(&self, at: &At<'_>, place: &V3<f64>) -> V3<f64> {
-        let Some((q, v, turns)) = self.on else { return [0.0; 3] };
-        let mut velocity: V3<f64> = std::array::from_fn(|i| at.v[v + i]);
-        if turns {
-            let spin = self.turned(at, &std::array::from_fn(|i| at.v[v + 3 + i]));
-            let swing = cross(&spin, &std::array::from_fn(|i| place[i] - at.q[q + i]));
-            (0..3).for_each(|i| velocity[i] += swing[i]);
-        }
-        velocity
-    }
-}
 
 /// One cable on the wheel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,17 +111,6 @@ struct Posed<S> {
     /// Angular velocity and acceleration of what carries it about the axis [rad/s, rad/s²].
     carried: [S; 2],
 }
-
-/// Columns of records of a sheave.
-const COLUMNS: [(&str, &str); 7] = [
-    ("wrap", "rad"),
-    ("length", "m"),
-    ("in.tension", "N"),
-    ("out.tension", "N"),
-    ("speed", "m/s"),
-    ("slip", "m/s"),
-    ("axle_force", "N"),
-];
 
 impl Sheave {
     /// The unknowns of a groove, in the order of [`Local`].
@@ -404,7 +326,7 @@ impl Sheave {
     }
 
     /// What the cable does to the axle besides, since it comes and goes by a fleet angle [N].
-    fn aside(&self, groove: &Groove, at: &At<'_>, x: &Instant<f64>) -> V3<f64> {
+    pub fn aside(&self, groove: &Groove, at: &At<'_>, x: &Instant<f64>) -> V3<f64> {
         let (axis, mut sum) = (self.seat.axis_now(at), [0.0; 3]);
         // what is off its groove isn't turned into it
         if Mode::of(at.internal, groove.mode) != Mode::Wraps {
@@ -423,7 +345,7 @@ impl Sheave {
     }
 
     /// Speed of the groove at its bottom, as the cable runs [m/s].
-    fn rim(&self, groove: &Groove, at: &At<'_>) -> f64 {
+    pub fn rim(&self, groove: &Groove, at: &At<'_>) -> f64 {
         let carried = match self.seat.on {
             Some((_, v, true)) => (0..3).map(|i| at.v[v + 3 + i] * self.seat.axis[i]).sum(),
             _ => 0.0,
@@ -533,37 +455,5 @@ impl Remembers for Sheave {
 impl Timed for Sheave {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.angle.as_ref().map_or(Some(h), |angle| Some(angle.torque.reach(t, h)))
-    }
-}
-
-impl Shows for Sheave {
-    fn columns(&self) -> Vec<Column> {
-        let prefix = |k: usize| if self.grooves.len() == 1 { String::new() } else { format!("{}.", k + 1) };
-        let of = |k: usize| COLUMNS.map(|(name, unit)| Column::new(format!("{}{name}", prefix(k)), unit));
-        let mut columns: Vec<Column> = (0..self.grooves.len()).flat_map(of).collect();
-        if self.angle.is_some() {
-            columns.push(Column::new("angle", "rad"));
-            columns.push(Column::new("spin", "rad/s"));
-        }
-        columns
-    }
-    fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
-        for (k, groove) in self.grooves.iter().enumerate() {
-            let x = self.instant(k, at);
-            let speed = 0.5 * (x.speed[0] + x.speed[1]);
-            let slip = match groove.arc.grip {
-                Grip::Slides(_) => speed - self.rim(groove, at),
-                Grip::Turns(_) => 0.0,
-            };
-            let aside = self.aside(groove, at, &x);
-            let axle = (0..3).map(|i| (x.axle[i] + aside[i]).powi(2)).sum::<f64>().sqrt();
-            out.extend([x.wrap, x.length, x.beside[0], x.beside[1], speed, slip, axle]);
-        }
-        if let Some(angle) = &self.angle {
-            out.extend([at.q[angle.place.0], at.v[angle.place.1]]);
-        }
-    }
-    fn solids(&self) -> Vec<Solid> {
-        vec![self.solid.clone()]
     }
 }

@@ -8,7 +8,7 @@ use super::winding::{Winding, Winds};
 use crate::check::unit;
 use crate::reeving::events::Short;
 use crate::reeving::fleet::Fleet;
-use crate::reeving::sheave::Seat;
+use crate::reeving::seat::Seat;
 use crate::winch::{self, WinchSpec, resisting};
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::rotation::{around, cross};
