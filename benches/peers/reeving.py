@@ -69,7 +69,10 @@ def exact_crane():
 
 
 def exact_robot():
-    """Place of the platform: catenaries with stretch (Irvine) that leave wheels as tangents; length conserved over the wheels."""
+    """Place of the platform, and unstretched lengths of the ends that hang down behind the wheels.
+
+    Catenaries with stretch (Irvine) that leave smooth wheels as tangents; on those T + T²/(2 EA) - w z is the same all along.
+    """
     p = P["robot"]
     w, ea, r = p["mass"] * G, p["ea"], p["radius"]
 
@@ -80,12 +83,18 @@ def exact_robot():
         down = (v**2 - low**2) / (2 * ea * w) + (math.hypot(h, v) - math.hypot(h, low)) / w
         return across, down
 
+    def stretch(h, v, down):
+        """On the wheel, by how far it is below the point where the rope leaves it."""
+        tension = math.hypot(h, v)
+        return np.sqrt((1 + tension / ea) ** 2 - 2 * w * down / ea)
+
     def place(wheel, side, h, v, length):
         # the rope leaves the wheel at an angle below the horizontal by which it hangs there
         angle = math.atan2(v, h)
-        tension = math.hypot(h, v)
-        wrap = math.pi / 2 + angle
-        free = length - r * wrap / (1 + tension / ea)
+        half = (angle + math.pi / 2) / 2
+        points, weights = np.polynomial.legendre.leggauss(12)
+        wrapped = weights @ (half * r / stretch(h, v, r * (math.cos(angle) - np.cos(angle - half * (1 - points)))))
+        free = length - wrapped
         across, down = ends(h, v, free)
         top = [wheel[0] + side * r * math.sin(angle), wheel[1] + r * math.cos(angle)]
         return np.array([top[0] + side * across, top[1] - down]), v - w * free
@@ -96,8 +105,9 @@ def exact_robot():
         b, low2 = place(p["wheels"][1], -1, h, v2, p["lengths"][1])
         return [*(a - b), (low1 + low2 - p["load"] * G) / 100]
 
-    x = fsolve(off, [215, 220, 250], xtol=1e-13)
-    return place(p["wheels"][0], 1, x[0], x[1], p["lengths"][0])[0]
+    h, *v = fsolve(off, [215, 220, 250], xtol=1e-13)
+    tails = [p["tail"] / stretch(h, x, r * math.cos(math.atan2(x, h))) for x in v]
+    return place(p["wheels"][0], 1, h, v[0], p["lengths"][0])[0], tails
 
 
 # Exudyn
@@ -199,15 +209,15 @@ class Exudyn:
         rise = mbs.GetNodeOutput(node, self.exu.OutputVariableType.Displacement)[2]
         return float(mbs.GetObjectOutput(rope, self.exu.OutputVariableType.ForceLocal)), rise, cpu
 
-    def robot(self):
+    def robot(self, tails):
         p = P["robot"]
         self.system()
         x, z = p["start"]
         node, load = self.body(p["load"], [x, 0, z], [0, 2])
-        for wheel, side, length in zip(p["wheels"], [1, -1], p["lengths"]):
+        for wheel, side, length, tail in zip(p["wheels"], [1, -1], p["lengths"], tails):
             hub = self.fixed([wheel[0], 0, wheel[1]])
-            low = self.fixed([wheel[0] - side * p["radius"], 0, wheel[1] - 0.01])
-            self.rope([low, hub, load], [[0, side, 0]] * 3, [0, p["radius"], 0], p["ea"], 100, length + 0.01)
+            low = self.fixed([wheel[0] - side * p["radius"], 0, wheel[1] - p["tail"]])
+            self.rope([low, hub, load], [[0, side, 0]] * 3, [0, p["radius"], 0], p["ea"], 100, length + tail)
         # its static solver doesn't find it: let it come to rest
         home = self.fixed([x, 0, z])
         self.mbs.AddObject(self.item.CartesianSpringDamper(markerNumbers=[home, load], damping=[300] * 3))
@@ -290,21 +300,21 @@ class Mujoco:
         force, cpu = timed(run)
         return force, float(d.qpos[0]), cpu
 
-    def robot(self):
+    def robot(self, tails):
         p = P["robot"]
         x, z = p["start"]
         body, tendon = "", ""
         for k, (wheel, side) in enumerate(zip(p["wheels"], [1, -1])):
             body += f'<body pos="{wheel[0]} 0 {wheel[1]}">{self.wheel(f"w{k}", p["radius"])}</body>'
             body += f'<site name="t{k}" pos="{wheel[0]} 0 {wheel[1] + 2 * p["radius"]}"/>'
-            body += f'<site name="a{k}" pos="{wheel[0] - side * p["radius"]} 0 {wheel[1] - 0.01}"/>'
+            body += f'<site name="a{k}" pos="{wheel[0] - side * p["radius"]} 0 {wheel[1] - p["tail"]}"/>'
             tendon += f'<spatial><site site="a{k}"/><geom geom="w{k}" sidesite="t{k}"/><site site="p"/></spatial>'
         body += f"""<body pos="{x} 0 {z}"><joint type="slide" axis="1 0 0" damping="300"/><joint type="slide" axis="0 0 1" damping="300"/>
             <geom type="sphere" size="0.1" mass="{p["load"]}" contype="0" conaffinity="0"/><site name="p"/></body>"""
         self.load(body, tendon, 1e-3)
         m, d = self.m, self.d
-        for k, length in enumerate(p["lengths"]):
-            m.tendon_stiffness[k], m.tendon_lengthspring[k] = p["ea"] / (length + 0.01), length + 0.01
+        for k, length in enumerate(np.add(p["lengths"], tails)):
+            m.tendon_stiffness[k], m.tendon_lengthspring[k] = p["ea"] / length, length
         _, cpu = timed(lambda: self.mj.mj_step(m, d, 20_000))
         return np.array([x + d.qpos[0], z + d.qpos[1]]), cpu
 
@@ -429,21 +439,21 @@ class Ropewalk:
         z = column(history, "block.z")
         return float(np.mean(lead)) - p["mass"] * G * (head - block), z[-1] - z[0], cpu
 
-    def robot(self):
+    def robot(self, tails):
         p = P["robot"]
         x, z = p["start"]
         text = """
             run = { analysis = "statics" }
             """
-        for name, wheel, side, length in zip("ab", p["wheels"], [1, -1], p["lengths"]):
+        for name, wheel, side, length in zip("ab", p["wheels"], [1, -1], np.add(p["lengths"], tails)):
             text += f"""
             [[elements]]
             type = "cable"
             name = "{name}"
             section = {{ mass = {p["mass"]}, ea = {p["ea"]} }}
-            length = {length + 0.01}
+            length = {length}
             elements = 4
-            route = [{{ end = [{wheel[0] - side * p["radius"]}, 0, {wheel[1] - 0.01}] }}, {{ over = "w{name}" }}, {{ end = [{x}, 0, {z}] }}]
+            route = [{{ end = [{wheel[0] - side * p["radius"]}, 0, {wheel[1] - p["tail"]}] }}, {{ over = "w{name}" }}, {{ end = [{x}, 0, {z}] }}]
             [[constraints]]
             type = "spherical"
             name = "{name} below"
@@ -480,7 +490,7 @@ def column(history, name):
 
 
 def main():
-    way, (lead, dead), place = exact_atwood(), exact_crane(), exact_robot()
+    way, (lead, dead), (place, tails) = exact_atwood(), exact_crane(), exact_robot()
     print(f"exact: {way:.5f} m; {lead:.1f} N at the winch, {dead:.1f} N at the dead end; platform at {place.round(5)} m")
     codes = [Exudyn(), Mujoco()] + [Ropewalk(x) for x in sys.argv[1:2]]
     for code in codes:
@@ -494,8 +504,8 @@ def main():
         if code.name == "Ropewalk":
             force, _, cpu = code.crane(statics=True)
             print(f"{code.name}, crane by statics: {force:.1f} N, off by {100 * abs(force / lead - 1):.3f} %, {1e3 * cpu:.1f} ms")
-        at, cpu = code.robot()
-        print(f"{code.name}, robot: {at.round(5)} m, off by {1e3 * np.linalg.norm(at - place):.3f} mm, {1e3 * cpu:.1f} ms")
+        at, cpu = code.robot(tails)
+        print(f"{code.name}, robot: {at.round(5)} m, off by {1e3 * np.linalg.norm(at - place):.4f} mm, {1e3 * cpu:.1f} ms")
 
 
 if __name__ == "__main__":
