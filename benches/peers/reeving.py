@@ -1,8 +1,10 @@
-"""Ropes over wheels: Ropewalk beside Exudyn's reeving springs and MuJoCo's spatial tendons, against closed forms.
+"""Ropes over wheels: Ropewalk beside Exudyn's reeving springs and MuJoCo's spatial tendons, against closed forms and refined contact.
 
     python benches/peers/reeving.py target/release/ropewalk
 
-It takes `exudyn`, `mujoco`, `numpy` and `scipy`. Numbers of the problems are in reeving.json; what came out stands in reeving.md.
+It takes Python 3.11 with `exudyn`, `mujoco`, `numpy` and `scipy`. Numbers of the problems are in reeving.json, and of the wheel that
+grips its rope in tests/data/reeving/chain_grip.json and tests/payout/grip.toml; values by refined contact come from
+reeving_contact.py. What came out stands in reeving.md.
 """
 
 import json
@@ -12,13 +14,18 @@ import resource
 import subprocess
 import sys
 import tempfile
+import tomllib
 
 import numpy as np
 from scipy.optimize import brentq, fsolve
 
 HERE = pathlib.Path(__file__).parent
+TESTS = HERE.parents[1] / "tests"
 P = json.loads((HERE / "reeving.json").read_text())
 G = P["gravity"]
+# a wheel that grips its rope: numbers, values by refined contact, and Ropewalk's scene
+GRIP = json.loads((TESTS / "data/reeving/chain_grip.json").read_text())
+SCENE = (TESTS / "payout/grip.toml").read_text()
 
 
 def timed(work):
@@ -126,6 +133,7 @@ class Exudyn:
     def system(self):
         self.mbs = self.exu.SystemContainer().AddSystem()
         self.ground = self.mbs.AddObject(self.item.ObjectGround())
+        return self.mbs
 
     def fixed(self, at):
         return self.mbs.AddMarker(self.item.MarkerBodyRigid(bodyNumber=self.ground, localPosition=at))
@@ -157,11 +165,12 @@ class Exudyn:
             )
         )
 
-    def solve(self, time, step):
+    def solve(self, time, step, record=0.0):
         mbs = self.mbs
         mbs.Assemble()
         s = self.exu.SimulationSettings()
         s.solution.file.write = False
+        s.solution.sensors.writePeriod = record or time
         s.parallel.numberOfThreads = 1
         s.timeIntegration.endTime = time
         s.timeIntegration.numberOfSteps = round(time / step)
@@ -175,10 +184,21 @@ class Exudyn:
         self.system()
         wheel = self.fixed([0, 0, 0])
         left, right = (self.body(m, [s * p["radius"], 0, -x], [2]) for m, s, x in zip(p["masses"], [-1, 1], low))
-        self.rope([left[1], wheel, right[1]], [[0, 1, 0]] * 3, [0, p["radius"], 0], 1e6, 1e3, p["length"])
+        self.rope([left[1], wheel, right[1]], [[0, 1, 0]] * 3, [0, p["radius"], 0], p["ea"], 1e3, p["length"])
         _, cpu = timed(lambda: self.solve(p["time"], 1e-3))
         at = self.mbs.GetNodeOutput(right[0], self.exu.OutputVariableType.Displacement)
         return -at[2], cpu
+
+    def grip(self):
+        p, item, mbs = GRIP["parameters"], self.item, self.system()
+        left, right = (self.body(m, [x, 0, z], [0, 2]) for m, (x, _, z) in zip([p["m1"], p["m2"]], grip_start()))
+        self.rope([left[1], self.fixed([0, 0, 0]), right[1]], [[0, 1, 0]] * 3, [0, p["R"], 0], p["EA"], grip_damping(), grip_rest())
+        mbs.AddLoad(item.LoadForceVector(markerNumber=right[1], loadVectorUserFunction=lambda mbs, t, load: grip_force(t)))
+        place = self.exu.OutputVariableType.Position
+        sensors = [mbs.AddSensor(item.SensorNode(nodeNumber=n, outputVariableType=place, storeInternal=True)) for n, _ in (left, right)]
+        _, cpu = timed(lambda: self.solve(1, 1e-3, 0.1))
+        left, right = (mbs.GetSensorStoredData(s)[1:] for s in sensors)
+        return {"m1_z": left[:, 3], "m2_x": right[:, 1], "m2_z": right[:, 3]}, cpu
 
     def crane(self):
         p = P["crane"]
@@ -264,6 +284,31 @@ class Mujoco:
         _, cpu = timed(lambda: self.mj.mj_step(self.m, self.d, round(p["time"] / 1e-3)))
         return float(-self.d.qpos[1]), cpu
 
+    def grip(self):
+        p = GRIP["parameters"]
+        body = self.wheel("w", p["R"]) + f'<site name="top" pos="0 0 {2 * p["R"]}"/>'
+        for name, m, (x, _, z) in zip("lr", [p["m1"], p["m2"]], grip_start()):
+            body += f"""<body name="{name}" pos="{x} 0 {z}"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>
+                <geom type="sphere" size="0.01" mass="{m}" contype="0" conaffinity="0"/><site name="{name}"/></body>"""
+        tendon = """<spatial limited="false"><site site="l"/><geom geom="w" sidesite="top"/><site site="r"/></spatial>"""
+        self.load(body, tendon, 1e-3)
+        m, d, length = self.m, self.d, grip_rest()
+        m.tendon_stiffness[0], m.tendon_damping[0], m.tendon_lengthspring[0] = p["EA"] / length, grip_damping() / length, length
+        right = self.mj.mj_name2id(m, self.mj.mjtObj.mjOBJ_BODY, "r")
+
+        def run():
+            rows = []
+            for n in range(1, 1001):
+                d.xfrc_applied[right, :3] = grip_force(d.time)
+                self.mj.mj_step(m, d)
+                if n % 100 == 0:
+                    rows.append(d.qpos.copy())
+            return np.array(rows)
+
+        moved, cpu = timed(run)
+        (_, _, left), (x, _, z) = grip_start()
+        return {"m1_z": left + moved[:, 1], "m2_x": x + moved[:, 2], "m2_z": z + moved[:, 3]}, cpu
+
     def crane(self):
         p = P["crane"]
         r, head, block = p["radius"], p["head"], p["block"]
@@ -341,7 +386,7 @@ class Ropewalk:
             table = np.genfromtxt(next(out.rglob("history.csv")), delimiter=",", names=True, deletechars="")
             return np.atleast_1d(table), summary["cpu_s"]
 
-    def atwood(self):
+    def atwood(self, friction=""):
         p = P["atwood"]
         half = (p["length"] - math.pi * p["radius"]) / 2
         low = [half - p["deeper"] / 2, half + p["deeper"] / 2]
@@ -355,7 +400,7 @@ class Ropewalk:
             [[elements]]
             type = "cable"
             name = "rope"
-            section = {{ mass = {p["mass"]}, ea = "1 MN" }}
+            section = {{ mass = {p["mass"]}, ea = {p["ea"]} }}
             length = {p["length"]}
             elements = 1
             route = [{{ end = [{-r}, 0, {-low[0]}] }}, {{ over = "wheel" }}, {{ end = [{r}, 0, {-low[1]}] }}]
@@ -367,6 +412,7 @@ class Ropewalk:
             axis = [0, 1, 0]
             radius = {r}
             inertia = {p["inertia"]}
+            {friction}
             [[forces]]
             type = "gravity"
             [[records]]
@@ -375,6 +421,11 @@ class Ropewalk:
             """)
         z = column(history, "rope.end.z")
         return z[0] - z[-1], cpu
+
+    def grip(self):
+        history, cpu = self.run(SCENE)
+        names = {"m1_z": "rope.start.z", "m2_x": "rope.end.x", "m2_z": "rope.end.z", "wheel_angle": "wheel.angle"}
+        return {key: np.interp(GRIP["reference"]["t"], column(history, "t"), column(history, name)) for key, name in names.items()}, cpu
 
     def crane(self, statics=False):
         p = P["crane"]
@@ -489,13 +540,51 @@ def column(history, name):
     return history[next(n for n in history.dtype.names if n.startswith(name))]
 
 
+# the wheel that grips: what the others take for the rope and the force
+
+
+def grip_start():
+    return [end["end"] for end in tomllib.loads(SCENE)["elements"][0]["route"] if "end" in end]
+
+
+def grip_rest():
+    """Length of a rope without mass that holds both weights where they start."""
+    p = GRIP["parameters"]
+    return (math.pi * p["R"] - sum(z for _, _, z in grip_start())) / (1 + p["m1"] * G / p["EA"])
+
+
+def grip_damping():
+    p = GRIP["parameters"]
+    return p["axial_damping_s"] * p["EA"]
+
+
+def grip_force(t):
+    u = min(max(t, 0) / 0.1, 1)
+    return [x * u**3 * (10 - 15 * u + 6 * u * u) for x in GRIP["parameters"]["force"]]
+
+
+def from_contact(got):
+    """Error of the Atwood machine's way against the chain with contact on a wheel; nothing below what that is known to."""
+    c = P["atwood"]["contact"]
+    off, known = abs(got / c["way"] - 1), c["uncertainty"] / c["way"]
+    return f"from contact {100 * off:.3f} %" if off > known else f"from contact less than {100 * known:.3f} %"
+
+
 def main():
     way, (lead, dead), (place, tails) = exact_atwood(), exact_crane(), exact_robot()
     print(f"exact: {way:.5f} m; {lead:.1f} N at the winch, {dead:.1f} N at the dead end; platform at {place.round(5)} m")
     codes = [Exudyn(), Mujoco()] + [Ropewalk(x) for x in sys.argv[1:2]]
     for code in codes:
         got, cpu = code.atwood()
-        print(f"{code.name}, atwood: {got:.4f} m, off by {100 * abs(got / way - 1):.2f} %, {1e3 * cpu:.1f} ms")
+        print(f"{code.name}, atwood: {got:.5f} m, off by {100 * abs(got / way - 1):.2f} %, {from_contact(got)}, {1e3 * cpu:.1f} ms")
+        if code.name == "Ropewalk":
+            c = P["atwood"]["contact"]
+            got, cpu = code.atwood(f"friction = {c['friction']}\nslip_speed = {c['slip_speed']}")
+            print(f"{code.name}, atwood with the chain's friction: {got:.5f} m, {from_contact(got)}, {1e3 * cpu:.1f} ms")
+        places, cpu = code.grip()
+        off = {key: np.abs(x - GRIP["reference"][key]).max() for key, x in places.items()}
+        wheel = f"its wheel {off.pop('wheel_angle'):.5f} rad" if "wheel_angle" in off else "its wheel doesn't turn"
+        print(f"{code.name}, grip: {1e3 * max(off.values()):.2f} mm from contact, {wheel}, {1e3 * cpu:.1f} ms")
         force, rise, cpu = code.crane()
         print(
             f"{code.name}, crane: {force:.1f} N at the winch, off by {100 * abs(force / lead - 1):.2f} %, rise {rise:.4f} m for "
