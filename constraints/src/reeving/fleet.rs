@@ -17,6 +17,8 @@ use ropewalk_scene::Strand;
 ///
 /// Material runs through without work. Where the tangent point moves round the wheel, `G` does work of the order
 /// `T R δ²/2` by angle, of either sign: a tangent in the plane of the groove isn't the shortest way there. It counts as dissipated.
+/// Whether an equilibrium is stable isn't for an error of that order to say: a tangent that is to tell takes the tension that
+/// turns as it is, and the mean of what is left and its mirror image.
 pub(super) struct Fleet {
     pub name: String,
     pub boundary: MovingBoundary,
@@ -45,8 +47,8 @@ fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
 }
 
 impl Fleet {
-    /// `flux` is `m P'²`.
-    fn turn<S: Jet>(&self, d: &V3<S>, slope: &V3<S>, axis: &V3<S>, flux: S) -> Turn<S> {
+    /// `flux` is `m P'²`; `stiff` whether the tension changes with the stretch.
+    fn turn<S: Jet>(&self, d: &V3<S>, slope: &V3<S>, axis: &V3<S>, flux: S, stiff: bool) -> Turn<S> {
         let beside = along(axis, d);
         let flat: V3<S> = std::array::from_fn(|i| d[i] - axis[i] * beside);
         let radius = along(&flat, &flat).sqrt();
@@ -57,7 +59,8 @@ impl Fleet {
         let side = if way.re() < 0.0 { -1.0 } else { 1.0 };
         let pulls = round.map(|x| x * (side * self.boundary.sign));
         let left = -(way * side / size) + 1.0;
-        let tension = (size - 1.0) * self.strand.ea;
+        let strain = size - 1.0;
+        let tension = if stiff { strain } else { S::from(strain.re()) } * self.strand.ea;
         let sideways = along(axis, slope) * (flux * self.boundary.sign);
         Turn {
             end: std::array::from_fn(|i| axis[i] * sideways - pulls[i] * tension * left),
@@ -96,7 +99,7 @@ impl Fleet {
         };
         let d: V3<S> = std::array::from_fn(|i| r[i] - c[i]);
         let rate = rate + at.v[self.boundary.v];
-        let Turn { end, groove } = self.turn(&d, &slope, &axis, rate * rate * self.strand.mass);
+        let Turn { end, groove } = self.turn(&d, &slope, &axis, rate * rate * self.strand.mass, !judges(at));
         let mut out = [S::zero(); MOST];
         for i in 0..3 {
             (out[i], out[7 + i]) = (-end[i], groove[i]);
@@ -122,6 +125,21 @@ impl Fleet {
         let slope: V3<f64> = std::array::from_fn(|i| at.q[self.boundary.end_q + 3 + i]);
         let axis = self.seat.axis_now(at);
         along(&axis, &slope).powi(2) > NONE * NONE * along(&slope, &slope)
+    }
+}
+
+/// Whether a tangent is to tell stable from unstable.
+fn judges(at: &At<'_>) -> bool {
+    at.relaxed.is_some_and(|r| r.how.judges)
+}
+
+/// Makes a matrix the mean of itself and its mirror image.
+fn mirror(block: &mut [[f64; MOST]; MOST]) {
+    for i in 0..MOST {
+        for j in 0..i {
+            let mean = 0.5 * (block[i][j] + block[j][i]);
+            (block[i][j], block[j][i]) = (mean, mean);
+        }
     }
 }
 
@@ -155,6 +173,9 @@ impl Term for Fleet {
             for i in 0..dofs.len() {
                 block[i][j] = column[i].eps;
             }
+        }
+        if judges(at) && at.v[self.boundary.v] == 0.0 {
+            mirror(&mut block);
         }
         out.add_square(0, &block);
     }

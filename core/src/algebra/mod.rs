@@ -2,5 +2,6 @@
 
 pub mod interpolation;
 pub mod lane;
+pub(crate) mod noise;
 pub mod rotation;
 pub mod scalar;

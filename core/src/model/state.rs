@@ -151,13 +151,23 @@ pub struct Relaxation {
     pub load: f64,
     /// Least tension for the geometric stiffness [N]: makes it positive where the shape is slack. Not set: as it is.
     pub floor: Option<f64>,
+    /// Whether the tangent is to tell stable from unstable: an error of a model that makes it differ from its mirror image a
+    /// little is better left out then.
+    pub judges: bool,
 }
 
 impl Relaxation {
     /// Nothing is relaxed: an equilibrium is checked under a load [N]; `smooth` says that an iterate before is given. With a
     /// stiff modulus even there only the smooth stress is good enough to tell stable from unstable.
     pub(crate) fn check(smooth: bool, load: f64) -> Self {
-        Relaxation { smooth, ramp: f64::INFINITY, ramp_before: f64::INFINITY, load, floor: None }
+        Relaxation {
+            smooth,
+            ramp: f64::INFINITY,
+            ramp_before: f64::INFINITY,
+            load,
+            floor: None,
+            judges: false,
+        }
     }
 }
 

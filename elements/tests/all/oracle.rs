@@ -340,7 +340,13 @@ impl WithModels for Mixed<'_> {
             (0..12).map(|i| apart(&mixed.k[i], &exact.k[i])).fold(0.0, f64::max) / scale
         };
         let free = f64::INFINITY;
-        x.relaxed = Some(Relaxation { smooth: true, ramp: free, ramp_before: free, load: 0.0, floor: None });
+        x.relaxed = Some(Relaxation {
+            smooth: true,
+            ramp: free,
+            ramp_before: free,
+            load: 0.0,
+            ..Relaxation::default()
+        });
         let none = distance(&x);
         x.last = noise(9, 1e-3);
         [none, distance(&x)]

@@ -5,6 +5,7 @@
 //! be added at any time. All vectors are kept and orthogonalised twice.
 
 use super::dense::{self, Eigenpair};
+use crate::algebra::noise::Noise;
 use crate::solve::linear::SolveError;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side, c64};
@@ -29,7 +30,7 @@ pub(super) struct Arnoldi {
     columns: Vec<Vec<f64>>,
     /// Largest product so far, by which is told what is rounding.
     largest: f64,
-    random: u64,
+    noise: Noise,
     scratch: Vec<f64>,
 }
 
@@ -69,17 +70,7 @@ impl Arnoldi {
     /// Adds a start vector without pattern; false if the basis spans everything already.
     pub fn start(&mut self, op: &mut dyn Operator) -> Result<bool, SolveError> {
         let n = op.len();
-        if self.random == 0 {
-            self.random = 0x2545_F491_4F6C_DD1D;
-        }
-        let mut x: Vec<f64> = (0..n)
-            .map(|_| {
-                self.random ^= self.random << 13;
-                self.random ^= self.random >> 7;
-                self.random ^= self.random << 17;
-                (self.random >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-            })
-            .collect();
+        let mut x: Vec<f64> = (0..n).map(|_| self.noise.draw()).collect();
         let whole = self.size(op, &x);
         op.restrict(&mut x)?;
         let size = self.size(op, &x);

@@ -121,7 +121,7 @@ pub fn modes(
     let mut rest = at_rest(state);
     statics.ride(&mut rest);
     refuse_moving(model, &rest)?;
-    let mut pencil = Pencil::new(model, &state.internal, statics.linearise(&rest))?;
+    let mut pencil = Pencil::new(model, &state.internal, statics.linearise_to_judge(&rest))?;
     let mut watch = Watch(look);
     let kinds = align::kinds(model, &pencil);
     let mut found = if pencil.damped || !pencil.symmetric {

@@ -139,7 +139,8 @@ impl Statics<'_> {
         let mut last: Option<Vec<f64>> = None;
         let mut before = f64::INFINITY;
         for k in 1..=ITERATIONS {
-            let how = Relaxation { smooth: last.is_some(), ramp, ramp_before: ramp, load, floor: None };
+            let how =
+                Relaxation { smooth: last.is_some(), ramp, ramp_before: ramp, load, ..Relaxation::default() };
             self.assemble(
                 state,
                 &state.q,

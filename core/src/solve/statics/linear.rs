@@ -1,7 +1,7 @@
 //! The equations of motion linearised about an equilibrium, in the frame of the search.
 
 use super::problem::Statics;
-use crate::model::state::{At, State};
+use crate::model::state::{At, Relaxation, Relaxed, State};
 use crate::model::structure::Structure;
 use crate::model::term::Weights;
 
@@ -22,7 +22,17 @@ pub(crate) struct Linear {
 impl Statics<'_> {
     /// Linearises at a state, with the velocities and accelerations of the frame.
     pub(crate) fn linearise(&mut self, state: &State) -> Linear {
-        self.assemble(state, &state.q, &state.lambda, None, true);
+        self.linearise_as(state, None)
+    }
+
+    /// The same to tell stable from unstable by it.
+    pub(crate) fn linearise_to_judge(&mut self, state: &State) -> Linear {
+        let how = Relaxation { judges: true, ..Relaxation::check(false, 0.0) };
+        self.linearise_as(state, Some(Relaxed { last: None, how }))
+    }
+
+    fn linearise_as(&mut self, state: &State, relaxed: Option<Relaxed<'_>>) -> Linear {
+        self.assemble(state, &state.q, &state.lambda, relaxed, true);
         let stiffness = self.system.values.clone();
         self.brace();
         Linear {

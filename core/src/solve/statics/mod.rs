@@ -12,6 +12,7 @@ mod disturbance;
 mod flow;
 mod follow;
 mod linear;
+mod mirror;
 mod naming;
 mod neutral;
 mod options;

@@ -8,6 +8,7 @@ use super::naming::describe;
 use super::outcome::{Neutral, StaticsError};
 use super::problem::Statics;
 use super::stability::MARGIN;
+use crate::algebra::noise::Noise;
 use crate::model::Model;
 use crate::model::node::{difference, retract};
 use crate::model::state::{Relaxation, Relaxed, State};
@@ -37,7 +38,7 @@ impl Statics<'_> {
     /// The `k` vectors of smallest eigenvalues `(K, W)` with the factored tangent `K + m W`, by subspace iteration; in
     /// elimination order.
     pub(super) fn lowest(&mut self, w: &[f64], k: usize) -> Result<Vec<Vec<f64>>, SolveError> {
-        let (s, mut random) = (&self.structure, 0x2545_F491_4F6C_DD1Du64);
+        let (s, mut noise) = (&self.structure, Noise::default());
         let zeroed = |x: &mut Vec<f64>| {
             x.iter_mut().zip(&s.is_multiplier).filter(|(_, m)| **m).for_each(|(x, _)| *x = 0.0);
         };
@@ -45,13 +46,7 @@ impl Statics<'_> {
             |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).zip(w).map(|((a, b), w)| a * b * w).sum() };
         let mut space: Vec<Vec<f64>> = Vec::new();
         for _ in 0..(k + 2).min(self.model.velocities().saturating_sub(self.model.multipliers()).max(k)) {
-            let noise = |_| {
-                random ^= random << 13;
-                random ^= random >> 7;
-                random ^= random << 17;
-                (random >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-            };
-            space.push((0..s.n).map(noise).collect());
+            space.push((0..s.n).map(|_| noise.draw()).collect());
         }
         for _ in 0..5 {
             for k in 0..space.len() {

@@ -4,6 +4,7 @@ use super::outcome::{Found, StaticsError};
 use super::problem::Statics;
 use super::tangent::Trial;
 use crate::algebra::lane::V3;
+use crate::algebra::noise::Noise;
 use crate::model::Model;
 use crate::model::node::retract;
 use crate::model::state::{At, Relaxation, State};
@@ -308,15 +309,9 @@ impl Statics<'_> {
     /// The direction in which the last factored tangent resists least, by inverse iteration, as a small increment.
     pub(super) fn softest(&mut self, seed: u32) -> Vec<f64> {
         let (nv, s) = (self.model.velocities(), &self.structure);
-        let mut random = 0x2545_F491_4F6C_DD1Du64.wrapping_mul(u64::from(seed) | 1);
-        let mut x: Vec<f64> = (0..s.n)
-            .map(|p| {
-                random ^= random << 13;
-                random ^= random >> 7;
-                random ^= random << 17;
-                if s.is_multiplier[p] { 0.0 } else { (random >> 11) as f64 / (1u64 << 53) as f64 - 0.5 }
-            })
-            .collect();
+        let mut noise = Noise::new(seed);
+        let mut x: Vec<f64> = (0..s.n).map(|_| noise.draw()).collect();
+        x.iter_mut().zip(&s.is_multiplier).filter(|(_, m)| **m).for_each(|(x, _)| *x = 0.0);
         for _ in 0..4 {
             let solved = self.solver.solve(&self.structure, &self.system.values, &mut x);
             if solved.is_err() || self.hold(&mut x, &vec![0.0; self.free.len()]).is_err() {

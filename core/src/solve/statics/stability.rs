@@ -14,15 +14,12 @@ use super::naming::describe;
 use super::neutral::Leaning;
 use super::outcome::{Judgement, Neutral};
 use super::problem::Statics;
-use crate::model::node::NodeKind;
 use crate::model::state::{Relaxation, Relaxed, State};
 use crate::solve::linear::SolveError;
 use crate::solve::modes::slowest;
 
 /// Part of the diagonal of the tangent that is taken for rounding of it, and stands in for stiffness that is missing.
 pub(super) const MARGIN: f64 = 1e-12;
-/// Difference of entries that mirror each other, as part of their diagonals, up to which a tangent is symmetric.
-const MIRRORED: f64 = 1e-11;
 /// How many eigenvalues are asked for where loads have no potential.
 const SLOWEST: usize = 8;
 
@@ -35,21 +32,27 @@ impl Statics<'_> {
         load: f64,
         seed: u32,
     ) -> Result<Judgement, SolveError> {
-        self.assemble_check(there, last, load);
-        let symmetric = self.structure.symmetric || self.is_mirrored();
-        self.prepare();
-        let w = self.weights();
-        let mut out = Judgement { residual: self.worst().1, potential: symmetric, ..Judgement::default() };
-        if !symmetric {
+        self.assemble_check(there, last, load, false);
+        let potential = self.structure.symmetric || self.is_mirrored();
+        let mut out = Judgement { residual: self.worst().1, potential, ..Judgement::default() };
+        if !potential {
+            self.prepare();
             self.free.clear();
             self.factor()?;
             out.correction = self.correction()?;
-            // eigenvalues cost more than another iteration
-            if self.is_there(&out.correction) {
-                self.judge_motion(there, &mut out)?;
+            // to judge costs more than another iteration
+            if !self.is_there(&out.correction) {
+                return Ok(out);
             }
-            return Ok(out);
+            self.assemble_check(there, last, load, true);
+            if !self.mirror_if_unfelt() {
+                self.prepare();
+                self.judge_motion(there, &mut out)?;
+                return Ok(out);
+            }
         }
+        self.prepare();
+        let w = self.weights();
         let held = self.held(there);
         let count = |s: &Self| s.solver.negative_pivots().map(|n| n.saturating_sub(held));
         self.shift(&w, -MARGIN);
@@ -57,7 +60,7 @@ impl Statics<'_> {
         let below = count(self);
         if below == Some(0) {
             self.free.clear();
-            out.correction = self.correction()?;
+            self.note_correction(&mut out)?;
             return Ok(out);
         }
         self.shift(&w, 2.0 * MARGIN);
@@ -65,14 +68,14 @@ impl Statics<'_> {
         let (Some(below), Some(unstable)) = (below, count(self)) else {
             // pivoting hides the signs of the pivots
             self.free.clear();
-            out.correction = self.correction()?;
+            self.note_correction(&mut out)?;
             self.judge_motion(there, &mut out)?;
             return Ok(out);
         };
         let near = below.saturating_sub(unstable);
         let lowest = self.lowest(&w, near.max(usize::from(unstable > 0)))?;
         self.free = lowest.iter().take(near).map(|x| self.weighed(&w, x)).collect();
-        out.correction = self.correction()?;
+        self.note_correction(&mut out)?;
         out.unstable = unstable;
         if unstable > 0 {
             out.way_out = Some(self.softest(seed));
@@ -111,6 +114,14 @@ impl Statics<'_> {
         Ok(out)
     }
 
+    /// Newton's correction with the factored tangent, unless it is known from a better one.
+    fn note_correction(&mut self, out: &mut Judgement) -> Result<(), SolveError> {
+        if out.correction.is_empty() {
+            out.correction = self.correction()?;
+        }
+        Ok(())
+    }
+
     /// Checks an equilibrium without asking for its stability.
     pub(super) fn check(
         &mut self,
@@ -126,7 +137,7 @@ impl Statics<'_> {
     /// How many directions the equilibrium in `there` can be left in, neutral ones not counted; leaves the factors of
     /// its tangent. `None` where the pivots don't tell.
     pub(super) fn count(&mut self, there: &State, last: Option<&[f64]>, load: f64) -> Option<usize> {
-        self.assemble_check(there, last, load);
+        self.assemble_check(there, last, load, false);
         if !self.structure.symmetric && !self.is_mirrored() {
             return None;
         }
@@ -137,16 +148,16 @@ impl Statics<'_> {
         self.solver.negative_pivots().map(|n| n.saturating_sub(self.held(there)))
     }
 
-    /// Assembles residual and tangent at an equilibrium that is to be checked.
-    fn assemble_check(&mut self, there: &State, last: Option<&[f64]>, load: f64) {
-        let how = Relaxation::check(last.is_some(), load);
+    /// Assembles residual and tangent at an equilibrium that is to be checked, or to be judged by that tangent.
+    fn assemble_check(&mut self, there: &State, last: Option<&[f64]>, load: f64, judges: bool) {
+        let how = Relaxation { judges, ..Relaxation::check(last.is_some(), load) };
         self.assemble(there, &there.q, &there.lambda, Some(Relaxed { last, how }), false);
     }
 
     /// Judges by the eigenvalues of the linearised motion.
     fn judge_motion(&mut self, there: &State, out: &mut Judgement) -> Result<(), SolveError> {
         let upright = self.is_upright(there);
-        let linear = self.linearise(there);
+        let linear = self.linearise_to_judge(there);
         match slowest(self.model, &there.internal, linear, SLOWEST) {
             Ok(mut rates) => {
                 // rounding leaves motions among them that the constraints forbid
@@ -176,15 +187,7 @@ impl Statics<'_> {
     /// Whether the symmetric part of the assembled tangent is positive where the constraints leave motions: then no real
     /// eigenvalue is negative (Bendixson), and nothing goes one way only.
     fn is_upright(&mut self, there: &State) -> bool {
-        let s = &self.structure;
-        let mut mean = self.system.values.clone();
-        if !s.symmetric {
-            for (r, columns, at) in s.rows() {
-                for (k, p) in at.enumerate() {
-                    mean[p] = 0.5 * (mean[p] + s.entry(&self.system.values, columns.get(k), r));
-                }
-            }
-        }
+        let (s, mean) = (&self.structure, self.mirrored());
         let factored = self.solver.factor(s, &mean).is_ok();
         factored && self.solver.negative_pivots() == Some(self.held(there))
     }
@@ -204,31 +207,6 @@ impl Statics<'_> {
                 reach += j.abs() * largest;
             }
             against.abs() <= 1e-6 * reach
-        })
-    }
-
-    /// Whether the assembled tangent is its own mirror image, to rounding. The rotations of a body don't commute: what
-    /// is left of the moment on it stands in its tangent without a mirror image, and is no property of a load.
-    pub(super) fn is_mirrored(&self) -> bool {
-        let (s, values) = (&self.structure, &self.system.values);
-        let mut body = vec![u32::MAX; s.n];
-        for (k, n) in self.model.nodes().iter().enumerate().filter(|(_, n)| n.kind == NodeKind::Frame) {
-            for i in 3..6 {
-                body[s.position[n.v + i]] = k as u32;
-            }
-        }
-        let w = self.weights();
-        s.rows().filter(|(r, ..)| !s.is_multiplier[*r]).all(|(r, columns, at)| {
-            at.enumerate().all(|(k, p)| {
-                let c = columns.get(k);
-                if c <= r || s.is_multiplier[c] {
-                    return true;
-                }
-                let same = body[r] != u32::MAX && body[r] == body[c];
-                let allowed = if same { 1e-6 } else { MIRRORED };
-                let off = (values[p] - s.entry(values, c, r)).abs();
-                off <= allowed * (w[r] * w[c]).sqrt() || off <= f64::EPSILON * (w[r] + w[c])
-            })
         })
     }
 
