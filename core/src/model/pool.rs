@@ -308,7 +308,7 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
                 Some(Relaxed { last: Some(d), .. }) => Places::gather(d, |l| &seats[l.min(last)].v),
                 _ => [R::zero(); N],
             },
-            relaxed: at.relaxed.map(|r| r.how),
+            relaxed: at.relaxed.map(|r| r.how).filter(Relaxation::relaxes),
         }
     }
     /// Scatters what a batch computed; `first` is the clique of its first element.
@@ -458,7 +458,8 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         // the search for equilibrium isn't worth wide copies of what it relaxes
-        let width = if at.relaxed.is_some() { Width::One } else { out.width() };
+        let relaxes = at.relaxed.is_some_and(|r| r.how.relaxes());
+        let width = if relaxes { Width::One } else { out.width() };
         run(width, AddAll { pool: self, at, out });
     }
     fn energy(&self, at: &At<'_>) -> Energy {

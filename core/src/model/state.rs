@@ -157,6 +157,12 @@ pub struct Relaxation {
 }
 
 impl Relaxation {
+    /// Whether the tangent is to be another than that of the forces.
+    pub(crate) fn relaxes(&self) -> bool {
+        let capped = self.ramp.is_finite() || self.ramp_before.is_finite();
+        self.smooth || capped || self.floor.is_some()
+    }
+
     /// Nothing is relaxed: an equilibrium is checked under a load [N]; `smooth` says that an iterate before is given. With a
     /// stiff modulus even there only the smooth stress is good enough to tell stable from unstable.
     pub(crate) fn check(smooth: bool, load: f64) -> Self {
