@@ -7,7 +7,9 @@
 use super::Simulation;
 use crate::model::node::retract;
 use crate::model::term::Weights;
-use crate::solve::integrator::{Workspace, assemble_mass_at, consistent_by_iteration, consistent_by_mass};
+use crate::solve::integrator::{
+    Workspace, assemble_mass_at, consistent_by_factors, consistent_by_iteration, consistent_by_mass,
+};
 use crate::solve::linear::SolveError;
 
 /// What an interpolated state may leave of the equations of motion, in parts of the tolerance of forces.
@@ -22,13 +24,18 @@ impl Simulation {
     pub(super) fn find_forces(&mut self) -> Result<(), SolveError> {
         let weights = self.work.factored.filter(|weights| weights.q > 0.0);
         // what an evaluation with the mass matrix leaves of the equations of motion tells of the balance too
-        assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
+        let (at, lambda) = (self.scratch.at(), &self.scratch.lambda);
+        self.work.assemble_mass(&self.model, &at, lambda, 0.0, false)?;
         if let Some(weights) = weights
             && self.scratch.t < self.state.t
             && !self.balances()
         {
-            self.balance(weights)?;
+            if self.balance(weights)? {
+                return Ok(());
+            }
             assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
+        } else {
+            self.work.factor_mass(&self.model)?;
         }
         if consistent_by_mass(&self.model, &mut self.scratch, &mut self.work)? {
             return Ok(());
@@ -53,14 +60,23 @@ impl Simulation {
     ///
     /// A step of its own, from the start of the last one to here, would do for most. But it may be much shorter, and would
     /// see what the longer steps leave of velocities as the waves that those don't resolve.
-    fn balance(&mut self, weights: Weights) -> Result<(), SolveError> {
+    ///
+    /// Gives whether it got there, with the forces of the motion: the factors at hand then serve as the metric that
+    /// velocities are moved onto the constraints in.
+    fn balance(&mut self, weights: Weights) -> Result<bool, SolveError> {
         let mut aside = self.take_aside()?;
-        let done = self.iterate(weights, &mut aside);
+        let there = self.iterate(weights, &mut aside);
+        let done = if there {
+            consistent_by_factors(&self.model, &mut self.scratch, &mut aside).map(|()| true)
+        } else {
+            Ok(false)
+        };
         self.aside = Some(aside);
         done
     }
 
-    fn iterate(&mut self, weights: Weights, aside: &mut Workspace) -> Result<(), SolveError> {
+    /// Whether the iteration came to its end; otherwise the state is as it was.
+    fn iterate(&mut self, weights: Weights, aside: &mut Workspace) -> bool {
         let (model, s) = (&self.model, &mut self.scratch);
         let (nv, start) = (model.velocities(), s.clone());
         let mut d = vec![0.0; nv];
@@ -71,7 +87,7 @@ impl Simulation {
             let (work, residual) = (&mut self.work, &aside.system.residual);
             let left = work.forces.ratio(&work.norms, residual, &s.a, &s.lambda, FINE);
             if k > 0 && left <= 1.0 {
-                return Ok(());
+                return true;
             }
             let mut x: Vec<f64> = residual.iter().map(|r| -r).collect();
             x[nv..].iter_mut().for_each(|x| *x /= weights.q);
@@ -88,9 +104,8 @@ impl Simulation {
             retract(model.nodes(), &start.q, &d, &mut s.q);
             model.drive(s.t, &s.internal, &mut s.q, &mut s.v, &mut s.a);
         }
-        // an iteration that doesn't come to its end leaves the interpolation
         *s = start;
-        Ok(())
+        false
     }
 
     fn take_aside(&mut self) -> Result<Box<Workspace>, SolveError> {

@@ -312,7 +312,7 @@ impl Alpha {
                 let [local, force] =
                     self.error(model, state, work, h).map_err(|source| linear(model, state.t, source))?;
                 // errors of positions add up, per unit step; stiff directions follow what moves them, and forget
-                let position = local * (self.horizon / h) / tolerance.min(1e-3);
+                let position = local * (self.horizon / h) / tolerance;
                 let error = larger(position, force);
                 let by = if force > position { Limit::Force } else { Limit::Position };
                 // a body that is driven has no error, but a larger turn may end on another branch of its joint

@@ -24,7 +24,9 @@ pub use scales::{Scales, Stopping, Units};
 pub use scheme::{Coefficients, Scheme};
 pub(crate) use start::restart;
 pub use start::{Correction, consistent, prepare};
-pub(crate) use start::{assemble_mass_at, consistent_by_iteration, consistent_by_mass};
+pub(crate) use start::{
+    assemble_mass_at, consistent_by_factors, consistent_by_iteration, consistent_by_mass,
+};
 pub use step::{Integrator, StepError, StepReport};
 pub use workspace::{Counts, Workspace};
 

@@ -216,7 +216,16 @@ pub(crate) fn consistent_by_iteration(
 ) -> Result<(), SolveError> {
     model.assemble(&state.at(), &state.lambda, Some(weights), &mut work.system);
     work.factor(model, weights)?;
-    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+    consistent_by_factors(model, state, work)
+}
+
+/// The same in the metric of the iteration matrix whose factors the workspace holds.
+pub(crate) fn consistent_by_factors(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+) -> Result<(), SolveError> {
+    assemble_mass_at(model, state, work)?;
     let v = on_constraints(model, state, work, Which::Iteration)?;
     at_index_one(model, state, v, work)
 }
