@@ -39,7 +39,7 @@ impl Groove {
     }
 
     /// Whether the cable turns about the axis of the wheel, 1, or about that turned round, -1.
-    fn side(&self) -> f64 {
+    pub fn side(&self) -> f64 {
         if self.back { -1.0 } else { 1.0 }
     }
 

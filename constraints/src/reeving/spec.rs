@@ -8,6 +8,7 @@ use super::hold::Hold;
 use super::piece::Stiff;
 use super::seat::Seat;
 use super::sheave::{Angle, Groove, Sheave};
+use super::torsion::{self, ArcTorsion};
 use super::turns::Unwound;
 use crate::check::unit;
 use ropewalk_core::error::{not_negative, positive};
@@ -295,6 +296,12 @@ impl SheaveSpec {
         let sheave =
             Sheave { name: name.into(), seat, grooves, angle, at_rest: (self.equilibrium, rests), solid };
         let shared = std::sync::Arc::new(sheave.clone());
+        for (groove, passage) in passages.iter().enumerate() {
+            let Some(torsion) = passage.strand.torsion else { continue };
+            let memory = b.memory(&torsion::label(name), 1);
+            let laid = passage.twist;
+            b.term(Box::new(ArcTorsion { sheave: shared.clone(), groove, torsion, laid, memory }));
+        }
         for groove in 0..shared.grooves.len() {
             let watched: &[What] = match shared.grooves[groove].turns {
                 None => &What::ALL,
