@@ -10,17 +10,34 @@
 //!
 //! The cable is free to roll in its groove: what twists it is the same before and behind, and twist goes along with the material.
 
+use super::arc::angle;
 use super::hold::Mode;
 use super::sheave::{Groove, Sheave};
 use num_dual::Dual64;
 use ropewalk_core::model::twist::{between, section};
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Column, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Shows, Term, V3, dot,
+    Assembly, At, Column, Energy, Jet, MovingBoundary, Pattern, Place, Power, Relation, Remembers, RowKind,
+    Shows, Term, V3, dot,
 };
 use ropewalk_scene::Torsional;
 use std::f64::consts::TAU;
 use std::sync::Arc;
+
+/// The section at the end of a span and that at the start of the next look alike, one carried to the other by the smallest rotation:
+/// of a cable that turns sharply in between, as in a ring. The markers are those of [`end`](super::tangent::end).
+pub(super) struct Welded;
+
+impl Relation for Welded {
+    fn rows(&self) -> Vec<RowKind> {
+        vec![RowKind::Direction]
+    }
+    fn g<S: Jet>(&self, _t: S, at: &[Place<S>], g: &mut [S]) {
+        let ([t1, d1, n1], [t2, d2, n2]) = (&at[0].axes, &at[1].axes);
+        let across = along(n1, d2) - along(d1, n2);
+        g[0] = angle(across, along(d1, d2) + along(n1, n2) + along(t1, t2) + 1.0) * 2.0;
+    }
+}
 
 /// Unknowns: of each end its place, slope, spin and material coordinate; what carries the wheel.
 const MOST: usize = 22;

@@ -392,6 +392,7 @@ impl Twisted {
             twist0: self.per_length,
             by: line.embedding(k),
             turns: line.turns(k),
+            wound: line.winds(k),
             grip: line.grips(k),
         }
     }

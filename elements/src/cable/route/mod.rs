@@ -253,7 +253,8 @@ impl CableSpec {
         for (place, k) in [("start", 0), ("end", self.route.len() - 1)] {
             if let Waypoint::Wound(drum) = &self.route[k] {
                 let end = MarkerRef::Name(format!("{}.{place}", self.name));
-                b.feed(drum, &end, Feed::default()).map_err(|e| e.of(format!("route[{k}]")))?;
+                b.feed(drum, &end, Feed { wound: true, ..Feed::default() })
+                    .map_err(|e| e.of(format!("route[{k}]")))?;
             }
         }
         b.route(&self.name, &names, closed)?;
