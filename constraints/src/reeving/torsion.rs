@@ -166,10 +166,12 @@ impl ArcTorsion {
         let (mut by_twist, mut by_length) = ([zero; MOST], [zero; MOST]);
         let (mut place, mut turning, mut pulls) = ([zero; 3], [zero; 3], [zero; 3]);
         let mut seen = [0.0; 2];
+        let mut outs = [[zero; 3]; 2];
         for k in 0..2 {
             let sign = if k == 0 { -1.0 } else { 1.0 };
             let [r, p] = self.end(k, at, d);
             let out: V3<S> = std::array::from_fn(|i| r[i] - hub.centre[i]);
+            outs[k] = out;
             let beside = along(a, &out);
             let rho = less(&out, beside, a);
             let square = along(&rho, &rho);
@@ -201,7 +203,16 @@ impl ArcTorsion {
             seen[k] = along(0).atan2(along(1));
         }
         self.carry(&hub, &place, &turning, &mut by_twist);
-        self.carry(&hub, &pulls, &[zero; 3], &mut by_length);
+        // of an end beside the plane of the wheel the wrap changes as the axis tilts
+        let beside = outs.map(|out| along(a, &out));
+        let (y, x) =
+            (along(a, &cross(&outs[0], &outs[1])), along(&outs[0], &outs[1]) - beside[0] * beside[1]);
+        let normal = cross(&outs[0], &outs[1]);
+        let share = S::from(groove.arc.radius * groove.side()) / (x * x + y * y);
+        let by_axis = std::array::from_fn(|i| {
+            share * (x * normal[i] + y * (outs[0][i] * beside[1] + outs[1][i] * beside[0]))
+        });
+        self.carry(&hub, &pulls, &cross(a, &by_axis), &mut by_length);
         let length = groove.arc.radius * self.sheave.lay(self.groove, at).0.wrap;
         self.shape(self.counted(seen[1] - seen[0], at), length, by_twist, by_length, d)
     }
