@@ -24,6 +24,7 @@ fn arc(grip: Grip) -> Arc {
         sliding: 0.0,
         near: None,
         stress: None,
+        pull: 0.0,
         bearing,
     }
 }
@@ -182,6 +183,7 @@ fn sliding_at_a_speed_follows_the_capstan_equation_to_the_last_digit() {
             sliding: 0.0,
             near: None,
             stress: None,
+            pull: 0.0,
             bearing: [0.0; 3],
         };
         // the speed that turns the momentum is in space, the mass per stretched length: m v²/λ with λ of the arc

@@ -82,6 +82,10 @@ impl ConstraintSpec for RingSpec {
         }
         let ends = passage.boundaries;
         b.constraint(Joined { name: self.name.clone(), ends, nodes: [ends[0].node, ends[1].node] })?;
+        if self.friction > 0.0 && passage.strand.torsion.is_some_and(|torsion| torsion.lay != 0.0) {
+            let message = "what tension a rope with `torque_tension` has in a ring isn't known by its stretch alone: leave `friction` out";
+            return Err(BuildError::at("friction", message));
+        }
         if passage.strand.torsion.is_some() {
             let markers = ends.map(|boundary| end(b.nodes(), boundary.end)).to_vec();
             b.constraint(Related::new(torsion::label(&self.name), torsion::Welded, markers))?;

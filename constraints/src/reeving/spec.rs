@@ -8,7 +8,7 @@ use super::hold::Hold;
 use super::piece::Stiff;
 use super::seat::Seat;
 use super::sheave::{Angle, Groove, Sheave};
-use super::torsion::{self, ArcTorsion};
+use super::torsion::{self, ArcTorsion, Twist};
 use super::turns::Unwound;
 use crate::check::unit;
 use ropewalk_core::error::{not_negative, positive};
@@ -253,6 +253,7 @@ impl SheaveSpec {
                 sliding: 0.0,
                 near: None,
                 stress: None,
+                pull: 0.0,
                 bearing: [share(bearing[0]), bearing[1], share(bearing[2])],
             };
             let back = dot(&passage.axis, &axis) < 0.0;
@@ -261,10 +262,16 @@ impl SheaveSpec {
                 b.term(Box::new(Stiff { name, mode, ends, ei: strand.ei, radius: self.radius }));
             }
             let turns = self.turns.map(|_| (passage.wrap, b.memory(&format!("{name}: wrap"), 1)));
+            let twist = strand.torsion.map(|torsion| Twist {
+                torsion,
+                laid: passage.twist,
+                memory: b.memory(&torsion::label(name), 1),
+            });
             let way = self.equilibrium.way(passage)?;
             grooves.push(Groove {
                 way,
                 turns,
+                twist,
                 ..Groove::new(arc, passage.stored, passage.boundaries, back, mode)
             });
         }
@@ -296,11 +303,8 @@ impl SheaveSpec {
         let sheave =
             Sheave { name: name.into(), seat, grooves, angle, at_rest: (self.equilibrium, rests), solid };
         let shared = std::sync::Arc::new(sheave.clone());
-        for (groove, passage) in passages.iter().enumerate() {
-            let Some(torsion) = passage.strand.torsion else { continue };
-            let memory = b.memory(&torsion::label(name), 1);
-            let laid = passage.twist;
-            b.term(Box::new(ArcTorsion { sheave: shared.clone(), groove, torsion, laid, memory }));
+        for groove in (0..shared.grooves.len()).filter(|&k| shared.grooves[k].twist.is_some()) {
+            b.term(Box::new(ArcTorsion { sheave: shared.clone(), groove }));
         }
         for groove in 0..shared.grooves.len() {
             let watched: &[What] = match shared.grooves[groove].turns {

@@ -58,15 +58,33 @@ pub(super) fn label(wheel: &str) -> String {
     format!("{wheel}: torsion")
 }
 
-/// The torsion of one cable on a wheel.
+/// The twist of one cable on a wheel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Twist {
+    pub torsion: Torsional,
+    /// Twist at the start [rad].
+    pub laid: f64,
+    /// Place of the internal variable by how much it differs since at the last state [rad]: it counts whole turns.
+    pub memory: usize,
+}
+
+impl Twist {
+    /// Twist at the last state [rad].
+    pub fn last(&self, at: &At<'_>) -> f64 {
+        self.laid + at.internal.get(self.memory).copied().unwrap_or(0.0)
+    }
+
+    /// Tension that it makes in a laid rope of this unstretched length [N].
+    pub fn pull(&self, length: f64, at: &At<'_>) -> f64 {
+        self.torsion.lay * (self.last(at) / length - self.torsion.free)
+    }
+}
+
+/// The torsion of one cable on a wheel, as a term.
 pub(super) struct ArcTorsion {
     pub sheave: Arc<Sheave>,
-    /// Number of the groove.
+    /// Number of the groove, which has a [`Twist`].
     pub groove: usize,
-    pub torsion: Torsional,
-    /// Twist at the start [rad], and place of the internal variable by how much it differs since: it counts whole turns.
-    pub laid: f64,
-    pub memory: usize,
 }
 
 /// Increments, velocities and accelerations of the unknowns.
@@ -155,7 +173,7 @@ impl ArcTorsion {
 
     /// The whole turns of an angle are those of the last state.
     fn counted(&self, twist: f64, at: &At<'_>) -> f64 {
-        let near = self.laid + at.internal.get(self.memory).copied().unwrap_or(0.0);
+        let near = self.at().twist.map_or(twist, |own| own.last(at));
         twist + TAU * ((near - twist) / TAU).round()
     }
 
@@ -298,7 +316,12 @@ impl ArcTorsion {
     /// Evaluates all of it, as torsion does in an element through which material flows: with the twist per length `K = Φ/A` the
     /// section of the material at an end spins at `ν = w - Ṗ K`, linear in between.
     fn eval<S: Jet>(&self, at: &At<'_>, x: &Local<S>) -> Forces<S> {
-        let Torsional { gj, damping, inertia, free, lay } = self.torsion;
+        let Some(Twist { torsion: Torsional { gj, damping, inertia, free, lay }, .. }) = self.at().twist
+        else {
+            let zero = S::zero();
+            let (r, energy, shown) = ([zero; MOST], [zero; 2], [zero; 2]);
+            return Forces { r, energy, dissipated: zero, carried: zero, shown };
+        };
         let Shape { twist, by_twist, length, by_length } = self.shaped(at, &x.d);
         let groove = self.at();
         let p = |k: usize| x.d[SECOND * k + 7] + at.q[groove.ends[k].q];
@@ -418,16 +441,21 @@ impl Shows for ArcTorsion {
 
 impl Remembers for ArcTorsion {
     fn remember(&self, at: &At<'_>, memory: &mut [f64]) {
+        let Some(own) = self.at().twist else { return };
         let twist = self.shaped(&At { internal: memory, ..*at }, &[0.0; MOST]).twist;
-        if let Some(x) = memory.get_mut(self.memory) {
-            *x = twist - self.laid;
+        if let Some(x) = memory.get_mut(own.memory) {
+            *x = twist - own.laid;
         }
     }
     fn rests(&self) -> bool {
         true
     }
     fn settle(&self, at: &At<'_>, memory: &mut [f64]) -> bool {
+        let own = self.at().twist;
+        let now = |memory: &[f64]| own.and_then(|own| memory.get(own.memory).copied()).unwrap_or(0.0);
+        let before = now(memory);
         self.remember(at, memory);
-        false
+        // friction goes by the tension, of which that of twist is known from here on
+        own.is_some_and(|own| own.torsion.lay != 0.0) && (now(memory) - before).abs() > 1e-9
     }
 }
