@@ -16,7 +16,7 @@ pub(super) fn run(text: &str) -> History {
     simulate(&read(text)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn refused(text: &str) -> String {
+pub(super) fn refused(text: &str) -> String {
     SceneFile::parse(text, "scene", Format::Toml, &[])
         .map_err(|e| e.to_string())
         .and_then(|file| file.into_scene().build().map(drop).map_err(|e| e.to_string()))

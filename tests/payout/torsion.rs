@@ -1,6 +1,6 @@
 //! Cables with torsion that run over sheaves, through rings and onto drums.
 
-use super::reeving::{at, run};
+use super::reeving::{at, refused, run};
 use ropewalk::scene::Format;
 use ropewalk::{History, ModesOptions, SceneFile, modes};
 use ropewalk_core::model::twist::{between, section};
@@ -660,4 +660,22 @@ fn a_twisted_rope_lifts_off_and_comes_back() {
         history.column("energy.imbalance").expect("energy").iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     println!("{imbalance}");
     assert!(imbalance < 0.01, "{imbalance} J");
+}
+
+#[test]
+fn what_cannot_be_twisted_over_wheels_is_refused_with_its_reason() {
+    let cases = [
+        (BLOCK.replace("mass = 1.5,", "mass = 1.5, ei = [1, 2],"), "give one stiffness"),
+        (BLOCK.replace("mass = 1.5,", "mass = 1.5, gyroscopic = true,"), "turns nothing aside"),
+        (BLOCK.replace("gj = 30, ", ""), "a torsional stiffness, `gj`"),
+        (
+            BLOCK.replace("{ under = \"wheel\" }", "{ under = \"wheel\" }, { through = \"ring\" }")
+                + "[[constraints]]\ntype = \"ring\"\nname = \"ring\"\nmarker = [2, 1, 0.2]\nfriction = 0.1\n",
+            "leave `friction` out",
+        ),
+    ];
+    for (text, reason) in cases {
+        let message = refused(&text);
+        assert!(message.contains(reason), "{message}\nbut not: {reason}");
+    }
 }

@@ -19,8 +19,9 @@ use serde::{Deserialize, Serialize};
 /// A ring through which a cable runs that names it in its `route`: a shackle, a fairlead, a thimble, small beside the
 /// spans. For a wheel whose size counts take a `sheave`.
 ///
-/// The cable turns sharply there; its bending stiffness doesn't resist that. A cable with torsion carries its twist through. With `friction` the tensions before and behind
-/// differ by the capstan equation with the angle of deflection.
+/// The cable turns sharply there; its bending stiffness doesn't resist that. A cable with torsion carries its twist through; its
+/// torque turns it out of the plane of the spans there, as far as its bending stiffness lets it. With `friction` the tensions
+/// before and behind differ by the capstan equation with the angle of deflection.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RingSpec {

@@ -31,7 +31,10 @@ const MOST: usize = 100;
 /// `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable. `efficiency` is for tables of cranes.
 ///
 /// A cable may lift off from the wheel and come down on it again, which is told, but for one of several `turns`; what an impact
-/// takes counts in the balance of energy as a change of mesh. Not known: torsion of the cable; runs end there.
+/// takes counts in the balance of energy as a change of mesh.
+///
+/// A cable with torsion (`section.gj`) rolls freely in the groove: its torque is the same before and behind, and its twist runs over the
+/// wheel with it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheaveSpec {

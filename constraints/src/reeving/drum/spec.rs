@@ -30,7 +30,7 @@ const DEAD: f64 = 3.0;
 ///
 /// The cable leaves it as a tangent, wherever it goes to, and is wound without slip. The drum pays out as it turns by the
 /// right-hand rule about its `axis`; so about [0, 1, 0] it leaves from the top towards x. Its `speed` or angle is prescribed,
-/// or it is turned by `torque`, its cable and `brake`. What is wound keeps the stretch with which it was wound.
+/// or it is turned by `torque`, its cable and `brake`. What is wound keeps the stretch with which it was wound, and the twist.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrumSpec {

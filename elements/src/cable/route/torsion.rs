@@ -52,6 +52,10 @@ impl CableSpec {
         stops: &[Stop],
     ) -> Result<Option<Torsional>, BuildError> {
         let torsion = torsional(&self.section, self.twist)?;
+        if closed && torsion.is_some() && self.laid_twist != 0.0 {
+            let message = "a closed belt is joined as its way turns its section: leave it out";
+            return Err(BuildError::at("laid_twist", message));
+        }
         let ring = stops.iter().position(|s| matches!(s, Stop::Point(_)));
         if let Some(k) = ring.filter(|_| closed && torsion.is_some()) {
             let message = "a closed belt with torsion has a twist of its own by its way, which a ring at a point can't hold: let it \
