@@ -54,8 +54,9 @@ impl Shows for Sheave {
 
 /// The cable on a sheave: columns `wheel.wrap` in rad, `.length`, the unstretched length that lies on it in m,
 /// `.in.tension` and `.out.tension` where the cable comes and goes in N, `.speed` along the groove and `.slip` against it in
-/// m/s, and `.axle_force` in N. Of a cable with torsion also `.twist` per length in rad/m and `.torque` in N m. Of a wheel with an angle of its own also `.angle` in rad and `.spin` in rad/s. Where several
-/// cables run over the wheel, `.1.wrap`, `.2.wrap` and so on.
+/// m/s, and `.axle_force` in N. Of a cable with torsion also `.twist` per length in rad/m and `.torque` in N m. Of a wheel
+/// with an angle of its own also `.angle` in rad and `.spin` in rad/s. Where several cables run over the wheel, `.1.wrap`,
+/// `.2.wrap` and so on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheaveRecordSpec {

@@ -212,10 +212,8 @@ impl ArcTorsion {
             }
             let radius = groove.arc.radius;
             let f = cross(a, &rho).map(|x| x * (radius * groove.side() * sign) / square);
-            for c in 0..3 {
-                by_length[i + c] = f[c];
-                pulls[c] -= f[c];
-            }
+            by_length[i..i + 3].copy_from_slice(&f);
+            pulls = less(&pulls, S::one(), &f);
             let own = section(&at.q[groove.ends[k].end_q..]);
             let along = |c: usize| (0..3).map(|i| rho[i].re() * own[i][c]).sum::<f64>();
             seen[k] = along(0).atan2(along(1));
