@@ -570,7 +570,7 @@ class Parts:
         The cable leaves it as a tangent, wherever it goes to, and is wound without slip. The drum pays out as it
         turns by the right-hand rule about its `axis`; so about [0, 1, 0] it leaves from the top towards x. Its
         `speed` or angle is prescribed, or it is turned by `torque`, its cable and `brake`. What is wound keeps the
-        stretch with which it was wound.
+        stretch with which it was wound, and the twist.
 
         name: Name; routes and records refer to it.
         marker: Its middle: a point in space, or of a rigid body, which stands above the cable in the scene.
@@ -881,8 +881,9 @@ class Parts:
         """A ring through which a cable runs that names it in its `route`: a shackle, a fairlead, a thimble, small beside
         the spans. For a wheel whose size counts take a `sheave`.
 
-        The cable turns sharply there; its bending stiffness doesn't resist that. With `friction` the tensions before
-        and behind differ by the capstan equation with the angle of deflection.
+        The cable turns sharply there; its bending stiffness doesn't resist that. A cable with torsion carries its twist
+        through; its torque turns it out of the plane of the spans there, as far as its bending stiffness lets it. With
+        `friction` the tensions before and behind differ by the capstan equation with the angle of deflection.
 
         name: Name; routes and records refer to it.
         marker: Where it is: a point in space, or of a part that stands above the cable in the scene.
@@ -952,8 +953,10 @@ class Parts:
         `efficiency` is for tables of cranes.
 
         A cable may lift off from the wheel and come down on it again, which is told, but for one of several `turns`;
-        what an impact takes counts in the balance of energy as a change of mesh. Not known: torsion of the cable;
-        runs end there.
+        what an impact takes counts in the balance of energy as a change of mesh.
+
+        A cable with torsion (`section.gj`) rolls freely in the groove: its torque is the same before and behind, and
+        its twist runs over the wheel with it.
 
         name: Name; routes and records refer to it.
         marker: Its centre: a point in space, or of a rigid body, which stands above the cable in the scene.
@@ -2655,8 +2658,9 @@ class Parts:
     ) -> Part:
         """The cable on a sheave: columns `wheel.wrap` in rad, `.length`, the unstretched length that lies on it in m,
         `.in.tension` and `.out.tension` where the cable comes and goes in N, `.speed` along the groove and `.slip`
-        against it in m/s, and `.axle_force` in N. Of a wheel with an angle of its own also `.angle` in rad and
-        `.spin` in rad/s. Where several cables run over the wheel, `.1.wrap`, `.2.wrap` and so on.
+        against it in m/s, and `.axle_force` in N. Of a cable with torsion also `.twist` per length in rad/m and
+        `.torque` in N m. Of a wheel with an angle of its own also `.angle` in rad and `.spin` in rad/s. Where several
+        cables run over the wheel, `.1.wrap`, `.2.wrap` and so on.
 
         of: Name of the sheave; of several on one axle `NAME.1`.
         name: Name in results. Default: that of the sheave.

@@ -35,7 +35,7 @@ pub use document::{
 pub use inputs::{InputSpec, Inputs};
 pub use marker::{MarkerRef, split_marker};
 pub use process::{Channel, Process, ProcessSpec, Surroundings};
-pub use reeving::{Guide, Passage, Strand, Winding};
+pub use reeving::{Guide, Passage, Strand, Torsional, Winding};
 pub use responses::{RaoAngles, RaoPer, RaoPhase, RaoSpec, RaoSymmetry, RaoWaves};
 pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, RangeSpec, Run, Scene, SceneError, ShapeTitles, TableSpec};

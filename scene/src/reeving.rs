@@ -39,6 +39,23 @@ pub struct Strand {
     pub damping: f64,
     /// Whether it has weight.
     pub weighs: bool,
+    /// Its torsion, if it has any.
+    pub torsion: Option<Torsional>,
+}
+
+/// The torsion of what runs over a wheel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torsional {
+    /// Torsional stiffness [N m²].
+    pub gj: f64,
+    /// Damping of twist: moment per rate of twist per length [N m² s].
+    pub damping: f64,
+    /// Polar moment of inertia per length [kg m].
+    pub inertia: f64,
+    /// Twist per length when free of stress [rad/m].
+    pub free: f64,
+    /// Torque by strain of a laid rope [N m].
+    pub lay: f64,
 }
 
 /// Where a cable goes from one of its spans to the next.
@@ -62,6 +79,8 @@ pub struct Passage {
     pub wrap: f64,
     /// Unstretched length between the spans at the start [m].
     pub stored: f64,
+    /// Angle by which its section is turned there about itself at the start, of a cable with torsion [rad].
+    pub twist: f64,
     /// What it is made of.
     pub strand: Strand,
 }
@@ -81,6 +100,8 @@ pub struct Winding {
     pub marker: Marker,
     /// Stretch of the cable at the start.
     pub stretch: f64,
+    /// Twist per length with which it is laid, of a cable with torsion [rad/m].
+    pub twist: f64,
     /// What it is made of.
     pub strand: Strand,
 }

@@ -24,6 +24,7 @@ mod route;
 mod running;
 mod shear_pin;
 mod standing;
+mod torsion;
 mod unwinding;
 mod unwinding_scene;
 mod winch;

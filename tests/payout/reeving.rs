@@ -16,7 +16,7 @@ pub(super) fn run(text: &str) -> History {
     simulate(&read(text)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn refused(text: &str) -> String {
+pub(super) fn refused(text: &str) -> String {
     SceneFile::parse(text, "scene", Format::Toml, &[])
         .map_err(|e| e.to_string())
         .and_then(|file| file.into_scene().build().map(drop).map_err(|e| e.to_string()))
@@ -581,7 +581,10 @@ fn what_cannot_be_reeved_is_refused_with_its_reason() {
         (scene.replace("axis = [0, 1, 0]", "axis = [0, 0, 1]"), "nearly vertical"),
         (scene.replace("axis = [0, 1, 0]", "axis = [0, 1, 0]\nfriction = 0.2"), "`locked = true`"),
         (scene.replace("axis = [0, 1, 0]", "axis = [0, 1, 0]\nefficiency = 0.9\ninertia = 1"), "all losses"),
-        (scene.replace("section = { mass = 1,", "section = { gj = 1, mass = 1,"), "no torsion"),
+        (
+            scene.replace("section = { mass = 1,", "section = { gj = 1, ei = [1, 2], mass = 1,"),
+            "give one stiffness",
+        ),
         (scene.replace("length = 4", "points = [[0, 0, 0], [1, 0, 0]]"), "the route says where"),
         (
             scene.replace(

@@ -67,6 +67,9 @@ pub struct Arc {
     /// In a search for equilibrium, the elastic tension that geometric stiffness is taken with; otherwise that of the arc as
     /// it is [N].
     pub stress: Option<f64>,
+    /// Tension that the twist of a laid rope adds to that of its stretch [N]. Friction and bearing see it; as a force it acts with
+    /// the torsion.
+    pub pull: f64,
     /// Moment of friction in the bearing, of a wheel that turns with the cable: a constant part [N m], one by the force on
     /// the axle [m], one by the spin [N m s].
     pub bearing: [f64; 3],
@@ -298,6 +301,7 @@ impl Arc {
             along(&f[k], &minus(&ends[k].r[2], cdd)) - stretch * pdd - rate * pd * 2.0
         });
         let mean = lay.mean();
+        let pulled = tension + self.pull;
 
         // inertia and weight, the motion linear along the arc
         let m = length * mass;
@@ -328,7 +332,7 @@ impl Arc {
             Grip::Slides(mu) => {
                 let rim = wheel.spin * radius;
                 for k in 0..2 {
-                    let presses = tension - lift[k];
+                    let presses = pulled - lift[k];
                     if mu > 0.0 && presses.re() > 0.0 {
                         let half = Half {
                             presses,
@@ -349,7 +353,7 @@ impl Arc {
             }
             Grip::Turns(wheel_mass) => {
                 let spin = mean / radius - wheel.carrier;
-                let pressed = (tension - (lift[0] + lift[1]) * 0.5) * ((wrap * 0.5).sin() * 2.0);
+                let pressed = (pulled - (lift[0] + lift[1]) * 0.5) * ((wrap * 0.5).sin() * 2.0);
                 let moment = match self.sliding {
                     0.0 => self.moment(spin, pressed),
                     way => -(self.rubbing(pressed) * way),
@@ -392,12 +396,12 @@ impl Arc {
         let instant = Instant {
             wrap,
             length,
-            tension,
-            beside: [tension - push[0], tension + push[1]],
+            tension: pulled,
+            beside: [pulled - push[0], pulled + push[1]],
             speed: v,
             lift,
             friction,
-            axle: out.centre.map(|x| -x),
+            axle: std::array::from_fn(|i| (f[1][i] - f[0][i]) * self.pull - out.centre[i]),
             energy: [kinetic, potential],
             dissipated: lost + viscous * rate * length,
         };

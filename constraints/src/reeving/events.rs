@@ -89,6 +89,7 @@ impl Event for Watch {
             return -self.sheave.instant(self.groove, &at).tension / ea - 1e-12;
         }
         let (x, wheel) = self.sheave.lay(self.groove, &at);
+        let tension = x.tension + groove.pull(&at);
         match self.what {
             What::Touches => {
                 // a wrap just below none is one just below a whole turn
@@ -96,12 +97,12 @@ impl Event for Watch {
                 LEAST_WRAP - wrap
             }
             What::Whole => x.wrap - (TAU - WHOLE),
-            What::Flung if x.tension <= 0.0 => -1e-12,
+            What::Flung if tension <= 0.0 => -1e-12,
             What::Flung => {
                 let [before, behind] = groove.arc.lift(&x, &wheel);
-                (before.max(behind) - x.tension) / ea
+                (before.max(behind) - tension) / ea
             }
-            _ => -x.tension / ea - 1e-12,
+            _ => -tension / ea - 1e-12,
         }
     }
     fn direction(&self) -> i8 {

@@ -15,11 +15,9 @@
 //! The piece that is off stays opposite to the wheel while the cable runs on: material goes through it. So it is the place
 //! that meets the wheel again.
 
-use super::tangent::{Tangency, Tangent};
+use super::tangent::{self, Tangency};
 use ropewalk_core::rotation::cross;
-use ropewalk_core::{
-    At, Constraint, Jet, Marker, Node, NodeId, NodeKind, Place, Related, Relation, RowKind, V3,
-};
+use ropewalk_core::{At, Constraint, Jet, Marker, Node, NodeId, Place, Related, Relation, RowKind, V3};
 
 /// The least wrap [rad]: below it the arc is a straight piece.
 pub(super) const LEAST_WRAP: f64 = 0.01;
@@ -160,7 +158,7 @@ impl Hold {
         mode: usize,
     ) -> Self {
         let name = name.into();
-        let markers = [Marker::node(ends[0]), Marker::node(ends[1]), wheel];
+        let markers = [tangent::end(all, ends[0]), tangent::end(all, ends[1]), wheel];
         let mut nodes: Vec<NodeId> = markers.iter().filter_map(Marker::on).collect();
         nodes.sort_unstable();
         nodes.dedup();
@@ -179,10 +177,7 @@ impl Hold {
                 .collect())
         };
         let tangent = |end: usize| -> Box<dyn Constraint> {
-            match all[ends[end].0 as usize].kind {
-                NodeKind::Slope => Box::new(Tangency::new(name.clone(), ends[end], wheel, radius)),
-                _ => Box::new(Related::new(name.clone(), Tangent { radius }, vec![markers[end], wheel])),
-            }
+            Box::new(Tangency::new(name.clone(), ends[end], wheel, radius))
         };
         let ways = [
             way(vec![tangent(0), tangent(1)]),

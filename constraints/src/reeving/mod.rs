@@ -18,6 +18,7 @@ mod seat;
 mod sheave;
 mod spec;
 mod tangent;
+mod torsion;
 mod turns;
 
 pub use arc::{Arc, End, Grip, Instant, Residual, Wheel, direction};

@@ -2,6 +2,7 @@
 
 use super::arc::Grip;
 use super::sheave::Sheave;
+use super::torsion;
 use ropewalk_core::{At, BuildError, Column, Model, Record, Sample, Shows, Solid};
 use ropewalk_scene::records::named;
 use ropewalk_scene::{RecordSpec, register_spec};
@@ -53,8 +54,9 @@ impl Shows for Sheave {
 
 /// The cable on a sheave: columns `wheel.wrap` in rad, `.length`, the unstretched length that lies on it in m,
 /// `.in.tension` and `.out.tension` where the cable comes and goes in N, `.speed` along the groove and `.slip` against it in
-/// m/s, and `.axle_force` in N. Of a wheel with an angle of its own also `.angle` in rad and `.spin` in rad/s. Where several
-/// cables run over the wheel, `.1.wrap`, `.2.wrap` and so on.
+/// m/s, and `.axle_force` in N. Of a cable with torsion also `.twist` per length in rad/m and `.torque` in N m. Of a wheel
+/// with an angle of its own also `.angle` in rad and `.spin` in rad/s. Where several cables run over the wheel, `.1.wrap`,
+/// `.2.wrap` and so on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheaveRecordSpec {
@@ -67,7 +69,8 @@ pub struct SheaveRecordSpec {
 register_spec!(Record, "sheave", SheaveRecordSpec);
 
 struct SheaveRecord {
-    term: usize,
+    /// The wheel, and the torsion of what lies on it.
+    terms: Vec<usize>,
     name: String,
     of: String,
     columns: Vec<Column>,
@@ -87,7 +90,7 @@ impl Record for SheaveRecord {
         true
     }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
-        if let Some(term) = s.model.terms()[self.term].shows() {
+        for term in self.terms.iter().filter_map(|&k| s.model.terms()[k].shows()) {
             term.observe(&s.at, out);
         }
     }
@@ -112,7 +115,14 @@ impl RecordSpec for SheaveRecordSpec {
             return Err(BuildError::at("of", message));
         };
         let name = named(&self.name, || of.to_string());
+        let torsion = torsion::label(of);
+        let more = model.terms().iter().enumerate().filter(|(_, t)| t.label() == torsion);
+        let (mut terms, mut columns) = (vec![*term], columns.clone());
+        for (k, own) in more.filter_map(|(k, t)| Some((k, t.shows()?.columns()))) {
+            terms.push(k);
+            columns.extend(own);
+        }
         let columns = columns.iter().map(|c| Column::new(format!("{name}.{}", c.name), &c.unit)).collect();
-        Ok(Box::new(SheaveRecord { term: *term, name, of: of.to_string(), columns }))
+        Ok(Box::new(SheaveRecord { terms, name, of: of.to_string(), columns }))
     }
 }

@@ -4,11 +4,13 @@ use super::arc::direction;
 use super::at_rest::{self, Sliding};
 use super::events::Short;
 use super::sheave::passes;
+use super::tangent::end;
+use super::torsion;
 use num_dual::Dual64;
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::{
     Assembly, At, BuildError, Column, Constraint, Equation, Jet, Joint, Marker, MovingBoundary, Node, NodeId,
-    Pattern, Power, Remembers, RowKind, Shows, Term, V3,
+    Pattern, Power, Related, Remembers, RowKind, Shows, Term, V3,
 };
 use ropewalk_scene::{Builder, ConstraintSpec, Guide, MarkerRef, Strand, quantity, register_spec};
 use schemars::JsonSchema;
@@ -17,8 +19,9 @@ use serde::{Deserialize, Serialize};
 /// A ring through which a cable runs that names it in its `route`: a shackle, a fairlead, a thimble, small beside the
 /// spans. For a wheel whose size counts take a `sheave`.
 ///
-/// The cable turns sharply there; its bending stiffness doesn't resist that. With `friction` the tensions before and behind
-/// differ by the capstan equation with the angle of deflection.
+/// The cable turns sharply there; its bending stiffness doesn't resist that. A cable with torsion carries its twist through; its
+/// torque turns it out of the plane of the spans there, as far as its bending stiffness lets it. With `friction` the tensions
+/// before and behind differ by the capstan equation with the angle of deflection.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RingSpec {
@@ -80,6 +83,14 @@ impl ConstraintSpec for RingSpec {
         }
         let ends = passage.boundaries;
         b.constraint(Joined { name: self.name.clone(), ends, nodes: [ends[0].node, ends[1].node] })?;
+        if self.friction > 0.0 && passage.strand.torsion.is_some_and(|torsion| torsion.lay != 0.0) {
+            let message = "what tension a rope with `torque_tension` has in a ring isn't known by its stretch alone: leave `friction` out";
+            return Err(BuildError::at("friction", message));
+        }
+        if passage.strand.torsion.is_some() {
+            let markers = ends.map(|boundary| end(b.nodes(), boundary.end)).to_vec();
+            b.constraint(Related::new(torsion::label(&self.name), torsion::Welded, markers))?;
+        }
         if self.equilibrium != Sliding::None && self.friction == 0.0 {
             let message = "it says what friction does, and this ring has none: give its `friction`";
             return Err(BuildError::at("equilibrium", message));

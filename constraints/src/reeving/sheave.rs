@@ -5,6 +5,7 @@ use super::at_rest::{self, Sliding};
 use super::hold::Mode;
 use super::piece::Piece;
 use super::seat::Seat;
+use super::torsion::Twist;
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
@@ -29,18 +30,26 @@ pub(super) struct Groove {
     pub turns: Option<(f64, usize)>,
     /// Place of the internal variable with its [`Mode`].
     pub mode: usize,
+    /// Of a cable with torsion.
+    pub twist: Option<Twist>,
 }
 
 impl Groove {
     /// Of a cable that has this length on the wheel at the start.
     pub fn new(arc: Arc, stored: f64, ends: [MovingBoundary; 2], back: bool, mode: usize) -> Self {
         let stored = stored - ends[1].home + ends[0].home;
-        Groove { arc, stored, ends, back, way: 0.0, turns: None, mode }
+        Groove { arc, stored, ends, back, way: 0.0, turns: None, mode, twist: None }
     }
 
     /// Whether the cable turns about the axis of the wheel, 1, or about that turned round, -1.
-    fn side(&self) -> f64 {
+    pub fn side(&self) -> f64 {
         if self.back { -1.0 } else { 1.0 }
+    }
+
+    /// Tension that the twist of a laid rope adds to that of its stretch [N].
+    pub fn pull(&self, at: &At<'_>) -> f64 {
+        let [a, b] = self.ends.map(|end| at.q[end.q]);
+        self.twist.map_or(0.0, |twist| twist.pull(b - a + self.stored, at))
     }
 
     /// The angle of a kink between both spans, as the cable turns about the axis of the wheel in space [rad].
@@ -244,6 +253,7 @@ impl Sheave {
     /// The numbers of a groove in this state.
     fn arc(&self, groove: &Groove, at: &At<'_>) -> Arc {
         let mut arc = groove.arc;
+        arc.pull = groove.pull(at);
         let recalls = |place: usize| at.internal.get(place).copied().unwrap_or(0.0);
         arc.near = groove.turns.map(|(wrap, place)| wrap + recalls(place));
         if self.at_rest.1.is_some_and(|place| recalls(place) != 0.0) {
@@ -300,6 +310,11 @@ impl Sheave {
     pub fn instant(&self, k: usize, at: &At<'_>) -> Instant<f64> {
         let groove = &self.grooves[k];
         let mut now = self.eval(k, at, &self.local(groove, at), None).1;
+        if Mode::of(at.internal, groove.mode) != Mode::Wraps {
+            let pull = groove.pull(at);
+            now.tension += pull;
+            now.beside = now.beside.map(|x| x + pull);
+        }
         if Mode::of(at.internal, groove.mode) == Mode::Touches {
             now.wrap = groove.kink(&self.seat.axis_now(at), at);
             // presses on the axle by the kink

@@ -8,6 +8,7 @@ use super::hold::Hold;
 use super::piece::Stiff;
 use super::seat::Seat;
 use super::sheave::{Angle, Groove, Sheave};
+use super::torsion::{self, ArcTorsion, Twist};
 use super::turns::Unwound;
 use crate::check::unit;
 use ropewalk_core::error::{not_negative, positive};
@@ -30,7 +31,10 @@ const MOST: usize = 100;
 /// `inertia`. With `inertia` or `bearing` alone the wheel turns with the cable. `efficiency` is for tables of cranes.
 ///
 /// A cable may lift off from the wheel and come down on it again, which is told, but for one of several `turns`; what an impact
-/// takes counts in the balance of energy as a change of mesh. Not known: torsion of the cable; runs end there.
+/// takes counts in the balance of energy as a change of mesh.
+///
+/// A cable with torsion (`section.gj`) rolls freely in the groove: its torque is the same before and behind, and its twist runs over the
+/// wheel with it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheaveSpec {
@@ -252,6 +256,7 @@ impl SheaveSpec {
                 sliding: 0.0,
                 near: None,
                 stress: None,
+                pull: 0.0,
                 bearing: [share(bearing[0]), bearing[1], share(bearing[2])],
             };
             let back = dot(&passage.axis, &axis) < 0.0;
@@ -260,10 +265,16 @@ impl SheaveSpec {
                 b.term(Box::new(Stiff { name, mode, ends, ei: strand.ei, radius: self.radius }));
             }
             let turns = self.turns.map(|_| (passage.wrap, b.memory(&format!("{name}: wrap"), 1)));
+            let twist = strand.torsion.map(|torsion| Twist {
+                torsion,
+                laid: passage.twist,
+                memory: b.memory(&torsion::label(name), 1),
+            });
             let way = self.equilibrium.way(passage)?;
             grooves.push(Groove {
                 way,
                 turns,
+                twist,
                 ..Groove::new(arc, passage.stored, passage.boundaries, back, mode)
             });
         }
@@ -295,6 +306,9 @@ impl SheaveSpec {
         let sheave =
             Sheave { name: name.into(), seat, grooves, angle, at_rest: (self.equilibrium, rests), solid };
         let shared = std::sync::Arc::new(sheave.clone());
+        for groove in (0..shared.grooves.len()).filter(|&k| shared.grooves[k].twist.is_some()) {
+            b.term(Box::new(ArcTorsion { sheave: shared.clone(), groove }));
+        }
         for groove in 0..shared.grooves.len() {
             let watched: &[What] = match shared.grooves[groove].turns {
                 None => &What::ALL,

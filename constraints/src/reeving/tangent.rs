@@ -1,5 +1,6 @@
 //! The point at which a cable meets or leaves a wheel.
 
+use num_dual::Dual2_64;
 use ropewalk_core::rotation::{IDENTITY, M3, cross, matrix, product, skew, times, transposed_times};
 use ropewalk_core::{
     At, Constraint, Jet, Marker, Node, NodeId, NodeKind, Place, Related, Relation, RowKind, V3, dot,
@@ -32,7 +33,20 @@ impl Relation for Tangent {
     }
 }
 
-/// [`Tangent`] with its derivatives in closed form, of a cable without torsion.
+/// The end of a cable as relations here want it: its first axis lies along the cable, of one with torsion as a unit vector, and
+/// the others are then the two directors of its section.
+pub(super) fn end(nodes: &[Node], id: NodeId) -> Marker {
+    match nodes[id.0 as usize].kind {
+        NodeKind::Twist => Marker::Node {
+            node: id,
+            point: [0.0; 3],
+            axes: [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        },
+        _ => Marker::node(id),
+    }
+}
+
+/// [`Tangent`] with its derivatives in closed form. The spin of a cable with torsion has no part in it.
 ///
 /// In the axes of what carries the wheel, with its rotation `A`: `y = Aᵀ(r - o)` from its origin, `u = y - arm` from the
 /// centre of the wheel, `σ = Aᵀ s`. A small rotation `θ` in these axes makes `(1 - [θ] + ½[θ]²) y` of `y`.
@@ -65,7 +79,7 @@ struct Columns {
 }
 
 impl Tangency {
-    /// Of the end of a cable without torsion on a wheel of this radius [m].
+    /// Of the end of a cable on a wheel of this radius [m].
     pub fn new(name: impl Into<String>, end: NodeId, wheel: Marker, radius: f64) -> Self {
         let inner = Related::new(name, Tangent { radius }, vec![Marker::node(end), wheel]);
         Tangency { inner, end, wheel, radius }
@@ -217,6 +231,25 @@ impl Constraint for Tangency {
     }
 
     fn rates(&self, nodes: &[Node], at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
-        self.inner.rates(nodes, at, rate, bias);
+        let own = &nodes[self.end.0 as usize];
+        if own.kind == NodeKind::Slope {
+            return self.inner.rates(nodes, at, rate, bias);
+        }
+        // along the path that goes on with the present velocity
+        let [x, slope] = [0, 3].map(|first| -> V3<Dual2_64> {
+            std::array::from_fn(|i| Dual2_64::new(at.q[own.q + first + i], at.v[own.v + first + i], 0.0))
+        });
+        let nothing = [Dual2_64::from(0.0); 3];
+        let first = self.wheel.on().map_or(0, |k| nodes[k.0 as usize].v);
+        let moving = |i: usize| Dual2_64::new(0.0, at.v[first + i], 0.0);
+        let wheel = self.wheel.place(nodes, at.q, moving);
+        let mut g = nothing;
+        self.inner.relation().g(
+            Dual2_64::from(at.t),
+            &[Place { x, axes: [slope, nothing, nothing] }, wheel],
+            &mut g,
+        );
+        rate.fill(0.0);
+        bias.iter_mut().zip(g).for_each(|(bias, g)| *bias = g.v2);
     }
 }

@@ -14,6 +14,8 @@ pub struct Feed {
     pub unstrained: bool,
     /// Whether the cable goes on behind the end, round a wheel or through a ring.
     pub passes: bool,
+    /// Whether a cable with torsion takes the energy of its twist along as it passes the end, being wound with it.
+    pub wound: bool,
     /// Twist with which a cable with torsion comes in, per length [rad/m]: of one that is pulled over the end of a coil a turn
     /// per wrap. Else it comes in untwisted.
     pub twist: f64,

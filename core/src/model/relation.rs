@@ -84,6 +84,10 @@ impl<R: Relation> Related<R> {
             range: (f64::NEG_INFINITY, f64::INFINITY),
         }
     }
+    /// What it holds.
+    pub fn relation(&self) -> &R {
+        &self.relation
+    }
     /// Restricts the time for which it is defined, to that of its motion.
     pub fn within(mut self, range: (f64, f64)) -> Self {
         self.range = range;

@@ -328,7 +328,7 @@ impl CableSpec {
         let line = Line::new(mesh, boundaries, zones, self.rides(mesh, feeding)?, layout.holds());
         let twist = feeding.map(|f| f.map_or(0.0, |f| f.twist));
         let grip = feeding.map(|f| f.map_or(0.0, |f| f.grip));
-        Ok(Line { unstrained: ends(|f| f.unstrained), twist, grip, ..line })
+        Ok(Line { unstrained: ends(|f| f.unstrained), wound: ends(|f| f.wound), twist, grip, ..line })
     }
 
     /// Refuses what of a section a winch at this end can't feed.

@@ -15,7 +15,7 @@ use ropewalk_core::error::{finite, positive};
 use ropewalk_core::model::twist::{FOLDS, across, carried, folds, laid, section};
 use ropewalk_core::rotation::{IDENTITY, around, cross};
 use ropewalk_core::{At, BuildError, Element, Local, NodeId, NodeKind, Share, V3, Weights, dot};
-use ropewalk_scene::Builder;
+use ropewalk_scene::{Builder, Torsional};
 
 /// A node with torsion as it is laid.
 type Laid = [f64; 10];
@@ -69,6 +69,16 @@ impl Bar {
         let (lay, directed) = (s.torque_tension / gj, s.ei.has_direction());
         Ok(Bar { gj, eta_gj, rho_j, gyroscopic: s.gyroscopic, ei: s.ei, lay, directed })
     }
+}
+
+/// The torsion of a cable of this section that runs over wheels, if it has any; `free` is its twist per length when free of
+/// stress [rad/m].
+pub(super) fn torsional(s: &Section, free: f64) -> Result<Option<Torsional>, BuildError> {
+    if s.gj.is_none() {
+        return Ok(None);
+    }
+    let Bar { gj, eta_gj, rho_j, .. } = Bar::of(s, "section")?;
+    Ok(Some(Torsional { gj, damping: eta_gj, inertia: rho_j, free, lay: s.torque_tension }))
 }
 
 /// Polar moment of inertia per length [kg m]: that of a round bar, of the diameter of the cable or of the one that its
@@ -382,6 +392,7 @@ impl Twisted {
             twist0: self.per_length,
             by: line.embedding(k),
             turns: line.turns(k),
+            wound: line.winds(k),
             grip: line.grips(k),
         }
     }

@@ -34,12 +34,29 @@ pub const TWO: Embedding<2> = Embedding { fixed: [0.02, 0.1], by: [[0.8, 0.35], 
 pub const COIL: Embedding<1> = Embedding { fixed: [0.3, 0.0], by: [[1.7, 0.0]] };
 pub const COILS: Embedding<2> = Embedding { fixed: [0.3, -0.1], by: [[1.7, 0.0], [0.0, -2.1]] };
 
-/// With inertia and grip, or with elasticity and damping alone.
+/// Wound up at its ends, with inertia and grip, or with elasticity and damping alone.
 fn terms(rho_j: f64) -> Vec<(usize, Box<dyn Term>)> {
     let g = 0.6 * rho_j;
-    let one = FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: ONE, turns: COIL, grip: [g, 0.0] };
-    let two =
-        FlowTorsion { gj: 0.8, eta_gj: 0.3, rho_j, twist0: 0.4, by: TWO, turns: COILS, grip: [g, 1.5 * g] };
+    let one = FlowTorsion {
+        gj: 0.8,
+        eta_gj: 0.3,
+        rho_j,
+        twist0: 0.4,
+        by: ONE,
+        turns: COIL,
+        wound: [1.0, 0.0],
+        grip: [g, 0.0],
+    };
+    let two = FlowTorsion {
+        gj: 0.8,
+        eta_gj: 0.3,
+        rho_j,
+        twist0: 0.4,
+        by: TWO,
+        turns: COILS,
+        wound: [1.0, 1.0],
+        grip: [g, 1.5 * g],
+    };
     vec![(1, pool(one, 1)), (2, pool(two, 2))]
 }
 
@@ -144,6 +161,7 @@ fn what_does_not_feed_is_plain_torsion() {
             twist0: 0.4,
             by: still[0],
             turns: still[1],
+            wound: [0.0; 2],
             grip: [0.0; 2],
         };
         let l = 0.7;

@@ -12,7 +12,7 @@ const PLACES: usize = 64;
 /// deepest on, the same three numbers.
 const MEMORY: usize = 6 + 3 * (PLACES + 1);
 
-/// The stretch of what is wound.
+/// The stretch of what is wound, or its twist per length.
 ///
 /// The stretched length `Λ` by the length `f` that is fed out is known at places, with its slope, which is the stretch there;
 /// in between it is a cubic of Hermite. So nothing jumps as cable of another stretch comes off.
@@ -118,7 +118,7 @@ impl Locked {
     }
 
     /// Goes on to a state in which this length is fed out and the cable has this stretch.
-    fn wind(&self, internal: &mut [f64], fed: f64, stretch: f64) {
+    pub fn wind(&self, internal: &mut [f64], fed: f64, stretch: f64) {
         let base = self.base(internal);
         let Some(m) = internal.get_mut(self.first..self.first + MEMORY) else { return };
         let (last, outermost) = (place(m, LAST), place(m, OUTERMOST));

@@ -10,6 +10,7 @@ mod locked;
 mod record;
 mod shaft;
 mod spec;
+mod torsion;
 mod winding;
 
 pub use record::DrumRecordSpec;

@@ -4,13 +4,16 @@ use super::events::{Watch, What};
 use super::layers::{self, Layers};
 use super::locked::{Locked, Loosens};
 use super::shaft::{Drive, Free, Shaft};
+use super::torsion::Untwists;
 use super::winding::{Winding, Winds};
 use crate::check::unit;
 use crate::reeving::events::Short;
 use crate::reeving::fleet::Fleet;
 use crate::reeving::seat::Seat;
+use crate::reeving::tangent;
 use crate::winch::{self, WinchSpec, resisting};
 use ropewalk_core::error::{finite, not_negative, positive};
+use ropewalk_core::model::twist::section;
 use ropewalk_core::rotation::{around, cross};
 use ropewalk_core::{BuildError, Marker, Motion, Moving, NodeKind, Solid, V3, dot};
 use ropewalk_scene::quantity::{Setting, kind};
@@ -27,7 +30,7 @@ const DEAD: f64 = 3.0;
 ///
 /// The cable leaves it as a tangent, wherever it goes to, and is wound without slip. The drum pays out as it turns by the
 /// right-hand rule about its `axis`; so about [0, 1, 0] it leaves from the top towards x. Its `speed` or angle is prescribed,
-/// or it is turned by `torque`, its cable and `brake`. What is wound keeps the stretch with which it was wound.
+/// or it is turned by `torque`, its cable and `brake`. What is wound keeps the stretch with which it was wound, and the twist.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrumSpec {
@@ -355,7 +358,7 @@ impl ConstraintSpec for DrumSpec {
         let memory = b.memory(&format!("{}: stretch", self.name), Locked::memory());
         let locked = Locked::new(memory, stretch, PI * self.radius);
         let motion = self.given(b, lies.radius)?;
-        let mut markers = vec![Marker::node(boundary.end), marker, Marker::node(boundary.node)];
+        let mut markers = vec![tangent::end(b.nodes(), boundary.end), marker, Marker::node(boundary.node)];
         let drive = match &motion {
             Some(motion) => Drive::Given(motion.clone()),
             None => {
@@ -386,7 +389,9 @@ impl ConstraintSpec for DrumSpec {
             sign: boundary.sign,
             locked,
             motion,
+            twist: self.twist(b, end, start.axes[2], d)?,
         };
+        let twist = winding.twist;
         b.constraint(Winds::new(rope(&self.name), winding, markers))?;
         let seat = Seat::new(b.nodes(), &marker)?;
         b.term(Box::new(Fleet { name: self.name.clone(), boundary, seat, strand, mode: None }));
@@ -397,6 +402,10 @@ impl ConstraintSpec for DrumSpec {
             ea: strand.ea,
             settles: self.wound_tension.is_none(),
         }));
+        if let (Some((_, locked)), Some(torsion)) = (twist, strand.torsion) {
+            let span = b.parts(std::slice::from_ref(&end.span))?[0].1.clone();
+            b.term(Box::new(Untwists { name: self.name.clone(), boundary, span, locked, torsion }));
+        }
         let shaft = Shaft {
             name: self.name.clone(),
             boundary,
@@ -426,6 +435,28 @@ impl ConstraintSpec for DrumSpec {
 }
 
 impl DrumSpec {
+    /// How the section of a cable with torsion stands to the drum at its tangent point `d` from the middle, and the twist of what
+    /// is wound.
+    fn twist(
+        &self,
+        b: &mut Builder,
+        end: &ropewalk_scene::Winding,
+        axis: V3<f64>,
+        d: V3<f64>,
+    ) -> Result<Option<(f64, Locked)>, BuildError> {
+        let Some(torsion) = end.strand.torsion else { return Ok(None) };
+        if torsion.lay != 0.0 {
+            let message = "a rope that turns when it is pulled, by `torque_tension`, can't be wound yet: let it run from a winch";
+            return Err(BuildError::at("name", message));
+        }
+        let beside = dot(&d, &axis);
+        let flat: V3<f64> = std::array::from_fn(|i| d[i] - beside * axis[i]);
+        let own = section(&b.coordinates()[end.boundary.end_q..end.boundary.end_q + 10]);
+        let seen = |c: usize| (0..3).map(|i| flat[i] * own[i][c]).sum::<f64>();
+        let memory = b.memory(&format!("{}: twist", self.name), Locked::memory());
+        Ok(Some((seen(0).atan2(seen(1)), Locked::new(memory, end.twist, PI * self.radius))))
+    }
+
     /// What it looks like: a cylinder up to the middle of the first layer.
     fn drawn(&self, marker: &Marker, b: &Builder) -> Solid {
         let (carrier, point, axis) = match marker {

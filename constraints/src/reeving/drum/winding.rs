@@ -17,7 +17,10 @@ use std::sync::Arc;
 /// and `R` where it lies. `Λ` is what is fed out with the stretch that it was wound with. Turns of `φ` are counted by what is fed
 /// out.
 ///
-/// The markers: the end of the cable, the drum with its axis as the third, the material coordinate, and the angle if it is an
+/// What is wound can't turn on the drum: of a cable with torsion the direction away from the axis is seen in the section at the
+/// tangent point by the angle with which that part was wound.
+///
+/// The markers: the [`end`](crate::reeving::tangent::end) of the cable, the drum with its axis as the third, the material coordinate, and the angle if it is an
 /// unknown.
 #[derive(Clone)]
 pub(super) struct Winding {
@@ -35,11 +38,16 @@ pub(super) struct Winding {
     pub locked: Locked,
     /// The angle of the drum, if it is prescribed.
     pub motion: Option<Arc<dyn Motion>>,
+    /// Of a cable with torsion the angle at the start at which the direction away from the axis is seen in its section, and
+    /// the twist of what is wound.
+    pub twist: Option<(f64, Locked)>,
 }
 
 impl Relation for Winding {
     fn rows(&self) -> Vec<RowKind> {
-        vec![RowKind::Position, RowKind::Position, RowKind::Direction, RowKind::Position]
+        let mut rows = vec![RowKind::Position, RowKind::Position, RowKind::Direction, RowKind::Position];
+        rows.extend(self.twist.map(|_| RowKind::Direction));
+        rows
     }
     fn follows(&self) -> Option<&dyn Motion> {
         self.motion.as_deref()
@@ -62,16 +70,22 @@ impl Relation for Winding {
             None => at[3].x[0],
         };
         let fed = (front.x[0] - self.home) * self.sign;
-        let fed = self.locked.at(internal, fed.re()).length(fed);
+        let stretched = self.locked.at(internal, fed.re()).length(fed);
         let all = self.layers.at(self.wound).length;
         let off = psi - angle(along(&flat, y), along(&flat, x)) + self.phi;
-        let wanted = self.wound - self.layers.angle(all - fed.re());
+        let wanted = self.wound - self.layers.angle(all - stretched.re());
         let off = off - TAU * ((off.re() - wanted) / TAU).round();
         let lies = self.layers.at(-off + self.wound);
         g[0] = beside - lies.x + self.offset;
         g[1] = along(&flat, &flat).sqrt() - lies.radius;
         g[2] = along(&flat, &end.axes[0]) / self.layers.radius;
-        g[3] = fed + lies.length - all;
+        g[3] = stretched + lies.length - all;
+        if let Some((start, twist)) = &self.twist {
+            let [_, d, n] = &end.axes;
+            let seen = angle(along(&flat, d), along(&flat, n)) - *start;
+            let off = seen - twist.at(internal, fed.re()).length(fed) * self.sign;
+            g[4] = off - TAU * (off.re() / TAU).round();
+        }
     }
 }
 

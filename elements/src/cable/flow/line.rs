@@ -28,6 +28,8 @@ pub struct Line {
     pub middle: Vec<f64>,
     /// Whether what passes the ends is free of strain energy outside; else it takes along what it has inside.
     pub unstrained: [bool; 2],
+    /// Whether the energy of twist goes along there.
+    pub wound: [bool; 2],
     /// Twist with which cable with torsion comes in at the ends, per length [rad/m].
     pub twist: [f64; 2],
     /// What resists its turning about its own axis as it passes them: torque over spin [N m s].
@@ -94,6 +96,7 @@ impl Line {
             rides,
             middle,
             unstrained: [false; 2],
+            wound: [false; 2],
             twist: [0.0; 2],
             grip: [0.0; 2],
         }
@@ -159,6 +162,10 @@ impl Line {
         let mut open = [0.0; 2];
         self.opens(k).for_each(|(end, _)| open[end] = 1.0);
         open
+    }
+    /// The ends of it over which material takes the energy of its twist along: 1, else 0.
+    pub fn winds(&self, k: usize) -> [f64; 2] {
+        [0, 1].map(|end| if self.wound[end] && self.is_at(end, k) { 1.0 } else { 0.0 })
     }
     /// What resists the spin of the material at either end of it [N m s].
     pub fn grips(&self, k: usize) -> [f64; 2] {

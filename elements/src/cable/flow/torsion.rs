@@ -14,7 +14,8 @@ use ropewalk_core::{Batch, Dual, Element, Energy, Local, Power, Real, Share, Wei
 /// of the strain energy by the length, `-GJ K²/2`.
 ///
 /// Outside of its ends the cable isn't twisted, and what it is strained by there (`GJ K₀²/2` per length, of one whose stress-free
-/// twist isn't zero) is the level that its potential energy is counted from. Cable that is pulled over the end of a coil comes with
+/// twist isn't zero) is the level that its potential energy is counted from. What is wound on a drum keeps its twist, and takes
+/// `GJ K (K/2 - K₀)` per length along. Cable that is pulled over the end of a coil comes with
 /// twist all the same, as the section at the end turns against the node while it feeds: `turns`.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowTorsion<const F: usize> {
@@ -31,6 +32,8 @@ pub struct FlowTorsion<const F: usize> {
     /// By how much the section of the material at each node is turned about the tangent against that of the node [rad], and how
     /// that changes with the boundaries [rad/m].
     pub turns: Embedding<F>,
+    /// Whether material takes the energy of its twist along over each node, as on to a drum: 1, else 0.
+    pub wound: [f64; 2],
     /// What resists the spin of the material at each node, where that is at an end that feeds: torque over spin [N m s].
     pub grip: [f64; 2],
 }
@@ -44,6 +47,7 @@ pub struct FlowTorsionLanes<const F: usize, R> {
     twist0: R,
     by: Embedding<F, R>,
     turns: Embedding<F, R>,
+    wound: [R; 2],
     grip: [R; 2],
 }
 
@@ -112,12 +116,14 @@ impl<const F: usize, R: Real> FlowTorsionLanes<F, R> {
         let ([own, other], a, b) = (inertia(rho_j * m.grid.l), at(0), at(1));
         // what of this inertia isn't consistent grows with the element too, which keeps the energy
         let grows = S::of(0.125) * rho_j * m.grid.ld * (vb - va);
-        let grip = self.grip.map(&c);
+        let (grip, wound) = (self.grip.map(&c), self.wound.map(&c));
+        let taken = k * gj * (S::of(0.5) * k - c(self.twist0));
         let spin = [own * a + other * b - grows + grip[0] * va, own * b + other * a + grows + grip[1] * vb];
         let mut boundary = [S::zero(); F];
         for f in 0..F {
             let (by, turn) = (self.by.by[f].map(&c), self.turns.by[f].map(&c));
             boundary[f] = (by[1] - by[0]) * along
+                + (wound[0] * by[0] - wound[1] * by[1]) * taken
                 + (turn[1] - turn[0]) * moment
                 + spin[0] * (turn[0] - k * by[0])
                 + spin[1] * (turn[1] - k * by[1]);
@@ -160,6 +166,7 @@ macro_rules! element {
                     twist0: batch.get(|e| e.twist0),
                     by: Embedding::lanes(|f, j| batch.get(|e| f(&e.by, j))),
                     turns: Embedding::lanes(|f, j| batch.get(|e| f(&e.turns, j))),
+                    wound: [batch.get(|e| e.wound[0]), batch.get(|e| e.wound[1])],
                     grip: [batch.get(|e| e.grip[0]), batch.get(|e| e.grip[1])],
                 }
             }
@@ -261,7 +268,9 @@ macro_rules! element {
                 let (m, _, _) = motion!($boundaries, p, x);
                 let [k, kd] = m.per_length();
                 let [a, b] = m.spin(k);
-                let carried = R::of(0.5) * p.rho_j * (m.grid.pd[1] * b * b - m.grid.pd[0] * a * a);
+                let taken = p.gj * k * (R::of(0.5) * k - p.twist0);
+                let carried = R::of(0.5) * p.rho_j * (m.grid.pd[1] * b * b - m.grid.pd[0] * a * a)
+                    + taken * (p.wound[1] * m.grid.pd[1] - p.wound[0] * m.grid.pd[0]);
                 let slips = p.grip[0] * a * a + p.grip[1] * b * b;
                 Power { dissipated: p.eta_gj * m.grid.l * kd * kd + slips, carried, ..Power::zero() }
             }

@@ -6,6 +6,7 @@
 
 mod geometry;
 mod part;
+mod torsion;
 
 use geometry::Fault;
 pub use geometry::{Side, Stop, lay, lay_closed};
@@ -13,7 +14,7 @@ pub use geometry::{Side, Stop, lay, lay_closed};
 use super::spec::CableSpec;
 use part::RoutePart;
 use ropewalk_core::error::finite;
-use ropewalk_core::{BuildError, Equation, Feed, Joint, Marker, Spot, V3, dot};
+use ropewalk_core::{BuildError, Equation, Feed, Joint, Marker, MovingBoundary, Spot, V3, dot};
 use ropewalk_scene::{Builder, ElementSpec, Guide, MarkerRef, Passage, Strand, Winding};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -69,7 +70,9 @@ impl CableSpec {
         let straight =
             "a cable that runs over wheels is straight and unstretched when free of stress: leave it out";
         let alike = "a cable that runs over wheels is the same all along: give it one `section`";
-        let torsion = "a cable that runs over wheels has no torsion: leave it out";
+        let flows = "material flows past all places of a cable that runs over wheels: leave them out";
+        let round = "a cable that runs over wheels bends alike in all directions: give one stiffness";
+        let slow = "the spin of a cable that runs over wheels turns nothing aside: leave it out";
         let refused = [
             ("points", !self.points.is_empty(), own),
             ("curve", !self.curve.is_empty(), own),
@@ -80,11 +83,9 @@ impl CableSpec {
             ("stress_free", self.stress_free != Default::default(), straight),
             ("strain", self.strain != 0.0, straight),
             ("curvature", self.curvature != 0.0, straight),
-            ("section", self.section.gj.is_some(), torsion),
-            ("normal", self.normal.is_some(), torsion),
-            ("twist", self.twist != 0.0, torsion),
-            ("laid_twist", self.laid_twist != 0.0, torsion),
-            ("levers", !self.levers.is_empty(), torsion),
+            ("section.ei", self.section.ei.has_direction(), round),
+            ("section.gyroscopic", self.section.gyroscopic, slow),
+            ("levers", !self.levers.is_empty(), flows),
         ];
         if let Some((field, _, message)) = refused.into_iter().find(|(_, is, _)| *is) {
             return Err(BuildError::at(field, message));
@@ -252,12 +253,25 @@ impl CableSpec {
         for (place, k) in [("start", 0), ("end", self.route.len() - 1)] {
             if let Waypoint::Wound(drum) = &self.route[k] {
                 let end = MarkerRef::Name(format!("{}.{place}", self.name));
-                b.feed(drum, &end, Feed::default()).map_err(|e| e.of(format!("route[{k}]")))?;
+                b.feed(drum, &end, Feed { wound: true, ..Feed::default() })
+                    .map_err(|e| e.of(format!("route[{k}]")))?;
             }
         }
         b.route(&self.name, &names, closed)?;
-        for ((name, span), length) in names.iter().zip(&spans).zip(&lengths) {
+        let torsion = self.route_torsion(closed, &stops)?;
+        let stored = |k: usize| radius(k) * turns[k].wrap / stretch;
+        let boundary = |b: &Builder, k: usize, end: usize| -> Result<Option<MovingBoundary>, BuildError> {
+            Ok(b.parts(std::slice::from_ref(&names[k]))?[0].1.boundary(end))
+        };
+        for (k, ((name, span), length)) in names.iter().zip(&spans).zip(&lengths).enumerate() {
             let along = way(span).map(|x| self.speed * x / length);
+            let normal = match torsion.and(k.checked_sub(1)) {
+                Some(before) => boundary(b, before, 1)?.map(|end| {
+                    let twist = self.laid_twist * stored(k);
+                    torsion::behind(b, &end, (&stops[k], &turns[k]), &way(span), twist)
+                }),
+                None => self.normal,
+            };
             let span = CableSpec {
                 name: name.clone(),
                 points: span.to_vec(),
@@ -267,6 +281,7 @@ impl CableSpec {
                 velocity: along,
                 speed: 0.0,
                 route: Vec::new(),
+                normal,
                 ..self.clone()
             };
             span.build(b).map_err(|e| match e.field.as_deref() {
@@ -283,6 +298,7 @@ impl CableSpec {
             ei: s.ei.across,
             damping: s.axial_retardation_time * s.ea,
             weighs: b.weighs(&self.name),
+            torsion,
         };
         let fed = b.feeding(&self.name).map(|feed| feed.is_some());
         let mut passages = Vec::new();
@@ -300,6 +316,7 @@ impl CableSpec {
                     boundary,
                     marker: *marker,
                     stretch,
+                    twist: self.laid_twist,
                     strand,
                 });
                 continue;
@@ -317,7 +334,8 @@ impl CableSpec {
                 axis: turn.axis,
                 radius: guide.radius,
                 wrap: turn.wrap,
-                stored: guide.radius * turn.wrap / stretch,
+                stored: stored(k),
+                twist: self.laid_twist * stored(k),
                 strand,
             };
             b.passage(passage.clone());
