@@ -107,7 +107,7 @@ fn steady_hoisting_cuts_no_steps() {
 /// The same tackle up and down by 5.7 m of rope every minute.
 pub(super) fn up_and_down(text: &str) -> String {
     let drive = r#"
-        solver = { stepping = { controlled = { tolerance = 2e-3 } }, horizon = "20 s" }
+        solver = { stepping = { controlled = { tolerance = 1e-3 } }, horizon = "20 s" }
         [[inputs]]
         name = "hoist"
         unit = "m/s"

@@ -17,8 +17,8 @@ use ropewalk_scene::Strand;
 ///
 /// Material runs through without work. Where the tangent point moves round the wheel, `G` does work of the order
 /// `T R δ²/2` by angle, of either sign: a tangent in the plane of the groove isn't the shortest way there. It counts as dissipated.
-/// Whether an equilibrium is stable isn't for an error of that order to say: a tangent that is to tell takes the tension that
-/// turns as it is, and the mean of what is left and its mirror image.
+/// Whether an equilibrium is stable isn't for an error of that order to say: where material stands still, a tangent that is to tell
+/// takes the tension that turns as it is, and the mean of what is left and its mirror image.
 pub(super) struct Fleet {
     pub name: String,
     pub boundary: MovingBoundary,
@@ -99,7 +99,8 @@ impl Fleet {
         };
         let d: V3<S> = std::array::from_fn(|i| r[i] - c[i]);
         let rate = rate + at.v[self.boundary.v];
-        let Turn { end, groove } = self.turn(&d, &slope, &axis, rate * rate * self.strand.mass, !judges(at));
+        let Turn { end, groove } =
+            self.turn(&d, &slope, &axis, rate * rate * self.strand.mass, !self.is_judged(at));
         let mut out = [S::zero(); MOST];
         for i in 0..3 {
             (out[i], out[7 + i]) = (-end[i], groove[i]);
@@ -117,6 +118,11 @@ impl Fleet {
         own.chain(self.seat.on.into_iter().flat_map(|(_, v, _)| v..v + self.seat.size())).collect()
     }
 
+    /// Whether the tangent is to tell stable from unstable where material stands still.
+    fn is_judged(&self, at: &At<'_>) -> bool {
+        at.relaxed.is_some_and(|r| r.how.judges) && at.v[self.boundary.v] == 0.0
+    }
+
     /// Whether there is something to turn.
     fn acts(&self, at: &At<'_>) -> bool {
         if self.mode.is_some_and(|mode| Mode::of(at.internal, mode) != Mode::Wraps) {
@@ -126,11 +132,6 @@ impl Fleet {
         let axis = self.seat.axis_now(at);
         along(&axis, &slope).powi(2) > NONE * NONE * along(&slope, &slope)
     }
-}
-
-/// Whether a tangent is to tell stable from unstable.
-fn judges(at: &At<'_>) -> bool {
-    at.relaxed.is_some_and(|r| r.how.judges)
 }
 
 /// Makes a matrix the mean of itself and its mirror image.
@@ -174,7 +175,7 @@ impl Term for Fleet {
                 block[i][j] = column[i].eps;
             }
         }
-        if judges(at) && at.v[self.boundary.v] == 0.0 {
+        if self.is_judged(at) {
             mirror(&mut block);
         }
         out.add_square(0, &block);

@@ -156,9 +156,16 @@ pub struct Relaxation {
     pub judges: bool,
 }
 
+impl Relaxed<'_> {
+    /// The tangent of the forces, to tell stable from unstable.
+    pub(crate) fn to_judge() -> Self {
+        Relaxed { last: None, how: Relaxation { judges: true, ..Relaxation::check(false, 0.0) } }
+    }
+}
+
 impl Relaxation {
     /// Whether the tangent is to be another than that of the forces.
-    pub(crate) fn relaxes(&self) -> bool {
+    pub fn relaxes(&self) -> bool {
         let capped = self.ramp.is_finite() || self.ramp_before.is_finite();
         self.smooth || capped || self.floor.is_some()
     }

@@ -16,6 +16,8 @@ use crate::solve::linear::SolveError;
 const BALANCED: f64 = 0.1;
 /// What is left of them once it has been moved into balance, in parts of the forces at work.
 const FINE: f64 = 1e-5;
+/// What an iteration leaves of what there was, for its matrix to serve once more.
+const FAST: f64 = 0.03;
 /// Iterations that should do for that.
 const MOST_ITERATIONS: usize = 10;
 
@@ -23,20 +25,14 @@ impl Simulation {
     /// Gives the scratch state, which lies inside the last step or at its end, the forces of the motion.
     pub(super) fn find_forces(&mut self) -> Result<(), SolveError> {
         let weights = self.work.factored.filter(|weights| weights.q > 0.0);
-        // what an evaluation with the mass matrix leaves of the equations of motion tells of the balance too
-        let (at, lambda) = (self.scratch.at(), &self.scratch.lambda);
-        self.work.assemble_mass(&self.model, &at, lambda, 0.0, false)?;
         if let Some(weights) = weights
             && self.scratch.t < self.state.t
             && !self.balances()
+            && self.balance(weights)?
         {
-            if self.balance(weights)? {
-                return Ok(());
-            }
-            assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
-        } else {
-            self.work.factor_mass(&self.model)?;
+            return Ok(());
         }
+        assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
         if consistent_by_mass(&self.model, &mut self.scratch, &mut self.work)? {
             return Ok(());
         }
@@ -47,12 +43,13 @@ impl Simulation {
         done
     }
 
-    /// Whether the scratch state, which the mass matrix was just assembled at, meets the equations of motion well enough
-    /// for its forces to be those of the motion.
+    /// Whether the scratch state meets the equations of motion well enough for its forces to be those of the motion.
     fn balances(&mut self) -> bool {
         let (state, work) = (&self.scratch, &mut self.work);
+        self.model.assemble(&state.at(), &state.lambda, None, &mut work.system);
         let tolerance = BALANCED * self.integrator.options().force_tolerance;
-        work.forces.ratio(&work.norms, &work.mass.residual, &state.a, &state.lambda, tolerance) <= 1.0
+        let left = &work.system.residual;
+        work.forces.ratio(&work.norms, left, &state.a, &state.lambda, tolerance) <= 1.0
     }
 
     /// Moves the scratch state into balance as Newton's method would at the end of a step like the last one: stiff
@@ -62,33 +59,36 @@ impl Simulation {
     /// see what the longer steps leave of velocities as the waves that those don't resolve.
     ///
     /// Gives whether it got there, with the forces of the motion: the factors at hand then serve as the metric that
-    /// velocities are moved onto the constraints in.
+    /// velocities are moved onto the constraints in. Otherwise the state is as it was.
     fn balance(&mut self, weights: Weights) -> Result<bool, SolveError> {
         let mut aside = self.take_aside()?;
-        let there = self.iterate(weights, &mut aside);
-        let done = if there {
-            consistent_by_factors(&self.model, &mut self.scratch, &mut aside).map(|()| true)
-        } else {
-            Ok(false)
-        };
+        let start = self.scratch.clone();
+        let there = self.iterate(weights, &mut aside)
+            && consistent_by_factors(&self.model, &mut self.scratch, &mut aside).is_ok();
+        if !there {
+            self.scratch = start;
+        }
         self.aside = Some(aside);
-        done
+        Ok(there)
     }
 
-    /// Whether the iteration came to its end; otherwise the state is as it was.
+    /// Whether the iteration came to its end.
     fn iterate(&mut self, weights: Weights, aside: &mut Workspace) -> bool {
         let (model, s) = (&self.model, &mut self.scratch);
-        let (nv, start) = (model.velocities(), s.clone());
+        let (nv, start) = (model.velocities(), s.q.clone());
         let mut d = vec![0.0; nv];
+        let (mut before, mut fast) = (f64::INFINITY, false);
         for k in 0..MOST_ITERATIONS {
             // where the interpolation is far off, no matrix serves twice
-            let renew = k < 2 || k % 2 == 0;
+            let renew = !fast;
             model.assemble(&s.at(), &s.lambda, renew.then_some(weights), &mut aside.system);
             let (work, residual) = (&mut self.work, &aside.system.residual);
             let left = work.forces.ratio(&work.norms, residual, &s.a, &s.lambda, FINE);
             if k > 0 && left <= 1.0 {
                 return true;
             }
+            fast = left < FAST * before;
+            before = left;
             let mut x: Vec<f64> = residual.iter().map(|r| -r).collect();
             x[nv..].iter_mut().for_each(|x| *x /= weights.q);
             if renew && aside.factor(model, weights).is_err() || aside.solve_iteration(model, &mut x).is_err()
@@ -101,10 +101,9 @@ impl Simulation {
                 s.a[i] += weights.a * x[i];
             }
             s.lambda.iter_mut().zip(&x[nv..]).for_each(|(l, x)| *l += x);
-            retract(model.nodes(), &start.q, &d, &mut s.q);
+            retract(model.nodes(), &start, &d, &mut s.q);
             model.drive(s.t, &s.internal, &mut s.q, &mut s.v, &mut s.a);
         }
-        *s = start;
         false
     }
 

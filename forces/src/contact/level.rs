@@ -128,7 +128,7 @@ impl Contact {
 
     /// The same where it is as stiff as it is: on the way to an equilibrium it may be softer.
     pub(super) fn level_in(&self, at: &At<'_>) -> Option<Level> {
-        if at.relaxed.is_some() { None } else { self.level() }
+        if at.relaxed.is_some_and(|r| r.how.relaxes()) { None } else { self.level() }
     }
 
     /// How a group lies on a plane.

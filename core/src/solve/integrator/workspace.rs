@@ -339,16 +339,11 @@ impl Workspace {
     ) -> Result<(), SolveError> {
         model.assemble(at, lambda, Some(Weights { q: stiff, v: 0.0, a: 1.0 }), &mut self.mass);
         self.has_mass = stiff == 0.0;
-        if factor { self.factor_mass(model) } else { Ok(()) }
-    }
-
-    /// Factors the assembled mass matrix.
-    pub(crate) fn factor_mass(&mut self, model: &Model) -> Result<(), SolveError> {
-        if let Some(softening) = &self.softening {
+        if let (true, Some(softening)) = (factor, &self.softening) {
             softening.apply(&mut self.mass.values);
         }
         // without added mass and with constraints that are linear it never changes
-        if self.mass_factored != self.mass.values {
+        if factor && self.mass_factored != self.mass.values {
             self.mass_factored.clear();
             let begin = self.clocks.start();
             self.mass_solver.factor(model.structure(), &self.mass.values)?;

@@ -3,7 +3,7 @@
 //! to [`super::stability`].
 
 use super::problem::Statics;
-use crate::model::state::State;
+use crate::model::state::{Relaxed, State};
 use crate::solve::integrator::{Coefficients, Scheme};
 use crate::solve::linear::{Guard, SolveError};
 use crate::solve::times::Phase;
@@ -45,7 +45,7 @@ impl Statics<'_> {
             let shape = vec![0.0; model.velocities()];
             return Ok(Disturbance { rate: 0.0, one_way: false, shape, unstable: false });
         }
-        self.assemble(state, &state.q, &state.lambda, None, true);
+        self.assemble(state, &state.q, &state.lambda, Some(Relaxed::to_judge()), true);
         let n = self.structure.n;
         let order = |d: &[f64], x: &mut Vec<f64>, s: &crate::model::structure::Structure| {
             x.clear();

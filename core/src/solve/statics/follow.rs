@@ -5,6 +5,8 @@ use super::problem::Statics;
 use super::search::FOLD;
 use crate::model::state::State;
 
+/// How often an equilibrium is searched again with what its memory has become.
+const SETTLED: u32 = 4;
 /// How often a search goes on from what was folded.
 const UNFOLDED: u32 = 8;
 /// How often the arc of a path is tried before shorter steps are.
@@ -23,10 +25,12 @@ impl Statics<'_> {
         let found = self.seek(state, cold)?;
         self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
         let mut found = found;
-        if self.model.settle(state) {
+        for _ in 0..SETTLED {
+            if !self.model.settle(state) {
+                break;
+            }
             let more = self.search(state, false, false, true).or_else(|_| self.seek(state, true));
             found.add(&more.inspect_err(|_| state.clone_from(&before))?);
-            self.model.settle(state);
             // dry friction has no linear motion about it that could be told to swing ever wider
             found.flutter = 0.0;
         }

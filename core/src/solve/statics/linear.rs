@@ -1,7 +1,7 @@
 //! The equations of motion linearised about an equilibrium, in the frame of the search.
 
 use super::problem::Statics;
-use crate::model::state::{At, Relaxation, Relaxed, State};
+use crate::model::state::{At, Relaxed, State};
 use crate::model::structure::Structure;
 use crate::model::term::Weights;
 
@@ -27,8 +27,7 @@ impl Statics<'_> {
 
     /// The same to tell stable from unstable by it.
     pub(crate) fn linearise_to_judge(&mut self, state: &State) -> Linear {
-        let how = Relaxation { judges: true, ..Relaxation::check(false, 0.0) };
-        self.linearise_as(state, Some(Relaxed { last: None, how }))
+        self.linearise_as(state, Some(Relaxed::to_judge()))
     }
 
     fn linearise_as(&mut self, state: &State, relaxed: Option<Relaxed<'_>>) -> Linear {

@@ -224,6 +224,7 @@ impl Statics<'_> {
     pub(super) fn ramp_binds(&mut self, state: &State, q: &[f64], lambda: &[f64], how: Relaxation) -> bool {
         self.follow_frame(q);
         // both by the same path through the elements, so that equal means equal to the last bit
+        let how = Relaxation { smooth: true, ..how };
         let mut at = At { t: state.t, q, v: &self.v, a: &self.a, internal: &state.internal, relaxed: None };
         at.relaxed = Some(Relaxed { last: None, how: Relaxation { ramp: f64::INFINITY, ..how } });
         self.model.assemble_in(&self.structure, &at, lambda, None, &mut self.system);
