@@ -20,8 +20,8 @@ pub(super) struct Flank {
 }
 
 impl Flank {
-    /// How much friction holds of a cable that comes at this speed, negative where it leaves and is lifted off.
-    pub fn held<S: Jet>(&self, speed: S) -> S {
+    /// Share by which a cable that comes at this speed rolls: all where it comes, nothing where it leaves and is lifted off.
+    pub fn enters<S: Jet>(&self, speed: S) -> S {
         let square = self.slip_speed.powi(2);
         if speed.re() < 0.0 { S::from(square) / (speed * speed + square) } else { S::one() }
     }

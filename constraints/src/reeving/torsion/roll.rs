@@ -13,7 +13,7 @@ use ropewalk_core::{Assembly, At, Column, Jet, Pattern, Power, Shows, Term, V3};
 /// Cable that passes a tangent point at the rate `Ṗ` by the slope `p` comes down to the groove at the speed `Ṗ a·p` along its axis `a`,
 /// about which it turns. Rolling without slip its section would spin at `w = 2 Ṗ a·p/D` against the wheel's carrier, about its
 /// tangent, whichever flank that is. Friction drives the section that arrives towards a share `f` of this by a torque of at most
-/// `μ T sin δ D/2`: as it is turned into the groove by the force `T sin δ`. What leaves is lifted off.
+/// `μ T sin δ D/2`: as it is turned into the groove by the force `T sin δ`. That is so where it leaves too, but there it is lifted off without rolling.
 ///
 /// The torque works on the material, whose twist steps there: on the spin of the node, and by its mean `K` on the boundary. What it
 /// takes to roll is friction against the way down, and so against the cable's run: the force `2 f τ a·p/(D λ)` along the groove, and
@@ -47,7 +47,10 @@ impl Rolls {
         let axis = hub.axis.map(|a| a * groove.side());
         let p = |k: usize| x.d[SECOND * k + 7] + at.q[groove.ends[k].q];
         let angle = shape.by_twist.iter().zip(&x.d).fold(S::from(shape.twist), |sum, (g, d)| sum + *d * *g);
-        let twisted = angle / (p(1) - p(0) + groove.stored);
+        let length = p(1) - p(0) + groove.stored;
+        let twisted = angle / length;
+        // of a laid rope, as friction sees it
+        let pulls = (S::from(twist.last(at)) / length - twist.torsion.free) * twist.torsion.lay;
         let omega: V3<S> = std::array::from_fn(|i| match &hub.turn {
             Some(turn) => along(&turn[i], &std::array::from_fn(|j| x.v[CARRIER + 3 + j])),
             None => S::zero(),
@@ -61,16 +64,17 @@ impl Rolls {
                 continue;
             }
             let rate = x.v[i + 7];
-            let pull = (stretch - 1.0) * groove.arc.strand.ea + groove.pull(at);
+            let pull = (stretch - 1.0) * groove.arc.strand.ea + pulls;
             let presses = pull - stretch * rate * rate * groove.arc.strand.mass;
             if presses.re() <= 0.0 {
                 continue;
             }
             let comes = -(stretch * rate * end.sign);
             let sine = lean * lean.re().signum() / stretch;
-            let most = presses * sine * self.flank.held(comes) * (friction * radius);
+            let most = presses * sine * (friction * radius);
             let gear = lean * (share / radius);
-            let gap = gear * rate - (x.v[i + 6] - rate * twisted - along(&omega, &t));
+            let gap =
+                gear * rate * self.flank.enters(comes) - (x.v[i + 6] - rate * twisted - along(&omega, &t));
             let flow = -(rate * (end.sign / twist.torsion.gj));
             let torque = self.flank.torque(gap, most, flow);
             // the twist between that before the torque and behind it
