@@ -157,6 +157,40 @@ fn what_rolls_a_rope_keeps_account_of_its_work() {
     }
 }
 
+#[test]
+fn a_block_that_swings_on_a_rope_that_rolls_keeps_account_too() {
+    let off = |wheel: &str| {
+        let text = BLOCK
+            .replace("mass = 1.5,", "mass = 0.5, diameter = 0.03, axial_retardation_time = 0.01,")
+            .replace(", torque_tension = 200", "")
+            .replace("laid_twist = 1.5", "")
+            .replace("length = 8", "tension = 1000")
+            + wheel
+            + r#"
+            [[forces]]
+            type = "gravity"
+            [[records]]
+            type = "energy"
+            [[records]]
+            type = "sheave"
+            of = "wheel"
+            [solver]
+            stepping = { controlled = { tolerance = 1e-4 } }
+            "#;
+        let history = run(&text);
+        if !wheel.is_empty() {
+            let most =
+                |c: &str| history.column(c).expect("a torque").iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            println!("{} {}", most("wheel.in.roll"), most("wheel.out.roll"));
+            assert!(most("wheel.in.roll") > 0.05 && most("wheel.out.roll") > 0.05, "it rolls");
+        }
+        history.column("energy.imbalance").expect("energy").iter().fold(0.0_f64, |m, x| m.max(x.abs()))
+    };
+    let [smooth, rolls] = ["", "fleet_twist = 1\nflank_friction = 0.3\n"].map(off);
+    println!("{rolls} {smooth}");
+    assert!(rolls < 2.0 * smooth + 1e-3, "{rolls} J, {smooth} J without");
+}
+
 /// A state of a model, moved and in motion.
 fn moved(model: &Model, seed: f64) -> [Vec<f64>; 3] {
     let state = model.state();
