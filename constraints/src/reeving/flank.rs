@@ -29,7 +29,7 @@ impl Flank {
     /// Torque on the cable, at most `most`, whose section on the wheel falls behind rolling by a spin.
     ///
     /// As on the stretch of a belt that arrives, friction acts on what arrives before it slides: that spins faster by `flow` times
-    /// the torque than what is on the wheel, by the step of its twist. The speed `y` of sliding with `y + flow r² F σ(y) = gap r`,
+    /// the torque than what is on the wheel, by the step of its twist. The speed `y` of sliding with `y + flow r M σ(y) = gap r`,
     /// whose left side rises and is concave: Newton's method from below comes near from one side.
     pub fn torque<S: Jet>(&self, gap: S, most: S, flow: S) -> S {
         let slip = gap * self.radius;

@@ -13,7 +13,8 @@ use ropewalk_core::{Assembly, At, Column, Jet, Pattern, Power, Shows, Term, V3};
 /// Cable that passes a tangent point at the rate `Ṗ` by the slope `p` comes down to the groove at the speed `Ṗ a·p` along its axis `a`,
 /// about which it turns. Rolling without slip its section would spin at `w = 2 Ṗ a·p/D` against the wheel's carrier, about its
 /// tangent, whichever flank that is. Friction drives the section that arrives towards a share `f` of this by a torque of at most
-/// `μ T sin δ D/2`: as it is turned into the groove by the force `T sin δ`. That is so where it leaves too, but there it is lifted off without rolling.
+/// `μ T sin δ D/2`: as it is turned into the groove by the force `T sin δ`. That is so where it leaves too, but there it is lifted
+/// off without rolling.
 ///
 /// The torque works on the material, whose twist steps there: on the spin of the node, and by its mean `K` on the boundary. What it
 /// takes to roll is friction against the way down, and so against the cable's run: the force `2 f τ a·p/(D λ)` along the groove, and
@@ -72,9 +73,8 @@ impl Rolls {
             let comes = -(stretch * rate * end.sign);
             let sine = lean * lean.re().signum() / stretch;
             let most = presses * sine * (friction * radius);
-            let gear = lean * (share / radius);
-            let gap =
-                gear * rate * self.flank.enters(comes) - (x.v[i + 6] - rate * twisted - along(&omega, &t));
+            let gear = lean * self.flank.enters(comes) * (share / radius);
+            let gap = gear * rate - (x.v[i + 6] - rate * twisted - along(&omega, &t));
             let flow = -(rate * (end.sign / twist.torsion.gj));
             let torque = self.flank.torque(gap, most, flow);
             // the twist between that before the torque and behind it
