@@ -148,7 +148,8 @@ class Parts:
             rotary_inertia: Polar moment of inertia of the section, per length [kg m], of a cable with torsion.
                 Default: that of a solid round bar, `mass diameter²/8`.
             flooded: Mass of the water inside [kg/m]. It moves with the part and has no weight in water. Default 0.0.
-            diameter: Hydrodynamic diameter, for drag and added mass [m]. Default 0.0.
+            diameter: Hydrodynamic diameter, for drag and added mass; what rolls in a groove, by `fleet_twist` of a
+                `sheave`, rolls by it too [m]. Default 0.0.
             displaced: Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
             axial_retardation_time: Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ
                 ε̇)`. With a table EA is its largest slope here. Default 0.0.
@@ -881,9 +882,10 @@ class Parts:
         """A ring through which a cable runs that names it in its `route`: a shackle, a fairlead, a thimble, small beside
         the spans. For a wheel whose size counts take a `sheave`.
 
-        The cable turns sharply there; its bending stiffness doesn't resist that. A cable with torsion carries its twist
-        through; its torque turns it out of the plane of the spans there, as far as its bending stiffness lets it. With
-        `friction` the tensions before and behind differ by the capstan equation with the angle of deflection.
+        The cable turns sharply there; its bending stiffness doesn't resist that. A cable with torsion carries its
+        twist through; its torque turns it out of the plane of the spans there, as far as its bending stiffness lets
+        it. With `friction` the tensions before and behind differ by the capstan equation with the angle of
+        deflection.
 
         name: Name; routes and records refer to it.
         marker: Where it is: a point in space, or of a part that stands above the cable in the scene.
@@ -942,6 +944,8 @@ class Parts:
         torque: Union[Mapping[str, Any], Number] | None = None,
         slip_speed: Number | None = None,
         turns: Integer | None = None,
+        fleet_twist: Number | None = None,
+        flank_friction: Number | None = None,
         equilibrium: Literal['hoisting', 'lowering', 'none', 'to_end', 'to_start'] | None = None,
     ) -> Part:
         """A sheave: a wheel over which cables run that name it in their `route`.
@@ -956,7 +960,8 @@ class Parts:
         what an impact takes counts in the balance of energy as a change of mesh.
 
         A cable with torsion (`section.gj`) rolls freely in the groove: its torque is the same before and behind, and
-        its twist runs over the wheel with it.
+        its twist runs over the wheel with it. With `fleet_twist` one that comes from the side is twisted as it rolls
+        down the flank of the groove.
 
         name: Name; routes and records refer to it.
         marker: Its centre: a point in space, or of a rigid body, which stands above the cable in the scene.
@@ -983,6 +988,12 @@ class Parts:
         turns: Whole turns of the cable about it, besides the angle by which it turns there, as on a capstan or a
             bollard. They lie side by side, and are taken to come and go in one plane. The wrap may then become any
             angle. Default: none; a cable that wraps all round ends the run.
+        fleet_twist: Share of pure rolling by which a cable that comes to its groove by a fleet angle `δ` is twisted
+            as it goes down the flank to the bottom, from 0 to 1: `sin δ/(π diameter)` turns per length at 1, as long
+            as friction on the flank holds its torque. For cables with `gj` and a `diameter`. Default: 0, the fleet
+            angle doesn't twist it.
+        flank_friction: Coefficient of friction on the flank, for `fleet_twist`: the torque that twists it is at most
+            this times the tension, `sin δ` and half the diameter. Default: `friction`.
         equilibrium: What friction does at equilibria, which aren't unique with it.
         """
         return self._add("constraints", "sheave", {
@@ -1000,6 +1011,8 @@ class Parts:
             "torque": torque,
             "slip_speed": slip_speed,
             "turns": turns,
+            "fleet_twist": fleet_twist,
+            "flank_friction": flank_friction,
             "equilibrium": equilibrium,
         })
 
@@ -2659,8 +2672,9 @@ class Parts:
         """The cable on a sheave: columns `wheel.wrap` in rad, `.length`, the unstretched length that lies on it in m,
         `.in.tension` and `.out.tension` where the cable comes and goes in N, `.speed` along the groove and `.slip`
         against it in m/s, and `.axle_force` in N. Of a cable with torsion also `.twist` per length in rad/m and
-        `.torque` in N m. Of a wheel with an angle of its own also `.angle` in rad and `.spin` in rad/s. Where several
-        cables run over the wheel, `.1.wrap`, `.2.wrap` and so on.
+        `.torque` in N m, and where the flank rolls it (`fleet_twist`) `.in.roll` and `.out.roll`, the torques on it
+        where it comes and goes in N m. Of a wheel with an angle of its own also `.angle` in rad and `.spin` in rad/s.
+        Where several cables run over the wheel, `.1.wrap`, `.2.wrap` and so on.
 
         of: Name of the sheave; of several on one axle `NAME.1`.
         name: Name in results. Default: that of the sheave.
@@ -3294,7 +3308,8 @@ class Parts:
         rotary_inertia: Polar moment of inertia of the section, per length [kg m], of a cable with torsion. Default:
             that of a solid round bar, `mass diameter²/8`.
         flooded: Mass of the water inside [kg/m]. It moves with the part and has no weight in water. Default 0.0.
-        diameter: Hydrodynamic diameter, for drag and added mass [m]. Default 0.0.
+        diameter: Hydrodynamic diameter, for drag and added mass; what rolls in a groove, by `fleet_twist` of a
+            `sheave`, rolls by it too [m]. Default 0.0.
         displaced: Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.
         axial_retardation_time: Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ ε̇)`.
             With a table EA is its largest slope here. Default 0.0.

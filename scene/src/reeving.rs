@@ -35,6 +35,8 @@ pub struct Strand {
     pub ea: f64,
     /// Bending stiffness [N m²].
     pub ei: f64,
+    /// Diameter, 0 if it isn't given [m].
+    pub diameter: f64,
     /// Axial damping: force per rate of strain [N s].
     pub damping: f64,
     /// Whether it has weight.

@@ -13,7 +13,8 @@ const RADIUS: f64 = 0.25;
 const STORED: f64 = 0.4;
 
 fn arc(grip: Grip) -> Arc {
-    let strand = Strand { mass: 1.3, ea: 2e3, ei: 0.7, damping: 3.0, weighs: true, torsion: None };
+    let strand =
+        Strand { mass: 1.3, ea: 2e3, ei: 0.7, damping: 3.0, diameter: 0.0, weighs: true, torsion: None };
     let bearing = [0.2, 0.003, 0.05];
     Arc {
         radius: RADIUS,
@@ -163,7 +164,8 @@ fn at_rest_an_arc_without_friction_has_a_potential_also_where_its_ends_are_not_o
 #[test]
 fn sliding_at_a_speed_follows_the_capstan_equation_to_the_last_digit() {
     // (T2 - m v²) = (T1 - m v²) exp(mu theta), reference capstan_speed: T1 = 100 N, mu = 0.2, half a turn
-    let strand = Strand { mass: 1.0, ea: 1e6, ei: 0.0, damping: 0.0, weighs: false, torsion: None };
+    let strand =
+        Strand { mass: 1.0, ea: 1e6, ei: 0.0, damping: 0.0, diameter: 0.0, weighs: false, torsion: None };
     let (radius, mu, wrap) = (0.1, 0.2, std::f64::consts::PI);
     let exact = [
         (0.01, 187.44552131292505),
@@ -281,7 +283,8 @@ fn derivatives_of_all_ways_to_hold_a_cable_are_those_of_their_equations() {
 
 #[test]
 fn what_a_straight_piece_takes_it_stores_or_turns_into_heat() {
-    let strand = Strand { mass: 1.3, ea: 2e3, ei: 0.0, damping: 3.0, weighs: true, torsion: None };
+    let strand =
+        Strand { mass: 1.3, ea: 2e3, ei: 0.0, damping: 3.0, diameter: 0.0, weighs: true, torsion: None };
     let piece = Piece { strand, gravity: [0.3, -0.2, -9.81] };
     let state = |t: f64| {
         let first = [0.1 + 0.5 * t - t * t, 0.3 * t, 0.2 - 0.7 * t + 0.2 * t * t];

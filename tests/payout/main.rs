@@ -13,6 +13,7 @@ mod births;
 mod drum;
 mod eyelet;
 mod falls;
+mod fleet_twist;
 mod gripping;
 mod hoisting;
 mod lifting;

@@ -9,17 +9,17 @@ use ropewalk_core::testing::{check_constraint, check_tangent, dense, difference}
 use ropewalk_core::{At, Model, Spot, Term, Weights, Width, retract};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-fn build(text: &str) -> Model {
+pub(super) fn build(text: &str) -> Model {
     let file = SceneFile::parse(text, "scene", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
     file.into_scene().build().unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn term<'a>(model: &'a Model, label: &str) -> &'a dyn Term {
+pub(super) fn term<'a>(model: &'a Model, label: &str) -> &'a dyn Term {
     model.terms().iter().find(|t| t.label() == label).unwrap_or_else(|| panic!("no {label}")).as_ref()
 }
 
 /// Numbers between -1 and 1, always the same.
-fn random(seed: f64) -> impl FnMut() -> f64 {
+pub(super) fn random(seed: f64) -> impl FnMut() -> f64 {
     let mut seed = seed;
     move || {
         seed = (seed * 16_807.0) % 2_147_483_647.0;
@@ -28,7 +28,7 @@ fn random(seed: f64) -> impl FnMut() -> f64 {
 }
 
 /// A rope over a wheel on a body, with all that torsion has.
-const BLOCK: &str = r#"
+pub(super) const BLOCK: &str = r#"
     run = { duration = 1 }
     [[elements]]
     type = "rigid_body"
@@ -157,7 +157,7 @@ fn observed(spans: usize, wheels: &[&str]) -> (String, Vec<String>) {
     (text, columns)
 }
 
-fn last(history: &History, column: &str) -> f64 {
+pub(super) fn last(history: &History, column: &str) -> f64 {
     history.last(column).unwrap_or_else(|| panic!("no {column}"))
 }
 

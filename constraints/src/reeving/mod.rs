@@ -9,6 +9,7 @@ mod arc;
 mod at_rest;
 mod drum;
 mod events;
+mod flank;
 mod fleet;
 mod hold;
 mod piece;

@@ -54,7 +54,8 @@ impl Shows for Sheave {
 
 /// The cable on a sheave: columns `wheel.wrap` in rad, `.length`, the unstretched length that lies on it in m,
 /// `.in.tension` and `.out.tension` where the cable comes and goes in N, `.speed` along the groove and `.slip` against it in
-/// m/s, and `.axle_force` in N. Of a cable with torsion also `.twist` per length in rad/m and `.torque` in N m. Of a wheel
+/// m/s, and `.axle_force` in N. Of a cable with torsion also `.twist` per length in rad/m and `.torque` in N m, and where the flank
+/// rolls it (`fleet_twist`) `.in.roll` and `.out.roll`, the torques on it where it comes and goes in N m. Of a wheel
 /// with an angle of its own also `.angle` in rad and `.spin` in rad/s. Where several cables run over the wheel, `.1.wrap`,
 /// `.2.wrap` and so on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -115,8 +116,8 @@ impl RecordSpec for SheaveRecordSpec {
             return Err(BuildError::at("of", message));
         };
         let name = named(&self.name, || of.to_string());
-        let torsion = torsion::label(of);
-        let more = model.terms().iter().enumerate().filter(|(_, t)| t.label() == torsion);
+        let torsion = torsion::shown(of);
+        let more = model.terms().iter().enumerate().filter(|(_, t)| torsion.contains(&t.label()));
         let (mut terms, mut columns) = (vec![*term], columns.clone());
         for (k, own) in more.filter_map(|(k, t)| Some((k, t.shows()?.columns()))) {
             terms.push(k);

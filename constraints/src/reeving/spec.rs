@@ -8,7 +8,7 @@ use super::hold::Hold;
 use super::piece::Stiff;
 use super::seat::Seat;
 use super::sheave::{Angle, Groove, Sheave};
-use super::torsion::{self, ArcTorsion, Twist};
+use super::torsion::{self, ArcTorsion, Rolls, Twist};
 use super::turns::Unwound;
 use crate::check::unit;
 use ropewalk_core::error::{not_negative, positive};
@@ -34,7 +34,7 @@ const MOST: usize = 100;
 /// takes counts in the balance of energy as a change of mesh.
 ///
 /// A cable with torsion (`section.gj`) rolls freely in the groove: its torque is the same before and behind, and its twist runs over the
-/// wheel with it.
+/// wheel with it. With `fleet_twist` one that comes from the side is twisted as it rolls down the flank of the groove.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheaveSpec {
@@ -91,6 +91,19 @@ pub struct SheaveSpec {
     /// cable that wraps all round ends the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turns: Option<u32>,
+    /// Share of pure rolling by which a cable that comes to its groove by a fleet angle `δ` is twisted as it goes down the flank
+    /// to the bottom, from 0 to 1: `sin δ/(π diameter)` turns per length at 1, as long as friction on the flank holds its torque. For
+    /// cables with `gj` and a `diameter`. Default: 0, the fleet angle doesn't twist it.
+    #[serde(default, deserialize_with = "quantity::number", skip_serializing_if = "is_nought")]
+    pub fleet_twist: f64,
+    /// Coefficient of friction on the flank, for `fleet_twist`: the torque that twists it is at most this times the tension,
+    /// `sin δ` and half the diameter. Default: `friction`.
+    #[serde(
+        default,
+        deserialize_with = "quantity::optional::number",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub flank_friction: Option<f64>,
     /// What friction does at equilibria, which aren't unique with it.
     #[serde(default, skip_serializing_if = "Sliding::is_none")]
     pub equilibrium: Sliding,
@@ -155,6 +168,7 @@ impl SheaveSpec {
         not_negative("inertia", self.inertia)?;
         positive("slip_speed", self.slip_speed)?;
         not_negative("friction", self.friction.unwrap_or(0.0))?;
+        self.check_flank()?;
         if self.count.is_some_and(|count| !(1..=MOST).contains(&count)) {
             return Err(BuildError::at("count", format!("`count` must be between 1 and {MOST}")));
         }
@@ -231,6 +245,7 @@ impl SheaveSpec {
             (None, None) if turns => Grip::Turns(self.inertia / self.radius.powi(2)),
             (None, None) => Grip::Slides(0.0),
         };
+        let flanks = passages.iter().map(|p| self.flank(p)).collect::<Result<Vec<_>, _>>()?;
         let mut grooves = Vec::new();
         for (k, passage) in passages.iter().enumerate() {
             let number = if k == 0 { String::new() } else { format!(".{}", k + 1) };
@@ -308,6 +323,9 @@ impl SheaveSpec {
         let shared = std::sync::Arc::new(sheave.clone());
         for groove in (0..shared.grooves.len()).filter(|&k| shared.grooves[k].twist.is_some()) {
             b.term(Box::new(ArcTorsion { sheave: shared.clone(), groove }));
+            if let Some(flank) = flanks[groove] {
+                b.term(Box::new(Rolls { torsion: ArcTorsion { sheave: shared.clone(), groove }, flank }));
+            }
         }
         for groove in 0..shared.grooves.len() {
             let watched: &[What] = match shared.grooves[groove].turns {

@@ -64,7 +64,7 @@ pub struct Section {
     /// Mass of the water inside [kg/m]. It moves with the part and has no weight in water.
     #[serde(default, deserialize_with = "quantity::mass_per_length")]
     pub flooded: f64,
-    /// Hydrodynamic diameter, for drag and added mass [m].
+    /// Hydrodynamic diameter, for drag and added mass; what rolls in a groove, by `fleet_twist` of a `sheave`, rolls by it too [m].
     #[serde(default, deserialize_with = "quantity::length")]
     pub diameter: f64,
     /// Displaced volume per length, for buoyancy [m²]. Default: `π/4 diameter²`.

@@ -8,13 +8,16 @@
 //! Where it only touches the wheel or is off there is a straight piece, and its twist is that between both ends with the
 //! directors carried over the direction of the piece.
 //!
-//! The cable is free to roll in its groove: what twists it is the same before and behind, and twist goes along with the material.
+//! The cable is free to roll in its groove: what twists it is the same before and behind, and twist goes along with the material. What
+//! comes by a fleet angle is rolled by the flank if the scene says so: [`Rolls`].
 
+mod roll;
 mod shape;
 mod welded;
 
 use super::sheave::{Groove, Sheave};
 use num_dual::Dual64;
+pub(super) use roll::Rolls;
 use ropewalk_core::{
     Assembly, At, Column, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Shows, Term, V3, dot,
 };
@@ -33,6 +36,37 @@ const CARRIER: usize = 16;
 /// What the torsion on a wheel of this name is called.
 pub(super) fn label(wheel: &str) -> String {
     format!("{wheel}: torsion")
+}
+
+/// What is shown besides of a wheel of this name: terms that are called so.
+pub(super) fn shown(wheel: &str) -> [String; 2] {
+    [label(wheel), roll::label(wheel)]
+}
+
+/// What stands before the names of columns of a groove.
+fn of_groove(sheave: &Sheave, groove: usize) -> String {
+    if sheave.grooves.len() == 1 { String::new() } else { format!("{}.", groove + 1) }
+}
+
+/// What every term leaves out of its tangent, by its residuals on the spins of both ends, as it sums up to nothing where the spins are
+/// balanced.
+fn leave_out(
+    ends: &[MovingBoundary; 2],
+    at: &At<'_>,
+    weight: f64,
+    spin: [f64; 2],
+    block: &mut [[f64; MOST]; MOST],
+) {
+    for (k, end) in ends.iter().enumerate() {
+        let p: V3<f64> = std::array::from_fn(|i| at.q[end.end_q + 3 + i]);
+        let square = dot(&p, &p);
+        let by = 0.5 * weight * spin[k] / (square * square.sqrt());
+        let first = SECOND * k + 3;
+        for (i, j, c) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            block[first + i][first + j] += by * p[c];
+            block[first + j][first + i] -= by * p[c];
+        }
+    }
 }
 
 /// The twist of one cable on a wheel.
@@ -190,19 +224,9 @@ impl Term for ArcTorsion {
                 block[i][j] = column[i].eps;
             }
         }
-        // what every term leaves out, as it sums up to nothing where the spins are balanced
         let still = Local { a: [0.0; MOST], ..x };
         let force = self.eval(at, &still).r;
-        for (k, end) in self.at().ends.iter().enumerate() {
-            let p: V3<f64> = std::array::from_fn(|i| at.q[end.end_q + 3 + i]);
-            let square = dot(&p, &p);
-            let by = 0.5 * w.q * force[SECOND * k + 6] / (square * square.sqrt());
-            let first = SECOND * k + 3;
-            for (i, j, c) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-                block[first + i][first + j] += by * p[c];
-                block[first + j][first + i] -= by * p[c];
-            }
-        }
+        leave_out(&self.at().ends, at, w.q, [force[6], force[SECOND + 6]], &mut block);
         out.add_square(0, &block);
     }
     fn energy(&self, at: &At<'_>) -> Energy {
@@ -223,8 +247,7 @@ impl Term for ArcTorsion {
 
 impl Shows for ArcTorsion {
     fn columns(&self) -> Vec<Column> {
-        let prefix =
-            if self.sheave.grooves.len() == 1 { String::new() } else { format!("{}.", self.groove + 1) };
+        let prefix = of_groove(&self.sheave, self.groove);
         [("twist", "rad/m"), ("torque", "N m")]
             .map(|(name, unit)| Column::new(format!("{prefix}{name}"), unit))
             .to_vec()

@@ -23,16 +23,16 @@ pub(super) struct Shape<S> {
 }
 
 /// Where the wheel is and how it stands, over any carrier.
-struct Hub<S> {
-    centre: V3<S>,
-    axis: V3<S>,
+pub(super) struct Hub<S> {
+    pub centre: V3<S>,
+    pub axis: V3<S>,
     /// From the origin of what carries it to the centre, and its rotation, if it turns.
-    arm: V3<S>,
-    turn: Option<[V3<S>; 3]>,
+    pub arm: V3<S>,
+    pub turn: Option<[V3<S>; 3]>,
 }
 
 impl ArcTorsion {
-    fn hub<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> Hub<S> {
+    pub(super) fn hub<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> Hub<S> {
         let seat = &self.sheave.seat;
         let (point, axis) = (seat.point.map(S::from), seat.axis.map(S::from));
         let moved = |q: usize| -> V3<S> { std::array::from_fn(|i| d[CARRIER + i] + at.q[q + i]) };
@@ -56,7 +56,7 @@ impl ArcTorsion {
     }
 
     /// Place and slope of an end.
-    fn end<S: Jet>(&self, k: usize, at: &At<'_>, d: &[S; MOST]) -> [V3<S>; 2] {
+    pub(super) fn end<S: Jet>(&self, k: usize, at: &At<'_>, d: &[S; MOST]) -> [V3<S>; 2] {
         let (q, i) = (self.at().ends[k].end_q, SECOND * k);
         [0, 3].map(|n| std::array::from_fn(|c| d[i + n + c] + at.q[q + n + c]))
     }

@@ -296,6 +296,7 @@ impl CableSpec {
             mass: s.mass,
             ea: s.ea,
             ei: s.ei.across,
+            diameter: s.diameter,
             damping: s.axial_retardation_time * s.ea,
             weighs: b.weighs(&self.name),
             torsion,
