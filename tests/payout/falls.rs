@@ -104,6 +104,24 @@ fn steady_hoisting_cuts_no_steps() {
     assert!(counts.rejected as f64 <= 0.05 * counts.steps as f64, "{counts:?}");
 }
 
+#[test]
+fn loose_tolerances_leave_the_tension_of_falls_right_to_a_per_cent() {
+    let hoist = Hoist { wheel: RUBS, speed: 0.1, ramp: 3.0, duration: 8.0, ..Hoist::default() };
+    let of = |tolerance: f64| {
+        let controlled =
+            format!("solver = {{ stepping = {{ controlled = {{ tolerance = {tolerance} }} }} }}\n");
+        run(&read(&(controlled + &hoist.text())))
+    };
+    let tension = |history: &History| history.column("head.1.in.tension").expect("tension").to_vec();
+    let [exact, strict, loose] = [1e-5, 1e-3, 1e-2].map(of);
+    assert!(3 * loose.counts.steps < 2 * strict.counts.steps, "{:?} {:?}", loose.counts, strict.counts);
+    let (right, got) = (tension(&exact), tension(&loose));
+    let largest = right.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let most = right.iter().zip(&got).map(|(a, b)| (a - b).abs() / largest).fold(0.0, f64::max);
+    println!("{most} of the tension, {:?}", loose.counts);
+    assert!(most < 0.01 && got.iter().all(|x| x.is_finite()), "{most} of the tension");
+}
+
 /// The same tackle up and down by 5.7 m of rope every minute.
 pub(super) fn up_and_down(text: &str) -> String {
     let drive = r#"
