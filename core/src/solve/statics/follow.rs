@@ -17,12 +17,17 @@ impl Statics<'_> {
     /// # Errors
     /// None was found, or there is none since the length of a cable changes; the state is as it was.
     pub fn find(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
-        self.model.relabel(&mut state.q);
+        self.model.relabel(state);
         self.run_material(state)?;
         let before = state.clone();
         let found = self.seek(state, cold)?;
         self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
         let mut found = found;
+        if let Some(why) = self.model.lost(&state.at()) {
+            let e = self.fail(state, &why, found.iterations);
+            state.clone_from(&before);
+            return Err(e);
+        }
         if self.model.settle(state) {
             let more = self.search(state, false, false, true).or_else(|_| self.seek(state, true));
             found.add(&more.inspect_err(|_| state.clone_from(&before))?);
@@ -161,7 +166,7 @@ impl Statics<'_> {
         let short = h.abs() / 4.5;
         let mut arcs = 0;
         while state.t != t {
-            self.model.relabel(&mut state.q);
+            self.model.relabel(state);
             let before = state.clone();
             let swings = self.judged.flutter > 0.0;
             state.t = if (t - before.t).abs() <= 1.001 * h.abs() { t } else { before.t + h };
@@ -248,6 +253,9 @@ impl Statics<'_> {
             let why = format!("it is unstable in {} directions", self.unstable);
             return Err(StaticsError { why, ..self.fail(state, "", found.iterations) });
         }
-        Ok(found)
+        match self.model.lost(&state.at()) {
+            Some(why) => Err(self.fail(state, &why, found.iterations)),
+            None => Ok(found),
+        }
     }
 }
