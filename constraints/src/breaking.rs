@@ -31,11 +31,26 @@ impl ConstraintSpec for BreakSpec {
     }
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
         positive("force", self.force)?;
+        if let Some(guide) = guided(b, &self.constraint) {
+            let message = format!(
+                "`{guide}` leads a cable, which can't come off from it by breaking: break what carries `{guide}`"
+            );
+            return Err(BuildError::at("constraint", message));
+        }
         let variable = b.internal_variable(&self.name);
         let constraint = b.release(&self.constraint, variable)?;
         b.event(Break { name: self.name.clone(), constraint, variable, force: self.force });
         Ok(())
     }
+}
+
+/// The sheave, ring or drum that made a constraint, if one did: it can't do without, and others of its equations would stay.
+fn guided<'a>(b: &Builder, constraint: &'a str) -> Option<&'a str> {
+    let numbered = |name: &'a str| {
+        name.rsplit_once('.').filter(|(_, k)| k.parse::<usize>().is_ok()).map(|(name, _)| name)
+    };
+    let bare = [".in", ".out", ".rope", ": torsion"].iter().find_map(|what| constraint.strip_suffix(what));
+    [Some(constraint), bare, numbered(constraint)].into_iter().flatten().find(|name| b.guide(name).is_ok())
 }
 
 struct Break {

@@ -396,7 +396,7 @@ fn what_cannot_be_wound_is_refused_with_its_reason() {
         (good.replace("radius = 0.3", "radius = 3"), "lies within the wheel"),
         (
             good.replace("mass = 2e-3", "gj = 1, rotary_inertia = 1e-4, torque_tension = 5, mass = 2e-3"),
-            "can't be wound yet",
+            "can't be wound on a drum yet",
         ),
     ];
     for (text, reason) in cases {

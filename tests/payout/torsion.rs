@@ -2,11 +2,11 @@
 
 use super::reeving::{at, refused, run};
 use ropewalk::scene::Format;
-use ropewalk::{History, ModesOptions, SceneFile, modes};
+use ropewalk::{History, ModesOptions, SceneFile, Simulation, modes};
 use ropewalk_core::model::twist::{between, section};
-use ropewalk_core::rotation::{exp, matrix, times};
+use ropewalk_core::rotation::{cross, exp, matrix, times};
 use ropewalk_core::testing::{check_constraint, check_tangent, dense, difference};
-use ropewalk_core::{At, Model, Spot, Term, Weights, Width, retract};
+use ropewalk_core::{At, Model, Spot, Term, Weights, Width, dot, retract};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 pub(super) fn build(text: &str) -> Model {
@@ -551,8 +551,7 @@ const DRUM: &str = r#"
 
 #[test]
 fn equations_of_ends_with_torsion_are_differentiated() {
-    let ring = BLOCK.replace("{ under = \"wheel\" }", "{ under = \"wheel\" }, { through = \"ring\" }")
-        + "[[constraints]]\ntype = \"ring\"\nname = \"ring\"\nmarker = [2, 1, 0.2]\n";
+    let ring = ringed(BLOCK, "[2, 1, 0.2]");
     for (text, names) in [(&*ring, vec!["wheel", "ring: torsion"]), (DRUM, vec!["drum.rope"])] {
         let model = build(text);
         let (state, nodes) = (model.state(), model.nodes());
@@ -662,16 +661,291 @@ fn a_twisted_rope_lifts_off_and_comes_back() {
     assert!(imbalance < 0.01, "{imbalance} J");
 }
 
+/// With a ring behind its wheel, and the bending stiffness that it needs there.
+fn ringed(scene: &str, place: &str) -> String {
+    scene
+        .replace("{ under = \"wheel\" }", "{ under = \"wheel\" }, { through = \"ring\" }")
+        .replace("mass = 1.5,", "mass = 1.5, ei = 2,")
+        + &format!("[[constraints]]\ntype = \"ring\"\nname = \"ring\"\nmarker = {place}\n")
+}
+
+#[test]
+fn turns_on_a_wheel_are_counted_however_many_come_at_once() {
+    let model = build(BLOCK);
+    let (torsion, state) = (term(&model, "wheel: torsion"), model.state());
+    let memory = torsion.remembers().expect("a memory");
+    let q = &state.q;
+    let start = model.part("rope.2").expect("a span").marker(&Spot::Named("start".into())).expect("an end");
+    let node = model.nodes()[start.on().expect("a node").0 as usize];
+    let zero = vec![0.0; state.v.len()];
+    let at = |q: &[f64], internal: &[f64]| {
+        let now = At { t: 0.0, q, v: &zero, a: &zero, internal, relaxed: None };
+        let mut shown = Vec::new();
+        torsion.shows().expect("something to see").observe(&now, &mut shown);
+        (shown[0], memory.lost(&now))
+    };
+    let (laid, _) = at(q, &state.internal);
+    let (mut d, mut turned) = (zero.clone(), q.clone());
+    let mut per_turn = None;
+    for turn in [1.0, 20.0, -50.0] {
+        d[node.v + 6] = turn;
+        retract(model.nodes(), q, &d, &mut turned);
+        let (twist, lost) = at(&turned, &state.internal);
+        let one = *per_turn.get_or_insert((twist - laid) / turn);
+        assert!(
+            lost.is_none() && (twist - laid - one * turn).abs() < 1e-12 * turn.abs(),
+            "{turn}: {twist} {laid}"
+        );
+        // what it is labelled with means nothing, if that is told
+        let (place, label) = memory.labels(&turned).expect("a label");
+        let (mut relabelled, mut internal) = (turned.clone(), state.internal.clone());
+        let [u, t] = [6, 3].map(|k| std::array::from_fn(|i| turned[node.q + k + i]));
+        let beside = cross(&t, &u).map(|x: f64| x / dot(&t, &t).sqrt());
+        let (sin, cos) = 9.0_f64.sin_cos();
+        (0..3).for_each(|i| relabelled[node.q + 6 + i] = cos * u[i] - sin * beside[i]);
+        relabelled[node.q + 9] += 9.0;
+        internal[place] += label - memory.labels(&relabelled).expect("a label").1;
+        let (again, lost) = at(&relabelled, &internal);
+        assert!(lost.is_none() && (again - twist).abs() < 1e-12 * twist.abs(), "{turn}: {again} {twist}");
+        // and if not, it can't be told how far it turned
+        let mut far = turned.clone();
+        let (sin, cos) = 2.5_f64.sin_cos();
+        (0..3).for_each(|i| far[node.q + 6 + i] = cos * u[i] - sin * beside[i]);
+        assert!(at(&far, &state.internal).1.is_some_and(|why| why.contains("turns can't be counted")));
+    }
+}
+
+#[test]
+fn a_rope_of_several_turns_is_twisted_all_along_it() {
+    let (records, columns) = observed(2, &["wheel"]);
+    let scene = format!(
+        r#"
+        run = {{ analysis = "statics", duration = 1 }}
+        statics = {{ steps = 1 }}
+        [[elements]]
+        type = "cable"
+        name = "rope"
+        section = {{ mass = 1, ea = 1e6, gj = 0.1, rotary_inertia = 1e-3 }}
+        tension = 1000
+        elements = 1
+        route = [{{ end = [-0.3, 0, -0.4] }}, {{ over = "wheel" }}, {{ end = [0.3, 0, -0.4] }}]
+        [[constraints]]
+        type = "sheave"
+        name = "wheel"
+        marker = [0, 0, 0]
+        axis = [0, 1, 0]
+        radius = 0.3
+        turns = 2
+        {}
+        {records}
+        "#,
+        wrung([0.0, 0.0, -1.0], 1.0)
+    );
+    let history = run(&scene);
+    let exact = 1.001 / (0.8 + 0.3 * 5.0 * PI);
+    for column in &columns {
+        let found = last(&history, column);
+        assert!((found / exact - 1.0).abs() < 1e-6, "{column}: {found} {exact}");
+    }
+}
+
+#[test]
+fn losses_of_a_sheave_go_by_the_whole_tension_of_a_laid_rope() {
+    for (word, way) in [("to_start", 1.0), ("to_end", -1.0)] {
+        let scene = format!(
+            r#"
+            run = {{ analysis = "statics", duration = 1 }}
+            statics = {{ steps = 4 }}
+            [[elements]]
+            type = "cable"
+            name = "rope"
+            section = {{ mass = 1e-4, ea = 1e6, gj = 50, rotary_inertia = 1e-3, torque_tension = 200 }}
+            tension = 2000
+            laid_twist = 3
+            elements = 2
+            route = [{{ end = [-0.3, 0, -2] }}, {{ over = "wheel" }}, {{ end = [0.3, 0, -2] }}]
+            [[constraints]]
+            type = "sheave"
+            name = "wheel"
+            marker = [0, 0, 0]
+            axis = [0, 1, 0]
+            radius = 0.3
+            efficiency = 0.9
+            equilibrium = "{word}"
+            {}
+            [[records]]
+            type = "along"
+            of = "rope.1"
+            what = "tension"
+            at = "end"
+            [[records]]
+            type = "along"
+            of = "rope.2"
+            what = "tension"
+            at = "start"
+            [[records]]
+            type = "sheave"
+            of = "wheel"
+            "#,
+            wrung([0.0, 0.0, -1.0], 0.5)
+        );
+        let history = run(&scene);
+        let tension = ["rope.1.end.tension", "rope.2.start.tension"].map(|column| last(&history, column));
+        // 600 N of 2600 come with the twist
+        assert!(tension.iter().all(|t| (2300.0..2900.0).contains(t)), "{tension:?}");
+        let ratio = tension[0] / tension[1];
+        let exact = 0.9_f64.powf(-way);
+        println!("{word}: {ratio} {exact}");
+        assert!((ratio / exact - 1.0).abs() < 1e-3, "{word}: {ratio} {exact}");
+        for (shown, tension) in ["wheel.in.tension", "wheel.out.tension"].iter().zip(tension) {
+            let shown = last(&history, shown);
+            assert!((shown / tension - 1.0).abs() < 1e-3, "{word}: {shown} {tension}");
+        }
+    }
+}
+
+#[test]
+fn a_ring_shows_the_tension_of_a_laid_rope() {
+    let scene = format!(
+        r#"
+        run = {{ analysis = "statics", duration = 1 }}
+        statics = {{ steps = 4 }}
+        [[elements]]
+        type = "cable"
+        name = "rope"
+        section = {{ mass = 1, ea = 1e6, ei = 2, gj = 50, rotary_inertia = 1e-3, torque_tension = 200 }}
+        tension = 2000
+        laid_twist = 3
+        elements = 10
+        route = [{{ end = [-2, 0, 0] }}, {{ through = "ring" }}, {{ end = [0, 0, -2] }}]
+        [[constraints]]
+        type = "ring"
+        name = "ring"
+        marker = [0, 0, 0]
+        {}
+        [[records]]
+        type = "along"
+        of = "rope.1"
+        what = "tension"
+        at = "end"
+        [[records]]
+        type = "force"
+        of = "ring"
+        "#,
+        wrung([0.0, 0.0, -1.0], 0.5)
+    );
+    let history = run(&scene);
+    let tension = last(&history, "rope.1.end.tension");
+    for column in ["ring.in.tension", "ring.out.tension"] {
+        let shown = last(&history, column);
+        assert!((shown / tension - 1.0).abs() < 5e-3, "{column}: {shown} {tension}");
+    }
+}
+
+#[test]
+fn what_turned_on_its_drum_leaves_it_with_its_energy_accounted_for() {
+    // wound and paid out with another twist all the time, as its load swings
+    let text =
+        format!("{DRUM}{}", observed(2, &["wheel"]).0).replace("[1e9, 1e9, 1e9]", "[0.05, 0.05, 0.05]");
+    let imbalance = |tolerance: f64| {
+        let history =
+            run(&format!("{text}[solver]\nstepping = {{ controlled = {{ tolerance = {tolerance} }} }}\n"));
+        let twist = history.column("rope.1.start.twist").expect("a twist");
+        assert!(twist.iter().any(|k| *k < 0.0), "it swings: {twist:?}");
+        // 9 J are lost as twist leaves the drum
+        history.column("energy.imbalance").expect("energy").iter().fold(0.0_f64, |m, x| m.max(x.abs()))
+    };
+    let off = [1e-3, 1e-4].map(imbalance);
+    println!("{off:?}");
+    assert!(off[1] < 0.01, "{off:?}");
+}
+
+/// A belt about wheels whose planes cross.
+fn belted(more: &str) -> String {
+    let (records, _) = observed(3, &["a", "b", "c"]);
+    let wheel = |name: &str, place: &str, axis: &str| {
+        format!(
+            "[[constraints]]\ntype = \"sheave\"\nname = \"{name}\"\nmarker = {place}\naxis = {axis}\nradius = 0.1\n"
+        )
+    };
+    format!(
+        r#"
+        run = {{ analysis = "statics", duration = 1 }}
+        [[elements]]
+        type = "cable"
+        name = "rope"
+        section = {{ mass = 0.1, ea = 1e5, gj = 2, rotary_inertia = 1e-3 }}
+        tension = 200
+        elements = 2
+        route = [{{ round = "a" }}, {{ round = "b" }}, {{ round = "c" }}]
+        {more}
+        {}{}{}
+        {records}
+        "#,
+        wheel("a", "[0, 0, 0]", "[0, 1, 0]"),
+        wheel("b", "[2, 0, 0]", "[0.3, 1, 0.2]"),
+        wheel("c", "[1, 0.2, -2]", "[-0.2, 1, 0.3]"),
+    )
+}
+
+#[test]
+fn a_closed_belt_spreads_the_twist_that_its_way_gives_it() {
+    let (_, columns) = observed(3, &["a", "b", "c"]);
+    let history = run(&belted(""));
+    let twist: Vec<f64> = columns.iter().map(|column| last(&history, column)).collect();
+    println!("{twist:?}");
+    assert!(twist[0].abs() > 1e-3, "{twist:?}");
+    assert!(twist.iter().all(|k| (k / twist[0] - 1.0).abs() < 1e-5), "{twist:?}");
+}
+
+#[test]
+fn torsion_over_wheels_goes_through_checkpoints_to_the_last_bit() {
+    let file = SceneFile::parse(&running(0.05), "scene", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let scene = file.into_scene();
+    let model = || scene.build().unwrap_or_else(|e| panic!("{e}"));
+    let mut whole = Simulation::new(model(), &scene.solver, scene.run.duration).expect("a start");
+    whole.advance(0.4, 0.4, &mut ()).expect("run");
+    let checkpoint = whole.checkpoint().expect("checkpoint");
+    whole.advance(0.8, 0.2, &mut ()).expect("run");
+    let mut again =
+        Simulation::restore(model(), &scene.solver, scene.run.duration, checkpoint).expect("fits");
+    again.advance(0.8, 0.2, &mut ()).expect("run");
+    assert_eq!((again.state, again.audit), (whole.state, whole.audit));
+}
+
+#[test]
+fn what_leads_a_cable_is_not_to_break() {
+    let broken = |of: &str| {
+        format!("[[constraints]]\ntype = \"break\"\nname = \"pin\"\nconstraint = \"{of}\"\nforce = 1000\n")
+    };
+    let ring = ringed(BLOCK, "[2, 1, 0.2]");
+    for (text, of) in [
+        (&*ring, "ring.in"),
+        (&*ring, "ring"),
+        (&*ring, "ring: torsion"),
+        (&*ring, "wheel"),
+        (DRUM, "drum.rope"),
+    ] {
+        let message = refused(&(text.to_string() + &broken(of)));
+        assert!(message.contains("break what carries"), "{of}: {message}");
+    }
+}
+
 #[test]
 fn what_cannot_be_twisted_over_wheels_is_refused_with_its_reason() {
     let cases = [
         (BLOCK.replace("mass = 1.5,", "mass = 1.5, ei = [1, 2],"), "give one stiffness"),
         (BLOCK.replace("mass = 1.5,", "mass = 1.5, gyroscopic = true,"), "turns nothing aside"),
         (BLOCK.replace("gj = 30, ", ""), "a torsional stiffness, `gj`"),
+        (ringed(BLOCK, "[2, 1, 0.2]") + "friction = 0.1\n", "leave `friction` out"),
+        (ringed(BLOCK, "[2, 1, 0.2]").replace("ei = 2,", ""), "give it `section.ei`"),
+        (ringed(BLOCK, "[5, 3, 3]"), "the cable doubles back at `ring`"),
+        (DRUM.replace("gj = 5,", "gj = 5, torque_tension = 10,"), "can't be wound on a drum"),
+        (belted("laid_twist = 1"), "a closed belt is joined"),
         (
-            BLOCK.replace("{ under = \"wheel\" }", "{ under = \"wheel\" }, { through = \"ring\" }")
-                + "[[constraints]]\ntype = \"ring\"\nname = \"ring\"\nmarker = [2, 1, 0.2]\nfriction = 0.1\n",
-            "leave `friction` out",
+            belted("").replace("{ round = \"c\" }", "{ through = \"ring\" }")
+                + "[[constraints]]\ntype = \"ring\"\nname = \"ring\"\nmarker = [1, 0, -2]\n",
+            "which a ring at a point can't hold",
         ),
     ];
     for (text, reason) in cases {

@@ -9,18 +9,20 @@ use super::torsion;
 use num_dual::Dual64;
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::{
-    Assembly, At, BuildError, Column, Constraint, Equation, Jet, Joint, Marker, MovingBoundary, Node, NodeId,
-    Pattern, Power, Related, Remembers, RowKind, Shows, Term, V3,
+    Action, Assembly, At, BuildError, Column, Constraint, Equation, Event, Jet, Joint, Marker, Model,
+    MovingBoundary, Node, NodeId, Part, Pattern, Power, Quantity, Related, Remembers, RowKind, Shows, State,
+    Term, V3,
 };
 use ropewalk_scene::{Builder, ConstraintSpec, Guide, MarkerRef, Strand, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A ring through which a cable runs that names it in its `route`: a shackle, a fairlead, a thimble, small beside the
 /// spans. For a wheel whose size counts take a `sheave`.
 ///
 /// The cable turns sharply there; its bending stiffness doesn't resist that. A cable with torsion carries its twist through; its
-/// torque turns it out of the plane of the spans there, as far as its bending stiffness lets it. With `friction` the tensions
+/// torque turns it out of the plane of the spans there, as far as its bending stiffness lets it, which it needs. With `friction` the tensions
 /// before and behind differ by the capstan equation with the angle of deflection.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -88,6 +90,12 @@ impl ConstraintSpec for RingSpec {
             return Err(BuildError::at("friction", message));
         }
         if passage.strand.torsion.is_some() {
+            if passage.strand.ei == 0.0 {
+                let message = "a cable with torsion is turned out of its plane in a ring as far as its bending stiffness lets it: give it \
+                               `section.ei`, or let it run over a `sheave`";
+                return Err(BuildError::at("name", message));
+            }
+            b.event(Folded { name: self.name.clone(), ends });
             let markers = ends.map(|boundary| end(b.nodes(), boundary.end)).to_vec();
             b.constraint(Related::new(torsion::label(&self.name), torsion::Welded, markers))?;
         }
@@ -96,6 +104,8 @@ impl ConstraintSpec for RingSpec {
             return Err(BuildError::at("equilibrium", message));
         }
         let way = self.equilibrium.way(passage)?;
+        let twisted = passage.strand.torsion.filter(|torsion| torsion.lay != 0.0);
+        let spans = twisted.map(|_| b.parts(&passage.spans)).transpose()?.unwrap_or_default();
         let memory = (way != 0.0).then(|| b.memory(&format!("{}: equilibrium", self.name), 1));
         for span in &passage.spans {
             let length = 0.05 * b.parts(std::slice::from_ref(span))?[0].1.length();
@@ -105,6 +115,7 @@ impl ConstraintSpec for RingSpec {
             name: self.name.clone(),
             ends,
             strand: passage.strand,
+            spans: spans.into_iter().map(|(_, part)| part.clone()).collect(),
             friction: self.friction,
             slip_speed: self.slip_speed,
             equilibrium: self.equilibrium,
@@ -112,6 +123,33 @@ impl ConstraintSpec for RingSpec {
             memory,
         }));
         Ok(())
+    }
+}
+
+/// What `1 + t·t'` of the tangents before and behind a ring must not fall below, as of those of an element.
+const LEAST_OPEN: f64 = 0.1;
+
+/// Ends the run where a cable with torsion doubles back in a ring.
+struct Folded {
+    name: String,
+    ends: [MovingBoundary; 2],
+}
+
+impl Event for Folded {
+    fn name(&self) -> String {
+        format!("the cable doubles back in `{}`", self.name)
+    }
+    fn value(&self, _: &Model, state: &State) -> f64 {
+        let slopes = self.ends.map(|end| &state.q[end.end_q + 3..end.end_q + 6]);
+        let [a, b] = slopes;
+        let along = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        LEAST_OPEN - 1.0 - along(a, b) / (along(a, a) * along(b, b)).sqrt()
+    }
+    fn direction(&self) -> i8 {
+        1
+    }
+    fn act(&self, _: &Model, _: &mut State) -> Action {
+        Action::Fail("its twist can't be told there: let it run over a `sheave`, or leave `gj` out".into())
     }
 }
 
@@ -156,6 +194,8 @@ struct Kink {
     name: String,
     ends: [MovingBoundary; 2],
     strand: Strand,
+    /// Both spans, of a laid rope.
+    spans: Vec<Arc<dyn Part>>,
     friction: f64,
     slip_speed: f64,
     equilibrium: Sliding,
@@ -215,6 +255,17 @@ impl Kink {
     fn way_now(&self, at: &At<'_>) -> f64 {
         let on = self.memory.and_then(|place| at.internal.get(place)).is_some_and(|x| *x != 0.0);
         if on { self.way } else { 0.0 }
+    }
+
+    /// Tension before and behind that the twist of a laid rope adds to that of its stretch [N].
+    fn pulls(&self, at: &At<'_>) -> [f64; 2] {
+        let (Some(torsion), [before, behind]) = (self.strand.torsion, self.spans.as_slice()) else {
+            return [0.0; 2];
+        };
+        [(before, before.length_now(at)), (behind, 0.0)].map(|(span, s)| {
+            let twist = span.observe(Quantity::Twist, s, at).unwrap_or(torsion.free);
+            torsion.lay * (twist - torsion.free)
+        })
     }
 
     /// Both material coordinates move alike; each is asked for its half.
@@ -312,6 +363,7 @@ impl Shows for Kink {
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
         let x = self.now(at);
         let stretch = 1.0 + x.tension[0] / self.strand.ea;
-        out.extend([x.angle, x.tension[0], x.tension[1], -self.rate(at) * stretch]);
+        let [before, behind] = self.pulls(at);
+        out.extend([x.angle, x.tension[0] + before, x.tension[1] + behind, -self.rate(at) * stretch]);
     }
 }

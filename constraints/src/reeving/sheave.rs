@@ -46,7 +46,7 @@ impl Groove {
         if self.back { -1.0 } else { 1.0 }
     }
 
-    /// Tension that the twist of a laid rope adds to that of its stretch [N].
+    /// Tension that the twist of a laid rope adds to that of its stretch [N]: that of the last state.
     pub fn pull(&self, at: &At<'_>) -> f64 {
         let [a, b] = self.ends.map(|end| at.q[end.q]);
         self.twist.map_or(0.0, |twist| twist.pull(b - a + self.stored, at))

@@ -279,11 +279,11 @@ impl SheaveSpec {
                 let (ends, name) = (passage.boundaries, format!("{name}{number}"));
                 b.term(Box::new(Stiff { name, mode, ends, ei: strand.ei, radius: self.radius }));
             }
-            let turns = self.turns.map(|_| (passage.wrap, b.memory(&format!("{name}: wrap"), 1)));
+            let turns = self.turns.map(|_| (passage.wrap, b.memory(&format!("{name}{number}: wrap"), 1)));
             let twist = strand.torsion.map(|torsion| Twist {
                 torsion,
-                laid: passage.twist,
-                memory: b.memory(&torsion::label(name), 1),
+                laid: [passage.twist, 0.0],
+                memory: b.memory(&torsion::label(&format!("{name}{number}")), 2),
             });
             let way = self.equilibrium.way(passage)?;
             grooves.push(Groove {
@@ -318,8 +318,15 @@ impl SheaveSpec {
             lengths.push((span, (SHORT[0] * length).max(SHORT[1] * self.radius).min(0.5 * length)));
         }
         let solid = drawn(name, &marker, b, self.radius);
-        let sheave =
+        let mut sheave =
             Sheave { name: name.into(), seat, grooves, angle, at_rest: (self.equilibrium, rests), solid };
+        for k in 0..sheave.grooves.len() {
+            let own = ArcTorsion { sheave: std::sync::Arc::new(sheave.clone()), groove: k };
+            if let Some(twist) = &mut sheave.grooves[k].twist {
+                // a closed belt has the twist that its way gives it
+                twist.laid = own.starts(twist.laid[0], b.coordinates());
+            }
+        }
         let shared = std::sync::Arc::new(sheave.clone());
         for groove in (0..shared.grooves.len()).filter(|&k| shared.grooves[k].twist.is_some()) {
             b.term(Box::new(ArcTorsion { sheave: shared.clone(), groove }));

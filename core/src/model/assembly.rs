@@ -3,7 +3,7 @@
 use crate::model::Model;
 use crate::model::constraint::MOST_ROWS;
 use crate::model::node::{NodeKind, retract};
-use crate::model::state::At;
+use crate::model::state::{At, State};
 use crate::model::structure::Structure;
 use crate::model::term::{Assembly, Leap, Weights};
 use crate::model::twist;
@@ -86,9 +86,25 @@ impl Model {
 
     /// Lays the reference directors of twisted lines anew where neighbours are far apart; the sections stay. To be called
     /// between steps, with no state from before in use.
-    pub(crate) fn relabel(&self, q: &mut [f64]) {
+    pub(crate) fn relabel(&self, state: &mut State) {
+        if self.twisted.is_empty() {
+            return;
+        }
+        let before = self.labels(&state.q);
         for (line, _) in &self.twisted {
-            twist::relabel(q, line);
+            twist::relabel(&mut state.q, line);
+        }
+        self.count_on(&before, state);
+    }
+
+    /// Lets what counts on with labels of sections go on where it was, after these have changed and the sections haven't.
+    pub(crate) fn count_on(&self, before: &[(usize, f64)], state: &mut State) {
+        let after = self.labels(&state.q);
+        for (place, was) in before {
+            let now = after.iter().find(|(other, _)| other == place);
+            if let (Some((_, now)), Some(x)) = (now, state.internal.get_mut(*place)) {
+                *x += was - now;
+            }
         }
     }
 

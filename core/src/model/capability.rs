@@ -52,6 +52,16 @@ pub trait Remembers {
     fn settle(&self, _at: &At<'_>, _memory: &mut [f64]) -> bool {
         false
     }
+    /// Why it can't tell what has become of what it remembers at a state that was found from the last one, if it can't: that is too
+    /// far away. The step is then repeated smaller.
+    fn lost(&self, _at: &At<'_>) -> Option<String> {
+        None
+    }
+    /// The internal variable that counts on with an angle by which sections are labelled [rad], and that angle: where labels
+    /// change and sections stay, their sum does.
+    fn labels(&self, _q: &[f64]) -> Option<(usize, f64)> {
+        None
+    }
 }
 
 /// Couples unknowns that depend on the state, such as those of lines that come near each other: all that it may couple

@@ -32,6 +32,7 @@ impl Model {
                 part.carry(&self.nodes, other.as_ref(), &state.at(), &mut new.q, &mut new.v);
             }
         }
+        self.count_on(&old.labels(&state.q), &mut new);
         new
     }
 }

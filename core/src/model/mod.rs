@@ -451,6 +451,20 @@ impl Model {
         self.let_remember(state, |term, at, memory| term.settle(at, memory))
     }
 
+    /// Why a term can't tell what has become of what it remembers, if one can't.
+    pub(crate) fn lost(&self, at: &At<'_>) -> Option<String> {
+        self.remembering().find_map(|term| term.lost(at))
+    }
+
+    /// What terms remember that counts on with labels of sections, and the angle of those.
+    pub(crate) fn labels(&self, q: &[f64]) -> Vec<(usize, f64)> {
+        self.remembering().filter_map(|term| term.labels(q)).collect()
+    }
+
+    fn remembering(&self) -> impl Iterator<Item = &dyn Remembers> {
+        self.remembering.iter().filter_map(|&k| self.terms[k].remembers())
+    }
+
     fn let_remember(
         &self,
         state: &mut State,
@@ -461,7 +475,7 @@ impl Model {
         }
         let mut memory = std::mem::take(&mut state.internal);
         let mut any = false;
-        for term in self.remembering.iter().filter_map(|&k| self.terms[k].remembers()) {
+        for term in self.remembering() {
             any |= how(term, &state.at(), &mut memory);
         }
         state.internal = memory;

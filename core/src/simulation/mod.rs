@@ -265,12 +265,14 @@ impl Simulation {
                 Stepping::Fixed { h } if (whole - h).abs() <= 8.0 * f64::EPSILON * target.abs() => h,
                 Stepping::Fixed { .. } => whole,
             };
-            self.model.relabel(&mut self.state.q);
+            self.model.relabel(&mut self.state);
             self.previous.clone_from(&self.state);
             let report = self.integrator.step(&self.model, &mut self.state, &mut self.work, left);
             let mut report = report.map_err(|e| self.suspect(e))?;
             self.check_constraints()?;
-            if let Some(why) = self.model.passes(&self.previous.at(), &self.state.at()) {
+            let now = self.state.at();
+            let wrong = self.model.passes(&self.previous.at(), &now).or_else(|| self.model.lost(&now));
+            if let Some(why) = wrong {
                 self.turn_back(report.h, why)?;
                 continue;
             }

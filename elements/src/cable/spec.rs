@@ -138,7 +138,8 @@ pub struct CableSpec {
     /// Stress-free twist per length of a cable with torsion, added to that of `stress_free` [rad/m].
     #[serde(default, deserialize_with = "quantity::curvature", skip_serializing_if = "is_nought")]
     pub twist: f64,
-    /// Twist per length with which a cable with torsion is laid [rad/m].
+    /// Twist per length with which a cable with torsion is laid [rad/m]. What is wound on a drum at the start keeps it, whatever
+    /// equilibrium the run begins with.
     #[serde(default, deserialize_with = "quantity::curvature", skip_serializing_if = "is_nought")]
     pub laid_twist: f64,
     /// Points beside the axis of a cable with torsion, by name, that its sections carry along, such as the end of a crank:

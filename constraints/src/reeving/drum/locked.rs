@@ -1,4 +1,4 @@
-//! The stretch with which cable lies on a drum: as it was wound, it stays until it is paid out.
+//! The stretch and the twist with which cable lies on a drum: as it was wound, it stays until it is paid out.
 
 use num_dual::Dual64;
 use ropewalk_core::{Assembly, At, Jet, MovingBoundary, Pattern, Power, Remembers, Term};
@@ -15,7 +15,8 @@ const MEMORY: usize = 6 + 3 * (PLACES + 1);
 /// The stretch of what is wound, or its twist per length.
 ///
 /// The stretched length `Λ` by the length `f` that is fed out is known at places, with its slope, which is the stretch there;
-/// in between it is a cubic of Hermite. So nothing jumps as cable of another stretch comes off.
+/// in between it is a cubic of Hermite. So nothing jumps as cable of another stretch comes off. Of a twist `Λ` is the angle by which
+/// what is fed out is twisted, and its slope the twist per length; what is said of stretches here holds of that too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Locked {
     /// First of its internal variables.
@@ -34,7 +35,7 @@ struct Place {
     slope: f64,
 }
 
-/// The stretched length that was fed out, around a length that was fed out: a cubic.
+/// The stretched length that was fed out, or the angle by which that is twisted, around a length that was fed out: a cubic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fed {
     from: f64,
@@ -42,14 +43,14 @@ pub(super) struct Fed {
 }
 
 impl Fed {
-    /// The stretched length.
-    pub fn length<S: Jet>(&self, fed: S) -> S {
+    /// The stretched length, or the angle by which it is twisted.
+    pub fn sum<S: Jet>(&self, fed: S) -> S {
         let (x, c) = (fed - self.from, self.c);
         ((x * c[3] + c[2]) * x + c[1]) * x + c[0]
     }
 
-    /// The stretch of what passes: the slope of that.
-    pub fn stretch<S: Jet>(&self, fed: S) -> S {
+    /// The stretch of what passes, or its twist per length: the slope of that.
+    pub fn per_length<S: Jet>(&self, fed: S) -> S {
         let (x, c) = (fed - self.from, self.c);
         (x * (3.0 * c[3]) + 2.0 * c[2]) * x + c[1]
     }
@@ -126,7 +127,7 @@ impl Locked {
             let n = m[5] as usize;
             if n == 0 || last.fed > outermost.fed {
                 // the first after some was paid out: what is left goes on from here
-                let from = self.wound(m, last.fed).stretch(last.fed) - base;
+                let from = self.wound(m, last.fed).per_length(last.fed) - base;
                 let kept = (0..n).take_while(|&k| place(m, FIRST + 3 * k).fed > last.fed).count();
                 m[5] = kept as f64;
                 self.push(m, Place { slope: from, ..last });
@@ -137,7 +138,7 @@ impl Locked {
             set(m, OUTERMOST, Place { fed, more, slope: last.slope });
             more
         } else {
-            self.wound(m, fed).length(fed) - base * fed
+            self.wound(m, fed).sum(fed) - base * fed
         };
         set(m, LAST, Place { fed, more, slope: stretch - base });
     }
@@ -193,7 +194,7 @@ impl Loosens {
     /// Stretch of the free cable, and of what passes.
     fn stretches(&self, at: &At<'_>) -> [f64; 2] {
         let fed = self.boundary.fed(at);
-        [self.boundary.stretch(at), self.locked.at(at.internal, fed).stretch(fed)]
+        [self.boundary.stretch(at), self.locked.at(at.internal, fed).per_length(fed)]
     }
 }
 
@@ -212,7 +213,7 @@ impl Term for Loosens {
         let (free, fed, sign) = (self.boundary.stretch(at), self.boundary.fed(at), self.boundary.sign);
         let passes = self.locked.at(at.internal, fed);
         let force =
-            |free: Dual64, fed: Dual64| (free - 1.0) * (free - passes.stretch(fed)) * (self.ea * sign);
+            |free: Dual64, fed: Dual64| (free - 1.0) * (free - passes.per_length(fed)) * (self.ea * sign);
         let by_free = force(Dual64::new(free, 1.0), Dual64::from(fed));
         out.add(self.boundary.v, by_free.re);
         let w = out.weights().q;
@@ -278,16 +279,16 @@ mod tests {
             known.push([fed, length]);
         }
         for [fed, length] in known.iter().rev() {
-            let got = locked.at(&memory, *fed).length(*fed);
+            let got = locked.at(&memory, *fed).sum(*fed);
             // up to half a step's rise over the distance of places, but where it goes over from what was there before
             let most = if *fed < -0.6 { 0.5 * 1e-5 * 0.52 } else { 0.01 * 0.5 };
             assert!((got - length).abs() <= most, "{got} not {length} at {fed}");
             locked.wind(&mut memory, *fed, 1.5);
         }
         // the whole of it is what it was, and below lies what was there at the start
-        assert!(locked.at(&memory, 0.0).length(0.0_f64).abs() <= 1e-12);
-        assert!((locked.at(&memory, 2.0).length(2.0) - 2.02).abs() <= 1e-12);
-        assert_eq!(locked.at(&memory, 2.0).stretch(2.0_f64), 1.01);
+        assert!(locked.at(&memory, 0.0).sum(0.0_f64).abs() <= 1e-12);
+        assert!((locked.at(&memory, 2.0).sum(2.0) - 2.02).abs() <= 1e-12);
+        assert_eq!(locked.at(&memory, 2.0).per_length(2.0_f64), 1.01);
     }
 
     #[test]
@@ -310,7 +311,7 @@ mod tests {
         for k in 0..=n {
             let fed = -6.0 + 7.0 * f64::from(k) / f64::from(n);
             let passes = locked.at(&memory, fed);
-            let now = [passes.length(fed), passes.stretch(fed)];
+            let now = [passes.sum(fed), passes.per_length(fed)];
             if let Some(before) = before.filter(|_| k > 1) {
                 let mean = (now[0] - before[0]) / (7.0 / f64::from(n));
                 assert!((now[1] - before[1]).abs() <= 1e-4, "{now:?} after {before:?} at {fed}");
@@ -329,8 +330,8 @@ mod tests {
             length -= locked.base(&memory) + place(&memory[3..], LAST).slope;
             locked.wind(&mut memory, -f64::from(k), 1.02 + 0.01 * f64::from(k).sin());
         }
-        let got = locked.at(&memory, -999.0).length(-999.0_f64);
+        let got = locked.at(&memory, -999.0).sum(-999.0_f64);
         assert!((got - length).abs() <= 1e-9, "{got} not {length}");
-        assert!(locked.at(&memory, 0.0).length(0.0_f64).abs() <= 1e-9);
+        assert!(locked.at(&memory, 0.0).sum(0.0_f64).abs() <= 1e-9);
     }
 }

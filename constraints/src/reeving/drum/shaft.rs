@@ -63,7 +63,7 @@ impl Shaft {
     /// Angle that is wound now, by what is fed out [rad].
     pub fn angle(&self, at: &At<'_>) -> f64 {
         let (all, fed) = (self.layers.at(self.wound).length, self.boundary.fed(at));
-        self.layers.angle(all - self.locked.at(at.internal, fed).length(fed))
+        self.layers.angle(all - self.locked.at(at.internal, fed).sum(fed))
     }
 
     /// Angle of the drum and its rate.
@@ -102,7 +102,7 @@ impl Shaft {
         let radius = self.layers.at(angle).radius;
         let density = self.mass / self.locked.base(at.internal);
         let fed = self.boundary.fed(at);
-        let passes = self.locked.at(at.internal, fed).stretch(fed);
+        let passes = self.locked.at(at.internal, fed).per_length(fed);
         [density * self.layers.inertia(angle), density * passes * radius * radius]
     }
 

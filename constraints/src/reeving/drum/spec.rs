@@ -444,10 +444,8 @@ impl DrumSpec {
         axis: V3<f64>,
         d: V3<f64>,
     ) -> Result<Option<(f64, Locked)>, BuildError> {
-        let Some(torsion) = end.strand.torsion else { return Ok(None) };
-        if torsion.lay != 0.0 {
-            let message = "a rope that turns when it is pulled, by `torque_tension`, can't be wound yet: let it run from a winch";
-            return Err(BuildError::at("name", message));
+        if end.strand.torsion.is_none() {
+            return Ok(None);
         }
         let beside = dot(&d, &axis);
         let flat: V3<f64> = std::array::from_fn(|i| d[i] - beside * axis[i]);

@@ -8,8 +8,8 @@ use std::sync::Arc;
 /// What the twist of cable changes by where it leaves the drum.
 ///
 /// What is paid out takes the twist `K` of the free cable at once, instead of that with which it was wound, `K_w`. With the moment
-/// `M = GJ (K - K₀)` that turns it, of the work `M (K - K_w)` by length one part becomes energy that it has more then, and
-/// `GJ (K - K_w)²/2` heat: the tension has no part in it. Where it is wound both are the same.
+/// `M = GJ (K - K₀)` that turns it, by length of the work `M (K - K_w)` as much is stored in it as its energy of twist grows from `K_w` to
+/// `K`, and `GJ (K - K_w)²/2` becomes heat: the tension has no part in it. Where it is wound both twists are the same.
 pub(super) struct Untwists {
     pub name: String,
     pub boundary: MovingBoundary,
@@ -32,7 +32,7 @@ impl Untwists {
     /// Twist of the free cable, and of what passes.
     fn twists(&self, at: &At<'_>) -> [f64; 2] {
         let fed = self.boundary.fed(at);
-        [self.free(at), self.locked.at(at.internal, fed).stretch(fed)]
+        [self.free(at), self.locked.at(at.internal, fed).per_length(fed)]
     }
 }
 

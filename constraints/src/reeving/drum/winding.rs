@@ -70,7 +70,7 @@ impl Relation for Winding {
             None => at[3].x[0],
         };
         let fed = (front.x[0] - self.home) * self.sign;
-        let stretched = self.locked.at(internal, fed.re()).length(fed);
+        let stretched = self.locked.at(internal, fed.re()).sum(fed);
         let all = self.layers.at(self.wound).length;
         let off = psi - angle(along(&flat, y), along(&flat, x)) + self.phi;
         let wanted = self.wound - self.layers.angle(all - stretched.re());
@@ -83,7 +83,7 @@ impl Relation for Winding {
         if let Some((start, twist)) = &self.twist {
             let [_, d, n] = &end.axes;
             let seen = angle(along(&flat, d), along(&flat, n)) - *start;
-            let off = seen - twist.at(internal, fed.re()).length(fed) * self.sign;
+            let off = seen - twist.at(internal, fed.re()).sum(fed) * self.sign;
             g[4] = off - TAU * (off.re() / TAU).round();
         }
     }

@@ -33,6 +33,9 @@ const MOST: usize = 22;
 const SECOND: usize = 8;
 const CARRIER: usize = 16;
 
+/// Most by which what counts whole turns may change at once [rad]: half a turn can't be told from the other half.
+const MOST_CHANGE: f64 = 2.0;
+
 /// What the torsion on a wheel of this name is called.
 pub(super) fn label(wheel: &str) -> String {
     format!("{wheel}: torsion")
@@ -73,19 +76,25 @@ fn leave_out(
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::reeving) struct Twist {
     pub torsion: Torsional,
-    /// Twist at the start [rad].
-    pub laid: f64,
-    /// Place of the internal variable by how much it differs since at the last state [rad]: it counts whole turns.
+    /// Twist at the start, and that less the angle by which the spins of both ends are labelled [rad].
+    pub laid: [f64; 2],
+    /// Place of the internal variables by how much both differ since at the last state [rad]. The second one counts whole turns: it
+    /// changes little where the cable is wrung, by however many turns.
     pub memory: usize,
 }
 
 impl Twist {
     /// Twist at the last state [rad].
     pub fn last(&self, at: &At<'_>) -> f64 {
-        self.laid + at.internal.get(self.memory).copied().unwrap_or(0.0)
+        self.recalls(0, at.internal)
     }
 
-    /// Tension that it makes in a laid rope of this unstretched length [N].
+    fn recalls(&self, which: usize, internal: &[f64]) -> f64 {
+        self.laid[which] + internal.get(self.memory + which).copied().unwrap_or(0.0)
+    }
+
+    /// Tension that it makes in a laid rope of this unstretched length [N], with the twist of the last state: friction is a step
+    /// behind where twist changes, by an error of first order in the step; an equilibrium is found anew until it fits.
     pub fn pull(&self, length: f64, at: &At<'_>) -> f64 {
         self.torsion.lay * (self.last(at) / length - self.torsion.free)
     }
@@ -112,7 +121,7 @@ struct Forces<S> {
     energy: [S; 2],
     dissipated: S,
     carried: S,
-    /// Twist per length [rad/m] and torque [N m].
+    /// Twist per length [rad/m] and elastic torque [N m], as spans show it.
     shown: [S; 2],
 }
 
@@ -128,30 +137,51 @@ impl ArcTorsion {
         of(a).chain(of(b)).chain(seat.on.into_iter().flat_map(|(_, v, _)| v..v + seat.size())).collect()
     }
 
-    fn local(&self, at: &At<'_>) -> Local<f64> {
+    fn local(&self, dofs: &[usize], at: &At<'_>) -> Local<f64> {
         let mut x = Local { d: [0.0; MOST], v: [0.0; MOST], a: [0.0; MOST] };
-        for (i, dof) in self.dofs().into_iter().enumerate() {
+        for (i, &dof) in dofs.iter().enumerate() {
             (x.v[i], x.a[i]) = (at.v[dof], at.a[dof]);
         }
         x
     }
 
-    /// The whole turns of an angle are those of the last state.
-    fn counted(&self, twist: f64, at: &At<'_>) -> f64 {
-        let near = self.at().twist.map_or(twist, |own| own.last(at));
-        twist + TAU * ((near - twist) / TAU).round()
+    /// The angle by which the spins of both ends are labelled [rad].
+    fn label_angle(&self, q: &[f64]) -> f64 {
+        let [a, b] = self.at().ends.map(|end| q[end.end_q + 9]);
+        b - a
+    }
+
+    /// The twist now: what it has besides the labels of the ends is near that at the last state, by which whole turns count.
+    fn twist_now(&self, at: &At<'_>) -> f64 {
+        let found = self.uncounted(at);
+        let near = self.at().twist.map_or(found, |own| own.recalls(1, at.internal) + self.label_angle(at.q));
+        found + TAU * ((near - found) / TAU).round()
+    }
+
+    /// Twist and stretched length now; the latter only where it matters.
+    fn now(&self, at: &At<'_>) -> [f64; 2] {
+        let laid = self.at().twist.is_some_and(|own| own.torsion.lay != 0.0);
+        [self.twist_now(at), if laid { self.length(at) } else { 0.0 }]
+    }
+
+    /// [`Twist::laid`] where it is laid with a twist near this [rad].
+    pub fn starts(&self, near: f64, q: &[f64]) -> [f64; 2] {
+        let at = At { t: 0.0, q, v: &[], a: &[], internal: &[], relaxed: None };
+        let found = self.uncounted(&at);
+        let twist = found + TAU * ((near - found) / TAU).round();
+        [twist, twist - self.label_angle(q)]
     }
 
     /// Evaluates all of it, as torsion does in an element through which material flows: with the twist per length `K = Φ/A` the
     /// section of the material at an end spins at `ν = w - Ṗ K`, linear in between.
-    fn eval<S: Jet>(&self, at: &At<'_>, x: &Local<S>) -> Forces<S> {
+    fn eval<S: Jet>(&self, at: &At<'_>, x: &Local<S>, now: [f64; 2]) -> Forces<S> {
         let Some(Twist { torsion: Torsional { gj, damping, inertia, free, lay }, .. }) = self.at().twist
         else {
             let zero = S::zero();
             let (r, energy, shown) = ([zero; MOST], [zero; 2], [zero; 2]);
             return Forces { r, energy, dissipated: zero, carried: zero, shown };
         };
-        let Shape { twist, by_twist, length, by_length } = self.shaped(at, &x.d);
+        let Shape { twist, by_twist, length, by_length } = self.shaped(at, &x.d, now);
         let groove = self.at();
         let p = |k: usize| x.d[SECOND * k + 7] + at.q[groove.ends[k].q];
         let (pd, pdd) = ([0, 1].map(|k| x.v[SECOND * k + 7]), [0, 1].map(|k| x.a[SECOND * k + 7]));
@@ -162,7 +192,8 @@ impl ArcTorsion {
         let kd = (rate - k * grows) / stored;
         let strain = length / stored - 1.0;
         let (off, viscous) = (k - free, kd * damping);
-        let moment = off * gj + viscous + strain * lay;
+        let elastic = off * gj + strain * lay;
+        let moment = elastic + viscous;
         let by_stored = -(k * (k * (0.5 * gj) + viscous)) - (length / stored * off + strain * free) * lay;
         let nu = [0, 1].map(|i| x.v[SECOND * i + 6] - pd[i] * k);
         let slope = (nu[1] - nu[0]) / stored;
@@ -190,8 +221,12 @@ impl ArcTorsion {
             energy: [kinetic, potential],
             dissipated: stored * viscous * kd,
             carried,
-            shown: [k, moment],
+            shown: [k, elastic],
         }
+    }
+
+    fn forces(&self, at: &At<'_>) -> Forces<f64> {
+        self.eval(at, &self.local(&self.dofs(), at), self.now(at))
     }
 }
 
@@ -206,8 +241,9 @@ impl Term for ArcTorsion {
         false
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        let (dofs, x, w) = (self.dofs(), self.local(at), out.weights());
-        for (dof, r) in dofs.iter().zip(self.eval(at, &x).r) {
+        let (dofs, w, now) = (self.dofs(), out.weights(), self.now(at));
+        let x = self.local(&dofs, at);
+        for (dof, r) in dofs.iter().zip(self.eval(at, &x, now).r) {
             out.add(*dof, r);
         }
         if !out.wants_tangent() {
@@ -219,22 +255,22 @@ impl Term for ArcTorsion {
                 std::array::from_fn(|i| Dual64::new(x[i], if i == j { w } else { 0.0 }))
             };
             let x = Local { d: towards(&x.d, w.q), v: towards(&x.v, w.v), a: towards(&x.a, w.a) };
-            let column = self.eval(at, &x).r;
+            let column = self.eval(at, &x, now).r;
             for i in 0..dofs.len() {
                 block[i][j] = column[i].eps;
             }
         }
         let still = Local { a: [0.0; MOST], ..x };
-        let force = self.eval(at, &still).r;
+        let force = self.eval(at, &still, now).r;
         leave_out(&self.at().ends, at, w.q, [force[6], force[SECOND + 6]], &mut block);
         out.add_square(0, &block);
     }
     fn energy(&self, at: &At<'_>) -> Energy {
-        let [kinetic, potential] = self.eval(at, &self.local(at)).energy;
+        let [kinetic, potential] = self.forces(at).energy;
         Energy { kinetic, potential }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let Forces { dissipated, carried, .. } = self.eval(at, &self.local(at));
+        let Forces { dissipated, carried, .. } = self.forces(at);
         Power { dissipated, carried, ..Power::default() }
     }
     fn remembers(&self) -> Option<&dyn Remembers> {
@@ -253,16 +289,17 @@ impl Shows for ArcTorsion {
             .to_vec()
     }
     fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
-        out.extend(self.eval(at, &self.local(at)).shown);
+        out.extend(self.forces(at).shown);
     }
 }
 
 impl Remembers for ArcTorsion {
     fn remember(&self, at: &At<'_>, memory: &mut [f64]) {
         let Some(own) = self.at().twist else { return };
-        let twist = self.shaped(&At { internal: memory, ..*at }, &[0.0; MOST]).twist;
-        if let Some(x) = memory.get_mut(own.memory) {
-            *x = twist - own.laid;
+        let twist = self.twist_now(&At { internal: memory, ..*at });
+        let now = [twist, twist - self.label_angle(at.q)];
+        for (x, (now, laid)) in memory.iter_mut().skip(own.memory).zip(now.into_iter().zip(own.laid)) {
+            *x = now - laid;
         }
     }
     fn rests(&self) -> bool {
@@ -270,10 +307,22 @@ impl Remembers for ArcTorsion {
     }
     fn settle(&self, at: &At<'_>, memory: &mut [f64]) -> bool {
         let own = self.at().twist;
-        let now = |memory: &[f64]| own.and_then(|own| memory.get(own.memory).copied()).unwrap_or(0.0);
+        let now = |memory: &[f64]| own.map_or(0.0, |own| own.recalls(0, memory));
         let before = now(memory);
         self.remember(at, memory);
         // friction goes by the tension, of which that of twist is known from here on
         own.is_some_and(|own| own.torsion.lay != 0.0) && (now(memory) - before).abs() > 1e-9
+    }
+    fn lost(&self, at: &At<'_>) -> Option<String> {
+        let change = self.twist_now(at) - self.label_angle(at.q) - self.at().twist?.recalls(1, at.internal);
+        (!(change.abs() <= MOST_CHANGE)).then(|| {
+            format!(
+                "a cable with torsion turns so far about `{}` at once that its turns can't be counted",
+                self.sheave.name
+            )
+        })
+    }
+    fn labels(&self, q: &[f64]) -> Option<(usize, f64)> {
+        Some((self.at().twist?.memory + 1, self.label_angle(q)))
     }
 }

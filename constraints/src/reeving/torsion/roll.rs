@@ -109,7 +109,11 @@ impl Rolls {
     /// Where it lies in its groove: the motion, and its twist there.
     fn lies(&self, at: &At<'_>) -> Option<(Local<f64>, Shape<f64>)> {
         let wraps = Mode::of(at.internal, self.torsion.at().mode) == Mode::Wraps;
-        wraps.then(|| (self.torsion.local(at), self.torsion.shaped(at, &[0.0; MOST])))
+        let torsion = &self.torsion;
+        wraps.then(|| {
+            let now = [torsion.twist_now(at), torsion.length(at)];
+            (torsion.local(&torsion.dofs(), at), torsion.shaped(at, &[0.0; MOST], now))
+        })
     }
 }
 

@@ -62,12 +62,11 @@ impl ArcTorsion {
     }
 
     /// Where it wraps the wheel.
-    fn wraps<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> Shape<S> {
+    fn wraps<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> [[S; MOST]; 2] {
         let (hub, groove) = (self.hub(at, d), self.at());
         let (a, zero) = (&hub.axis, S::zero());
         let (mut by_twist, mut by_length) = ([zero; MOST], [zero; MOST]);
         let (mut place, mut turning, mut pulls) = ([zero; 3], [zero; 3], [zero; 3]);
-        let mut seen = [0.0; 2];
         let mut outs = [[zero; 3]; 2];
         for k in 0..2 {
             let sign = if k == 0 { -1.0 } else { 1.0 };
@@ -98,9 +97,6 @@ impl ArcTorsion {
             let f = cross(a, &rho).map(|x| x * (radius * groove.side() * sign) / square);
             by_length[i..i + 3].copy_from_slice(&f);
             pulls = less(&pulls, S::one(), &f);
-            let own = section(&at.q[groove.ends[k].end_q..]);
-            let along = |c: usize| (0..3).map(|i| rho[i].re() * own[i][c]).sum::<f64>();
-            seen[k] = along(0).atan2(along(1));
         }
         self.carry(&hub, &place, &turning, &mut by_twist);
         // of an end beside the plane of the wheel the wrap changes as the axis tilts
@@ -113,8 +109,20 @@ impl ArcTorsion {
             share * (x * normal[i] + y * (outs[0][i] * beside[1] + outs[1][i] * beside[0]))
         });
         self.carry(&hub, &pulls, &cross(a, &by_axis), &mut by_length);
-        let length = groove.arc.radius * self.sheave.lay(self.groove, at).0.wrap;
-        self.shape(self.counted(seen[1] - seen[0], at), length, by_twist, by_length, d)
+        [by_twist, by_length]
+    }
+
+    /// Its twist there, but for whole turns: the difference of the angles at which the direction from the axis is seen in the sections.
+    fn seen(&self, at: &At<'_>) -> f64 {
+        let (hub, ends) = (self.hub(at, &[0.0; MOST]), self.at().ends);
+        let [from, to] = ends.map(|end| {
+            let out: V3<f64> = std::array::from_fn(|i| at.q[end.end_q + i] - hub.centre[i]);
+            let rho = less(&out, along(&hub.axis, &out), &hub.axis);
+            let own = section(&at.q[end.end_q..]);
+            let [x, y] = [1, 0].map(|c| (0..3).map(|i| rho[i] * own[i][c]).sum::<f64>());
+            y.atan2(x)
+        });
+        to - from
     }
 
     /// Spreads what the centre and the rotation of the wheel do over what carries it.
@@ -130,23 +138,9 @@ impl ArcTorsion {
         }
     }
 
-    /// Both as they are, with their derivatives.
-    fn shape<S: Jet>(
-        &self,
-        twist: f64,
-        length: f64,
-        by_twist: [S; MOST],
-        by_length: [S; MOST],
-        d: &[S; MOST],
-    ) -> Shape<S> {
-        let moved =
-            |now: f64, by: &[S; MOST]| by.iter().zip(d).fold(S::from(now), |sum, (b, d)| sum + *b * *d);
-        Shape { twist: moved(twist, &by_twist), by_twist, length: moved(length, &by_length), by_length }
-    }
-
     /// Where a straight piece lies between both ends. The directors go from the tangent of one over the direction `D` of the piece
     /// to that of the other: that is twice the area of their triangle besides the smallest rotation between both.
-    fn straight<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> Shape<S> {
+    fn straight<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> [[S; MOST]; 2] {
         let zero = S::zero();
         let [[r1, p1], [r2, p2]] = [0, 1].map(|k| self.end(k, at, d));
         let chord = less(&r2, S::one(), &r1);
@@ -181,17 +175,49 @@ impl ArcTorsion {
         }
         by_twist[6] = S::from(-1.0);
         by_twist[SECOND + 6] = S::one();
-        let [m1, m2] = self.at().ends.map(|end| section(&at.q[end.end_q..]));
-        let column = |m: &[V3<f64>; 3], c: usize| -> V3<f64> { [m[0][c], m[1][c], m[2][c]] };
-        let now = between([&column(&m1, 2), &column(&m1, 0)], [&column(&m2, 2), &column(&m2, 0)]);
-        let now = now + 4.0 * volume.re() / open.re();
-        self.shape(self.counted(now, at), size.re(), by_twist, by_length, d)
+        [by_twist, by_length]
     }
 
-    pub(super) fn shaped<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> Shape<S> {
-        match Mode::of(at.internal, self.at().mode) {
-            Mode::Wraps => self.wraps(at, d),
-            Mode::Touches | Mode::Off => self.straight(at, d),
+    /// Its twist there, but for whole turns.
+    fn turned(&self, at: &At<'_>) -> f64 {
+        let [[r1, p1], [r2, p2]] = [0, 1].map(|k| self.end::<f64>(k, at, &[0.0; MOST]));
+        let unit = |x: &V3<f64>| {
+            let size = along(x, x).sqrt();
+            x.map(|x| x / size)
+        };
+        let (t1, t2, way) = (unit(&p1), unit(&p2), unit(&less(&r2, 1.0, &r1)));
+        let [d1, d2] = self.at().ends.map(|end| {
+            let own = section(&at.q[end.end_q..]);
+            std::array::from_fn(|i| own[i][0])
+        });
+        let (volume, c) = (along(&way, &cross(&t1, &t2)), along(&t1, &t2));
+        between([&t1, &d1], [&t2, &d2]) + 4.0 * volume / (1.0 + c + along(&t1, &way) + along(&way, &t2))
+    }
+
+    fn wrapped(&self, at: &At<'_>) -> bool {
+        Mode::of(at.internal, self.at().mode) == Mode::Wraps
+    }
+
+    /// Its twist now, but for whole turns.
+    pub(super) fn uncounted(&self, at: &At<'_>) -> f64 {
+        if self.wrapped(at) { self.seen(at) } else { self.turned(at) }
+    }
+
+    /// Its stretched length now.
+    pub(super) fn length(&self, at: &At<'_>) -> f64 {
+        if self.wrapped(at) {
+            return self.at().arc.radius * self.sheave.lay(self.groove, at).0.wrap;
         }
+        let [[from, _], [to, _]] = [0, 1].map(|k| self.end::<f64>(k, at, &[0.0; MOST]));
+        let chord = less(&to, 1.0, &from);
+        along(&chord, &chord).sqrt()
+    }
+
+    /// Twist and length, which are these now, with their derivatives.
+    pub(super) fn shaped<S: Jet>(&self, at: &At<'_>, d: &[S; MOST], now: [f64; 2]) -> Shape<S> {
+        let [by_twist, by_length] = if self.wrapped(at) { self.wraps(at, d) } else { self.straight(at, d) };
+        let moved =
+            |now: f64, by: &[S; MOST]| by.iter().zip(d).fold(S::from(now), |sum, (b, d)| sum + *b * *d);
+        Shape { twist: moved(now[0], &by_twist), by_twist, length: moved(now[1], &by_length), by_length }
     }
 }

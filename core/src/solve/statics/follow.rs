@@ -19,12 +19,17 @@ impl Statics<'_> {
     /// # Errors
     /// None was found, or there is none since the length of a cable changes; the state is as it was.
     pub fn find(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
-        self.model.relabel(&mut state.q);
+        self.model.relabel(state);
         self.run_material(state)?;
         let before = state.clone();
         let found = self.seek(state, cold)?;
         self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
         let mut found = found;
+        if let Some(why) = self.model.lost(&state.at()) {
+            let e = self.fail(state, &why, found.iterations);
+            state.clone_from(&before);
+            return Err(e);
+        }
         for _ in 0..SETTLED {
             if !self.model.settle(state) {
                 break;
@@ -165,7 +170,7 @@ impl Statics<'_> {
         let short = h.abs() / 4.5;
         let mut arcs = 0;
         while state.t != t {
-            self.model.relabel(&mut state.q);
+            self.model.relabel(state);
             let before = state.clone();
             let swings = self.judged.flutter > 0.0;
             state.t = if (t - before.t).abs() <= 1.001 * h.abs() { t } else { before.t + h };
@@ -252,6 +257,9 @@ impl Statics<'_> {
             let why = format!("it is unstable in {} directions", self.unstable);
             return Err(StaticsError { why, ..self.fail(state, "", found.iterations) });
         }
-        Ok(found)
+        match self.model.lost(&state.at()) {
+            Some(why) => Err(self.fail(state, &why, found.iterations)),
+            None => Ok(found),
+        }
     }
 }

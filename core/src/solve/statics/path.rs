@@ -78,7 +78,7 @@ impl Statics<'_> {
             if self.is_over() {
                 break;
             }
-            self.model.relabel(&mut here.state.q);
+            self.model.relabel(&mut here.state);
             // beyond the end loads may be others
             let reach = (end - here.state.t) / here.rate;
             if reach > 0.0 && ds >= reach {

@@ -266,10 +266,13 @@ impl CableSpec {
         for (k, ((name, span), length)) in names.iter().zip(&spans).zip(&lengths).enumerate() {
             let along = way(span).map(|x| self.speed * x / length);
             let normal = match torsion.and(k.checked_sub(1)) {
-                Some(before) => boundary(b, before, 1)?.map(|end| {
-                    let twist = self.laid_twist * stored(k);
-                    torsion::behind(b, &end, (&stops[k], &turns[k]), &way(span), twist)
-                }),
+                Some(before) => {
+                    self.check_kink(k, [&way(&spans[before]), &way(span)])?;
+                    boundary(b, before, 1)?.map(|end| {
+                        let twist = self.laid_twist * stored(k);
+                        torsion::behind(b, &end, (&stops[k], &turns[k]), &way(span), twist)
+                    })
+                }
                 None => self.normal,
             };
             let span = CableSpec {
@@ -297,7 +300,8 @@ impl CableSpec {
             ea: s.ea,
             ei: s.ei.across,
             diameter: s.diameter,
-            damping: s.axial_retardation_time * s.ea,
+            // as in spans, where torsion brings what is missing of EA without damping
+            damping: s.axial_retardation_time * (s.ea - torsion.map_or(0.0, |t| t.lay * t.lay / t.gj)),
             weighs: b.weighs(&self.name),
             torsion,
         };

@@ -1,5 +1,6 @@
 //! Which way the sections of a cable with torsion look behind a wheel or a ring.
 
+use super::Waypoint;
 use super::geometry::{Stop, Turn};
 use crate::cable::CableSpec;
 use crate::cable::twisted::torsional;
@@ -7,6 +8,9 @@ use ropewalk_core::model::twist::{carried, section};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::{BuildError, MovingBoundary, V3, dot};
 use ropewalk_scene::{Builder, Torsional};
+
+/// What `1 + t·t'` of the tangents before and behind a ring must not fall below, as of those of an element.
+const LEAST_OPEN: f64 = 0.1;
 
 fn unit(x: &V3<f64>) -> V3<f64> {
     let size = dot(x, x).sqrt();
@@ -56,6 +60,12 @@ impl CableSpec {
             let message = "a closed belt is joined as its way turns its section: leave it out";
             return Err(BuildError::at("laid_twist", message));
         }
+        let wound = self.route.iter().any(|w| matches!(w, Waypoint::Wound(_)));
+        if wound && torsion.is_some_and(|t| t.lay != 0.0) {
+            let message =
+                "a rope that turns when it is pulled can't be wound on a drum yet: let it run from a `winch`";
+            return Err(BuildError::at("section.torque_tension", message));
+        }
         let ring = stops.iter().position(|s| matches!(s, Stop::Point(_)));
         if let Some(k) = ring.filter(|_| closed && torsion.is_some()) {
             let message = "a closed belt with torsion has a twist of its own by its way, which a ring at a point can't hold: let it \
@@ -63,5 +73,18 @@ impl CableSpec {
             return Err(BuildError::at(format!("route[{k}]"), message));
         }
         Ok(torsion)
+    }
+
+    /// Refuses a ring at this waypoint in which a cable with torsion would double back.
+    pub(super) fn check_kink(&self, k: usize, ways: [&V3<f64>; 2]) -> Result<(), BuildError> {
+        let [before, behind] = ways.map(unit);
+        let Some(Waypoint::Through(ring)) = self.route.get(k) else { return Ok(()) };
+        if 1.0 + dot(&before, &behind) >= LEAST_OPEN {
+            return Ok(());
+        }
+        let message = format!(
+            "the cable doubles back at `{ring}`, where its twist can't be told: let it run over a `sheave`, or leave `gj` out"
+        );
+        Err(BuildError::at(format!("route[{k}]"), message))
     }
 }
