@@ -177,7 +177,8 @@ class Parts:
             Default: where a curved cable bends most, at right angles to the plane in which it does; else it doesn't
             matter.
         twist: Stress-free twist per length of a cable with torsion, added to that of `stress_free` [rad/m].
-        laid_twist: Twist per length with which a cable with torsion is laid [rad/m].
+        laid_twist: Twist per length with which a cable with torsion is laid [rad/m]. What is wound on a drum at the
+            start keeps it, whatever equilibrium the run begins with.
         levers: Points beside the axis of a cable with torsion, by name, that its sections carry along, such as the
             end of a crank: `levers.crank = { at = "end", offset = [0, 0, "10 cm"] }` gives a marker `name.crank`.
         """
@@ -884,8 +885,8 @@ class Parts:
 
         The cable turns sharply there; its bending stiffness doesn't resist that. A cable with torsion carries its
         twist through; its torque turns it out of the plane of the spans there, as far as its bending stiffness lets
-        it. With `friction` the tensions before and behind differ by the capstan equation with the angle of
-        deflection.
+        it, which it needs. With `friction` the tensions before and behind differ by the capstan equation with the
+        angle of deflection.
 
         name: Name; routes and records refer to it.
         marker: Where it is: a point in space, or of a part that stands above the cable in the scene.
