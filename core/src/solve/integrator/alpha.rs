@@ -151,8 +151,8 @@ impl Alpha {
         model.without_driven(&state.internal, &mut e);
         rhs.clear();
         rhs.resize(model.structure().n, 0.0);
-        work.times_mass(model, &e, &mut rhs[..nv]);
-        let solved = work.solve(model, Which::Iteration, &mut rhs);
+        let known = work.times_inertia(model, &state.at(), &state.lambda, &e, &mut rhs[..nv]);
+        let solved = known.and_then(|()| work.solve(model, Which::Iteration, &mut rhs));
         // once constraints have taken out what rounding and iterations leave across them
         self.weigh_turning(model, work, &mut rhs);
         let size = work.norms.relative(&rhs[..nv]);

@@ -5,6 +5,7 @@ mod controller;
 mod convergence;
 mod factors;
 mod forces;
+mod inertia;
 mod newton;
 mod norm;
 mod options;

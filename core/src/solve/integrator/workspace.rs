@@ -1,6 +1,7 @@
 //! Scratch and caches of an integration. Dropping it changes cost, never what is accepted.
 
 use super::forces::Forces;
+use super::inertia::Inertia;
 use super::norm::Norms;
 use super::radau::stages::Stages;
 use super::scales::Scaled;
@@ -55,6 +56,8 @@ pub struct Workspace {
     pub(crate) mass_solver: Guard,
     /// The matrix that `mass_solver` has factored.
     mass_factored: Vec<f64>,
+    /// What errors are estimated with.
+    pub(crate) inertia: Inertia,
     /// Whether `mass.values` holds the mass matrix of the start, for norms.
     pub(crate) has_mass: bool,
     /// What counts as large, part by part; empty before the mass matrix is known.
@@ -62,7 +65,7 @@ pub struct Workspace {
     /// What forces are compared with.
     pub(crate) forces: Forces,
     /// Diagonal of the mass matrix of the start.
-    mass_diagonal: Vec<f64>,
+    pub(super) mass_diagonal: Vec<f64>,
     /// In elimination order.
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
@@ -117,6 +120,7 @@ impl Workspace {
             mass: System::default(),
             mass_solver: Guard::new(s)?,
             mass_factored: Vec::new(),
+            inertia: Inertia::default(),
             has_mass: false,
             norms: Norms::default(),
             forces: Forces::default(),
@@ -414,6 +418,7 @@ impl Workspace {
             return Ok(());
         }
         self.assemble_mass(model, at, lambda, 0.0, false)?;
+        self.inertia.take(&self.mass.values);
         // translations weigh what they move, everything else its diagonal entry
         let diagonal = model.structure().diagonal.iter();
         self.mass_diagonal =

@@ -1,0 +1,87 @@
+//! The mass matrix that errors of steps are estimated with.
+//!
+//! Where cable flows, bodies turn or water comes along it changes, and an old one makes a wrong estimate. To assemble it at
+//! every step would cost as much as an iteration: it is made anew as often as it changes. Nothing but steps does so: looking
+//! at a run between them doesn't change the estimate.
+
+use super::workspace::Workspace;
+use crate::model::Model;
+use crate::model::state::At;
+use crate::solve::linear::SolveError;
+
+/// For how many steps a matrix serves at first, and at most.
+const SERVES: [u32; 2] = [8, 512];
+/// What a new matrix makes of the estimate, in parts of it, for the next to serve twice as long, and half as long.
+const CHANGED: [f64; 2] = [0.02, 0.1];
+
+/// A mass matrix, in the order of [`Structure`](crate::model::structure::Structure).
+pub(crate) struct Inertia {
+    values: Vec<f64>,
+    /// Steps that it has served, and that it is to serve.
+    served: u32,
+    serves: u32,
+}
+
+impl Default for Inertia {
+    fn default() -> Self {
+        Inertia { values: Vec::new(), served: 0, serves: SERVES[0] }
+    }
+}
+
+impl Inertia {
+    /// Takes a matrix that was just assembled.
+    pub fn take(&mut self, values: &[f64]) {
+        self.values.clear();
+        self.values.extend_from_slice(values);
+        self.served = 0;
+    }
+
+    /// How long the next serves, after one that changed the estimate by this part of it.
+    fn changed(&mut self, by: f64) {
+        self.serves = match by {
+            by if by <= CHANGED[0] => (2 * self.serves).min(SERVES[1]),
+            // a NaN too
+            by if !(by < CHANGED[1]) => (self.serves / 2).max(1),
+            _ => self.serves,
+        };
+    }
+}
+
+impl Workspace {
+    /// `M d` in the order of velocities, with a mass matrix that is nearly that of now.
+    pub(crate) fn times_inertia(
+        &mut self,
+        model: &Model,
+        at: &At<'_>,
+        lambda: &[f64],
+        d: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), SolveError> {
+        self.multiply_inertia(model, d, out);
+        self.inertia.served += 1;
+        if self.inertia.served < self.inertia.serves {
+            return Ok(());
+        }
+        let before = out.to_vec();
+        self.assemble_mass(model, at, lambda, 0.0, false)?;
+        self.inertia.take(&self.mass.values);
+        self.multiply_inertia(model, d, out);
+        let (mut off, mut all) = (Vec::new(), Vec::new());
+        let mass = &self.mass_diagonal;
+        let per = |x: f64, i: usize| if mass[i] > 0.0 { x * x / mass[i] } else { 0.0 };
+        self.norms.sums(|i| per(out[i] - before[i], i), &mut off);
+        self.norms.sums(|i| per(out[i], i), &mut all);
+        let parts = off.iter().zip(&all).filter(|(off, _)| **off != 0.0);
+        let by = parts.map(|(off, all)| (off / all).sqrt()).fold(0.0, |m: f64, x| if x <= m { m } else { x });
+        self.inertia.changed(by);
+        Ok(())
+    }
+
+    fn multiply_inertia(&mut self, model: &Model, d: &[f64], out: &mut [f64]) {
+        let s = model.structure();
+        self.x.fill(0.0);
+        s.order(d, &mut self.x);
+        s.multiply(&self.inertia.values, &self.x, &mut self.y);
+        s.restore(&self.y, out);
+    }
+}
