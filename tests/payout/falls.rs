@@ -160,3 +160,16 @@ fn an_hour_of_hoisting_keeps_its_energy() {
     let rise = history.last("block.z").expect("block") - history.column("block.z").expect("block")[0];
     assert!(rise.abs() < 0.1, "{rise} m");
 }
+
+#[test]
+fn looking_at_a_tackle_changes_no_step_of_it() {
+    // its mass matrix changes as rope comes and goes, and its error is estimated with that
+    let hoist = |output: f64| Hoist { falls: 4, wheel: RUBS, output, duration: 4.0, ..Hoist::default() };
+    let [often, never] = [0.05, 4.0].map(|output| run(&read(&hoist(output).text())));
+    println!("{:?}, {:?}", often.counts, never.counts);
+    assert_eq!(often.counts.steps, never.counts.steps);
+    assert_eq!(often.counts.rejected, never.counts.rejected);
+    for column in ["block.z", "block.x", "drum.torque"] {
+        assert_eq!(often.last(column), never.last(column), "{column}");
+    }
+}

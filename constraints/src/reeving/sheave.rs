@@ -266,7 +266,7 @@ impl Sheave {
     }
 
     /// Whether it has friction.
-    fn rubs(&self) -> bool {
+    pub fn rubs(&self) -> bool {
         self.grooves.iter().any(|g| match g.arc.grip {
             Grip::Slides(mu) => mu > 0.0,
             Grip::Turns(_) => g.arc.bearing[0] > 0.0 || g.arc.bearing[1] > 0.0,
