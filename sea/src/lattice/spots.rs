@@ -2,8 +2,8 @@
 
 use std::hash::Hasher;
 
-/// Number of spots that are remembered, a power of two.
-const MOST: usize = 1 << 14;
+/// Number of spots that are remembered, a power of two: few enough to stay in the cache.
+const MOST: usize = 1 << 12;
 /// Of no spot at all.
 const NOWHERE: [i64; 3] = [i64::MIN; 3];
 
