@@ -11,6 +11,8 @@ const LANES: usize = 8;
 /// time to another instant.
 #[derive(Clone, Debug)]
 pub struct Stations {
+    /// How many there are: as many others know nothing of these.
+    lanes: usize,
     /// The spots along the waves and the instant that the surface was asked for, and those that the water was.
     nearest: [[f64; LANES]; 2],
     n: [i64; 2],
@@ -30,6 +32,7 @@ impl Default for Stations {
     fn default() -> Self {
         let nowhere = [f64::NAN; LANES];
         Stations {
+            lanes: 0,
             nearest: [nowhere; 2],
             n: [0; 2],
             edges: [[0.0; LANES]; 16],
@@ -99,6 +102,9 @@ impl Lattice {
     /// The surface above places, of a flow of which nothing else is known.
     #[inline(always)]
     pub fn surface<R: Real>(&mut self, t: f64, place: [R; 2], stations: &mut Stations) -> Flow<R> {
+        if stations.lanes != R::LANES {
+            *stations = Stations { lanes: R::LANES, ..Stations::default() };
+        }
         let Instant { n, late } = self.instant(t);
         let (nearest, off) = self.nearest(place);
         if stations.n[0] != n || !same::<R>(&nearest, &stations.nearest[0]) {
