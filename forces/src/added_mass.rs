@@ -3,7 +3,7 @@
 use crate::all_round::AllRound;
 use crate::buoyancy::surface;
 use crate::drag::{add, free_tips, less_product, velocity};
-use crate::{BluntEnd, FeedingEnd, FroudeKrylov, Surface, Wetted, at_tip};
+use crate::{BluntEnd, FeedingEnd, FroudeKrylov, Immersed, Surface, Wetted, at_tip};
 use ropewalk_core::error::not_negative;
 use ropewalk_core::{BuildError, Gives, Law, Load, Part, Power, Real, Station, V3, dot, scaled};
 use ropewalk_scene::{Builder, Current, ForceSpec, Sea, Swell, quantity, register_spec};
@@ -94,7 +94,7 @@ impl AddedMass {
     /// Velocity of the fluid at a place [m/s].
     #[inline(always)]
     pub(crate) fn fluid<R: Real>(&self, t: f64, x: &V3<R>) -> V3<R> {
-        velocity(&self.current, self.sea.as_deref(), t, x)
+        velocity(&self.current, self.sea.as_ref().map(|sea| sea.at(t, x)).as_ref(), x)
     }
 
     /// The answer to the acceleration relative to the water.
@@ -226,7 +226,8 @@ impl AddedMass {
     /// The velocity of the water and that relative to it, whose part across the axis is `n`.
     #[inline(always)]
     fn relative<R: Real>(&self, t: f64, at: &Station<R>) -> Relative<R> {
-        let u = self.fluid(t, &at.x);
+        let swell = self.sea.as_ref().map(|sea| sea.along(t, at));
+        let u = velocity(&self.current, swell.as_ref(), &at.x);
         let square = dot(&at.slope, &at.slope);
         let mut w = at.v;
         for i in 0..3 {
@@ -297,11 +298,8 @@ impl Law for AddedMass {
 
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let swell = self.sea.as_ref().map(|sea| sea.at(t, &at.x));
-        self.inertia::<R, TANGENT>(at, swell.as_ref(), out);
-        if self.theory == Theory::Energy {
-            self.flow::<R, TANGENT>(at, swell.as_ref(), out);
-        }
+        let swell = self.sea.as_ref().map(|sea| sea.along(t, at));
+        self.load_in::<R, TANGENT>(at, swell.as_ref(), out);
     }
 
     #[inline(always)]
@@ -313,7 +311,7 @@ impl Law for AddedMass {
                 let (Relative { u, w, n }, (_, du)) = (self.relative(t, at), self.current.at(at.x[2]));
                 let mut met = at.v[2] * dot(&n, &du);
                 if let Some(sea) = &self.sea {
-                    let Swell { gradient, by_x, by_t, rate, .. } = sea.at(t, &at.x);
+                    let Swell { gradient, by_x, by_t, rate, .. } = sea.along(t, at);
                     for i in 0..3 {
                         met += n[i] * dot(&gradient[i], &w);
                         // above the surface the water has the velocity that it has at the surface
@@ -334,6 +332,25 @@ impl Law for AddedMass {
                 let n = self.relative(t, at).n;
                 R::of(0.5) * self.mass(at.diameter) * dot(&n, &n)
             }
+        }
+    }
+}
+
+impl Immersed for AddedMass {
+    #[inline(always)]
+    fn sea(&self) -> Option<&Arc<Sea>> {
+        self.sea.as_ref()
+    }
+    #[inline(always)]
+    fn load_in<R: Real, const TANGENT: bool>(
+        &self,
+        at: &Station<R>,
+        swell: Option<&Swell<R>>,
+        out: &mut Load<R>,
+    ) {
+        self.inertia::<R, TANGENT>(at, swell, out);
+        if self.theory == Theory::Energy {
+            self.flow::<R, TANGENT>(at, swell, out);
         }
     }
 }

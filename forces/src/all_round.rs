@@ -1,8 +1,8 @@
 //! Added mass that is the same in all directions.
 
-use crate::{AddedMass, Theory};
+use crate::{AddedMass, Immersed, Theory};
 use ropewalk_core::{Gives, Law, Load, Real, Station};
-use ropewalk_scene::Sea;
+use ropewalk_scene::{Sea, Swell};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -53,6 +53,23 @@ impl Law for AllRound {
     }
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
+        let swell = self.sea.as_ref().map(|sea| sea.along(t, at));
+        self.load_in::<R, TANGENT>(at, swell.as_ref(), out);
+    }
+}
+
+impl Immersed for AllRound {
+    #[inline(always)]
+    fn sea(&self) -> Option<&Arc<Sea>> {
+        self.sea.as_ref()
+    }
+    #[inline(always)]
+    fn load_in<R: Real, const TANGENT: bool>(
+        &self,
+        at: &Station<R>,
+        swell: Option<&Swell<R>>,
+        out: &mut Load<R>,
+    ) {
         let mass = R::of(self.coefficient * self.density * PI / 4.0) * at.diameter * at.diameter;
         for i in 0..3 {
             out.f[i] -= mass * at.a[i];
@@ -60,7 +77,7 @@ impl Law for AllRound {
                 out.d_a[i][i] -= mass;
             }
         }
-        let Some(swell) = self.sea.as_ref().map(|sea| sea.at(t, &at.x)) else { return };
+        let Some(swell) = swell else { return };
         let (a, by_x) = match self.theory {
             Theory::Energy => swell.along_path(&self.current, at.x[2]),
             Theory::Morison => (swell.acceleration, swell.acceleration_by_x),

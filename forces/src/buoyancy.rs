@@ -43,7 +43,7 @@ impl Law for Buoyancy {
     }
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let swell = self.surface.swell(t, &at.x);
+        let swell = self.surface.swell(t, at);
         let (wet, k) = (self.surface.wet(at, swell.as_ref()), R::of(self.specific_weight) * at.area);
         out.f[2] += k * wet.lift;
         for i in 0..3 {
@@ -79,7 +79,7 @@ impl Law for Buoyancy {
     }
     #[inline(always)]
     fn power<R: Real>(&self, t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
-        let supplied = match self.surface.swell(t, &at.x) {
+        let supplied = match self.surface.swell(t, at) {
             _ if !self.couple => load.f[2] * at.v[2],
             None => R::zero(),
             // what lies deeper under a surface that has risen has more potential energy
@@ -90,7 +90,7 @@ impl Law for Buoyancy {
     #[inline(always)]
     fn potential<R: Real>(&self, t: f64, at: &Station<R>) -> R {
         if self.couple {
-            let swell = self.surface.swell(t, &at.x);
+            let swell = self.surface.swell(t, at);
             R::of(self.specific_weight) * at.area * self.surface.wet(at, swell.as_ref()).depth
         } else {
             R::zero()
@@ -155,7 +155,7 @@ impl Float {
     }
     /// The waves around it.
     fn swell(&self, at: &At<'_>) -> Option<Swell<f64>> {
-        self.surface.swell(at.t, &self.held.x(at))
+        self.surface.swell_at(at.t, &self.held.x(at))
     }
 }
 

@@ -1,8 +1,8 @@
 //! The pressure of waves on what is in them.
 
-use crate::Theory;
+use crate::{Immersed, Theory};
 use ropewalk_core::{Gives, Law, Load, Real, Station};
-use ropewalk_scene::{Current, Sea};
+use ropewalk_scene::{Current, Sea, Swell};
 use std::sync::Arc;
 
 /// Force of the pressure that waves have without the body: `ρ A u̇` per unstretched length, in all directions, with the
@@ -38,7 +38,25 @@ impl Law for FroudeKrylov {
     }
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let (swell, mass) = (self.sea.at(t, &at.x), R::of(self.density) * at.area);
+        let swell = self.sea.along(t, at);
+        self.load_in::<R, TANGENT>(at, Some(&swell), out);
+    }
+}
+
+impl Immersed for FroudeKrylov {
+    #[inline(always)]
+    fn sea(&self) -> Option<&Arc<Sea>> {
+        Some(&self.sea)
+    }
+    #[inline(always)]
+    fn load_in<R: Real, const TANGENT: bool>(
+        &self,
+        at: &Station<R>,
+        swell: Option<&Swell<R>>,
+        out: &mut Load<R>,
+    ) {
+        let Some(swell) = swell else { return };
+        let mass = R::of(self.density) * at.area;
         let (a, by_x) = match self.theory {
             Theory::Energy => swell.along_path(&self.current, at.x[2]),
             Theory::Morison => (swell.acceleration, swell.acceleration_by_x),

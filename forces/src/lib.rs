@@ -72,4 +72,4 @@ pub use time::{TimeFunction, TimeTable};
 pub use tip::{BluntEnd, EndDrag, FeedingEnd, TipLaw, at_tip};
 pub use vortex_shedding::{VortexShedding, VortexSheddingSpec, WakeOscillator};
 pub use wall::{Outside, Wall};
-pub use wetted::Wetted;
+pub use wetted::{Immersed, Wetted};

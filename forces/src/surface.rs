@@ -66,9 +66,14 @@ impl Surface {
         Surface { level, sea: None }
     }
 
-    /// Its waves at a place, if it has some.
+    /// Its waves at a station, if it has some.
     #[inline(always)]
-    pub fn swell<R: Real>(&self, t: f64, x: &V3<R>) -> Option<Swell<R>> {
+    pub fn swell<R: Real>(&self, t: f64, at: &Station<R>) -> Option<Swell<R>> {
+        self.sea.as_ref().map(|sea| sea.along(t, at))
+    }
+
+    /// Its waves at a place, if it has some.
+    pub fn swell_at<R: Real>(&self, t: f64, x: &V3<R>) -> Option<Swell<R>> {
         self.sea.as_ref().map(|sea| sea.at(t, x))
     }
 
@@ -100,7 +105,7 @@ impl Surface {
 
     /// Share of a ball's volume that is wet, and what it changes by with height [1/m]; `x` is its middle.
     pub fn ball<R: Real>(&self, t: f64, x: &V3<R>, radius: f64) -> (R, R) {
-        match self.swell(t, x) {
+        match self.swell_at(t, x) {
             None => ball_below(self.level, x[2], radius),
             Some(swell) => ball_below(self.level, x[2] - swell.elevation, radius),
         }

@@ -2,7 +2,21 @@
 
 use crate::{Surface, Wet};
 use ropewalk_core::{Gives, Law, Load, Power, Real, Station, V3};
-use ropewalk_scene::Swell;
+use ropewalk_scene::{Sea, Swell};
+use std::sync::Arc;
+
+/// A law of a fluid that may have waves, to which their motion at a station may be told: it is found once for all that asks.
+pub trait Immersed: Law {
+    /// Its waves.
+    fn sea(&self) -> Option<&Arc<Sea>>;
+    /// As [`Law::load`], where its waves do this.
+    fn load_in<R: Real, const TANGENT: bool>(
+        &self,
+        at: &Station<R>,
+        swell: Option<&Swell<R>>,
+        out: &mut Load<R>,
+    );
+}
 
 /// A law of a fluid, by the share of each station that is in it: of water below a surface, or of air above.
 ///
@@ -18,7 +32,7 @@ pub struct Wetted<L> {
     pub above: bool,
 }
 
-impl<L: Law> Wetted<L> {
+impl<L: Immersed> Wetted<L> {
     /// A law of water below a surface.
     pub fn below(surface: Surface, law: L) -> Self {
         Wetted { law, surface, above: false }
@@ -32,7 +46,7 @@ impl<L: Law> Wetted<L> {
     /// How much of a station is in the fluid, in place of how much is wet; and the waves there.
     #[inline(always)]
     fn share<R: Real>(&self, t: f64, at: &Station<R>) -> (Wet<R>, Option<Swell<R>>) {
-        let swell = self.surface.swell(t, &at.x);
+        let swell = self.surface.swell(t, at);
         let mut wet = self.surface.share(at, swell.as_ref());
         if self.above {
             wet.share = R::of(1.0) - wet.share;
@@ -43,9 +57,20 @@ impl<L: Law> Wetted<L> {
     }
 
     #[inline(always)]
-    fn whole<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>) -> Load<R> {
+    fn whole<R: Real, const TANGENT: bool>(
+        &self,
+        t: f64,
+        at: &Station<R>,
+        swell: Option<&Swell<R>>,
+    ) -> Load<R> {
         let mut whole = Load::zero();
-        self.law.load::<R, TANGENT>(t, at, &mut whole);
+        match (self.law.sea(), &self.surface.sea) {
+            (Some(own), Some(sea)) if Arc::ptr_eq(own, sea) => {
+                self.law.load_in::<R, TANGENT>(at, swell, &mut whole);
+            }
+            (None, _) => self.law.load_in::<R, TANGENT>(at, None, &mut whole),
+            _ => self.law.load::<R, TANGENT>(t, at, &mut whole),
+        }
         whole
     }
 }
@@ -59,7 +84,7 @@ fn add_scaled<R: Real>(share: R, whole: &[V3<R>; 3], out: &mut [V3<R>; 3]) {
     }
 }
 
-impl<L: Law> Law for Wetted<L> {
+impl<L: Immersed> Law for Wetted<L> {
     const NEEDS_DIAMETER: bool = L::NEEDS_DIAMETER;
     fn label(&self) -> String {
         if self.above { format!("{} in air", self.law.label()) } else { self.law.label() }
@@ -82,7 +107,7 @@ impl<L: Law> Law for Wetted<L> {
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let (wet, swell) = self.share(t, at);
         let (share, by_z, by_slope) = (wet.share, wet.share_by_z, wet.share_by_slope);
-        let whole = self.whole::<R, TANGENT>(t, at);
+        let whole = self.whole::<R, TANGENT>(t, at, swell.as_ref());
         for i in 0..3 {
             out.f[i] = share.fma(whole.f[i], out.f[i]);
             out.g[i] = share.fma(whole.g[i], out.g[i]);
@@ -120,7 +145,7 @@ impl<L: Law> Law for Wetted<L> {
     fn power<R: Real>(&self, t: f64, at: &Station<R>, _: &Load<R>) -> Power<R> {
         let (wet, swell) = self.share(t, at);
         let share = wet.share;
-        let power = self.law.power(t, at, &self.whole::<R, false>(t, at));
+        let power = self.law.power(t, at, &self.whole::<R, false>(t, at, swell.as_ref()));
         let met = wet.share_rate(at, swell.as_ref()) * self.law.kinetic(t, at);
         Power {
             dissipated: share * power.dissipated,

@@ -2,7 +2,7 @@
 
 use crate::current::Current;
 use crate::waves::{Evaluation, WavesSpec};
-use ropewalk_core::{BuildError, LaneTask, Real, V3, Width, dot, reach, run};
+use ropewalk_core::{BuildError, LaneTask, Real, Station, V3, Width, dot, reach, run};
 use ropewalk_sea::{Flow, Lattice, SplitMix64, Stations, Waves};
 use std::f64::consts::TAU;
 use std::fmt;
@@ -40,7 +40,7 @@ struct Found {
 type Places = [[f64; MOST]; 3];
 
 /// Number of packs that are remembered, a power of two.
-const PACKS: usize = 512;
+const PACKS: usize = 1024;
 /// As many lanes as the widest carrier has.
 const MOST: usize = 8;
 /// Numbers that tell the motion at a place, in this order: velocity and by the place, its rate and what the rise of the surface adds,
@@ -57,6 +57,8 @@ const SURFACE: usize = 39;
 const FEW: usize = 8;
 /// Places at which a table is compared with the sum.
 const PROBES: usize = 200;
+/// A station's pack keeps its slot while its first place stays in a cell of this size [m].
+const CELL: f64 = 16.0;
 /// How much finer than at first a table may become.
 const FINEST: f64 = 4.0;
 
@@ -203,16 +205,31 @@ impl Sea {
     /// The motion of the water at time `t` [s] at places.
     #[inline(always)]
     pub fn at<R: Real>(&self, t: f64, x: &V3<R>) -> Swell<R> {
+        // the slot of the last time, if what asks has moved little
+        self.from(mixed(x.map(|x| x.lane(0).to_bits() >> 42)), t, x)
+    }
+
+    /// The motion of the water at time `t` [s] at stations.
+    #[inline(always)]
+    pub fn along<R: Real>(&self, t: f64, at: &Station<R>) -> Swell<R> {
+        // the slot of the last time: a body's stations differ by their arc lengths, and bodies by where they are
+        let [x, y] = [at.x[0], at.x[1]].map(|x| (x.lane(0) / CELL) as i64);
+        let place = (x.wrapping_mul(1 << 20) ^ y).cast_unsigned();
+        self.from(mixed([at.s.lane(0).to_bits(), at.diameter.lane(0).to_bits(), place]), t, &at.x)
+    }
+
+    /// The motion at places from the slot of a key.
+    #[inline(always)]
+    fn from<R: Real>(&self, key: usize, t: f64, x: &V3<R>) -> Swell<R> {
         let mut places = [[0.0_f64; MOST]; 3];
         for i in 0..3 {
             x[i].write(&mut places[i]);
         }
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        // that of the last time, if what asks has moved little
-        let slot = mixed([places[0][0], places[1][0], places[2][0]].map(|x| x.to_bits() >> 42)) % PACKS;
+        let slot = key % PACKS;
         let found = &memory.packs[slot];
         // what is no number is never found
-        if (found.t, found.lanes) != (t, R::LANES) || found.at != places {
+        if (found.t, found.lanes) != (t, R::LANES) || !same(&found.at, &places) {
             self.find(t, &places, R::LANES, slot, &mut memory);
         }
         let Found { at, rows, .. } = &memory.packs[slot];
@@ -326,6 +343,18 @@ fn moved<R: Real>(by: &[V3<R>; 3], off: &V3<R>, mut x: V3<R>) -> V3<R> {
         x[i] = by[i][0].fma(off[0], by[i][1].fma(off[1], by[i][2].fma(off[2], x[i])));
     }
     x
+}
+
+/// Whether places are the same in all lanes, none of which is no number.
+#[inline(always)]
+fn same(a: &Places, b: &Places) -> bool {
+    let mut same = true;
+    for i in 0..3 {
+        for lane in 0..MOST {
+            same &= a[i][lane] == b[i][lane];
+        }
+    }
+    same
 }
 
 /// A number that looks like none of these.

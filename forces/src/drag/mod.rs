@@ -9,9 +9,10 @@ mod spec;
 pub(crate) use spec::free_tips;
 pub use spec::{DragLaw, DragSpec};
 
+use crate::Immersed;
 use ropewalk_core::error::{need, not_negative};
 use ropewalk_core::{BuildError, Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
-use ropewalk_scene::{Current, Sea};
+use ropewalk_scene::{Current, Sea, Swell};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -120,10 +121,11 @@ impl Drag {
         self.current.check()
     }
 
-    /// Velocity of the fluid at a place [m/s].
+    /// Velocity of the fluid at a station [m/s].
     #[inline(always)]
-    fn velocity<R: Real>(&self, t: f64, x: &V3<R>) -> V3<R> {
-        velocity(&self.current, self.sea.as_deref(), t, x)
+    fn velocity<R: Real>(&self, t: f64, at: &Station<R>) -> V3<R> {
+        let swell = self.sea.as_ref().map(|sea| sea.along(t, at));
+        velocity(&self.current, swell.as_ref(), &at.x)
     }
 
     /// Resistance `k` of the normal flow, `f_n = -k v_n`, and `s dk/ds` by the speed `s = |v_n|`.
@@ -170,10 +172,10 @@ impl Drag {
 
 /// Velocity of water that has a current and waves [m/s].
 #[inline(always)]
-pub(crate) fn velocity<R: Real>(current: &Current, sea: Option<&Sea>, t: f64, x: &V3<R>) -> V3<R> {
+pub(crate) fn velocity<R: Real>(current: &Current, swell: Option<&Swell<R>>, x: &V3<R>) -> V3<R> {
     let (mut u, _) = current.at(x[2]);
-    if let Some(sea) = sea {
-        add(&mut u, &sea.at(t, x).u);
+    if let Some(swell) = swell {
+        add(&mut u, &swell.u);
     }
     u
 }
@@ -230,10 +232,49 @@ impl Law for Drag {
 
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
+        let swell = self.sea.as_ref().map(|sea| sea.along(t, at));
+        self.load_in::<R, TANGENT>(at, swell.as_ref(), out);
+    }
+
+    fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64> {
+        (quantity == COEFFICIENT).then(|| match self.normal {
+            NormalLaw::Constant(cn) => cn,
+            NormalLaw::ChooCasarella => {
+                let u = self.velocity(t, at);
+                let v: V3<f64> = [0, 1, 2].map(|i| at.v[i] - u[i]);
+                let along = dot(&v, &at.slope) / dot(&at.slope, &at.slope);
+                let across: V3<f64> = [0, 1, 2].map(|i| v[i] - along * at.slope[i]);
+                let re = self.density * at.diameter * dot(&across, &across).sqrt() / self.viscosity;
+                // creeping flow has large coefficients and hardly any force
+                if re >= 1.0 { cn_re_one(re, self.blend).0 / re } else { f64::NAN }
+            }
+        })
+    }
+
+    /// What the fluid takes by friction, `-f·(v - u)`, is dissipated; what it carries along, `f·u`, is supplied.
+    #[inline(always)]
+    fn power<R: Real>(&self, t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
+        let u = self.velocity(t, at);
+        let supplied = dot(&load.f, &u);
+        Power { dissipated: supplied - dot(&load.f, &at.v), supplied, carried: R::zero() }
+    }
+}
+
+impl Immersed for Drag {
+    #[inline(always)]
+    fn sea(&self) -> Option<&Arc<Sea>> {
+        self.sea.as_ref()
+    }
+    #[inline(always)]
+    fn load_in<R: Real, const TANGENT: bool>(
+        &self,
+        at: &Station<R>,
+        swell: Option<&Swell<R>>,
+        out: &mut Load<R>,
+    ) {
         let one = R::of(1.0);
         let (mut u, du) = self.current.at(at.x[2]);
-        let swell = self.sea.as_ref().map(|sea| sea.at(t, &at.x));
-        if let Some(swell) = &swell {
+        if let Some(swell) = swell {
             add(&mut u, &swell.u);
         }
         let v = [at.v[0] - u[0], at.v[1] - u[1], at.v[2] - u[2]];
@@ -281,32 +322,9 @@ impl Law for Drag {
                 out.d_x[i][2] -= dot(&dv[i], &du);
             }
         }
-        if let Some(swell) = &swell {
+        if let Some(swell) = swell {
             less_product(&mut out.d_x, &dv, &swell.by_x);
         }
-    }
-
-    fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64> {
-        (quantity == COEFFICIENT).then(|| match self.normal {
-            NormalLaw::Constant(cn) => cn,
-            NormalLaw::ChooCasarella => {
-                let u = self.velocity(t, &at.x);
-                let v: V3<f64> = [0, 1, 2].map(|i| at.v[i] - u[i]);
-                let along = dot(&v, &at.slope) / dot(&at.slope, &at.slope);
-                let across: V3<f64> = [0, 1, 2].map(|i| v[i] - along * at.slope[i]);
-                let re = self.density * at.diameter * dot(&across, &across).sqrt() / self.viscosity;
-                // creeping flow has large coefficients and hardly any force
-                if re >= 1.0 { cn_re_one(re, self.blend).0 / re } else { f64::NAN }
-            }
-        })
-    }
-
-    /// What the fluid takes by friction, `-f·(v - u)`, is dissipated; what it carries along, `f·u`, is supplied.
-    #[inline(always)]
-    fn power<R: Real>(&self, t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
-        let u = self.velocity(t, &at.x);
-        let supplied = dot(&load.f, &u);
-        Power { dissipated: supplied - dot(&load.f, &at.v), supplied, carried: R::zero() }
     }
 }
 

@@ -34,7 +34,7 @@ impl TipLaw for EndDrag {
         self.sea.as_deref()
     }
     fn fluid<R: Real>(&self, t: f64, x: &V3<R>) -> V3<R> {
-        velocity(&self.current, self.sea(), t, x)
+        velocity(&self.current, self.sea().map(|sea| sea.at(t, x)).as_ref(), x)
     }
     fn force<R: Real>(&self, time: f64, x: &V3<R>, v: &V3<R>, slope: &V3<R>) -> V3<R> {
         let u = self.fluid(time, x);

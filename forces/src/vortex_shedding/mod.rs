@@ -156,7 +156,8 @@ impl VortexShedding {
     /// What a station remembers after a step, from what it remembered before.
     fn follow(&self, before: &Wake, number: usize, t: f64, at: &Station<f64>) -> Wake {
         let mut now = *before;
-        let u = velocity(&self.fluid.current, self.fluid.sea.as_deref(), t, &at.x);
+        let swell = self.fluid.sea.as_ref().map(|sea| sea.along(t, at));
+        let u = velocity(&self.fluid.current, swell.as_ref(), &at.x);
         let inverse = dot(&at.slope, &at.slope).sqrt().recip();
         let tangent = scaled(inverse, &at.slope);
         let across = |v: &V3<f64>| -> V3<f64> {
@@ -194,7 +195,7 @@ impl VortexShedding {
         }
         now.t = t;
         let wet = self.fluid.surface.as_ref().map_or(1.0, |surface| {
-            let swell = surface.swell(t, &at.x);
+            let swell = surface.swell(t, at);
             surface.wet(at, swell.as_ref()).share
         });
         if speed > 0.0 {

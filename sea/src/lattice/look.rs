@@ -11,6 +11,8 @@ const LANES: usize = 8;
 /// time to another instant.
 #[derive(Clone, Debug)]
 pub struct Stations {
+    /// How many there are: as many others know nothing of these.
+    lanes: usize,
     /// The spots along the waves and the instant that the surface was asked for, and those that the water was.
     nearest: [[f64; LANES]; 2],
     n: [i64; 2],
@@ -30,6 +32,7 @@ impl Default for Stations {
     fn default() -> Self {
         let nowhere = [f64::NAN; LANES];
         Stations {
+            lanes: 0,
             nearest: [nowhere; 2],
             n: [0; 2],
             edges: [[0.0; LANES]; 16],
@@ -99,6 +102,9 @@ impl Lattice {
     /// The surface above places, of a flow of which nothing else is known.
     #[inline(always)]
     pub fn surface<R: Real>(&mut self, t: f64, place: [R; 2], stations: &mut Stations) -> Flow<R> {
+        if stations.lanes != R::LANES {
+            *stations = Stations { lanes: R::LANES, ..Stations::default() };
+        }
         let Instant { n, late } = self.instant(t);
         let (nearest, off) = self.nearest(place);
         if stations.n[0] != n || !same::<R>(&nearest, &stations.nearest[0]) {
@@ -193,12 +199,14 @@ impl Lattice {
                 continue;
             }
             let number = nearest[lane] as i64;
-            let (place, known) = self.edges.find([number, 0, n]);
-            if !known {
-                *self.edges.numbers(place) = self.edge(number, n);
+            for (rows, n) in stations.edges.chunks_exact_mut(8).zip(n..) {
+                let (place, known) = self.edges.find([number, 0, n]);
+                if !known {
+                    *self.edges.numbers(place) = self.edge(number, n);
+                }
+                let numbers = self.edges.numbers(place);
+                rows.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
             }
-            let numbers = self.edges.numbers(place);
-            stations.edges.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
         }
         (stations.nearest[0], stations.n[0]) = (*nearest, n);
     }
@@ -225,96 +233,91 @@ impl Lattice {
             let (top, size) = (self.heights[j], self.heights[j] - self.heights[j + 1]);
             let number = ((top - up[lane]) * SPOTS / size + 0.5).floor();
             let along = nearest[lane] as i64;
-            let key = [along, ((j as i64) << 32).wrapping_add(number as i64), n];
-            let (place, known) = self.spots.find(key);
-            if !known {
-                *self.spots.numbers(place) = self.around(along, (j, top - number * size / SPOTS), n);
+            let down = ((j as i64) << 32).wrapping_add(number as i64);
+            for (rows, n) in stations.spots.chunks_exact_mut(16).zip(n..) {
+                let (place, known) = self.spots.find([along, down, n]);
+                if !known {
+                    *self.spots.numbers(place) = self.around(along, (j, top - number * size / SPOTS), n);
+                }
+                let numbers = self.spots.numbers(place);
+                rows.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
             }
-            let numbers = self.spots.numbers(place);
-            stations.spots.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
             (stations.tops[lane], stations.sizes[lane], stations.numbers[lane]) = (top, size, number);
         }
         (stations.nearest[1], stations.n[1]) = (*nearest, n);
     }
 
-    /// The four columns between which a place is, of those that are so far apart, and where it is between them.
-    fn between(&mut self, x: f64, n: i64, level: u32) -> ([usize; 4], f64) {
+    /// The two lines between which a place is, of those that are so far apart, and where it is between them.
+    fn between(&self, x: f64, level: u32) -> ([i64; 2], f64) {
         let apart = 1_i64 << level;
         let place = x / (self.along * apart as f64);
         let i = place.floor();
         let first = i as i64 * apart;
-        let (along, time) = (self.along, self.time);
-        let columns = [(first, n), (first + apart, n), (first, n + 1), (first + apart, n + 1)];
-        self.columns.forget_far(n);
-        let columns = columns.map(|(i, n)| self.columns.number((i, n), i as f64 * along, n as f64 * time));
-        (columns, place - i)
+        ([first, first + apart], place - i)
     }
 
-    /// The surface at a spot at two instants: elevation, slope, its change, and a nought; then the rates of these.
-    fn edge(&mut self, spot: i64, n: i64) -> [f64; 16] {
-        let (columns, across) = self.between(spot as f64 * self.spot(), n, 0);
+    /// The surface at a spot at an instant: elevation, slope, its change, and a nought; then the rates of these.
+    fn edge(&mut self, spot: i64, n: i64) -> [f64; 8] {
+        let (lines, across) = self.between(spot as f64 * self.spot(), 0);
         let (h, dh) = (hermite(across), slopes(across));
-        let mut out = [0.0; 16];
-        for (instant, pair) in columns.chunks_exact(2).enumerate() {
-            let [a, b] = [pair[0], pair[1]].map(|c| self.columns.surface(c));
-            for rate in 0..2 {
-                let k = 3 * rate;
-                let between = |w: &[f64; 4], k: usize, size: f64| {
-                    w[0] * a[k] + w[2] * b[k] + size * (w[1] * a[k + 1] + w[3] * b[k + 1])
-                };
-                let to = &mut out[8 * instant + 4 * rate..];
-                to[0] = between(&h, k, self.along);
-                to[1] = between(&dh, k, self.along) / self.along;
-                to[2] = between(&dh, k + 1, self.along) / self.along;
-            }
+        self.columns.forget_far(n);
+        let [a, b] = lines.map(|i| self.columns.top(i, n));
+        let between = |w: &[f64; 4], k: usize, size: f64| {
+            w[0] * a[k] + w[2] * b[k] + size * (w[1] * a[k + 1] + w[3] * b[k + 1])
+        };
+        let mut out = [0.0; 8];
+        for rate in 0..2 {
+            let (k, to) = (3 * rate, &mut out[4 * rate..]);
+            to[0] = between(&h, k, self.along);
+            to[1] = between(&dh, k, self.along) / self.along;
+            to[2] = between(&dh, k + 1, self.along) / self.along;
         }
         out
     }
 
-    /// The water at a spot below height `j` at two instants: `u`, `w` and their rates; the same along the waves, upwards, and
+    /// The water at a spot below height `j` at an instant: `u`, `w` and their rates; the same along the waves, upwards, and
     /// along the waves twice.
-    fn around(&mut self, spot: i64, (j, up): (usize, f64), n: i64) -> [f64; 32] {
-        let mut out = [0.0; 32];
+    fn around(&mut self, spot: i64, (j, up): (usize, f64), n: i64) -> [f64; 16] {
+        let mut out = [0.0; 16];
         let bottom = self.heights[self.heights.len() - 1];
         if up < bottom && self.waves.depth().is_infinite() {
             // nothing moves there
             return out;
         }
         let level = self.levels[j];
-        let (columns, across) = self.between(spot as f64 * self.spot(), n, level);
+        let (lines, across) = self.between(spot as f64 * self.spot(), level);
         let size = self.along * (1_i64 << level) as f64;
         let height = self.heights[j] - self.heights[j + 1];
         let depth = (self.heights[j] - up) / height;
         let (hx, dx, hz, dz) = (hermite(across), slopes(across), hermite(depth), slopes(depth));
-        for instant in 0..2 {
-            for k in 0..2 {
-                // along the waves: u, u_x, w, w_x and their rates, and what each of them changes by
-                let (mut a, mut b) = ([0.0; 8], [0.0; 8]);
-                for end in 0..2 {
-                    let corner = self.columns.corner(columns[2 * instant + end], j + k);
-                    let (value, change) = corner.split_at(8);
-                    let ([x, g], [by, dg]) =
-                        ([hx[2 * end], dx[2 * end] / size], [hx[2 * end + 1] * size, dx[2 * end + 1]]);
-                    for m in 0..8 {
-                        a[m] += x * value[m] + by * change[m];
-                        b[m] += g * value[m] + dg * change[m];
-                    }
+        self.columns.forget_far(n);
+        for k in 0..2 {
+            // along the waves: u, u_x, w, w_x and their rates, and what each of them changes by
+            let (mut a, mut b) = ([0.0; 8], [0.0; 8]);
+            for end in 0..2 {
+                let corner = self.columns.corner(lines[end], j + k, n);
+                let (value, change) = corner.split_at(8);
+                let ([x, g], [by, dg]) =
+                    ([hx[2 * end], dx[2 * end] / size], [hx[2 * end + 1] * size, dx[2 * end + 1]]);
+                for m in 0..8 {
+                    a[m] += x * value[m] + by * change[m];
+                    b[m] += g * value[m] + dg * change[m];
                 }
-                // heights count downwards; u_z = w_x, w_z = -u_x
-                let (z, by_z) = (hz[2 * k], -hz[2 * k + 1] * height);
-                let (g, by_g) = (-dz[2 * k] / height, dz[2 * k + 1]);
-                let share = if k == 0 { 1.0 - depth } else { depth };
-                for rate in 0..2 {
-                    let (m, to) = (4 * rate, &mut out[16 * instant + 2 * rate..]);
-                    to[0] += z * a[m] + by_z * a[m + 3];
-                    to[1] += z * a[m + 2] - by_z * a[m + 1];
-                    to[4] += z * b[m] + by_z * b[m + 3];
-                    to[5] += z * b[m + 2] - by_z * b[m + 1];
-                    to[8] += g * a[m] + by_g * a[m + 3];
-                    to[9] += g * a[m + 2] - by_g * a[m + 1];
-                    to[12] += share * b[m + 1];
-                    to[13] += share * b[m + 3];
-                }
+            }
+            // heights count downwards; u_z = w_x, w_z = -u_x
+            let (z, by_z) = (hz[2 * k], -hz[2 * k + 1] * height);
+            let (g, by_g) = (-dz[2 * k] / height, dz[2 * k + 1]);
+            let share = if k == 0 { 1.0 - depth } else { depth };
+            for rate in 0..2 {
+                let (m, to) = (4 * rate, &mut out[2 * rate..]);
+                to[0] += z * a[m] + by_z * a[m + 3];
+                to[1] += z * a[m + 2] - by_z * a[m + 1];
+                to[4] += z * b[m] + by_z * b[m + 3];
+                to[5] += z * b[m + 2] - by_z * b[m + 1];
+                to[8] += g * a[m] + by_g * a[m + 3];
+                to[9] += g * a[m + 2] - by_g * a[m + 1];
+                to[12] += share * b[m + 1];
+                to[13] += share * b[m + 3];
             }
         }
         out

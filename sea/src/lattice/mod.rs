@@ -46,8 +46,8 @@ pub struct Lattice {
     levels: Vec<u32>,
     columns: Columns,
     /// The surface at spots of lines, and the water there.
-    edges: Spots<16>,
-    spots: Spots<32>,
+    edges: Spots<8>,
+    spots: Spots<16>,
 }
 
 impl Lattice {
@@ -75,12 +75,13 @@ impl Lattice {
             heights.push(z);
         }
         let current = waves.all.first().map_or(0.0, |c| (c.omega - c.sigma) / c.k);
+        let along = ALONG * length / finer;
         let levels = heights.iter().map(|z| level(&waves, *z)).collect();
         Some(Lattice {
-            columns: Columns::new(&waves, &heights),
+            columns: Columns::new(&waves, &heights, [along, time]),
             way,
             current,
-            along: ALONG * length / finer,
+            along,
             time,
             levels,
             heights,
@@ -95,7 +96,7 @@ impl Lattice {
         &self.waves
     }
 
-    /// Number of columns that it holds.
+    /// Number of lines and instants whose surface it holds.
     pub fn columns(&self) -> usize {
         self.columns.len()
     }

@@ -2,12 +2,12 @@
 
 use std::hash::Hasher;
 
-/// Number of spots that are remembered, a power of two.
-const MOST: usize = 1 << 14;
+/// Number of spots that are remembered, a power of two: few enough to stay in the cache.
+const MOST: usize = 1 << 12;
 /// Of no spot at all.
 const NOWHERE: [i64; 3] = [i64::MIN; 3];
 
-/// `N` numbers for each spot, which is told by its place along, downwards and in time.
+/// `N` numbers for each spot at an instant, which is told by its place along, downwards and in time.
 #[derive(Clone, Debug)]
 pub(super) struct Spots<const N: usize> {
     keys: Vec<[i64; 3]>,
@@ -23,7 +23,8 @@ impl<const N: usize> Spots<N> {
     pub fn find(&mut self, key: [i64; 3]) -> (usize, bool) {
         let mut mixed = Mixed::default();
         key[..2].iter().for_each(|k| mixed.write_i64(*k));
-        let place = mixed.finish() as usize % MOST;
+        // of the instants before and after a time each has a place of its own
+        let place = (mixed.finish() ^ (key[2] & 1).cast_unsigned()) as usize % MOST;
         let known = self.keys[place] == key;
         self.keys[place] = key;
         (place, known)
