@@ -78,6 +78,9 @@ impl Observer for Look<'_> {
     fn needs_forces(&self) -> bool {
         self.records.iter().any(|r| r.needs_forces())
     }
+    fn needs_strains(&self) -> bool {
+        self.records.iter().any(|r| r.needs_strains())
+    }
     fn sample(&mut self, s: &Sample<'_>) -> ControlFlow<()> {
         self.row.clear();
         self.records.iter().for_each(|r| r.sample(s, &mut self.row));

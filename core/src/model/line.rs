@@ -43,6 +43,11 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// Whether it follows from strains, which small errors of positions make large ones of.
+    pub fn is_of_strain(self) -> bool {
+        !matches!(self, Quantity::Angle | Quantity::Spin)
+    }
+
     /// Its SI unit.
     pub fn unit(self) -> &'static str {
         match self {

@@ -43,6 +43,21 @@ impl Simulation {
         done
     }
 
+    /// Gives the scratch state, which lies inside the last step or at its end, the strains of the motion.
+    pub(super) fn find_strains(&mut self) -> Result<(), SolveError> {
+        let weights = self.work.factored.filter(|weights| weights.q > 0.0);
+        // between the stages of Radau IIA they are as good as there
+        let staged = !self.state.control.stages[0].is_empty();
+        if let Some(weights) = weights
+            && !staged
+            && self.scratch.t < self.state.t
+            && !self.balances()
+        {
+            self.balance(weights)?;
+        }
+        Ok(())
+    }
+
     /// Whether the scratch state meets the equations of motion well enough for its forces to be those of the motion.
     fn balances(&mut self) -> bool {
         let (state, work) = (&self.scratch, &mut self.work);
@@ -53,8 +68,7 @@ impl Simulation {
     }
 
     /// Moves the scratch state into balance as Newton's method would at the end of a step like the last one: stiff
-    /// directions find their equilibrium, soft ones stay where they are. The factors of that step do for most states; where
-    /// they don't, others are made aside.
+    /// directions find their equilibrium, soft ones stay where they are.
     ///
     /// A step of its own, from the start of the last one to here, would do for most. But it may be much shorter, and would
     /// see what the longer steps leave of velocities as the waves that those don't resolve.
@@ -62,15 +76,9 @@ impl Simulation {
     /// Gives whether it got there, with the forces of the motion: the factors at hand then serve as the metric that
     /// velocities are moved onto the constraints in. Otherwise the state is as it was.
     fn balance(&mut self, weights: Weights) -> Result<bool, SolveError> {
-        let start = self.scratch.clone();
-        if self.iterate(weights, None)
-            && consistent_by_factors(&self.model, &mut self.scratch, &mut self.work).is_ok()
-        {
-            return Ok(true);
-        }
-        self.scratch.clone_from(&start);
         let mut aside = self.take_aside()?;
-        let there = self.iterate(weights, Some(&mut aside))
+        let start = self.scratch.clone();
+        let there = self.iterate(weights, &mut aside)
             && consistent_by_factors(&self.model, &mut self.scratch, &mut aside).is_ok();
         if !there {
             self.scratch = start;
@@ -79,31 +87,27 @@ impl Simulation {
         Ok(there)
     }
 
-    /// Whether the iteration came to its end, with the factors of the last step or with some made aside.
-    fn iterate(&mut self, weights: Weights, mut aside: Option<&mut Workspace>) -> bool {
+    /// Whether the iteration came to its end.
+    fn iterate(&mut self, weights: Weights, aside: &mut Workspace) -> bool {
         let (model, s) = (&self.model, &mut self.scratch);
         let (nv, start) = (model.velocities(), s.q.clone());
         let mut d = vec![0.0; nv];
         let (mut before, mut fast) = (f64::INFINITY, false);
         for k in 0..MOST_ITERATIONS {
             // where the interpolation is far off, no matrix serves twice
-            let renew = aside.is_some() && !fast;
-            let system = aside.as_mut().map_or(&mut self.work.system, |aside| &mut aside.system);
-            model.assemble(&s.at(), &s.lambda, renew.then_some(weights), system);
-            let residual = &system.residual;
-            let mut x: Vec<f64> = residual.iter().map(|r| -r).collect();
-            let left = self.work.forces.ratio(&self.work.norms, residual, &s.a, &s.lambda, FINE);
+            let renew = !fast;
+            model.assemble(&s.at(), &s.lambda, renew.then_some(weights), &mut aside.system);
+            let (work, residual) = (&mut self.work, &aside.system.residual);
+            let left = work.forces.ratio(&work.norms, residual, &s.a, &s.lambda, FINE);
             if k > 0 && left <= 1.0 {
                 return true;
             }
             fast = left < FAST * before;
             before = left;
-            if aside.is_none() && !fast {
-                return false;
-            }
+            let mut x: Vec<f64> = residual.iter().map(|r| -r).collect();
             x[nv..].iter_mut().for_each(|x| *x /= weights.q);
-            let work = aside.as_mut().map_or(&mut self.work, |aside| &mut **aside);
-            if renew && work.factor(model, weights).is_err() || work.solve_iteration(model, &mut x).is_err() {
+            if renew && aside.factor(model, weights).is_err() || aside.solve_iteration(model, &mut x).is_err()
+            {
                 break;
             }
             for i in 0..nv {

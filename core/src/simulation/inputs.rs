@@ -191,6 +191,7 @@ impl Simulation {
         }
         let values: Vec<(usize, f64)> = wanted.iter().map(|&(k, value, _)| (k, value)).collect();
         self.put(&values);
+        self.work.inertia.outdate();
         for (k, _, until) in wanted {
             model.inputs()[k].depart(t, until);
         }

@@ -49,6 +49,11 @@ pub trait Observer {
     fn needs_forces(&self) -> bool {
         false
     }
+    /// Whether samples need the strains of the motion: between steps those of interpolated positions aren't. Who needs forces gets
+    /// them too.
+    fn needs_strains(&self) -> bool {
+        false
+    }
     /// Whether it wants samples at all.
     fn wants_samples(&self) -> bool {
         true
@@ -409,14 +414,13 @@ impl Simulation {
                 self.scratch.t = t.unwrap_or(self.state.t);
             }
         }
-        if observer.needs_forces() {
-            let t = self.scratch.t;
-            self.find_forces().map_err(|source| StepError::Linear {
-                t,
-                source,
-                unknown: "the accelerations for output".into(),
-            })?;
-        }
+        let found = match observer.needs_forces() {
+            true => self.find_forces(),
+            false if observer.needs_strains() => self.find_strains(),
+            false => Ok(()),
+        };
+        let (t, unknown) = (self.scratch.t, "the accelerations for output".to_string());
+        found.map_err(|source| StepError::Linear { t, source, unknown })?;
         let sample = Sample {
             model: &self.model,
             at: self.scratch.at(),

@@ -29,6 +29,10 @@ pub trait Record: Send + Sync {
     fn needs_forces(&self) -> bool {
         false
     }
+    /// Whether it tells of strains, or of forces that follow from them: between steps these are looked for.
+    fn needs_strains(&self) -> bool {
+        false
+    }
     /// Appends one value per column.
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>);
 }

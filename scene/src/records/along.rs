@@ -76,6 +76,9 @@ impl Record for Along {
     fn columns(&self) -> Vec<Column> {
         vec![Column::new(&self.name, self.what.unit())]
     }
+    fn needs_strains(&self) -> bool {
+        self.what.is_of_strain()
+    }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
         out.push(
             self.part

@@ -39,6 +39,9 @@ impl Record for Force {
     fn columns(&self) -> Vec<Column> {
         self.columns.clone()
     }
+    fn needs_strains(&self) -> bool {
+        true
+    }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
         if let Some(term) = s.model.terms()[self.term].shows() {
             term.observe(&s.at, out);

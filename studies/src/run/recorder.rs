@@ -33,6 +33,7 @@ pub struct Recorder<'a> {
     pub(super) scene: &'a Scene,
     records: Vec<Box<dyn Record>>,
     needs_forces: bool,
+    needs_strains: bool,
     /// Address of the model that the records are bound to.
     bound: Option<usize>,
     row: Vec<f64>,
@@ -118,6 +119,7 @@ impl<'a> Recorder<'a> {
         Recorder {
             scene,
             needs_forces: records.iter().any(|r| r.needs_forces()),
+            needs_strains: records.iter().any(|r| r.needs_strains()),
             records,
             bound: None,
             row: Vec::new(),
@@ -330,6 +332,9 @@ impl Observer for Recorder<'_> {
     }
     fn needs_forces(&self) -> bool {
         self.needs_forces
+    }
+    fn needs_strains(&self) -> bool {
+        self.needs_strains || !self.ranges.is_empty()
     }
     fn wants_checkpoint(&mut self) -> bool {
         let ending = matches!(self.stop, Some(Ending::Interrupted));

@@ -311,7 +311,9 @@ impl Remembers for ArcTorsion {
         let before = now(memory);
         self.remember(at, memory);
         // friction goes by the tension, of which that of twist is known from here on
-        own.is_some_and(|own| own.torsion.lay != 0.0) && self.sheave.rubs() && (now(memory) - before).abs() > 1e-9
+        own.is_some_and(|own| own.torsion.lay != 0.0)
+            && self.sheave.rubs()
+            && (now(memory) - before).abs() > 1e-9
     }
     fn lost(&self, at: &At<'_>) -> Option<String> {
         let change = self.twist_now(at) - self.label_angle(at.q) - self.at().twist?.recalls(1, at.internal);

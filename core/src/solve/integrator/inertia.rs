@@ -36,6 +36,11 @@ impl Inertia {
         self.served = 0;
     }
 
+    /// Lets the next step make it anew.
+    pub fn outdate(&mut self) {
+        self.served = self.serves;
+    }
+
     /// How long the next serves, after one that changed the estimate by this part of it.
     fn changed(&mut self, by: f64) {
         self.serves = match by {
