@@ -319,7 +319,8 @@ fn true_errors_are_those_of_the_page() {
     }
 }
 
-/// Tension alone is recorded, five to ten times in a step of a second: between its ends it is as good as there.
+/// Tension alone is recorded, up to five times in a step: between its ends it is as good as there, and not what interpolated
+/// positions make of `EA` (4 % here).
 #[test]
 fn tension_between_steps_is_as_good_as_at_their_ends() {
     let case = Case { name: "weight", text: weight(), duration: 20.0, length: 50.0 };
@@ -328,7 +329,7 @@ fn tension_between_steps_is_as_good_as_at_their_ends() {
         let got = run(&case, scheme);
         let [place, force] = apart(&got, &exact);
         println!("`{scheme}`: {:?}, {place:.1e} m, tension {force:.1e}", got.counts);
-        assert!(place < 1e-4 * 50.0 && force < 0.01, "`{scheme}`: {place:e} m, {force:e}");
+        assert!(place < 1e-4 * 50.0 && force < 0.015, "`{scheme}`: {place:e} m, {force:e}");
     }
 }
 
