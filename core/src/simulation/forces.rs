@@ -92,7 +92,9 @@ impl Simulation {
         let (model, s) = (&self.model, &mut self.scratch);
         let (nv, start) = (model.velocities(), s.q.clone());
         let mut d = vec![0.0; nv];
-        let (mut before, mut fast) = (f64::INFINITY, false);
+        let (mut before, mut fast, mut twice) = (f64::INFINITY, false, true);
+        // from where a matrix serves once more, and how far that is
+        let mut from = None;
         for k in 0..MOST_ITERATIONS {
             // where the interpolation is far off, no matrix serves twice
             let renew = !fast;
@@ -102,7 +104,16 @@ impl Simulation {
             if k > 0 && left <= 1.0 {
                 return true;
             }
-            fast = left < FAST * before;
+            if !(left <= before)
+                && let Some((state, way)) = from.take()
+            {
+                // it didn't
+                (*s, d) = (state, way);
+                (before, fast, twice) = (f64::INFINITY, false, false);
+                continue;
+            }
+            from = (!renew).then(|| (s.clone(), d.clone()));
+            fast = twice && left < FAST * before;
             before = left;
             let mut x: Vec<f64> = residual.iter().map(|r| -r).collect();
             x[nv..].iter_mut().for_each(|x| *x /= weights.q);

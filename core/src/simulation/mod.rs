@@ -49,9 +49,9 @@ pub trait Observer {
     fn needs_forces(&self) -> bool {
         false
     }
-    /// Whether samples need the strains of the motion: between steps those of interpolated positions aren't. Who needs forces gets
-    /// them too.
-    fn needs_strains(&self) -> bool {
+    /// Whether the sample at time `t` [s] needs the strains of the motion: between steps those of interpolated positions aren't.
+    /// Who needs forces gets them too.
+    fn needs_strains(&self, _t: f64) -> bool {
         false
     }
     /// Whether it wants samples at all.
@@ -416,7 +416,7 @@ impl Simulation {
         }
         let found = match observer.needs_forces() {
             true => self.find_forces(),
-            false if observer.needs_strains() => self.find_strains(),
+            false if observer.needs_strains(self.scratch.t) => self.find_strains(),
             false => Ok(()),
         };
         let (t, unknown) = (self.scratch.t, "the accelerations for output".to_string());

@@ -99,10 +99,19 @@ impl Kept {
         self.scenery.is_some()
     }
 
+    /// What is due at `t`: an instant that is off by rounding is the right one.
+    fn until(&self, t: f64) -> f64 {
+        t + 1e-9 * self.duration
+    }
+
+    /// Whether a shape is due at `t`.
+    pub fn is_due(&self, t: f64) -> bool {
+        [&self.due, &self.field_due].iter().any(|due| due.last().is_some_and(|due| *due <= self.until(t)))
+    }
+
     /// Keeps the shape if one is due at `t`.
     pub fn look(&mut self, t: f64, shape: impl FnOnce(Option<&Scenery>) -> Shape) {
-        // an instant that is off by rounding is the right one
-        let now = t + 1e-9 * self.duration;
+        let now = self.until(t);
         let [is_drawn, of_field] = [&mut self.due, &mut self.field_due].map(|due| {
             let before = due.len();
             due.truncate(before - due.iter().rev().take_while(|due| **due <= now).count());
@@ -165,6 +174,7 @@ mod tests {
         kept.want_field(&run, Scenery::default());
         for k in 0..=10 {
             let t = 0.1 * f64::from(k);
+            assert_eq!(kept.is_due(t), [0, 3, 5, 8, 10].contains(&k), "{t}");
             kept.look(t, |_| shape(t));
         }
         let told: Vec<(i32, bool)> =

@@ -333,8 +333,8 @@ impl Observer for Recorder<'_> {
     fn needs_forces(&self) -> bool {
         self.needs_forces
     }
-    fn needs_strains(&self) -> bool {
-        self.needs_strains || !self.ranges.is_empty()
+    fn needs_strains(&self, t: f64) -> bool {
+        self.needs_strains || !self.ranges.is_empty() || self.kept.is_due(t)
     }
     fn wants_checkpoint(&mut self) -> bool {
         let ending = matches!(self.stop, Some(Ending::Interrupted));
