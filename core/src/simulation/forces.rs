@@ -24,14 +24,10 @@ const MOST_ITERATIONS: usize = 10;
 impl Simulation {
     /// Gives the scratch state, which lies inside the last step or at its end, the forces of the motion.
     pub(super) fn find_forces(&mut self) -> Result<(), SolveError> {
-        let weights = self.work.factored.filter(|weights| weights.q > 0.0);
-        if let Some(weights) = weights
-            && self.scratch.t < self.state.t
-            && !self.balances()
-            && self.balance(weights)?
-        {
+        if self.moves_into_balance()? {
             return Ok(());
         }
+        let weights = self.weights();
         assemble_mass_at(&self.model, &self.scratch, &mut self.work)?;
         if consistent_by_mass(&self.model, &mut self.scratch, &mut self.work)? {
             return Ok(());
@@ -45,17 +41,24 @@ impl Simulation {
 
     /// Gives the scratch state, which lies inside the last step or at its end, the strains of the motion.
     pub(super) fn find_strains(&mut self) -> Result<(), SolveError> {
-        let weights = self.work.factored.filter(|weights| weights.q > 0.0);
         // between the stages of Radau IIA they are as good as there
-        let staged = !self.state.control.stages[0].is_empty();
-        if let Some(weights) = weights
-            && !staged
-            && self.scratch.t < self.state.t
-            && !self.balances()
-        {
-            self.balance(weights)?;
+        if self.state.control.stages[0].is_empty() {
+            self.moves_into_balance()?;
         }
         Ok(())
+    }
+
+    /// What the factors of the last step were made with.
+    fn weights(&self) -> Option<Weights> {
+        self.work.factored.filter(|weights| weights.q > 0.0)
+    }
+
+    /// Moves the scratch state into balance if it lies inside the last step and isn't; whether it did.
+    fn moves_into_balance(&mut self) -> Result<bool, SolveError> {
+        match self.weights() {
+            Some(weights) if self.scratch.t < self.state.t && !self.balances() => self.balance(weights),
+            _ => Ok(false),
+        }
     }
 
     /// Whether the scratch state meets the equations of motion well enough for its forces to be those of the motion.

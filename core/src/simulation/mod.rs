@@ -419,8 +419,12 @@ impl Simulation {
             false if observer.needs_strains(self.scratch.t) => self.find_strains(),
             false => Ok(()),
         };
-        let (t, unknown) = (self.scratch.t, "the accelerations for output".to_string());
-        found.map_err(|source| StepError::Linear { t, source, unknown })?;
+        let t = self.scratch.t;
+        found.map_err(|source| StepError::Linear {
+            t,
+            source,
+            unknown: "the accelerations for output".into(),
+        })?;
         let sample = Sample {
             model: &self.model,
             at: self.scratch.at(),
