@@ -78,7 +78,7 @@ impl Observer for Look<'_> {
     fn needs_forces(&self) -> bool {
         self.records.iter().any(|r| r.needs_forces())
     }
-    fn needs_strains(&self, _t: f64) -> bool {
+    fn needs_strains(&self) -> bool {
         self.records.iter().any(|r| r.needs_strains())
     }
     fn sample(&mut self, s: &Sample<'_>) -> ControlFlow<()> {

@@ -1,7 +1,8 @@
 //! What tolerances come to: true errors of positions and forces, measured scene by scene for the page on accuracy.
 
+use ropewalk::report::Table;
 use ropewalk::scene::Format;
-use ropewalk::{History, SceneFile, simulate};
+use ropewalk::{History, RunOptions, SceneFile, simulate};
 use std::fmt::Write;
 
 const TOLERANCES: [f64; 3] = [1e-3, 1e-4, 1e-5];
@@ -331,6 +332,46 @@ fn tension_between_steps_is_as_good_as_at_their_ends() {
         println!("`{scheme}`: {:?}, {place:.1e} m, tension {force:.1e}", got.counts);
         assert!(place < 1e-4 * 50.0 && force < 0.015, "`{scheme}`: {place:e} m, {force:e}");
     }
+}
+
+/// Positions alone are recorded: whether a folder is written, with shapes and range graphs for which the strains of the motion
+/// are looked for, changes nothing of them; and range graphs show the tension of the motion (7 % off without).
+#[test]
+fn what_is_recorded_does_not_depend_on_who_looks() {
+    let (positions, _) =
+        weight().rsplit_once("[[records]]").map(|(a, b)| (a.to_string(), b.to_string())).expect("two");
+    let folder = tempfile::tempdir().expect("a folder");
+    let ranges = "[[run.ranges]]\nof = \"c\"\nfrom = 10\n";
+    let look = |solver: &str, name: &str| {
+        let text = format!("[solver]\n{solver}[run]\nduration = 20\noutput = 0.02\n{ranges}{positions}");
+        let file = SceneFile::parse(&text, "looked-at", Format::Toml, &[]).expect("a scene");
+        let options = RunOptions { out: Some(folder.path().join(name)), ..RunOptions::default() };
+        let outcome = ropewalk::run(&file, &options, &mut |_| {}).expect("a run");
+        let range = Table::read(&outcome.folder.table_file("range-c").expect("a name")).expect("a table");
+        let largest = range
+            .columns
+            .iter()
+            .find(|c| c.name.ends_with("tension.largest"))
+            .expect("a column")
+            .values
+            .clone();
+        (file, outcome.history, largest)
+    };
+    let (file, history, tension) = look("", "default");
+    let alone = simulate(file.scene()).expect("a run").table;
+    for (a, b) in history.columns.iter().zip(&alone.columns) {
+        assert!(a.values.len() > 900 && a.values == b.values, "{}", a.name);
+    }
+    let (_, _, exact) =
+        look(&(SCHEMES[1].to_string() + "force_tolerance = 1e-5\n" + &controlled(1e-8)), "exact");
+    let off = tension.iter().zip(&exact).map(|(a, b)| (a - b).abs() / b).collect::<Vec<_>>();
+    println!(
+        "largest tensions from the top on off by {:.1e}, {:.1e} .. {:.1e}",
+        off[0],
+        off[1],
+        off[off.len() - 1]
+    );
+    assert!(off.iter().all(|off| *off < 0.015), "{off:?}");
 }
 
 /// Steps of a loose tolerance leave waves in a hose that they don't resolve: its tension is said to swing.

@@ -49,10 +49,19 @@ pub trait Observer {
     fn needs_forces(&self) -> bool {
         false
     }
-    /// Whether the sample at time `t` [s] needs the strains of the motion: between steps those of interpolated positions aren't.
-    /// Who needs forces gets them too.
-    fn needs_strains(&self, _t: f64) -> bool {
+    /// Whether samples need the strains of the motion: between steps those of interpolated positions aren't. Who needs
+    /// forces gets them too.
+    fn needs_strains(&self) -> bool {
         false
+    }
+    /// Whether it wants to look at the strains of the motion behind the sample at time `t` [s], whatever that showed: what
+    /// is recorded is the same with and without a look.
+    fn wants_look(&self, _t: f64) -> bool {
+        false
+    }
+    /// The look that was wanted.
+    fn look(&mut self, _sample: &Sample<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
     }
     /// Whether it wants samples at all.
     fn wants_samples(&self) -> bool {
@@ -414,23 +423,27 @@ impl Simulation {
                 self.scratch.t = t.unwrap_or(self.state.t);
             }
         }
-        let found = match observer.needs_forces() {
+        let (t, forces, strains) = (self.scratch.t, observer.needs_forces(), observer.needs_strains());
+        let found = match forces {
             true => self.find_forces(),
-            false if observer.needs_strains(self.scratch.t) => self.find_strains(),
+            false if strains => self.find_strains(),
             false => Ok(()),
         };
-        let t = self.scratch.t;
-        found.map_err(|source| StepError::Linear {
-            t,
-            source,
-            unknown: "the accelerations for output".into(),
-        })?;
-        let sample = Sample {
-            model: &self.model,
-            at: self.scratch.at(),
-            lambda: &self.scratch.lambda,
-            audit: &self.audit,
-        };
-        Ok(observer.sample(&sample))
+        let failed = |source| StepError::Linear { t, source, unknown: "the accelerations for output".into() };
+        found.map_err(failed)?;
+        let seen = observer.sample(&self.seen());
+        if seen.is_break() || !observer.wants_look(t) {
+            return Ok(seen);
+        }
+        if !forces && !strains {
+            self.find_strains().map_err(failed)?;
+        }
+        Ok(observer.look(&self.seen()))
+    }
+
+    /// The scratch state as it is shown to others.
+    fn seen(&self) -> Sample<'_> {
+        let (model, audit) = (&*self.model, &self.audit);
+        Sample { model, at: self.scratch.at(), lambda: &self.scratch.lambda, audit }
     }
 }

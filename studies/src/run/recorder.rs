@@ -231,9 +231,7 @@ impl<'a> Recorder<'a> {
                 layers.look(s.model, &s.at);
             }
         }
-        self.keep()?;
-        self.kept.sample(s.model, &s.at, s.lambda);
-        Ok(())
+        self.keep()
     }
 
     /// Takes a row of a process, which made a step of `h` since the last.
@@ -333,8 +331,20 @@ impl Observer for Recorder<'_> {
     fn needs_forces(&self) -> bool {
         self.needs_forces
     }
-    fn needs_strains(&self, t: f64) -> bool {
-        self.needs_strains || !self.ranges.is_empty() || self.kept.is_due(t)
+    fn needs_strains(&self) -> bool {
+        self.needs_strains
+    }
+    fn wants_look(&self, t: f64) -> bool {
+        !self.ranges.is_empty() || self.kept.is_due(t)
+    }
+    fn look(&mut self, s: &Sample<'_>) -> ControlFlow<()> {
+        let begin = self.spent.map(|_| Instant::now());
+        self.range(s.model, &s.at, true);
+        self.kept.sample(s.model, &s.at, s.lambda);
+        if let (Some((_, time)), Some(begin)) = (&mut self.spent, begin) {
+            *time += begin.elapsed();
+        }
+        ControlFlow::Continue(())
     }
     fn wants_checkpoint(&mut self) -> bool {
         let ending = matches!(self.stop, Some(Ending::Interrupted));
@@ -361,7 +371,6 @@ impl Observer for Recorder<'_> {
     }
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         let begin = self.spent.map(|_| Instant::now());
-        self.range(sample.model, &sample.at, true);
         let risen = self.surfacing.as_mut().map(|s| s.look(sample.model, &sample.at));
         risen.into_iter().flatten().for_each(|text| self.warn(&text));
         let recorded = self.record(sample);

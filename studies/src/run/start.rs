@@ -406,7 +406,8 @@ impl Done {
     /// Shows an equilibrium to the observer.
     fn show(&self, state: &State, observer: &mut dyn Observer) -> ControlFlow<()> {
         let sample = Sample { model: &self.model, at: state.at(), lambda: &state.lambda, audit: &self.audit };
-        observer.sample(&sample)
+        observer.sample(&sample)?;
+        if observer.wants_look(state.t) { observer.look(&sample) } else { ControlFlow::Continue(()) }
     }
 }
 
