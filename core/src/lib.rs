@@ -13,7 +13,9 @@ pub mod simulation;
 pub mod solve;
 pub mod testing;
 
+pub use algebra::gradient::{Gradient, Residuals, tangent};
 pub use algebra::interpolation::{EndSlope, Interpolation, Join};
+pub use algebra::jet::Jet;
 pub use algebra::lane::{Dual, LaneTask, Pack, Real, V3, Width, dot, run, scaled};
 pub use algebra::rotation;
 pub use algebra::scalar::Scalar;
@@ -30,7 +32,7 @@ pub use model::input::{Course, Driven, Hold, Input, InputError, Signal};
 pub use model::joint::Joint;
 pub use model::joint::equation::{Arrow, Equation};
 pub use model::line::{Line, Quantity, Slender};
-pub use model::marker::{Jet, Marker, Place};
+pub use model::marker::{Marker, Place};
 pub use model::motion::{Motion, Moving, SteadyFrame};
 pub use model::node::{Node, NodeId, NodeKind, difference, retract};
 pub use model::part::{ContactPoint, Part, Per, Spot, Tip};

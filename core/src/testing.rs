@@ -318,8 +318,9 @@ impl<L: Law> LaneTask for OneLaw<'_, L> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algebra::jet::Jet;
     use crate::model::constraint::RowKind;
-    use crate::model::marker::{Jet, Marker, Place};
+    use crate::model::marker::{Marker, Place};
     use crate::model::node::{NodeId, NodeKind};
     use crate::model::relation::{Related, Relation};
     use crate::model::station::Gives;

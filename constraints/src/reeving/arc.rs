@@ -131,20 +131,24 @@ pub(super) struct Lay<S> {
 }
 
 impl<S: Jet> Lay<S> {
+    #[inline(always)]
     fn mean(&self) -> S {
         (self.v[0] + self.v[1]) * 0.5
     }
 }
 
+#[inline(always)]
 fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+#[inline(always)]
 fn minus<S: Jet>(a: &V3<S>, b: &V3<S>) -> V3<S> {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
 /// The angle of a point of the plane, regular all round, a quarter turn too: derivatives are taken where it is small.
+#[inline(always)]
 pub(super) fn angle<S: Jet>(y: S, x: S) -> S {
     let now = y.re().atan2(x.re());
     let (sin, cos) = now.sin_cos();
@@ -152,6 +156,7 @@ pub(super) fn angle<S: Jet>(y: S, x: S) -> S {
 }
 
 /// `x / √(x² + x0²)`: the direction of sliding, rounded where it turns.
+#[inline(always)]
 pub fn direction<S: Jet>(x: S, x0: f64) -> S {
     x / (x * x + x0 * x0).sqrt()
 }
@@ -170,11 +175,13 @@ struct Half<S> {
 
 impl<S: Jet> Half<S> {
     /// Friction on the cable along the groove that is used up in this direction [N].
+    #[inline(always)]
     fn full(&self, way: f64) -> S {
         ((self.angle * (way * self.sign)).exp() - 1.0) * self.presses * self.sign
     }
 
     /// Friction on the cable along the groove where the groove is faster by this [N].
+    #[inline(always)]
     fn sliding(&self, slip: S) -> S {
         ((direction(slip, self.slip_speed) * self.angle * self.sign).exp() - 1.0) * self.presses * self.sign
     }
@@ -184,6 +191,7 @@ impl<S: Jet> Half<S> {
     /// hold, which is the creep of a belt (Grashof).
     ///
     /// The slip `y` with `y + flow F(y) = slip`, whose left side rises, by Newton's method between bounds.
+    #[inline(always)]
     fn sticking(&self, slip: S, flow: S) -> S {
         let flow = flow * self.sign;
         if !(flow.re() > 0.0) {
@@ -228,6 +236,7 @@ impl<S: Jet> Half<S> {
 
 impl Arc {
     /// How the cable lies; `stored` is the unstretched length for material coordinates of 0.
+    #[inline(always)]
     pub(super) fn lay<S: Jet>(&self, stored: f64, ends: &[End<S>; 2], wheel: &Wheel<S>) -> Lay<S> {
         let Strand { ea, ei, .. } = self.strand;
         let (radius, [c, cd, _], a) = (self.radius, &wheel.c, &wheel.axis);
@@ -252,6 +261,7 @@ impl Arc {
     }
 
     /// Tension that doesn't press on the groove, at both ends: that which turns the cable's momentum, less what weight does.
+    #[inline(always)]
     pub(super) fn lift<S: Jet>(&self, lay: &Lay<S>, wheel: &Wheel<S>) -> [S; 2] {
         let Lay { e, f, wrap, .. } = lay;
         let h = self.falls(wheel);
@@ -268,11 +278,13 @@ impl Arc {
     }
 
     /// Acceleration of the centre against free fall [m/s²].
+    #[inline(always)]
     fn falls<S: Jet>(&self, wheel: &Wheel<S>) -> V3<S> {
         std::array::from_fn(|i| wheel.c[2][i] - self.gravity[i])
     }
 
     /// Evaluates all of it; `stored` is the unstretched length for material coordinates of 0.
+    #[inline(always)]
     pub fn eval<S: Jet>(
         &self,
         stored: f64,
@@ -409,11 +421,13 @@ impl Arc {
     }
 
     /// Moment with which the bearing resists a spin under a force on the axle [N m].
+    #[inline(always)]
     pub fn moment<S: Jet>(&self, spin: S, pressed: S) -> S {
         direction(spin, self.slip_speed / self.radius) * self.rubbing(pressed) + spin * self.bearing[2]
     }
 
     /// Its dry friction under a force on the axle [N m].
+    #[inline(always)]
     fn rubbing<S: Jet>(&self, pressed: S) -> S {
         let pressed = if pressed.re() > 0.0 { pressed * self.bearing[1] } else { S::zero() };
         pressed + self.bearing[0]

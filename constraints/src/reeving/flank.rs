@@ -21,6 +21,7 @@ pub(super) struct Flank {
 
 impl Flank {
     /// Share by which a cable that comes at this speed rolls: all where it comes, nothing where it leaves and is lifted off.
+    #[inline(always)]
     pub fn enters<S: Jet>(&self, speed: S) -> S {
         let square = self.slip_speed.powi(2);
         if speed.re() < 0.0 { S::from(square) / (speed * speed + square) } else { S::one() }
@@ -31,6 +32,7 @@ impl Flank {
     /// As on the stretch of a belt that arrives, friction acts on what arrives before it slides: that spins faster by `flow` times
     /// the torque than what is on the wheel, by the step of its twist. The speed `y` of sliding with `y + flow r M σ(y) = gap r`,
     /// whose left side rises and is concave: Newton's method from below comes near from one side.
+    #[inline(always)]
     pub fn torque<S: Jet>(&self, gap: S, most: S, flow: S) -> S {
         let slip = gap * self.radius;
         let by = if flow.re() > 0.0 { flow * most * self.radius } else { S::zero() };

@@ -2,9 +2,10 @@
 
 use super::hold::Mode;
 use super::seat::Seat;
-use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
-use ropewalk_core::{Assembly, At, Jet, MovingBoundary, Pattern, Power, Term, V3};
+use ropewalk_core::{
+    Assembly, At, Jet, MovingBoundary, Pattern, Power, Residuals, Term, V3, Weights, tangent,
+};
 use ropewalk_scene::Strand;
 
 /// The end of a span that comes by a fleet angle `δ` turns sharply into the plane of the groove, as in a ring that stands
@@ -42,12 +43,14 @@ struct Turn<S> {
     groove: V3<S>,
 }
 
+#[inline(always)]
 fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 impl Fleet {
     /// `flux` is `m P'²`; `stiff` whether the tension changes with the stretch.
+    #[inline(always)]
     fn turn<S: Jet>(&self, d: &V3<S>, slope: &V3<S>, axis: &V3<S>, flux: S, stiff: bool) -> Turn<S> {
         let beside = along(axis, d);
         let flat: V3<S> = std::array::from_fn(|i| d[i] - axis[i] * beside);
@@ -69,6 +72,7 @@ impl Fleet {
     }
 
     /// Residual of its unknowns after increments of them, and of the rate of the material; and the force of the groove.
+    #[inline(always)]
     fn eval<S: Jet>(&self, at: &At<'_>, x: &[S; MOST], rate: S) -> ([S; MOST], V3<S>) {
         let three = |i: usize| [x[i], x[i + 1], x[i + 2]];
         let fixed = |x: &V3<f64>| x.map(S::from);
@@ -144,6 +148,21 @@ fn mirror(block: &mut [[f64; MOST]; MOST]) {
     }
 }
 
+/// An end by its fleet angle at an instant.
+struct On<'a> {
+    fleet: &'a Fleet,
+    at: &'a At<'a>,
+    w: Weights,
+}
+
+impl Residuals<MOST> for On<'_> {
+    #[inline(always)]
+    fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; MOST] {
+        let towards = std::array::from_fn(|i| of(i, 0.0, self.w.q));
+        self.fleet.eval(self.at, &towards, of(6, 0.0, self.w.v)).0
+    }
+}
+
 impl Term for Fleet {
     fn label(&self) -> String {
         format!("{}: fleet", self.name)
@@ -167,14 +186,7 @@ impl Term for Fleet {
             return;
         }
         let mut block = [[0.0; MOST]; MOST];
-        for j in 0..dofs.len() {
-            let towards = std::array::from_fn(|i| Dual64::new(0.0, if i == j { w.q } else { 0.0 }));
-            let rate = Dual64::new(0.0, if j == 6 { w.v } else { 0.0 });
-            let (column, _) = self.eval(at, &towards, rate);
-            for i in 0..dofs.len() {
-                block[i][j] = column[i].eps;
-            }
-        }
+        tangent(&On { fleet: self, at, w }, dofs.len(), &mut block);
         if self.is_judged(at) {
             mirror(&mut block);
         }

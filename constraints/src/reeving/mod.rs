@@ -12,6 +12,7 @@ mod events;
 mod flank;
 mod fleet;
 mod hold;
+mod local;
 mod piece;
 mod record;
 mod ring;

@@ -10,6 +10,7 @@ use num_dual::HyperDual64;
 use ropewalk_core::{Assembly, At, Energy, Jet, MovingBoundary, Pattern, Term, V3};
 use ropewalk_scene::Strand;
 
+#[inline(always)]
 fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
@@ -25,6 +26,7 @@ pub struct Piece {
 
 impl Piece {
     /// Evaluates all of it; `stored` is the unstretched length for material coordinates of 0.
+    #[inline(always)]
     pub fn eval<S: Jet>(&self, stored: f64, ends: &[End<S>; 2]) -> (Residual<S>, Instant<S>) {
         let Strand { mass, ea, damping, .. } = self.strand;
         let length = ends[1].p[0] - ends[0].p[0] + stored;

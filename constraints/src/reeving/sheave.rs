@@ -3,14 +3,15 @@
 use super::arc::{Arc, End, Grip, Instant, Lay, Residual, Wheel};
 use super::at_rest::{self, Sliding};
 use super::hold::Mode;
+use super::local::Local;
 use super::piece::Piece;
 use super::seat::Seat;
 use super::torsion::Twist;
 use num_dual::Dual64;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Shows, Signal, Solid, Term, Timed,
-    V3, dot,
+    Assembly, At, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Residuals, Shows, Signal, Solid,
+    Term, Timed, V3, Weights, dot, tangent,
 };
 
 /// One cable on the wheel.
@@ -103,13 +104,6 @@ const STILL: f64 = 1e-9;
 /// Most unknowns of a groove: two points, two material coordinates, a body, the angle of the wheel.
 const MOST: usize = 15;
 
-/// Increments, velocities and accelerations of the unknowns of a groove.
-struct Local<S> {
-    d: [S; MOST],
-    v: [S; MOST],
-    a: [S; MOST],
-}
-
 /// Where the ends of a cable and the wheel are, and how they move.
 struct Posed<S> {
     ends: [End<S>; 2],
@@ -122,7 +116,7 @@ struct Posed<S> {
 }
 
 impl Sheave {
-    /// The unknowns of a groove, in the order of [`Local`].
+    /// The unknowns of a groove, in the order of [`Local`](super::local::Local).
     fn dofs(&self, groove: &Groove) -> Vec<usize> {
         let mut dofs = Vec::with_capacity(MOST);
         for end in &groove.ends {
@@ -135,7 +129,8 @@ impl Sheave {
     }
 
     /// Where the ends of a groove and the wheel are, and how they move.
-    fn posed<S: Jet>(&self, k: usize, at: &At<'_>, x: &Local<S>) -> Posed<S> {
+    #[inline(always)]
+    fn posed<S: Jet>(&self, k: usize, at: &At<'_>, x: &Local<S, MOST>) -> Posed<S> {
         let groove = &self.grooves[k];
         let zero = [S::zero(); 3];
         let three = |x: &[S; MOST], i: usize| [x[i], x[i + 1], x[i + 2]];
@@ -194,11 +189,12 @@ impl Sheave {
     }
 
     /// Residual of a groove's unknowns, that of the wheel's own inertia with the first.
+    #[inline(always)]
     fn eval<S: Jet>(
         &self,
         k: usize,
         at: &At<'_>,
-        x: &Local<S>,
+        x: &Local<S, MOST>,
         stress: Option<f64>,
     ) -> ([S; MOST], Instant<S>) {
         let groove = &self.grooves[k];
@@ -273,12 +269,8 @@ impl Sheave {
         })
     }
 
-    fn local(&self, groove: &Groove, at: &At<'_>) -> Local<f64> {
-        let mut x = Local { d: [0.0; MOST], v: [0.0; MOST], a: [0.0; MOST] };
-        for (i, dof) in self.dofs(groove).into_iter().enumerate() {
-            (x.v[i], x.a[i]) = (at.v[dof], at.a[dof]);
-        }
-        x
+    fn local(&self, groove: &Groove, at: &At<'_>) -> Local<f64, MOST> {
+        Local::of(&self.dofs(groove), at)
     }
 
     /// How the cable lies in a groove that it wraps.
@@ -370,6 +362,23 @@ impl Sheave {
     }
 }
 
+/// A groove of a sheave at an instant.
+struct On<'a> {
+    sheave: &'a Sheave,
+    k: usize,
+    at: &'a At<'a>,
+    x: &'a Local<f64, MOST>,
+    w: Weights,
+    stress: Option<f64>,
+}
+
+impl Residuals<MOST> for On<'_> {
+    #[inline(always)]
+    fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; MOST] {
+        self.sheave.eval(self.k, self.at, &self.x.along(self.w, of), self.stress).0
+    }
+}
+
 impl Term for Sheave {
     fn label(&self) -> String {
         self.name.clone()
@@ -393,18 +402,9 @@ impl Term for Sheave {
             if !out.wants_tangent() {
                 continue;
             }
-            let stress = self.stress(k, at);
             let mut block = [[0.0; MOST]; MOST];
-            for j in 0..dofs.len() {
-                let towards = |x: &[f64; MOST], w: f64| -> [Dual64; MOST] {
-                    std::array::from_fn(|i| Dual64::new(x[i], if i == j { w } else { 0.0 }))
-                };
-                let x = Local { d: towards(&x.d, w.q), v: towards(&x.v, w.v), a: towards(&x.a, w.a) };
-                let (column, _) = self.eval(k, at, &x, stress);
-                for i in 0..dofs.len() {
-                    block[i][j] = column[i].eps;
-                }
-            }
+            let stress = self.stress(k, at);
+            tangent(&On { sheave: self, k, at, x: &x, w, stress }, dofs.len(), &mut block);
             // in an equilibrium nothing turns a wheel: a share of the stiffness of its arc keeps the angle where it is
             if let Some(i) = self.angle.as_ref().map(|_| dofs.len() - 1).filter(|_| w.v == 0.0 && w.a == 0.0)
             {

@@ -37,15 +37,20 @@ pub fn skew(a: &V3<f64>) -> M3 {
 /// `A b`
 #[inline(always)]
 pub fn times<T: Copy + Mul<Output = T> + Add<Output = T>>(a: &M3<T>, b: &V3<T>) -> V3<T> {
-    let row = |r: &V3<T>| r[0] * b[0] + r[1] * b[1] + r[2] * b[2];
-    [row(&a[0]), row(&a[1]), row(&a[2])]
+    [along(&a[0], b), along(&a[1], b), along(&a[2], b)]
+}
+
+/// `a b`; a closure would not be sure to be inlined
+#[inline(always)]
+fn along<T: Copy + Mul<Output = T> + Add<Output = T>>(a: &V3<T>, b: &V3<T>) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// `Aᵀ b`
 #[inline(always)]
 pub fn transposed_times<T: Copy + Mul<Output = T> + Add<Output = T>>(a: &M3<T>, b: &V3<T>) -> V3<T> {
-    let column = |i: usize| a[0][i] * b[0] + a[1][i] * b[1] + a[2][i] * b[2];
-    [column(0), column(1), column(2)]
+    let [x, y, z] = a;
+    times(&[[x[0], y[0], z[0]], [x[1], y[1], z[1]], [x[2], y[2], z[2]]], b)
 }
 
 /// `A B`

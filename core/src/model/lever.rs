@@ -1,8 +1,8 @@
 //! A point beside the axis of a cable with torsion, that its section carries along: a lever.
 
+use crate::algebra::jet::Jet;
 use crate::algebra::lane::{V3, dot};
 use crate::algebra::rotation::{cross, times};
-use crate::model::marker::Jet;
 use crate::model::twist::{Turned, section};
 use num_dual::Dual64;
 

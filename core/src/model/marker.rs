@@ -1,15 +1,11 @@
 //! Markers: named points and axes of bodies, which constraints, point loads and records hold on to.
 
+use crate::algebra::jet::Jet;
 use crate::algebra::lane::V3;
 use crate::algebra::rotation::{IDENTITY, M3, cross, matrix, times, transposed_times};
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::state::At;
 use crate::model::twist;
-use num_dual::DualNum;
-
-/// A number that carries derivatives along: what relations and markers are evaluated with.
-pub trait Jet: DualNum<Primitive = f64> + Copy {}
-impl<T: DualNum<Primitive = f64> + Copy> Jet for T {}
 
 /// A point that a constraint or load can hold, with axes: of a node, or fixed in space.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,9 @@
 //! acceleration equation come from forward differentiation of it and are exact. The closed forms of joints are tested
 //! against it.
 
+use crate::algebra::jet::Jet;
 use crate::model::constraint::{Constraint, MOST_ROWS, RowKind};
-use crate::model::marker::{Jet, Marker, Place};
+use crate::model::marker::{Marker, Place};
 use crate::model::motion::Motion;
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::state::At;

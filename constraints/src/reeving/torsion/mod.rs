@@ -15,11 +15,12 @@ mod roll;
 mod shape;
 mod welded;
 
+use super::local::Local;
 use super::sheave::{Groove, Sheave};
-use num_dual::Dual64;
 pub(super) use roll::Rolls;
 use ropewalk_core::{
-    Assembly, At, Column, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Shows, Term, V3, dot,
+    Assembly, At, Column, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Residuals, Shows, Term, V3,
+    Weights, dot, tangent,
 };
 use ropewalk_scene::Torsional;
 use shape::Shape;
@@ -107,13 +108,6 @@ pub(in crate::reeving) struct ArcTorsion {
     pub groove: usize,
 }
 
-/// Increments, velocities and accelerations of the unknowns.
-struct Local<S> {
-    d: [S; MOST],
-    v: [S; MOST],
-    a: [S; MOST],
-}
-
 /// Residual, and what there is to know.
 struct Forces<S> {
     r: [S; MOST],
@@ -135,14 +129,6 @@ impl ArcTorsion {
         let [a, b] = &self.at().ends;
         let seat = &self.sheave.seat;
         of(a).chain(of(b)).chain(seat.on.into_iter().flat_map(|(_, v, _)| v..v + seat.size())).collect()
-    }
-
-    fn local(&self, dofs: &[usize], at: &At<'_>) -> Local<f64> {
-        let mut x = Local { d: [0.0; MOST], v: [0.0; MOST], a: [0.0; MOST] };
-        for (i, &dof) in dofs.iter().enumerate() {
-            (x.v[i], x.a[i]) = (at.v[dof], at.a[dof]);
-        }
-        x
     }
 
     /// The angle by which the spins of both ends are labelled [rad].
@@ -174,7 +160,8 @@ impl ArcTorsion {
 
     /// Evaluates all of it, as torsion does in an element through which material flows: with the twist per length `K = Φ/A` the
     /// section of the material at an end spins at `ν = w - Ṗ K`, linear in between.
-    fn eval<S: Jet>(&self, at: &At<'_>, x: &Local<S>, now: [f64; 2]) -> Forces<S> {
+    #[inline(always)]
+    fn eval<S: Jet>(&self, at: &At<'_>, x: &Local<S, MOST>, now: [f64; 2]) -> Forces<S> {
         let Some(Twist { torsion: Torsional { gj, damping, inertia, free, lay }, .. }) = self.at().twist
         else {
             let zero = S::zero();
@@ -226,7 +213,23 @@ impl ArcTorsion {
     }
 
     fn forces(&self, at: &At<'_>) -> Forces<f64> {
-        self.eval(at, &self.local(&self.dofs(), at), self.now(at))
+        self.eval(at, &Local::of(&self.dofs(), at), self.now(at))
+    }
+}
+
+/// The torsion of a cable on its wheel at an instant.
+struct On<'a> {
+    torsion: &'a ArcTorsion,
+    at: &'a At<'a>,
+    x: &'a Local<f64, MOST>,
+    w: Weights,
+    now: [f64; 2],
+}
+
+impl Residuals<MOST> for On<'_> {
+    #[inline(always)]
+    fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; MOST] {
+        self.torsion.eval(self.at, &self.x.along(self.w, of), self.now).r
     }
 }
 
@@ -242,7 +245,7 @@ impl Term for ArcTorsion {
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let (dofs, w, now) = (self.dofs(), out.weights(), self.now(at));
-        let x = self.local(&dofs, at);
+        let x = Local::of(&dofs, at);
         for (dof, r) in dofs.iter().zip(self.eval(at, &x, now).r) {
             out.add(*dof, r);
         }
@@ -250,16 +253,7 @@ impl Term for ArcTorsion {
             return;
         }
         let mut block = [[0.0; MOST]; MOST];
-        for j in 0..dofs.len() {
-            let towards = |x: &[f64; MOST], w: f64| -> [Dual64; MOST] {
-                std::array::from_fn(|i| Dual64::new(x[i], if i == j { w } else { 0.0 }))
-            };
-            let x = Local { d: towards(&x.d, w.q), v: towards(&x.v, w.v), a: towards(&x.a, w.a) };
-            let column = self.eval(at, &x, now).r;
-            for i in 0..dofs.len() {
-                block[i][j] = column[i].eps;
-            }
-        }
+        tangent(&On { torsion: self, at, x: &x, w, now }, dofs.len(), &mut block);
         let still = Local { a: [0.0; MOST], ..x };
         let force = self.eval(at, &still, now).r;
         leave_out(&self.at().ends, at, w.q, [force[6], force[SECOND + 6]], &mut block);

@@ -1,12 +1,14 @@
 //! The twist of a cable that comes to its groove by a fleet angle and rolls down the flank.
 
 use super::shape::Shape;
-use super::{ArcTorsion, CARRIER, Local, MOST, SECOND, leave_out, of_groove};
+use super::{ArcTorsion, CARRIER, MOST, SECOND, leave_out, of_groove};
 use crate::reeving::flank::Flank;
 use crate::reeving::hold::Mode;
-use num_dual::Dual64;
+use crate::reeving::local::Local;
 use ropewalk_core::rotation::{cross, transposed_times};
-use ropewalk_core::{Assembly, At, Column, Jet, Pattern, Power, Shows, Term, V3};
+use ropewalk_core::{
+    Assembly, At, Column, Jet, Pattern, Power, Residuals, Shows, Term, V3, Weights, tangent,
+};
 
 /// What rolls the cable in a groove, at both ends of what lies there.
 ///
@@ -33,13 +35,15 @@ pub(in crate::reeving) fn label(wheel: &str) -> String {
 /// Sine of a fleet angle below which there is no flank.
 const NONE: f64 = 1e-8;
 
+#[inline(always)]
 fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 impl Rolls {
     /// Residual, and the torque on the cable at both ends, after increments of the unknowns from where the twist is as given.
-    fn eval<S: Jet>(&self, at: &At<'_>, x: &Local<S>, shape: &Shape<f64>) -> ([S; MOST], [S; 2]) {
+    #[inline(always)]
+    fn eval<S: Jet>(&self, at: &At<'_>, x: &Local<S, MOST>, shape: &Shape<f64>) -> ([S; MOST], [S; 2]) {
         let (mut r, mut torques) = ([S::zero(); MOST], [S::zero(); 2]);
         let groove = self.torsion.at();
         let Some(twist) = groove.twist else { return (r, torques) };
@@ -107,13 +111,29 @@ impl Rolls {
     }
 
     /// Where it lies in its groove: the motion, and its twist there.
-    fn lies(&self, at: &At<'_>) -> Option<(Local<f64>, Shape<f64>)> {
+    fn lies(&self, at: &At<'_>) -> Option<(Local<f64, MOST>, Shape<f64>)> {
         let wraps = Mode::of(at.internal, self.torsion.at().mode) == Mode::Wraps;
         let torsion = &self.torsion;
         wraps.then(|| {
             let now = [torsion.twist_now(at), torsion.length(at)];
-            (torsion.local(&torsion.dofs(), at), torsion.shaped(at, &[0.0; MOST], now))
+            (Local::of(&torsion.dofs(), at), torsion.shaped(at, &[0.0; MOST], now))
         })
+    }
+}
+
+/// A cable that rolls at an instant.
+struct On<'a> {
+    rolls: &'a Rolls,
+    at: &'a At<'a>,
+    x: &'a Local<f64, MOST>,
+    w: Weights,
+    shape: &'a Shape<f64>,
+}
+
+impl Residuals<MOST> for On<'_> {
+    #[inline(always)]
+    fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; MOST] {
+        self.rolls.eval(self.at, &self.x.along(self.w, of), self.shape).0
     }
 }
 
@@ -138,16 +158,7 @@ impl Term for Rolls {
             return;
         }
         let mut block = [[0.0; MOST]; MOST];
-        for j in 0..dofs.len() {
-            let towards = |x: &[f64; MOST], w: f64| -> [Dual64; MOST] {
-                std::array::from_fn(|i| Dual64::new(x[i], if i == j { w } else { 0.0 }))
-            };
-            let x = Local { d: towards(&x.d, w.q), v: towards(&x.v, w.v), a: towards(&x.a, w.a) };
-            let (column, _) = self.eval(at, &x, &shape);
-            for i in 0..dofs.len() {
-                block[i][j] = column[i].eps;
-            }
-        }
+        tangent(&On { rolls: self, at, x: &x, w, shape: &shape }, dofs.len(), &mut block);
         leave_out(&self.torsion.at().ends, at, w.q, torques.map(|t| -t), &mut block);
         out.add_square(0, &block);
     }

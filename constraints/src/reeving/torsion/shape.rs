@@ -6,10 +6,12 @@ use ropewalk_core::model::twist::{between, section};
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{At, Jet, V3};
 
+#[inline(always)]
 fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+#[inline(always)]
 fn less<S: Jet>(a: &V3<S>, s: S, b: &V3<S>) -> V3<S> {
     std::array::from_fn(|i| a[i] - b[i] * s)
 }
@@ -32,6 +34,7 @@ pub(super) struct Hub<S> {
 }
 
 impl ArcTorsion {
+    #[inline(always)]
     pub(super) fn hub<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> Hub<S> {
         let seat = &self.sheave.seat;
         let (point, axis) = (seat.point.map(S::from), seat.axis.map(S::from));
@@ -56,12 +59,14 @@ impl ArcTorsion {
     }
 
     /// Place and slope of an end.
+    #[inline(always)]
     pub(super) fn end<S: Jet>(&self, k: usize, at: &At<'_>, d: &[S; MOST]) -> [V3<S>; 2] {
         let (q, i) = (self.at().ends[k].end_q, SECOND * k);
         [0, 3].map(|n| std::array::from_fn(|c| d[i + n + c] + at.q[q + n + c]))
     }
 
     /// Where it wraps the wheel.
+    #[inline(always)]
     fn wraps<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> [[S; MOST]; 2] {
         let (hub, groove) = (self.hub(at, d), self.at());
         let (a, zero) = (&hub.axis, S::zero());
@@ -126,6 +131,7 @@ impl ArcTorsion {
     }
 
     /// Spreads what the centre and the rotation of the wheel do over what carries it.
+    #[inline(always)]
     fn carry<S: Jet>(&self, hub: &Hub<S>, place: &V3<S>, turning: &V3<S>, by: &mut [S; MOST]) {
         let size = self.sheave.seat.size();
         if size > 0 {
@@ -140,6 +146,7 @@ impl ArcTorsion {
 
     /// Where a straight piece lies between both ends. The directors go from the tangent of one over the direction `D` of the piece
     /// to that of the other: that is twice the area of their triangle besides the smallest rotation between both.
+    #[inline(always)]
     fn straight<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> [[S; MOST]; 2] {
         let zero = S::zero();
         let [[r1, p1], [r2, p2]] = [0, 1].map(|k| self.end(k, at, d));
@@ -214,6 +221,7 @@ impl ArcTorsion {
     }
 
     /// Twist and length, which are these now, with their derivatives.
+    #[inline(always)]
     pub(super) fn shaped<S: Jet>(&self, at: &At<'_>, d: &[S; MOST], now: [f64; 2]) -> Shape<S> {
         let [by_twist, by_length] = if self.wrapped(at) { self.wraps(at, d) } else { self.straight(at, d) };
         let moved =

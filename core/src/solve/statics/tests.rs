@@ -1,6 +1,7 @@
 use super::*;
+use crate::algebra::jet::Jet;
 use crate::model::constraint::{Constraint, RowKind};
-use crate::model::marker::{Jet, Marker, Place};
+use crate::model::marker::{Marker, Place};
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::pattern::Pattern;
 use crate::model::relation::{Related, Relation};
