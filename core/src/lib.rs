@@ -13,7 +13,7 @@ pub mod simulation;
 pub mod solve;
 pub mod testing;
 
-pub use algebra::gradient::{Gradient, Residuals, tangent};
+pub use algebra::gradient::{Gradient, Residuals, Seeds, tangent};
 pub use algebra::interpolation::{EndSlope, Interpolation, Join};
 pub use algebra::jet::Jet;
 pub use algebra::lane::{Dual, LaneTask, Pack, Real, V3, Width, dot, run, scaled};

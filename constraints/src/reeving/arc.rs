@@ -7,7 +7,8 @@
 //! where `λ = R θ/A` is the stretch of the arc; `λ` and not the slope of the span, so that the speed of the cable along
 //! the groove is the rate of a function of the configuration.
 
-use ropewalk_core::rotation::cross;
+use super::inline::{each, three, two};
+use ropewalk_core::rotation::{along, cross};
 use ropewalk_core::{Jet, V3};
 use ropewalk_scene::Strand;
 use std::f64::consts::TAU;
@@ -138,13 +139,8 @@ impl<S: Jet> Lay<S> {
 }
 
 #[inline(always)]
-fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
 fn minus<S: Jet>(a: &V3<S>, b: &V3<S>) -> V3<S> {
-    std::array::from_fn(|i| a[i] - b[i])
+    three!(|i| a[i] - b[i])
 }
 
 /// The angle of a point of the plane, regular all round, a quarter turn too: derivatives are taken where it is small.
@@ -240,12 +236,12 @@ impl Arc {
     pub(super) fn lay<S: Jet>(&self, stored: f64, ends: &[End<S>; 2], wheel: &Wheel<S>) -> Lay<S> {
         let Strand { ea, ei, .. } = self.strand;
         let (radius, [c, cd, _], a) = (self.radius, &wheel.c, &wheel.axis);
-        let e = ends.each_ref().map(|end| minus(&end.r[0], c).map(|x| x / radius));
+        let e = two!(|k| each!(minus(&ends[k].r[0], c), |x| x / radius));
         // `f/R` is what the wrap changes by with an end, wherever that is: so a force along it has a potential
-        let beside = e.each_ref().map(|e| along(a, e));
-        let f = [0, 1].map(|k| {
+        let beside = two!(|k| along(a, &e[k]));
+        let f = two!(|k| {
             let flat = along(&e[k], &e[k]) - beside[k] * beside[k];
-            cross(a, &e[k]).map(|x| x / flat)
+            each!(cross(a, &e[k]), |x| x / flat)
         });
         let wrap = angle(along(a, &cross(&e[0], &e[1])), along(&e[0], &e[1]) - beside[0] * beside[1]);
         let wrap = match self.near {
@@ -256,7 +252,7 @@ impl Arc {
         let length = ends[1].p[0] - ends[0].p[0] + stored;
         let stretch = wrap * radius / length;
         let tension = (stretch - 1.0) * ea + wrap * ei / (length * radius);
-        let v = [0, 1].map(|k| along(&f[k], &minus(&ends[k].r[1], cd)) - stretch * ends[k].p[1]);
+        let v = two!(|k| along(&f[k], &minus(&ends[k].r[1], cd)) - stretch * ends[k].p[1]);
         Lay { e, f, wrap, length, stretch, tension, v }
     }
 
@@ -267,12 +263,12 @@ impl Arc {
         let h = self.falls(wheel);
         let middle: V3<S> = {
             let (sin, cos) = ((*wrap * 0.5).sin(), (*wrap * 0.5).cos());
-            std::array::from_fn(|i| e[0][i] * cos + f[0][i] * sin)
+            three!(|i| e[0][i] * cos + f[0][i] * sin)
         };
         let across = cross(&wheel.axis, &middle);
         let half = [minus(&f[0], &across), minus(&across, &f[1])];
         let mean = lay.mean();
-        [0, 1].map(|k| {
+        two!(|k| {
             (mean * mean - along(&h, &half[k]) * 2.0 / *wrap * self.radius) * self.strand.mass / lay.stretch
         })
     }
@@ -280,7 +276,7 @@ impl Arc {
     /// Acceleration of the centre against free fall [m/s²].
     #[inline(always)]
     fn falls<S: Jet>(&self, wheel: &Wheel<S>) -> V3<S> {
-        std::array::from_fn(|i| wheel.c[2][i] - self.gravity[i])
+        three!(|i| wheel.c[2][i] - self.gravity[i])
     }
 
     /// Evaluates all of it; `stored` is the unstretched length for material coordinates of 0.
@@ -300,15 +296,15 @@ impl Arc {
         let tension = self.stress.map_or(tension, |stress| tension - tension.re() + stress);
         let by_length = -(stretch * stretch - 1.0) * (0.5 * ea) - wrap * wrap * ei / (length * length * 2.0);
         let mut out = Residual {
-            r: [f[0].map(|x| -(x * tension)), f[1].map(|x| x * tension)],
+            r: [each!(f[0], |x| -(x * tension)), each!(f[1], |x| x * tension)],
             p: [-by_length, by_length],
-            centre: std::array::from_fn(|i| (f[0][i] - f[1][i]) * tension),
+            centre: three!(|i| (f[0][i] - f[1][i]) * tension),
             groove: S::zero(),
         };
 
         // speeds and accelerations of the material along the groove
         let rate = (v[1] - v[0]) / length;
-        let w = [0, 1].map(|k| {
+        let w = two!(|k| {
             let [_, pd, pdd] = ends[k].p;
             along(&f[k], &minus(&ends[k].r[2], cdd)) - stretch * pdd - rate * pd * 2.0
         });
@@ -318,11 +314,8 @@ impl Arc {
         // inertia and weight, the motion linear along the arc
         let m = length * mass;
         let h = self.falls(wheel);
-        let turned = minus(&f[0], &f[1]).map(|x| x / (wrap * wrap));
-        let b: [V3<S>; 2] = [
-            std::array::from_fn(|i| turned[i] - e[0][i] / wrap),
-            std::array::from_fn(|i| e[1][i] / wrap - turned[i]),
-        ];
+        let turned = each!(minus(&f[0], &f[1]), |x| x / (wrap * wrap));
+        let b: [V3<S>; 2] = [three!(|i| turned[i] - e[0][i] / wrap), three!(|i| e[1][i] / wrap - turned[i])];
         let mut inertia = [
             m * (w[0] / 3.0 + w[1] / 6.0 + along(&h, &b[0])),
             m * (w[0] / 6.0 + w[1] / 3.0 + along(&h, &b[1])),
@@ -389,7 +382,7 @@ impl Arc {
 
         let lost = match self.grip {
             Grip::Slides(_) => {
-                let gains = [0, 1].map(|k| friction[k] * (v[k] - strain[k] * ends[k].p[1]));
+                let gains = two!(|k| friction[k] * (v[k] - strain[k] * ends[k].p[1]));
                 moving - gains[0] - gains[1]
             }
             Grip::Turns(_) => axle_friction,
@@ -398,10 +391,10 @@ impl Arc {
             Grip::Turns(mass) => mean * mean * (0.5 * mass),
             Grip::Slides(_) => S::zero(),
         };
-        let lean = |k: usize| along(cd, &b[k]) * v[k];
-        let kinetic = m * ((along(cd, cd) + square) * 0.5 + lean(0) + lean(1)) + wheel_energy;
-        let place: V3<S> = std::array::from_fn(|i| c[i] + (f[0][i] - f[1][i]) * radius / wrap);
-        let weight = place.iter().zip(&self.gravity).fold(S::zero(), |sum, (x, g)| sum + *x * *g);
+        let lean = two!(|k| along(cd, &b[k]) * v[k]);
+        let kinetic = m * ((along(cd, cd) + square) * 0.5 + lean[0] + lean[1]) + wheel_energy;
+        let place: V3<S> = three!(|i| c[i] + (f[0][i] - f[1][i]) * radius / wrap);
+        let weight = along(&place, &each!(self.gravity, |g| S::from(g)));
         let excess = wrap * radius - length;
         let potential =
             excess * excess * ea / (length * 2.0) + wrap * wrap * ei / (length * 2.0) - m * weight;
@@ -413,7 +406,7 @@ impl Arc {
             speed: v,
             lift,
             friction,
-            axle: std::array::from_fn(|i| (f[1][i] - f[0][i]) * self.pull - out.centre[i]),
+            axle: three!(|i| (f[1][i] - f[0][i]) * self.pull - out.centre[i]),
             energy: [kinetic, potential],
             dissipated: lost + viscous * rate * length,
         };

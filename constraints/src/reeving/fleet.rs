@@ -1,10 +1,11 @@
 //! A cable that meets its wheel from the side: what turns it into the groove.
 
 use super::hold::Mode;
+use super::inline::{each, three};
 use super::seat::Seat;
-use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
+use ropewalk_core::rotation::{along, cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Jet, MovingBoundary, Pattern, Power, Residuals, Term, V3, Weights, tangent,
+    Assembly, At, Jet, MovingBoundary, Pattern, Power, Residuals, Seeds, Term, V3, Weights, tangent,
 };
 use ropewalk_scene::Strand;
 
@@ -43,65 +44,58 @@ struct Turn<S> {
     groove: V3<S>,
 }
 
-#[inline(always)]
-fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 impl Fleet {
     /// `flux` is `m P'²`; `stiff` whether the tension changes with the stretch.
     #[inline(always)]
     fn turn<S: Jet>(&self, d: &V3<S>, slope: &V3<S>, axis: &V3<S>, flux: S, stiff: bool) -> Turn<S> {
         let beside = along(axis, d);
-        let flat: V3<S> = std::array::from_fn(|i| d[i] - axis[i] * beside);
+        let flat: V3<S> = three!(|i| d[i] - axis[i] * beside);
         let radius = along(&flat, &flat).sqrt();
-        let round = cross(axis, &flat).map(|x| x / radius);
+        let round = each!(cross(axis, &flat), |x| x / radius);
         let size = along(slope, slope).sqrt();
         let way = along(&round, slope);
         // the groove runs on as the cable does; it pulls at the end of a span forwards, at its start backwards
         let side = if way.re() < 0.0 { -1.0 } else { 1.0 };
-        let pulls = round.map(|x| x * (side * self.boundary.sign));
+        let pulls = each!(round, |x| x * (side * self.boundary.sign));
         let left = -(way * side / size) + 1.0;
         let strain = size - 1.0;
         let tension = if stiff { strain } else { S::from(strain.re()) } * self.strand.ea;
         let sideways = along(axis, slope) * (flux * self.boundary.sign);
         Turn {
-            end: std::array::from_fn(|i| axis[i] * sideways - pulls[i] * tension * left),
-            groove: pulls.map(|x| x * -(tension - size * flux) * left),
+            end: three!(|i| axis[i] * sideways - pulls[i] * tension * left),
+            groove: each!(pulls, |x| x * -(tension - size * flux) * left),
         }
     }
 
     /// Residual of its unknowns after increments of them, and of the rate of the material; and the force of the groove.
     #[inline(always)]
     fn eval<S: Jet>(&self, at: &At<'_>, x: &[S; MOST], rate: S) -> ([S; MOST], V3<S>) {
-        let three = |i: usize| [x[i], x[i + 1], x[i + 2]];
-        let fixed = |x: &V3<f64>| x.map(S::from);
         let q = self.boundary.end_q;
-        let r: V3<S> = std::array::from_fn(|i| x[i] + at.q[q + i]);
-        let slope: V3<S> = std::array::from_fn(|i| x[3 + i] + at.q[q + 3 + i]);
-        let (arm, own) = (fixed(&self.seat.point), fixed(&self.seat.axis));
+        let r: V3<S> = three!(|i| x[i] + at.q[q + i]);
+        let slope: V3<S> = three!(|i| x[3 + i] + at.q[q + 3 + i]);
+        let (arm, own) = (each!(self.seat.point, |x| S::from(x)), each!(self.seat.axis, |x| S::from(x)));
         let mut turn = None;
         let (foot, c, axis) = match self.seat.on {
             None => ([S::zero(); 3], arm, own),
             Some((q, _, turns)) => {
-                let foot: V3<S> = std::array::from_fn(|i| x[7 + i] + at.q[q + i]);
+                let foot: V3<S> = three!(|i| x[7 + i] + at.q[q + i]);
                 if turns {
                     let still = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
                     // to first order, all that a first derivative needs
-                    let m = std::array::from_fn(|i| {
-                        let row = fixed(&still[i]);
-                        let more = cross(&row, &three(10));
-                        std::array::from_fn(|j| row[j] + more[j])
+                    let m = three!(|i| {
+                        let row = each!(still[i], |x| S::from(x));
+                        let more = cross(&row, &[x[10], x[11], x[12]]);
+                        three!(|j| row[j] + more[j])
                     });
                     turn = Some(m);
                     let out = times(&m, &arm);
-                    (foot, std::array::from_fn(|i| foot[i] + out[i]), times(&m, &own))
+                    (foot, three!(|i| foot[i] + out[i]), times(&m, &own))
                 } else {
                     (foot, foot, own)
                 }
             }
         };
-        let d: V3<S> = std::array::from_fn(|i| r[i] - c[i]);
+        let d: V3<S> = three!(|i| r[i] - c[i]);
         let rate = rate + at.v[self.boundary.v];
         let Turn { end, groove } =
             self.turn(&d, &slope, &axis, rate * rate * self.strand.mass, !self.is_judged(at));
@@ -110,7 +104,7 @@ impl Fleet {
             (out[i], out[7 + i]) = (-end[i], groove[i]);
         }
         if let Some(m) = turn {
-            let lever: V3<S> = std::array::from_fn(|i| r[i] - foot[i]);
+            let lever: V3<S> = three!(|i| r[i] - foot[i]);
             out[10..].copy_from_slice(&transposed_times(&m, &cross(&lever, &groove)));
         }
         (out, groove)
@@ -157,9 +151,12 @@ struct On<'a> {
 
 impl Residuals<MOST> for On<'_> {
     #[inline(always)]
-    fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; MOST] {
-        let towards = std::array::from_fn(|i| of(i, 0.0, self.w.q));
-        self.fleet.eval(self.at, &towards, of(6, 0.0, self.w.v)).0
+    fn eval<S: Jet>(&self, seeds: &impl Seeds<S>) -> [S; MOST] {
+        let mut towards = [S::zero(); MOST];
+        for (i, x) in towards.iter_mut().enumerate() {
+            *x = seeds.of(i, 0.0, self.w.q);
+        }
+        self.fleet.eval(self.at, &towards, seeds.of(6, 0.0, self.w.v)).0
     }
 }
 

@@ -16,7 +16,7 @@
 //! that meets the wheel again.
 
 use super::tangent::{self, Tangency};
-use ropewalk_core::rotation::cross;
+use ropewalk_core::rotation::{along, cross};
 use ropewalk_core::{At, Constraint, Jet, Marker, Node, NodeId, Place, Related, Relation, RowKind, V3};
 
 /// The least wrap [rad]: below it the arc is a straight piece.
@@ -52,10 +52,6 @@ impl Mode {
     pub fn value(self) -> f64 {
         f64::from(self as u8)
     }
-}
-
-fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn unit<S: Jet>(a: &V3<S>) -> V3<S> {

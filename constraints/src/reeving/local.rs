@@ -1,6 +1,6 @@
 //! The unknowns of a term of a few nodes, as it moves.
 
-use ropewalk_core::{At, Jet, Weights};
+use ropewalk_core::{At, Jet, Seeds, V3, Weights};
 
 /// Increments, velocities and accelerations of `N` unknowns.
 pub(super) struct Local<S, const N: usize> {
@@ -21,13 +21,19 @@ impl<const N: usize> Local<f64, N> {
 
     /// The same, each changing by these weights: see [`Residuals`](ropewalk_core::Residuals).
     #[inline(always)]
-    pub fn along<S: Jet>(&self, w: Weights, of: impl Fn(usize, f64, f64) -> S) -> Local<S, N> {
+    pub fn along<S: Jet>(&self, w: Weights, seeds: &impl Seeds<S>) -> Local<S, N> {
         let mut x = Local { d: [S::zero(); N], v: [S::zero(); N], a: [S::zero(); N] };
         for i in 0..N {
-            x.d[i] = of(i, self.d[i], w.q);
-            x.v[i] = of(i, self.v[i], w.v);
-            x.a[i] = of(i, self.a[i], w.a);
+            x.d[i] = seeds.of(i, self.d[i], w.q);
+            x.v[i] = seeds.of(i, self.v[i], w.v);
+            x.a[i] = seeds.of(i, self.a[i], w.a);
         }
         x
     }
+}
+
+/// Three numbers side by side.
+#[inline(always)]
+pub(super) fn from<S: Copy>(x: &[S], i: usize) -> V3<S> {
+    [x[i], x[i + 1], x[i + 2]]
 }

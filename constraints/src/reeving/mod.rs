@@ -12,6 +12,7 @@ mod events;
 mod flank;
 mod fleet;
 mod hold;
+mod inline;
 mod local;
 mod piece;
 mod record;

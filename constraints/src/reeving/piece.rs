@@ -6,14 +6,11 @@
 
 use super::arc::{End, Instant, Residual};
 use super::hold::{Mode, chord};
+use super::inline::{each, three, two};
 use num_dual::HyperDual64;
+use ropewalk_core::rotation::along;
 use ropewalk_core::{Assembly, At, Energy, Jet, MovingBoundary, Pattern, Term, V3};
 use ropewalk_scene::Strand;
-
-#[inline(always)]
-fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
 
 /// The numbers of a straight piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,20 +28,18 @@ impl Piece {
         let Strand { mass, ea, damping, .. } = self.strand;
         let length = ends[1].p[0] - ends[0].p[0] + stored;
         let lengthens = ends[1].p[1] - ends[0].p[1];
-        let c: V3<S> = std::array::from_fn(|i| ends[1].r[0][i] - ends[0].r[0][i]);
+        let c: V3<S> = three!(|i| ends[1].r[0][i] - ends[0].r[0][i]);
         let size = along(&c, &c).sqrt();
-        let (slope, t) = (c.map(|x| x / length), c.map(|x| x / size));
-        let turns: V3<S> =
-            std::array::from_fn(|i| (ends[1].r[1][i] - ends[0].r[1][i] - slope[i] * lengthens) / length);
+        let (slope, t) = (each!(c, |x| x / length), each!(c, |x| x / size));
+        let turns: V3<S> = three!(|i| (ends[1].r[1][i] - ends[0].r[1][i] - slope[i] * lengthens) / length);
         let stretch = size / length;
         let strained = (stretch - 1.0) * ea;
         let by_length = -(stretch * stretch - 1.0) * (0.5 * ea);
         // of the material at both ends
-        let v: [V3<S>; 2] =
-            [0, 1].map(|k| std::array::from_fn(|i| ends[k].r[1][i] - slope[i] * ends[k].p[1]));
-        let w: [V3<S>; 2] = [0, 1].map(|k| {
+        let v: [V3<S>; 2] = two!(|k| three!(|i| ends[k].r[1][i] - slope[i] * ends[k].p[1]));
+        let w: [V3<S>; 2] = two!(|k| {
             let [_, pd, pdd] = ends[k].p;
-            std::array::from_fn(|i| ends[k].r[2][i] - slope[i] * pdd - turns[i] * pd * 2.0)
+            three!(|i| ends[k].r[2][i] - slope[i] * pdd - turns[i] * pd * 2.0)
         });
         let m = length * mass;
         let rate = along(&t, &turns);
@@ -54,11 +49,11 @@ impl Piece {
         let mut beside = [strained; 2];
         for k in 0..2 {
             let (own, other, sign) = (&w[k], &w[1 - k], if k == 0 { -1.0 } else { 1.0 });
-            let push: V3<S> = std::array::from_fn(|i| {
+            let push: V3<S> = three!(|i| {
                 let inertia = own[i] / 3.0 + other[i] / 6.0 - 0.5 * self.gravity[i];
                 m * inertia + t[i] * viscous * sign
             });
-            r[k] = std::array::from_fn(|i| t[i] * strained * sign + push[i]);
+            r[k] = three!(|i| t[i] * strained * sign + push[i]);
             p[k] -= along(&slope, &push);
             beside[k] += along(&t, &push) * sign;
         }

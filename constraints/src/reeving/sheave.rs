@@ -3,15 +3,16 @@
 use super::arc::{Arc, End, Grip, Instant, Lay, Residual, Wheel};
 use super::at_rest::{self, Sliding};
 use super::hold::Mode;
-use super::local::Local;
+use super::inline::{each, three, two};
+use super::local::{Local, from};
 use super::piece::Piece;
 use super::seat::Seat;
 use super::torsion::Twist;
 use num_dual::Dual64;
-use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
+use ropewalk_core::rotation::{along, cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Residuals, Shows, Signal, Solid,
-    Term, Timed, V3, Weights, dot, tangent,
+    Assembly, At, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Residuals, Seeds, Shows, Signal,
+    Solid, Term, Timed, V3, Weights, dot, tangent,
 };
 
 /// One cable on the wheel.
@@ -133,55 +134,48 @@ impl Sheave {
     fn posed<S: Jet>(&self, k: usize, at: &At<'_>, x: &Local<S, MOST>) -> Posed<S> {
         let groove = &self.grooves[k];
         let zero = [S::zero(); 3];
-        let three = |x: &[S; MOST], i: usize| [x[i], x[i + 1], x[i + 2]];
-        let ends = [0, 1].map(|end| {
+        let ends = two!(|end| {
             let (boundary, i) = (&groove.ends[end], 4 * end);
             End {
-                r: [
-                    std::array::from_fn(|j| x.d[i + j] + at.q[boundary.end_q + j]),
-                    three(&x.v, i),
-                    three(&x.a, i),
-                ],
+                r: [three!(|j| x.d[i + j] + at.q[boundary.end_q + j]), from(&x.v, i), from(&x.a, i)],
                 p: [x.d[i + 3] + at.q[boundary.q], x.v[i + 3], x.a[i + 3]],
             }
         });
-        let fixed = |x: &V3<f64>| x.map(S::from);
-        let (arm, own) = (fixed(&self.seat.point), fixed(&self.seat.axis));
+        let (arm, own) = (each!(self.seat.point, |x| S::from(x)), each!(self.seat.axis, |x| S::from(x)));
         let (mut turn, mut omega, mut alpha) = ([[S::zero(); 3]; 3], zero, zero);
         let (c, axis) = match self.seat.on {
             None => ([arm, zero, zero], own),
             Some((q, _, false)) => {
-                let place = std::array::from_fn(|i| x.d[8 + i] + at.q[q + i]);
-                ([place, three(&x.v, 8), three(&x.a, 8)], own)
+                let place = three!(|i| x.d[8 + i] + at.q[q + i]);
+                ([place, from(&x.v, 8), from(&x.a, 8)], own)
             }
             Some((q, _, true)) => {
                 let still = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
-                let small = three(&x.d, 11);
+                let small = from(&x.d, 11);
                 // to first order, all that a first derivative needs
-                turn = std::array::from_fn(|i| {
-                    let row = fixed(&still[i]);
+                turn = three!(|i| {
+                    let row = each!(still[i], |x| S::from(x));
                     let more = cross(&row, &small);
-                    std::array::from_fn(|j| row[j] + more[j])
+                    three!(|j| row[j] + more[j])
                 });
-                (omega, alpha) = (three(&x.v, 11), three(&x.a, 11));
+                (omega, alpha) = (from(&x.v, 11), from(&x.a, 11));
                 let (swings, spins) = (cross(&omega, &arm), cross(&alpha, &arm));
                 let inwards = cross(&omega, &swings);
                 let [out, swing] = [times(&turn, &arm), times(&turn, &swings)];
-                let bend = times(&turn, &std::array::from_fn(|i| spins[i] + inwards[i]));
-                let place = std::array::from_fn(|i| x.d[8 + i] + at.q[q + i] + out[i]);
-                let velocity = std::array::from_fn(|i| x.v[8 + i] + swing[i]);
-                let acceleration = std::array::from_fn(|i| x.a[8 + i] + bend[i]);
+                let bend = times(&turn, &three!(|i| spins[i] + inwards[i]));
+                let place = three!(|i| x.d[8 + i] + at.q[q + i] + out[i]);
+                let velocity = three!(|i| x.v[8 + i] + swing[i]);
+                let acceleration = three!(|i| x.a[8 + i] + bend[i]);
                 ([place, velocity, acceleration], times(&turn, &own))
             }
         };
         let size = self.seat.size();
-        let of = |a: &V3<S>| a[0] * own[0] + a[1] * own[1] + a[2] * own[2];
-        let (carried, carried_rate) = (of(&omega), of(&alpha));
+        let (carried, carried_rate) = (along(&omega, &own), along(&alpha, &own));
         let own_spin = if self.angle.is_some() { x.v[8 + size] } else { S::zero() };
         let side = groove.side();
         let wheel = Wheel {
             c,
-            axis: axis.map(|x| x * side),
+            axis: each!(axis, |x| x * side),
             spin: (own_spin + carried) * side,
             carrier: carried * side,
         };
@@ -199,7 +193,7 @@ impl Sheave {
     ) -> ([S; MOST], Instant<S>) {
         let groove = &self.grooves[k];
         let Posed { ends, wheel, turn, omega, carried: [carried, carried_rate] } = self.posed(k, at, x);
-        let [arm, own] = [&self.seat.point, &self.seat.axis].map(|x| x.map(S::from));
+        let [arm, own] = [each!(self.seat.point, |x| S::from(x)), each!(self.seat.axis, |x| S::from(x))];
         let size = self.seat.size();
         let side = groove.side();
         let arc = Arc { stress, ..self.arc(groove, at) };
@@ -229,7 +223,7 @@ impl Sheave {
             if k == 0 {
                 let spin = own_spin + carried;
                 about += (own_rate + carried_rate) * angle.inertia;
-                let momentum = own.map(|a| a * spin * angle.inertia);
+                let momentum = each!(own, |a| a * spin * angle.inertia);
                 body = cross(&omega, &momentum);
                 instant.energy[0] += spin * spin * (0.5 * angle.inertia);
                 out[8 + size] -= angle.torque.at(at.t);
@@ -374,8 +368,8 @@ struct On<'a> {
 
 impl Residuals<MOST> for On<'_> {
     #[inline(always)]
-    fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; MOST] {
-        self.sheave.eval(self.k, self.at, &self.x.along(self.w, of), self.stress).0
+    fn eval<S: Jet>(&self, seeds: &impl Seeds<S>) -> [S; MOST] {
+        self.sheave.eval(self.k, self.at, &self.x.along(self.w, seeds), self.stress).0
     }
 }
 

@@ -189,23 +189,43 @@ impl<R: Real> Jet for Gradient<R> {
 
 /// `N` residuals of `N` unknowns or fewer, over any carrier: what [`tangent`] differentiates.
 ///
-/// What it calls is to be `#[inline(always)]`, for the registers of the processor to serve.
+/// What it calls is to be `#[inline(always)]`, without closures, for the registers of the processor to serve.
 pub trait Residuals<const N: usize> {
-    /// Evaluates them. `of(i, x, w)` is a number `x` that changes by `w` with unknown `i`.
-    fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; N];
+    /// Evaluates them.
+    fn eval<S: Jet>(&self, seeds: &impl Seeds<S>) -> [S; N];
+}
+
+/// What makes numbers that change with unknowns.
+pub trait Seeds<S> {
+    /// The number `x`, which changes by `w` with unknown `i`.
+    fn of(&self, i: usize, x: f64, w: f64) -> S;
+}
+
+/// Unknowns from here on, one in each lane.
+struct Lanes(usize);
+
+impl<R: Real> Seeds<Gradient<R>> for Lanes {
+    #[inline(always)]
+    fn of(&self, i: usize, re: f64, w: f64) -> Gradient<R> {
+        let mut eps = [0.0; MOST_LANES];
+        if (self.0..self.0 + R::LANES).contains(&i) {
+            eps[i - self.0] = w;
+        }
+        Gradient { re, eps: R::read(&eps) }
+    }
 }
 
 /// Sets the first `n` rows and columns of `block` to the derivatives of residuals, row by row, by the first `n` unknowns.
 ///
 /// ```
-/// use ropewalk_core::{Jet, Residuals, tangent};
+/// use ropewalk_core::{Jet, Residuals, Seeds, tangent};
 ///
 /// /// `x y` and `x + 3 y`
 /// struct Both([f64; 2]);
 /// impl Residuals<2> for Both {
 ///     #[inline(always)]
-///     fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; 2] {
-///         let (x, y) = (of(0, self.0[0], 1.0), of(1, self.0[1], 1.0));
+///     fn eval<S: Jet>(&self, seeds: &impl Seeds<S>) -> [S; 2] {
+///         let (x, y) = (seeds.of(0, self.0[0], 1.0), seeds.of(1, self.0[1], 1.0));
 ///         [x * y, x + y * 3.0]
 ///     }
 /// }
@@ -227,11 +247,7 @@ impl<F: Residuals<N>, const N: usize> LaneTask for Tangent<'_, F, N> {
     #[inline(always)]
     fn go<R: Real>(self) {
         for first in (0..self.n).step_by(R::LANES) {
-            let of = |i: usize, re: f64, w: f64| {
-                let eps = R::each(|lane| if first + lane == i { w } else { 0.0 });
-                Gradient { re, eps }
-            };
-            let columns = self.residuals.eval(of);
+            let columns: [Gradient<R>; N] = self.residuals.eval(&Lanes(first));
             let (mut lanes, count) = ([0.0; MOST_LANES], R::LANES.min(self.n - first));
             for (row, column) in self.block.iter_mut().zip(&columns).take(self.n) {
                 column.eps.write(&mut lanes);
@@ -278,8 +294,8 @@ mod tests {
 
     struct All([f64; 2]);
     impl Residuals<16> for All {
-        fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; 16] {
-            all(of(0, self.0[0], 1.0), of(9, self.0[1], -2.0))
+        fn eval<S: Jet>(&self, seeds: &impl Seeds<S>) -> [S; 16] {
+            all(seeds.of(0, self.0[0], 1.0), seeds.of(9, self.0[1], -2.0))
         }
     }
 

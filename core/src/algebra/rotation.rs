@@ -40,9 +40,9 @@ pub fn times<T: Copy + Mul<Output = T> + Add<Output = T>>(a: &M3<T>, b: &V3<T>) 
     [along(&a[0], b), along(&a[1], b), along(&a[2], b)]
 }
 
-/// `a b`; a closure would not be sure to be inlined
+/// Scalar product over any carrier: how far `b` goes along a unit vector `a`.
 #[inline(always)]
-fn along<T: Copy + Mul<Output = T> + Add<Output = T>>(a: &V3<T>, b: &V3<T>) -> T {
+pub fn along<T: Copy + Mul<Output = T> + Add<Output = T>>(a: &V3<T>, b: &V3<T>) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

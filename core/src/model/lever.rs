@@ -2,7 +2,7 @@
 
 use crate::algebra::jet::Jet;
 use crate::algebra::lane::{V3, dot};
-use crate::algebra::rotation::{cross, times};
+use crate::algebra::rotation::{along, cross, times};
 use crate::model::twist::{Turned, section};
 use num_dual::Dual64;
 
@@ -27,10 +27,6 @@ struct Swing<S> {
     spin: S,
     second: V3<S>,
     third: S,
-}
-
-fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn plus<S: Jet>(a: V3<S>, s: S, b: &V3<S>) -> V3<S> {

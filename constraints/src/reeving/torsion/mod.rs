@@ -19,8 +19,8 @@ use super::local::Local;
 use super::sheave::{Groove, Sheave};
 pub(super) use roll::Rolls;
 use ropewalk_core::{
-    Assembly, At, Column, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Residuals, Shows, Term, V3,
-    Weights, dot, tangent,
+    Assembly, At, Column, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Residuals, Seeds, Shows,
+    Term, V3, Weights, dot, tangent,
 };
 use ropewalk_scene::Torsional;
 use shape::Shape;
@@ -228,8 +228,8 @@ struct On<'a> {
 
 impl Residuals<MOST> for On<'_> {
     #[inline(always)]
-    fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; MOST] {
-        self.torsion.eval(self.at, &self.x.along(self.w, of), self.now).r
+    fn eval<S: Jet>(&self, seeds: &impl Seeds<S>) -> [S; MOST] {
+        self.torsion.eval(self.at, &self.x.along(self.w, seeds), self.now).r
     }
 }
 

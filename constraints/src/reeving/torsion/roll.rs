@@ -4,10 +4,11 @@ use super::shape::Shape;
 use super::{ArcTorsion, CARRIER, MOST, SECOND, leave_out, of_groove};
 use crate::reeving::flank::Flank;
 use crate::reeving::hold::Mode;
+use crate::reeving::inline::{each, three};
 use crate::reeving::local::Local;
-use ropewalk_core::rotation::{cross, transposed_times};
+use ropewalk_core::rotation::{along, cross, transposed_times};
 use ropewalk_core::{
-    Assembly, At, Column, Jet, Pattern, Power, Residuals, Shows, Term, V3, Weights, tangent,
+    Assembly, At, Column, Jet, Pattern, Power, Residuals, Seeds, Shows, Term, V3, Weights, tangent,
 };
 
 /// What rolls the cable in a groove, at both ends of what lies there.
@@ -35,11 +36,6 @@ pub(in crate::reeving) fn label(wheel: &str) -> String {
 /// Sine of a fleet angle below which there is no flank.
 const NONE: f64 = 1e-8;
 
-#[inline(always)]
-fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 impl Rolls {
     /// Residual, and the torque on the cable at both ends, after increments of the unknowns from where the twist is as given.
     #[inline(always)]
@@ -49,22 +45,22 @@ impl Rolls {
         let Some(twist) = groove.twist else { return (r, torques) };
         let Flank { share, radius, friction, .. } = self.flank;
         let hub = self.torsion.hub(at, &x.d);
-        let axis = hub.axis.map(|a| a * groove.side());
+        let axis = each!(hub.axis, |a| a * groove.side());
         let p = |k: usize| x.d[SECOND * k + 7] + at.q[groove.ends[k].q];
         let angle = shape.by_twist.iter().zip(&x.d).fold(S::from(shape.twist), |sum, (g, d)| sum + *d * *g);
         let length = p(1) - p(0) + groove.stored;
         let twisted = angle / length;
         // of a laid rope, as friction sees it
         let pulls = (S::from(twist.last(at)) / length - twist.torsion.free) * twist.torsion.lay;
-        let omega: V3<S> = std::array::from_fn(|i| match &hub.turn {
-            Some(turn) => along(&turn[i], &std::array::from_fn(|j| x.v[CARRIER + 3 + j])),
+        let omega: V3<S> = three!(|i| match &hub.turn {
+            Some(turn) => along(&turn[i], &three!(|j| x.v[CARRIER + 3 + j])),
             None => S::zero(),
         });
         for (k, end) in groove.ends.iter().enumerate() {
             let i = SECOND * k;
             let [place, slope] = self.torsion.end(k, at, &x.d);
             let stretch = along(&slope, &slope).sqrt();
-            let (t, lean) = (slope.map(|p| p / stretch), along(&axis, &slope));
+            let (t, lean) = (each!(slope, |p| p / stretch), along(&axis, &slope));
             if lean.re().abs() <= NONE * stretch.re() {
                 continue;
             }
@@ -84,11 +80,11 @@ impl Rolls {
             // the twist between that before the torque and behind it
             let mean = twisted + torque * (0.5 * end.sign / twist.torsion.gj);
             let drag = torque * gear / stretch;
-            let out: V3<S> = std::array::from_fn(|c| place[c] - hub.centre[c]);
+            let out: V3<S> = three!(|c| place[c] - hub.centre[c]);
             let beside = along(&axis, &out);
-            let flat: V3<S> = std::array::from_fn(|c| out[c] - axis[c] * beside);
+            let flat: V3<S> = three!(|c| out[c] - axis[c] * beside);
             let far = along(&flat, &flat).sqrt();
-            let force = cross(&axis, &flat).map(|f| f * drag / far);
+            let force = each!(cross(&axis, &flat), |f| f * drag / far);
             for c in 0..3 {
                 r[i + c] -= force[c];
             }
@@ -99,9 +95,9 @@ impl Rolls {
                 (0..3).for_each(|c| r[CARRIER + c] += force[c]);
             }
             if let Some(turn) = &hub.turn {
-                let lever: V3<S> = std::array::from_fn(|c| out[c] + hub.arm[c]);
+                let lever: V3<S> = three!(|c| out[c] + hub.arm[c]);
                 let moment = cross(&lever, &force);
-                let all = std::array::from_fn(|c| moment[c] + t[c] * torque);
+                let all = three!(|c| moment[c] + t[c] * torque);
                 let own = transposed_times(turn, &all);
                 (0..3).for_each(|c| r[CARRIER + 3 + c] += own[c]);
             }
@@ -132,8 +128,8 @@ struct On<'a> {
 
 impl Residuals<MOST> for On<'_> {
     #[inline(always)]
-    fn eval<S: Jet>(&self, of: impl Fn(usize, f64, f64) -> S) -> [S; MOST] {
-        self.rolls.eval(self.at, &self.x.along(self.w, of), self.shape).0
+    fn eval<S: Jet>(&self, seeds: &impl Seeds<S>) -> [S; MOST] {
+        self.rolls.eval(self.at, &self.x.along(self.w, seeds), self.shape).0
     }
 }
 

@@ -2,18 +2,14 @@
 
 use super::{ArcTorsion, CARRIER, MOST, SECOND};
 use crate::reeving::hold::Mode;
+use crate::reeving::inline::{each, three, two};
 use ropewalk_core::model::twist::{between, section};
-use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
+use ropewalk_core::rotation::{along, cross, matrix, times, transposed_times};
 use ropewalk_core::{At, Jet, V3};
 
 #[inline(always)]
-fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
 fn less<S: Jet>(a: &V3<S>, s: S, b: &V3<S>) -> V3<S> {
-    std::array::from_fn(|i| a[i] - b[i] * s)
+    three!(|i| a[i] - b[i] * s)
 }
 
 /// How twist and stretched length change with the unknowns, and what they are.
@@ -37,22 +33,22 @@ impl ArcTorsion {
     #[inline(always)]
     pub(super) fn hub<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> Hub<S> {
         let seat = &self.sheave.seat;
-        let (point, axis) = (seat.point.map(S::from), seat.axis.map(S::from));
-        let moved = |q: usize| -> V3<S> { std::array::from_fn(|i| d[CARRIER + i] + at.q[q + i]) };
+        let (point, axis) = (each!(seat.point, |x| S::from(x)), each!(seat.axis, |x| S::from(x)));
+        let moved = |q: usize| -> V3<S> { three!(|i| d[CARRIER + i] + at.q[q + i]) };
         match seat.on {
             None => Hub { centre: point, axis, arm: point, turn: None },
             Some((q, _, false)) => Hub { centre: moved(q), axis, arm: point, turn: None },
             Some((q, _, true)) => {
                 let still = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
-                let small = std::array::from_fn(|i| d[CARRIER + 3 + i]);
+                let small = three!(|i| d[CARRIER + 3 + i]);
                 // to first order, all that a first derivative needs
-                let turn: [V3<S>; 3] = std::array::from_fn(|i| {
-                    let row = still[i].map(S::from);
+                let turn: [V3<S>; 3] = three!(|i| {
+                    let row = each!(still[i], |x| S::from(x));
                     let more = cross(&row, &small);
-                    std::array::from_fn(|j| row[j] + more[j])
+                    three!(|j| row[j] + more[j])
                 });
                 let (foot, arm) = (moved(q), times(&turn, &point));
-                let centre = std::array::from_fn(|i| foot[i] + arm[i]);
+                let centre = three!(|i| foot[i] + arm[i]);
                 Hub { centre, axis: times(&turn, &axis), arm, turn: Some(turn) }
             }
         }
@@ -62,7 +58,7 @@ impl ArcTorsion {
     #[inline(always)]
     pub(super) fn end<S: Jet>(&self, k: usize, at: &At<'_>, d: &[S; MOST]) -> [V3<S>; 2] {
         let (q, i) = (self.at().ends[k].end_q, SECOND * k);
-        [0, 3].map(|n| std::array::from_fn(|c| d[i + n + c] + at.q[q + n + c]))
+        two!(|n| three!(|c| d[i + 3 * n + c] + at.q[q + 3 * n + c]))
     }
 
     /// Where it wraps the wheel.
@@ -76,15 +72,15 @@ impl ArcTorsion {
         for k in 0..2 {
             let sign = if k == 0 { -1.0 } else { 1.0 };
             let [r, p] = self.end(k, at, d);
-            let out: V3<S> = std::array::from_fn(|i| r[i] - hub.centre[i]);
+            let out: V3<S> = three!(|i| r[i] - hub.centre[i]);
             outs[k] = out;
             let beside = along(a, &out);
             let rho = less(&out, beside, a);
             let square = along(&rho, &rho);
             let size = along(&p, &p).sqrt();
-            let t = p.map(|x| x / size);
+            let t = each!(p, |x| x / size);
             let lean = along(&rho, &t);
-            let b = cross(&rho, &t).map(|x| x * sign / (square - lean * lean));
+            let b = each!(cross(&rho, &t), |x| x * sign / (square - lean * lean));
             let axial = along(&b, a);
             let across = less(&b, axial, a);
             let i = SECOND * k;
@@ -99,7 +95,7 @@ impl ArcTorsion {
                 turning[c] -= tilt[c] * beside + swing[c] * axial;
             }
             let radius = groove.arc.radius;
-            let f = cross(a, &rho).map(|x| x * (radius * groove.side() * sign) / square);
+            let f = each!(cross(a, &rho), |x| x * (radius * groove.side() * sign) / square);
             by_length[i..i + 3].copy_from_slice(&f);
             pulls = less(&pulls, S::one(), &f);
         }
@@ -139,7 +135,7 @@ impl ArcTorsion {
         }
         if let Some(turn) = &hub.turn {
             let lever = cross(&hub.arm, place);
-            let all = std::array::from_fn(|i| lever[i] + turning[i]);
+            let all = three!(|i| lever[i] + turning[i]);
             by[CARRIER + 3..].copy_from_slice(&transposed_times(turn, &all));
         }
     }
@@ -149,23 +145,22 @@ impl ArcTorsion {
     #[inline(always)]
     fn straight<S: Jet>(&self, at: &At<'_>, d: &[S; MOST]) -> [[S; MOST]; 2] {
         let zero = S::zero();
-        let [[r1, p1], [r2, p2]] = [0, 1].map(|k| self.end(k, at, d));
+        let [[r1, p1], [r2, p2]] = two!(|k| self.end(k, at, d));
         let chord = less(&r2, S::one(), &r1);
         let unit = |x: &V3<S>| {
             let size = along(x, x).sqrt();
-            (x.map(|x| x / size), size)
+            (each!(*x, |x| x / size), size)
         };
         let ((t1, n1), (t2, n2), (way, size)) = (unit(&p1), unit(&p2), unit(&chord));
         let c = along(&t1, &t2);
         let turn = cross(&t1, &t2);
         let volume = along(&way, &turn);
         let open = c + along(&t1, &way) + along(&way, &t2) + 1.0;
-        let b = turn.map(|x| x / (c + 1.0));
+        let b = each!(turn, |x| x / (c + 1.0));
         // derivative by a unit vector, from that of the volume and that of the opening
         let area = |volume_by: &V3<S>, open_by: [&V3<S>; 2], own: &V3<S>| -> V3<S> {
-            let g: V3<S> = std::array::from_fn(|i| {
-                (volume_by[i] - (open_by[0][i] + open_by[1][i]) * volume / open) * 4.0 / open
-            });
+            let g: V3<S> =
+                three!(|i| (volume_by[i] - (open_by[0][i] + open_by[1][i]) * volume / open) * 4.0 / open);
             less(&g, along(&g, own), own)
         };
         let g1 = area(&cross(&t2, &way), [&way, &t2], &t1);

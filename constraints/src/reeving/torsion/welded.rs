@@ -1,15 +1,12 @@
 //! Ends of two spans whose sections look alike.
 
 use crate::reeving::arc::angle;
-use ropewalk_core::{Jet, Place, Relation, RowKind, V3};
+use ropewalk_core::rotation::along;
+use ropewalk_core::{Jet, Place, Relation, RowKind};
 
 /// The section at the end of a span and that at the start of the next look alike, one carried to the other by the smallest rotation:
 /// of a cable that turns sharply in between, as in a ring. The markers are those of [`end`](crate::reeving::tangent::end).
 pub(in crate::reeving) struct Welded;
-
-fn along<S: Jet>(a: &V3<S>, b: &V3<S>) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
 
 impl Relation for Welded {
     fn rows(&self) -> Vec<RowKind> {
