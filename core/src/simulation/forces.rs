@@ -8,7 +8,8 @@ use super::Simulation;
 use crate::model::node::retract;
 use crate::model::term::Weights;
 use crate::solve::integrator::{
-    Workspace, assemble_mass_at, consistent_by_factors, consistent_by_iteration, consistent_by_mass,
+    Workspace, assemble_mass_at, consistent_as_it_is, consistent_by_factors, consistent_by_iteration,
+    consistent_by_mass,
 };
 use crate::solve::linear::SolveError;
 
@@ -81,13 +82,21 @@ impl Simulation {
     fn balance(&mut self, weights: Weights) -> Result<bool, SolveError> {
         let mut aside = self.take_aside()?;
         let start = self.scratch.clone();
-        let there = self.iterate(weights, &mut aside)
-            && consistent_by_factors(&self.model, &mut self.scratch, &mut aside).is_ok();
+        let there = self.iterate(weights, &mut aside) && self.makes_consistent(&mut aside).is_ok();
         if !there {
             self.scratch = start;
         }
         self.aside = Some(aside);
         Ok(there)
+    }
+
+    /// Makes a balanced scratch state consistent, where it isn't already.
+    fn makes_consistent(&mut self, aside: &mut Workspace) -> Result<(), SolveError> {
+        let (model, forces) = (&self.model, &self.work.forces);
+        if !consistent_as_it_is(model, &mut self.scratch, aside, |l| forces.pulled(l, FINE) <= 1.0)? {
+            consistent_by_factors(model, &mut self.scratch, aside)?;
+        }
+        Ok(())
     }
 
     /// Whether the iteration came to its end.

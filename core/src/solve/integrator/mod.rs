@@ -26,7 +26,7 @@ pub use scheme::{Coefficients, Scheme};
 pub(crate) use start::restart;
 pub use start::{Correction, consistent, prepare};
 pub(crate) use start::{
-    assemble_mass_at, consistent_by_factors, consistent_by_iteration, consistent_by_mass,
+    assemble_mass_at, consistent_as_it_is, consistent_by_factors, consistent_by_iteration, consistent_by_mass,
 };
 pub use step::{Integrator, StepError, StepReport};
 pub use workspace::{Counts, Workspace};

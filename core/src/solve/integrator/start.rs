@@ -230,6 +230,41 @@ pub(crate) fn consistent_by_factors(
     at_index_one(model, state, v, work)
 }
 
+/// Moves velocities onto the constraints in the metric of the iteration matrix whose factors the workspace holds, if that and
+/// accelerations that meet the constraints too change no force that counts; otherwise nothing is changed and it gives `false`.
+/// `small` judges what multipliers change by.
+///
+/// As the matrix is no smaller than that of the mass, it tells of no less than what the equations of motion would change.
+pub(crate) fn consistent_as_it_is(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+    small: impl Fn(&[f64]) -> bool,
+) -> Result<bool, SolveError> {
+    let (nv, m) = (model.velocities(), model.multipliers());
+    let Some(Weights { v, .. }) = work.factored.filter(|_| m > 0) else { return Ok(m == 0) };
+    let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
+    model.rates(&state.at(), &mut rate, &mut bias);
+    let missed = |x: &[f64], missing: &[f64], work: &mut Workspace| {
+        let mut rhs = vec![0.0; model.structure().n];
+        work.times_matrix(model, Which::Iteration, x, &mut rhs);
+        rhs[..nv].fill(0.0);
+        rhs[nv..].iter_mut().zip(missing).for_each(|(r, missing)| *r = -*r - missing);
+        work.solve(model, Which::Iteration, &mut rhs).map(|()| rhs)
+    };
+    if !small(&missed(&state.a, &bias, work)?[nv..]) {
+        return Ok(false);
+    }
+    let mut change = missed(&state.v, &rate, work)?;
+    // what damping makes of the velocities
+    change[nv..].iter_mut().for_each(|l| *l /= v);
+    let fits = small(&change[nv..]);
+    if fits {
+        state.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
+    }
+    Ok(fits)
+}
+
 /// The velocities nearest to those of a state that the constraints allow.
 fn on_constraints(
     model: &Model,

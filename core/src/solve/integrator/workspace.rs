@@ -388,10 +388,19 @@ impl Workspace {
 
     /// `M d` in the order of velocities, with the mass matrix last assembled.
     pub(crate) fn times_mass(&mut self, model: &Model, d: &[f64], out: &mut [f64]) {
+        self.times_matrix(model, Which::Mass, d, out);
+    }
+
+    /// The same with either matrix as it was assembled last.
+    pub(crate) fn times_matrix(&mut self, model: &Model, which: Which, d: &[f64], out: &mut [f64]) {
         let s = model.structure();
+        let values = match which {
+            Which::Mass => &self.mass.values,
+            Which::Iteration => &self.system.values,
+        };
         self.x.fill(0.0);
         s.order(d, &mut self.x);
-        s.multiply(&self.mass.values, &self.x, &mut self.y);
+        s.multiply(values, &self.x, &mut self.y);
         s.restore(&self.y, out);
     }
 
