@@ -161,6 +161,10 @@ impl Relation for Steered {
     fn follows(&self) -> Option<&dyn Motion> {
         Some(self.0.as_ref())
     }
+    fn turned(&self, from: f64, to: f64) -> f64 {
+        let [before, after] = [self.0.six(from), self.0.six(to)];
+        (3..6).map(|i| (after[i][0] - before[i][0]).abs()).sum()
+    }
     fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]) {
         let (x, axes) = self.0.pose(t);
         for i in 0..3 {

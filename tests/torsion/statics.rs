@@ -38,6 +38,58 @@ fn an_end_is_driven_through_twenty_turns_and_back() {
     assert!(middle[1].abs() < 1e-9 && middle[2].abs() < 1e-9, "{middle:?}");
 }
 
+/// However few equilibria are asked for, a driven angle goes all its way between them: twist keeps its turns, and a body doesn't
+/// end half a turn off, where its joint is closed too.
+#[test]
+fn turns_are_kept_however_few_steps_there_are() {
+    for steps in [2, 5, 40, 160] {
+        let text = include_str!("turns.toml").replace("steps = 640", &format!("steps = {steps}"));
+        let h = run(&text, &[]);
+        let angle = h.column("rod.end.angle").expect("angle");
+        assert_eq!(angle.len(), steps + 1);
+        for (k, angle) in angle.iter().enumerate() {
+            // the motion's table is joined by a parabola
+            let t = 2.0 * k as f64 / steps as f64;
+            let exact = 40.0 * std::f64::consts::PI * t * (2.0 - t);
+            assert!((angle - exact).abs() < 1e-9, "{steps} steps: {angle} for {exact}");
+        }
+    }
+    let body = r#"
+        run = { analysis = "statics", duration = 1 }
+        statics = { steps = 2 }
+        [[motions]]
+        type = "table"
+        name = "turn"
+        t = [0, 1]
+        angle = [0, 5]
+        [[elements]]
+        type = "rigid_body"
+        name = "b"
+        position = [0, 0, 0]
+        mass = 1
+        inertia = [1, 1, 1]
+        [[constraints]]
+        type = "revolute"
+        name = "hinge"
+        marker = "b"
+        axis = [1, 0, 0]
+        [[constraints]]
+        type = "rotation"
+        name = "drive"
+        marker = "b"
+        axis = [1, 0, 0]
+        motion = "turn"
+        [[records]]
+        type = "orientation"
+        of = "b"
+        "#;
+    let h = run(body, &[]);
+    let roll = h.table.columns.iter().find(|c| c.name.ends_with("phi1")).expect("an angle").values.clone();
+    for (roll, turned) in roll.iter().zip([0.0, 2.5, 5.0]) {
+        assert!((roll - turned).sin().abs() < 1e-9 && (roll - turned).cos() > 0.0, "{roll} for {turned}");
+    }
+}
+
 /// Greenhill: the twist at which a clamped rod gives way sideways, under end forces of both signs.
 #[test]
 fn a_twisted_rod_gives_way_at_the_critical_moment() {

@@ -71,6 +71,11 @@ impl Model {
         bodies.map(|n| d[n.v + 3..n.v + 6].iter().map(|x| x * x).sum::<f64>()).fold(0.0, f64::max).sqrt()
     }
 
+    /// The largest angle by which a motion turns something between two times [rad].
+    pub(crate) fn turned(&self, from: f64, to: f64) -> f64 {
+        self.constraints.iter().filter(|c| c.moves()).map(|c| c.turned(from, to)).fold(0.0, f64::max)
+    }
+
     /// Why a cable can't be followed by these increments, if it can't: they turn a section so far that its director doesn't
     /// know where to go, or bend an element so far that its twist can't be told.
     pub(crate) fn flips(&self, q: &[f64], d: &[f64]) -> Option<&'static str> {

@@ -63,6 +63,11 @@ pub trait Constraint: Send + Sync {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.imposes().map_or(Some(h), |m| m.reach(t, h))
     }
+    /// The angle by which its motion turns what it holds between two times [rad]: another by a whole turn, of a joint by half
+    /// of one, can't be told from it where both meet its equations.
+    fn turned(&self, _from: f64, _to: f64) -> f64 {
+        0.0
+    }
     /// The coordinate that it prescribes, if it does nothing else: its place and that of its velocity. Integrators then
     /// take coordinate, velocity and acceleration from [`Constraint::prescribed`] instead of following the coordinate,
     /// which would make accelerations ring.

@@ -38,6 +38,10 @@ pub trait Relation: Send + Sync + 'static {
     fn follows(&self) -> Option<&dyn Motion> {
         None
     }
+    /// The angle by which its motion turns its last marker between two times [rad], as [`Constraint::turned`].
+    fn turned(&self, _from: f64, _to: f64) -> f64 {
+        0.0
+    }
     /// Sets the value of each equation, given where the markers are. A time-dependent relation evaluates its
     /// motion with [`lift`], and tells it as [`Relation::follows`].
     fn g<S: Jet>(&self, t: S, at: &[Place<S>], g: &mut [S]);
@@ -145,6 +149,10 @@ impl<R: Relation> Constraint for Related<R> {
     }
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.relation.follows().map_or(Some(h), |m| m.reach(t, h))
+    }
+
+    fn turned(&self, from: f64, to: f64) -> f64 {
+        self.relation.turned(from, to)
     }
 
     fn jacobian(&self, nodes: &[Node], at: &At<'_>, g: &mut [f64], jac: &mut [f64]) {

@@ -97,11 +97,7 @@ impl Joint {
     }
 
     fn check_axes(&self, nodes: &[Node]) -> Result<(), BuildError> {
-        let arrows = self.equations.iter().flat_map(|e| match e {
-            Equation::Dot { a, b, .. } => vec![a, b],
-            _ => Vec::new(),
-        });
-        for arrow in arrows {
+        for arrow in self.equations.iter().filter_map(Equation::arrows).flatten() {
             let (of, turned) = match arrow {
                 Arrow::Between => continue,
                 Arrow::Tangent { of } if self.kind(nodes, *of).is_some_and(NodeKind::has_slope) => continue,
@@ -226,6 +222,14 @@ impl Constraint for Joint {
     }
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.motions().try_fold(h, |h, m| m.reach(t, h))
+    }
+    fn turned(&self, from: f64, to: f64) -> f64 {
+        let arrows = self.equations.iter().filter_map(Equation::arrows).flatten();
+        let angles = arrows.filter_map(|arrow| match arrow {
+            Arrow::Turned { angle, .. } => Some((angle.at(to).x[0] - angle.at(from).x[0]).abs()),
+            _ => None,
+        });
+        angles.fold(0.0, f64::max)
     }
     fn imposes(&self) -> Option<&dyn Motion> {
         self.equations.iter().find_map(|e| match e {

@@ -12,6 +12,12 @@ const UNFOLDED: u32 = 8;
 /// How often the arc of a path is tried before shorter steps are.
 const ARCS: u32 = 3;
 
+/// Most that a motion may turn something by in a step of the load [rad]: a joint that tells an angle by directions has another
+/// branch half a turn away, and twist counts whole turns by the least change.
+const MOST_TURN: f64 = 1.0;
+/// How often a step is halved for that: what turns faster turns about at once.
+const HALVED: u32 = 40;
+
 impl Statics<'_> {
     /// Moves `state` to the equilibrium at its time. `cold` says that no equilibrium nearby is known: the first of a
     /// path, or a guess.
@@ -174,7 +180,9 @@ impl Statics<'_> {
             let before = state.clone();
             let swings = self.judged.flutter > 0.0;
             state.t = if (t - before.t).abs() <= 1.001 * h.abs() { t } else { before.t + h };
+            state.t = self.within_a_turn(before.t, state.t);
             let to = state.t;
+            h = to - before.t;
             self.run_on(state, to - before.t);
             if self.stays(&before, state) {
                 continue;
@@ -225,6 +233,19 @@ impl Statics<'_> {
             }
         }
         Ok(sum)
+    }
+
+    /// The time until which motions turn nothing too far, on the way from one time to another.
+    fn within_a_turn(&self, from: f64, mut to: f64) -> f64 {
+        let quarter = |k: u32, to: f64| from + 0.25 * f64::from(k) * (to - from);
+        let far = |to: f64| (1..=4).any(|k| self.model.turned(from, quarter(k, to)) > MOST_TURN);
+        for _ in 0..HALVED {
+            if !far(to) {
+                break;
+            }
+            to = quarter(2, to);
+        }
+        to
     }
 
     /// Whether an equilibrium that was judged is the one of a later time too, since nothing has changed. Asked only where
