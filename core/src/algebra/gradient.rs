@@ -302,14 +302,17 @@ mod tests {
     #[test]
     fn every_function_has_its_derivative_in_every_direction() {
         let [x, y] = [0.61, 0.37];
-        let mut block = [[f64::NAN; 16]; 16];
-        tangent(&All([x, y]), 10, &mut block);
         let by_x = difference(|h| all(x + h, y).to_vec());
         let by_y = difference(|h| all(x, y + h).to_vec());
-        for (i, row) in block.iter().enumerate().take(10) {
-            approx::assert_relative_eq!(row[0], by_x[i], max_relative = 1e-9, epsilon = 1e-9);
-            approx::assert_relative_eq!(row[9], -2.0 * by_y[i], max_relative = 1e-9, epsilon = 1e-9);
-            assert!(row[1..9].iter().all(|x| *x == 0.0) && row[10..].iter().all(|x| x.is_nan()));
+        for width in [Width::One, Width::Four, Width::Eight] {
+            let mut block = [[f64::NAN; 16]; 16];
+            run(width, Tangent { residuals: &All([x, y]), n: 10, block: &mut block });
+            for (i, row) in block.iter().enumerate().take(10) {
+                approx::assert_relative_eq!(row[0], by_x[i], max_relative = 1e-9, epsilon = 1e-9);
+                approx::assert_relative_eq!(row[9], -2.0 * by_y[i], max_relative = 1e-9, epsilon = 1e-9);
+                assert!(row[1..9].iter().all(|x| *x == 0.0) && row[10..].iter().all(|x| x.is_nan()));
+            }
+            assert!(block[10..].iter().flatten().all(|x| x.is_nan()));
         }
         // the rows behind aren't asked for: what is left of the functions, one direction at a time
         let dual = all(num_dual::Dual64::new(x, 1.0), num_dual::Dual64::from(y));
