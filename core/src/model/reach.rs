@@ -9,7 +9,7 @@ use crate::algebra::lane::V3;
 /// Steps for each period of what goes to and fro.
 const PER_PERIOD: f64 = 12.0;
 /// Steps for each smooth rise.
-const PER_RISE: f64 = 4.0;
+const PER_RISE: f64 = 8.0;
 /// By how much, in parts of the whole range of its values, a table may stray within a step from the straight line between
 /// the ends of the step.
 const STRAY: f64 = 0.02;
@@ -35,8 +35,8 @@ pub fn period(period: f64, h: f64) -> f64 {
 ///
 /// ```
 /// use ropewalk_core::reach;
-/// // a ramp from 10 s to 14 s: a step from 9 s goes a quarter of it beyond its start, one from 14 s as far as it likes
-/// assert_eq!(reach::rise(10.0, 14.0, 9.0, 60.0), 2.0);
+/// // a ramp from 10 s to 14 s: a step from 9 s goes an eighth of it beyond its start, one from 14 s as far as it likes
+/// assert_eq!(reach::rise(10.0, 14.0, 9.0, 60.0), 1.5);
 /// assert_eq!(reach::rise(10.0, 14.0, 14.0, 60.0), 60.0);
 /// ```
 pub fn rise(start: f64, end: f64, t: f64, h: f64) -> f64 {
@@ -182,7 +182,7 @@ mod tests {
     fn rises_and_periods_get_a_few_steps_each() {
         assert_eq!(
             [0.0, 9.0, 10.0, 12.0, 14.0].map(|t| rise(10.0, 14.0, t, 60.0)),
-            [11.0, 2.0, 1.0, 1.0, 60.0]
+            [10.5, 1.5, 0.5, 0.5, 60.0]
         );
         assert_eq!([period(24.0, 60.0), period(24.0, 1.0)], [2.0, 1.0]);
     }
