@@ -54,39 +54,51 @@ fn turns_are_kept_however_few_steps_there_are() {
             assert!((angle - exact).abs() < 1e-9, "{steps} steps: {angle} for {exact}");
         }
     }
-    let body = r#"
-        run = { analysis = "statics", duration = 1 }
-        statics = { steps = 2 }
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("yaw.csv");
+    std::fs::write(&file, "t [s],yaw [rad]\n0,0\n1,10\n").expect("a table");
+    let hinge = r#"
         [[motions]]
         type = "table"
         name = "turn"
         t = [0, 1]
-        angle = [0, 5]
+        angle = [0, 10]
+        [[constraints]]
+        type = "revolute"
+        name = "hinge"
+        marker = "b"
+        axis = [0, 0, 1]
+        [[constraints]]
+        type = "rotation"
+        name = "drive"
+        marker = "b"
+        axis = [0, 0, 1]
+        motion = "turn"
+        "#;
+    let vessel = format!(
+        "[[constraints]]\ntype = \"vessel\"\nname = \"steered\"\nmarker = \"b\"\nfile = {:?}\n",
+        file.display().to_string()
+    );
+    let body = r#"
+        run = { analysis = "statics", duration = 1 }
+        statics = { steps = 2 }
         [[elements]]
         type = "rigid_body"
         name = "b"
         position = [0, 0, 0]
         mass = 1
         inertia = [1, 1, 1]
-        [[constraints]]
-        type = "revolute"
-        name = "hinge"
-        marker = "b"
-        axis = [1, 0, 0]
-        [[constraints]]
-        type = "rotation"
-        name = "drive"
-        marker = "b"
-        axis = [1, 0, 0]
-        motion = "turn"
         [[records]]
         type = "orientation"
         of = "b"
         "#;
-    let h = run(body, &[]);
-    let roll = h.table.columns.iter().find(|c| c.name.ends_with("phi1")).expect("an angle").values.clone();
-    for (roll, turned) in roll.iter().zip([0.0, 2.5, 5.0]) {
-        assert!((roll - turned).sin().abs() < 1e-9 && (roll - turned).cos() > 0.0, "{roll} for {turned}");
+    // a vessel starts at rest: the cubic t² (3 - t)/2
+    for (driven, half) in [(hinge, 5.0), (&vessel, 10.0 * 0.3125)] {
+        let h = run(&format!("{body}{driven}"), &[]);
+        let yaw = h.table.columns.iter().find(|c| c.name.ends_with("phi3")).expect("an angle");
+        for (yaw, turned) in yaw.values.iter().zip([0.0, half, 10.0]) {
+            assert!((yaw - turned).sin().abs() < 1e-9 && (yaw - turned).cos() > 0.0, "{yaw} for {turned}");
+        }
     }
 }
 

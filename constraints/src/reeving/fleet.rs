@@ -2,8 +2,9 @@
 
 use super::hold::Mode;
 use super::inline::{each, three};
-use super::seat::Seat;
-use ropewalk_core::rotation::{along, cross, matrix, times, transposed_times};
+use super::local::from;
+use super::seat::{Seat, turned};
+use ropewalk_core::rotation::{along, cross, times, transposed_times};
 use ropewalk_core::{
     Assembly, At, Jet, MovingBoundary, Pattern, Power, Residuals, Seeds, Term, V3, Weights, tangent,
 };
@@ -80,13 +81,7 @@ impl Fleet {
             Some((q, _, turns)) => {
                 let foot: V3<S> = three!(|i| x[7 + i] + at.q[q + i]);
                 if turns {
-                    let still = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
-                    // to first order, all that a first derivative needs
-                    let m = three!(|i| {
-                        let row = each!(still[i], |x| S::from(x));
-                        let more = cross(&row, &[x[10], x[11], x[12]]);
-                        three!(|j| row[j] + more[j])
-                    });
+                    let m = turned(at, q, &from(x, 10));
                     turn = Some(m);
                     let out = times(&m, &arm);
                     (foot, three!(|i| foot[i] + out[i]), times(&m, &own))

@@ -1,7 +1,20 @@
 //! Where a wheel is, and what carries it.
 
+use super::inline::{each, three};
 use ropewalk_core::rotation::{cross, matrix, times};
-use ropewalk_core::{At, BuildError, Marker, Node, NodeKind, V3};
+use ropewalk_core::{At, BuildError, Jet, Marker, Node, NodeKind, V3};
+
+/// The rotation of a body whose coordinates begin at `q`, after a small turn in its own axes: to first order, all that a first
+/// derivative needs.
+#[inline(always)]
+pub(super) fn turned<S: Jet>(at: &At<'_>, q: usize, small: &V3<S>) -> [V3<S>; 3] {
+    let still = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
+    three!(|i| {
+        let row = each!(still[i], |x| S::from(x));
+        let more = cross(&row, small);
+        three!(|j| row[j] + more[j])
+    })
+}
 
 /// What carries a wheel: a point and an axis of space, of a point, or of a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]

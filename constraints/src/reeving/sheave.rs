@@ -6,10 +6,10 @@ use super::hold::Mode;
 use super::inline::{each, three, two};
 use super::local::{Local, from};
 use super::piece::Piece;
-use super::seat::Seat;
+use super::seat::{Seat, turned};
 use super::torsion::Twist;
 use num_dual::Dual64;
-use ropewalk_core::rotation::{along, cross, matrix, times, transposed_times};
+use ropewalk_core::rotation::{along, cross, times, transposed_times};
 use ropewalk_core::{
     Assembly, At, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Residuals, Seeds, Shows, Signal,
     Solid, Term, Timed, V3, Weights, dot, tangent,
@@ -150,14 +150,7 @@ impl Sheave {
                 ([place, from(&x.v, 8), from(&x.a, 8)], own)
             }
             Some((q, _, true)) => {
-                let still = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
-                let small = from(&x.d, 11);
-                // to first order, all that a first derivative needs
-                turn = three!(|i| {
-                    let row = each!(still[i], |x| S::from(x));
-                    let more = cross(&row, &small);
-                    three!(|j| row[j] + more[j])
-                });
+                turn = turned(at, q, &from(&x.d, 11));
                 (omega, alpha) = (from(&x.v, 11), from(&x.a, 11));
                 let (swings, spins) = (cross(&omega, &arm), cross(&alpha, &arm));
                 let inwards = cross(&omega, &swings);

@@ -181,6 +181,14 @@ impl<R: Real> Jet for Gradient<R> {
         self.chain(self.re.atan2(x.re), x.re / square) + x.chain(0.0, -self.re / square)
     }
     #[inline(always)]
+    fn sinh(self) -> Self {
+        self.chain(self.re.sinh(), self.re.cosh())
+    }
+    #[inline(always)]
+    fn cosh(self) -> Self {
+        self.chain(self.re.cosh(), self.re.sinh())
+    }
+    #[inline(always)]
     fn tanh(self) -> Self {
         let y = self.re.tanh();
         self.chain(y, 1.0 - y * y)
@@ -272,11 +280,13 @@ mod tests {
         z += y;
         z *= 1.5;
         z -= 0.25;
+        z /= y;
+        z /= 0.8;
         [
             x * y,
             x / y,
             (x - y) * 2.0 + z,
-            (-x + 1.0) / 3.0,
+            (-x + 1.0) / 3.0 + x.sinh() * y.cosh(),
             x.recip() - y,
             x.sqrt(),
             x.powi(3) + y.powi(-2) + x.powi(0),

@@ -2,7 +2,7 @@
 
 use num_dual::{DualNum, DualStruct};
 use std::iter::Sum;
-use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number that carries derivatives along: what relations, markers and terms without closed derivatives are evaluated with.
 ///
@@ -34,9 +34,11 @@ pub trait Jet:
     + AddAssign
     + SubAssign
     + MulAssign
+    + DivAssign
     + AddAssign<f64>
     + SubAssign<f64>
     + MulAssign<f64>
+    + DivAssign<f64>
     + Sum
 {
     /// The number itself.
@@ -85,6 +87,10 @@ pub trait Jet:
     fn atan(self) -> Self;
     /// The angle of the point `(x, self)` of the plane [rad].
     fn atan2(self, x: Self) -> Self;
+    /// Hyperbolic sine.
+    fn sinh(self) -> Self;
+    /// Hyperbolic cosine.
+    fn cosh(self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
 }
@@ -107,5 +113,5 @@ impl<T: DualNum<Primitive = f64> + Copy> Jet for T {
     fn sin_cos(self) -> (Self, Self) {
         DualNum::sin_cos(&self)
     }
-    as_they_are!(recip, sqrt, powi(n: i32), powf(n: f64), exp, atan2(x: Self), ln, sin, cos, tan, asin, acos, atan, tanh);
+    as_they_are!(recip, sqrt, powi(n: i32), powf(n: f64), exp, atan2(x: Self), ln, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh);
 }

@@ -3,8 +3,9 @@
 use super::{ArcTorsion, CARRIER, MOST, SECOND};
 use crate::reeving::hold::Mode;
 use crate::reeving::inline::{each, three, two};
+use crate::reeving::seat::turned;
 use ropewalk_core::model::twist::{between, section};
-use ropewalk_core::rotation::{along, cross, matrix, times, transposed_times};
+use ropewalk_core::rotation::{along, cross, times, transposed_times};
 use ropewalk_core::{At, Jet, V3};
 
 #[inline(always)]
@@ -39,14 +40,7 @@ impl ArcTorsion {
             None => Hub { centre: point, axis, arm: point, turn: None },
             Some((q, _, false)) => Hub { centre: moved(q), axis, arm: point, turn: None },
             Some((q, _, true)) => {
-                let still = matrix(&[at.q[q + 3], at.q[q + 4], at.q[q + 5], at.q[q + 6]]);
-                let small = three!(|i| d[CARRIER + 3 + i]);
-                // to first order, all that a first derivative needs
-                let turn: [V3<S>; 3] = three!(|i| {
-                    let row = each!(still[i], |x| S::from(x));
-                    let more = cross(&row, &small);
-                    three!(|j| row[j] + more[j])
-                });
+                let turn = turned(at, q, &three!(|i| d[CARRIER + 3 + i]));
                 let (foot, arm) = (moved(q), times(&turn, &point));
                 let centre = three!(|i| foot[i] + arm[i]);
                 Hub { centre, axis: times(&turn, &axis), arm, turn: Some(turn) }

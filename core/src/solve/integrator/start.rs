@@ -234,7 +234,7 @@ pub(crate) fn consistent_by_factors(
 /// accelerations that meet the constraints too change no force that counts; otherwise nothing is changed and it gives `false`.
 /// `small` judges what multipliers change by.
 ///
-/// As the matrix is no smaller than that of the mass, it tells of no less than what the equations of motion would change.
+/// Where stiffness makes the matrix larger than that of the mass, it tells of more than what the equations of motion would change.
 pub(crate) fn consistent_as_it_is(
     model: &Model,
     state: &mut State,
