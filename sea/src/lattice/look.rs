@@ -1,11 +1,14 @@
 //! The motion of the water at stations, over lanes.
 
-use super::{Lattice, SPOTS, hermite, slopes};
+use super::cell::{Spot, Top};
+use super::{Lattice, SPOTS};
 use crate::waves::Flow;
 use ropewalk_core::Real;
 
 /// As many lanes as the widest carrier has.
 const LANES: usize = 8;
+
+type Row = [f64; LANES];
 
 /// What is known of the table around stations side by side: it stays the same until one of them gets to another spot, or the
 /// time to another instant.
@@ -13,18 +16,63 @@ const LANES: usize = 8;
 pub struct Stations {
     /// How many there are: as many others know nothing of these.
     lanes: usize,
-    /// The spots along the waves and the instant that the surface was asked for, and those that the water was.
-    nearest: [[f64; LANES]; 2],
-    n: [i64; 2],
-    /// The surface there, number by number.
-    edges: [[f64; LANES]; 16],
-    /// The heights at which the cells begin that they are in, and how high these are [m].
-    tops: [f64; LANES],
-    sizes: [f64; LANES],
-    /// How many spots below that each is.
-    numbers: [f64; LANES],
-    /// The water there.
-    spots: [[f64; LANES]; 32],
+    surface: Known<2, 6>,
+    water: Known<4, 12>,
+    /// Spots of the cells in which they are are so far apart, and their number per metre.
+    apart: Row,
+    per: Row,
+    /// The depths between which such cells are [m].
+    from: Row,
+    to: Row,
+}
+
+/// Numbers at the spots next to stations, at both instants about a time.
+#[derive(Clone, Debug)]
+struct Known<const CORNERS: usize, const N: usize> {
+    /// The first of the instants.
+    n: i64,
+    /// Of what is known of slots.
+    generation: u64,
+    /// Numbers of the spots along the waves and downwards, and where these are [m].
+    spots: [Row; 2],
+    places: [Row; 2],
+    /// Slots of the corners around them.
+    slots: [[u32; CORNERS]; LANES],
+    /// What is there, number by number.
+    rows: [[Row; N]; 2],
+}
+
+impl<const CORNERS: usize, const N: usize> Known<CORNERS, N> {
+    /// Of nothing.
+    fn nothing() -> Self {
+        let nowhere = [[f64::NAN; LANES]; 2];
+        let (slots, rows) = ([[0; CORNERS]; LANES], [[[0.0; LANES]; N]; 2]);
+        Known { n: 0, generation: 0, spots: nowhere, places: nowhere, slots, rows }
+    }
+
+    /// Which of its instants have to be found for a lane that is where it was, of `n` and the next one.
+    fn missing(&mut self, lane: usize, n: i64) -> &'static [usize] {
+        if n == self.n {
+            return &[];
+        }
+        if n != self.n + 1 {
+            return &[0, 1];
+        }
+        let [first, second] = &mut self.rows;
+        first.iter_mut().zip(second).for_each(|(first, second)| first[lane] = second[lane]);
+        &[1]
+    }
+
+    fn put(&mut self, lane: usize, instant: usize, numbers: &[f64; N]) {
+        self.rows[instant].iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
+    }
+
+    /// Number `k` and its rate at both instants, where rates are so much farther on.
+    #[inline(always)]
+    fn four<R: Real>(&self, k: usize, rate: usize) -> [R; 4] {
+        let [a, b] = &self.rows;
+        [R::read(&a[k]), R::read(&a[k + rate]), R::read(&b[k]), R::read(&b[k + rate])]
+    }
 }
 
 impl Default for Stations {
@@ -33,22 +81,13 @@ impl Default for Stations {
         let nowhere = [f64::NAN; LANES];
         Stations {
             lanes: 0,
-            nearest: [nowhere; 2],
-            n: [0; 2],
-            edges: [[0.0; LANES]; 16],
-            tops: nowhere,
-            sizes: nowhere,
-            numbers: nowhere,
-            spots: [[0.0; LANES]; 32],
+            surface: Known::nothing(),
+            water: Known::nothing(),
+            apart: nowhere,
+            per: nowhere,
+            from: nowhere,
+            to: nowhere,
         }
-    }
-}
-
-impl Stations {
-    /// Whether one of them is still where it was, if it is at this height.
-    fn is_at(&self, lane: usize, up: f64) -> bool {
-        let (down, size) = (self.tops[lane] - up, self.sizes[lane]);
-        down >= 0.0 && down < size && (down * SPOTS / size + 0.5).floor() == self.numbers[lane]
     }
 }
 
@@ -94,9 +133,10 @@ impl Lattice {
         Blend { value: [a, tau * da, b, tau * db], rate: [ra / tau, rda, rb / tau, rdb] }
     }
 
-    /// How far spots are apart along the waves [m].
-    fn spot(&self) -> f64 {
-        self.along / SPOTS
+    /// How far places are along the waves [m].
+    #[inline(always)]
+    fn along<R: Real>(&self, [x, y]: [R; 2]) -> R {
+        x.fma(R::of(self.way[0]), y * R::of(self.way[1]))
     }
 
     /// The surface above places, of a flow of which nothing else is known.
@@ -106,18 +146,20 @@ impl Lattice {
             *stations = Stations { lanes: R::LANES, ..Stations::default() };
         }
         let Instant { n, late } = self.instant(t);
-        let (nearest, off) = self.nearest(place);
-        if stations.n[0] != n || !same::<R>(&nearest, &stations.nearest[0]) {
-            self.meet_surface(&nearest, n, R::LANES, stations);
+        let along = self.along(place);
+        let spots = rounded(along * R::of(SPOTS as f64 / self.size));
+        if stations.surface.n != n || !same::<R>(&spots, &stations.surface.spots[0]) {
+            self.meet_surface(&spots, n, R::LANES, &mut stations.surface);
         }
-        let edges = &stations.edges;
+        let known = &stations.surface;
         let Blend { value, rate } = self.blend(late);
         let (mut now, mut rates) = ([R::zero(); 3], [R::zero(); 3]);
         for k in 0..3 {
-            let four = read(edges, [k, 4 + k, 8 + k, 12 + k]);
+            let four = known.four(k, 3);
             now[k] = Blend::of(&value, four);
             rates[k] = Blend::of(&rate, four);
         }
+        let off = along - R::read(&known.places[0]);
         let ([elevation, steep, bend], [rising, steepening, bending]) = (now, rates);
         let half = R::of(0.5) * off;
         let elevation = off.fma(half.fma(bend, steep), elevation);
@@ -133,15 +175,6 @@ impl Lattice {
         }
     }
 
-    /// The numbers of the nearest spots along the waves, and how far places are from them [m].
-    #[inline(always)]
-    fn nearest<R: Real>(&self, [x, y]: [R; 2]) -> ([f64; LANES], R) {
-        let spot = self.spot();
-        let along = x.fma(R::of(self.way[0]), y * R::of(self.way[1]));
-        let numbers = rounded(along * R::of(1.0 / spot));
-        (numbers, along - R::read(&numbers) * R::of(spot))
-    }
-
     /// Adds to a flow, of which the surface is known, what is under it at places: under still water if stretched so.
     #[inline(always)]
     pub fn within<R: Real>(
@@ -152,181 +185,135 @@ impl Lattice {
         flow: &mut Flow<R>,
     ) {
         let Instant { n, late } = self.instant(t);
-        let (nearest, across) = self.nearest([x, y]);
+        let along = self.along([x, y]);
         let [up, by_z, by_eta] = self.waves.stretched(z, flow.elevation);
-        let (top, size) = (R::read(&stations.tops), R::read(&stations.sizes));
-        let mut numbers = rounded((top - up) * R::of(SPOTS) / size);
-        if stations.n[1] != n
-            || !same::<R>(&nearest, &stations.nearest[1])
-            || !same::<R>(&numbers, &stations.numbers)
-            || !inside(top - up, size)
+        let (depth, per) = (-up, R::read(&stations.per));
+        let spots = [rounded(along * per), rounded(depth * per)];
+        let known = &stations.water;
+        if known.n != n
+            || !same::<R>(&spots[0], &known.spots[0])
+            || !same::<R>(&spots[1], &known.spots[1])
+            || !between(depth, R::read(&stations.from), R::read(&stations.to))
         {
-            up.write(&mut numbers);
-            self.meet(&nearest, &numbers, n, R::LANES, stations);
+            let (mut x, mut down) = ([0.0; LANES], [0.0; LANES]);
+            along.write(&mut x);
+            depth.write(&mut down);
+            self.meet(&x, &down, n, R::LANES, stations);
         }
-        let (top, size) = (R::read(&stations.tops), R::read(&stations.sizes));
-        let upwards = up - top + R::read(&stations.numbers) * size * R::of(1.0 / SPOTS);
-        let spots = &stations.spots;
+        let known = &stations.water;
+        let off = [along - R::read(&known.places[0]), R::read(&known.places[1]) - depth];
         let Blend { value, rate } = self.blend(late);
-        // values of u and w, along the waves, upwards, and along them twice; and their rates
-        let (mut now, mut rates) = ([[R::zero(); 2]; 4], [[R::zero(); 2]; 4]);
-        for k in 0..4 {
+        // f, its first and its second derivative, and their rates
+        let (mut now, mut rates) = ([[R::zero(); 2]; 3], [[R::zero(); 2]; 3]);
+        for k in 0..3 {
             for i in 0..2 {
-                let first = 4 * k + i;
-                let four = read(spots, [first, first + 2, first + 16, first + 18]);
+                let four = known.four(4 * k + i, 2);
                 now[k][i] = Blend::of(&value, four);
                 rates[k][i] = Blend::of(&rate, four);
             }
         }
-        let (u, du) = (around(now, [across, upwards]), around(rates, [across, upwards]));
-        let [cx, cy] = [R::of(self.way[0]), R::of(self.way[1])];
+        let ([f, by], [df, dby]) = (around(now, off), around(rates, off));
+        let ([cx, cy], current) = (self.way.map(R::of), R::of(self.current));
         // as one sees it who drifts with the current
-        let current = R::of(self.current);
-        let [a, b] = [current.fma(u[1][0], du[0][0]), current.fma(u[1][1], du[0][1])];
-        flow.velocity = [u[0][0] * cx, u[0][0] * cy, u[0][1]];
+        let [a, b] = [current.fma(by[0], df[0]), -current.fma(by[1], df[1])];
+        flow.velocity = [f[0] * cx, f[0] * cy, -f[1]];
         flow.acceleration = [a * cx, a * cy, b];
         // of what drifting adds to the acceleration the change from place to place is left out
-        (flow.gradient, flow.acceleration_gradient) = (turned(&u, [cx, cy]), turned(&du, [cx, cy]));
+        (flow.gradient, flow.acceleration_gradient) = (gradient(by, [cx, cy]), gradient(dby, [cx, cy]));
         flow.rise(self.waves.risen(t), [by_z, by_eta], self.waves.current);
     }
 
     /// Finds the surface at these spots.
     #[cold]
     #[inline(never)]
-    fn meet_surface(&mut self, nearest: &[f64; LANES], n: i64, lanes: usize, stations: &mut Stations) {
+    fn meet_surface(&mut self, spots: &Row, n: i64, lanes: usize, known: &mut Known<2, 6>) {
+        let generation = self.sums.make_room(n);
         for lane in 0..lanes {
-            if stations.n[0] == n && stations.nearest[0][lane] == nearest[lane] {
-                continue;
+            let stays = known.generation == generation && known.spots[0][lane] == spots[lane];
+            let missing = if stays { known.missing(lane, n) } else { &[0, 1] };
+            let (i, spot) = cell_of(spots[lane]);
+            if !stays {
+                known.slots[lane] = [self.sums.line(i), self.sums.line(i + 1)];
+                known.places[0][lane] = spots[lane] * self.size / SPOTS as f64;
             }
-            let number = nearest[lane] as i64;
-            for (rows, n) in stations.edges.chunks_exact_mut(8).zip(n..) {
-                let (place, known) = self.edges.find([number, 0, n]);
-                if !known {
-                    *self.edges.numbers(place) = self.edge(number, n);
-                }
-                let numbers = self.edges.numbers(place);
-                rows.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
+            for &instant in missing {
+                let tops = self.sums.tops(known.slots[lane], n + instant as i64);
+                let numbers: Top = self.edge.spot(spot, tops, self.size);
+                known.put(lane, instant, &numbers);
             }
         }
-        (stations.nearest[0], stations.n[0]) = (*nearest, n);
+        (known.spots[0], known.n, known.generation) = (*spots, n, generation);
     }
 
-    /// Finds the spots along the waves and at these heights.
+    /// Finds the water at the spots next to places along the waves and at these depths [m].
     #[cold]
     #[inline(never)]
-    fn meet(
-        &mut self,
-        nearest: &[f64; LANES],
-        up: &[f64; LANES],
-        n: i64,
-        lanes: usize,
-        stations: &mut Stations,
-    ) {
+    fn meet(&mut self, along: &Row, depth: &Row, n: i64, lanes: usize, stations: &mut Stations) {
+        let generation = self.sums.make_room(n);
+        let Stations { water: known, apart, per, from, to, .. } = stations;
         for lane in 0..lanes {
-            if stations.n[1] == n
-                && stations.nearest[1][lane] == nearest[lane]
-                && stations.is_at(lane, up[lane])
-            {
-                continue;
-            }
-            let j = self.heights.partition_point(|h| *h > up[lane]).clamp(1, self.heights.len() - 1) - 1;
-            let (top, size) = (self.heights[j], self.heights[j] - self.heights[j + 1]);
-            let number = ((top - up[lane]) * SPOTS / size + 0.5).floor();
-            let along = nearest[lane] as i64;
-            let down = ((j as i64) << 32).wrapping_add(number as i64);
-            for (rows, n) in stations.spots.chunks_exact_mut(16).zip(n..) {
-                let (place, known) = self.spots.find([along, down, n]);
-                if !known {
-                    *self.spots.numbers(place) = self.around(along, (j, top - number * size / SPOTS), n);
+            let level = self.levels.partition_point(|from| *from <= depth[lane]).max(1) - 1;
+            let width = self.size * f64::from(1_u32 << level);
+            let spot = width / SPOTS as f64;
+            let spots = [along[lane], depth[lane]].map(|x| (x / spot + 0.5).floor());
+            let stays = known.generation == generation
+                && apart[lane] == spot
+                && [0, 1].iter().all(|&k| known.spots[k][lane] == spots[k]);
+            let missing = if stays { known.missing(lane, n) } else { &[0, 1] };
+            // no deeper than the bed
+            let deepest = (self.bottom / spot + 0.5).floor();
+            let [(i, across), (j, down)] = [cell_of(spots[0]), cell_of(spots[1].min(deepest))];
+            if !stays {
+                let step = 1 << level;
+                let (i, j) = (i.wrapping_mul(step), j.wrapping_mul(step));
+                known.slots[lane] = [(0, 0), (step, 0), (0, step), (step, step)]
+                    .map(|(right, down)| self.sums.place(i.wrapping_add(right), j.wrapping_add(down)));
+                let places = [spots[0], spots[1].min(deepest)].map(|s| s * spot);
+                for k in 0..2 {
+                    (known.spots[k][lane], known.places[k][lane]) = (spots[k], places[k]);
                 }
-                let numbers = self.spots.numbers(place);
-                rows.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
+                (apart[lane], per[lane]) = (spot, 1.0 / spot);
+                from[lane] = if level == 0 { f64::NEG_INFINITY } else { self.levels[level] };
+                to[lane] = self.levels.get(level + 1).copied().unwrap_or(f64::INFINITY);
             }
-            (stations.tops[lane], stations.sizes[lane], stations.numbers[lane]) = (top, size, number);
-        }
-        (stations.nearest[1], stations.n[1]) = (*nearest, n);
-    }
-
-    /// The two lines between which a place is, of those that are so far apart, and where it is between them.
-    fn between(&self, x: f64, level: u32) -> ([i64; 2], f64) {
-        let apart = 1_i64 << level;
-        let place = x / (self.along * apart as f64);
-        let i = place.floor();
-        let first = i as i64 * apart;
-        ([first, first + apart], place - i)
-    }
-
-    /// The surface at a spot at an instant: elevation, slope, its change, and a nought; then the rates of these.
-    fn edge(&mut self, spot: i64, n: i64) -> [f64; 8] {
-        let (lines, across) = self.between(spot as f64 * self.spot(), 0);
-        let (h, dh) = (hermite(across), slopes(across));
-        self.columns.forget_far(n);
-        let [a, b] = lines.map(|i| self.columns.top(i, n));
-        let between = |w: &[f64; 4], k: usize, size: f64| {
-            w[0] * a[k] + w[2] * b[k] + size * (w[1] * a[k + 1] + w[3] * b[k + 1])
-        };
-        let mut out = [0.0; 8];
-        for rate in 0..2 {
-            let (k, to) = (3 * rate, &mut out[4 * rate..]);
-            to[0] = between(&h, k, self.along);
-            to[1] = between(&dh, k, self.along) / self.along;
-            to[2] = between(&dh, k + 1, self.along) / self.along;
-        }
-        out
-    }
-
-    /// The water at a spot below height `j` at an instant: `u`, `w` and their rates; the same along the waves, upwards, and
-    /// along the waves twice.
-    fn around(&mut self, spot: i64, (j, up): (usize, f64), n: i64) -> [f64; 16] {
-        let mut out = [0.0; 16];
-        let bottom = self.heights[self.heights.len() - 1];
-        if up < bottom && self.waves.depth().is_infinite() {
-            // nothing moves there
-            return out;
-        }
-        let level = self.levels[j];
-        let (lines, across) = self.between(spot as f64 * self.spot(), level);
-        let size = self.along * (1_i64 << level) as f64;
-        let height = self.heights[j] - self.heights[j + 1];
-        let depth = (self.heights[j] - up) / height;
-        let (hx, dx, hz, dz) = (hermite(across), slopes(across), hermite(depth), slopes(depth));
-        self.columns.forget_far(n);
-        for k in 0..2 {
-            // along the waves: u, u_x, w, w_x and their rates, and what each of them changes by
-            let (mut a, mut b) = ([0.0; 8], [0.0; 8]);
-            for end in 0..2 {
-                let corner = self.columns.corner(lines[end], j + k, n);
-                let (value, change) = corner.split_at(8);
-                let ([x, g], [by, dg]) =
-                    ([hx[2 * end], dx[2 * end] / size], [hx[2 * end + 1] * size, dx[2 * end + 1]]);
-                for m in 0..8 {
-                    a[m] += x * value[m] + by * change[m];
-                    b[m] += g * value[m] + dg * change[m];
-                }
-            }
-            // heights count downwards; u_z = w_x, w_z = -u_x
-            let (z, by_z) = (hz[2 * k], -hz[2 * k + 1] * height);
-            let (g, by_g) = (-dz[2 * k] / height, dz[2 * k + 1]);
-            let share = if k == 0 { 1.0 - depth } else { depth };
-            for rate in 0..2 {
-                let (m, to) = (4 * rate, &mut out[2 * rate..]);
-                to[0] += z * a[m] + by_z * a[m + 3];
-                to[1] += z * a[m + 2] - by_z * a[m + 1];
-                to[4] += z * b[m] + by_z * b[m + 3];
-                to[5] += z * b[m + 2] - by_z * b[m + 1];
-                to[8] += g * a[m] + by_g * a[m + 3];
-                to[9] += g * a[m + 2] - by_g * a[m + 1];
-                to[12] += share * b[m + 1];
-                to[13] += share * b[m + 3];
+            for &instant in missing {
+                // nothing moves far down
+                let still = depth[lane] > self.bottom && self.waves.depth().is_infinite();
+                let numbers: Spot = if still {
+                    [0.0; 12]
+                } else {
+                    let corners = self.sums.corners(known.slots[lane], n + instant as i64);
+                    self.cell.spot([across, down], corners, width)
+                };
+                known.put(lane, instant, &numbers);
             }
         }
-        out
+        (known.n, known.generation) = (n, generation);
     }
+}
+
+/// The cell of a spot, and its number in it.
+fn cell_of(spot: f64) -> (i64, usize) {
+    let (spot, spots) = (spot as i64, SPOTS as i64);
+    (spot.div_euclid(spots), spot.rem_euclid(spots) as usize)
+}
+
+/// Cubic Hermite polynomials on 0 … 1: value and derivative at the start, value and derivative at the end.
+fn hermite(x: f64) -> [f64; 4] {
+    let (x2, rest) = (x * x, 1.0 - x);
+    let s = x2 * (3.0 - 2.0 * x);
+    [1.0 - s, x * rest * rest, s, -x2 * rest]
+}
+
+/// Their derivatives.
+fn slopes(x: f64) -> [f64; 4] {
+    let s = 6.0 * x * (1.0 - x);
+    [-s, (1.0 - x) * (1.0 - 3.0 * x), s, x * (3.0 * x - 2.0)]
 }
 
 /// Whole numbers next to these.
 #[inline(always)]
-fn rounded<R: Real>(x: R) -> [f64; LANES] {
+fn rounded<R: Real>(x: R) -> Row {
     let mut numbers = [0.0; LANES];
     x.write(&mut numbers);
     for x in &mut numbers[..R::LANES] {
@@ -337,7 +324,7 @@ fn rounded<R: Real>(x: R) -> [f64; LANES] {
 
 /// Whether they are the same in all lanes; what is no number never is.
 #[inline(always)]
-fn same<R: Real>(a: &[f64; LANES], b: &[f64; LANES]) -> bool {
+fn same<R: Real>(a: &Row, b: &Row) -> bool {
     let mut same = true;
     for lane in 0..R::LANES {
         same &= a[lane] == b[lane];
@@ -345,44 +332,37 @@ fn same<R: Real>(a: &[f64; LANES], b: &[f64; LANES]) -> bool {
     same
 }
 
-/// Whether all are within cells of these sizes.
+/// Whether all are from one depth on, and above another.
 #[inline(always)]
-fn inside<R: Real>(down: R, size: R) -> bool {
-    let (mut all, mut most) = ([0.0; LANES], [0.0; LANES]);
-    down.write(&mut all);
-    size.write(&mut most);
-    let mut inside = true;
+fn between<R: Real>(depth: R, from: R, to: R) -> bool {
+    let [mut all, mut first, mut last] = [[0.0; LANES]; 3];
+    depth.write(&mut all);
+    from.write(&mut first);
+    to.write(&mut last);
+    let mut between = true;
     for lane in 0..R::LANES {
-        inside &= (all[lane] >= 0.0) & (all[lane] < most[lane]);
+        between &= (all[lane] >= first[lane]) & (all[lane] < last[lane]);
     }
-    inside
+    between
 }
 
-/// Four rows of numbers.
+/// `f` so far from a spot, and its derivative, of which value, first and second derivative are known there.
 #[inline(always)]
-fn read<R: Real, const N: usize>(rows: &[[f64; LANES]; N], [a, b, c, d]: [usize; 4]) -> [R; 4] {
-    [R::read(&rows[a]), R::read(&rows[b]), R::read(&rows[c]), R::read(&rows[d])]
-}
-
-/// `u` and `w` so far from a spot, and what they change by along the waves and upwards. Their second derivatives upwards are
-/// those along the waves with the other sign, `u_xz = w_xx` and `w_xz = -u_xx`.
-#[inline(always)]
-fn around<R: Real>([at, by_x, by_z, bend]: [[R; 2]; 4], [x, z]: [R; 2]) -> [[R; 2]; 3] {
-    let [[u, w], [ux, wx], [uz, wz], [uxx, wxx]] = [at, by_x, by_z, bend];
+fn around<R: Real>([f, by, bend]: [[R; 2]; 3], [x, z]: [R; 2]) -> [[R; 2]; 2] {
     let (square, both) = (R::of(0.5) * (x * x - z * z), x * z);
     [
         [
-            x.fma(ux, z.fma(uz, square.fma(uxx, both.fma(wxx, u)))),
-            x.fma(wx, z.fma(wz, square.fma(wxx, w - both * uxx))),
+            x.fma(by[0], square.fma(bend[0], f[0])) - z.fma(by[1], both * bend[1]),
+            x.fma(by[1], square.fma(bend[1], f[1])) + z.fma(by[0], both * bend[0]),
         ],
-        [x.fma(uxx, z.fma(wxx, ux)), x.fma(wxx, wx - z * uxx)],
-        [x.fma(wxx, uz - z * uxx), wz - x * uxx - z * wxx],
+        [x.fma(bend[0], by[0]) - z * bend[1], x.fma(bend[1], by[1]) + z * bend[0]],
     ]
 }
 
-/// What a vector in the plane of the waves changes by from place to place, in space.
+/// What `u` along the waves and `w` change by from place to place, in space: `f' = u_x - i w_x`, and `u_z = w_x`, `w_z = -u_x`.
 #[inline(always)]
-fn turned<R: Real>([_, x, z]: &[[R; 2]; 3], [cx, cy]: [R; 2]) -> [[R; 3]; 3] {
-    let (ux, uy) = (x[0] * cx, x[0] * cy);
-    [[ux * cx, ux * cy, z[0] * cx], [ux * cy, uy * cy, z[0] * cy], [x[1] * cx, x[1] * cy, z[1]]]
+fn gradient<R: Real>([ux, minus_wx]: [R; 2], [cx, cy]: [R; 2]) -> [[R; 3]; 3] {
+    let (wx, along) = (-minus_wx, [ux * cx, ux * cy]);
+    let (up, mixed) = ([wx * cx, wx * cy], along[0] * cy);
+    [[along[0] * cx, mixed, up[0]], [mixed, along[1] * cy, up[1]], [up[0], up[1], -ux]]
 }

@@ -1,0 +1,143 @@
+//! Polynomials between the corners of a cell, and between the ends of an edge.
+
+use super::SPOTS;
+use num_complex::Complex64;
+
+/// Numbers at a corner: `f` and its rate, and the derivatives of both by `ζ`; each as its real and its imaginary part.
+pub(super) type Corner = [f64; 8];
+/// Numbers at a spot of a cell: `f` and its rate, their first and their second derivatives.
+pub(super) type Spot = [f64; 12];
+/// The surface at a place: elevation, slope, and how that changes; then the rates of these.
+pub(super) type Top = [f64; 6];
+
+/// The polynomials in a square cell of width 1, whose first corner is at `ζ = 0` and its second at 1; the others are below, and
+/// downwards is `-i`.
+#[derive(Clone, Debug)]
+pub(super) struct Cell {
+    /// At each spot, row by row, the value, first and second derivative of the polynomials that belong to `f` and `f'` of each
+    /// corner.
+    weights: Vec<[[Complex64; 8]; 3]>,
+}
+
+const CORNERS: [Complex64; 4] = [
+    Complex64::new(0.0, 0.0),
+    Complex64::new(1.0, 0.0),
+    Complex64::new(0.0, -1.0),
+    Complex64::new(1.0, -1.0),
+];
+
+impl Cell {
+    pub fn new() -> Self {
+        let all = polynomials();
+        let spot = |k: usize| {
+            let place = Complex64::new((k % SPOTS) as f64, -((k / SPOTS) as f64)) / SPOTS as f64;
+            let at = all.map(|p| values(&p, place));
+            std::array::from_fn(|d| std::array::from_fn(|m| at[m][d]))
+        };
+        Cell { weights: (0..SPOTS * SPOTS).map(spot).collect() }
+    }
+
+    /// What is at a spot of a cell of this width, whose corners are known.
+    #[inline]
+    pub fn spot(&self, [along, down]: [usize; 2], corners: [&Corner; 4], width: f64) -> Spot {
+        let (mut out, mut per) = ([0.0; 12], 1.0);
+        for (weights, out) in self.weights[down * SPOTS + along].iter().zip(out.as_chunks_mut::<4>().0) {
+            for (corner, w) in corners.iter().zip(weights.as_chunks::<2>().0) {
+                let [value, slope] = [w[0] * per, w[1] * (per * width)];
+                for k in [0, 2] {
+                    let [re, im, by, by_im] = [corner[k], corner[k + 1], corner[4 + k], corner[5 + k]];
+                    out[k] += value.re * re - value.im * im + slope.re * by - slope.im * by_im;
+                    out[k + 1] += value.re * im + value.im * re + slope.re * by_im + slope.im * by;
+                }
+            }
+            per /= width;
+        }
+        out
+    }
+}
+
+/// Coefficients, the constant one first, of the polynomials of degree 7 that are 1 at a corner, or of slope 1, and meet nought
+/// with slope nought at all others (Hermite).
+fn polynomials() -> [[Complex64; 8]; 8] {
+    let mut all = [[Complex64::ZERO; 8]; 8];
+    for m in 0..4 {
+        let (mut p, mut steep) = ([Complex64::ZERO; 8], Complex64::ZERO);
+        p[0] = Complex64::ONE;
+        for n in (0..4).filter(|n| *n != m) {
+            let apart = CORNERS[m] - CORNERS[n];
+            steep += 2.0 / apart;
+            for _ in 0..2 {
+                p = times(&p, -CORNERS[n] / apart, 1.0 / apart);
+            }
+        }
+        all[2 * m] = times(&p, 1.0 + steep * CORNERS[m], -steep);
+        all[2 * m + 1] = times(&p, -CORNERS[m], Complex64::ONE);
+    }
+    all
+}
+
+/// A polynomial times `a + b ζ`.
+fn times(p: &[Complex64; 8], a: Complex64, b: Complex64) -> [Complex64; 8] {
+    std::array::from_fn(|k| a * p[k] + if k > 0 { b * p[k - 1] } else { Complex64::ZERO })
+}
+
+/// Value, first and second derivative of a polynomial.
+fn values(p: &[Complex64; 8], place: Complex64) -> [Complex64; 3] {
+    let [mut value, mut first, mut half] = [Complex64::ZERO; 3];
+    for coefficient in p.iter().rev() {
+        half = half * place + first;
+        first = first * place + value;
+        value = value * place + coefficient;
+    }
+    [value, first, 2.0 * half]
+}
+
+/// The polynomials of degree 5 on an edge of length 1 that meet values, slopes and second derivatives at both ends.
+#[derive(Clone, Debug)]
+pub(super) struct Edge {
+    /// At each spot the value, first and second derivative of those that belong to the first end, and to the second.
+    weights: [[[f64; 6]; 3]; SPOTS],
+}
+
+impl Edge {
+    pub fn new() -> Self {
+        const ALL: [[f64; 6]; 6] = [
+            [1.0, 0.0, 0.0, -10.0, 15.0, -6.0],
+            [0.0, 1.0, 0.0, -6.0, 8.0, -3.0],
+            [0.0, 0.0, 0.5, -1.5, 1.5, -0.5],
+            [0.0, 0.0, 0.0, 10.0, -15.0, 6.0],
+            [0.0, 0.0, 0.0, -4.0, 7.0, -3.0],
+            [0.0, 0.0, 0.0, 0.5, -1.0, 0.5],
+        ];
+        let weights = std::array::from_fn(|spot| {
+            let x = spot as f64 / SPOTS as f64;
+            let at = ALL.map(|p| {
+                let [mut value, mut first, mut half] = [0.0; 3];
+                for c in p.into_iter().rev() {
+                    half = half * x + first;
+                    first = first * x + value;
+                    value = value * x + c;
+                }
+                [value, first, 2.0 * half]
+            });
+            std::array::from_fn(|d| std::array::from_fn(|m| at[m][d]))
+        });
+        Edge { weights }
+    }
+
+    /// The surface at a spot of an edge of this length.
+    #[inline]
+    pub fn spot(&self, along: usize, ends: [&Top; 2], length: f64) -> Top {
+        let (mut out, mut per) = ([0.0; 6], 1.0);
+        for (d, weights) in self.weights[along].iter().enumerate() {
+            for rate in [0, 3] {
+                for (end, w) in ends.iter().zip(weights.as_chunks::<3>().0) {
+                    let [y, by, bend] = [end[rate], end[rate + 1] * length, end[rate + 2] * length * length];
+                    out[rate + d] += per * (w[0] * y + w[1] * by + w[2] * bend);
+                }
+            }
+            per /= length;
+        }
+        out
+    }
+}
