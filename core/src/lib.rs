@@ -44,7 +44,9 @@ pub use model::remesh::{Change, Mesh, MeshState, Plan, Prestrain, Remeshed};
 pub use model::solid::{Attitude, Solid, Surface};
 pub use model::span::{ContactSpan, SpanFlow, SpanLine};
 pub use model::state::{At, Control, Relaxation, Relaxed, State};
-pub use model::station::{FieldTerm, Gives, Law, Laws, Load, Station, StationElement, StationPool, Stations};
+pub use model::station::{
+    FieldTerm, Gives, Joined, Law, Laws, Load, Station, StationElement, StationPool, Stations,
+};
 pub use model::structure::{Block, Columns, Structure};
 pub use model::term::{Assembly, Energy, Leap, Power, Term, Weights};
 pub use model::{Model, Recipe, Start, Switches, broken, held, reach};

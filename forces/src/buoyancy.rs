@@ -1,15 +1,18 @@
 //! Buoyancy at the surface of water: at rest a potential, so that energy is kept.
 
-use crate::Surface;
 use crate::gravity::dead_loads;
+use crate::in_water::InWater;
+use crate::{Surface, Wet};
 use ropewalk_core::error::{not_negative, positive};
 use ropewalk_core::held::{Held, Pull, pull};
 use ropewalk_core::{
-    Assembly, At, BuildError, Energy, Gives, Law, Load, Pattern, Per, Power, Real, Station, Term, Timed, V3,
+    Assembly, At, BuildError, Energy, Gives, Joined, Law, Load, Pattern, Per, Power, Real, Station, Term,
+    Timed, V3,
 };
 use ropewalk_scene::{Builder, ForceSpec, Swell, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::any::Any;
 use std::f64::consts::PI;
 
 /// Buoyancy of a slender body that may lie across the surface, `ρ g A φ` per length upwards.
@@ -28,23 +31,17 @@ pub struct Buoyancy {
     pub couple: bool,
 }
 
-impl Law for Buoyancy {
-    fn label(&self) -> String {
-        "buoyancy".into()
-    }
-    fn gives(&self) -> Gives {
-        Gives { x: true, slope: true, couple: self.couple, ..Gives::NOTHING }
-    }
-    fn timed(&self) -> bool {
-        self.surface.sea.is_some()
-    }
-    fn reach(&self, _t: f64, h: f64) -> Option<f64> {
-        Some(self.surface.reach(h))
-    }
+impl Buoyancy {
+    /// The load of a station that lies so in the water, with these waves.
     #[inline(always)]
-    fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let swell = self.surface.swell(t, at);
-        let (wet, k) = (self.surface.wet(at, swell.as_ref()), R::of(self.specific_weight) * at.area);
+    pub(crate) fn lift<R: Real, const TANGENT: bool>(
+        &self,
+        at: &Station<R>,
+        wet: &Wet<R>,
+        swell: Option<&Swell<R>>,
+        out: &mut Load<R>,
+    ) {
+        let k = R::of(self.specific_weight) * at.area;
         out.f[2] += k * wet.lift;
         for i in 0..3 {
             if self.couple {
@@ -77,6 +74,27 @@ impl Law for Buoyancy {
             }
         }
     }
+}
+
+impl Law for Buoyancy {
+    fn label(&self) -> String {
+        "buoyancy".into()
+    }
+    fn gives(&self) -> Gives {
+        Gives { x: true, slope: true, couple: self.couple, ..Gives::NOTHING }
+    }
+    fn timed(&self) -> bool {
+        self.surface.sea.is_some()
+    }
+    fn reach(&self, _t: f64, h: f64) -> Option<f64> {
+        Some(self.surface.reach(h))
+    }
+    #[inline(always)]
+    fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
+        let swell = self.surface.swell(t, at);
+        let wet = self.surface.wet(at, swell.as_ref());
+        self.lift::<R, TANGENT>(at, &wet, swell.as_ref(), out);
+    }
     #[inline(always)]
     fn power<R: Real>(&self, t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
         let supplied = match self.surface.swell(t, at) {
@@ -95,6 +113,9 @@ impl Law for Buoyancy {
         } else {
             R::zero()
         }
+    }
+    fn join(&self, other: &dyn Any) -> Option<Joined> {
+        InWater::join(&self.surface, self, other)
     }
     fn local(&self, quantity: &str, _: f64, at: &Station<f64>) -> Option<f64> {
         match quantity {

@@ -32,6 +32,7 @@ mod free_vessel;
 mod froude_krylov;
 mod function;
 mod gravity;
+mod in_water;
 mod internal_flow;
 mod latch;
 mod line_load;

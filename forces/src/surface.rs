@@ -85,15 +85,30 @@ impl Surface {
     /// How a station's cell lies in the water, whose waves are those of [`Surface::swell`] there.
     #[inline(always)]
     pub fn wet<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> Wet<R> {
-        let (s, radius) = (self.depth(at, swell), radius(at));
-        if all_below(at, s, radius) { Wet::below(at, s, radius) } else { Wet::each(at, s, radius) }
+        if self.covers(at, swell) {
+            self.wet_below(at, swell)
+        } else {
+            Wet::each(at, self.depth(at, swell), radius(at))
+        }
+    }
+
+    /// The same of cells that it covers.
+    #[inline(always)]
+    pub(crate) fn wet_below<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> Wet<R> {
+        Wet::below(at, self.depth(at, swell), radius(at))
+    }
+
+    /// Whether the cells of all lanes lie below it as a whole.
+    #[inline(always)]
+    pub(crate) fn covers<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> bool {
+        all_below(at, self.depth(at, swell), radius(at))
     }
 
     /// The same, if only the share is asked for: next to nothing is to be done where all is wet.
     #[inline(always)]
     pub(crate) fn share<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> Wet<R> {
-        let (s, radius) = (self.depth(at, swell), radius(at));
-        if all_below(at, s, radius) { Wet::whole(s) } else { Wet::each(at, s, radius) }
+        let s = self.depth(at, swell);
+        if self.covers(at, swell) { Wet::whole(s) } else { Wet::each(at, s, radius(at)) }
     }
 
     /// Depth of the axis at a station [m].

@@ -1,8 +1,10 @@
 //! Loads of water on bodies that may lie across its surface.
 
+use crate::in_water::InWater;
 use crate::{Surface, Wet};
-use ropewalk_core::{Gives, Law, Load, Power, Real, Station, V3};
+use ropewalk_core::{Gives, Joined, Law, Load, Power, Real, Station, V3};
 use ropewalk_scene::{Sea, Swell};
+use std::any::Any;
 use std::sync::Arc;
 
 /// A law of a fluid that may have waves, to which their motion at a station may be told: it is found once for all that asks.
@@ -84,6 +86,48 @@ fn add_scaled<R: Real>(share: R, whole: &[V3<R>; 3], out: &mut [V3<R>; 3]) {
     }
 }
 
+/// Adds the share of a load that is in the fluid.
+#[inline(always)]
+pub(crate) fn add_share<R: Real, const TANGENT: bool>(
+    wet: &Wet<R>,
+    swell: Option<&Swell<R>>,
+    whole: &Load<R>,
+    out: &mut Load<R>,
+) {
+    let (share, by_z, by_slope) = (wet.share, wet.share_by_z, wet.share_by_slope);
+    for i in 0..3 {
+        out.f[i] = share.fma(whole.f[i], out.f[i]);
+        out.g[i] = share.fma(whole.g[i], out.g[i]);
+    }
+    if !TANGENT {
+        return;
+    }
+    add_scaled(share, &whole.d_x, &mut out.d_x);
+    add_scaled(share, &whole.d_slope, &mut out.d_slope);
+    add_scaled(share, &whole.d_v, &mut out.d_v);
+    add_scaled(share, &whole.d_a, &mut out.d_a);
+    add_scaled(share, &whole.d_rate, &mut out.d_rate);
+    add_scaled(share, &whole.g_x, &mut out.g_x);
+    add_scaled(share, &whole.g_slope, &mut out.g_slope);
+    add_scaled(share, &whole.g_v, &mut out.g_v);
+    for i in 0..3 {
+        out.d_x[i][2] += whole.f[i] * by_z;
+        out.g_x[i][2] += whole.g[i] * by_z;
+        for j in 0..3 {
+            out.d_slope[i][j] += whole.f[i] * by_slope[j];
+            out.g_slope[i][j] += whole.g[i] * by_slope[j];
+        }
+    }
+    let Some(swell) = swell else { return };
+    for i in 0..3 {
+        for j in 0..2 {
+            let by_x = by_z * swell.slope[j];
+            out.d_x[i][j] -= whole.f[i] * by_x;
+            out.g_x[i][j] -= whole.g[i] * by_x;
+        }
+    }
+}
+
 impl<L: Immersed> Law for Wetted<L> {
     const NEEDS_DIAMETER: bool = L::NEEDS_DIAMETER;
     fn label(&self) -> String {
@@ -106,39 +150,12 @@ impl<L: Immersed> Law for Wetted<L> {
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let (wet, swell) = self.share(t, at);
-        let (share, by_z, by_slope) = (wet.share, wet.share_by_z, wet.share_by_slope);
         let whole = self.whole::<R, TANGENT>(t, at, swell.as_ref());
-        for i in 0..3 {
-            out.f[i] = share.fma(whole.f[i], out.f[i]);
-            out.g[i] = share.fma(whole.g[i], out.g[i]);
-        }
-        if !TANGENT {
-            return;
-        }
-        add_scaled(share, &whole.d_x, &mut out.d_x);
-        add_scaled(share, &whole.d_slope, &mut out.d_slope);
-        add_scaled(share, &whole.d_v, &mut out.d_v);
-        add_scaled(share, &whole.d_a, &mut out.d_a);
-        add_scaled(share, &whole.d_rate, &mut out.d_rate);
-        add_scaled(share, &whole.g_x, &mut out.g_x);
-        add_scaled(share, &whole.g_slope, &mut out.g_slope);
-        add_scaled(share, &whole.g_v, &mut out.g_v);
-        for i in 0..3 {
-            out.d_x[i][2] += whole.f[i] * by_z;
-            out.g_x[i][2] += whole.g[i] * by_z;
-            for j in 0..3 {
-                out.d_slope[i][j] += whole.f[i] * by_slope[j];
-                out.g_slope[i][j] += whole.g[i] * by_slope[j];
-            }
-        }
-        let Some(swell) = swell else { return };
-        for i in 0..3 {
-            for j in 0..2 {
-                let by_x = by_z * swell.slope[j];
-                out.d_x[i][j] -= whole.f[i] * by_x;
-                out.g_x[i][j] -= whole.g[i] * by_x;
-            }
-        }
+        add_share::<R, TANGENT>(&wet, swell.as_ref(), &whole, out);
+    }
+
+    fn join(&self, other: &dyn Any) -> Option<Joined> {
+        InWater::join(&self.surface, self, other)
     }
 
     #[inline(always)]

@@ -2,11 +2,13 @@
 
 use super::SPOTS;
 use num_complex::Complex64;
+use ropewalk_core::Real;
 
-/// Numbers at a corner: `f` and its rate, and the derivatives of both by `ζ`; each as its real and its imaginary part.
-pub(super) type Corner = [f64; 8];
-/// Numbers at a spot of a cell: `f` and its rate, their first and their second derivatives.
-pub(super) type Spot = [f64; 12];
+/// Numbers at a corner: real and imaginary part of `f` and of its rate, and of `i` times both; then the same of the derivatives of
+/// both by `ζ`.
+pub(super) type Corner = [f64; 16];
+/// Numbers at a spot at both instants: `f` and its rate, their first and their second derivatives.
+pub(super) type Spot = [[[f64; 4]; 2]; 3];
 /// The surface at a place: elevation, slope, and how that changes; then the rates of these.
 pub(super) type Top = [f64; 6];
 
@@ -37,18 +39,28 @@ impl Cell {
         Cell { weights: (0..SPOTS * SPOTS).map(spot).collect() }
     }
 
-    /// What is at a spot of a cell of this width, whose corners are known.
-    #[inline]
-    pub fn spot(&self, [along, down]: [usize; 2], corners: [&Corner; 4], width: f64) -> Spot {
-        let (mut out, mut per) = ([0.0; 12], 1.0);
-        for (weights, out) in self.weights[down * SPOTS + along].iter().zip(out.as_chunks_mut::<4>().0) {
-            for (corner, w) in corners.iter().zip(weights.as_chunks::<2>().0) {
-                let [value, slope] = [w[0] * per, w[1] * (per * width)];
-                for k in [0, 2] {
-                    let [re, im, by, by_im] = [corner[k], corner[k + 1], corner[4 + k], corner[5 + k]];
-                    out[k] += value.re * re - value.im * im + slope.re * by - slope.im * by_im;
-                    out[k + 1] += value.re * im + value.im * re + slope.re * by_im + slope.im * by;
+    /// What is at a spot of a cell of this width, whose corners are known at two instants.
+    #[inline(always)]
+    pub fn spot<R: Real>(&self, [along, down]: [usize; 2], corners: [[&Corner; 4]; 2], width: f64) -> Spot {
+        let mut numbers = [[[0.0; 4]; 2]; 16];
+        for (instant, corners) in corners.into_iter().enumerate() {
+            for (c, corner) in corners.into_iter().enumerate() {
+                for (k, four) in corner.as_chunks::<4>().0.iter().enumerate() {
+                    numbers[4 * c + k][instant] = *four;
                 }
+            }
+        }
+        let (mut out, mut per) = ([[[0.0; 4]; 2]; 3], 1.0);
+        for (weights, out) in self.weights[down * SPOTS + along].iter().zip(&mut out) {
+            let scales = [per, per * width];
+            for first in (0..8).step_by(R::LANES) {
+                let mut sum = R::zero();
+                for (m, w) in weights.iter().enumerate() {
+                    let of = |k: usize| R::read(&numbers[2 * m + k].as_flattened()[first..]);
+                    let scale = scales[m % 2];
+                    sum = R::of(w.re * scale).fma(of(0), R::of(w.im * scale).fma(of(1), sum));
+                }
+                sum.write(&mut out.as_flattened_mut()[first..]);
             }
             per /= width;
         }
@@ -126,7 +138,7 @@ impl Edge {
     }
 
     /// The surface at a spot of an edge of this length.
-    #[inline]
+    #[inline(always)]
     pub fn spot(&self, along: usize, ends: [&Top; 2], length: f64) -> Top {
         let (mut out, mut per) = ([0.0; 6], 1.0);
         for (d, weights) in self.weights[along].iter().enumerate() {

@@ -1,14 +1,17 @@
 //! The motion of the water at stations, over lanes.
 
-use super::cell::{Spot, Top};
+use super::cell::Spot;
 use super::{Lattice, SPOTS};
 use crate::waves::Flow;
-use ropewalk_core::Real;
+use ropewalk_core::{LaneTask, Real, Width, run};
 
 /// As many lanes as the widest carrier has.
 const LANES: usize = 8;
 
 type Row = [f64; LANES];
+
+/// A generation of slots that never was.
+const NEVER: u64 = u64::MAX;
 
 /// What is known of the table around stations side by side: it stays the same until one of them gets to another spot, or the
 /// time to another instant.
@@ -47,24 +50,7 @@ impl<const CORNERS: usize, const N: usize> Known<CORNERS, N> {
     fn nothing() -> Self {
         let nowhere = [[f64::NAN; LANES]; 2];
         let (slots, rows) = ([[0; CORNERS]; LANES], [[[0.0; LANES]; N]; 2]);
-        Known { n: 0, generation: 0, spots: nowhere, places: nowhere, slots, rows }
-    }
-
-    /// Which of its instants have to be found for a lane that is where it was, of `n` and the next one.
-    fn missing(&mut self, lane: usize, n: i64) -> &'static [usize] {
-        if n == self.n {
-            return &[];
-        }
-        if n != self.n + 1 {
-            return &[0, 1];
-        }
-        let [first, second] = &mut self.rows;
-        first.iter_mut().zip(second).for_each(|(first, second)| first[lane] = second[lane]);
-        &[1]
-    }
-
-    fn put(&mut self, lane: usize, instant: usize, numbers: &[f64; N]) {
-        self.rows[instant].iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = *x);
+        Known { n: 0, generation: NEVER, spots: nowhere, places: nowhere, slots, rows }
     }
 
     /// Number `k` and its rate at both instants, where rates are so much farther on.
@@ -149,7 +135,16 @@ impl Lattice {
         let along = self.along(place);
         let spots = rounded(along * R::of(SPOTS as f64 / self.size));
         if stations.surface.n != n || !same::<R>(&spots, &stations.surface.spots[0]) {
-            self.meet_surface(&spots, n, R::LANES, &mut stations.surface);
+            run(
+                Width::best(),
+                MeetSurface {
+                    lattice: self,
+                    spots: &spots,
+                    n,
+                    lanes: R::LANES,
+                    known: &mut stations.surface,
+                },
+            );
         }
         let known = &stations.surface;
         let Blend { value, rate } = self.blend(late);
@@ -198,7 +193,7 @@ impl Lattice {
             let (mut x, mut down) = ([0.0; LANES], [0.0; LANES]);
             along.write(&mut x);
             depth.write(&mut down);
-            self.meet(&x, &down, n, R::LANES, stations);
+            run(Width::best(), Meet { lattice: self, along: &x, depth: &down, n, lanes: R::LANES, stations });
         }
         let known = &stations.water;
         let off = [along - R::read(&known.places[0]), R::read(&known.places[1]) - depth];
@@ -222,70 +217,108 @@ impl Lattice {
         (flow.gradient, flow.acceleration_gradient) = (gradient(by, [cx, cy]), gradient(dby, [cx, cy]));
         flow.rise(self.waves.risen(t), [by_z, by_eta], self.waves.current);
     }
+}
 
-    /// Finds the surface at these spots.
-    #[cold]
-    #[inline(never)]
-    fn meet_surface(&mut self, spots: &Row, n: i64, lanes: usize, known: &mut Known<2, 6>) {
-        let generation = self.sums.make_room(n);
+/// Finds the surface at these spots.
+struct MeetSurface<'a> {
+    lattice: &'a mut Lattice,
+    spots: &'a Row,
+    n: i64,
+    lanes: usize,
+    known: &'a mut Known<2, 6>,
+}
+
+impl LaneTask for MeetSurface<'_> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        let MeetSurface { lattice, spots, n, lanes, known } = self;
+        let Lattice { sums, edge, size, .. } = lattice;
+        let generation = sums.make_room(n);
+        let anew = known.generation != generation;
         for lane in 0..lanes {
-            let stays = known.generation == generation && known.spots[0][lane] == spots[lane];
-            let missing = if stays { known.missing(lane, n) } else { &[0, 1] };
-            let (i, spot) = cell_of(spots[lane]);
-            if !stays {
-                known.slots[lane] = [self.sums.line(i), self.sums.line(i + 1)];
-                known.places[0][lane] = spots[lane] * self.size / SPOTS as f64;
+            let moved = anew || known.spots[0][lane] != spots[lane];
+            if !moved && known.n == n {
+                continue;
             }
-            for &instant in missing {
-                let tops = self.sums.tops(known.slots[lane], n + instant as i64);
-                let numbers: Top = self.edge.spot(spot, tops, self.size);
-                known.put(lane, instant, &numbers);
+            let (i, spot) = cell_of(spots[lane]);
+            if moved {
+                if anew || cell_of(known.spots[0][lane]).0 != i {
+                    known.slots[lane] = [i, i + 1].map(|i| sums.line(i));
+                }
+                let place = spots[lane] * *size / SPOTS as f64;
+                (known.spots[0][lane], known.places[0][lane]) = (spots[lane], place);
+            }
+            for (rows, n) in known.rows.iter_mut().zip(n..) {
+                let numbers = edge.spot(spot, sums.tops(known.slots[lane], n), *size);
+                rows.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = x);
             }
         }
-        (known.spots[0], known.n, known.generation) = (*spots, n, generation);
+        (known.n, known.generation) = (n, generation);
     }
+}
 
-    /// Finds the water at the spots next to places along the waves and at these depths [m].
-    #[cold]
-    #[inline(never)]
-    fn meet(&mut self, along: &Row, depth: &Row, n: i64, lanes: usize, stations: &mut Stations) {
-        let generation = self.sums.make_room(n);
+/// Finds the water at the spots next to places along the waves and at these depths [m].
+struct Meet<'a> {
+    lattice: &'a mut Lattice,
+    along: &'a Row,
+    depth: &'a Row,
+    n: i64,
+    lanes: usize,
+    stations: &'a mut Stations,
+}
+
+impl LaneTask for Meet<'_> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        let Meet { lattice, along, depth, n, lanes, stations } = self;
+        let Lattice { sums, cell, levels, size, bottom, waves, .. } = lattice;
+        let generation = sums.make_room(n);
         let Stations { water: known, apart, per, from, to, .. } = stations;
+        let anew = known.generation != generation;
         for lane in 0..lanes {
-            let level = self.levels.partition_point(|from| *from <= depth[lane]).max(1) - 1;
-            let width = self.size * f64::from(1_u32 << level);
+            let level = levels.partition_point(|from| *from <= depth[lane]).max(1) - 1;
+            let width = *size * f64::from(1_u32 << level);
             let spot = width / SPOTS as f64;
             let spots = [along[lane], depth[lane]].map(|x| (x / spot + 0.5).floor());
-            let stays = known.generation == generation
-                && apart[lane] == spot
-                && [0, 1].iter().all(|&k| known.spots[k][lane] == spots[k]);
-            let missing = if stays { known.missing(lane, n) } else { &[0, 1] };
-            // no deeper than the bed
-            let deepest = (self.bottom / spot + 0.5).floor();
-            let [(i, across), (j, down)] = [cell_of(spots[0]), cell_of(spots[1].min(deepest))];
-            if !stays {
-                let step = 1 << level;
-                let (i, j) = (i.wrapping_mul(step), j.wrapping_mul(step));
-                known.slots[lane] = [(0, 0), (step, 0), (0, step), (step, step)]
-                    .map(|(right, down)| self.sums.place(i.wrapping_add(right), j.wrapping_add(down)));
-                let places = [spots[0], spots[1].min(deepest)].map(|s| s * spot);
-                for k in 0..2 {
-                    (known.spots[k][lane], known.places[k][lane]) = (spots[k], places[k]);
-                }
-                (apart[lane], per[lane]) = (spot, 1.0 / spot);
-                from[lane] = if level == 0 { f64::NEG_INFINITY } else { self.levels[level] };
-                to[lane] = self.levels.get(level + 1).copied().unwrap_or(f64::INFINITY);
+            let old = known.spots.map(|row| row[lane]);
+            let other = anew || apart[lane] != spot;
+            let moved = other || old != spots;
+            if !moved && known.n == n {
+                continue;
             }
-            for &instant in missing {
-                // nothing moves far down
-                let still = depth[lane] > self.bottom && self.waves.depth().is_infinite();
-                let numbers: Spot = if still {
-                    [0.0; 12]
-                } else {
-                    let corners = self.sums.corners(known.slots[lane], n + instant as i64);
-                    self.cell.spot([across, down], corners, width)
-                };
-                known.put(lane, instant, &numbers);
+            // no deeper than the bed
+            let deepest = (*bottom / spot + 0.5).floor();
+            let cells = |[along, down]: [f64; 2]| [cell_of(along), cell_of(down.min(deepest))];
+            let [(i, across), (j, down)] = cells(spots);
+            if moved {
+                let [(old_i, _), (old_j, _)] = cells(old);
+                if other || [old_i, old_j] != [i, j] {
+                    let step = 1 << level;
+                    let (i, j) = (i.wrapping_mul(step), j.wrapping_mul(step));
+                    let place = |(right, down)| sums.place(i.wrapping_add(right), j.wrapping_add(down));
+                    known.slots[lane] = [(0, 0), (step, 0), (0, step), (step, step)].map(place);
+                }
+                let places = [spots[0], spots[1].min(deepest)];
+                for k in 0..2 {
+                    (known.spots[k][lane], known.places[k][lane]) = (spots[k], places[k] * spot);
+                }
+            }
+            if other {
+                (apart[lane], per[lane]) = (spot, 1.0 / spot);
+                from[lane] = if level == 0 { f64::NEG_INFINITY } else { levels[level] };
+                to[lane] = levels.get(level + 1).copied().unwrap_or(f64::INFINITY);
+            }
+            // nothing moves far down
+            let still = depth[lane] > *bottom && waves.depth().is_infinite();
+            let numbers: Spot = if still {
+                [[[0.0; 4]; 2]; 3]
+            } else {
+                cell.spot::<R>([across, down], sums.corners(known.slots[lane], n), width)
+            };
+            for (k, both) in numbers.iter().enumerate() {
+                for (rows, four) in known.rows.iter_mut().zip(both) {
+                    rows[4 * k..].iter_mut().zip(four).for_each(|(row, x)| row[lane] = *x);
+                }
             }
         }
         (known.n, known.generation) = (n, generation);

@@ -25,7 +25,7 @@ const TIME: f64 = 1.0 / 8.0;
 /// The largest cells are `2^COARSEST` times as wide as the smallest.
 const COARSEST: u32 = 10;
 /// Spots in a cell, along and downwards.
-const SPOTS: usize = 8;
+const SPOTS: usize = 6;
 
 /// The table of a sea whose waves have one direction. It has a memory of its own, and so is looked at by one at a time.
 #[derive(Clone, Debug)]

@@ -46,7 +46,7 @@ pub(super) struct Sums {
     /// Of each height what is left of the waves there: the amplitudes of their velocities along them and upwards [m/s].
     heights: Map<i64, [Row; 2]>,
     tops: Slots<i64, 6>,
-    corners: Slots<[i64; 2], 8>,
+    corners: Slots<[i64; 2], 16>,
     latest: i64,
     /// How often all was forgotten.
     generation: u64,
@@ -67,6 +67,7 @@ impl<K: Copy + Eq + Hash, const N: usize> Slots<K, N> {
     }
 
     /// The slot of a place.
+    #[inline(always)]
     fn of(&mut self, place: K) -> u32 {
         let Slots { slots, places, numbers, instants } = self;
         *slots.entry(place).or_insert_with(|| {
@@ -78,6 +79,7 @@ impl<K: Copy + Eq + Hash, const N: usize> Slots<K, N> {
     }
 
     /// Where an instant has its numbers in a slot, and whether they are there already.
+    #[inline(always)]
     fn at(&mut self, slot: u32, n: i64) -> (usize, bool) {
         let place = (n & (KEPT as i64 - 1)) as usize;
         let instant = &mut self.instants[slot as usize][place];
@@ -135,51 +137,59 @@ impl Sums {
     }
 
     /// The slot of a line's surface.
+    #[inline(always)]
     pub fn line(&mut self, i: i64) -> u32 {
         self.tops.of(i)
     }
 
     /// The slot of the corner of line `i` at the height that is `j` times the width of the smallest cells below still water.
+    #[inline(always)]
     pub fn place(&mut self, i: i64, j: i64) -> u32 {
         self.corners.of([i, j])
     }
 
-    /// The surface of both lines at instant `n`.
+    /// The surface of both lines at an instant.
+    #[inline(always)]
     pub fn tops(&mut self, slots: [u32; 2], n: i64) -> [&Top; 2] {
-        let places = slots.map(|slot| {
-            let (place, known) = self.tops.at(slot, n);
-            if !known {
-                let i = self.tops.places[slot as usize];
-                self.meet(i, n);
-                let waves = [&self.k, &self.omega, &self.a].map(Vec::as_slice);
-                let (line, instant) = (&self.lines[&i], &self.instants[&n]);
-                let sums = &mut self.tops.numbers[slot as usize][place];
-                run(Width::best(), Tops { line, instant, waves, sums });
-            }
-            (slot as usize, place)
-        });
+        let places = slots.map(|slot| self.top(slot, n));
         places.map(|(slot, place)| &self.tops.numbers[slot][place])
     }
 
-    /// The water at four corners at instant `n`.
-    pub fn corners(&mut self, slots: [u32; 4], n: i64) -> [&Corner; 4] {
-        let places = slots.map(|slot| {
-            let (place, known) = self.corners.at(slot, n);
-            if !known {
-                let [i, j] = self.corners.places[slot as usize];
-                self.meet(i, n);
-                let left = self
-                    .heights
-                    .entry(j)
-                    .or_insert_with(|| left(&self.all, j as f64 * self.size, self.depth));
-                let waves = [&self.k, &self.omega].map(Vec::as_slice);
-                let (line, instant) = (&self.lines[&i], &self.instants[&n]);
-                let sums = &mut self.corners.numbers[slot as usize][place];
-                run(Width::best(), Corners { line, instant, left, waves, sums });
-            }
-            (slot as usize, place)
-        });
-        places.map(|(slot, place)| &self.corners.numbers[slot][place])
+    /// Where a line has its surface.
+    fn top(&mut self, slot: u32, n: i64) -> (usize, usize) {
+        let (place, known) = self.tops.at(slot, n);
+        if !known {
+            let i = self.tops.places[slot as usize];
+            self.meet(i, n);
+            let waves = [&self.k, &self.omega, &self.a].map(Vec::as_slice);
+            let (line, instant) = (&self.lines[&i], &self.instants[&n]);
+            let sums = &mut self.tops.numbers[slot as usize][place];
+            run(Width::best(), Tops { line, instant, waves, sums });
+        }
+        (slot as usize, place)
+    }
+
+    /// The water at four corners at instant `n` and the next.
+    #[inline(always)]
+    pub fn corners(&mut self, slots: [u32; 4], n: i64) -> [[&Corner; 4]; 2] {
+        let places = [n, n + 1].map(|n| slots.map(|slot| self.corner(slot, n)));
+        places.map(|places| places.map(|(slot, place)| &self.corners.numbers[slot][place]))
+    }
+
+    /// Where a corner has its numbers.
+    fn corner(&mut self, slot: u32, n: i64) -> (usize, usize) {
+        let (place, known) = self.corners.at(slot, n);
+        if !known {
+            let [i, j] = self.corners.places[slot as usize];
+            self.meet(i, n);
+            let height = self.heights.entry(j);
+            let left = height.or_insert_with(|| left(&self.all, j as f64 * self.size, self.depth));
+            let waves = [&self.k, &self.omega].map(Vec::as_slice);
+            let (line, instant) = (&self.lines[&i], &self.instants[&n]);
+            let sums = &mut self.corners.numbers[slot as usize][place];
+            run(Width::best(), Corners { line, instant, left, waves, sums });
+        }
+        (slot as usize, place)
     }
 
     /// Finds the phases of a line and of an instant.
@@ -278,8 +288,9 @@ impl LaneTask for Corners<'_> {
             all[6] += omega * (k * cu);
             all[7] -= omega * (k * sw);
         }
-        for i in 0..8 {
-            sums[i] = total(all[i]);
+        for (all, sums) in all.chunks_exact(4).zip(sums.as_chunks_mut::<8>().0) {
+            let [f, g, df, dg] = [total(all[0]), total(all[1]), total(all[2]), total(all[3])];
+            *sums = [f, g, df, dg, -g, f, -dg, df];
         }
     }
 }

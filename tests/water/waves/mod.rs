@@ -6,6 +6,7 @@ mod measured;
 mod reference;
 mod scenes;
 mod tension;
+mod together;
 mod vessels;
 
 use ropewalk::scene::Format;

@@ -1,9 +1,10 @@
 //! How stations and loads pass between elements and laws, which are compiled apart: as numbers in memory, a batch at a
 //! time.
 
-use super::{Gives, Law, Load, Station};
+use super::{Gives, Joined, Law, Load, Station};
 use crate::algebra::lane::{LaneTask, Real, V3, Width, run};
 use crate::model::term::{Energy, Power};
+use std::any::Any;
 use std::cell::RefCell;
 
 /// How many numbers make a station, and a load.
@@ -175,6 +176,8 @@ pub(super) trait ErasedLaw: Send + Sync {
     fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64>;
     fn timed(&self) -> bool;
     fn reach(&self, t: f64, h: f64) -> Option<f64>;
+    fn join(&self, other: &dyn Any) -> Option<Joined>;
+    fn as_any(&self) -> &dyn Any;
 }
 
 struct LoadAll<'a, L> {
@@ -256,6 +259,12 @@ impl<L: Law> ErasedLaw for L {
     }
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Law::reach(self, t, h)
+    }
+    fn join(&self, other: &dyn Any) -> Option<Joined> {
+        Law::join(self, other)
+    }
+    fn as_any(&self) -> &dyn Any {
+        self
     }
 }
 

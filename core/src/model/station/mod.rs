@@ -15,6 +15,7 @@ use crate::model::pool::{Batch, Local, Share};
 use crate::model::state::At;
 use crate::model::term::{Assembly, Energy, Power, Term, Weights};
 use exchange::ErasedLaw;
+use std::any::Any;
 use std::sync::Arc;
 
 /// A point of a body and its motion.
@@ -100,8 +101,10 @@ impl Gives {
     /// All of them.
     pub const ALL: Gives = Gives { x: true, slope: true, v: true, a: true, couple: true };
 
+    /// Those that either has.
     #[inline(always)]
-    fn and(self, other: Gives) -> Gives {
+    #[must_use]
+    pub fn and(self, other: Gives) -> Gives {
         Gives {
             x: self.x || other.x,
             slope: self.slope || other.slope,
@@ -158,6 +161,21 @@ pub trait Law: Send + Sync + 'static {
     /// where it means nothing.
     fn local(&self, _quantity: &str, _t: f64, _at: &Station<f64>) -> Option<f64> {
         None
+    }
+    /// A law whose loads are those of both, found with less work than one after the other; `None` if it knows none. Asked of the
+    /// loads alone: work and energy stay with each.
+    fn join(&self, _other: &dyn Any) -> Option<Joined> {
+        None
+    }
+}
+
+/// A law that stands for several, see [`Law::join`].
+pub struct Joined(Arc<dyn ErasedLaw>);
+
+impl Joined {
+    /// A law in place of those that it has joined.
+    pub fn new(law: impl Law) -> Self {
+        Joined(Arc::new(law))
     }
 }
 
@@ -217,16 +235,30 @@ pub trait Stations: Send + Sync {
 
 /// The laws that act together on the same stations.
 #[derive(Clone, Default)]
-pub struct Laws(Vec<Arc<dyn ErasedLaw>>);
+pub struct Laws {
+    all: Vec<Arc<dyn ErasedLaw>>,
+    /// What their loads are found by: some of them are joined.
+    loads: Vec<Arc<dyn ErasedLaw>>,
+}
 
 impl Laws {
     /// Adds a law.
     pub fn push(&mut self, law: impl Law) {
-        self.0.push(Arc::new(law));
+        self.add(Arc::new(law));
     }
     /// Adds the laws of another list.
     pub fn append(&mut self, other: &Laws) {
-        self.0.extend(other.0.iter().cloned());
+        other.all.iter().for_each(|law| self.add(law.clone()));
+    }
+    fn add(&mut self, law: Arc<dyn ErasedLaw>) {
+        self.all.push(law.clone());
+        for one in &mut self.loads {
+            if let Some(Joined(both)) = one.join(law.as_any()) {
+                *one = both;
+                return;
+            }
+        }
+        self.loads.push(law);
     }
 }
 
@@ -242,7 +274,7 @@ pub struct FieldTerm {
 
 impl Term for FieldTerm {
     fn label(&self) -> String {
-        let laws: Vec<String> = self.laws.0.iter().map(|l| l.label()).collect();
+        let laws: Vec<String> = self.laws.all.iter().map(|l| l.label()).collect();
         format!("{}: {}", self.part, laws.join(", "))
     }
     fn pattern(&self, p: &mut Pattern) {
@@ -250,7 +282,7 @@ impl Term for FieldTerm {
     }
     fn symmetric(&self) -> bool {
         // a dead load has no derivatives at all
-        self.stations.fixed() && self.laws.0.iter().all(|l| l.gives() == Gives::NOTHING)
+        self.stations.fixed() && self.laws.all.iter().all(|l| l.gives() == Gives::NOTHING)
     }
     fn is_load(&self) -> bool {
         true
@@ -267,12 +299,16 @@ impl Term for FieldTerm {
     fn effects(&self) -> Vec<Box<dyn Term>> {
         let one = |law: &Arc<dyn ErasedLaw>| -> Box<dyn Term> {
             let (part, stations) = (self.part.clone(), self.stations.clone());
-            Box::new(FieldTerm { part, stations, laws: Laws(vec![law.clone()]) })
+            Box::new(FieldTerm {
+                part,
+                stations,
+                laws: Laws { all: vec![law.clone()], loads: vec![law.clone()] },
+            })
         };
-        if self.laws.0.len() > 1 { self.laws.0.iter().map(one).collect() } else { Vec::new() }
+        if self.laws.all.len() > 1 { self.laws.all.iter().map(one).collect() } else { Vec::new() }
     }
     fn timed(&self) -> Option<&dyn Timed> {
-        if self.laws.0.iter().any(|l| l.timed()) { Some(self) } else { None }
+        if self.laws.all.iter().any(|l| l.timed()) { Some(self) } else { None }
     }
     fn shows(&self) -> Option<&dyn Shows> {
         Some(self)
@@ -281,7 +317,7 @@ impl Term for FieldTerm {
 
 impl Timed for FieldTerm {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        self.laws.0.iter().filter(|l| l.timed()).try_fold(h, |h, l| l.reach(t, h))
+        self.laws.all.iter().filter(|l| l.timed()).try_fold(h, |h, l| l.reach(t, h))
     }
 }
 
@@ -296,7 +332,7 @@ impl Shows for FieldTerm {
             let side = usize::from(station.s > s);
             let nearer = beside[side].is_none_or(|(there, _)| (station.s - s).abs() < (there - s).abs());
             if let Some(c) =
-                self.laws.0.iter().find_map(|l| l.local(quantity, at.t, station)).filter(|_| nearer)
+                self.laws.all.iter().find_map(|l| l.local(quantity, at.t, station)).filter(|_| nearer)
             {
                 beside[side] = Some((station.s, c));
             }

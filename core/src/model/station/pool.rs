@@ -74,7 +74,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             let x = Seat::gather::<R>(seats, self.at);
             write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
             (self.exchange.loaded, self.exchange.given) = (false, Gives::NOTHING);
-            for law in &self.laws.0 {
+            for law in &self.laws.loads {
                 law.load(width, self.at.t, tangent, self.exchange);
             }
             let gives = self.exchange.given;
@@ -111,7 +111,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         for (elements, seats) in self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES)) {
             let (p, x) = (E::lanes::<R>(&Batch(elements)), Seat::gather::<R>(seats, self.at));
             write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
-            for law in &self.laws.0 {
+            for law in &self.laws.all {
                 if let Some(total) = &mut self.power {
                     **total += law.power(Width::best(), self.at.t, self.exchange, seats.len());
                 }
@@ -150,7 +150,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         }
     }
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>) {
-        if !laws.0.is_empty() {
+        if !laws.all.is_empty() {
             EXCHANGE.with_borrow_mut(|exchange| {
                 run(out.width(), SpreadAll { pool: self, laws, at, out, exchange });
             });
@@ -184,7 +184,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     fn energy(&self, laws: &Laws, at: &At<'_>) -> Energy {
         let mut total = Energy::default();
         // most laws store nothing
-        if laws.0.iter().any(|law| law.gives().couple) {
+        if laws.all.iter().any(|law| law.gives().couple) {
             EXCHANGE.with_borrow_mut(|exchange| {
                 let energy = Some(&mut total);
                 run(Width::best(), WorkAll { pool: self, laws, at, power: None, energy, exchange });
