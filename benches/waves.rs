@@ -1,5 +1,5 @@
 //! What waves cost a line that hangs from a ship: its hydrodynamics in still water, in a sea of 200 waves from a lattice, and summed exactly.
-//! `cargo bench --bench waves`, or `-- lattice` for those alone that are named so; microseconds per element and evaluation with its tangent, as a run needs them.
+//! `cargo bench --bench waves`, or `-- lattice` for those alone that are named so; microseconds per element and iteration with its tangent.
 
 use ropewalk::core::Simulation;
 use ropewalk::core::integrator::{NewtonPolicy, Options, Stepping};

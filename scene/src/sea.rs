@@ -233,20 +233,24 @@ impl Sea {
             self.find(t, &places, R::LANES, slot, &mut memory);
         }
         let Found { at, rows, .. } = &memory.packs[slot];
-        // numbers that know their derivative get it from here; of all others the distance is nothing
-        let off = [x[0] - R::read(&at[0]), x[1] - R::read(&at[1]), x[2] - R::read(&at[2])];
         let [by_x, acceleration_by_x, gradient] =
             [matrix(rows, BY_X), matrix(rows, ACCELERATION_BY_X), matrix(rows, GRADIENT)];
-        let u = moved(&by_x, &off, three(rows, 0));
-        let acceleration = moved(&acceleration_by_x, &off, three(rows, ACCELERATION));
-        let rate = moved(&acceleration_by_x, &off, three(rows, RATE));
+        let [mut u, mut acceleration, mut rate] =
+            [three(rows, 0), three(rows, ACCELERATION), three(rows, RATE)];
+        let [mut elevation, sx, sy]: V3<R> = three(rows, SURFACE);
+        if R::LANES == 1 {
+            // numbers that know their derivative get it from here; of all others the distance is nothing
+            let off = [x[0] - R::read(&at[0]), x[1] - R::read(&at[1]), x[2] - R::read(&at[2])];
+            u = moved(&by_x, &off, u);
+            acceleration = moved(&acceleration_by_x, &off, acceleration);
+            rate = moved(&acceleration_by_x, &off, rate);
+            elevation = sx.fma(off[0], sy.fma(off[1], elevation));
+        }
         let (mut by_t, more): (V3<R>, V3<R>) = (rate, three(rows, BY_T));
         for i in 0..3 {
             by_t[i] += more[i];
         }
-        let [elevation, sx, sy]: V3<R> = three(rows, SURFACE);
         let (slope, rising) = ([sx, sy], R::read(&rows[SURFACE + 3]));
-        let elevation = sx.fma(off[0], sy.fma(off[1], elevation));
         Swell { u, by_x, by_t, rate, gradient, acceleration, acceleration_by_x, elevation, slope, rising }
     }
 
