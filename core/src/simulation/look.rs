@@ -9,7 +9,7 @@
 use super::Simulation;
 use super::memory::Remembers;
 use super::watch::Rung;
-use crate::model::node::{difference, retract};
+use crate::model::node::{Node, difference, retract};
 use crate::model::state::State;
 use crate::simulation::audit::Audit;
 use crate::solve::integrator::{Options, StepError, Stepping, Workspace};
@@ -25,8 +25,10 @@ const BLOWN: f64 = 1e-5;
 const MOST: f64 = 1e3;
 /// Steps whose errors make the difference.
 const KICK: u64 = 4;
-/// What is left of a forgotten difference.
+/// What is left of a forgotten difference …
 const FORGOTTEN: f64 = 0.02;
+/// … or what the second half of a look adds to its sum.
+const ADDS: f64 = 0.05;
 /// Most steps of a copy, in parts of those that a measurement is allowed: where they shrink it isn't worth them.
 const DEAR: u64 = 4;
 /// What is left of one that won't be, after half of all steps.
@@ -43,14 +45,15 @@ const FORCES: f64 = 0.5;
 const BLOWN_TENSION: f64 = 0.1;
 
 /// What became of the difference in one part.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Default)]
 struct Fading {
     /// The largest so far.
     most: f64,
     /// The last.
     last: f64,
-    /// Its integral over time [s].
+    /// Its integral over time [s], and how that grew: time and integral after each step.
     sum: f64,
+    grew: Vec<[f64; 2]>,
     /// When it was last worth speaking of [s].
     alive: f64,
 }
@@ -60,9 +63,44 @@ impl Fading {
         self.most = self.most.max(off);
         self.sum += 0.5 * h * (self.last + off);
         self.last = off;
+        self.grew.push([t, self.sum]);
         // a NaN is alive
         if !(off < FORGOTTEN * self.most) {
             self.alive = t;
+        }
+    }
+
+    /// Whether it is gone, and has been for as long as it was there; or whether what was left of it in the second half of the
+    /// time adds next to nothing.
+    fn is_forgotten(&self, t: f64) -> bool {
+        let half = self.grew.partition_point(|[then, _]| *then < 0.5 * t);
+        let before = self.grew.get(half).map_or(0.0, |[_, sum]| *sum);
+        t > 2.0 * self.alive || self.sum - before < ADDS * self.sum
+    }
+}
+
+/// What two states differ by.
+struct Difference {
+    q: Vec<f64>,
+    /// Of velocities, accelerations, and what the scheme keeps beside them.
+    rates: [Vec<f64>; 3],
+}
+
+impl Difference {
+    fn between(nodes: &[Node], a: &State, b: &State) -> Self {
+        let mut q = vec![0.0; a.v.len()];
+        difference(nodes, &a.q, &b.q, &mut q);
+        let less = |a: &[f64], b: &[f64]| b.iter().zip(a).map(|(b, a)| b - a).collect();
+        Difference { q, rates: [less(&a.v, &b.v), less(&a.a, &b.a), less(&a.aux, &b.aux)] }
+    }
+
+    /// Makes the second state differ from the first by so many times this.
+    fn put(&self, nodes: &[Node], factor: f64, a: &State, b: &mut State) {
+        let scaled: Vec<f64> = self.q.iter().map(|d| factor * d).collect();
+        retract(nodes, &a.q, &scaled, &mut b.q);
+        let pairs = [(&a.v, &mut b.v), (&a.a, &mut b.a), (&a.aux, &mut b.aux)];
+        for ((a, b), d) in pairs.into_iter().zip(&self.rates) {
+            b.iter_mut().zip(a).zip(d).for_each(|((b, a), d)| *b = a + factor * d);
         }
     }
 }
@@ -74,31 +112,35 @@ impl Simulation {
         if !self.model.inputs().is_empty() || !self.model.controls().is_empty() {
             return Remembers::Always;
         }
-        self.watch_fading(most).unwrap_or(Remembers::Longer)
+        self.watch_fading(most).unwrap_or(Remembers::Longer(0.0))
     }
 
     fn watch_fading(&self, most: u64) -> Result<Remembers, StepError> {
         let (mut plain, mut halved) = (self.copy(LOOSE, 1.0)?, self.copy(GIVEN[0], GIVEN[1])?);
-        let end = self.memory.end();
+        let (end, nodes) = (self.memory.end(), self.model.nodes());
         let mut parts = vec![Fading::default(); self.work.norms.groups.len()];
         let mut tension = Fading::default();
         let (mut begun, mut first, mut off) = (self.state.t, 0.0, Vec::new());
         let least = SMALL_TENSION * self.integrator.options().force_tolerance;
         for k in 0..most {
-            let t = plain.state.t;
+            let (t, steps, dear) = (plain.state.t, halved.work.counts.steps, DEAR * most);
+            let before = Difference::between(nodes, &plain.state, &halved.state);
             plain.step(end)?;
             let now = plain.state.t;
-            let dear = DEAR * most;
             let there = (k >= KICK || halved.go_to(0.5 * (t + now), dear)?) && halved.go_to(now, dear)?;
             if !there || plain.tries() > dear {
-                return Ok(Remembers::Longer);
-            }
-            if k + 1 == KICK {
-                begun = now;
-                self.blow_up(&plain.state, &mut halved.state);
+                break;
             }
             if k + 1 < KICK {
                 continue;
+            }
+            if k + 1 == KICK {
+                begun = now;
+                let off = Difference::between(nodes, &plain.state, &halved.state);
+                off.put(nodes, self.blown_up(&plain.state, &off), &plain.state, &mut halved.state);
+            } else if halved.work.counts.steps > steps + 1 {
+                // other steps err by something else: only what they differed by before is looked at
+                before.put(nodes, 1.0, &plain.state, &mut halved.state);
             }
             let strained = self.apart(&plain.state, &halved.state, &mut off);
             let h = if k + 1 == KICK { 0.0 } else { now - t };
@@ -109,12 +151,11 @@ impl Simulation {
                 first = all;
             }
             if !(all > NOISE) {
-                return Ok(Remembers::Longer);
+                break;
             }
             let pulls = (!(tension.most < least)).then_some(&tension);
             let counts = || parts.iter().filter(|p| !(p.most < SMALL * all)).chain(pulls);
-            // gone, and gone for as long as it was there
-            if counts().all(|p| now - begun > 2.0 * p.alive) && k > 3 * KICK {
+            if counts().all(|p| p.is_forgotten(now - begun)) && k > 3 * KICK {
                 let positions = counts().fold(0.0, |m: f64, p| m.max(p.sum / p.most));
                 let forces = FORCES * self.tolerated() * tension.sum / first;
                 return Ok(Remembers::For(positions.max(forces)));
@@ -126,7 +167,7 @@ impl Simulation {
                 break;
             }
         }
-        Ok(Remembers::Longer)
+        Ok(Remembers::Longer(plain.state.t - begun))
     }
 
     /// Goes to a time in one step if it can be done; whether it came there with so many steps in all.
@@ -143,19 +184,10 @@ impl Simulation {
         self.work.counts.steps + self.work.counts.rejected
     }
 
-    /// Moves a state away from another along what they differ by.
-    fn blow_up(&self, from: &State, state: &mut State) {
-        let nodes = self.model.nodes();
-        let mut d = vec![0.0; self.model.velocities()];
-        difference(nodes, &from.q, &state.q, &mut d);
-        let off = [self.work.norms.relative(&d) / BLOWN, self.strained(from, &d) / BLOWN_TENSION];
-        let factor = (1.0 / off[0].max(off[1])).clamp(1.0, MOST);
-        d.iter_mut().for_each(|d| *d *= factor);
-        retract(nodes, &from.q, &d, &mut state.q);
-        let pairs = [(&from.v, &mut state.v), (&from.a, &mut state.a), (&from.aux, &mut state.aux)];
-        for (from, to) in pairs {
-            to.iter_mut().zip(from).for_each(|(to, from)| *to = from + factor * (*to - from));
-        }
+    /// By how much a difference is blown up.
+    fn blown_up(&self, from: &State, off: &Difference) -> f64 {
+        let off = [self.work.norms.relative(&off.q) / BLOWN, self.strained(from, &off.q) / BLOWN_TENSION];
+        (1.0 / off[0].max(off[1])).clamp(1.0, MOST)
     }
 
     /// How far two states are apart, part by part, relative to the length of each; and what that makes of tensions,

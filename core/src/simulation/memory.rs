@@ -25,6 +25,9 @@ const BETWEEN: [f64; 2] = [0.02, 0.5];
 /// Over how many times the time that the motion remembers errors are taken to add up.
 const SAFE: f64 = 3.0;
 
+/// In how many times the time that a motion remembers errors they are seen to be forgotten.
+const SEEN: f64 = 6.0;
+
 /// The time over which errors add up.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -46,8 +49,8 @@ pub(super) struct Memory {
 pub(super) enum Remembers {
     /// It forgets: what is left of an error adds up to the error itself times this [s].
     For(f64),
-    /// Not forgotten as long as it was looked at.
-    Longer,
+    /// Not forgotten as long as it was looked at [s].
+    Longer(f64),
     /// It doesn't fade at all.
     Always,
 }
@@ -80,11 +83,13 @@ impl Memory {
 
     /// Notes what was measured after so many steps.
     fn note(&mut self, found: Remembers, steps: u64) {
-        self.forgets = if let Remembers::For(memory) = found { Some(memory) } else { None };
-        self.next = match found {
-            Remembers::For(_) => AGAIN[0] * steps,
-            Remembers::Longer => AGAIN[1] * steps,
-            Remembers::Always => u64::MAX,
+        (self.forgets, self.next) = match found {
+            Remembers::For(memory) => (Some(memory), AGAIN[0] * steps),
+            // a look that was too short to see what was seen before says nothing against it
+            Remembers::Longer(looked) => {
+                (self.forgets.filter(|memory| looked < SEEN * memory), AGAIN[1] * steps)
+            }
+            Remembers::Always => (None, u64::MAX),
         };
     }
 }
