@@ -37,8 +37,8 @@ async function shot(page, name, whole = false) {
   if (shots) await page.screenshot({ path: `${shots}/${name}.png`, fullPage: whole });
 }
 
-/** Pixels of the picture that differ from its corner. */
-const ink = (page) => page.evaluate(() => {
+/** Pixels of the picture that differ from its corner, and a number that differs if any pixel does. */
+const look = (page) => page.evaluate(() => {
   const canvas = document.querySelector("#space canvas");
   // what was drawn is kept until this task ends
   window.ropewalk.player.seek(window.ropewalk.player.clock.t);
@@ -46,9 +46,12 @@ const ink = (page) => page.evaluate(() => {
   const pen = copy.getContext("2d");
   pen.drawImage(canvas, 0, 0);
   const p = pen.getImageData(0, 0, canvas.width, canvas.height).data;
-  let n = 0;
-  for (let i = 0; i < p.length; i += 4) n += Math.abs(p[i] - p[0]) + Math.abs(p[i + 1] - p[1]) + Math.abs(p[i + 2] - p[2]) > 40;
-  return n;
+  let [ink, mark] = [0, 0];
+  for (let i = 0; i < p.length; i += 4) {
+    ink += Math.abs(p[i] - p[0]) + Math.abs(p[i + 1] - p[1]) + Math.abs(p[i + 2] - p[2]) > 40;
+    mark = (Math.imul(mark, 31) + p[i] + (p[i + 1] << 8) + (p[i + 2] << 16)) | 0;
+  }
+  return { ink, mark };
 });
 
 const place = (page) => page.evaluate(() => document.querySelector("#histories .now").style.transform);
@@ -88,7 +91,7 @@ async function plays(page) {
 async function desktop(theme) {
   const { browser, page, errors, asked } = await open({ colorScheme: theme });
   assert.equal(await page.evaluate(() => document.body.dataset.renderer), "webgl");
-  assert.ok((await ink(page)) > 5000, "something is drawn");
+  assert.ok((await look(page)).ink > 5000, "something is drawn");
   await page.evaluate(() => window.ropewalk.player.seek(20));
   await page.waitForTimeout(300);
   await shot(page, `desktop-${theme}`);
@@ -225,16 +228,16 @@ async function forces(page) {
   const all = await boxes.count();
   for (let k = 0; k < all; k++) await boxes.nth(k).setChecked(false);
   assert.ok(await page.locator("#forces-legend").isHidden(), "without forces there is no legend");
-  const without = await ink(page);
+  const { mark: without } = await look(page);
   for (let k = 0; k < all; k++) await boxes.nth(k).setChecked(true);
   await page.waitForTimeout(150);
-  const arrows = await ink(page);
+  const { mark: arrows } = await look(page);
   assert.ok(arrows !== without, "arrows are drawn");
   assert.match(await page.textContent("#forces-bar span"), /^[125][\d.]*( \S+)? ?[kM]?N$/);
   await page.locator("#force-length").fill("1");
   await page.waitForTimeout(150);
   assert.equal(await page.textContent("#force-length-value"), "10×");
-  assert.notEqual(await ink(page), arrows, "longer arrows are drawn longer");
+  assert.notEqual((await look(page)).mark, arrows, "longer arrows are drawn longer");
   await page.locator("#force-length").fill("0");
   await page.click("#choose-forces summary");
 }
@@ -290,7 +293,7 @@ async function flat() {
   assert.equal(await page.evaluate(() => document.body.dataset.renderer), "flat");
   await page.evaluate(() => window.ropewalk.player.seek(20));
   await page.waitForTimeout(300);
-  const drawn = await ink(page);
+  const { ink: drawn } = await look(page);
   assert.ok(drawn > 500, `something is drawn without WebGL: ${drawn} pixels`);
   await shot(page, "flat");
   await plays(page);
