@@ -351,3 +351,22 @@ fn every_step_says_what_kept_it_from_being_longer() {
         assert!(at > 0 && at + 1 < events.len() && events[at + 1].1 < 0.5 * events[at].1, "{at}");
     }
 }
+
+#[test]
+fn very_many_steps_are_told_of_with_what_limits_them() {
+    struct Told(Vec<String>);
+    impl Observer for Told {
+        fn warn(&mut self, message: &str) {
+            self.0.push(message.to_string());
+        }
+    }
+    let mut scene = Scene::new();
+    scene.element(PointMassSpec::new("ball", [0.0, 0.0, 1.0], 1.0)).force(GravitySpec::default());
+    let options = Options { h_max: Some(1e-5), ..Options::default() };
+    let model = scene.build().expect("model");
+    let (mut told, mut s) = (Told(Vec::new()), Simulation::new(model, &options, 1.2).expect("start"));
+    s.keep_audit(false);
+    s.advance(1.2, f64::INFINITY, &mut told).expect("run");
+    let [warning] = &told.0[..] else { panic!("{:?}", told.0) };
+    assert!(warning.contains("% limited by h_max: a longer `h_max` or"), "{warning}");
+}

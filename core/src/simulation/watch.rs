@@ -111,15 +111,28 @@ impl Simulation {
             return;
         }
         let (t, h) = (self.state.t, self.state.control.h_last);
+        let limits = &self.work.counts.limits;
+        let most = (0..limits.len()).max_by_key(|&k| limits[k]).unwrap_or_default();
+        let (cause, share) = (Limit::ALL[most], 100 * limits[most] / limits.iter().sum::<u64>().max(1));
+        let looser = match cause {
+            Limit::Position => format!(
+                "a looser `tolerance`, a `horizon` shorter than the {:.3} s over which errors may add up, ",
+                self.integrator.horizon()
+            ),
+            Limit::Force => "a looser `force_tolerance` ".into(),
+            Limit::Longest => "a longer `h_max` ".into(),
+            _ => "a looser `tolerance` ".into(),
+        };
         let slender = self.model.parts().iter().any(|part| part.slender().is_some());
         let damping = if slender {
-            "A little `axial_retardation_time` or `bending_retardation_time`"
+            "a little `axial_retardation_time` or `bending_retardation_time`"
         } else {
-            "A little damping"
+            "a little damping"
         };
         observer.warn(&format!(
-            "{MANY} steps so far, at t = {t:.4} s of {end} s, the last of {h:.1e} s: fast motion that nothing damps asks for \
-             them. {damping}, a looser `tolerance`, a shorter `horizon` or Radau IIA need fewer"
+            "{MANY} steps so far, at t = {t:.4} s of {end} s, the last of {h:.1e} s, {share} % limited by {}: {looser}or Radau \
+             IIA need fewer, and {damping} where fast motion that nothing damps asks for them",
+            cause.word()
         ));
     }
 
