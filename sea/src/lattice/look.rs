@@ -279,7 +279,9 @@ impl LaneTask for Meet<'_> {
             let level = levels.partition_point(|from| *from <= depth[lane]).max(1) - 1;
             let width = *size * f64::from(1_u32 << level);
             let spot = width / SPOTS as f64;
-            let spots = [along[lane], depth[lane]].map(|x| (x / spot + 0.5).floor());
+            // just as it is asked whether they stay
+            let inverse = 1.0 / spot;
+            let spots = [along[lane], depth[lane]].map(|x| (x * inverse + 0.5).floor());
             let old = known.spots.map(|row| row[lane]);
             let other = anew || apart[lane] != spot;
             let moved = other || old != spots;
@@ -304,7 +306,7 @@ impl LaneTask for Meet<'_> {
                 }
             }
             if other {
-                (apart[lane], per[lane]) = (spot, 1.0 / spot);
+                (apart[lane], per[lane]) = (spot, inverse);
                 from[lane] = if level == 0 { f64::NEG_INFINITY } else { levels[level] };
                 to[lane] = levels.get(level + 1).copied().unwrap_or(f64::INFINITY);
             }
