@@ -56,7 +56,7 @@ fn scene(waves: &str) -> String {
 /// Time of a run by its terms, and its iterations.
 fn run(waves: &str) -> Result<(BTreeMap<String, f64>, f64), Box<dyn std::error::Error>> {
     let file = SceneFile::parse(&scene(waves), "waves", Format::Toml, &[])?;
-    // a tangent with each evaluation
+    // a tangent with each iteration
     let stepping = Stepping::Fixed { h: H };
     let options = Options { stepping, newton: NewtonPolicy::Full, ..Options::default() };
     let model = file.build()?;

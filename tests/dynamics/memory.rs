@@ -10,12 +10,17 @@ fn read(text: &str) -> Scene {
 
 /// An umbilical of 2 km that is heaved, in water that flows.
 fn umbilical(duration: f64) -> Scene {
+    heaved(2000.0, duration)
+}
+
+/// The same of another length [m].
+fn heaved(length: f64, duration: f64) -> Scene {
     let text = format!(
         r#"
 water = {{ profile = [{{ z = -2400, velocity = [0, 0, 0] }}, {{ z = -200, velocity = [0.2, 0, 0] }}, {{ z = 0, velocity = [1, 0, 0] }}] }}
 run = {{ duration = {duration}, output = "0.5 s" }}
 elements = [
-  {{ type = "cable", name = "u", points = [[0, 0, 0], [0, 0, -2000]], elements = 24, section = {{ mass = 3, ea = 2e7, ei = 100, diameter = 0.04, axial_retardation_time = 0.01 }} }},
+  {{ type = "cable", name = "u", points = [[0, 0, 0], [0, 0, -{length}]], elements = 24, section = {{ mass = 3, ea = 2e7, ei = 100, diameter = 0.04, axial_retardation_time = 0.01 }} }},
 ]
 constraints = [{{ type = "driving", name = "top", marker = "u.start", motion = "heave" }}]
 forces = [{{ type = "gravity" }}, {{ type = "buoyancy" }}, {{ type = "drag" }}, {{ type = "added_mass" }}]
@@ -40,6 +45,14 @@ fn steps_of_what_forgets_grow_with_time() {
     whole.solver.horizon = 1280.0;
     let whole = steps(&whole) as f64;
     assert!(short <= 0.7 * whole, "{short} steps, {whole} without");
+}
+
+/// Here violent moments lie in the way of the looks ahead.
+#[test]
+fn steps_of_a_short_line_grow_with_time_as_well() {
+    let [short, long] = [320.0, 1280.0].map(|t| steps(&heaved(500.0, t)) as f64);
+    println!("{short} and {long} steps");
+    assert!(long <= 4.8 * short, "{short} and {long} steps");
 }
 
 #[test]

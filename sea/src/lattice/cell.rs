@@ -94,7 +94,7 @@ fn times(p: &[Complex64; 8], a: Complex64, b: Complex64) -> [Complex64; 8] {
 }
 
 /// Value, first and second derivative of a polynomial.
-fn values(p: &[Complex64; 8], place: Complex64) -> [Complex64; 3] {
+fn values(p: &[Complex64], place: Complex64) -> [Complex64; 3] {
     let [mut value, mut first, mut half] = [Complex64::ZERO; 3];
     for coefficient in p.iter().rev() {
         half = half * place + first;
@@ -123,15 +123,7 @@ impl Edge {
         ];
         let weights = std::array::from_fn(|spot| {
             let x = spot as f64 / SPOTS as f64;
-            let at = ALL.map(|p| {
-                let [mut value, mut first, mut half] = [0.0; 3];
-                for c in p.into_iter().rev() {
-                    half = half * x + first;
-                    first = first * x + value;
-                    value = value * x + c;
-                }
-                [value, first, 2.0 * half]
-            });
+            let at = ALL.map(|p| values(&p.map(Complex64::from), Complex64::from(x)).map(|value| value.re));
             std::array::from_fn(|d| std::array::from_fn(|m| at[m][d]))
         });
         Edge { weights }

@@ -93,12 +93,14 @@ fn levels(waves: &Waves, size: f64, bottom: f64) -> Vec<f64> {
         };
         waves.all.iter().map(|c| of(c).powi(2)).sum()
     };
-    let (most, mut depth, mut all) = (0.0625 * errors(0.0), 0.0, vec![0.0]);
+    // of squares
+    let (most, wider) = (0.25_f64.powi(2) * errors(0.0), 2.0_f64.powi(2 * 8));
+    let (mut depth, mut all) = (0.0, vec![0.0]);
     for level in 1..=COARSEST {
         // on a line of the wider cells, so that these begin where the narrower ones end
         let wide = size * f64::from(1_u32 << level);
         depth = (depth / wide).ceil() * wide;
-        while depth < bottom && errors(depth) * 65536.0_f64.powi(level as i32) > most {
+        while depth < bottom && errors(depth) * wider.powi(level as i32) > most {
             depth += wide;
         }
         if depth >= bottom {

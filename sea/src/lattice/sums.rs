@@ -305,7 +305,7 @@ fn total<R: Real>(x: R) -> f64 {
 
 /// Numbers of places and instants, well mixed: they come from nobody who would wish them to meet.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Mixed(u64);
+struct Mixed(u64);
 
 impl Hasher for Mixed {
     fn finish(&self) -> u64 {
