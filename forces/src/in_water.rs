@@ -69,6 +69,28 @@ impl InWater {
             pressure.load_in::<R, TANGENT>(at, swell, out);
         }
     }
+
+    /// The same with buoyancy, by the share of the station that is wet.
+    #[inline(always)]
+    fn load_in<R: Real, const TANGENT: bool>(
+        &self,
+        at: &Station<R>,
+        swell: Option<&Swell<R>>,
+        out: &mut Load<R>,
+    ) {
+        let wet = if self.surface.covers(at, swell) {
+            self.whole::<R, TANGENT>(at, swell, out);
+            self.surface.wet_below(at, swell)
+        } else {
+            let (wet, mut whole) = (self.surface.wet(at, swell), Load::zero());
+            self.whole::<R, TANGENT>(at, swell, &mut whole);
+            add_share::<R, TANGENT>(&wet, swell, &whole, out);
+            wet
+        };
+        if let Some(buoyancy) = &self.buoyancy {
+            buoyancy.lift::<R, TANGENT>(at, &wet, swell, out);
+        }
+    }
 }
 
 /// Puts a law where none is yet.
@@ -103,19 +125,10 @@ impl Law for InWater {
     }
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let swell = self.surface.swell(t, at);
-        let swell = swell.as_ref();
-        let wet = if self.surface.covers(at, swell) {
-            self.whole::<R, TANGENT>(at, swell, out);
-            self.surface.wet_below(at, swell)
-        } else {
-            let (wet, mut whole) = (self.surface.wet(at, swell), Load::zero());
-            self.whole::<R, TANGENT>(at, swell, &mut whole);
-            add_share::<R, TANGENT>(&wet, swell, &whole, out);
-            wet
-        };
-        if let Some(buoyancy) = &self.buoyancy {
-            buoyancy.lift::<R, TANGENT>(at, &wet, swell, out);
+        // compiled apart, so that still water knows nothing of waves
+        match &self.surface.sea {
+            None => self.load_in::<R, TANGENT>(at, None, out),
+            Some(sea) => self.load_in::<R, TANGENT>(at, Some(&sea.along_once(t, at)), out),
         }
     }
     fn join(&self, other: &dyn Any) -> Option<Joined> {

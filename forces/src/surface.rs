@@ -138,8 +138,8 @@ fn radius<R: Real>(at: &Station<R>) -> R {
 #[inline(always)]
 fn all_below<R: Real>(at: &Station<R>, s: R, radius: R) -> bool {
     let rise = at.slope[2];
-    let clear = [s + at.before * rise - radius, s - (at.weight - at.before) * rise - radius];
-    (0..R::LANES).all(|lane| clear.iter().all(|clear| clear.lane(lane) >= 0.0))
+    let [before, behind] = [s + at.before * rise, s - (at.weight - at.before) * rise];
+    before.all_gt(radius) && behind.all_gt(radius)
 }
 
 impl<R: Real> Wet<R> {

@@ -43,16 +43,8 @@ type Places = [[f64; MOST]; 3];
 const PACKS: usize = 1024;
 /// As many lanes as the widest carrier has.
 const MOST: usize = 8;
-/// Numbers that tell the motion at a place, in this order: velocity and by the place, its rate and what the rise of the surface adds,
-/// acceleration and by the place, gradient in the water, elevation, slopes, rate of elevation.
+/// Numbers that tell the motion at a place, in the order of [`Swell`].
 const ROWS: usize = 43;
-const BY_X: usize = 3;
-const RATE: usize = 12;
-const BY_T: usize = 15;
-const ACCELERATION: usize = 18;
-const ACCELERATION_BY_X: usize = 21;
-const GRADIENT: usize = 30;
-const SURFACE: usize = 39;
 /// Up to so many waves are summed up unless asked otherwise.
 const FEW: usize = 8;
 /// Places at which a table is compared with the sum.
@@ -89,6 +81,64 @@ pub struct Swell<R> {
 }
 
 impl<R: Real> Swell<R> {
+    /// Of a flow at places that are below the surface, or at it if they lie `above`: 1 if they do, else 0. There the motion follows
+    /// the surface, and doesn't change with height.
+    #[inline(always)]
+    fn new(flow: &Flow<R>, above: R) -> Self {
+        let Flow { velocity, rate, acceleration, gradient, acceleration_gradient, .. } = *flow;
+        let mut by_t = rate;
+        for i in 0..3 {
+            by_t[i] = (above * gradient[i][2]).fma(flow.rising, by_t[i]);
+        }
+        Swell {
+            u: velocity,
+            by_x: followed(gradient, flow.slope, above),
+            by_t,
+            rate,
+            gradient,
+            acceleration,
+            acceleration_by_x: followed(acceleration_gradient, flow.slope, above),
+            elevation: flow.elevation,
+            slope: flow.slope,
+            rising: flow.rising,
+        }
+    }
+
+    /// From the rows of a pack.
+    #[inline(always)]
+    fn read(rows: &[[f64; MOST]; ROWS]) -> Self {
+        Swell {
+            u: three(rows, 0),
+            by_x: nine(rows, 3),
+            by_t: three(rows, 12),
+            rate: three(rows, 15),
+            gradient: nine(rows, 18),
+            acceleration: three(rows, 27),
+            acceleration_by_x: nine(rows, 30),
+            elevation: R::read(&rows[39]),
+            slope: [R::read(&rows[40]), R::read(&rows[41])],
+            rising: R::read(&rows[42]),
+        }
+    }
+
+    /// Into the rows of a pack, from a lane on.
+    #[inline(always)]
+    fn write(&self, rows: &mut [[f64; MOST]; ROWS], lane: usize) {
+        let Swell { u, by_x, by_t, rate, gradient, acceleration, acceleration_by_x, slope, .. } = self;
+        for (first, vector) in [(0, u), (12, by_t), (15, rate), (27, acceleration)] {
+            for i in 0..3 {
+                vector[i].write(&mut rows[first + i][lane..]);
+            }
+        }
+        for (first, matrix) in [(3, by_x), (18, gradient), (30, acceleration_by_x)] {
+            for i in 0..9 {
+                matrix[i / 3][i % 3].write(&mut rows[first + i][lane..]);
+            }
+        }
+        for (i, x) in [self.elevation, slope[0], slope[1], self.rising].into_iter().enumerate() {
+            x.write(&mut rows[39 + i][lane..]);
+        }
+    }
     /// How fast the surface rises where one moves with velocity `v`: `∂η/∂t + v·∇η` [m/s].
     #[inline(always)]
     pub fn rise(&self, v: &V3<R>) -> R {
@@ -212,10 +262,19 @@ impl Sea {
     /// The motion of the water at time `t` [s] at stations.
     #[inline(always)]
     pub fn along<R: Real>(&self, t: f64, at: &Station<R>) -> Swell<R> {
-        // the slot of the last time: a body's stations differ by their arc lengths, and bodies by where they are
-        let [x, y] = [at.x[0], at.x[1]].map(|x| (x.lane(0) / CELL) as i64);
-        let place = (x.wrapping_mul(1 << 20) ^ y).cast_unsigned();
-        self.from(mixed([at.s.lane(0).to_bits(), at.diameter.lane(0).to_bits(), place]), t, &at.x)
+        self.from(slot_of(at), t, &at.x)
+    }
+
+    /// The same for who asks once for all: it isn't kept.
+    #[inline(always)]
+    pub fn along_once<R: Real>(&self, t: f64, at: &Station<R>) -> Swell<R> {
+        if R::LANES > 1 {
+            let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Memory { lattice: Some(lattice), stations, .. } = &mut *memory {
+                return looked_up(lattice, &mut stations[slot_of(at) % PACKS], self.level, t, &at.x);
+            }
+        }
+        self.along(t, at)
     }
 
     /// The motion at places from the slot of a key.
@@ -233,25 +292,18 @@ impl Sea {
             self.find(t, &places, R::LANES, slot, &mut memory);
         }
         let Found { at, rows, .. } = &memory.packs[slot];
-        let [by_x, acceleration_by_x, gradient] =
-            [matrix(rows, BY_X), matrix(rows, ACCELERATION_BY_X), matrix(rows, GRADIENT)];
-        let [mut u, mut acceleration, mut rate] =
-            [three(rows, 0), three(rows, ACCELERATION), three(rows, RATE)];
-        let [mut elevation, sx, sy]: V3<R> = three(rows, SURFACE);
+        let mut swell = Swell::<R>::read(rows);
         if R::LANES == 1 {
             // numbers that know their derivative get it from here; of all others the distance is nothing
             let off = [x[0] - R::read(&at[0]), x[1] - R::read(&at[1]), x[2] - R::read(&at[2])];
-            u = moved(&by_x, &off, u);
-            acceleration = moved(&acceleration_by_x, &off, acceleration);
-            rate = moved(&acceleration_by_x, &off, rate);
-            elevation = sx.fma(off[0], sy.fma(off[1], elevation));
+            let Swell { by_x, acceleration_by_x, slope: [sx, sy], .. } = swell;
+            swell.u = moved(&by_x, &off, swell.u);
+            for by in [&mut swell.acceleration, &mut swell.rate, &mut swell.by_t] {
+                *by = moved(&acceleration_by_x, &off, *by);
+            }
+            swell.elevation = sx.fma(off[0], sy.fma(off[1], swell.elevation));
         }
-        let (mut by_t, more): (V3<R>, V3<R>) = (rate, three(rows, BY_T));
-        for i in 0..3 {
-            by_t[i] += more[i];
-        }
-        let (slope, rising) = ([sx, sy], R::read(&rows[SURFACE + 3]));
-        Swell { u, by_x, by_t, rate, gradient, acceleration, acceleration_by_x, elevation, slope, rising }
+        swell
     }
 
     /// Finds the motion at some places and puts it into a slot of the memory.
@@ -275,7 +327,7 @@ impl Sea {
                 let flow = self.waves.at([x, y, up], t);
                 let above = up > flow.elevation;
                 let flow = if above { self.waves.at([x, y, flow.elevation], t) } else { flow };
-                found.put(lane, flow, f64::from(u8::from(above)));
+                Swell::new(&flow, f64::from(u8::from(above))).write(&mut found.rows, lane);
             }),
         }
     }
@@ -293,41 +345,47 @@ impl LaneTask for Look<'_> {
     #[inline(always)]
     fn go<R: Real>(self) {
         let Look { lattice, stations, level, found } = self;
-        let [x, y, z] = [R::read(&found.at[0]), R::read(&found.at[1]), R::read(&found.at[2])];
-        let mut flow = lattice.surface(found.t, [x, y], stations);
-        let (up, top) = (z - R::of(level), flow.elevation);
-        lattice.within(found.t, [x, y, up.if_gt(top, top, up)], stations, &mut flow);
-        found.put(0, flow, up.if_gt(top, R::of(1.0), R::zero()));
+        let x = [R::read(&found.at[0]), R::read(&found.at[1]), R::read(&found.at[2])];
+        looked_up(lattice, stations, level, found.t, &x).write(&mut found.rows, 0);
     }
 }
 
-impl Found {
-    /// Puts the motion at places into the rows, from a lane on. Above the surface, where `above` is 1 and not 0, it follows the
-    /// surface, and doesn't change with height.
-    #[inline(always)]
-    fn put<R: Real>(&mut self, lane: usize, flow: Flow<R>, above: R) {
-        let Flow { velocity, rate, acceleration, gradient, acceleration_gradient, slope, rising, .. } = flow;
-        let rows = &mut self.rows;
-        let below = R::of(1.0) - above;
-        for i in 0..3 {
-            velocity[i].write(&mut rows[i][lane..]);
-            rate[i].write(&mut rows[RATE + i][lane..]);
-            (above * gradient[i][2] * rising).write(&mut rows[BY_T + i][lane..]);
-            acceleration[i].write(&mut rows[ACCELERATION + i][lane..]);
-            for (first, of) in [(BY_X, &gradient[i]), (ACCELERATION_BY_X, &acceleration_gradient[i])] {
-                let follows = above * of[2];
-                follows.fma(slope[0], of[0]).write(&mut rows[first + 3 * i][lane..]);
-                follows.fma(slope[1], of[1]).write(&mut rows[first + 3 * i + 1][lane..]);
-                (below * of[2]).write(&mut rows[first + 3 * i + 2][lane..]);
-            }
-            for j in 0..3 {
-                gradient[i][j].write(&mut rows[GRADIENT + 3 * i + j][lane..]);
-            }
-        }
-        for (k, x) in [flow.elevation, slope[0], slope[1], rising].into_iter().enumerate() {
-            x.write(&mut rows[SURFACE + k][lane..]);
-        }
+/// The motion at places from a table of water with its surface at `level` when it is still.
+#[inline(always)]
+fn looked_up<R: Real>(
+    lattice: &mut Lattice,
+    stations: &mut Stations,
+    level: f64,
+    t: f64,
+    [x, y, z]: &V3<R>,
+) -> Swell<R> {
+    let mut flow = lattice.surface(t, [*x, *y], stations);
+    let (up, top) = (*z - R::of(level), flow.elevation);
+    lattice.within(t, [*x, *y, up.if_gt(top, top, up)], stations, &mut flow);
+    Swell::new(&flow, up.if_gt(top, R::of(1.0), R::zero()))
+}
+
+/// The slot of stations, that of the last time: a body's stations differ by their arc lengths, and bodies by where they are.
+#[inline(always)]
+fn slot_of<R: Real>(at: &Station<R>) -> usize {
+    let [x, y] = [at.x[0], at.x[1]].map(|x| (x.lane(0) / CELL) as i64);
+    let place = (x.wrapping_mul(1 << 20) ^ y).cast_unsigned();
+    mixed([at.s.lane(0).to_bits(), at.diameter.lane(0).to_bits(), place])
+}
+
+/// What changes from place to place, of what follows the surface and doesn't change with height where it lies `above`.
+#[inline(always)]
+fn followed<R: Real>(of: [V3<R>; 3], [sx, sy]: [R; 2], above: R) -> [V3<R>; 3] {
+    // most stations are under water
+    if R::of(0.5).all_gt(above) {
+        return of;
     }
+    let (mut by_x, below) = (of, R::of(1.0) - above);
+    for row in &mut by_x {
+        let follows = above * row[2];
+        *row = [follows.fma(sx, row[0]), follows.fma(sy, row[1]), below * row[2]];
+    }
+    by_x
 }
 
 /// Three numbers from the rows of a pack, and nine.
@@ -336,7 +394,7 @@ fn three<R: Real>(rows: &[[f64; MOST]; ROWS], row: usize) -> V3<R> {
     [R::read(&rows[row]), R::read(&rows[row + 1]), R::read(&rows[row + 2])]
 }
 #[inline(always)]
-fn matrix<R: Real>(rows: &[[f64; MOST]; ROWS], row: usize) -> [V3<R>; 3] {
+fn nine<R: Real>(rows: &[[f64; MOST]; ROWS], row: usize) -> [V3<R>; 3] {
     [three(rows, row), three(rows, row + 3), three(rows, row + 6)]
 }
 

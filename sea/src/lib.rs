@@ -25,6 +25,7 @@ mod dispersion;
 mod error;
 mod lattice;
 mod measured;
+mod motion;
 mod random;
 mod response;
 mod sampling;

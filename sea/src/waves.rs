@@ -2,6 +2,7 @@
 
 use crate::dispersion::{wavenumber, wavenumber_on_current};
 use crate::error::{SeaError, finite, positive};
+use crate::motion::Motion;
 use ropewalk_core::Real;
 use std::f64::consts::PI;
 
@@ -267,28 +268,31 @@ impl Waves {
 
     /// The motion of the water at a place, which should be in it, and a time: the sum over all waves.
     pub fn at(&self, [x, y, z]: [f64; 3], t: f64) -> Flow {
-        let mut flow = self.surface(x, y, t);
+        let (mut flow, mut motion) = (self.surface(x, y, t), Motion::<f64, 3>::still());
         let [up, by_z, by_eta] = self.stretched(z, flow.elevation);
         for c in &self.all {
             let (sin, cos) = c.angle(x, y, t).sin_cos();
             let [ch, sh, p] = c.depths(up, self.depth);
             let (u, w) = (c.a * c.sigma * ch, c.a * c.sigma * sh);
             let [cx, cy] = c.way;
-            flow.velocity[0] += u * cos * cx;
-            flow.velocity[1] += u * cos * cy;
-            flow.velocity[2] += w * sin;
-            flow.acceleration[0] += u * c.sigma * sin * cx;
-            flow.acceleration[1] += u * c.sigma * sin * cy;
-            flow.acceleration[2] -= w * c.sigma * cos;
+            motion.velocity[0] += u * cos * cx;
+            motion.velocity[1] += u * cos * cy;
+            motion.velocity[2] += w * sin;
+            motion.acceleration[0] += u * c.sigma * sin * cx;
+            motion.acceleration[1] += u * c.sigma * sin * cy;
+            motion.acceleration[2] -= w * c.sigma * cos;
             flow.pressure += self.g * c.a * p * cos;
-            add_gradient(&mut flow.gradient, c.way, -u * c.k * sin, w * c.k * cos);
+            add_gradient(&mut motion.gradient, c.way, -u * c.k * sin, w * c.k * cos);
             let k = c.k * c.sigma;
-            add_gradient(&mut flow.acceleration_gradient, c.way, u * k * cos, w * k * sin);
+            add_gradient(&mut motion.acceleration_gradient, c.way, u * k * cos, w * k * sin);
         }
-        let [risen, rising] = self.risen(t);
-        flow.pressure *= risen;
-        flow.rise([risen, rising], [by_z, by_eta], self.current);
-        flow
+        let (risen, [cx, cy]) = (self.risen(t), self.current);
+        flow.pressure *= risen[0];
+        let [sx, sy] = flow.slope;
+        motion.stretch([by_z, by_eta], [sx, sy, 0.0], flow.rising, [cx, cy, 0.0]);
+        motion.rise(risen);
+        let Motion { velocity, acceleration, rate, gradient, acceleration_gradient } = motion;
+        Flow { velocity, acceleration, rate, gradient, acceleration_gradient, ..flow }
     }
 }
 
@@ -320,35 +324,6 @@ impl<R: Real> Flow<R> {
             gradient: none,
             acceleration_gradient: none,
             pressure: zero,
-        }
-    }
-
-    /// Makes the motion of linear theory at the stretched height, before the waves have risen, that at the place itself;
-    /// the surface is known already.
-    #[inline(always)]
-    pub(crate) fn rise(&mut self, risen: [f64; 2], [by_z, by_eta]: [R; 2], current: [f64; 2]) {
-        let ([risen, rising], [cx, cy]) = (risen, current);
-        let (risen, rising) = (R::of(risen), R::of(rising));
-        for i in 0..3 {
-            let (a, u) = (&mut self.acceleration[i], &mut self.velocity[i]);
-            *a = risen.fma(*a, rising * *u);
-            *u = risen * *u;
-            let by = &self.gradient[i];
-            let carried = by[0].fma(R::of(cx), by[1] * R::of(cy));
-            self.rate[i] = risen.fma(by[2] * by_eta * self.rising - carried, *a);
-        }
-        for i in 0..3 {
-            let (of_a, of_u) = (&mut self.acceleration_gradient[i], &mut self.gradient[i]);
-            for row in [&mut *of_a, &mut *of_u] {
-                let stretched = row[2] * by_eta;
-                row[0] = stretched.fma(self.slope[0], row[0]);
-                row[1] = stretched.fma(self.slope[1], row[1]);
-                row[2] = row[2] * by_z;
-            }
-            for j in 0..3 {
-                of_a[j] = risen.fma(of_a[j], rising * of_u[j]);
-                of_u[j] = risen * of_u[j];
-            }
         }
     }
 }

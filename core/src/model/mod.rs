@@ -431,11 +431,13 @@ impl Model {
             6 if self.nodes[k].kind == NodeKind::Twist => "twist".to_string(),
             n => format!("coordinate {n}"),
         };
-        let id = NodeId(k as u32);
-        match self.parts.iter().find_map(|p| p.place_of(id).map(|place| format!("`{}` {place}", p.name()))) {
-            Some(part) => format!("{part}, {what}"),
-            None => format!("node {k}, {what}"),
-        }
+        format!("{}, {what}", self.place_name(NodeId(k as u32)))
+    }
+
+    /// Where a node is, in words.
+    pub fn place_name(&self, node: NodeId) -> String {
+        let name = |p: &Arc<dyn Part>| p.place_of(node).map(|place| format!("`{}` {place}", p.name()));
+        self.parts.iter().find_map(name).unwrap_or_else(|| format!("node {}", node.0))
     }
 
     /// Lets terms remember what a state that was accepted has changed.

@@ -3,6 +3,7 @@
 use super::Simulation;
 use super::inputs::Controlling;
 use super::memory::Memory;
+use super::uneven::Uneven;
 use super::watch::Rung;
 use crate::model::Model;
 use crate::model::input::Course;
@@ -40,6 +41,8 @@ pub struct Checkpoint {
     created: Option<f64>,
     #[cfg_attr(feature = "serde", serde(default))]
     rung: Rung,
+    #[cfg_attr(feature = "serde", serde(default))]
+    uneven: Uneven,
     keep_audit: bool,
     /// Whether constraints had to be solved as if some were redundant.
     softened: bool,
@@ -100,6 +103,7 @@ impl Simulation {
             change: self.change.clone(),
             created: self.created,
             rung: self.rung,
+            uneven: self.uneven.clone(),
             keep_audit: self.keep_audit,
             softened: self.work.softening.is_some(),
             sampled: self.sampled,
@@ -155,6 +159,7 @@ impl Simulation {
             change: c.change,
             created: c.created,
             rung: c.rung,
+            uneven: c.uneven.clone(),
             keep_audit: c.keep_audit,
             power,
             events,

@@ -8,6 +8,7 @@
 
 use super::Simulation;
 use super::memory::Remembers;
+use super::uneven::Uneven;
 use super::watch::Rung;
 use crate::model::node::{Node, difference, retract};
 use crate::model::state::State;
@@ -242,6 +243,7 @@ impl Simulation {
             ringing: 0.0,
             change: Vec::new(),
             rung: Rung::default(),
+            uneven: Uneven::default(),
             created: None,
             keep_audit: false,
             power: self.power,

@@ -72,6 +72,11 @@ impl Memory {
         self.began + self.whole
     }
 
+    /// Whether the motion was seen to forget errors.
+    pub fn forgets(&self) -> bool {
+        self.forgets.is_some()
+    }
+
     /// Steps that a measurement may take now: none if it isn't worth one.
     fn due(&self, t: f64, steps: u64) -> Option<u64> {
         let past = t - self.began;

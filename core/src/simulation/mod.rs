@@ -13,6 +13,7 @@ mod memory;
 pub mod record;
 pub mod shock;
 mod stepping;
+mod uneven;
 mod watch;
 
 pub use checkpoint::{Checkpoint, Unfit};
@@ -36,6 +37,7 @@ use inputs::Controlling;
 use memory::Memory;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use uneven::Uneven;
 use watch::Rung;
 
 /// Sees every accepted step and every sample, read-only: recorders, progress bars.
@@ -132,6 +134,7 @@ pub struct Simulation {
     pub ringing: f64,
     change: Vec<f64>,
     rung: Rung,
+    uneven: Uneven,
     /// When energy was first seen to have appeared from nowhere [s].
     created: Option<f64>,
     keep_audit: bool,
@@ -196,6 +199,7 @@ impl Simulation {
             ringing: 0.0,
             change: Vec::new(),
             rung: Rung::default(),
+            uneven: Uneven::default(),
             created: None,
             keep_audit: true,
             power,
@@ -306,6 +310,7 @@ impl Simulation {
             let energy = self.watch_energy(end, observer);
             self.watch_steps(end, observer);
             self.watch_ringing(&report, end, observer);
+            self.watch_ends(&report, end, observer);
             self.measure_ringing();
             self.remember(&report);
             // whoever wants to stop gets what this step has brought first

@@ -369,11 +369,7 @@ fn cn_re<R: Real>(re: R, blend: Option<f64>) -> (R, R) {
     let mut y = (R::of(1.1).fma(re, R::of(4.0) * root), R::of(1.1).fma(re, R::of(2.0) * root));
     // cables are nearly always above the last edge; logarithms and powers are for those that aren't
     let last = 30.0 * (1.0 + blend.unwrap_or(0.0));
-    let mut below = false;
-    for lane in 0..R::LANES {
-        below |= !(re.lane(lane) > last);
-    }
-    if below {
+    if !re.all_gt(R::of(last)) {
         y = (re.map(|re| cn_re_one(re, blend).0), re.map(|re| cn_re_one(re, blend).1));
     }
     y

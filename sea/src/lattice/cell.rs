@@ -39,28 +39,22 @@ impl Cell {
         Cell { weights: (0..SPOTS * SPOTS).map(spot).collect() }
     }
 
-    /// What is at a spot of a cell of this width, whose corners are known at two instants.
+    /// What is at a spot of a cell of this width, whose corners are known at two instants; over four lanes at most.
     #[inline(always)]
     pub fn spot<R: Real>(&self, [along, down]: [usize; 2], corners: [[&Corner; 4]; 2], width: f64) -> Spot {
-        let mut numbers = [[[0.0; 4]; 2]; 16];
-        for (instant, corners) in corners.into_iter().enumerate() {
-            for (c, corner) in corners.into_iter().enumerate() {
-                for (k, four) in corner.as_chunks::<4>().0.iter().enumerate() {
-                    numbers[4 * c + k][instant] = *four;
-                }
-            }
-        }
         let (mut out, mut per) = ([[[0.0; 4]; 2]; 3], 1.0);
         for (weights, out) in self.weights[down * SPOTS + along].iter().zip(&mut out) {
             let scales = [per, per * width];
-            for first in (0..8).step_by(R::LANES) {
-                let mut sum = R::zero();
-                for (m, w) in weights.iter().enumerate() {
-                    let of = |k: usize| R::read(&numbers[2 * m + k].as_flattened()[first..]);
-                    let scale = scales[m % 2];
-                    sum = R::of(w.re * scale).fma(of(0), R::of(w.im * scale).fma(of(1), sum));
+            for (corners, out) in corners.iter().zip(out) {
+                for first in (0..4).step_by(R::LANES) {
+                    let mut sum = R::zero();
+                    for (m, w) in weights.iter().enumerate() {
+                        let of = |k: usize| R::read(&corners[m / 2][8 * (m % 2) + 4 * k + first..]);
+                        let scale = scales[m % 2];
+                        sum = R::of(w.re * scale).fma(of(0), R::of(w.im * scale).fma(of(1), sum));
+                    }
+                    sum.write(&mut out[first..]);
                 }
-                sum.write(&mut out.as_flattened_mut()[first..]);
             }
             per /= width;
         }

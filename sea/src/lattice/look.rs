@@ -2,6 +2,7 @@
 
 use super::cell::Spot;
 use super::{Lattice, SPOTS};
+use crate::motion::Motion;
 use crate::waves::Flow;
 use ropewalk_core::{LaneTask, Real, Width, run};
 
@@ -188,12 +189,13 @@ impl Lattice {
         if known.n != n
             || !same::<R>(&spots[0], &known.spots[0])
             || !same::<R>(&spots[1], &known.spots[1])
-            || !between(depth, R::read(&stations.from), R::read(&stations.to))
+            || !(depth.all_gt(R::read(&stations.from)) && R::read(&stations.to).all_gt(depth))
         {
             let (mut x, mut down) = ([0.0; LANES], [0.0; LANES]);
             along.write(&mut x);
             depth.write(&mut down);
-            run(Width::best(), Meet { lattice: self, along: &x, depth: &down, n, lanes: R::LANES, stations });
+            // a corner has four numbers of each kind
+            run(Width::Four, Meet { lattice: self, along: &x, depth: &down, n, lanes: R::LANES, stations });
         }
         let known = &stations.water;
         let off = [along - R::read(&known.places[0]), R::read(&known.places[1]) - depth];
@@ -208,14 +210,22 @@ impl Lattice {
             }
         }
         let ([f, by], [df, dby]) = (around(now, off), around(rates, off));
-        let ([cx, cy], current) = (self.way.map(R::of), R::of(self.current));
-        // as one sees it who drifts with the current
-        let [a, b] = [current.fma(by[0], df[0]), -current.fma(by[1], df[1])];
-        flow.velocity = [f[0] * cx, f[0] * cy, -f[1]];
-        flow.acceleration = [a * cx, a * cy, b];
-        // of what drifting adds to the acceleration the change from place to place is left out
-        (flow.gradient, flow.acceleration_gradient) = (gradient(by, [cx, cy]), gradient(dby, [cx, cy]));
-        flow.rise(self.waves.risen(t), [by_z, by_eta], self.waves.current);
+        let (way, current) = ([R::of(self.way[0]), R::of(self.way[1])], R::of(self.current));
+        let mut motion = Motion::<R, 2> {
+            velocity: [f[0], -f[1]],
+            // as one sees it who drifts with the current
+            acceleration: [current.fma(by[0], df[0]), -current.fma(by[1], df[1])],
+            gradient: gradient(by),
+            // of what drifting adds to the acceleration the change from place to place is left out
+            acceleration_gradient: gradient(dby),
+            ..Motion::still()
+        };
+        let (steep, none) = (self.along(flow.slope), R::zero());
+        motion.stretch([by_z, by_eta], [steep, none], flow.rising, [current, none]);
+        motion.rise(self.waves.risen(t));
+        let Motion { velocity, acceleration, rate, gradient, acceleration_gradient } = motion.spread(way);
+        (flow.velocity, flow.acceleration, flow.rate) = (velocity, acceleration, rate);
+        (flow.gradient, flow.acceleration_gradient) = (gradient, acceleration_gradient);
     }
 }
 
@@ -367,20 +377,6 @@ fn same<R: Real>(a: &Row, b: &Row) -> bool {
     same
 }
 
-/// Whether all are from one depth on, and above another.
-#[inline(always)]
-fn between<R: Real>(depth: R, from: R, to: R) -> bool {
-    let [mut all, mut first, mut last] = [[0.0; LANES]; 3];
-    depth.write(&mut all);
-    from.write(&mut first);
-    to.write(&mut last);
-    let mut between = true;
-    for lane in 0..R::LANES {
-        between &= (all[lane] >= first[lane]) & (all[lane] < last[lane]);
-    }
-    between
-}
-
 /// `f` so far from a spot, and its derivative, of which value, first and second derivative are known there.
 #[inline(always)]
 fn around<R: Real>([f, by, bend]: [[R; 2]; 3], [x, z]: [R; 2]) -> [[R; 2]; 2] {
@@ -394,10 +390,8 @@ fn around<R: Real>([f, by, bend]: [[R; 2]; 3], [x, z]: [R; 2]) -> [[R; 2]; 2] {
     ]
 }
 
-/// What `u` along the waves and `w` change by from place to place, in space: `f' = u_x - i w_x`, and `u_z = w_x`, `w_z = -u_x`.
+/// What `u` along the waves and `w` change by from place to place: `f' = u_x - i w_x`, and `u_z = w_x`, `w_z = -u_x`.
 #[inline(always)]
-fn gradient<R: Real>([ux, minus_wx]: [R; 2], [cx, cy]: [R; 2]) -> [[R; 3]; 3] {
-    let (wx, along) = (-minus_wx, [ux * cx, ux * cy]);
-    let (up, mixed) = ([wx * cx, wx * cy], along[0] * cy);
-    [[along[0] * cx, mixed, up[0]], [mixed, along[1] * cy, up[1]], [up[0], up[1], -ux]]
+fn gradient<R: Real>([ux, minus_wx]: [R; 2]) -> [[R; 2]; 2] {
+    [[ux, -minus_wx], [-minus_wx, -ux]]
 }

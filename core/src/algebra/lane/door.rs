@@ -9,7 +9,7 @@ use std::arch::x86_64::*;
 macro_rules! carrier {
     ($name:ident, $register:ty, $lanes:literal, $set:ident, $load:ident, $store:ident, $add:ident, $sub:ident,
      $mul:ident, $div:ident, $fma:ident, $sqrt:ident, |$x:ident, $limit:ident, $yes:ident, $no:ident| $if_gt:expr,
-     |$get:ident| $from_rows:expr, |$values:ident, $put:ident| $to_rows:expr) => {
+     |$a:ident, $b:ident| $all_gt:expr, |$get:ident| $from_rows:expr, |$values:ident, $put:ident| $to_rows:expr) => {
         #[derive(Clone, Copy)]
         struct $name($register);
 
@@ -106,6 +106,12 @@ macro_rules! carrier {
                 // SAFETY: see the module
                 $name(unsafe { $if_gt })
             }
+            #[inline(always)]
+            fn all_gt(self, limit: Self) -> bool {
+                let ($a, $b) = (self.0, limit.0);
+                // SAFETY: see the module
+                unsafe { $all_gt }
+            }
         }
     };
     ($name:ident, $tr:ident, $f:ident, $intrinsic:ident) => {
@@ -133,6 +139,7 @@ carrier!(
     _mm256_fmadd_pd,
     _mm256_sqrt_pd,
     |x, limit, yes, no| _mm256_blendv_pd(no, yes, _mm256_cmp_pd::<_CMP_GT_OQ>(x, limit)),
+    |x, limit| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(x, limit)) == 0xF,
     |get| {
         let [a, b, c, d] = transpose([row(get(0)), row(get(1)), row(get(2)), row(get(3))]);
         [Avx2(a), Avx2(b), Avx2(c), Avx2(d)]
@@ -159,6 +166,7 @@ carrier!(
     _mm512_fmadd_pd,
     _mm512_sqrt_pd,
     |x, limit, yes, no| _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit), no, yes),
+    |x, limit| _mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit) == 0xFF,
     |get| {
         let low = transpose([row(get(0)), row(get(1)), row(get(2)), row(get(3))]);
         let high = transpose([row(get(4)), row(get(5)), row(get(6)), row(get(7))]);

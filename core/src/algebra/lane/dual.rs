@@ -133,6 +133,10 @@ impl<R: Real> Real for Dual<R> {
     fn if_gt(self, limit: Self, yes: Self, no: Self) -> Self {
         Dual { re: self.re.if_gt(limit.re, yes.re, no.re), eps: self.re.if_gt(limit.re, yes.eps, no.eps) }
     }
+    #[inline(always)]
+    fn all_gt(self, limit: Self) -> bool {
+        self.re.all_gt(limit.re)
+    }
 }
 
 #[cfg(test)]

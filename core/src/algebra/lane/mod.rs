@@ -60,6 +60,8 @@ pub trait Real:
     fn map(self, f: impl Fn(f64) -> f64) -> Self;
     /// `yes` where `self > limit`, else `no`, lane by lane.
     fn if_gt(self, limit: Self, yes: Self, no: Self) -> Self;
+    /// Whether `self > limit` in all lanes; not where one holds no number.
+    fn all_gt(self, limit: Self) -> bool;
     /// Absolute value.
     #[inline(always)]
     fn abs(self) -> Self {
@@ -110,6 +112,10 @@ impl Real for f64 {
     #[inline(always)]
     fn if_gt(self, limit: Self, yes: Self, no: Self) -> Self {
         if self > limit { yes } else { no }
+    }
+    #[inline(always)]
+    fn all_gt(self, limit: Self) -> bool {
+        self > limit
     }
 }
 
@@ -193,6 +199,10 @@ impl<const N: usize> Real for Pack<N> {
     #[inline(always)]
     fn if_gt(self, limit: Self, yes: Self, no: Self) -> Self {
         Self::each(|i| if self.0[i] > limit.0[i] { yes.0[i] } else { no.0[i] })
+    }
+    #[inline(always)]
+    fn all_gt(self, limit: Self) -> bool {
+        self.0.iter().zip(&limit.0).all(|(x, limit)| x > limit)
     }
 }
 
@@ -349,6 +359,31 @@ mod tests {
             let mut back = [[0.0; 4]; 8];
             run(width, Turn(&rows, &mut back));
             assert_eq!(back, rows);
+        }
+    }
+
+    struct Above<'a>(&'a [f64; 8], f64, &'a mut Vec<bool>);
+
+    impl LaneTask for Above<'_> {
+        #[inline(always)]
+        fn go<R: Real>(self) {
+            let all = (0..8).step_by(R::LANES).map(|l| R::read(&self.0[l..]).all_gt(R::of(self.1)));
+            self.2.push(all.fold(true, |a, b| a & b));
+        }
+    }
+
+    #[test]
+    fn all_lanes_are_asked() {
+        for width in [Width::One, Width::Four, Width::Eight] {
+            for lane in 0..8 {
+                let mut x = [2.0; 8];
+                for (value, above) in [(1.5, true), (1.0, false), (0.5, false), (f64::NAN, false)] {
+                    x[lane] = value;
+                    let mut all = Vec::new();
+                    run(width, Above(&x, 1.0, &mut all));
+                    assert_eq!(all, [above], "{value} in lane {lane}");
+                }
+            }
         }
     }
 

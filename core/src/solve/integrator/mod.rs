@@ -19,6 +19,7 @@ mod workspace;
 
 pub use crate::model::limit::Limit;
 pub use alpha::Alpha;
+pub(crate) use norm::Speeds;
 pub use options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
 pub use radau::Radau;
 pub use scales::{Scales, Stopping, Units};

@@ -7,7 +7,7 @@
 //! what it is joined to.
 
 use crate::model::Model;
-use crate::model::node::NodeKind;
+use crate::model::node::{Node, NodeKind};
 use crate::model::structure::Structure;
 use std::ops::Range;
 
@@ -26,6 +26,16 @@ pub(crate) struct Group {
     pub single: bool,
     /// Rounding of its coordinates where it starts, relative to its length.
     pub rounding: f64,
+}
+
+/// Speeds in a part [m/s].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Speeds {
+    /// Their root mean square over its length.
+    pub mean: f64,
+    /// That of its fastest node, and which this is.
+    pub most: f64,
+    pub node: usize,
 }
 
 /// Norms of increments and of forces, part by part.
@@ -172,6 +182,31 @@ impl Norms {
         for (g, run) in &self.runs {
             out[*g] += run.clone().map(&of).sum::<f64>();
         }
+    }
+
+    /// How fast each cable or chain moves as seen from its middle.
+    pub fn speeds(&self, nodes: &[Node], v: &[f64], out: &mut Vec<Speeds>) {
+        let lines = || {
+            let nodes = nodes.iter().enumerate().filter(|(_, n)| n.kind.has_position());
+            nodes.map(|(k, n)| (self.of(n.v), k, n.v)).filter(|(g, ..)| !self.groups[*g].single)
+        };
+        let mut sums = vec![[0.0; 4]; self.groups.len()];
+        for (g, _, i) in lines() {
+            let w = self.weight[i];
+            sums[g][3] += w;
+            (0..3).for_each(|k| sums[g][k] += w * v[i + k]);
+        }
+        out.clear();
+        out.resize(sums.len(), Speeds::default());
+        for (g, node, i) in lines() {
+            let [x, y, z, all] = sums[g];
+            let square: f64 = [x, y, z].iter().zip(&v[i..]).map(|(sum, v)| (v - sum / all).powi(2)).sum();
+            out[g].mean += self.weight[i] / all * square;
+            if square > out[g].most {
+                (out[g].most, out[g].node) = (square, node);
+            }
+        }
+        out.iter_mut().for_each(|s| (s.mean, s.most) = (s.mean.sqrt(), s.most.sqrt()));
     }
 
     /// The group of a velocity.
