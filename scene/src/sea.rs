@@ -4,6 +4,7 @@ use crate::current::Current;
 use crate::waves::{Evaluation, WavesSpec};
 use ropewalk_core::{BuildError, LaneTask, Real, Station, V3, Width, dot, reach, run};
 use ropewalk_sea::{Flow, Lattice, SplitMix64, Stations, Waves};
+use rustc_hash::FxHashMap;
 use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
@@ -17,15 +18,56 @@ pub struct Sea {
     /// Height of the surface without waves [m].
     level: f64,
     about: String,
+    /// Whether a table stands for them.
+    has_lattice: bool,
     memory: Mutex<Memory>,
 }
 
 /// What was found lately, and the table that stands for many waves.
 struct Memory {
     lattice: Option<Lattice>,
+    /// The slot of each pack: the same as the last time, if what asks has moved little; and that of who asked last.
+    slots: FxHashMap<Key, usize>,
+    keys: Vec<Key>,
+    last: usize,
     packs: Vec<Found>,
     /// What is known of the table at each of them.
     stations: Vec<Stations>,
+}
+
+/// What packs are told apart by.
+type Key = (u64, u64, u64);
+
+impl Memory {
+    /// The slot of a pack.
+    #[inline(always)]
+    fn slot(&mut self, key: Key) -> usize {
+        // they mostly ask in the order in which they came
+        let next = if self.last + 1 < self.keys.len() { self.last + 1 } else { 0 };
+        self.last = if self.keys.get(next) == Some(&key) { next } else { self.slot_of(key) };
+        self.last
+    }
+
+    #[inline(never)]
+    fn slot_of(&mut self, key: Key) -> usize {
+        if let Some(&slot) = self.slots.get(&key) { slot } else { self.new_slot(key) }
+    }
+
+    fn new_slot(&mut self, key: Key) -> usize {
+        if self.packs.len() >= PACKS {
+            self.slots.clear();
+            self.keys.clear();
+            self.packs.clear();
+            self.stations.clear();
+        }
+        let slot = self.packs.len();
+        self.slots.insert(key, slot);
+        self.keys.push(key);
+        let nowhere = [[f64::NAN; MOST]; 3];
+        self.packs.push(Found { t: f64::NAN, lanes: 0, at: nowhere, rows: [[0.0; MOST]; ROWS] });
+        self.stations.push(Stations::default());
+        slot
+    }
 }
 
 /// The motion at places side by side, number by number over all of them: several laws ask for the same, one after the other.
@@ -39,8 +81,8 @@ struct Found {
 
 type Places = [[f64; MOST]; 3];
 
-/// Number of packs that are remembered, a power of two.
-const PACKS: usize = 1024;
+/// Most packs that are remembered.
+const PACKS: usize = 8192;
 /// As many lanes as the widest carrier has.
 const MOST: usize = 8;
 /// Numbers that tell the motion at a place, in the order of [`Swell`].
@@ -188,11 +230,16 @@ impl Sea {
             4.0 * waves.deviation(),
             spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
-        let nowhere = [[f64::NAN; MOST]; 3];
-        let none = Found { t: f64::NAN, lanes: 0, at: nowhere, rows: [[0.0; MOST]; ROWS] };
-        let stations = vec![Stations::default(); if lattice.is_some() { PACKS } else { 0 }];
-        let memory = Mutex::new(Memory { lattice, packs: vec![none; PACKS], stations });
-        Ok(Sea { waves, level, about, memory })
+        let has_lattice = lattice.is_some();
+        let memory = Memory {
+            lattice,
+            slots: FxHashMap::default(),
+            keys: Vec::new(),
+            last: 0,
+            packs: Vec::new(),
+            stations: Vec::new(),
+        };
+        Ok(Sea { waves, level, about, has_lattice, memory: Mutex::new(memory) })
     }
 
     /// The table that stands for many waves, if there is to be one, and how the sum is found in words.
@@ -255,23 +302,24 @@ impl Sea {
     /// The motion of the water at time `t` [s] at places.
     #[inline(always)]
     pub fn at<R: Real>(&self, t: f64, x: &V3<R>) -> Swell<R> {
-        // the slot of the last time, if what asks has moved little
-        self.from(mixed(x.map(|x| x.lane(0).to_bits() >> 42)), t, x)
+        let [x0, y0, z0] = x.map(|x| x.lane(0).to_bits() >> 42);
+        self.from((x0, y0, z0), t, x)
     }
 
     /// The motion of the water at time `t` [s] at stations.
     #[inline(always)]
     pub fn along<R: Real>(&self, t: f64, at: &Station<R>) -> Swell<R> {
-        self.from(slot_of(at), t, &at.x)
+        self.from(key_of(at), t, &at.x)
     }
 
     /// The same for who asks once for all: it isn't kept.
     #[inline(always)]
     pub fn along_once<R: Real>(&self, t: f64, at: &Station<R>) -> Swell<R> {
-        if R::LANES > 1 {
+        if R::LANES > 1 && self.has_lattice {
             let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+            let slot = memory.slot(key_of(at));
             if let Memory { lattice: Some(lattice), stations, .. } = &mut *memory {
-                return looked_up(lattice, &mut stations[slot_of(at) % PACKS], self.level, t, &at.x);
+                return looked_up(lattice, &mut stations[slot], self.level, t, &at.x);
             }
         }
         self.along(t, at)
@@ -279,13 +327,13 @@ impl Sea {
 
     /// The motion at places from the slot of a key.
     #[inline(always)]
-    fn from<R: Real>(&self, key: usize, t: f64, x: &V3<R>) -> Swell<R> {
+    fn from<R: Real>(&self, key: Key, t: f64, x: &V3<R>) -> Swell<R> {
         let mut places = [[0.0_f64; MOST]; 3];
         for i in 0..3 {
             x[i].write(&mut places[i]);
         }
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        let slot = key % PACKS;
+        let slot = memory.slot(key);
         let found = &memory.packs[slot];
         // what is no number is never found
         if (found.t, found.lanes) != (t, R::LANES) || !same(&found.at, &places) {
@@ -309,7 +357,7 @@ impl Sea {
     /// Finds the motion at some places and puts it into a slot of the memory.
     #[inline(never)]
     fn find(&self, t: f64, places: &Places, lanes: usize, slot: usize, memory: &mut Memory) {
-        let Memory { lattice, packs, stations } = memory;
+        let Memory { lattice, packs, stations, .. } = memory;
         let found = &mut packs[slot];
         (found.t, found.lanes, found.at) = (t, lanes, *places);
         match lattice {
@@ -365,12 +413,12 @@ fn looked_up<R: Real>(
     Swell::new(&flow, up.if_gt(top, R::of(1.0), R::zero()))
 }
 
-/// The slot of stations, that of the last time: a body's stations differ by their arc lengths, and bodies by where they are.
+/// What tells stations apart: those of a body have other arc lengths, and bodies are elsewhere.
 #[inline(always)]
-fn slot_of<R: Real>(at: &Station<R>) -> usize {
+fn key_of<R: Real>(at: &Station<R>) -> Key {
     let [x, y] = [at.x[0], at.x[1]].map(|x| (x.lane(0) / CELL) as i64);
-    let place = (x.wrapping_mul(1 << 20) ^ y).cast_unsigned();
-    mixed([at.s.lane(0).to_bits(), at.diameter.lane(0).to_bits(), place])
+    let place = (x.wrapping_mul(1 << 32) ^ y).cast_unsigned();
+    (at.s.lane(0).to_bits(), at.diameter.lane(0).to_bits(), place)
 }
 
 /// What changes from place to place, of what follows the surface and doesn't change with height where it lies `above`.
@@ -417,14 +465,6 @@ fn same(a: &Places, b: &Places) -> bool {
         }
     }
     same
-}
-
-/// A number that looks like none of these.
-#[inline(always)]
-fn mixed(key: [u64; 3]) -> usize {
-    let all =
-        key.iter().fold(0_u64, |mixed, k| (mixed ^ k).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
-    (all >> 40) as usize
 }
 
 /// The largest difference of velocities between a table and the sum, in parts of their deviation at still water, at places

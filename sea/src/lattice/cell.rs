@@ -7,8 +7,8 @@ use ropewalk_core::Real;
 /// Numbers at a corner: real and imaginary part of `f` and of its rate, and of `i` times both; then the same of the derivatives of
 /// both by `ζ`.
 pub(super) type Corner = [f64; 16];
-/// Numbers at a spot at both instants: `f` and its rate, their first and their second derivatives.
-pub(super) type Spot = [[[f64; 4]; 2]; 3];
+/// Numbers at a spot at an instant: `f` and its rate, their first and their second derivatives.
+pub(super) type Spot = [[f64; 4]; 3];
 /// The surface at a place: elevation, slope, and how that changes; then the rates of these.
 pub(super) type Top = [f64; 6];
 
@@ -39,22 +39,20 @@ impl Cell {
         Cell { weights: (0..SPOTS * SPOTS).map(spot).collect() }
     }
 
-    /// What is at a spot of a cell of this width, whose corners are known at two instants; over four lanes at most.
+    /// What is at a spot of a cell of this width with these corners; over four lanes at most.
     #[inline(always)]
-    pub fn spot<R: Real>(&self, [along, down]: [usize; 2], corners: [[&Corner; 4]; 2], width: f64) -> Spot {
-        let (mut out, mut per) = ([[[0.0; 4]; 2]; 3], 1.0);
+    pub fn spot<R: Real>(&self, [along, down]: [usize; 2], corners: [&Corner; 4], width: f64) -> Spot {
+        let (mut out, mut per) = ([[0.0; 4]; 3], 1.0);
         for (weights, out) in self.weights[down * SPOTS + along].iter().zip(&mut out) {
             let scales = [per, per * width];
-            for (corners, out) in corners.iter().zip(out) {
-                for first in (0..4).step_by(R::LANES) {
-                    let mut sum = R::zero();
-                    for (m, w) in weights.iter().enumerate() {
-                        let of = |k: usize| R::read(&corners[m / 2][8 * (m % 2) + 4 * k + first..]);
-                        let scale = scales[m % 2];
-                        sum = R::of(w.re * scale).fma(of(0), R::of(w.im * scale).fma(of(1), sum));
-                    }
-                    sum.write(&mut out[first..]);
+            for first in (0..4).step_by(R::LANES) {
+                let mut sum = R::zero();
+                for (m, w) in weights.iter().enumerate() {
+                    let numbers = &corners[m / 2][8 * (m % 2) + first..];
+                    let (of, turned, scale) = (R::read(numbers), R::read(&numbers[4..]), scales[m % 2]);
+                    sum = R::of(w.re * scale).fma(of, R::of(w.im * scale).fma(turned, sum));
                 }
+                sum.write(&mut out[first..]);
             }
             per /= width;
         }

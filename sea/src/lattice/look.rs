@@ -11,6 +11,9 @@ const LANES: usize = 8;
 
 type Row = [f64; LANES];
 
+/// Within this part of the distance of spots a station is surely next to its own; beyond, it is asked to the last bit.
+const NEAR: f64 = 0.5 * (1.0 - 1e-9);
+
 /// A generation of slots that never was.
 const NEVER: u64 = u64::MAX;
 
@@ -22,19 +25,20 @@ pub struct Stations {
     lanes: usize,
     surface: Known<2, 6>,
     water: Known<4, 12>,
-    /// Spots of the cells in which they are are so far apart, and their number per metre.
+    /// Spots of the cells in which they are are so far apart, and who is so near one is next to it [m].
     apart: Row,
-    per: Row,
+    near: Row,
     /// The depths between which such cells are [m].
     from: Row,
     to: Row,
 }
 
-/// Numbers at the spots next to stations, at both instants about a time.
+/// Numbers at the spots next to stations, at both instants about a time: values, and then their rates.
 #[derive(Clone, Debug)]
 struct Known<const CORNERS: usize, const N: usize> {
-    /// The first of the instants.
+    /// The first of the instants, and the time.
     n: i64,
+    t: f64,
     /// Of what is known of slots.
     generation: u64,
     /// Numbers of the spots along the waves and downwards, and where these are [m].
@@ -42,23 +46,61 @@ struct Known<const CORNERS: usize, const N: usize> {
     places: [Row; 2],
     /// Slots of the corners around them.
     slots: [[u32; CORNERS]; LANES],
-    /// What is there, number by number.
+    /// What is there at the instants, number by number, and at the time.
     rows: [[Row; N]; 2],
+    now: [Row; N],
 }
 
 impl<const CORNERS: usize, const N: usize> Known<CORNERS, N> {
     /// Of nothing.
     fn nothing() -> Self {
         let nowhere = [[f64::NAN; LANES]; 2];
-        let (slots, rows) = ([[0; CORNERS]; LANES], [[[0.0; LANES]; N]; 2]);
-        Known { n: 0, generation: NEVER, spots: nowhere, places: nowhere, slots, rows }
+        let (slots, none) = ([[0; CORNERS]; LANES], [[0.0; LANES]; N]);
+        Known {
+            n: 0,
+            t: f64::NAN,
+            generation: NEVER,
+            spots: nowhere,
+            places: nowhere,
+            slots,
+            rows: [none; 2],
+            now: none,
+        }
     }
 
-    /// Number `k` and its rate at both instants, where rates are so much farther on.
+    /// Moves on to a time between the instants, which are `tau` apart [s].
     #[inline(always)]
-    fn four<R: Real>(&self, k: usize, rate: usize) -> [R; 4] {
-        let [a, b] = &self.rows;
-        [R::read(&a[k]), R::read(&a[k + rate]), R::read(&b[k]), R::read(&b[k + rate])]
+    fn go_to<R: Real>(&mut self, t: f64, late: f64, tau: f64) {
+        if self.t == t {
+            return;
+        }
+        let ([a, da, b, db], [ra, rda, rb, rdb]) = (hermite(late), slopes(late));
+        let (value, rate) = ([a, tau * da, b, tau * db], [ra / tau, rda, rb / tau, rdb]);
+        let [first, second] = &self.rows;
+        for k in 0..N / 2 {
+            let rates = k + N / 2;
+            let ends =
+                [R::read(&first[k]), R::read(&first[rates]), R::read(&second[k]), R::read(&second[rates])];
+            blend(&value, &ends).write(&mut self.now[k]);
+            blend(&rate, &ends).write(&mut self.now[rates]);
+        }
+        self.t = t;
+    }
+
+    /// Some numbers at the time, from one on.
+    #[inline(always)]
+    fn read<R: Real, const M: usize>(&self, first: usize) -> [R; M] {
+        let mut out = [R::zero(); M];
+        for k in 0..M {
+            out[k] = R::read(&self.now[first + k]);
+        }
+        out
+    }
+
+    /// Of a lane that stays where it is while the next instant becomes the first.
+    fn step(&mut self, lane: usize) {
+        let [first, second] = &mut self.rows;
+        first.iter_mut().zip(second).for_each(|(first, second)| first[lane] = second[lane]);
     }
 }
 
@@ -71,7 +113,7 @@ impl Default for Stations {
             surface: Known::nothing(),
             water: Known::nothing(),
             apart: nowhere,
-            per: nowhere,
+            near: nowhere,
             from: nowhere,
             to: nowhere,
         }
@@ -85,20 +127,6 @@ struct Instant {
     late: f64,
 }
 
-/// Polynomials in time of values and rates at both instants, and their derivatives [1/s].
-struct Blend {
-    value: [f64; 4],
-    rate: [f64; 4],
-}
-
-impl Blend {
-    #[inline(always)]
-    fn of<R: Real>(weights: &[f64; 4], [a, da, b, db]: [R; 4]) -> R {
-        let [h, dh, g, dg] = *weights;
-        R::of(h).fma(a, R::of(dh).fma(da, R::of(g).fma(b, R::of(dg) * db)))
-    }
-}
-
 impl Lattice {
     /// The motion of the water, as [`Waves::at`](crate::Waves::at) gives it, but for the pressure, which is left out.
     pub fn at(&mut self, [x, y, z]: [f64; 3], t: f64) -> Flow {
@@ -109,15 +137,9 @@ impl Lattice {
     }
 
     fn instant(&self, t: f64) -> Instant {
-        let instant = t / self.time;
+        let instant = t * self.per_time;
         let n = instant.floor();
         Instant { n: n as i64, late: instant - n }
-    }
-
-    fn blend(&self, late: f64) -> Blend {
-        let tau = self.time;
-        let ([a, da, b, db], [ra, rda, rb, rdb]) = (hermite(late), slopes(late));
-        Blend { value: [a, tau * da, b, tau * db], rate: [ra / tau, rda, rb / tau, rdb] }
     }
 
     /// How far places are along the waves [m].
@@ -134,29 +156,19 @@ impl Lattice {
         }
         let Instant { n, late } = self.instant(t);
         let along = self.along(place);
-        let spots = rounded(along * R::of(SPOTS as f64 / self.size));
-        if stations.surface.n != n || !same::<R>(&spots, &stations.surface.spots[0]) {
-            run(
-                Width::best(),
-                MeetSurface {
-                    lattice: self,
-                    spots: &spots,
-                    n,
-                    lanes: R::LANES,
-                    known: &mut stations.surface,
-                },
-            );
-        }
         let known = &stations.surface;
-        let Blend { value, rate } = self.blend(late);
-        let (mut now, mut rates) = ([R::zero(); 3], [R::zero(); 3]);
-        for k in 0..3 {
-            let four = known.four(k, 3);
-            now[k] = Blend::of(&value, four);
-            rates[k] = Blend::of(&rate, four);
+        let mut off = along - R::read(&known.places[0]);
+        if known.n != n || !R::of(NEAR * self.size / SPOTS as f64).all_gt(off.abs()) {
+            let mut x = [0.0; LANES];
+            along.write(&mut x);
+            let known = &mut stations.surface;
+            run(Width::best(), MeetSurface { lattice: self, along: &x, n, lanes: R::LANES, known });
+            off = along - R::read(&known.places[0]);
         }
-        let off = along - R::read(&known.places[0]);
-        let ([elevation, steep, bend], [rising, steepening, bending]) = (now, rates);
+        let known = &mut stations.surface;
+        known.go_to::<R>(t, late, self.time);
+        let ([elevation, steep, bend], [rising, steepening, bending]) =
+            (known.read::<R, 3>(0), known.read::<R, 3>(3));
         let half = R::of(0.5) * off;
         let elevation = off.fma(half.fma(bend, steep), elevation);
         let rate = off.fma(half.fma(bending, steepening), rising);
@@ -183,12 +195,11 @@ impl Lattice {
         let Instant { n, late } = self.instant(t);
         let along = self.along([x, y]);
         let [up, by_z, by_eta] = self.waves.stretched(z, flow.elevation);
-        let (depth, per) = (-up, R::read(&stations.per));
-        let spots = [rounded(along * per), rounded(depth * per)];
+        let (depth, near) = (-up, R::read(&stations.near));
         let known = &stations.water;
+        let mut off = [along - R::read(&known.places[0]), R::read(&known.places[1]) - depth];
         if known.n != n
-            || !same::<R>(&spots[0], &known.spots[0])
-            || !same::<R>(&spots[1], &known.spots[1])
+            || !(near.all_gt(off[0].abs()) && near.all_gt(off[1].abs()))
             || !(depth.all_gt(R::read(&stations.from)) && R::read(&stations.to).all_gt(depth))
         {
             let (mut x, mut down) = ([0.0; LANES], [0.0; LANES]);
@@ -196,19 +207,16 @@ impl Lattice {
             depth.write(&mut down);
             // a corner has four numbers of each kind
             run(Width::Four, Meet { lattice: self, along: &x, depth: &down, n, lanes: R::LANES, stations });
+            let known = &stations.water;
+            off = [along - R::read(&known.places[0]), R::read(&known.places[1]) - depth];
         }
-        let known = &stations.water;
-        let off = [along - R::read(&known.places[0]), R::read(&known.places[1]) - depth];
-        let Blend { value, rate } = self.blend(late);
+        let known = &mut stations.water;
+        known.go_to::<R>(t, late, self.time);
         // f, its first and its second derivative, and their rates
-        let (mut now, mut rates) = ([[R::zero(); 2]; 3], [[R::zero(); 2]; 3]);
-        for k in 0..3 {
-            for i in 0..2 {
-                let four = known.four(4 * k + i, 2);
-                now[k][i] = Blend::of(&value, four);
-                rates[k][i] = Blend::of(&rate, four);
-            }
-        }
+        let (now, rates) = (
+            [known.read::<R, 2>(0), known.read::<R, 2>(2), known.read::<R, 2>(4)],
+            [known.read::<R, 2>(6), known.read::<R, 2>(8), known.read::<R, 2>(10)],
+        );
         let ([f, by], [df, dby]) = (around(now, off), around(rates, off));
         let (way, current) = ([R::of(self.way[0]), R::of(self.way[1])], R::of(self.current));
         let mut motion = Motion::<R, 2> {
@@ -229,10 +237,10 @@ impl Lattice {
     }
 }
 
-/// Finds the surface at these spots.
+/// Finds the surface at the spots next to places along the waves [m].
 struct MeetSurface<'a> {
     lattice: &'a mut Lattice,
-    spots: &'a Row,
+    along: &'a Row,
     n: i64,
     lanes: usize,
     known: &'a mut Known<2, 6>,
@@ -241,29 +249,33 @@ struct MeetSurface<'a> {
 impl LaneTask for MeetSurface<'_> {
     #[inline(always)]
     fn go<R: Real>(self) {
-        let MeetSurface { lattice, spots, n, lanes, known } = self;
+        let MeetSurface { lattice, along, n, lanes, known } = self;
         let Lattice { sums, edge, size, .. } = lattice;
         let generation = sums.make_room(n);
         let anew = known.generation != generation;
         for lane in 0..lanes {
-            let moved = anew || known.spots[0][lane] != spots[lane];
+            let next = (along[lane] / (*size / SPOTS as f64) + 0.5).floor();
+            let moved = anew || known.spots[0][lane] != next;
             if !moved && known.n == n {
                 continue;
             }
-            let (i, spot) = cell_of(spots[lane]);
+            let (i, spot) = cell_of(next);
             if moved {
                 if anew || cell_of(known.spots[0][lane]).0 != i {
                     known.slots[lane] = [i, i + 1].map(|i| sums.line(i));
                 }
-                let place = spots[lane] * *size / SPOTS as f64;
-                (known.spots[0][lane], known.places[0][lane]) = (spots[lane], place);
+                (known.spots[0][lane], known.places[0][lane]) = (next, next * *size / SPOTS as f64);
             }
-            for (rows, n) in known.rows.iter_mut().zip(n..) {
-                let numbers = edge.spot(spot, sums.tops(known.slots[lane], n), *size);
-                rows.iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = x);
+            let stays = !moved && known.n + 1 == n;
+            if stays {
+                known.step(lane);
+            }
+            for instant in usize::from(stays)..2 {
+                let numbers = edge.spot(spot, sums.tops(known.slots[lane], n + instant as i64), *size);
+                known.rows[instant].iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = x);
             }
         }
-        (known.n, known.generation) = (n, generation);
+        (known.n, known.t, known.generation) = (n, f64::NAN, generation);
     }
 }
 
@@ -283,15 +295,13 @@ impl LaneTask for Meet<'_> {
         let Meet { lattice, along, depth, n, lanes, stations } = self;
         let Lattice { sums, cell, levels, size, bottom, waves, .. } = lattice;
         let generation = sums.make_room(n);
-        let Stations { water: known, apart, per, from, to, .. } = stations;
+        let Stations { water: known, apart, near, from, to, .. } = stations;
         let anew = known.generation != generation;
         for lane in 0..lanes {
             let level = levels.partition_point(|from| *from <= depth[lane]).max(1) - 1;
             let width = *size * f64::from(1_u32 << level);
             let spot = width / SPOTS as f64;
-            // just as it is asked whether they stay
-            let inverse = 1.0 / spot;
-            let spots = [along[lane], depth[lane]].map(|x| (x * inverse + 0.5).floor());
+            let spots = [along[lane], depth[lane]].map(|x| (x / spot + 0.5).floor());
             let old = known.spots.map(|row| row[lane]);
             let other = anew || apart[lane] != spot;
             let moved = other || old != spots;
@@ -307,8 +317,13 @@ impl LaneTask for Meet<'_> {
                 if other || [old_i, old_j] != [i, j] {
                     let step = 1 << level;
                     let (i, j) = (i.wrapping_mul(step), j.wrapping_mul(step));
-                    let place = |(right, down)| sums.place(i.wrapping_add(right), j.wrapping_add(down));
-                    known.slots[lane] = [(0, 0), (step, 0), (0, step), (step, step)].map(place);
+                    let (right, below) = (i.wrapping_add(step), j.wrapping_add(step));
+                    known.slots[lane] = [
+                        sums.place(i, j),
+                        sums.place(right, j),
+                        sums.place(i, below),
+                        sums.place(right, below),
+                    ];
                 }
                 let places = [spots[0], spots[1].min(deepest)];
                 for k in 0..2 {
@@ -316,24 +331,31 @@ impl LaneTask for Meet<'_> {
                 }
             }
             if other {
-                (apart[lane], per[lane]) = (spot, inverse);
+                (apart[lane], near[lane]) = (spot, NEAR * spot);
                 from[lane] = if level == 0 { f64::NEG_INFINITY } else { levels[level] };
                 to[lane] = levels.get(level + 1).copied().unwrap_or(f64::INFINITY);
             }
+            let stays = !moved && known.n + 1 == n;
+            if stays {
+                known.step(lane);
+            }
             // nothing moves far down
             let still = depth[lane] > *bottom && waves.depth().is_infinite();
-            let numbers: Spot = if still {
-                [[[0.0; 4]; 2]; 3]
-            } else {
-                cell.spot::<R>([across, down], sums.corners(known.slots[lane], n), width)
-            };
-            for (k, both) in numbers.iter().enumerate() {
-                for (rows, four) in known.rows.iter_mut().zip(both) {
-                    rows[4 * k..].iter_mut().zip(four).for_each(|(row, x)| row[lane] = *x);
+            for instant in usize::from(stays)..2 {
+                let numbers: Spot = if still {
+                    Spot::default()
+                } else {
+                    let corners = sums.corners(known.slots[lane], n + instant as i64);
+                    cell.spot::<R>([across, down], corners, width)
+                };
+                let rows = &mut known.rows[instant];
+                for (k, [re, im, rate_re, rate_im]) in numbers.into_iter().enumerate() {
+                    (rows[2 * k][lane], rows[2 * k + 1][lane]) = (re, im);
+                    (rows[2 * k + 6][lane], rows[2 * k + 7][lane]) = (rate_re, rate_im);
                 }
             }
         }
-        (known.n, known.generation) = (n, generation);
+        (known.n, known.t, known.generation) = (n, f64::NAN, generation);
     }
 }
 
@@ -341,6 +363,12 @@ impl LaneTask for Meet<'_> {
 fn cell_of(spot: f64) -> (i64, usize) {
     let (spot, spots) = (spot as i64, SPOTS as i64);
     (spot.div_euclid(spots), spot.rem_euclid(spots) as usize)
+}
+
+/// A sum of what is at both ends.
+#[inline(always)]
+fn blend<R: Real>([w, dw, g, dg]: &[f64; 4], [x, dx, y, dy]: &[R; 4]) -> R {
+    R::of(*w).fma(*x, R::of(*dw).fma(*dx, R::of(*g).fma(*y, R::of(*dg) * *dy)))
 }
 
 /// Cubic Hermite polynomials on 0 … 1: value and derivative at the start, value and derivative at the end.
@@ -354,27 +382,6 @@ fn hermite(x: f64) -> [f64; 4] {
 fn slopes(x: f64) -> [f64; 4] {
     let s = 6.0 * x * (1.0 - x);
     [-s, (1.0 - x) * (1.0 - 3.0 * x), s, x * (3.0 * x - 2.0)]
-}
-
-/// Whole numbers next to these.
-#[inline(always)]
-fn rounded<R: Real>(x: R) -> Row {
-    let mut numbers = [0.0; LANES];
-    x.write(&mut numbers);
-    for x in &mut numbers[..R::LANES] {
-        *x = (*x + 0.5).floor();
-    }
-    numbers
-}
-
-/// Whether they are the same in all lanes; what is no number never is.
-#[inline(always)]
-fn same<R: Real>(a: &Row, b: &Row) -> bool {
-    let mut same = true;
-    for lane in 0..R::LANES {
-        same &= a[lane] == b[lane];
-    }
-    same
 }
 
 /// `f` so far from a spot, and its derivative, of which value, first and second derivative are known there.

@@ -34,9 +34,10 @@ pub struct Lattice {
     way: [f64; 2],
     /// Speed of the current that carries them, along them [m/s].
     current: f64,
-    /// Width of the smallest cells [m], distance of instants [s].
+    /// Width of the smallest cells [m], distance of instants [s], and their number per second.
     size: f64,
     time: f64,
+    per_time: f64,
     /// The depths from which on cells are `2^0, 2^1, …` times as wide [m].
     levels: Vec<f64>,
     /// Where nothing of the waves is left, or the bed is [m].
@@ -66,6 +67,7 @@ impl Lattice {
             current,
             size,
             time,
+            per_time: 1.0 / time,
             bottom,
             cell: Cell::new(),
             edge: Edge::new(),

@@ -8,8 +8,8 @@
 use super::cell::{Corner, Top};
 use crate::waves::{Component, Waves};
 use ropewalk_core::{LaneTask, Real, Width, run};
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hash, Hasher};
+use rustc_hash::FxHashMap;
+use std::hash::Hash;
 
 /// Lines and heights of which phases and amplitudes are remembered, and places of which sums are.
 const LINES: usize = 4096;
@@ -19,15 +19,13 @@ const KEPT: usize = 4;
 /// Of no place.
 const NEVER: i64 = i64::MIN;
 /// Waves of which less than this part of the largest is left count no more.
-const NOTHING: f64 = 1e-8;
+const NOTHING: f64 = 1e-6;
 
 /// Numbers of each wave, side by side, from the longest to the shortest; filled up with noughts to as many as lanes take.
 type Row = Vec<f64>;
 
 /// Sines and cosines of the phase of each wave.
 type Phases = [Row; 2];
-
-type Map<K, X> = HashMap<K, X, BuildHasherDefault<Mixed>>;
 
 /// All places that have been looked at.
 #[derive(Clone, Debug)]
@@ -41,12 +39,12 @@ pub(super) struct Sums {
     omega: Row,
     a: Row,
     /// Phases that each line adds, and that each instant takes off: those of a corner are their differences.
-    lines: Map<i64, Phases>,
-    instants: Map<i64, Phases>,
+    lines: FxHashMap<i64, Phases>,
+    instants: FxHashMap<i64, Phases>,
     /// Of each height what is left of the waves there: the amplitudes of their velocities along them and upwards [m/s].
-    heights: Map<i64, [Row; 2]>,
+    heights: FxHashMap<i64, [Row; 2]>,
     tops: Slots<i64, 6>,
-    corners: Slots<[i64; 2], 16>,
+    corners: Slots<(i64, i64), 16>,
     latest: i64,
     /// How often all was forgotten.
     generation: u64,
@@ -55,7 +53,7 @@ pub(super) struct Sums {
 /// `N` numbers for each place, at the latest instants.
 #[derive(Clone, Debug)]
 struct Slots<K, const N: usize> {
-    slots: Map<K, u32>,
+    slots: FxHashMap<K, u32>,
     places: Vec<K>,
     numbers: Vec<[[f64; N]; KEPT]>,
     instants: Vec<[i64; KEPT]>,
@@ -63,7 +61,7 @@ struct Slots<K, const N: usize> {
 
 impl<K: Copy + Eq + Hash, const N: usize> Slots<K, N> {
     fn new() -> Self {
-        Slots { slots: HashMap::default(), places: Vec::new(), numbers: Vec::new(), instants: Vec::new() }
+        Slots { slots: FxHashMap::default(), places: Vec::new(), numbers: Vec::new(), instants: Vec::new() }
     }
 
     /// The slot of a place.
@@ -100,9 +98,9 @@ impl Sums {
             k: row(|c| c.k),
             omega: row(|c| c.omega),
             a: row(|c| c.a),
-            lines: HashMap::default(),
-            instants: HashMap::default(),
-            heights: HashMap::default(),
+            lines: FxHashMap::default(),
+            instants: FxHashMap::default(),
+            heights: FxHashMap::default(),
             tops: Slots::new(),
             corners: Slots::new(),
             latest: NEVER,
@@ -145,14 +143,15 @@ impl Sums {
     /// The slot of the corner of line `i` at the height that is `j` times the width of the smallest cells below still water.
     #[inline(always)]
     pub fn place(&mut self, i: i64, j: i64) -> u32 {
-        self.corners.of([i, j])
+        self.corners.of((i, j))
     }
 
     /// The surface of both lines at an instant.
     #[inline(always)]
     pub fn tops(&mut self, slots: [u32; 2], n: i64) -> [&Top; 2] {
-        let places = slots.map(|slot| self.top(slot, n));
-        places.map(|(slot, place)| &self.tops.numbers[slot][place])
+        let [a, b] = [self.top(slots[0], n), self.top(slots[1], n)];
+        let at = |(slot, place): (usize, usize)| &self.tops.numbers[slot][place];
+        [at(a), at(b)]
     }
 
     /// Where a line has its surface.
@@ -169,18 +168,20 @@ impl Sums {
         (slot as usize, place)
     }
 
-    /// The water at four corners at instant `n` and the next.
+    /// The water at four corners at an instant.
     #[inline(always)]
-    pub fn corners(&mut self, slots: [u32; 4], n: i64) -> [[&Corner; 4]; 2] {
-        let places = [n, n + 1].map(|n| slots.map(|slot| self.corner(slot, n)));
-        places.map(|places| places.map(|(slot, place)| &self.corners.numbers[slot][place]))
+    pub fn corners(&mut self, slots: [u32; 4], n: i64) -> [&Corner; 4] {
+        let [a, b] = [self.corner(slots[0], n), self.corner(slots[1], n)];
+        let [c, d] = [self.corner(slots[2], n), self.corner(slots[3], n)];
+        let at = |(slot, place): (usize, usize)| &self.corners.numbers[slot][place];
+        [at(a), at(b), at(c), at(d)]
     }
 
     /// Where a corner has its numbers.
     fn corner(&mut self, slot: u32, n: i64) -> (usize, usize) {
         let (place, known) = self.corners.at(slot, n);
         if !known {
-            let [i, j] = self.corners.places[slot as usize];
+            let (i, j) = self.corners.places[slot as usize];
             self.meet(i, n);
             let height = self.heights.entry(j);
             let left = height.or_insert_with(|| left(&self.all, j as f64 * self.size, self.depth));
@@ -301,23 +302,4 @@ fn total<R: Real>(x: R) -> f64 {
     let mut all = [0.0; 8];
     x.write(&mut all);
     ((all[0] + all[1]) + (all[2] + all[3])) + ((all[4] + all[5]) + (all[6] + all[7]))
-}
-
-/// Numbers of places and instants, well mixed: they come from nobody who would wish them to meet.
-#[derive(Clone, Debug, Default)]
-struct Mixed(u64);
-
-impl Hasher for Mixed {
-    fn finish(&self) -> u64 {
-        self.0 ^ (self.0 >> 32)
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|b| self.write_u64(u64::from(*b)));
-    }
-    fn write_u64(&mut self, x: u64) {
-        self.0 = (self.0.rotate_left(23) ^ x).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    }
-    fn write_i64(&mut self, x: i64) {
-        self.write_u64(x.cast_unsigned());
-    }
 }
