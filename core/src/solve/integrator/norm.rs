@@ -28,7 +28,7 @@ pub(crate) struct Group {
     pub rounding: f64,
 }
 
-/// Speeds in a part [m/s].
+/// Speeds in a part, as seen from its middle [m/s].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Speeds {
     /// Their root mean square over its length.
@@ -36,6 +36,9 @@ pub(crate) struct Speeds {
     /// That of its fastest node, and which this is.
     pub most: f64,
     pub node: usize,
+    /// The velocity of its middle, and what all of its nodes weigh.
+    middle: [f64; 3],
+    weight: f64,
 }
 
 /// Norms of increments and of forces, part by part.
@@ -184,29 +187,31 @@ impl Norms {
         }
     }
 
-    /// How fast each cable or chain moves as seen from its middle.
+    /// How fast each cable or chain moves.
     pub fn speeds(&self, nodes: &[Node], v: &[f64], out: &mut Vec<Speeds>) {
         let lines = || {
             let nodes = nodes.iter().enumerate().filter(|(_, n)| n.kind.has_position());
             nodes.map(|(k, n)| (self.of(n.v), k, n.v)).filter(|(g, ..)| !self.groups[*g].single)
         };
-        let mut sums = vec![[0.0; 4]; self.groups.len()];
-        for (g, _, i) in lines() {
-            let w = self.weight[i];
-            sums[g][3] += w;
-            (0..3).for_each(|k| sums[g][k] += w * v[i + k]);
-        }
         out.clear();
-        out.resize(sums.len(), Speeds::default());
+        out.resize(self.groups.len(), Speeds::default());
+        for (g, _, i) in lines() {
+            let (part, w) = (&mut out[g], self.weight[i]);
+            part.weight += w;
+            (0..3).for_each(|k| part.middle[k] += w * v[i + k]);
+        }
+        for part in &mut *out {
+            part.middle = part.middle.map(|sum| sum / part.weight);
+        }
         for (g, node, i) in lines() {
-            let [x, y, z, all] = sums[g];
-            let square: f64 = [x, y, z].iter().zip(&v[i..]).map(|(sum, v)| (v - sum / all).powi(2)).sum();
-            out[g].mean += self.weight[i] / all * square;
-            if square > out[g].most {
-                (out[g].most, out[g].node) = (square, node);
+            let part = &mut out[g];
+            let square: f64 = part.middle.iter().zip(&v[i..]).map(|(middle, v)| (v - middle).powi(2)).sum();
+            part.mean += self.weight[i] / part.weight * square;
+            if square > part.most {
+                (part.most, part.node) = (square, node);
             }
         }
-        out.iter_mut().for_each(|s| (s.mean, s.most) = (s.mean.sqrt(), s.most.sqrt()));
+        out.iter_mut().for_each(|part| (part.mean, part.most) = (part.mean.sqrt(), part.most.sqrt()));
     }
 
     /// The group of a velocity.
