@@ -270,6 +270,13 @@ fn certificates_name_the_cause() {
     for (name, text, cause) in [
         ("steps", cable(8, &fixed(5e-2)), "steps"),
         ("mesh", cable(1, &fixed(1e-4)), "mesh"),
+        // half of its weight may be left; energy would say so
+        (
+            "newton",
+            cable(8, &format!("stopping = {{ absolute = {{ residual = 5.0 }} }}\n{}", fixed(1e-2)))
+                .replace("[solver]", "audit = false\n[solver]"),
+            "newton",
+        ),
         ("motion", DOUBLE.to_string(), "motion"),
     ] {
         fs::write(at.join(format!("{name}.toml")), text).unwrap();

@@ -2,7 +2,7 @@
 
 use super::{Observer, Simulation};
 use crate::simulation::audit::Created;
-use crate::solve::integrator::{Limit, StepError, StepReport, Stepping};
+use crate::solve::integrator::{Limit, Scheme, StepError, StepReport, Stepping};
 
 /// What may be left of constraints after a step, in parts of the model's length: ten times what Newton's method leaves.
 const LEFT: f64 = 1e-9;
@@ -114,15 +114,24 @@ impl Simulation {
         let limits = &self.work.counts.limits;
         let most = (0..limits.len()).max_by_key(|&k| limits[k]).unwrap_or_default();
         let (cause, share) = (Limit::ALL[most], 100 * limits[most] / limits.iter().sum::<u64>().max(1));
-        let looser = match cause {
-            Limit::Position => format!(
-                "a looser `tolerance`, a `horizon` shorter than the {:.3} s over which errors may add up, ",
-                self.integrator.horizon()
-            ),
-            Limit::Force => "a looser `force_tolerance` ".into(),
-            Limit::Longest => "a longer `h_max` ".into(),
-            _ => "a looser `tolerance` ".into(),
+        let mut fewer = match cause {
+            Limit::Position => vec![
+                "a looser `tolerance`".to_string(),
+                format!(
+                    "a `horizon` shorter than the {:.3} s over which errors may add up",
+                    self.integrator.horizon()
+                ),
+            ],
+            Limit::Force => vec!["a looser `force_tolerance`".into()],
+            Limit::Longest => vec!["a longer `h_max`".into()],
+            _ => vec!["a looser `tolerance`".into()],
         };
+        if self.integrator.options().scheme != Scheme::RadauIia5 {
+            fewer.push("Radau IIA".into());
+        }
+        let need = if fewer.len() == 1 { "needs" } else { "need" };
+        let last = fewer.pop().unwrap_or_default();
+        let fewer = if fewer.is_empty() { last } else { format!("{} or {last}", fewer.join(", ")) };
         let slender = self.model.parts().iter().any(|part| part.slender().is_some());
         let damping = if slender {
             "a little `axial_retardation_time` or `bending_retardation_time`"
@@ -130,8 +139,8 @@ impl Simulation {
             "a little damping"
         };
         observer.warn(&format!(
-            "{MANY} steps so far, at t = {t:.4} s of {end} s, the last of {h:.1e} s, {share} % limited by {}: {looser}or Radau \
-             IIA need fewer, and {damping} where fast motion that nothing damps asks for them",
+            "{MANY} steps so far, at t = {t:.4} s of {end} s, the last of {h:.1e} s, {share} % limited by {}: {fewer} {need} \
+             fewer, and {damping} where fast motion that nothing damps asks for them",
             cause.word()
         ));
     }

@@ -72,7 +72,7 @@ impl Cause {
         match self {
             Cause::Newton => {
                 "this is what Newton's method leaves in every step: solved to the end, the same steps agree with tighter \
-                 ones. Take a smaller `newton_tolerance`"
+                 ones. Take a smaller `newton_tolerance`, and `relative` for an `absolute` stopping test"
             }
             Cause::Steps => {
                 "the steps are too long: tighter ones come together. Take a smaller `tolerance`, or a smaller `h`"

@@ -4,7 +4,7 @@
 //! A value that the scene takes from a parameter is changed by that parameter, so that all that depends on it follows
 //! and `--set` gives the same; any other is changed where it stands.
 
-use ropewalk_core::integrator::{Scheme, Stepping};
+use ropewalk_core::integrator::{Scheme, Stepping, Stopping};
 use ropewalk_elements::cable::{CableModel, Integration, LongitudinalModel, TransverseModel, legal};
 use ropewalk_scene::{Analysis, Fault, Kind, SceneFile, SceneText, Table, Value, quantity};
 use serde::{Deserialize, Serialize};
@@ -261,6 +261,10 @@ impl<'a> Axes<'a> {
         }
         if let (Some(newton), true) = (settings.newton, settings.newton != self.base.newton) {
             change("solver.newton_tolerance", format!("{newton:?}"));
+            // which an absolute test doesn't know
+            if self.file.scene().solver.stopping != Stopping::Relative {
+                change("solver.stopping", toml(&serde_json::json!(Stopping::Relative)));
+            }
         }
         if let (Some(stepping), true) = (settings.stepping, settings.stepping != self.base.stepping) {
             let (kind, field, x) = match stepping {

@@ -31,6 +31,9 @@ pub struct Alpha {
 
 /// Elements along a cable up to which Newton's tolerance doesn't depend on their number.
 const COARSE: f64 = 64.0;
+/// Steps of a horizon above which what is left of each has to be less, and above which still less.
+const FEW: f64 = 10.0;
+const MANY: f64 = 1000.0;
 /// What the error of a body counts for, and how much more for every radian that it turns within the horizon.
 const BODY: f64 = 2.0;
 const TURNING: f64 = 0.1;
@@ -84,9 +87,8 @@ impl Alpha {
             * fine
             * match self.options.stepping {
                 Stepping::Fixed { .. } => 1e-7,
-                // what is left in velocities adds up in a mechanism, which has nothing that takes it away
                 Stepping::Controlled { tolerance } => {
-                    let steps = if model.is_mechanism() { (10.0 * h / self.horizon).min(1.0) } else { 1.0 };
+                    let steps = if model.is_mechanism() { adding_up(h / self.horizon) } else { 1.0 };
                     1e-4 * steps * tolerance.min(1e-3)
                 }
             }
@@ -394,6 +396,12 @@ fn jumps(state: &State, work: &Workspace) -> bool {
     let (before, after) = (norms.relative(&state.v), norms.relative(&work.trial.v));
     let last = state.control.h_last;
     last > 0.0 && last * norms.relative(&state.a) < 0.05 * before && change > 0.5 * before.max(after)
+}
+
+/// The share of what may be left of positions where it adds up: in a mechanism nothing takes away what velocities have of it,
+/// `2 δ/h` for the rest of the horizon, of which a step is this part. Very many of them add up like dice.
+fn adding_up(step: f64) -> f64 {
+    (FEW * step).min(1.0) * (MANY * step).min(1.0).sqrt()
 }
 
 impl Integrator for Alpha {
