@@ -26,9 +26,10 @@ pub struct Sea {
 /// What was found lately, and the table that stands for many waves.
 struct Memory {
     lattice: Option<Lattice>,
-    /// The slot of each pack: the same as the last time, if what asks has moved little; and that of who asked last.
+    /// The slot of each pack: the same as the last time, if what asks has moved little.
     slots: FxHashMap<Key, usize>,
     keys: Vec<Key>,
+    /// The slot of who asked last.
     last: usize,
     packs: Vec<Found>,
     /// What is known of the table at each of them.
@@ -82,7 +83,7 @@ struct Found {
 type Places = [[f64; MOST]; 3];
 
 /// Most packs that are remembered.
-const PACKS: usize = 8192;
+const PACKS: usize = 4096;
 /// As many lanes as the widest carrier has.
 const MOST: usize = 8;
 /// Numbers that tell the motion at a place, in the order of [`Swell`].

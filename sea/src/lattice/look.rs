@@ -340,7 +340,7 @@ impl LaneTask for Meet<'_> {
                 known.step(lane);
             }
             // nothing moves far down
-            let still = depth[lane] > *bottom && waves.depth().is_infinite();
+            let still = spots[1] > deepest && waves.depth().is_infinite();
             for instant in usize::from(stays)..2 {
                 let numbers: Spot = if still {
                     Spot::default()
