@@ -435,7 +435,7 @@ impl Model {
     }
 
     /// Where a node is, in words.
-    pub fn place_name(&self, node: NodeId) -> String {
+    pub(crate) fn place_name(&self, node: NodeId) -> String {
         let name = |p: &Arc<dyn Part>| p.place_of(node).map(|place| format!("`{}` {place}", p.name()));
         self.parts.iter().find_map(name).unwrap_or_else(|| format!("node {}", node.0))
     }

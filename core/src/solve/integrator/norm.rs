@@ -194,6 +194,9 @@ impl Norms {
             nodes.map(|(k, n)| (self.of(n.v), k, n.v)).filter(|(g, ..)| !self.groups[*g].single)
         };
         out.clear();
+        if self.groups.iter().all(|g| g.single) {
+            return;
+        }
         out.resize(self.groups.len(), Speeds::default());
         for (g, _, i) in lines() {
             let (part, w) = (&mut out[g], self.weight[i]);
