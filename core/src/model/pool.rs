@@ -400,9 +400,12 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
             let p = E::lanes::<R>(&Batch(elements));
             let x = Seat::gather::<R>(seats, self.at);
             if !E::SETS {
-                share = Share::zero();
+                share.r = [R::zero(); N];
             }
             if tangent {
+                if !E::SETS {
+                    share.k = [[R::zero(); N]; N];
+                }
                 E::add::<R, true>(&p, &x, &w, &mut share);
             } else {
                 E::add::<R, false>(&p, &x, &w, &mut share);

@@ -12,6 +12,8 @@ use crate::solve::integrator::{Limit, Speeds, StepReport, Stepping};
 const FAST: f64 = 3.0;
 /// Steps after which a run has begun.
 const BEGUN: u64 = 50;
+/// One step in so many is looked at: it takes many to get fast.
+const EVERY: u64 = 4;
 
 /// How fast each part got, and its fastest point.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,10 +40,11 @@ struct Fastest {
 impl Simulation {
     /// Warns at the end of a run in which a point got much faster than its part, where errors may add up.
     pub(super) fn watch_ends(&mut self, report: &StepReport, end: f64, observer: &mut dyn Observer) {
-        if !matches!(self.integrator.options().stepping, Stepping::Controlled { .. }) {
+        let (t, steps) = (self.state.t, self.work.counts.steps);
+        let controlled = matches!(self.integrator.options().stepping, Stepping::Controlled { .. });
+        if !controlled || steps % EVERY != 0 && t < end {
             return;
         }
-        let t = self.state.t;
         let Uneven { parts, told, now } = &mut self.uneven;
         self.work.norms.speeds(self.model.nodes(), &self.state.v, now);
         parts.resize(now.len(), Fastest::default());
@@ -52,7 +55,7 @@ impl Simulation {
             }
         }
         // who advances bit by bit hears of it once
-        if t < end || *told || self.work.counts.steps < BEGUN || self.memory.forgets() {
+        if t < end || *told || steps < BEGUN || self.memory.forgets() {
             return;
         }
         for part in parts.iter().filter(|part| part.most > FAST * part.mean) {

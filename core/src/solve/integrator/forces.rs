@@ -150,8 +150,8 @@ impl Forces {
         lambda: &[f64],
         tolerance: f64,
     ) -> f64 {
-        norms.sums(|i| (norms.arm[i] * residual[i]).powi(2), &mut self.residual);
-        norms.sums(|i| (norms.mass[i] * a[i]).powi(2), &mut self.inertia);
+        norms.squares(&norms.arm, residual, &mut self.residual);
+        norms.squares(&norms.mass, a, &mut self.inertia);
         self.reaction.fill(0.0);
         for ((scale, on), l) in self.rows.iter().zip(lambda) {
             for &g in on {

@@ -178,6 +178,15 @@ impl Norms {
         largest(&self.runs, square).1
     }
 
+    /// `Σ (s x)²` over each group.
+    pub fn squares(&self, s: &[f64], x: &[f64], out: &mut Vec<f64>) {
+        out.clear();
+        out.resize(self.groups.len(), 0.0);
+        for (g, run) in &self.runs {
+            out[*g] += scaled_square(&s[run.clone()], &x[run.clone()]);
+        }
+    }
+
     /// Sums over each group of what a function gives for each velocity.
     pub fn sums(&self, of: impl Fn(usize) -> f64, out: &mut Vec<f64>) {
         out.clear();
@@ -344,13 +353,23 @@ fn largest(runs: &[(usize, Range<usize>)], square: impl Fn(&Range<usize>) -> f64
 
 /// `Σ w x²`; in four sums, which don't wait for each other. A NaN stays a NaN.
 fn weighted_square(w: &[f64], x: &[f64]) -> f64 {
-    let ((w, w_rest), (x, x_rest)) = (w.as_chunks::<4>(), x.as_chunks::<4>());
+    in_four(w, x, |w, x| w * (x * x))
+}
+
+/// `Σ (s x)²`.
+fn scaled_square(s: &[f64], x: &[f64]) -> f64 {
+    in_four(s, x, |s, x| (s * x) * (s * x))
+}
+
+#[inline(always)]
+fn in_four(a: &[f64], b: &[f64], of: impl Fn(f64, f64) -> f64) -> f64 {
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
     let mut sums = [0.0; 4];
-    for (w, x) in w.iter().zip(x) {
+    for (a, b) in a.iter().zip(b) {
         for i in 0..4 {
-            sums[i] += w[i] * (x[i] * x[i]);
+            sums[i] += of(a[i], b[i]);
         }
     }
-    let rest: f64 = w_rest.iter().zip(x_rest).map(|(w, x)| w * (x * x)).sum();
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| of(*a, *b)).sum();
     sums.iter().sum::<f64>() + rest
 }

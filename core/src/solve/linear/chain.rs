@@ -300,11 +300,16 @@ impl<T: Scalar> Chain<T> {
             // both are zero up to the diagonal
             let share = Share::of(pivot, inverse);
             grown[p] += share.pivot;
+            // loops, which are inlined here: iterators are not, and go without the instructions of this place
             if self.symmetric {
-                (0..W).for_each(|j| grown[j] += share.of_one(upper[j]));
+                for j in 0..W {
+                    grown[j] += share.of_one(upper[j]);
+                }
             } else {
                 let lower = &self.lower[s.factors + p * W..][..W];
-                (0..W).for_each(|j| grown[j] += share.of_pair(lower[j], upper[j]));
+                for j in 0..W {
+                    grown[j] += share.of_pair(lower[j], upper[j]);
+                }
             }
         }
         let (own, shared) = grown[..all].split_at(ahead);
@@ -381,11 +386,16 @@ impl<T: Scalar> Chain<T> {
         for p in (0..s.size).rev() {
             let row = &self.upper[s.factors + p * W..][..W];
             // the shares of others first: they don't wait for this block's solution
-            let mut others: T = row[s.size..ahead].iter().zip(&x[s.size..]).map(|(u, x)| *u * *x).sum();
-            if s.border > 0 {
-                others += row[ahead..ahead + s.border].iter().zip(&*shared).map(|(u, x)| *u * *x).sum::<T>();
+            let (mut others, mut own) = (T::default(), T::default());
+            for j in s.size..ahead {
+                others += row[j] * x[j];
             }
-            let own: T = row[p + 1..s.size].iter().zip(&x[p + 1..s.size]).map(|(u, x)| *u * *x).sum();
+            for j in 0..s.border {
+                others += row[ahead + j] * shared[j];
+            }
+            for j in p + 1..s.size {
+                own += row[j] * x[j];
+            }
             x[p] = (x[p] - others - own) * self.inverse[s.first + p];
         }
     }

@@ -55,7 +55,9 @@ impl Growth {
     /// Adds to `w` of neighbouring positions.
     #[inline(always)]
     pub fn add_run(&mut self, first: usize, shares: &[f64]) {
-        self.sums[first..].iter_mut().zip(shares).for_each(|(w, share)| *w += share);
+        for (w, share) in self.sums[first..].iter_mut().zip(shares) {
+            *w += share;
+        }
     }
 
     /// Adds the share of some pivots: their rows of `U` and columns of `L`, over these positions.
