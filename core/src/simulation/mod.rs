@@ -310,7 +310,7 @@ impl Simulation {
             let energy = self.watch_energy(end, observer);
             self.watch_steps(end, observer);
             self.watch_ringing(&report, end, observer);
-            self.watch_ends(&report, end, observer);
+            self.watch_ends(end, observer);
             self.measure_ringing();
             self.remember(&report);
             // whoever wants to stop gets what this step has brought first

@@ -6,14 +6,12 @@
 
 use super::{Observer, Simulation};
 use crate::model::node::NodeId;
-use crate::solve::integrator::{Limit, Speeds, StepReport, Stepping};
+use crate::solve::integrator::{Speeds, Stepping};
 
 /// Times the speed of its part from which on the speed of a point is worth a word: the end of a rod that swings has 1.7.
 const FAST: f64 = 3.0;
 /// Steps after which a run has begun.
-const BEGUN: u64 = 50;
-/// One step in so many is looked at: it takes many to get fast.
-const EVERY: u64 = 4;
+const BEGUN: u64 = 20;
 
 /// How fast each part got, and its fastest point.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,13 +23,13 @@ pub(super) struct Uneven {
     now: Vec<Speeds>,
 }
 
-/// The largest speeds in a part so far, as seen from its middle [m/s].
+/// The largest speeds in a part so far [m/s].
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Fastest {
     /// Root mean square over its length.
     mean: f64,
-    /// That of a point where positions limited the step, which point that was, and when [s].
+    /// That of its fastest point, which that was, and when [s].
     most: f64,
     node: u32,
     t: f64,
@@ -39,10 +37,9 @@ struct Fastest {
 
 impl Simulation {
     /// Warns at the end of a run in which a point got much faster than its part, where errors may add up.
-    pub(super) fn watch_ends(&mut self, report: &StepReport, end: f64, observer: &mut dyn Observer) {
+    pub(super) fn watch_ends(&mut self, end: f64, observer: &mut dyn Observer) {
         let (t, steps) = (self.state.t, self.work.counts.steps);
-        let controlled = matches!(self.integrator.options().stepping, Stepping::Controlled { .. });
-        if !controlled || steps % EVERY != 0 && t < end {
+        if !matches!(self.integrator.options().stepping, Stepping::Controlled { .. }) {
             return;
         }
         let Uneven { parts, told, now } = &mut self.uneven;
@@ -50,7 +47,7 @@ impl Simulation {
         parts.resize(now.len(), Fastest::default());
         for (part, now) in parts.iter_mut().zip(&*now) {
             part.mean = part.mean.max(now.mean);
-            if report.limit == Limit::Position && now.most > part.most {
+            if now.most > part.most {
                 (part.most, part.node, part.t) = (now.most, now.node as u32, t);
             }
         }

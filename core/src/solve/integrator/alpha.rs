@@ -33,7 +33,7 @@ pub struct Alpha {
 const COARSE: f64 = 64.0;
 /// Steps of a horizon above which what is left of each has to be less, and above which still less.
 const FEW: f64 = 10.0;
-const MANY: f64 = 1000.0;
+const MANY: f64 = 10_000.0;
 /// What the error of a body counts for, and how much more for every radian that it turns within the horizon.
 const BODY: f64 = 2.0;
 const TURNING: f64 = 0.1;
@@ -126,7 +126,6 @@ impl Alpha {
             }
         }
         t.lambda.copy_from_slice(&state.lambda);
-        t.shift.fill(0.0);
     }
 
     fn stabilised(&self, model: &Model) -> bool {
@@ -199,6 +198,9 @@ impl Alpha {
         self.rescale(state, h, &mut aux);
         work.trial.aux_old = aux;
         self.predict(state, h, work);
+        if self.stabilised(model) {
+            work.trial.shift.fill(0.0);
+        }
         let newton = Newton {
             model,
             state,

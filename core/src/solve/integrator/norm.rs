@@ -28,7 +28,7 @@ pub(crate) struct Group {
     pub rounding: f64,
 }
 
-/// Speeds in a part, as seen from its middle [m/s].
+/// Speeds in a part [m/s].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Speeds {
     /// Their root mean square over its length.
@@ -36,8 +36,7 @@ pub(crate) struct Speeds {
     /// That of its fastest node, and which this is.
     pub most: f64,
     pub node: usize,
-    /// The velocity of its middle, and what all of its nodes weigh.
-    middle: [f64; 3],
+    /// What all of its nodes weigh.
     weight: f64,
 }
 
@@ -207,23 +206,18 @@ impl Norms {
             return;
         }
         out.resize(self.groups.len(), Speeds::default());
-        for (g, _, i) in lines() {
-            let (part, w) = (&mut out[g], self.weight[i]);
-            part.weight += w;
-            (0..3).for_each(|k| part.middle[k] += w * v[i + k]);
-        }
-        for part in &mut *out {
-            part.middle = part.middle.map(|sum| sum / part.weight);
-        }
         for (g, node, i) in lines() {
-            let part = &mut out[g];
-            let square: f64 = part.middle.iter().zip(&v[i..]).map(|(middle, v)| (v - middle).powi(2)).sum();
-            part.mean += self.weight[i] / part.weight * square;
+            let (part, w) = (&mut out[g], self.weight[i]);
+            let square: f64 = v[i..i + 3].iter().map(|v| v * v).sum();
+            part.weight += w;
+            part.mean += w * square;
             if square > part.most {
                 (part.most, part.node) = (square, node);
             }
         }
-        out.iter_mut().for_each(|part| (part.mean, part.most) = (part.mean.sqrt(), part.most.sqrt()));
+        for part in out {
+            (part.mean, part.most) = ((part.mean / part.weight).sqrt(), part.most.sqrt());
+        }
     }
 
     /// The group of a velocity.
