@@ -55,7 +55,8 @@ impl Simulation {
         if t < end || *told || steps < BEGUN || self.memory.forgets() {
             return;
         }
-        for part in parts.iter().filter(|part| part.most > FAST * part.mean) {
+        // what has no mass has no mean
+        for part in parts.iter().filter(|part| part.mean > 0.0 && part.most > FAST * part.mean) {
             let Fastest { mean, most, node, t } = part;
             *told = true;
             observer.warn(&format!(
