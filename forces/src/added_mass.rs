@@ -134,10 +134,9 @@ impl AddedMass {
                 }
             }
             if let Some(swell) = swell {
-                let across = across(-mass, &t);
-                less_product(&mut out.d_x, &across, &swell.acceleration_by_x);
+                add_across(&mut out.d_x, mass, &t, &swell.acceleration_by_x);
                 if self.theory == Theory::Energy {
-                    less_product(&mut out.d_v, &across, &swell.gradient);
+                    add_across(&mut out.d_v, mass, &t, &swell.gradient);
                 }
             }
         }
@@ -246,6 +245,17 @@ struct Relative<R> {
     u: V3<R>,
     w: V3<R>,
     n: V3<R>,
+}
+
+/// Adds `factor (I - t tᵀ) m`.
+#[inline(always)]
+fn add_across<R: Real>(to: &mut [V3<R>; 3], factor: R, t: &V3<R>, m: &[V3<R>; 3]) {
+    for j in 0..3 {
+        let along = t[0].fma(m[0][j], t[1].fma(m[1][j], t[2] * m[2][j]));
+        for i in 0..3 {
+            to[i][j] = factor.fma(m[i][j] - t[i] * along, to[i][j]);
+        }
+    }
 }
 
 /// `factor (I - t tᵀ)`

@@ -42,19 +42,25 @@ impl Cell {
     /// What is at a spot of a cell of this width with these corners; over four lanes at most.
     #[inline(always)]
     pub fn spot<R: Real>(&self, [along, down]: [usize; 2], corners: [&Corner; 4], width: f64) -> Spot {
-        let (mut out, mut per) = ([[0.0; 4]; 3], 1.0);
-        for (weights, out) in self.weights[down * SPOTS + along].iter().zip(&mut out) {
-            let scales = [per, per * width];
-            for first in (0..4).step_by(R::LANES) {
-                let mut sum = R::zero();
-                for (m, w) in weights.iter().enumerate() {
-                    let numbers = &corners[m / 2][8 * (m % 2) + first..];
-                    let (of, turned, scale) = (R::read(numbers), R::read(&numbers[4..]), scales[m % 2]);
-                    sum = R::of(w.re * scale).fma(of, R::of(w.im * scale).fma(turned, sum));
+        let (weights, mut out) = (&self.weights[down * SPOTS + along], [[0.0; 4]; 3]);
+        let (wide, per) = (R::of(width), R::of(1.0 / width));
+        for first in (0..4).step_by(R::LANES) {
+            let mut sums = [R::zero(); 3];
+            for m in 0..8 {
+                let numbers = &corners[m / 2][8 * (m % 2) + first..];
+                let (mut of, mut turned) = (R::read(numbers), R::read(&numbers[4..]));
+                if m % 2 == 1 {
+                    (of, turned) = (wide * of, wide * turned);
                 }
+                for d in 0..3 {
+                    let w = &weights[d][m];
+                    sums[d] = R::of(w.re).fma(of, R::of(w.im).fma(turned, sums[d]));
+                }
+            }
+            let [f, by, bend] = sums;
+            for (sum, out) in [f, per * by, per * per * bend].into_iter().zip(&mut out) {
                 sum.write(&mut out[first..]);
             }
-            per /= width;
         }
         out
     }

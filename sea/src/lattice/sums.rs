@@ -19,7 +19,7 @@ const KEPT: usize = 4;
 /// Of no place.
 const NEVER: i64 = i64::MIN;
 /// Waves of which less than this part of the largest is left count no more.
-const NOTHING: f64 = 1e-6;
+const NOTHING: f64 = 1e-5;
 
 /// Numbers of each wave, side by side, from the longest to the shortest; filled up with noughts to as many as lanes take.
 type Row = Vec<f64>;
