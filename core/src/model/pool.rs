@@ -115,6 +115,10 @@ pub trait Element<const Q: usize, const N: usize>: Clone + Send + Sync + 'static
     fn symmetric(&self) -> bool {
         true
     }
+    /// Whether its tangent has more than noughts with these weights: else it is asked for its residual alone.
+    fn has_tangent(_: &Weights) -> bool {
+        true
+    }
     /// Brings the numbers of a batch of elements side by side.
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R>;
     /// Adds residual and, with `TANGENT`, the tangent weighted by `w`.
@@ -317,6 +321,7 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
         seats: &[Self],
         first: usize,
         share: &Share<R, N>,
+        tangent: bool,
         blocks: &mut Blocks<N>,
         out: &mut Assembly<'_>,
     ) {
@@ -336,7 +341,7 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
                 }
             }
         }
-        if !out.wants_tangent() {
+        if !tangent {
             return;
         }
         for i in 0..N {
@@ -392,7 +397,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
     #[inline(always)]
     fn go<R: Real>(self) {
         let w = self.out.weights();
-        let tangent = self.out.wants_tangent();
+        let tangent = self.out.wants_tangent() && E::has_tangent(&w);
         let mut blocks = Blocks::take(self.out);
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         let mut share = Share::zero();
@@ -410,7 +415,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
             } else {
                 E::add::<R, false>(&p, &x, &w, &mut share);
             }
-            Seat::scatter(seats, b * R::LANES, &share, &mut blocks, self.out);
+            Seat::scatter(seats, b * R::LANES, &share, tangent, &mut blocks, self.out);
         }
         blocks.give_back(self.out);
     }

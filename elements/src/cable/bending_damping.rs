@@ -121,6 +121,9 @@ impl Element<12, 12> for BendingDamping {
     fn symmetric(&self) -> bool {
         false
     }
+    fn has_tangent(w: &Weights) -> bool {
+        w.q != 0.0 || w.v != 0.0
+    }
     #[inline(always)]
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R> {
         let rule = batch.first().rule;

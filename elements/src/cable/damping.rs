@@ -68,6 +68,9 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
     fn symmetric(&self) -> bool {
         false
     }
+    fn has_tangent(w: &Weights) -> bool {
+        w.q != 0.0 || w.v != 0.0
+    }
     #[inline(always)]
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R> {
         let &AxialDamping { model, rule, .. } = batch.first();

@@ -1,20 +1,20 @@
 //! Elasticity that changes along an element or isn't proportional to the strain: EA and EI that go linearly from one end to
 //! the other, tables, ropes that don't push.
 //!
-//! Such an element has the [`Cable`](super::Cable) for its mass, without stiffness. It is rare beside the others: one kernel
-//! serves all stiffness models, one element at a time.
+//! Such an element has the [`Cable`](super::Cable) for its mass, without stiffness. One kernel serves all stiffness models; tables
+//! are rare beside what else there is, and looked up for one element at a time.
 
 use super::T1;
 use super::element::CableParams;
 use super::law::Curve;
 use super::longitudinal::{Longitudinal, Strain};
-use super::model::{ChosenModels, Models};
+use super::model::{ChosenModels, Models, Sink};
 use super::quadrature::{Quadrature, Rule};
 use super::reduced::Reduced;
 use super::relaxed::capped;
 use super::shape::{Natural, natural};
 use super::transverse::{Curve as Bend, Transverse};
-use ropewalk_core::{Batch, Element, Energy, Local, Real, Relaxation, Share, Weights};
+use ropewalk_core::{Batch, Element, Energy, Local, NodeId, Real, Share, Weights};
 use std::sync::Arc;
 
 /// Axial force as a function of the strain: linear, or after a table.
@@ -51,9 +51,9 @@ impl Stretching {
         }
         of(eps).map(|x| scale * x)
     }
-    /// Stiffness where it pulls, at the least.
-    fn taut(&self, xi: f64, eps: f64) -> f64 {
-        self.at(xi, if self.tension_only { eps.max(0.0) } else { eps })[2]
+    /// The strain below which there is no force.
+    fn slack(&self) -> f64 {
+        if self.tension_only { 0.0 } else { f64::NEG_INFINITY }
     }
 }
 
@@ -88,41 +88,138 @@ pub(crate) struct Elastic {
 }
 
 impl Elastic {
+    /// What it adds to the force that the element with these dofs transmits [N].
+    pub fn transmits(&self, q: &[f64; 12]) -> [f64; 3] {
+        let x = Local { q: *q, v: [0.0; 12], a: [0.0; 12], last: [0.0; 12], relaxed: None };
+        let mut out = Share::<f64, 12>::zero();
+        let lanes = Lanes::of(&Batch::of(std::slice::from_ref(self)), self.tables());
+        lanes.add::<false>(&x, &Weights { q: 0.0, v: 0.0, a: 0.0 }, &mut out);
+        [out.r[6], out.r[7], out.r[8]]
+    }
+
+    fn tables(&self) -> [Option<Arc<Curve>>; 2] {
+        [self.stretching.table.clone(), self.bending.table.clone()]
+    }
+
+    /// Puts it into the pool of its kind.
+    pub fn push(self, pools: &mut impl Sink, on: &[NodeId]) {
+        if self.tables().iter().any(Option::is_some) {
+            pools.push(Tabulated(self), on);
+        } else {
+            pools.push(Linear(self), on);
+        }
+    }
+}
+
+impl AsRef<Elastic> for Elastic {
+    fn as_ref(&self) -> &Elastic {
+        self
+    }
+}
+
+/// Elasticity after a table: one element at a time.
+#[derive(Clone, Debug)]
+struct Tabulated(Elastic);
+
+/// Elasticity without one, over lanes.
+#[derive(Clone, Debug)]
+struct Linear(Elastic);
+
+/// The numbers of elements over lanes.
+pub(crate) struct Lanes<R> {
+    params: CableParams<R>,
+    /// Stiffness at both ends, or what a table is multiplied by.
+    ea: [R; 2],
+    ei: [R; 2],
+    /// The strain below which there is no force.
+    slack: R,
+    bends: bool,
+    tables: [Option<Arc<Curve>>; 2],
+    models: ChosenModels,
+}
+
+impl<R: Real> Lanes<R> {
+    #[inline(always)]
+    fn of<E: AsRef<Elastic>>(batch: &Batch<'_, E>, tables: [Option<Arc<Curve>>; 2]) -> Self {
+        let bends: R = batch.get(|e| f64::from(u8::from(e.as_ref().bending.is_some())));
+        Lanes {
+            params: CableParams {
+                l: batch.get(|e| e.as_ref().params.l),
+                ea: batch.get(|e| e.as_ref().params.ea),
+                ei: batch.get(|e| e.as_ref().params.ei),
+                rho_a: R::zero(),
+            },
+            ea: [batch.get(|e| e.as_ref().stretching.ends[0]), batch.get(|e| e.as_ref().stretching.ends[1])],
+            ei: [batch.get(|e| e.as_ref().bending.ends[0]), batch.get(|e| e.as_ref().bending.ends[1])],
+            slack: batch.get(|e| e.as_ref().stretching.slack()),
+            bends: !R::of(0.5).all_gt(bends),
+            tables,
+            models: batch.first().as_ref().models,
+        }
+    }
+
+    /// As [`Stretching::at`].
+    #[inline(always)]
+    fn stretched(&self, xi: f64, eps: R) -> [R; 3] {
+        let scale = between_lanes(&self.ea, xi);
+        let mut of = [R::of(0.5) * eps * eps, eps, R::of(1.0)];
+        if let Some(table) = &self.tables[0] {
+            of = tabulated(eps, |eps| table.at(eps));
+        }
+        for x in &mut of {
+            *x = self.slack.if_gt(eps, R::zero(), scale * *x);
+        }
+        of
+    }
+
+    /// As [`Bending::by_square`].
+    #[inline(always)]
+    fn bent(&self, xi: f64, square: R) -> [R; 3] {
+        let scale = between_lanes(&self.ei, xi);
+        let mut of = [R::of(0.5) * square, R::of(0.5), R::zero()];
+        if let Some(table) = &self.tables[1] {
+            of = tabulated(square, |square| table.by_square(square));
+        }
+        for x in &mut of {
+            *x = scale * *x;
+        }
+        of
+    }
+
     /// Adds the axial force, and with `TANGENT` its derivative, relaxed if a search for equilibrium asks for it, see
     /// [`relaxed`](super::relaxed).
     #[inline(always)]
-    fn stretch<R: Real, const TANGENT: bool>(
-        &self,
-        q: &Natural<R>,
-        x: &Local<R, 12, 12>,
-        out: &mut Reduced<R>,
-    ) {
-        let law = &self.stretching;
-        let (model, l) = (self.models.longitudinal, self.params.l);
-        let part = |ramp: f64, how: &Relaxation| capped(&self.params, ramp, how.load) / self.params.ea;
-        let [now, before] =
-            x.relaxed.as_ref().map_or([1.0; 2], |how| [part(how.ramp, how), part(how.ramp_before, how)]);
+    fn stretch<const TANGENT: bool>(&self, q: &Natural<R>, x: &Local<R, 12, 12>, out: &mut Reduced<R>) {
+        let (p, model) = (&self.params, self.models.longitudinal);
+        // the pool relaxes in scalar only, so wide copies needn't know how
+        let relaxed = if R::LANES == 1 { x.relaxed.as_ref() } else { None };
+        let mut part = [R::of(1.0); 2];
+        if let Some(how) = relaxed {
+            part = [how.ramp, how.ramp_before].map(|ramp| capped(p, ramp, how.load) / p.ea);
+        }
         for at in self.models.points() {
             let strain = model.strain(q, at);
-            let w = now * l * at.w;
-            let stress = strain.eps().map(|eps| w * law.at(at.xi, eps)[1]);
+            let eps = strain.eps();
+            let w = part[0] * p.l * R::of(at.w);
+            let [_, force, slope] = self.stretched(at.xi, eps);
+            let stress = w * force;
             out.add_force(stress, &strain.gradient());
             if !TANGENT {
                 continue;
             }
-            let mut material = strain.eps().map(|eps| w * law.at(at.xi, eps)[2]);
-            let mut mixed = stress;
-            if let Some(how) = &x.relaxed {
+            let (mut material, mut mixed) = (w * slope, stress);
+            if let Some(how) = relaxed {
                 if how.smooth {
-                    let last = natural(&x.last, R::of(1.0 / l));
+                    let last = natural(&x.last, R::of(1.0) / p.l);
                     let then = model.strain(&minus(q, &last), at);
                     let linear = then.eps() + then.rate(&last);
-                    mixed = linear.map(|eps| before * l * at.w * law.at(at.xi, eps)[1]);
+                    mixed = part[1] * p.l * R::of(at.w) * self.stretched(at.xi, linear)[1];
                 }
                 if let Some(floor) = how.floor {
-                    let floor = R::of(floor * at.w * l);
+                    let floor = R::of(floor * at.w) * p.l;
                     mixed = mixed.if_gt(floor, mixed, floor);
-                    material = strain.eps().map(|eps| w * law.taut(at.xi, eps));
+                    // where it pulls, at the least
+                    material = w * self.stretched(at.xi, eps.if_gt(self.slack, eps, self.slack))[2];
                 }
             }
             strain.add_stiffness(material, mixed, out);
@@ -131,83 +228,114 @@ impl Elastic {
 
     /// Adds the bending force, and with `TANGENT` its derivative.
     #[inline(always)]
-    fn bend<R: Real, const TANGENT: bool>(&self, q: &Natural<R>, x: &Local<R, 12, 12>, out: &mut Reduced<R>) {
-        let (il, l) = (R::of(1.0 / self.params.l), self.params.l);
-        let law = &self.bending;
-        let positive = x.relaxed.as_ref().is_some_and(|how| how.floor.is_some());
+    fn bend<const TANGENT: bool>(&self, q: &Natural<R>, x: &Local<R, 12, 12>, out: &mut Reduced<R>) {
+        let (il, l) = (R::of(1.0) / self.params.l, self.params.l);
+        let positive = R::LANES == 1 && x.relaxed.as_ref().is_some_and(|how| how.floor.is_some());
         for at in self.models.rule.bending().points() {
             let bend = Bend::new(self.models.transverse, q, at, il);
-            let by = |k: usize| bend.square.value.map(|z| l * at.w * law.by_square(at.xi, z)[k]);
-            bend.add_force(by(1), out);
+            let w = l * R::of(at.w);
+            let [_, by, again] = self.bent(at.xi, bend.square.value);
+            let (by, again) = (w * by, w * again);
+            bend.add_force(by, out);
             if TANGENT && positive {
-                Bend::new(T1, q, at, il).add_hessian(by(1), out);
+                Bend::new(T1, q, at, il).add_hessian(by, out);
             } else if TANGENT {
-                bend.add_hessian(by(1), out);
-                out.add_square(by(2), &bend.gradient());
+                bend.add_hessian(by, out);
+                out.add_square(again, &bend.gradient());
             }
         }
     }
 
-    /// What it adds to the force that the element with these dofs transmits [N].
-    pub fn transmits(&self, q: &[f64; 12]) -> [f64; 3] {
-        let x = Local { q: *q, v: [0.0; 12], a: [0.0; 12], last: [0.0; 12], relaxed: None };
-        let mut out = Share::<f64, 12>::zero();
-        Self::add::<f64, false>(self, &x, &Weights { q: 0.0, v: 0.0, a: 0.0 }, &mut out);
-        [out.r[6], out.r[7], out.r[8]]
+    #[inline(always)]
+    fn add<const TANGENT: bool>(&self, x: &Local<R, 12, 12>, w: &Weights, out: &mut Share<R, 12>) {
+        let il = R::of(1.0) / self.params.l;
+        let q = natural(&x.q, il);
+        let mut local = Reduced::zero();
+        self.stretch::<TANGENT>(&q, x, &mut local);
+        if self.bends {
+            self.bend::<TANGENT>(&q, x, &mut local);
+        }
+        local.spread_force::<true>(il, out);
+        if TANGENT {
+            local.spread_tangent::<true>(il, R::of(w.q), out);
+        }
     }
+
+    #[inline(always)]
+    fn energy(&self, x: &Local<R, 12, 12>) -> Energy<R> {
+        let (il, l) = (R::of(1.0) / self.params.l, self.params.l);
+        let q = natural(&x.q, il);
+        let mut potential = R::zero();
+        for at in self.models.points() {
+            let eps = self.models.longitudinal.strain(&q, at).eps();
+            potential += l * R::of(at.w) * self.stretched(at.xi, eps)[0];
+        }
+        if !self.bends {
+            return Energy { kinetic: R::zero(), potential };
+        }
+        for at in self.models.rule.bending().points() {
+            let square = Bend::new(self.models.transverse, &q, at, il).square.value;
+            potential += l * R::of(at.w) * self.bent(at.xi, square)[0];
+        }
+        Energy { kinetic: R::zero(), potential }
+    }
+}
+
+#[inline(always)]
+fn between_lanes<R: Real>([a, b]: &[R; 2], xi: f64) -> R {
+    R::of(xi).fma(*b - *a, *a)
+}
+
+/// Numbers that a table gives, lane by lane.
+#[inline(always)]
+fn tabulated<R: Real>(x: R, at: impl Fn(f64) -> [f64; 3]) -> [R; 3] {
+    [x.map(|x| at(x)[0]), x.map(|x| at(x)[1]), x.map(|x| at(x)[2])]
 }
 
 fn minus<R: Real>(a: &Natural<R>, b: &Natural<R>) -> Natural<R> {
     std::array::from_fn(|i| std::array::from_fn(|c| a[i][c] - b[i][c]))
 }
 
-impl Element<12, 12> for Elastic {
-    type Lanes<R: Real> = Elastic;
-    const WIDE: bool = false;
+macro_rules! elements {
+    ($name:ident, $wide:literal) => {
+        impl AsRef<Elastic> for $name {
+            #[inline(always)]
+            fn as_ref(&self) -> &Elastic {
+                &self.0
+            }
+        }
 
-    fn label(&self) -> String {
-        let Models { longitudinal, transverse, rule } = self.models;
-        format!("elasticity {}+{} {}", longitudinal.label(), transverse.label(), rule.label())
-    }
-    #[inline(always)]
-    fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Elastic {
-        batch.first().clone()
-    }
-    #[inline(always)]
-    fn add<R: Real, const TANGENT: bool>(
-        p: &Elastic,
-        x: &Local<R, 12, 12>,
-        w: &Weights,
-        out: &mut Share<R, 12>,
-    ) {
-        let il = R::of(1.0 / p.params.l);
-        let q = natural(&x.q, il);
-        let mut local = Reduced::zero();
-        p.stretch::<R, TANGENT>(&q, x, &mut local);
-        if p.bending.is_some() {
-            p.bend::<R, TANGENT>(&q, x, &mut local);
+        impl Element<12, 12> for $name {
+            type Lanes<R: Real> = Lanes<R>;
+            const WIDE: bool = $wide;
+            const SETS: bool = true;
+
+            fn label(&self) -> String {
+                let Models { longitudinal, transverse, rule } = self.0.models;
+                format!("elasticity {}+{} {}", longitudinal.label(), transverse.label(), rule.label())
+            }
+            fn has_tangent(w: &Weights) -> bool {
+                w.q != 0.0
+            }
+            #[inline(always)]
+            fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Lanes<R> {
+                Lanes::of(batch, if $wide { [None, None] } else { batch.first().0.tables() })
+            }
+            #[inline(always)]
+            fn add<R: Real, const TANGENT: bool>(
+                p: &Lanes<R>,
+                x: &Local<R, 12, 12>,
+                w: &Weights,
+                out: &mut Share<R, 12>,
+            ) {
+                p.add::<TANGENT>(x, w, out);
+            }
+            #[inline(always)]
+            fn energy<R: Real>(p: &Lanes<R>, x: &Local<R, 12, 12>) -> Energy<R> {
+                p.energy(x)
+            }
         }
-        local.spread_force::<false>(il, out);
-        if TANGENT {
-            local.spread_tangent::<false>(il, R::of(w.q), out);
-        }
-    }
-    #[inline(always)]
-    fn energy<R: Real>(p: &Elastic, x: &Local<R, 12, 12>) -> Energy<R> {
-        let (il, l) = (R::of(1.0 / p.params.l), p.params.l);
-        let q = natural(&x.q, il);
-        let mut potential = R::zero();
-        for at in p.models.points() {
-            let eps = p.models.longitudinal.strain(&q, at).eps();
-            potential += eps.map(|eps| l * at.w * p.stretching.at(at.xi, eps)[0]);
-        }
-        if !p.bending.is_some() {
-            return Energy { kinetic: R::zero(), potential };
-        }
-        for at in p.models.rule.bending().points() {
-            let square = Bend::new(p.models.transverse, &q, at, il).square.value;
-            potential += square.map(|z| l * at.w * p.bending.by_square(at.xi, z)[0]);
-        }
-        Energy { kinetic: R::zero(), potential }
-    }
+    };
 }
+elements!(Tabulated, false);
+elements!(Linear, true);

@@ -98,6 +98,15 @@ impl<L: Longitudinal, T: Transverse, Q: Rule> Element<12, 12> for Cable<L, T, Q>
         out: &mut Share<R, 12>,
     ) {
         let Models { longitudinal, transverse, rule } = models;
+        // what is elastic after a law of its own is here for its mass alone
+        if x.relaxed.is_none() && R::of(f64::MIN_POSITIVE).all_gt(p.ea + p.ei) {
+            out.r = [R::zero(); 12];
+            if TANGENT {
+                out.k = [[R::zero(); 12]; 12];
+            }
+            add_mass::<R, TANGENT>(p, &x.a, w.a, out);
+            return;
+        }
         let il = R::of(1.0) / p.l;
         let q = natural(&x.q, il);
         let mut local = Reduced::zero();

@@ -68,6 +68,9 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialRest<L, Q> {
     fn label(&self) -> String {
         format!("stress-free strain {} {}", self.model.label(), self.rule.label())
     }
+    fn has_tangent(w: &Weights) -> bool {
+        w.q != 0.0
+    }
     #[inline(always)]
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R> {
         let &Self { model, rule, .. } = batch.first();
@@ -157,6 +160,9 @@ impl<T: Transverse, Q: Quadrature> Element<12, 12> for BendingRest<T, Q> {
 
     fn label(&self) -> String {
         format!("stress-free curvature {} {}", self.model.label(), self.rule.label())
+    }
+    fn has_tangent(w: &Weights) -> bool {
+        w.q != 0.0
     }
     #[inline(always)]
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> Self::Lanes<R> {

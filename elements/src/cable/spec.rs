@@ -615,7 +615,7 @@ impl ElementSpec for CableSpec {
             let (on, params, s) = ([nodes[k], nodes[k + 1]], params(k), layout.section(k));
             push_cable(&mut pools, model, params, &on).map_err(BuildError::new)?;
             if let Some(elastic) = layout.elastic(k, params.l, model) {
-                pools.push(elastic, &on);
+                elastic.push(&mut pools, &on);
             }
             self.extras(&mut pools, model, params, &on, &shapes[k], s, twisted.is_some())?;
         }

@@ -150,6 +150,9 @@ impl Element<COORDINATES, VELOCITIES> for TorsionDamping {
     fn symmetric(&self) -> bool {
         false
     }
+    fn has_tangent(w: &Weights) -> bool {
+        w.q != 0.0 || w.v != 0.0
+    }
     #[inline(always)]
     fn lanes<R: Real>(batch: &Batch<'_, Self>) -> TorsionDampingLanes<R> {
         TorsionDampingLanes { l: batch.get(|e| e.l), eta_gj: batch.get(|e| e.eta_gj) }

@@ -115,7 +115,8 @@ impl Group {
         let cells = self.bristles.map_or(1, |b| b.cells);
         if span.is_near(fixed, frame, at) {
             let curve = span.curve(fixed, frame, at);
-            Search::new(&fixed.shape, &curve, span.radius).find(&mut scratch.pieces, &mut scratch.found);
+            let mut search = Search::new(&fixed.shape, &curve, span.radius);
+            search.find_near(&mut scratch.pieces, &mut scratch.found);
         }
         for &[from, to] in &scratch.found {
             // cut where one cell ends and the next begins

@@ -226,9 +226,13 @@ impl<'a> Search<'a> {
     /// The places that touch, from `ξ` to `ξ`, in order, put behind those in `found`. A curve that is farther away than
     /// it is long costs one look.
     pub fn find(&mut self, pieces: &mut Vec<[Look; 2]>, found: &mut Vec<[f64; 2]>) {
-        if self.shape.gap(&self.curve.at(0.5), self.radius + 0.5 * self.speed).is_none() {
-            return;
+        if self.shape.gap(&self.curve.at(0.5), self.radius + 0.5 * self.speed).is_some() {
+            self.find_near(pieces, found);
         }
+    }
+
+    /// The same of a curve that is known not to be.
+    pub fn find_near(&mut self, pieces: &mut Vec<[Look; 2]>, found: &mut Vec<[f64; 2]>) {
         self.bend = self.curve.bend();
         self.find_between([0.0, 1.0], pieces, found);
     }

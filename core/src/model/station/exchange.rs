@@ -32,10 +32,6 @@ fn vector<R: Real>(row: &[f64], i: usize) -> V3<R> {
     [number(row, i), number(row, i + 1), number(row, i + 2)]
 }
 #[inline(always)]
-fn matrix<R: Real>(row: &[f64], i: usize) -> [V3<R>; 3] {
-    [vector(row, i), vector(row, i + 3), vector(row, i + 6)]
-}
-#[inline(always)]
 fn put<R: Real, const K: usize>(row: &mut [f64], i: usize, x: &[R; K]) {
     for k in 0..K {
         x[k].write(&mut row[(i + k) * R::LANES..]);
@@ -111,30 +107,101 @@ impl<R: Real> Load<R> {
             (self.g_x, self.g_slope, self.g_v) = (none, none, none);
         }
     }
+    /// All of it.
     #[inline(always)]
-    pub(super) fn read(&mut self, row: &[f64], gives: Gives, tangent: bool) {
-        self.f = vector(row, 0);
-        if gives.x {
-            self.d_x = matrix(row, D_X);
+    fn write(&self, row: &mut [f64]) {
+        put(row, 0, &self.f);
+        put(row, G, &self.g);
+        for (first, matrix) in [
+            (D_X, &self.d_x),
+            (D_SLOPE, &self.d_slope),
+            (D_V, &self.d_v),
+            (D_A, &self.d_a),
+            (D_RATE, &self.d_rate),
+            (G_X, &self.g_x),
+            (G_SLOPE, &self.g_slope),
+            (G_V, &self.g_v),
+        ] {
+            for i in 0..3 {
+                put(row, first + 3 * i, &matrix[i]);
+            }
         }
-        if gives.slope {
-            self.d_slope = matrix(row, D_SLOPE);
+    }
+}
+
+/// What laws have put on the stations of an element, over lanes: as [`Load`] has it, read where it stands in memory. Derivatives
+/// that aren't given are not to be read.
+#[derive(Clone, Copy, Debug)]
+pub struct Loads<'a> {
+    rows: &'a [f64],
+}
+
+/// The load on one station.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadAt<'a> {
+    row: &'a [f64],
+}
+
+impl<'a> Loads<'a> {
+    /// Those of the rows of a batch.
+    pub(super) fn new(rows: &'a [f64]) -> Self {
+        Loads { rows }
+    }
+    /// These loads, written into a room of their own.
+    pub fn of<R: Real>(loads: &[Load<R>], room: &'a mut Vec<f64>) -> Self {
+        room.resize(loads.len() * LOAD * R::LANES, 0.0);
+        for (load, row) in loads.iter().zip(room.chunks_exact_mut(LOAD * R::LANES)) {
+            load.write(row);
         }
-        if gives.v {
-            self.d_v = matrix(row, D_V);
-        }
-        if gives.a {
-            self.d_a = matrix(row, D_A);
-        }
-        if gives.couple {
-            self.g = vector(row, G);
-        }
-        if gives.couple && tangent {
-            self.d_rate = matrix(row, D_RATE);
-            self.g_x = matrix(row, G_X);
-            self.g_slope = matrix(row, G_SLOPE);
-            self.g_v = matrix(row, G_V);
-        }
+        Loads { rows: room }
+    }
+    /// That on station `k`.
+    #[inline(always)]
+    pub fn at<R: Real>(&self, k: usize) -> LoadAt<'a> {
+        LoadAt { row: &self.rows[k * LOAD * R::LANES..(k + 1) * LOAD * R::LANES] }
+    }
+}
+
+macro_rules! rows_of_matrices {
+    ($($(#[$doc:meta])* $name:ident $first:ident)*) => {
+        $(
+            $(#[$doc])*
+            #[inline(always)]
+            pub fn $name<R: Real>(&self, i: usize) -> V3<R> {
+                vector(self.row, $first + 3 * i)
+            }
+        )*
+    };
+}
+
+impl LoadAt<'_> {
+    /// [`Load::f`].
+    #[inline(always)]
+    pub fn f<R: Real>(&self) -> V3<R> {
+        vector(self.row, 0)
+    }
+    /// [`Load::g`].
+    #[inline(always)]
+    pub fn g<R: Real>(&self) -> V3<R> {
+        vector(self.row, G)
+    }
+    rows_of_matrices! {
+        /// A row of [`Load::d_x`].
+        d_x D_X
+        /// A row of [`Load::d_slope`].
+        d_slope D_SLOPE
+        /// A row of [`Load::d_v`].
+        d_v D_V
+        /// A row of [`Load::d_a`].
+        d_a D_A
+        /// A row of [`Load::d_rate`].
+        d_rate D_RATE
+        /// A row of [`Load::g_x`].
+        g_x G_X
+        /// A row of [`Load::g_slope`].
+        g_slope G_SLOPE
+        /// A row of [`Load::g_v`].
+        g_v G_V
     }
 }
 

@@ -6,6 +6,7 @@
 mod exchange;
 mod pool;
 
+pub use exchange::{LoadAt, Loads};
 pub use pool::StationPool;
 
 use crate::algebra::lane::{Real, V3, dot};
@@ -196,11 +197,11 @@ pub trait StationElement<const Q: usize, const N: usize, const S: usize>:
     fn station<R: Real>(p: &Self::Lanes<R>, x: &Local<R, Q, N>, k: usize) -> Station<R>;
     /// Sets the residual to minus the loads and, with `TANGENT`, the whole of the tangent to minus their derivatives,
     /// each multiplied by its station's weight; with the geometric part where the way back depends on the
-    /// coordinates. Derivatives that aren't given are zero and best passed over.
+    /// coordinates. Derivatives that aren't given are zero, and not to be read.
     fn spread<R: Real, const TANGENT: bool>(
         p: &Self::Lanes<R>,
         x: &Local<R, Q, N>,
-        loads: &[Load<R>; S],
+        loads: Loads<'_>,
         gives: Gives,
         w: &Weights,
         out: &mut Share<R, N>,

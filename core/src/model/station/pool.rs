@@ -1,7 +1,7 @@
 //! All stations of one part: evaluated over lanes, loaded by every law, and carried back to the nodes.
 
-use super::exchange::{EXCHANGE, Exchange, LOAD, STATION};
-use super::{Gives, Laws, Load, Station, StationElement, Stations};
+use super::exchange::{EXCHANGE, Exchange, STATION};
+use super::{Gives, Laws, Load, Loads, Station, StationElement, Stations};
 use crate::algebra::lane::{LaneTask, Real, Width, run};
 use crate::model::node::{Node, NodeId};
 use crate::model::pattern::Pattern;
@@ -66,8 +66,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         let (tangent, width) = (self.out.wants_tangent(), self.out.width());
         let mut blocks = Blocks::take(self.out);
         self.exchange.resize::<R>(S);
-        // derivatives that no law gives stay zero throughout
-        let (mut loads, mut share) = ([Load::<R>::zero(); S], Share::zero());
+        let mut share = Share::zero();
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
@@ -77,16 +76,13 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             for law in &self.laws.loads {
                 law.load(width, self.at.t, tangent, self.exchange);
             }
-            let gives = self.exchange.given;
-            for (load, row) in loads.iter_mut().zip(self.exchange.loads.chunks_exact(LOAD * R::LANES)) {
-                load.read(row, gives, tangent);
-            }
+            let (gives, loads) = (self.exchange.given, Loads::new(&self.exchange.loads));
             if tangent {
-                E::spread::<R, true>(&p, &x, &loads, gives, &w, &mut share);
+                E::spread::<R, true>(&p, &x, loads, gives, &w, &mut share);
             } else {
-                E::spread::<R, false>(&p, &x, &loads, gives, &w, &mut share);
+                E::spread::<R, false>(&p, &x, loads, gives, &w, &mut share);
             }
-            Seat::scatter(seats, b * R::LANES, &share, &mut blocks, self.out);
+            Seat::scatter(seats, b * R::LANES, &share, tangent, &mut blocks, self.out);
         }
         blocks.give_back(self.out);
     }
@@ -159,8 +155,9 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     fn spread(&self, loads: &[Load<f64>], gives: Gives, at: &At<'_>, out: &mut Assembly<'_>) {
         let (w, tangent) = (out.weights(), out.wants_tangent());
         let mut blocks = Blocks::take(out);
-        let mut share = Share::zero();
+        let (mut share, mut room) = (Share::zero(), Vec::new());
         for (e, (element, loads)) in self.elements.iter().zip(loads.as_chunks::<S>().0).enumerate() {
+            let loads = Loads::of(loads, &mut room);
             let seats = std::slice::from_ref(&self.seats[e]);
             let p = E::lanes::<f64>(&Batch(std::slice::from_ref(element)));
             let x = Seat::gather::<f64>(seats, at);
@@ -169,7 +166,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             } else {
                 E::spread::<f64, false>(&p, &x, loads, gives, &w, &mut share);
             }
-            Seat::scatter(seats, e, &share, &mut blocks, out);
+            Seat::scatter(seats, e, &share, tangent, &mut blocks, out);
         }
         blocks.give_back(out);
     }

@@ -26,6 +26,8 @@ const STEPS: usize = 800;
 const PER_TIME: f64 = 20.0;
 /// Growth over the second half of the steps from which on the equilibrium is unstable.
 const GROWTH: f64 = 3.0;
+/// What grows by less than this in a characteristic time doesn't count: by a fifth of [`GROWTH`] over the second half of the steps.
+const SLOW: f64 = 0.01;
 /// How often the steps are made smaller to resolve a fast growth.
 const REFINEMENTS: u32 = 12;
 
@@ -46,25 +48,7 @@ impl Statics<'_> {
             return Ok(Disturbance { rate: 0.0, one_way: false, shape, unstable: false });
         }
         self.assemble(state, &state.q, &state.lambda, Some(Relaxed::to_judge()), true);
-        let n = self.structure.n;
-        let order = |d: &[f64], x: &mut Vec<f64>, s: &crate::model::structure::Structure| {
-            x.clear();
-            x.resize(s.n, 0.0);
-            for (i, d) in d.iter().enumerate() {
-                x[s.position[i]] = *d;
-            }
-        };
-        let mass: f64 = {
-            let (mut x, mut y) = (Vec::new(), vec![0.0; n]);
-            let mut unit = vec![0.0; model.velocities()];
-            for node in model.nodes().iter().filter(|n| n.kind.has_position()) {
-                unit[node.v] = 1.0;
-            }
-            order(&unit, &mut x, &self.structure);
-            self.structure.multiply(&self.mass.values, &x, &mut y);
-            x.iter().zip(&y).map(|(x, y)| x * y).sum()
-        };
-        let time = (mass * model.length() / load).sqrt();
+        let time = self.time(load);
         let mut h = time / PER_TIME;
         let begin = self.clocks.start();
         let mut found = self.integrate(h, time)?;
@@ -80,19 +64,37 @@ impl Statics<'_> {
         Ok(found)
     }
 
-    /// Whether the forces of velocities do no work, as in a frame that turns: then nothing grows about an equilibrium whose
-    /// potential is least there, since `ẋᵀM ẋ + xᵀK x` stays (Thomson and Tait).
-    pub(super) fn only_turns(&mut self, state: &State) -> bool {
+    /// A characteristic time `√(m L / F)` [s], with the assembled mass.
+    fn time(&self, load: f64) -> f64 {
+        let s = &self.structure;
+        let (mut x, mut y) = (vec![0.0; s.n], vec![0.0; s.n]);
+        for node in self.model.nodes().iter().filter(|n| n.kind.has_position()) {
+            x[s.position[node.v]] = 1.0;
+        }
+        s.multiply(&self.mass.values, &x, &mut y);
+        let mass: f64 = x.iter().zip(&y).map(|(x, y)| x * y).sum();
+        (mass * self.model.length() / load).sqrt()
+    }
+
+    /// Whether the forces of velocities bring no energy that counts, as damping and a frame that turns: then nothing grows about
+    /// an equilibrium whose potential is least there, since `ẋᵀM ẋ + xᵀK x` doesn't (Thomson and Tait, Chetaev).
+    pub(super) fn brings_no_energy(&mut self, state: &State) -> bool {
+        let load = self.load(state);
+        if load <= f64::MIN_POSITIVE {
+            return true;
+        }
         self.assemble(state, &state.q, &state.lambda, None, true);
-        let (s, values) = (&self.structure, &self.damping.values);
-        let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        s.rows().filter(|(r, ..)| !s.is_multiplier[*r]).all(|(r, columns, at)| {
-            at.enumerate().all(|(k, p)| {
-                let c = columns.get(k);
-                let works = || values[p] + s.entry(values, c, r);
-                c < r || s.is_multiplier[c] || works().abs() <= f64::EPSILON * largest
-            })
-        })
+        let slow = SLOW / self.time(load);
+        let s = &self.structure;
+        let (damping, mass) = (&self.damping.values, &self.mass.values);
+        let mut values = self.system.values.clone();
+        for (r, columns, at) in s.rows().filter(|(r, ..)| !s.is_multiplier[*r]) {
+            for (k, p) in at.enumerate().filter(|(k, _)| !s.is_multiplier[columns.get(*k)]) {
+                values[p] = 0.5 * (damping[p] + s.entry(damping, columns.get(k), r)) + slow * mass[p];
+            }
+        }
+        let factored = self.solver.factor(s, &values).is_ok();
+        factored && self.solver.negative_pivots() == Some(self.held(state))
     }
 
     /// `(1-αm)/(1-αf) M + γ h C + β h² K`, with the constraints as they are.

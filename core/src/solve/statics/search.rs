@@ -240,7 +240,11 @@ impl Statics<'_> {
         found.flutter = judged.flutter;
         let sound =
             judged.potential && judged.unstable == 0 && judged.neutral.is_empty() && judged.doubt.is_none();
-        if cold && self.options.stable && !self.structure.symmetric && !(sound && self.only_turns(&there)) {
+        if cold
+            && self.options.stable
+            && !self.structure.symmetric
+            && !(sound && self.brings_no_energy(&there))
+        {
             let d = self.disturb(&there).map_err(|e| e.to_string())?;
             if d.unstable && d.one_way {
                 return Ok(Verdict::Leave(self.small(d.shape)));
