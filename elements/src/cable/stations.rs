@@ -117,6 +117,7 @@ impl StationElement<12, 12, 4> for CableStations {
             return;
         }
         let (wq, wv, wa) = (R::of(w.q), R::of(w.v), R::of(w.a));
+        let couples = gives.couple && (w.q != 0.0 || w.v != 0.0);
         for r in 0..3 {
             for c in 0..3 {
                 let mut block = [[R::zero(); 4]; 4];
@@ -134,7 +135,7 @@ impl StationElement<12, 12, 4> for CableStations {
                     if gives.slope {
                         by_slope = weight[k] * wq * load.d_slope::<R>(r)[c];
                     }
-                    if gives.couple {
+                    if couples {
                         by_slope = (weight[k] * wv).fma(load.d_rate::<R>(r)[c], by_slope);
                     }
                     by_x = weight[k] * by_x;
@@ -144,7 +145,7 @@ impl StationElement<12, 12, 4> for CableStations {
                             block[i][j] = s[k][i].fma(column, block[i][j]);
                         }
                     }
-                    if gives.couple {
+                    if couples {
                         let by_x = weight[k] * wq.fma(load.g_x::<R>(r)[c], wv * load.g_v::<R>(r)[c]);
                         let by_slope = weight[k] * wq * load.g_slope::<R>(r)[c];
                         for j in 0..4 {

@@ -1,15 +1,15 @@
 //! What lies on a plane that is fixed in space, as most of a line does that lies on the sea floor.
 //!
 //! Heights above it are linear in the unknowns, and its normal is the same everywhere. So the control points of an element tell
-//! whether it touches nowhere or all along, the points of the rules that integrate it stand for it if it does, and the tangent of
-//! the normal forces is `n ⊗ n` times a number for each pair of vectors that move it. All is as [`Contact`] has it for any shape,
-//! but for the search.
+//! whether it touches nowhere or all along, the roots of a cubic where it does if only in part, and the tangent of the normal
+//! forces is `n ⊗ n` times a number for each pair of vectors that move it. All is as [`Contact`] has it for any shape, but for the
+//! search.
 
 use super::ahead::time;
 use super::block::{Block, MOST};
 use super::bristles::Bristle;
 use super::friction::{CELLS, Pressed};
-use super::group::{Group, Span, What};
+use super::group::{Ball, Group, Span, What};
 use super::search::gauss;
 use super::seat::{Frame, Seat};
 use super::shape::Shape;
@@ -30,14 +30,17 @@ pub(crate) struct Level {
 /// How an element lies on it.
 pub(crate) enum Lies<'a> {
     Above,
-    Within(Lying<'a>),
-    /// Some of it touches, or one can't tell.
-    Partly,
+    Touches(Lying<'a>),
+    /// It is to be searched as any shape.
+    Unknown,
 }
 
-/// An element all of which touches.
+/// An element that touches.
 pub(crate) struct Lying<'a> {
     span: &'a Span,
+    /// The pieces of it that do, from `ξ` to `ξ`: a cubic has two at most.
+    pieces: [[f64; 2]; 2],
+    count: usize,
     /// How many of its cells rub.
     cells: usize,
     /// Height of the axis at which it begins to touch [m].
@@ -48,16 +51,31 @@ pub(crate) struct Lying<'a> {
 }
 
 impl Lying<'_> {
-    /// The points that stand for it: two in each cell if it rubs.
+    /// The points that stand for it: two in each cell that touches as a whole, if it rubs.
     pub fn points(&self) -> impl Iterator<Item = Point> {
-        let Lying { span, cells, above, heights, rates } = self;
-        let rule = gauss(if *cells > 1 { 2 } else { span.points });
-        (0..cells * rule.len()).map(move |i| {
-            let (cell, (place, share)) = (i / rule.len(), rule[i % rule.len()]);
-            let weight = span.line.weights((cell as f64 + place) / *cells as f64);
-            let (depth, rate) = (above - blend(&weight, heights), -blend(&weight, rates));
-            Point { weight, cell, k: span.k * share / *cells as f64, depth, rate }
+        let Lying { span, pieces, count, cells, above, heights, rates } = self;
+        let all = pieces[..*count].iter().flat_map(move |piece| (0..*cells).map(move |cell| (piece, cell)));
+        all.flat_map(move |(piece, cell)| {
+            let border = |k: usize| k as f64 / *cells as f64;
+            let (from, to) = (piece[0].max(border(cell)), piece[1].min(border(cell + 1)));
+            let part = (to - from).max(0.0);
+            let whole = *cells > 1 && part * *cells as f64 > 1.0 - 1e-9;
+            let rule: &[(f64, f64)] = match () {
+                () if part == 0.0 => &[],
+                () if whole => gauss(2),
+                () => gauss(span.points),
+            };
+            rule.iter().map(move |(place, share)| {
+                let weight = span.line.weights(from + part * place);
+                let (depth, rate) = (above - blend(&weight, heights), -blend(&weight, rates));
+                Point { weight, cell, k: span.k * part * share, depth, rate }
+            })
         })
+    }
+
+    /// The tips beyond its ends.
+    pub fn tips(&self) -> impl Iterator<Item = &Ball> {
+        self.span.tips.iter().flatten()
     }
 }
 
@@ -82,11 +100,12 @@ impl Level {
         first.map(|i| dot(&self.n, &three(of, i)))
     }
 
-    /// How an element lies, which has so many cells that rub.
-    pub fn lies<'a>(&self, span: &'a Span, cells: usize, at: &At<'_>) -> Lies<'a> {
-        let SpanLine::Cubic { q, v, l } = span.line else { return Lies::Partly };
-        if span.tips.iter().any(Option::is_some) {
-            return Lies::Partly;
+    /// How an element lies; `rubs` says how many cells it has that do, if any.
+    pub fn lies<'a>(&self, span: &'a Span, rubs: Option<usize>, at: &At<'_>) -> Lies<'a> {
+        let SpanLine::Cubic { q, v, l } = span.line else { return Lies::Unknown };
+        // what presses its tips rubs its cells
+        if rubs.is_some() && span.tips.iter().any(Option::is_some) {
+            return Lies::Unknown;
         }
         let above = self.height + span.radius;
         let heights = self.of(&q, at.q);
@@ -96,10 +115,12 @@ impl Level {
         if controls.iter().all(|h| *h >= 0.0) {
             return Lies::Above;
         }
-        if !controls.iter().all(|h| *h < 0.0) {
-            return Lies::Partly;
-        }
-        Lies::Within(Lying { span, cells, above, heights, rates: self.of(&v, at.v) })
+        let (pieces, count) = match controls.iter().all(|h| *h < 0.0) {
+            true => ([[0.0, 1.0]; 2], 1),
+            false => below(&controls),
+        };
+        let cells = rubs.unwrap_or(1);
+        Lies::Touches(Lying { span, pieces, count, cells, above, heights, rates: self.of(&v, at.v) })
     }
 
     /// The longest step from here in which no control point gets deeper than a part of the radius unseen [s].
@@ -112,6 +133,75 @@ impl Level {
         let one = |i: usize| time((x[i] - self.height - span.radius).max(press), -u[i], -a[i]);
         Some((0..4).map(one).fold(f64::INFINITY, f64::min))
     }
+}
+
+/// Where a cubic with these control points is below zero, piece by piece and how many there are.
+fn below(controls: &[f64; 4]) -> ([[f64; 2]; 2], usize) {
+    let [a, b, c, d] = *controls;
+    // by powers of ξ, and its turning points
+    let powers = [a, 3.0 * (b - a), 3.0 * (a - 2.0 * b + c), d - a + 3.0 * (b - c)];
+    let height = |xi: f64| powers.iter().rev().fold(0.0, |sum, p| sum * xi + p);
+    let slope = |xi: f64| powers[1] + xi * (2.0 * powers[2] + xi * 3.0 * powers[3]);
+    let half = powers[2] * powers[2] - 3.0 * powers[3] * powers[1];
+    let mut ends = [0.0, 1.0, 1.0, 1.0];
+    if half > 0.0 {
+        // both roots without cancellation
+        let sum = -(powers[2] + half.sqrt().copysign(powers[2]));
+        ends[1] = inside(sum / (3.0 * powers[3]));
+        ends[2] = inside(powers[1] / sum);
+        if ends[1] > ends[2] {
+            ends.swap(1, 2);
+        }
+    }
+    let (mut pieces, mut count) = ([[0.0; 2]; 2], 0);
+    let mut since = (a < 0.0).then_some(0.0);
+    for pair in ends.windows(2) {
+        let (low, high) = (height(pair[0]) < 0.0, height(pair[1]) < 0.0);
+        if low == high {
+            continue;
+        }
+        let root = root(&height, &slope, [pair[0], pair[1]], low);
+        match since.take() {
+            None => since = Some(root),
+            Some(from) if count < 2 => {
+                pieces[count] = [from, root];
+                count += 1;
+            }
+            Some(_) => {}
+        }
+    }
+    if let Some(from) = since.filter(|_| count < 2) {
+        pieces[count] = [from, 1.0];
+        count += 1;
+    }
+    (pieces, count)
+}
+
+/// A turning point, or the end if it is elsewhere.
+fn inside(xi: f64) -> f64 {
+    if xi > 0.0 && xi < 1.0 { xi } else { 1.0 }
+}
+
+/// Where a height passes zero between two places, at the first of which it is `below`: Newton's method between brackets.
+fn root(height: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64, [from, to]: [f64; 2], below: bool) -> f64 {
+    let (mut low, mut high) = (from, to);
+    let mut xi = 0.5 * (low + high);
+    for _ in 0..60 {
+        let here = height(xi);
+        if (here < 0.0) == below {
+            low = xi;
+        } else {
+            high = xi;
+        }
+        let newton = xi - here / slope(xi);
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        let moved = (next - xi).abs();
+        xi = next;
+        if moved <= 4.0 * f64::EPSILON {
+            break;
+        }
+    }
+    xi
 }
 
 impl Contact {
@@ -134,12 +224,12 @@ impl Contact {
     /// How a group lies on a plane.
     pub(super) fn lies<'a>(level: Option<&Level>, group: &'a Group, at: &At<'_>) -> Lies<'a> {
         match (level, &group.what) {
-            (Some(level), What::Span(span)) => level.lies(span, group.bristles.map_or(1, |b| b.cells), at),
-            _ => Lies::Partly,
+            (Some(level), What::Span(span)) => level.lies(span, group.bristles.map(|b| b.cells), at),
+            _ => Lies::Unknown,
         }
     }
 
-    /// Adds what a plane does to an element that lies on it.
+    /// Adds what a plane does to an element that touches it.
     pub(super) fn add_lying(
         &self,
         level: &Level,
@@ -169,6 +259,9 @@ impl Contact {
         }
         if tangent.is_some() {
             block.add_along(&level.n, &stiff);
+        }
+        for tip in lying.tips() {
+            self.add_ball(tip, frame, at, tangent, block, &mut []);
         }
         for cell in 0..group.bristles.map_or(0, |b| b.cells) {
             let (pressed, by) = &cells[cell];
@@ -211,5 +304,40 @@ impl Contact {
             };
             block.add_outer(&spread(&weight, &hold.by_normal), &spread(by, &level.n));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::below;
+
+    #[test]
+    fn a_cubic_is_below_zero_where_it_is() {
+        let mut random = 1_u64;
+        let mut draw = || {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (random >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let mut twice = 0;
+        for k in 0..5000 {
+            // straight and bent once too
+            let mut b = [draw(), draw(), draw(), draw()];
+            if k % 5 == 0 {
+                (b[1], b[2]) = ((2.0 * b[0] + b[3]) / 3.0, (b[0] + 2.0 * b[3]) / 3.0);
+            } else if k % 5 == 1 {
+                b[2] = b[1] + (b[3] - b[0]) / 3.0;
+            }
+            let (pieces, count) = below(&b);
+            twice += usize::from(count == 2);
+            for i in 0..=200 {
+                let xi = f64::from(i) / 200.0;
+                let rest = 1.0 - xi;
+                let height =
+                    rest * rest * (rest * b[0] + 3.0 * xi * b[1]) + xi * xi * (3.0 * rest * b[2] + xi * b[3]);
+                let within = pieces[..count].iter().any(|[from, to]| xi >= *from && xi <= *to);
+                assert!(within == (height < 0.0) || height.abs() < 1e-12, "{b:?} at {xi}: {height}");
+            }
+        }
+        assert!(twice > 10, "{twice}");
     }
 }

@@ -299,10 +299,15 @@ impl Contact {
     ) {
         match (Self::lies(level, group, at), level) {
             (Lies::Above, _) => return,
-            (Lies::Within(lying), Some(level)) => {
+            (Lies::Touches(lying), Some(level)) => {
                 for p in lying.points() {
                     let normal = self.law.normal(p.k, p.depth, p.rate);
                     see(p.k, p.cell, &Touch::lying(level.n, &normal, p.depth, p.rate));
+                }
+                for tip in lying.tips() {
+                    if let Some((touch, _)) = self.touch(tip, frame, at) {
+                        see(tip.k, 0, &touch);
+                    }
                 }
                 return;
             }
@@ -447,7 +452,7 @@ impl Term for Contact {
         for (clique, group) in self.groups.iter().enumerate() {
             match (Self::lies(level.as_ref(), group, at), &level) {
                 (Lies::Above, _) => continue,
-                (Lies::Within(lying), Some(level)) => {
+                (Lies::Touches(lying), Some(level)) => {
                     self.add_lying(level, (group, &lying), (&frame, at), out, &mut block);
                     block.flush(clique, group.held().dofs(), out);
                     continue;

@@ -102,6 +102,14 @@ impl Gives {
     /// All of them.
     pub const ALL: Gives = Gives { x: true, slope: true, v: true, a: true, couple: true };
 
+    /// Those that a tangent with these weights has a share of.
+    #[inline(always)]
+    #[must_use]
+    fn with(self, w: &Weights) -> Gives {
+        let moves = w.q != 0.0 || w.v != 0.0;
+        Gives { x: self.x && w.q != 0.0, slope: self.slope && w.q != 0.0, v: self.v && moves, ..self }
+    }
+
     /// Those that either has.
     #[inline(always)]
     #[must_use]

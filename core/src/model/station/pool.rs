@@ -76,7 +76,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             for law in &self.laws.loads {
                 law.load(width, self.at.t, tangent, self.exchange);
             }
-            let (gives, loads) = (self.exchange.given, Loads::new(&self.exchange.loads));
+            let (gives, loads) = (self.exchange.given.with(&w), Loads::new(&self.exchange.loads));
             if tangent {
                 E::spread::<R, true>(&p, &x, loads, gives, &w, &mut share);
             } else {
