@@ -160,7 +160,7 @@ fn below(controls: &[f64; 4]) -> ([[f64; 2]; 2], usize) {
         if low == high {
             continue;
         }
-        let root = root(&height, &slope, [pair[0], pair[1]], low);
+        let root = root(height, slope, [pair[0], pair[1]], low);
         match since.take() {
             None => since = Some(root),
             Some(from) if count < 2 => {
