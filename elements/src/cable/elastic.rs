@@ -37,19 +37,48 @@ pub(crate) struct Bending {
     pub table: Option<Arc<Curve>>,
 }
 
-fn between([a, b]: [f64; 2], xi: f64) -> f64 {
-    a + xi * (b - a)
+/// Energy per length [J/m], force [N] and stiffness [N] at a place of an element with this stiffness at its ends, or what its table
+/// is multiplied by; none below the strain at which it grows slack.
+#[inline(always)]
+fn stretched<R: Real>(ends: &[R; 2], table: Option<&Curve>, slack: R, xi: f64, eps: R) -> [R; 3] {
+    let mut of = [R::of(0.5) * eps * eps, eps, R::of(1.0)];
+    if let Some(table) = table {
+        of = tabulated(eps, |eps| table.at(eps));
+    }
+    for x in &mut of {
+        *x = slack.if_gt(eps, R::zero(), between(ends, xi) * *x);
+    }
+    of
+}
+
+/// Energy per length [J/m], and its first and second derivative by the square of the curvature.
+#[inline(always)]
+fn bent<R: Real>(ends: &[R; 2], table: Option<&Curve>, xi: f64, square: R) -> [R; 3] {
+    let mut of = [R::of(0.5) * square, R::of(0.5), R::zero()];
+    if let Some(table) = table {
+        of = tabulated(square, |square| table.by_square(square));
+    }
+    for x in &mut of {
+        *x = between(ends, xi) * *x;
+    }
+    of
+}
+
+#[inline(always)]
+fn between<R: Real>([a, b]: &[R; 2], xi: f64) -> R {
+    R::of(xi).fma(*b - *a, *a)
+}
+
+/// Numbers that a table gives, lane by lane.
+#[inline(always)]
+fn tabulated<R: Real>(x: R, at: impl Fn(f64) -> [f64; 3]) -> [R; 3] {
+    [x.map(|x| at(x)[0]), x.map(|x| at(x)[1]), x.map(|x| at(x)[2])]
 }
 
 impl Stretching {
     /// Energy per length [J/m], force [N] and stiffness [N] at a place of the element and this strain.
     pub fn at(&self, xi: f64, eps: f64) -> [f64; 3] {
-        let scale = between(self.ends, xi);
-        let of = |eps: f64| self.table.as_ref().map_or([0.5 * eps * eps, eps, 1.0], |table| table.at(eps));
-        if self.tension_only && eps < 0.0 {
-            return [0.0; 3];
-        }
-        of(eps).map(|x| scale * x)
+        stretched(&self.ends, self.table.as_deref(), self.slack(), xi, eps)
     }
     /// The strain below which there is no force.
     fn slack(&self) -> f64 {
@@ -58,19 +87,13 @@ impl Stretching {
 }
 
 impl Bending {
-    /// Energy per length [J/m], and its first and second derivative by the square of the curvature.
-    fn by_square(&self, xi: f64, square: f64) -> [f64; 3] {
-        let scale = between(self.ends, xi);
-        let linear = [0.5 * square, 0.5, 0.0];
-        self.table.as_ref().map_or(linear, |table| table.by_square(square)).map(|x| scale * x)
-    }
     /// Whether there is any.
     fn is_some(&self) -> bool {
         self.table.is_some() || self.ends != [0.0; 2]
     }
     /// The moment at a place of the element and this curvature [N m].
     pub fn moment(&self, xi: f64, kappa: f64) -> f64 {
-        2.0 * self.by_square(xi, kappa * kappa)[1] * kappa
+        2.0 * bent(&self.ends, self.table.as_deref(), xi, kappa * kappa)[1] * kappa
     }
 }
 
@@ -158,32 +181,13 @@ impl<R: Real> Lanes<R> {
         }
     }
 
-    /// As [`Stretching::at`].
     #[inline(always)]
     fn stretched(&self, xi: f64, eps: R) -> [R; 3] {
-        let scale = between_lanes(&self.ea, xi);
-        let mut of = [R::of(0.5) * eps * eps, eps, R::of(1.0)];
-        if let Some(table) = &self.tables[0] {
-            of = tabulated(eps, |eps| table.at(eps));
-        }
-        for x in &mut of {
-            *x = self.slack.if_gt(eps, R::zero(), scale * *x);
-        }
-        of
+        stretched(&self.ea, self.tables[0].as_deref(), self.slack, xi, eps)
     }
-
-    /// As [`Bending::by_square`].
     #[inline(always)]
     fn bent(&self, xi: f64, square: R) -> [R; 3] {
-        let scale = between_lanes(&self.ei, xi);
-        let mut of = [R::of(0.5) * square, R::of(0.5), R::zero()];
-        if let Some(table) = &self.tables[1] {
-            of = tabulated(square, |square| table.by_square(square));
-        }
-        for x in &mut of {
-            *x = scale * *x;
-        }
-        of
+        bent(&self.ei, self.tables[1].as_deref(), xi, square)
     }
 
     /// Adds the axial force, and with `TANGENT` its derivative, relaxed if a search for equilibrium asks for it, see
@@ -279,17 +283,6 @@ impl<R: Real> Lanes<R> {
         }
         Energy { kinetic: R::zero(), potential }
     }
-}
-
-#[inline(always)]
-fn between_lanes<R: Real>([a, b]: &[R; 2], xi: f64) -> R {
-    R::of(xi).fma(*b - *a, *a)
-}
-
-/// Numbers that a table gives, lane by lane.
-#[inline(always)]
-fn tabulated<R: Real>(x: R, at: impl Fn(f64) -> [f64; 3]) -> [R; 3] {
-    [x.map(|x| at(x)[0]), x.map(|x| at(x)[1]), x.map(|x| at(x)[2])]
 }
 
 fn minus<R: Real>(a: &Natural<R>, b: &Natural<R>) -> Natural<R> {
