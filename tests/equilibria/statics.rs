@@ -3,10 +3,13 @@
 use crate::common::{cantilever, data, hose, law, models, number, place, reaction, size, towed};
 use ropewalk_constraints::SphericalSpec;
 use ropewalk_core::statics::{Found, Statics, StaticsOptions};
+use ropewalk_core::{BuildError, V3};
 use ropewalk_core::{Model, State, SteadyFrame};
 use ropewalk_elements::{CableSpec, Section};
-use ropewalk_forces::{DragLaw, DragSpec, GravitySpec};
+use ropewalk_forces::{DragLaw, DragSpec, FunctionSpec, GravitySpec};
+use ropewalk_scene::functions::{Function, Parameters, Reads, Seen, Trouble, Written, register_function};
 use ropewalk_scene::{Scene, Water};
+use std::sync::Arc;
 
 /// Follows the load factor from 0 to 1 in equal steps.
 fn follow(model: &Model, steps: usize) -> (State, Vec<Found>) {
@@ -254,6 +257,60 @@ fn without_load_there_is_nothing_to_find_and_nothing_unstable() {
     let (model, state, found) = equilibrium(&scene);
     assert_eq!(found.flutter, 0.0);
     assert!((place(&model, &state, "cable", 5.0)[2] - 5.0).abs() < 1e-9);
+}
+
+/// A force along the velocity, `c v` [N s/m]: it takes energy with a negative `c`, and brings it with a positive one.
+#[derive(Clone, Debug)]
+struct AlongVelocity(f64);
+
+impl Function for AlongVelocity {
+    fn reads(&self) -> Reads {
+        Reads { velocity: true, ..Reads::default() }
+    }
+    fn force(&self, _t: f64, at: &Seen) -> Result<[V3<f64>; 2], Trouble> {
+        Ok([at.velocity.map(|v| self.0 * v), [0.0; 3]])
+    }
+}
+
+impl Written for AlongVelocity {
+    fn bind(&self, _: &Parameters) -> Result<Arc<dyn Function>, BuildError> {
+        Ok(Arc::new(self.clone()))
+    }
+}
+
+#[test]
+fn what_brings_energy_by_velocity_flutters_though_its_potential_is_least() {
+    // pushed more it doesn't swing any more, and grows one way only
+    for (name, c, flutters) in [
+        ("brakes", -3.0, false),
+        ("barely_pushes", 1e-4, false),
+        ("pushes", 1.0, true),
+        ("pushes_more", 3.0, true),
+        ("pushes_hard", 20.0, true),
+    ] {
+        register_function(name, Arc::new(AlongVelocity(c)));
+        let mut scene = Scene::new();
+        scene
+            .element(CableSpec::straight(
+                "cable",
+                [0.0; 3],
+                [0.0, 0.0, -10.0],
+                12,
+                Section::new(0.6, 1e5, 1.0),
+            ))
+            .constraint(SphericalSpec::pin("pin", "cable.start"))
+            .force(GravitySpec::default())
+            .force(FunctionSpec {
+                function: name.into(),
+                name: None,
+                marker: Some("cable.end".into()),
+                on: Vec::new(),
+                parameters: Parameters::default(),
+            });
+        let (_, _, found) = equilibrium(&scene);
+        println!("{name}: {found:?}");
+        assert_eq!(found.flutter > 0.0, flutters, "{name}: {}", found.flutter);
+    }
 }
 
 #[test]

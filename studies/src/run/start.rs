@@ -134,8 +134,8 @@ impl Started {
         let unstable = |flutter: f64| {
             (flutter > 0.0).then(|| {
                 format!(
-                    "the equilibrium is not stable: small disturbances swing ever wider, e-fold in {:.2} s. In motion it \
-                     will flutter",
+                    "the equilibrium is not stable: small disturbances grow, e-fold in {:.2} s. In motion it will \
+                     flutter",
                     1.0 / flutter
                 )
             })

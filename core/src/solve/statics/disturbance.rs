@@ -2,6 +2,7 @@
 //! from it, in the frame of the equilibrium. It sees fast growth at any frequency; slow growth at low frequencies is left
 //! to [`super::stability`].
 
+use super::outcome::Judgement;
 use super::problem::Statics;
 use crate::model::state::{Relaxed, State};
 use crate::solve::integrator::{Coefficients, Scheme};
@@ -76,9 +77,26 @@ impl Statics<'_> {
         (mass * self.model.length() / load).sqrt()
     }
 
+    /// The growth of a small disturbance about an equilibrium that was judged, where it can grow: forces may have no potential
+    /// there, or come with velocities. `None` if it doesn't.
+    pub(super) fn grows(
+        &mut self,
+        there: &State,
+        judged: &Judgement,
+    ) -> Result<Option<Disturbance>, SolveError> {
+        if !self.options.stable || self.structure.symmetric {
+            return Ok(None);
+        }
+        if judged.is_least() && self.brings_no_energy(there) {
+            return Ok(None);
+        }
+        let d = self.disturb(there)?;
+        Ok(d.unstable.then_some(d))
+    }
+
     /// Whether the forces of velocities bring no energy that counts, as damping and a frame that turns: then nothing grows about
     /// an equilibrium whose potential is least there, since `ẋᵀM ẋ + xᵀK x` doesn't (Thomson and Tait, Chetaev).
-    pub(super) fn brings_no_energy(&mut self, state: &State) -> bool {
+    fn brings_no_energy(&mut self, state: &State) -> bool {
         let load = self.load(state);
         if load <= f64::MIN_POSITIVE {
             return true;

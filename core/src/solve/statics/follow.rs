@@ -153,8 +153,13 @@ impl Statics<'_> {
         if cold && self.options.stable {
             state.clone_from(&before);
             if self.creep(state, &mut found, true).is_ok()
-                && let Ok(found) = self.unfold(state, found)
+                && let Ok(mut found) = self.unfold(state, found)
             {
+                let judged = std::mem::take(&mut self.judged);
+                if let Ok(Some(growth)) = self.grows(state, &judged) {
+                    found.flutter = found.flutter.max(growth.rate);
+                }
+                self.judged = judged;
                 return Ok(found);
             }
         }

@@ -15,8 +15,8 @@ pub struct Found {
     pub pushes: u32,
     /// Whether the search was begun again from straight cables, because the first guess led to a fold.
     pub straightened: bool,
-    /// Rate at which small disturbances grow, swinging to and fro [1/s]; 0 if they don't. Only asked where the first
-    /// tangent of a path is not symmetric, as in flowing water.
+    /// Rate at which small disturbances grow [1/s], swinging to and fro or fed by forces of velocities; 0 if they don't. Only
+    /// asked where the first tangent of a path is not symmetric, as in flowing water.
     pub flutter: f64,
     /// Largest residual force [N].
     pub residual: f64,
@@ -169,4 +169,11 @@ pub(super) struct Judgement {
     pub driven: Option<String>,
     /// What can't be told.
     pub doubt: Option<String>,
+}
+
+impl Judgement {
+    /// Whether its potential is least there, as far as can be told.
+    pub fn is_least(&self) -> bool {
+        self.potential && self.unstable == 0 && self.neutral.is_empty() && self.doubt.is_none()
+    }
 }

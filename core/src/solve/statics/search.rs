@@ -238,20 +238,12 @@ impl Statics<'_> {
         there.a.clone_from(&self.a);
         there.aux.clone_from(&self.a);
         found.flutter = judged.flutter;
-        let sound =
-            judged.potential && judged.unstable == 0 && judged.neutral.is_empty() && judged.doubt.is_none();
-        if cold
-            && self.options.stable
-            && !self.structure.symmetric
-            && !(sound && self.brings_no_energy(&there))
-        {
-            let d = self.disturb(&there).map_err(|e| e.to_string())?;
-            if d.unstable && d.one_way {
+        if cold && let Some(d) = self.grows(&there, &judged).map_err(|e| e.to_string())? {
+            // about a least potential it is velocities that feed it, and no other equilibrium is that way
+            if d.one_way && !judged.is_least() {
                 return Ok(Verdict::Leave(self.small(d.shape)));
             }
-            if d.unstable {
-                found.flutter = found.flutter.max(d.rate);
-            }
+            found.flutter = found.flutter.max(d.rate);
         }
         self.unstable = judged.unstable;
         self.neutral = std::mem::take(&mut judged.neutral);
