@@ -10,7 +10,6 @@ mod examples;
 mod import;
 mod migrate;
 mod pages;
-mod plugin;
 mod statistics;
 mod stopping;
 mod storm;

@@ -1,9 +1,7 @@
-//! A crate outside the workspace adds an element, a force and a scene, without touching the sources here.
+//! A crate of one's own adds an element, a force and a scene, without touching Ropewalk's sources.
 
 use serde_json::Value;
-use std::path::{Path, PathBuf};
 use std::process::Command;
-use toml::de::{DeTable, DeValue};
 
 /// Runs a command and gives what it says, if it ends well.
 fn said(command: &mut Command) -> String {
@@ -11,23 +9,6 @@ fn said(command: &mut Command) -> String {
     let error = String::from_utf8_lossy(&out.stderr);
     assert!(out.status.success(), "{command:?}: {:?}\n{error}", out.status.code());
     String::from_utf8(out.stdout).unwrap()
-}
-
-/// Tests and builds the plugin. It shares our target directory, and so the crates that both depend on.
-fn plugin() -> PathBuf {
-    let ours = Path::new(env!("CARGO_BIN_EXE_ropewalk"));
-    let (profile, name) = (ours.parent().unwrap(), ours.file_name().unwrap().to_string_lossy());
-    for verb in ["test", "build"] {
-        let mut cargo = Command::new(env!("CARGO"));
-        cargo.args([verb, "--quiet", "--offline", "--locked", "--manifest-path"]);
-        cargo.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/plugin/Cargo.toml"));
-        cargo.arg("--target-dir").arg(profile.parent().unwrap());
-        if profile.ends_with("release") {
-            cargo.arg("--release");
-        }
-        said(&mut cargo);
-    }
-    profile.join(name.replace("ropewalk", "harbour"))
 }
 
 /// Height of the float over time in closed form: a damped oscillator about its rest.
@@ -43,8 +24,7 @@ fn height(t: f64) -> f64 {
 
 #[test]
 fn plugin_adds_types_and_a_scene() {
-    let program = plugin();
-    let run = |arguments: &[&str]| said(Command::new(&program).args(arguments));
+    let run = |arguments: &[&str]| said(Command::new(env!("CARGO_BIN_EXE_harbour")).args(arguments));
 
     let list = run(&["list"]);
     for line in ["  heave ", "  hose-turn ", "  float ", "  cable ", "  waterplane ", "  gravity "] {
@@ -77,28 +57,4 @@ fn plugin_adds_types_and_a_scene() {
     let lost =
         summary["energy"]["imbalance"].as_f64().unwrap() / summary["energy"]["dissipated"].as_f64().unwrap();
     assert!(lost.abs() < 1e-4, "{lost}");
-}
-
-/// How a manifest has dependencies compiled for tests: package and optimisation, without this project's own.
-fn compiled(manifest: &str) -> std::collections::BTreeMap<String, String> {
-    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(manifest)).unwrap();
-    let manifest = DeTable::parse(&text).unwrap().into_inner();
-    let all = ["profile", "dev", "package"]
-        .iter()
-        .fold(&manifest, |table, name| table[*name].get_ref().as_table().unwrap());
-    let level = |profile: &DeValue<'_>| {
-        profile.as_table().unwrap()["opt-level"].get_ref().as_integer().unwrap().to_string()
-    };
-    all.iter()
-        .map(|(name, profile)| (name.get_ref().to_string(), profile.get_ref()))
-        .filter(|(name, _)| !name.starts_with("ropewalk"))
-        .map(|(name, profile)| (name, level(profile)))
-        .collect()
-}
-
-#[test]
-fn dependencies_are_compiled_alike() {
-    let ours = compiled("Cargo.toml");
-    assert!(ours.len() > 10 && ours["*"] == "0", "{ours:?}");
-    assert_eq!(compiled("examples/plugin/Cargo.toml"), ours, "they would be compiled a second time");
 }
