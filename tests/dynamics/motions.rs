@@ -258,3 +258,42 @@ fn a_cable_that_is_struck_at_the_start_is_told_with_its_shock() {
     assert!(told.is_some_and(|w| w.contains("1.3 m/s") && w.contains("9700 N")), "{warnings:?}");
     assert!(!heaved("").iter().any(|w| w.contains("struck")));
 }
+
+/// A winch that suddenly pays out leaves a cable that hangs slack by as much, and does nothing to one that moves along with it.
+#[test]
+fn what_feeds_is_struck_if_its_material_is() {
+    for (speed, told) in [(0.0, true), (-0.5, false)] {
+        let text = format!(
+            r#"
+            run = {{ duration = 1e-3 }}
+            [[elements]]
+            type = "cable"
+            name = "line"
+            points = [[0, 0, 0], [0, 0, -1]]
+            elements = 8
+            velocity = [0, 0, {speed}]
+            section = {{ mass = 0.01, ea = 1e4, axial_retardation_time = 1e-3 }}
+            [[motions]]
+            type = "speed_table"
+            name = "out"
+            direction = [1, 0, 0]
+            t = [0, 100]
+            v = [0.5, 0.5]
+            [[constraints]]
+            type = "spherical"
+            name = "drum"
+            marker = "line.start"
+            [[constraints]]
+            type = "winch"
+            name = "winch"
+            marker = "line.start"
+            motion = "out"
+            "#
+        );
+        let file = SceneFile::parse(&text, "fed", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let warnings = simulate(&file.into_scene()).unwrap_or_else(|e| panic!("{e}")).warnings;
+        let struck = warnings.iter().find(|w| w.contains("struck at its start"));
+        assert_eq!(struck.is_some(), told, "{warnings:?}");
+        assert!(struck.is_none_or(|w| w.contains("0.5 m/s") && w.contains("5 N")), "{warnings:?}");
+    }
+}

@@ -1,5 +1,6 @@
 //! Cables with torsion whose elements are born and swallowed at a winch: their twist goes on.
 
+use super::feeding::damped;
 use super::{case, number, run, scene};
 use ropewalk::{History, Simulation};
 use ropewalk_core::{Observer, Remeshed};
@@ -55,7 +56,7 @@ fn a_torsional_pendulum_keeps_its_frequency_as_elements_are_born() {
 fn a_coil_brings_a_turn_per_wrap_as_elements_are_born() {
     for wrap in [2.0, -1.5] {
         let set = [format!("wrap={wrap} m"), "disc=1e9".into(), "n=3".into(), "tol=1e-7".into()];
-        let h = run(&born(), &set);
+        let h = run(&damped(&born()), &set);
         let (angle, torque) =
             (h.column("wire.end.angle").expect("angle"), h.column("wire.start.torque").expect("torque"));
         for (k, t) in h.times().iter().enumerate() {

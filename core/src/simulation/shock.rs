@@ -31,17 +31,22 @@ pub fn remarks(model: &Model, state: &State) -> Vec<String> {
 fn remark(part: &dyn Part, at: &At<'_>) -> Option<String> {
     let (line, seats) = (part.line()?, part.seats());
     let last = seats.len().checked_sub(1)?;
-    // what feeds has an end that moves against its material
-    if last < NEAR || line.mesh_now(at) != line.mesh() {
+    if last < NEAR {
+        return None;
+    }
+    // of the material: the nodes of what feeds move against it
+    let mesh = line.mesh_now(at);
+    let velocities: Vec<V3<f64>> = mesh.iter().map_while(|s| part.point(*s, at).map(|p| p.1)).collect();
+    if velocities.len() != seats.len() {
         return None;
     }
     let along = |k: usize, i: usize| -> f64 {
-        let (q, v) = seats[k];
+        let q = seats[k].0;
         let slope: V3<f64> = std::array::from_fn(|i| at.q[q + 3 + i]);
-        let v: V3<f64> = std::array::from_fn(|j| at.v[v + j] - at.v[seats[i].1 + j]);
+        let v: V3<f64> = std::array::from_fn(|j| velocities[k][j] - velocities[i][j]);
         dot(&slope, &v) / dot(&slope, &slope).sqrt()
     };
-    let tension = line.mesh().iter().filter_map(|s| line.observe(Quantity::Tension, *s, at));
+    let tension = mesh.iter().filter_map(|s| line.observe(Quantity::Tension, *s, at));
     let largest = tension.fold(0.0_f64, f64::max);
     let of = line.slender();
     let middle = last / 2;
