@@ -59,4 +59,6 @@ pub use winch::{EyeletSpec, LiftOffSpec, WinchSpec};
 #[doc(hidden)]
 pub mod testing {
     pub use crate::motion::function::{best_step, differences};
+    pub use crate::reeving::drum::layers::Layers;
+    pub use crate::reeving::drum::locked::Locked;
 }

@@ -38,9 +38,11 @@ pub use rigid_chain::{LinkSection, RigidChainSpec};
 /// What the tests of this crate see of its inside; no part of its interface.
 #[doc(hidden)]
 pub mod testing {
+    pub use crate::cable::law::Curve;
     pub use crate::cable::mesh::{even, pinned};
     pub use crate::cable::route::{Side, Stop, lay, lay_closed};
     pub use crate::cable::transmitted::weights;
+    pub use crate::cable::unfold::{Between, unfold};
     pub use crate::rigid_chain::lay::filling;
     pub use crate::rigid_chain::spec::orientations;
 }

@@ -74,3 +74,10 @@ pub use tip::{BluntEnd, EndDrag, FeedingEnd, TipLaw, at_tip};
 pub use vortex_shedding::{VortexShedding, VortexSheddingSpec, WakeOscillator};
 pub use wall::{Outside, Wall};
 pub use wetted::{Immersed, Wetted};
+
+/// What the tests of this crate see of its inside; no part of its interface.
+#[cfg(feature = "contact")]
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::contact::level::below;
+}

@@ -78,3 +78,28 @@ fn crates_say_what_they_are_and_have_their_licences() {
         assert_eq!(read(&format!("python/licences/{copy}")), read(copy), "copy {copy} to python/licences");
     }
 }
+
+/// Libraries whose unit tests aren't compiled have none: those would never run.
+#[test]
+fn no_test_is_left_out() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for member in ["elements", "constraints", "forces", "sea"] {
+        assert!(read(&format!("{member}/Cargo.toml")).contains("test = false"), "{member}");
+        let mut folders = vec![root.join(member).join("src")];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(&folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    let text = std::fs::read_to_string(&path).unwrap();
+                    assert!(
+                        !text.contains("#[test]"),
+                        "{}: it belongs into `{member}/tests`",
+                        path.display()
+                    );
+                }
+            }
+        }
+    }
+}

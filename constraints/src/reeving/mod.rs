@@ -7,7 +7,7 @@
 
 mod arc;
 mod at_rest;
-mod drum;
+pub(crate) mod drum;
 mod events;
 mod flank;
 mod fleet;

@@ -1,5 +1,6 @@
 //! Joints and motions against closed forms and differences.
 
+mod drum;
 mod function;
 mod joints;
 mod motions;

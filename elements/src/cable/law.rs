@@ -36,7 +36,7 @@ pub struct BendingMoment {
 
 /// A monotone cubic through the points of a table, straight beyond them.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Curve {
+pub struct Curve {
     x: Vec<f64>,
     y: Vec<f64>,
     /// Slopes at the points.
@@ -50,7 +50,7 @@ impl AxialForce {
     ///
     /// # Errors
     /// A table that isn't one, or that has a force without strain.
-    pub(crate) fn curve(&self) -> Result<Curve, BuildError> {
+    pub fn curve(&self) -> Result<Curve, BuildError> {
         let curve = Curve::through(&self.strain, &self.force, ["strain", "force"])?;
         let nought = self.strain.iter().position(|x| *x == 0.0);
         if nought.is_none_or(|k| self.force[k] != 0.0) {
@@ -69,7 +69,7 @@ impl BendingMoment {
     ///
     /// # Errors
     /// A table that isn't one, or that doesn't begin with nothing.
-    pub(crate) fn curve(&self) -> Result<Curve, BuildError> {
+    pub fn curve(&self) -> Result<Curve, BuildError> {
         let curve = Curve::through(&self.curvature, &self.moment, ["curvature", "moment"])?;
         if self.curvature[0] != 0.0 || self.moment[0] != 0.0 {
             let message =
@@ -199,78 +199,4 @@ fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
     let first = end(h[0], h[1], d[0], d[1]);
     let last = end(h[n - 2], h[n - 3], d[n - 2], d[n - 3]);
     std::iter::once(first).chain((1..n - 1).map(inner)).chain([last]).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn rope() -> Curve {
-        let strain = vec![-0.02, 0.0, 0.01, 0.02, 0.05];
-        AxialForce { strain, force: vec![-10.0, 0.0, 100.0, 400.0, 1000.0] }.curve().expect("a curve")
-    }
-
-    fn pipe() -> Curve {
-        BendingMoment { curvature: vec![0.0, 0.01, 0.1, 0.3], moment: vec![0.0, 50.0, 80.0, 90.0] }
-            .curve()
-            .expect("a curve")
-    }
-
-    #[test]
-    fn the_curve_passes_its_points_and_never_falls() {
-        for curve in [rope(), pipe()] {
-            for (x, y) in curve.x.iter().zip(&curve.y) {
-                assert!((curve.at(*x)[1] - y).abs() < 1e-12);
-            }
-            let steps = (0..4000).map(|k| curve.at(-0.03 + 1e-4 * f64::from(k))[1]).collect::<Vec<_>>();
-            assert!(steps.windows(2).all(|w| w[1] >= w[0]));
-        }
-    }
-
-    #[test]
-    fn the_energy_is_the_integral_of_the_force() {
-        for curve in [rope(), pipe()] {
-            assert_eq!(curve.at(0.0)[0], 0.0);
-            // Gauss's two points are exact for cubics
-            for k in 0..curve.x.len() - 1 {
-                let (a, b) = (curve.x[k], curve.x[k + 1]);
-                let gauss = |s: f64| curve.at(0.5 * (a + b) + 0.5 * (b - a) * s / 3f64.sqrt())[1];
-                let area = 0.5 * (b - a) * (gauss(-1.0) + gauss(1.0));
-                assert!((curve.at(b)[0] - curve.at(a)[0] - area).abs() < 1e-12 * area.abs().max(1.0));
-            }
-        }
-    }
-
-    #[test]
-    fn slopes_are_derivatives_also_by_the_square() {
-        let (curve, e) = (pipe(), 1e-6);
-        for kappa in [1e-3, 0.005, 0.02, 0.09, 0.2, 0.5] {
-            let [_, moment, slope] = curve.at(kappa);
-            let d = (curve.at(kappa + e)[1] - curve.at(kappa - e)[1]) / (2.0 * e);
-            assert!((d - slope).abs() < 1e-5 * slope, "{kappa}: {d} {slope}");
-            let [energy, by, again] = curve.by_square(kappa * kappa);
-            assert!((energy - curve.at(kappa)[0]).abs() < 1e-12 && (by - 0.5 * moment / kappa).abs() < 1e-9);
-            let e = 1e-5 * kappa * kappa;
-            let d =
-                (curve.by_square(kappa * kappa + e)[1] - curve.by_square(kappa * kappa - e)[1]) / (2.0 * e);
-            assert!((d - again).abs() < 1e-6 * again.abs() + 1e-3, "{kappa}: {d} {again}");
-        }
-        // finite where the cable is straight
-        assert!(curve.by_square(0.0).iter().all(|x| x.is_finite()));
-    }
-
-    #[test]
-    fn tables_that_are_none_are_refused() {
-        let force = |strain: &[f64], force: &[f64]| {
-            let table = AxialForce { strain: strain.to_vec(), force: force.to_vec() };
-            table.curve().expect_err("refused").message
-        };
-        assert!(force(&[0.0], &[0.0]).contains("two points"));
-        assert!(force(&[0.0, 0.1], &[0.0]).contains("two points"));
-        assert!(force(&[0.0, 0.2, 0.1], &[0.0, 1.0, 2.0]).contains("larger than the one before"));
-        assert!(force(&[0.0, 0.1, 0.2], &[0.0, 2.0, 1.0]).contains("falls"));
-        assert!(force(&[0.1, 0.2], &[0.0, 2.0]).contains("strain of 0"));
-        let late = BendingMoment { curvature: vec![0.1, 0.2], moment: vec![0.0, 1.0] };
-        assert!(late.curve().expect_err("refused").message.contains("begins with a curvature of 0"));
-    }
 }

@@ -17,7 +17,7 @@ mod l1n;
 mod l2;
 mod l3;
 mod l4;
-mod law;
+pub(crate) mod law;
 mod layout;
 mod lever;
 pub mod longitudinal;
@@ -47,7 +47,7 @@ pub(crate) mod transmitted;
 pub mod transverse;
 mod twisted;
 mod twisting;
-mod unfold;
+pub(crate) mod unfold;
 
 pub use bending_damping::{BendingDamping, BendingDampingLanes};
 pub use damping::{AxialDamping, AxialDampingLanes};

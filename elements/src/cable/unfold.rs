@@ -8,7 +8,7 @@ use super::shape::{combine, natural};
 use ropewalk_core::{V3, dot};
 
 /// Positions and slopes of nodes.
-pub(super) type Places = [[f64; 6]];
+pub type Places = [[f64; 6]];
 
 /// Less than this share of its length is left of a curve where it is folded.
 const CUSP: f64 = 0.25;
@@ -19,7 +19,7 @@ const OPPOSITE: f64 = -0.5;
 
 /// The element between two nodes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Between {
+pub struct Between {
     /// Its nodes are this and the next one.
     pub first: usize,
     /// Its unstretched length [m].
@@ -48,7 +48,7 @@ impl Between {
 
 /// Turns round what points backwards in and beside these folded elements, all of them in order along the line: chords, whose
 /// length the others make up for between the ends of the line, and slopes.
-pub(super) fn unfold(nodes: &mut Places, elements: &[Between], folded: &[bool]) {
+pub fn unfold(nodes: &mut Places, elements: &[Between], folded: &[bool]) {
     let chords: Vec<V3<f64>> = elements.iter().map(|e| e.chord(nodes)).collect();
     let mut ways: Vec<V3<f64>> = chords.iter().map(unit).collect();
     let near = |e: usize| (e.saturating_sub(1)..(e + 2).min(elements.len())).any(|i| folded[i]);
@@ -101,54 +101,4 @@ fn lay(nodes: &mut Places, elements: &[Between], chords: &[V3<f64>], ways: &[V3<
 fn unit(x: &V3<f64>) -> V3<f64> {
     let size = dot(x, x).sqrt();
     if size > 0.0 { x.map(|x| x / size) } else { [0.0; 3] }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn line(n: usize, spliced: Option<usize>) -> (Vec<[f64; 6]>, Vec<Between>) {
-        let (mut nodes, mut elements) = (Vec::new(), Vec::new());
-        for k in 0..=n {
-            nodes.push([k as f64, 0.0, 0.0, 1.0, 0.0, 0.0]);
-            if spliced == Some(k) {
-                nodes.push(nodes[nodes.len() - 1]);
-            }
-            if k < n {
-                elements.push(Between { first: nodes.len() - 1, length: 1.0 });
-            }
-        }
-        (nodes, elements)
-    }
-
-    #[test]
-    fn what_points_backwards_is_turned_round() {
-        // a slope of the line, of a splice, of an end, and a chord, each with the chords that strain nothing then
-        for (turned, spliced) in [(4, None), (5, Some(4)), (4, Some(4)), (0, None)] {
-            let (mut nodes, elements) = line(8, spliced);
-            nodes[turned][3] = -1.0;
-            let folded: Vec<bool> = elements.iter().map(|e| e.is_folded(&nodes)).collect();
-            let beside = |e: &Between| e.first == turned || e.first + 1 == turned;
-            let expected: Vec<bool> = elements.iter().map(beside).collect();
-            assert_eq!(folded, expected, "{turned} {spliced:?}");
-            unfold(&mut nodes, &elements, &folded);
-            assert!(!elements.iter().any(|e| e.is_folded(&nodes)), "{turned}: {nodes:?}");
-        }
-        let (mut nodes, elements) = line(8, None);
-        let back = 1.0 + 1.0 / 3.0;
-        nodes[4..].iter_mut().for_each(|x| x[0] -= back);
-        let folded: Vec<bool> = elements.iter().map(|e| e.is_folded(&nodes)).collect();
-        assert_eq!(folded.iter().position(|is| *is), Some(3));
-        unfold(&mut nodes, &elements, &folded);
-        assert!(!elements.iter().any(|e| e.is_folded(&nodes)), "{nodes:?}");
-        let ends = (nodes[0][0], nodes[8][0]);
-        assert!(ends.0 == 0.0 && (ends.1 - 8.0 + back).abs() < 1e-12, "{ends:?}");
-    }
-
-    #[test]
-    fn what_is_only_bent_sharply_is_not_folded() {
-        // half a turn in one element, stretched by nothing
-        let nodes = [[0.0, 0.0, 0.0, 0.0, 0.0, -1.0], [0.66, 0.0, 0.0, 0.0, 0.0, 1.0]];
-        assert!(!Between { first: 0, length: 1.0 }.is_folded(&nodes));
-    }
 }

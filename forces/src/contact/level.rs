@@ -10,7 +10,7 @@ use super::block::{Block, MOST};
 use super::bristles::Bristle;
 use super::friction::{CELLS, Pressed};
 use super::group::{Ball, Group, Span, What};
-use super::search::gauss;
+use super::search::{gauss, passage};
 use super::seat::{Frame, Seat};
 use super::shape::Shape;
 use super::term::Contact;
@@ -136,12 +136,13 @@ impl Level {
 }
 
 /// Where a cubic with these control points is below zero, piece by piece and how many there are.
-fn below(controls: &[f64; 4]) -> ([[f64; 2]; 2], usize) {
+pub fn below(controls: &[f64; 4]) -> ([[f64; 2]; 2], usize) {
     let [a, b, c, d] = *controls;
     // by powers of ξ, and its turning points
     let powers = [a, 3.0 * (b - a), 3.0 * (a - 2.0 * b + c), d - a + 3.0 * (b - c)];
     let height = |xi: f64| powers.iter().rev().fold(0.0, |sum, p| sum * xi + p);
     let slope = |xi: f64| powers[1] + xi * (2.0 * powers[2] + xi * 3.0 * powers[3]);
+    let both = |xi: f64| Some([height(xi), slope(xi)]);
     let half = powers[2] * powers[2] - 3.0 * powers[3] * powers[1];
     let mut ends = [0.0, 1.0, 1.0, 1.0];
     if half > 0.0 {
@@ -160,7 +161,7 @@ fn below(controls: &[f64; 4]) -> ([[f64; 2]; 2], usize) {
         if low == high {
             continue;
         }
-        let root = root(height, slope, [pair[0], pair[1]], low);
+        let root = passage(both, [pair[0], pair[1]], 0.5 * (pair[0] + pair[1]), low);
         match since.take() {
             None => since = Some(root),
             Some(from) if count < 2 => {
@@ -180,28 +181,6 @@ fn below(controls: &[f64; 4]) -> ([[f64; 2]; 2], usize) {
 /// A turning point, or the end if it is elsewhere.
 fn inside(xi: f64) -> f64 {
     if xi > 0.0 && xi < 1.0 { xi } else { 1.0 }
-}
-
-/// Where a height passes zero between two places, at the first of which it is `below`: Newton's method between brackets.
-fn root(height: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64, [from, to]: [f64; 2], below: bool) -> f64 {
-    let (mut low, mut high) = (from, to);
-    let mut xi = 0.5 * (low + high);
-    for _ in 0..60 {
-        let here = height(xi);
-        if (here < 0.0) == below {
-            low = xi;
-        } else {
-            high = xi;
-        }
-        let newton = xi - here / slope(xi);
-        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        let moved = (next - xi).abs();
-        xi = next;
-        if moved <= 4.0 * f64::EPSILON {
-            break;
-        }
-    }
-    xi
 }
 
 impl Contact {
@@ -304,40 +283,5 @@ impl Contact {
             };
             block.add_outer(&spread(&weight, &hold.by_normal), &spread(by, &level.n));
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::below;
-
-    #[test]
-    fn a_cubic_is_below_zero_where_it_is() {
-        let mut random = 1_u64;
-        let mut draw = || {
-            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (random >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        };
-        let mut twice = 0;
-        for k in 0..5000 {
-            // straight and bent once too
-            let mut b = [draw(), draw(), draw(), draw()];
-            if k % 5 == 0 {
-                (b[1], b[2]) = ((2.0 * b[0] + b[3]) / 3.0, (b[0] + 2.0 * b[3]) / 3.0);
-            } else if k % 5 == 1 {
-                b[2] = b[1] + (b[3] - b[0]) / 3.0;
-            }
-            let (pieces, count) = below(&b);
-            twice += usize::from(count == 2);
-            for i in 0..=200 {
-                let xi = f64::from(i) / 200.0;
-                let rest = 1.0 - xi;
-                let height =
-                    rest * rest * (rest * b[0] + 3.0 * xi * b[1]) + xi * xi * (3.0 * rest * b[2] + xi * b[3]);
-                let within = pieces[..count].iter().any(|[from, to]| xi >= *from && xi <= *to);
-                assert!(within == (height < 0.0) || height.abs() < 1e-12, "{b:?} at {xi}: {height}");
-            }
-        }
-        assert!(twice > 10, "{twice}");
     }
 }

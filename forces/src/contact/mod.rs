@@ -16,7 +16,7 @@ mod friction;
 mod group;
 mod heights;
 mod law;
-mod level;
+pub(crate) mod level;
 mod lines;
 mod mesh;
 mod search;

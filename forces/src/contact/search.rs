@@ -184,29 +184,41 @@ pub(crate) trait Depth {
         }
     }
 
-    /// The place where the depth passes zero on a piece on which it falls or rises: Newton's method between brackets.
+    /// The place where the depth passes zero on a piece on which it falls or rises.
     fn end(&self, a: &Look, b: &Look) -> f64 {
-        let (mut low, mut high) = (a.xi, b.xi);
-        let mut xi = a.xi + (b.xi - a.xi) * a.depth / (a.depth - b.depth);
-        for _ in 0..60 {
-            let Some(here) = self.look(xi) else { break };
-            if (here.depth > 0.0) == (a.depth > 0.0) {
-                low = xi
-            } else {
-                high = xi
-            }
-            let mut next = xi - here.depth / here.slope;
-            if !(next > low && next < high) {
-                next = 0.5 * (low + high);
-            }
-            let moved = (next - xi).abs();
-            xi = next;
-            if moved < 1e-9 * (b.xi - a.xi) || high - low < 1e-15 {
-                break;
-            }
-        }
-        xi
+        let straight = a.xi + (b.xi - a.xi) * a.depth / (a.depth - b.depth);
+        let depth = |xi: f64| self.look(xi).map(|here| [here.depth, here.slope]);
+        passage(depth, [a.xi, b.xi], straight, b.depth > 0.0)
     }
+}
+
+/// Where something passes zero between two places, from a guess on; at the second of them it is positive if `rises` says so.
+/// Newton's method between brackets, with the value and its slope; if there is none somewhere, it ends there.
+pub(super) fn passage(
+    at: impl Fn(f64) -> Option<[f64; 2]>,
+    [from, to]: [f64; 2],
+    guess: f64,
+    rises: bool,
+) -> f64 {
+    let (mut low, mut high, mut xi) = (from, to, guess);
+    for _ in 0..60 {
+        let Some([value, slope]) = at(xi) else { break };
+        if (value > 0.0) == rises {
+            high = xi;
+        } else {
+            low = xi;
+        }
+        let mut next = xi - value / slope;
+        if !(next > low && next < high) {
+            next = 0.5 * (low + high);
+        }
+        let moved = (next - xi).abs();
+        xi = next;
+        if moved < 1e-9 * (to - from) || high - low < 1e-15 {
+            break;
+        }
+    }
+    xi
 }
 
 /// A curve with a thickness, in the axes of the shape that it may touch.

@@ -8,6 +8,8 @@ mod drag;
 mod free_vessel;
 mod functions;
 #[cfg(feature = "contact")]
+mod level;
+#[cfg(feature = "contact")]
 mod lines;
 mod mounts;
 mod on_sections;

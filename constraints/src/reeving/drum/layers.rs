@@ -11,7 +11,7 @@ pub(super) const MOST: f64 = 1000.0;
 /// A layer is `turns` turns of one radius, from one flange to the other. Over its last half turn the rope climbs to the next
 /// layer and turns back; both are smooth to the second derivative. No `turns`: one layer of any width.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Layers {
+pub struct Layers {
     /// Radius of the first layer to the middle of the rope [m].
     pub radius: f64,
     /// Way along the axis in a turn [m].
@@ -24,7 +24,7 @@ pub(super) struct Layers {
 
 /// Where the rope arrives when an angle is wound.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Wound<S> {
+pub struct Wound<S> {
     /// Place along the axis [m].
     pub x: S,
     /// Radius to its middle [m].
@@ -115,49 +115,5 @@ impl Layers {
             k += 1.0;
         }
         sum
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use num_dual::Dual2_64;
-
-    const DRUM: Layers = Layers { radius: 0.3, pitch: 0.02, rise: 0.017, turns: Some(5.5) };
-
-    #[test]
-    fn length_is_the_integral_of_the_radius_and_smooth_over_layers() {
-        let (n, end) = (200_000, 90.0);
-        let h = end / f64::from(n);
-        let (mut length, mut inertia) = (0.0, 0.0);
-        for i in 0..n {
-            let r = DRUM.at((f64::from(i) + 0.5) * h).radius;
-            length += r * h;
-            inertia += r.powi(3) * h;
-        }
-        let got = DRUM.at(end).length;
-        assert!((got - length).abs() <= 1e-8, "{got} m, not {length} m");
-        assert!((DRUM.inertia(end) - inertia).abs() <= 1e-8, "{} not {inertia}", DRUM.inertia(end));
-        for layer in [1.0, 2.0] {
-            let joint = TAU * 5.5 * layer;
-            for at in [joint, joint - PI] {
-                let [a, b] = [-1e-9, 1e-9].map(|d| DRUM.at(Dual2_64::new(at + d, 1.0, 0.0)));
-                for (a, b) in [(a.x, b.x), (a.radius, b.radius), (a.length, b.length)] {
-                    let off = (a.re - b.re).abs() + (a.v1 - b.v1).abs() + (a.v2 - b.v2).abs();
-                    assert!(off <= 1e-8, "{off} at {at} rad");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_layer_goes_from_flange_to_flange_and_length_gives_the_angle_back() {
-        // the next layer begins where this one ended
-        let (first, second) = (DRUM.at(0.0_f64), DRUM.at(TAU * 5.5 + 1e-12));
-        assert!((first.x + 0.05).abs() <= 1e-12 && (second.x - 0.05).abs() <= 1e-12);
-        for angle in [-3.0, 0.0, 1.0, 32.0, 34.0, 50.0, 70.0, 100.0] {
-            let back = DRUM.angle(DRUM.at(angle).length);
-            assert!((back - angle).abs() <= 1e-10, "{back} not {angle}");
-        }
     }
 }

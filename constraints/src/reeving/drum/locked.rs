@@ -18,7 +18,7 @@ const MEMORY: usize = 6 + 3 * (PLACES + 1);
 /// in between it is a cubic of Hermite. So nothing jumps as cable of another stretch comes off. Of a twist `Λ` is the angle by which
 /// what is fed out is twisted, and its slope the twist per length; what is said of stretches here holds of that too.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Locked {
+pub struct Locked {
     /// First of its internal variables.
     first: usize,
     /// Stretch at the start.
@@ -37,7 +37,7 @@ struct Place {
 
 /// The stretched length that was fed out, or the angle by which that is twisted, around a length that was fed out: a cubic.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fed {
+pub struct Fed {
     from: f64,
     c: [f64; 4],
 }
@@ -255,83 +255,5 @@ impl Remembers for Loosens {
         }
         self.remember(at, memory);
         false
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn locked() -> (Locked, Vec<f64>) {
-        (Locked::new(3, 1.01, 0.5), vec![0.0; 3 + MEMORY])
-    }
-
-    #[test]
-    fn what_is_wound_comes_back_as_it_was() {
-        let (locked, mut memory) = locked();
-        // 10 m in, at a stretch that rises from 1.02 to 1.03
-        let (mut length, mut known) = (0.0, vec![[0.0, 0.0]]);
-        locked.wind(&mut memory, 0.0, 1.02);
-        for k in 1..=1000 {
-            let fed = -0.01 * f64::from(k);
-            length -= 0.01 * (1.02 + 1e-5 * f64::from(k - 1));
-            locked.wind(&mut memory, fed, 1.02 + 1e-5 * f64::from(k));
-            known.push([fed, length]);
-        }
-        for [fed, length] in known.iter().rev() {
-            let got = locked.at(&memory, *fed).sum(*fed);
-            // up to half a step's rise over the distance of places, but where it goes over from what was there before
-            let most = if *fed < -0.6 { 0.5 * 1e-5 * 0.52 } else { 0.01 * 0.5 };
-            assert!((got - length).abs() <= most, "{got} not {length} at {fed}");
-            locked.wind(&mut memory, *fed, 1.5);
-        }
-        // the whole of it is what it was, and below lies what was there at the start
-        assert!(locked.at(&memory, 0.0).sum(0.0_f64).abs() <= 1e-12);
-        assert!((locked.at(&memory, 2.0).sum(2.0) - 2.02).abs() <= 1e-12);
-        assert_eq!(locked.at(&memory, 2.0).per_length(2.0_f64), 1.01);
-    }
-
-    #[test]
-    fn nothing_jumps_where_cable_of_another_stretch_comes_off() {
-        let (locked, mut memory) = locked();
-        for (k, stretch) in [
-            (1.0, 1.02),
-            (2.0, 1.02),
-            (3.0, 1.05),
-            (4.0, 1.05),
-            (4.2, 1.0),
-            (4.3, 1.0),
-            (3.5, 1.04),
-            (6.0, 1.0),
-        ] {
-            locked.wind(&mut memory, -k, stretch);
-        }
-        let n = 100_000;
-        let mut before: Option<[f64; 2]> = None;
-        for k in 0..=n {
-            let fed = -6.0 + 7.0 * f64::from(k) / f64::from(n);
-            let passes = locked.at(&memory, fed);
-            let now = [passes.sum(fed), passes.per_length(fed)];
-            if let Some(before) = before.filter(|_| k > 1) {
-                let mean = (now[0] - before[0]) / (7.0 / f64::from(n));
-                assert!((now[1] - before[1]).abs() <= 1e-4, "{now:?} after {before:?} at {fed}");
-                assert!((mean - now[1]).abs() <= 1e-4, "{mean} not {} at {fed}", now[1]);
-            }
-            before = Some(now);
-        }
-    }
-
-    #[test]
-    fn more_places_than_are_kept_leave_the_whole_length() {
-        let (locked, mut memory) = locked();
-        let mut length = 0.0;
-        locked.wind(&mut memory, 0.0, 1.02);
-        for k in 1..1000 {
-            length -= locked.base(&memory) + place(&memory[3..], LAST).slope;
-            locked.wind(&mut memory, -f64::from(k), 1.02 + 0.01 * f64::from(k).sin());
-        }
-        let got = locked.at(&memory, -999.0).sum(-999.0_f64);
-        assert!((got - length).abs() <= 1e-9, "{got} not {length}");
-        assert!(locked.at(&memory, 0.0).sum(0.0_f64).abs() <= 1e-9);
     }
 }

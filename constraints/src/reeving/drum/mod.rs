@@ -5,8 +5,8 @@
 //! in one layer or several ([`layers`]), and keeps the stretch with which it was wound ([`locked`]).
 
 mod events;
-mod layers;
-mod locked;
+pub(crate) mod layers;
+pub(crate) mod locked;
 mod record;
 mod shaft;
 mod spec;
