@@ -114,11 +114,11 @@ pub trait Line: Send + Sync {
     fn length_now(&self, at: &At<'_>) -> f64;
     /// Something along it.
     fn observe(&self, what: Quantity, s: f64, at: &At<'_>) -> Option<f64>;
-    /// Tension, curvature and bending moment there, as [`Line::observe`] tells them: in one go, for records of whole lines.
-    /// What isn't known is NaN.
-    fn measure(&self, s: f64, at: &At<'_>) -> [f64; 3] {
+    /// Tension, curvature and bending moment at each of these places, as [`Line::observe`] tells them: in one go, for records of
+    /// whole lines. What isn't known is NaN.
+    fn measure(&self, places: &[f64], at: &At<'_>) -> Vec<[f64; 3]> {
         let all = [Quantity::Tension, Quantity::Curvature, Quantity::Moment];
-        all.map(|what| self.observe(what, s, at).unwrap_or(f64::NAN))
+        places.iter().map(|s| all.map(|what| self.observe(what, *s, at).unwrap_or(f64::NAN))).collect()
     }
     /// Size of the axial force [N], by which Newton's method judges residuals: as [`Quantity::Tension`], or what is cheaper
     /// and of its order.

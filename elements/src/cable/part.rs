@@ -140,8 +140,16 @@ impl CablePart {
         Some(force)
     }
 
-    /// The tension in element `k` at `xi` [N]: what the force in the cable has along it. `slope` is the curve's there.
-    fn tension(&self, k: usize, xi: f64, slope: &V3<f64>, at: &At<'_>) -> Option<f64> {
+    /// The tension in element `k` at `xi` [N]: what the force in the cable has along it. `slope` is the curve's there, and
+    /// `transmits` knows [`CablePart::transmits`] of an element of a length.
+    fn tension(
+        &self,
+        k: usize,
+        xi: f64,
+        slope: &V3<f64>,
+        at: &At<'_>,
+        transmits: &mut dyn FnMut(usize, f64) -> Option<V3<f64>>,
+    ) -> Option<f64> {
         let mesh = self.material(at.q);
         // where elements are born and swallowed their means jump, and the strain at a point is kept
         if (0..2).any(|end| self.makes_elements(end)) {
@@ -158,7 +166,7 @@ impl CablePart {
         for i in 0..count {
             let [a, b] = [mesh[first + i], mesh[first + i + 1]];
             (middle[i], length[i]) = (0.5 * (a + b) - place, b - a);
-            let force = self.transmits(first + i, b - a, at)?;
+            let force = transmits(first + i, b - a)?;
             along[i] = (0..3).map(|c| force[c] * slope[c]).sum::<f64>() / size;
         }
         let weights = transmitted::weights(&middle[..count], &length[..count]);
@@ -523,7 +531,7 @@ impl Line for CablePart {
         let (k, l, xi) = self.find(s, at.q)?;
         let r = self.reading(k, l, xi, at)?;
         Some(match what {
-            Quantity::Tension => self.tension(k, xi, &r.slope, at)?,
+            Quantity::Tension => self.tension(k, xi, &r.slope, at, &mut |k, l| self.transmits(k, l, at))?,
             Quantity::Strain => r.strain,
             Quantity::Curvature => r.curvature,
             Quantity::Moment => self.moment(k, l, xi, r.moment, at),
@@ -531,11 +539,17 @@ impl Line for CablePart {
         })
     }
 
-    fn measure(&self, s: f64, at: &At<'_>) -> [f64; 3] {
-        let there = self.find(s, at.q).and_then(|(k, l, xi)| Some((k, l, xi, self.reading(k, l, xi, at)?)));
-        let Some((k, l, xi, r)) = there else { return [f64::NAN; 3] };
-        let tension = self.tension(k, xi, &r.slope, at).unwrap_or(f64::NAN);
-        [tension, r.curvature, self.moment(k, l, xi, r.moment, at)]
+    fn measure(&self, places: &[f64], at: &At<'_>) -> Vec<[f64; 3]> {
+        // an element transmits one force, which several places ask for
+        let mut known = vec![None; self.seats.len() - 1];
+        let mut transmits = |k: usize, l: f64| *known[k].get_or_insert_with(|| self.transmits(k, l, at));
+        let mut one = |s: f64| {
+            let (k, l, xi) = self.find(s, at.q)?;
+            let r = self.reading(k, l, xi, at)?;
+            let tension = self.tension(k, xi, &r.slope, at, &mut transmits).unwrap_or(f64::NAN);
+            Some([tension, r.curvature, self.moment(k, l, xi, r.moment, at)])
+        };
+        places.iter().map(|s| one(*s).unwrap_or([f64::NAN; 3])).collect()
     }
 
     fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {

@@ -174,9 +174,10 @@ impl Range {
         let Some(around) = &self.around else { return Vec::new() };
         let points: Vec<V3<f64>> =
             places.iter().map(|&s| part.point(s, at).map_or([f64::NAN; 3], |(x, _)| x)).collect();
+        let unknown = || vec![[f64::NAN; 3]; places.len()];
+        let inside = part.line().map_or_else(unknown, |line| line.measure(places, at));
         let one = |k: usize| {
-            let s = places[k];
-            let [tension, curvature, moment] = part.line().map_or([f64::NAN; 3], |line| line.measure(s, at));
+            let (s, [tension, curvature, moment]) = (places[k], inside[k]);
             let in_wall = match &around.water[k] {
                 Some(outside) => tension + around.wall.pressed(outside, s, at),
                 None if around.wall.flows() => around.wall.tension(s, model, at),

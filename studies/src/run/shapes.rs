@@ -72,8 +72,8 @@ impl Line {
             let v = |s: &f64| part.point(*s, at).map_or([f64::NAN; 3], |(_, v)| v);
             line.v = s.iter().map(v).collect();
             if let Some(known) = part.line() {
-                for s in &s {
-                    line.values.iter_mut().zip(known.measure(*s, at)).for_each(|(all, x)| all.push(x));
+                for there in known.measure(&s, at) {
+                    line.values.iter_mut().zip(there).for_each(|(all, x)| all.push(x));
                 }
                 // a cable without bending stiffness has no moment to tell of
                 if !(known.slender().ei > 0.0) {
