@@ -216,7 +216,7 @@ fn motions_that_make_no_sense_are_refused_where_they_stand() {
 }
 
 /// A cable that hangs from a point which heaves, and what its run warns of.
-fn heaved(ramp: &str) -> Vec<String> {
+fn heaved(ramp: &str, sections: &str) -> Vec<String> {
     let text = format!(
         r#"
         run = {{ duration = 0.2, output = 0.1 }}
@@ -231,7 +231,7 @@ fn heaved(ramp: &str) -> Vec<String> {
         name = "umbilical"
         points = [[0, 0, 0], [0, 0, -1000]]
         elements = 20
-        section = {{ mass = 3, ea = 2e7, axial_retardation_time = 0.01 }}
+        {sections}
         [[constraints]]
         type = "driving"
         name = "top"
@@ -252,11 +252,17 @@ fn heaved(ramp: &str) -> Vec<String> {
 
 #[test]
 fn a_cable_that_is_struck_at_the_start_is_told_with_its_shock() {
-    let warnings = heaved("ramp = 0");
+    let one = "section = { mass = 3, ea = 2e7, axial_retardation_time = 0.01 }";
+    let warnings = heaved("ramp = 0", one);
     // 2 m at 0.1 Hz is 1.257 m/s, and √(EA μ) 7746 kg/s
     let told = warnings.iter().find(|w| w.contains("struck at its start"));
     assert!(told.is_some_and(|w| w.contains("1.3 m/s") && w.contains("9700 N")), "{warnings:?}");
-    assert!(!heaved("").iter().any(|w| w.contains("struck")));
+    assert!(!heaved("", one).iter().any(|w| w.contains("struck")));
+    // a splice is two nodes in one place
+    let two = "sections = [{ to = 600, section = { mass = 3, ea = 2e7, axial_retardation_time = 0.01 } }, \
+               { section = { mass = 4, ea = 3e7, axial_retardation_time = 0.01 } }]";
+    let warnings = heaved("ramp = 0", two);
+    assert!(warnings.iter().any(|w| w.contains("struck at its start")), "{warnings:?}");
 }
 
 /// A winch that suddenly pays out leaves a cable that hangs slack by as much, and does nothing to one that moves along with it.

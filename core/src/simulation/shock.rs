@@ -29,22 +29,16 @@ pub fn remarks(model: &Model, state: &State) -> Vec<String> {
 }
 
 fn remark(part: &dyn Part, at: &At<'_>) -> Option<String> {
-    let (line, seats) = (part.line()?, part.seats());
-    let last = seats.len().checked_sub(1)?;
-    if last < NEAR {
-        return None;
-    }
-    // of the material: the nodes of what feeds move against it
+    let line = part.line()?;
     let mesh = line.mesh_now(at);
-    let velocities: Vec<V3<f64>> = mesh.iter().map_while(|s| part.point(*s, at).map(|p| p.1)).collect();
-    if velocities.len() != seats.len() {
-        return None;
-    }
+    let last = mesh.len().checked_sub(1).filter(|last| *last >= NEAR)?;
+    // of the material: the nodes of what feeds move against it
+    let points: Vec<(V3<f64>, V3<f64>)> = mesh.iter().map(|s| part.point(*s, at)).collect::<Option<_>>()?;
     let along = |k: usize, i: usize| -> f64 {
-        let q = seats[k].0;
-        let slope: V3<f64> = std::array::from_fn(|i| at.q[q + 3 + i]);
-        let v: V3<f64> = std::array::from_fn(|j| velocities[k][j] - velocities[i][j]);
-        dot(&slope, &v) / dot(&slope, &slope).sqrt()
+        let (from, to) = (points[k.saturating_sub(1)].0, points[(k + 1).min(last)].0);
+        let chord: V3<f64> = std::array::from_fn(|c| to[c] - from[c]);
+        let v: V3<f64> = std::array::from_fn(|c| points[k].1[c] - points[i].1[c]);
+        dot(&chord, &v) / dot(&chord, &chord).sqrt()
     };
     let tension = mesh.iter().filter_map(|s| line.observe(Quantity::Tension, *s, at));
     let largest = tension.fold(0.0_f64, f64::max);
