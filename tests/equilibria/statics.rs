@@ -8,7 +8,7 @@ use ropewalk_core::{Model, State, SteadyFrame};
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{DragLaw, DragSpec, FunctionSpec, GravitySpec};
 use ropewalk_scene::functions::{Function, Parameters, Reads, Seen, Trouble, Written, register_function};
-use ropewalk_scene::{Scene, Water};
+use ropewalk_scene::{Format, Scene, SceneFile, Water};
 use std::sync::Arc;
 
 /// Follows the load factor from 0 to 1 in equal steps.
@@ -310,6 +310,54 @@ fn what_brings_energy_by_velocity_flutters_though_its_potential_is_least() {
         let (_, _, found) = equilibrium(&scene);
         println!("{name}: {found:?}");
         assert_eq!(found.flutter > 0.0, flutters, "{name}: {}", found.flutter);
+    }
+}
+
+/// A weight on a spring that is pushed along its velocity: the roots of `m λ² - c λ + k` say how fast it gets away, to and fro or
+/// one way.
+#[test]
+fn what_velocities_feed_grows_by_the_roots_of_its_equation() {
+    let (m, k) = (2.0, 50.0);
+    for c in [2.0, 15.0, 30.0, 400.0, 6000.0_f64] {
+        let name = format!("drives_{c}");
+        register_function(&name, Arc::new(AlongVelocity(c)));
+        let text = format!(
+            r#"
+            [run]
+            duration = 1
+            [[elements]]
+            type = "rigid_body"
+            name = "weight"
+            position = [0, 0, 0]
+            mass = {m}
+            inertia = [0.1, 0.1, 0.1]
+            [[constraints]]
+            type = "prismatic"
+            name = "guide"
+            marker = "weight"
+            axis = [0, 0, 1]
+            [[forces]]
+            type = "spring"
+            name = "spring"
+            marker = "weight"
+            to = [0, 0, 2]
+            stiffness = {k}
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "function"
+            function = "{name}"
+            marker = "weight"
+            "#
+        );
+        let file = SceneFile::parse(&text, "pushed", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let (_, state, found) = equilibrium(file.scene());
+        let root = (0.25 * c * c - m * k).max(0.0).sqrt();
+        let exact = (0.5 * c + root) / m;
+        println!("{c}: {} 1/s, {exact} 1/s, at {}", found.flutter, state.q[2]);
+        // the size of what swings tells its growth by so much
+        assert!((found.flutter / exact - 1.0).abs() <= 0.05, "{c}: {} {exact}", found.flutter);
+        assert!((state.q[2] + m * 9.81 / k).abs() < 1e-6);
     }
 }
 

@@ -29,6 +29,8 @@ const PER_TIME: f64 = 20.0;
 const GROWTH: f64 = 3.0;
 /// What grows by less than this in a characteristic time doesn't count: by a fifth of [`GROWTH`] over the second half of the steps.
 const SLOW: f64 = 0.01;
+/// How often a swing that the steps resolve changes its sign over the second half of them.
+const MOST_TURNS: usize = STEPS / 8;
 /// How often the steps are made smaller to resolve a fast growth.
 const REFINEMENTS: u32 = 12;
 
@@ -41,8 +43,12 @@ impl Statics<'_> {
     /// # Errors
     /// The matrices can't be factored.
     pub fn disturb(&mut self, state: &State) -> Result<Disturbance, SolveError> {
-        let model = self.model;
         let load = self.load(state);
+        self.disturb_under(state, load)
+    }
+
+    fn disturb_under(&mut self, state: &State, load: f64) -> Result<Disturbance, SolveError> {
+        let model = self.model;
         if load <= f64::MIN_POSITIVE {
             // nothing pulls, so nothing can tip over; there is no characteristic time either
             let shape = vec![0.0; model.velocities()];
@@ -52,14 +58,14 @@ impl Statics<'_> {
         let time = self.time(load);
         let mut h = time / PER_TIME;
         let begin = self.clocks.start();
-        let mut found = self.integrate(h, time)?;
+        let (mut found, mut turns) = self.integrate(h, time)?;
         for _ in 0..REFINEMENTS {
-            // a growth that the steps don't resolve changes sign at each of them
-            if !found.unstable || found.one_way || found.rate * h < 0.3 {
+            // a growth that the steps don't resolve changes sign at each of them, and looks slow where it is very fast
+            if !found.unstable || turns <= MOST_TURNS && found.rate * h < 0.3 {
                 break;
             }
             h *= 0.25;
-            found = self.integrate(h, time)?;
+            (found, turns) = self.integrate(h, time)?;
         }
         self.clocks.stop(Phase::Stability, begin);
         Ok(found)
@@ -78,26 +84,27 @@ impl Statics<'_> {
     }
 
     /// The growth of a small disturbance about an equilibrium that was judged, where it can grow: forces may have no potential
-    /// there, or come with velocities. `None` if it doesn't.
+    /// there, or come with velocities. `None` if it doesn't. `load` is that where the search began: springs take it up.
     pub(super) fn grows(
         &mut self,
         there: &State,
         judged: &Judgement,
+        load: f64,
     ) -> Result<Option<Disturbance>, SolveError> {
         if !self.options.stable || self.structure.symmetric {
             return Ok(None);
         }
-        if judged.is_least() && self.brings_no_energy(there) {
+        let load = self.load(there).max(load);
+        if judged.is_least() && self.brings_no_energy(there, load) {
             return Ok(None);
         }
-        let d = self.disturb(there)?;
+        let d = self.disturb_under(there, load)?;
         Ok(d.unstable.then_some(d))
     }
 
     /// Whether the forces of velocities bring no energy that counts, as damping and a frame that turns: then nothing grows about
     /// an equilibrium whose potential is least there, since `ẋᵀM ẋ + xᵀK x` doesn't (Thomson and Tait, Chetaev).
-    fn brings_no_energy(&mut self, state: &State) -> bool {
-        let load = self.load(state);
+    fn brings_no_energy(&mut self, state: &State, load: f64) -> bool {
         if load <= f64::MIN_POSITIVE {
             return true;
         }
@@ -144,8 +151,9 @@ impl Statics<'_> {
         Ok(y)
     }
 
-    /// Integrates with `STEPS` steps of `h`; `time` weighs velocities against positions.
-    fn integrate(&self, h: f64, time: f64) -> Result<Disturbance, SolveError> {
+    /// Integrates with `STEPS` steps of `h`; `time` weighs velocities against positions. Tells too how often it changed its sign
+    /// over the second half of them.
+    fn integrate(&self, h: f64, time: f64) -> Result<(Disturbance, usize), SolveError> {
         let (n, nv) = (self.structure.n, self.model.velocities());
         let c = Scheme::GeneralizedAlpha { rho_inf: 0.9 }.coefficients().unwrap_or_else(|_| unreachable!());
         let values = self.iteration_matrix(&c, h);
@@ -206,7 +214,7 @@ impl Statics<'_> {
         let growth = size(&x, &v).ln() + scaled - middle;
         let shape = (0..nv).map(|i| x[self.structure.position[i]]).collect();
         let rate = growth / (h * (STEPS / 2) as f64);
-        Ok(Disturbance { rate, one_way: turns == 0, shape, unstable: growth > GROWTH.ln() })
+        Ok((Disturbance { rate, one_way: turns == 0, shape, unstable: growth > GROWTH.ln() }, turns))
     }
 }
 

@@ -155,8 +155,8 @@ impl Statics<'_> {
             if self.creep(state, &mut found, true).is_ok()
                 && let Ok(mut found) = self.unfold(state, found)
             {
-                let judged = std::mem::take(&mut self.judged);
-                if let Ok(Some(growth)) = self.grows(state, &judged) {
+                let (judged, load) = (std::mem::take(&mut self.judged), self.load(&before));
+                if let Ok(Some(growth)) = self.grows(state, &judged, load) {
                     found.flutter = found.flutter.max(growth.rate);
                 }
                 self.judged = judged;

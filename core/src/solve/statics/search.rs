@@ -238,7 +238,7 @@ impl Statics<'_> {
         there.a.clone_from(&self.a);
         there.aux.clone_from(&self.a);
         found.flutter = judged.flutter;
-        if cold && let Some(d) = self.grows(&there, &judged).map_err(|e| e.to_string())? {
+        if cold && let Some(d) = self.grows(&there, &judged, load).map_err(|e| e.to_string())? {
             // about a least potential it is velocities that feed it, and no other equilibrium is that way
             if d.one_way && !judged.is_least() {
                 return Ok(Verdict::Leave(self.small(d.shape)));
