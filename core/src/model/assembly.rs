@@ -5,7 +5,7 @@ use crate::model::constraint::MOST_ROWS;
 use crate::model::node::{NodeKind, retract};
 use crate::model::state::{At, State};
 use crate::model::structure::Structure;
-use crate::model::term::{Assembly, Leap, Weights};
+use crate::model::term::{Assembly, Leap, Term, Weights};
 use crate::model::twist;
 use std::time::{Duration, Instant};
 
@@ -131,6 +131,13 @@ impl Model {
         self.assemble_all(&self.structure, leap, at, lambda, weights, sys);
     }
 
+    /// The iteration matrix with these weights, and the values of the constraints, without what is left of the equations of
+    /// motion: terms that the matrix has nothing of aren't evaluated.
+    pub(crate) fn assemble_matrix(&self, at: &At<'_>, lambda: &[f64], weights: Weights, sys: &mut System) {
+        let wanted = |term: &dyn Term| term.has_tangent(&weights);
+        self.assemble_terms(&self.structure, None, at, lambda, Some(weights), sys, wanted);
+    }
+
     /// The structure with both triangles stored, for analyses whose matrix is unsymmetric though no term is.
     pub fn unsymmetric_structure(&self) -> Structure {
         Structure::new(&self.nodes, &self.touched, &self.pattern, false)
@@ -204,11 +211,26 @@ impl Model {
         weights: Option<Weights>,
         sys: &mut System,
     ) {
+        self.assemble_terms(structure, leap, at, lambda, weights, sys, |_| true);
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "all that an assembly depends on")]
+    #[inline]
+    fn assemble_terms(
+        &self,
+        structure: &Structure,
+        leap: Option<Leap<'_>>,
+        at: &At<'_>,
+        lambda: &[f64],
+        weights: Option<Weights>,
+        sys: &mut System,
+        wanted: impl Fn(&dyn Term) -> bool,
+    ) {
         self.clear(structure, weights.is_some(), sys);
         if let Some(p) = &mut sys.profile {
             p.resize(self.terms.len() + 1, (0, Duration::ZERO));
         }
-        for k in 0..self.terms.len() {
+        for k in (0..self.terms.len()).filter(|&k| wanted(self.terms[k].as_ref())) {
             let begin = sys.profile.as_ref().map(|_| Instant::now());
             self.add_term(structure, k, leap, at, weights, sys);
             if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {

@@ -7,7 +7,7 @@ use crate::model::marker::Marker;
 use crate::model::node::Node;
 use crate::model::pattern::Pattern;
 use crate::model::state::At;
-use crate::model::term::{Assembly, Energy, Term};
+use crate::model::term::{Assembly, Energy, Term, Weights};
 
 /// One component of a dead load.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +68,9 @@ impl Term for DeadLoad {
         self.label.clone()
     }
     fn pattern(&self, _: &mut Pattern) {}
+    fn has_tangent(&self, _: &Weights) -> bool {
+        false
+    }
     fn is_load(&self) -> bool {
         true
     }

@@ -464,6 +464,9 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
     fn symmetric(&self) -> bool {
         self.elements.iter().all(E::symmetric)
     }
+    fn has_tangent(&self, w: &Weights) -> bool {
+        E::has_tangent(w)
+    }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         // the search for equilibrium isn't worth wide copies of what it relaxes
         let relaxes = at.relaxed.is_some_and(|r| r.how.relaxes());

@@ -101,6 +101,10 @@ pub trait Term: Send + Sync {
     fn symmetric(&self) -> bool {
         true
     }
+    /// Whether its tangent has more than noughts with these weights: where a matrix alone is wanted it isn't asked otherwise.
+    fn has_tangent(&self, _: &Weights) -> bool {
+        true
+    }
     /// Whether it is a load from outside, which [critical factors](crate::solve::modes::Critical) scale.
     fn is_load(&self) -> bool {
         false

@@ -12,13 +12,15 @@ pub(crate) enum Phase {
     Solution,
     Stability,
     Audit,
+    Output,
 }
 
-const PHASES: [(&str, Phase); 4] = [
+const PHASES: [(&str, Phase); 5] = [
     ("factorisation", Phase::Factorisation),
     ("solution and its check", Phase::Solution),
     ("test of stability", Phase::Stability),
     ("audit of energy", Phase::Audit),
+    ("forces for output", Phase::Output),
 ];
 
 /// The clocks of the phases.

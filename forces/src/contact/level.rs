@@ -51,26 +51,25 @@ pub(crate) struct Lying<'a> {
 }
 
 impl Lying<'_> {
-    /// The points that stand for it: two in each cell that touches as a whole, if it rubs.
-    pub fn points(&self) -> impl Iterator<Item = Point> {
-        let Lying { span, pieces, count, cells, above, heights, rates } = self;
-        let all = pieces[..*count].iter().flat_map(move |piece| (0..*cells).map(move |cell| (piece, cell)));
-        all.flat_map(move |(piece, cell)| {
-            let border = |k: usize| k as f64 / *cells as f64;
-            let (from, to) = (piece[0].max(border(cell)), piece[1].min(border(cell + 1)));
-            let part = (to - from).max(0.0);
-            let whole = *cells > 1 && part * *cells as f64 > 1.0 - 1e-9;
-            let rule: &[(f64, f64)] = match () {
-                () if part == 0.0 => &[],
-                () if whole => gauss(2),
-                () => gauss(span.points),
-            };
-            rule.iter().map(move |(place, share)| {
-                let weight = span.line.weights(from + part * place);
-                let (depth, rate) = (above - blend(&weight, heights), -blend(&weight, rates));
-                Point { weight, cell, k: span.k * part * share, depth, rate }
-            })
-        })
+    /// Sees the points that stand for it: two in each cell that touches as a whole, if it rubs.
+    pub fn each_point(&self, mut see: impl FnMut(Point)) {
+        let Lying { span, cells, above, heights, rates, .. } = self;
+        let border = |k: usize| k as f64 / *cells as f64;
+        for piece in &self.pieces[..self.count] {
+            for cell in 0..*cells {
+                let (from, to) = (piece[0].max(border(cell)), piece[1].min(border(cell + 1)));
+                let part = to - from;
+                if !(part > 0.0) {
+                    continue;
+                }
+                let whole = *cells > 1 && part * *cells as f64 > 1.0 - 1e-9;
+                for (place, share) in gauss(if whole { 2 } else { span.points }) {
+                    let weight = span.line.weights(from + part * place);
+                    let (depth, rate) = (above - blend(&weight, heights), -blend(&weight, rates));
+                    see(Point { weight, cell, k: span.k * part * share, depth, rate });
+                }
+            }
+        }
     }
 
     /// The tips beyond its ends.
@@ -221,7 +220,7 @@ impl Contact {
         let (mut force, mut stiff) = ([0.0; 4], [[0.0; 4]; 4]);
         // what presses each cell, and by which of the vectors that move the element
         let mut cells = [(0.0, [0.0; 4]); CELLS];
-        for point in lying.points() {
+        lying.each_point(|point| {
             let normal = self.law.normal(point.k, point.depth, point.rate);
             let (pressed, by) = &mut cells[point.cell];
             *pressed += normal.force;
@@ -232,7 +231,7 @@ impl Contact {
                 by[a] -= part;
                 (0..4).for_each(|b| stiff[a][b] += part * point.weight[b]);
             }
-        }
+        });
         for a in 0..4 {
             (0..3).for_each(|i| block.add(3 * a + i, -force[a] * level.n[i]));
         }

@@ -300,10 +300,10 @@ impl Contact {
         match (Self::lies(level, group, at), level) {
             (Lies::Above, _) => return,
             (Lies::Touches(lying), Some(level)) => {
-                for p in lying.points() {
+                lying.each_point(|p| {
                     let normal = self.law.normal(p.k, p.depth, p.rate);
                     see(p.k, p.cell, &Touch::lying(level.n, &normal, p.depth, p.rate));
-                }
+                });
                 for tip in lying.tips() {
                     if let Some((touch, _)) = self.touch(tip, frame, at) {
                         see(tip.k, 0, &touch);
@@ -440,6 +440,9 @@ impl Term for Contact {
             && self.fixed.seat == Seat::Ground
             && self.flowing.is_empty()
             && !self.groups.iter().any(turns)
+    }
+    fn has_tangent(&self, w: &Weights) -> bool {
+        w.q != 0.0 || w.v != 0.0
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let frame = self.fixed.frame(at);

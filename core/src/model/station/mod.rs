@@ -293,6 +293,10 @@ impl Term for FieldTerm {
         // a dead load has no derivatives at all
         self.stations.fixed() && self.laws.all.iter().all(|l| l.gives() == Gives::NOTHING)
     }
+    fn has_tangent(&self, w: &Weights) -> bool {
+        let by_acceleration = |gives: Gives| gives.a || gives.couple;
+        w.q != 0.0 || w.v != 0.0 || self.laws.all.iter().any(|l| by_acceleration(l.gives()))
+    }
     fn is_load(&self) -> bool {
         true
     }

@@ -164,18 +164,6 @@ impl Forces {
         })
     }
 
-    /// The largest of these changes of multipliers over `tolerance` times the forces at work as of the last [`Forces::ratio`].
-    pub fn pulled(&self, lambda: &[f64], tolerance: f64) -> f64 {
-        let mut worst = 0.0;
-        for ((scale, on), l) in self.rows.iter().zip(lambda) {
-            for &g in on {
-                let limit = tolerance * self.at_work(g) + self.rounding[g];
-                worst = larger(worst, (scale * l).abs() / limit.max(f64::MIN_POSITIVE));
-            }
-        }
-        worst
-    }
-
     /// What an increment `d` of the configuration `q` changes tensions by, over `tolerance` times the forces at work as of
     /// the last [`Forces::ratio`], in the cable where that is largest: at nodes and in the middle of elements.
     pub fn strained(&self, q: &[f64], d: &[f64], tolerance: f64) -> f64 {

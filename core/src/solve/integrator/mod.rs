@@ -1,6 +1,7 @@
 //! Time integration: schemes, Newton's method, step-size control, consistent starts.
 
 mod alpha;
+mod consistent;
 mod controller;
 mod convergence;
 mod factors;
@@ -19,16 +20,15 @@ mod workspace;
 
 pub use crate::model::limit::Limit;
 pub use alpha::Alpha;
+pub use consistent::consistent;
+pub(crate) use consistent::{accelerate, consistent_by_iteration, consistent_by_mass, move_velocities};
 pub(crate) use norm::Speeds;
 pub use options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
 pub use radau::Radau;
 pub use scales::{Scales, Stopping, Units};
 pub use scheme::{Coefficients, Scheme};
 pub(crate) use start::restart;
-pub use start::{Correction, consistent, prepare};
-pub(crate) use start::{
-    assemble_mass_at, consistent_as_it_is, consistent_by_factors, consistent_by_iteration, consistent_by_mass,
-};
+pub use start::{Correction, prepare};
 pub use step::{Integrator, StepError, StepReport};
 pub use workspace::{Counts, Workspace};
 

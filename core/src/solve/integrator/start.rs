@@ -7,7 +7,6 @@ use super::workspace::{Which, Workspace};
 use crate::model::Model;
 use crate::model::node::retract;
 use crate::model::state::{At, State};
-use crate::model::term::Weights;
 use crate::solve::linear::SolveError;
 
 /// How far a start had to be moved: the part that was moved most, as a root mean square along it.
@@ -24,8 +23,6 @@ pub struct Correction {
 const SMALL: f64 = 1e-3;
 /// First step under error control, in parts of the time in which the part that moves most goes its own length.
 const FIRST: f64 = 1e-2;
-/// What moving velocities onto the constraints may change of forces, in parts of those at work.
-const STRAINED: f64 = 1e-3;
 /// Relative change of velocities that is taken as meant.
 const SMALL_VELOCITY: f64 = 0.05;
 
@@ -147,165 +144,6 @@ pub(super) fn anew(
     }
 }
 
-/// Replaces velocities, accelerations and multipliers by those for output: velocities moved onto the constraints, and what
-/// the index-1 system gives there. The integrator's own are noisier.
-///
-/// Velocities are moved in the metric of the mass unless that strains: what is next to a driven end would be strained at a
-/// rate of its own, and damping along a stiff cable makes a large force of that. Then it is the metric of the iteration
-/// matrix at this state, `M + γh C + βh² K`, in which it moves along.
-///
-/// # Errors
-/// A matrix is singular; the state is as it was.
-pub fn consistent(model: &Model, state: &mut State, work: &mut Workspace) -> Result<(), SolveError> {
-    let weights = work.factored;
-    assemble_mass_at(model, state, work)?;
-    if consistent_by_mass(model, state, work)? {
-        return Ok(());
-    }
-    consistent_by_iteration(model, state, work, weights.unwrap_or_default())
-}
-
-/// Evaluates and factors the mass matrix at a state, with what is left there of the equations of motion.
-pub(crate) fn assemble_mass_at(model: &Model, state: &State, work: &mut Workspace) -> Result<(), SolveError> {
-    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)
-}
-
-/// The same in the metric of the mass alone, at a state where [`assemble_mass_at`] has just evaluated it; `false` if that
-/// would change forces, and nothing is changed.
-pub(crate) fn consistent_by_mass(
-    model: &Model,
-    state: &mut State,
-    work: &mut Workspace,
-) -> Result<bool, SolveError> {
-    let v = on_constraints(model, state, work, Which::Mass)?;
-    if v != state.v {
-        model.assemble(&At { v: &v, ..state.at() }, &state.lambda, None, &mut work.system);
-        // without factors of a step this is a start, which meets the constraints already
-        if work.factored.is_some() && strains(state, work) {
-            return Ok(false);
-        }
-        std::mem::swap(&mut work.mass.residual, &mut work.system.residual);
-    }
-    // forces and inertia are linear in accelerations and multipliers
-    let nv = model.velocities();
-    let mut rhs = vec![0.0; model.structure().n];
-    let mut known = state.a.clone();
-    known.extend_from_slice(&state.lambda);
-    work.times_mass(model, &known, &mut rhs);
-    let (mut rate, mut bias) = (vec![0.0; model.multipliers()], vec![0.0; model.multipliers()]);
-    model.rates(&At { v: &v, ..state.at() }, &mut rate, &mut bias);
-    for (r, left) in rhs[..nv].iter_mut().zip(&work.mass.residual) {
-        *r -= left;
-    }
-    for (r, b) in rhs[nv..].iter_mut().zip(&bias) {
-        *r = -b;
-    }
-    work.solve(model, Which::Mass, &mut rhs)?;
-    state.v = v;
-    state.a.copy_from_slice(&rhs[..nv]);
-    state.lambda.copy_from_slice(&rhs[nv..]);
-    Ok(true)
-}
-
-/// The same in the metric of the iteration matrix with these weights.
-pub(crate) fn consistent_by_iteration(
-    model: &Model,
-    state: &mut State,
-    work: &mut Workspace,
-    weights: Weights,
-) -> Result<(), SolveError> {
-    model.assemble(&state.at(), &state.lambda, Some(weights), &mut work.system);
-    work.factor(model, weights)?;
-    consistent_by_factors(model, state, work)
-}
-
-/// The same in the metric of the iteration matrix whose factors the workspace holds.
-pub(crate) fn consistent_by_factors(
-    model: &Model,
-    state: &mut State,
-    work: &mut Workspace,
-) -> Result<(), SolveError> {
-    assemble_mass_at(model, state, work)?;
-    let v = on_constraints(model, state, work, Which::Iteration)?;
-    at_index_one(model, state, v, work)
-}
-
-/// Moves velocities onto the constraints in the metric of the iteration matrix whose factors the workspace holds, if that and
-/// accelerations that meet the constraints too change no force that counts; otherwise nothing is changed and it gives `false`.
-/// `small` judges what multipliers change by.
-///
-/// Where stiffness makes the matrix larger than that of the mass, it tells of more than what the equations of motion would change.
-pub(crate) fn consistent_as_it_is(
-    model: &Model,
-    state: &mut State,
-    work: &mut Workspace,
-    small: impl Fn(&[f64]) -> bool,
-) -> Result<bool, SolveError> {
-    let (nv, m) = (model.velocities(), model.multipliers());
-    let Some(Weights { v, .. }) = work.factored.filter(|_| m > 0) else { return Ok(m == 0) };
-    let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
-    model.rates(&state.at(), &mut rate, &mut bias);
-    let missed = |x: &[f64], missing: &[f64], work: &mut Workspace| {
-        let mut rhs = vec![0.0; model.structure().n];
-        work.times_matrix(model, Which::Iteration, x, &mut rhs);
-        rhs[..nv].fill(0.0);
-        rhs[nv..].iter_mut().zip(missing).for_each(|(r, missing)| *r = -*r - missing);
-        work.solve(model, Which::Iteration, &mut rhs).map(|()| rhs)
-    };
-    if !small(&missed(&state.a, &bias, work)?[nv..]) {
-        return Ok(false);
-    }
-    let mut change = missed(&state.v, &rate, work)?;
-    // what damping makes of the velocities
-    change[nv..].iter_mut().for_each(|l| *l /= v);
-    let fits = small(&change[nv..]);
-    if fits {
-        state.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
-    }
-    Ok(fits)
-}
-
-/// The velocities nearest to those of a state that the constraints allow.
-fn on_constraints(
-    model: &Model,
-    state: &State,
-    work: &mut Workspace,
-    metric: Which,
-) -> Result<Vec<f64>, SolveError> {
-    let mut v = state.v.clone();
-    if model.multipliers() == 0 {
-        return Ok(v);
-    }
-    let mut rhs = velocity_rhs(model, &At { v: &v, ..state.at() }, work);
-    work.solve(model, metric, &mut rhs)?;
-    for (v, d) in v.iter_mut().zip(&rhs) {
-        *v += d;
-    }
-    Ok(v)
-}
-
-/// Whether other velocities, with which the system was just assembled, change forces by more than a share of those at work.
-fn strains(state: &State, work: &mut Workspace) -> bool {
-    let change: Vec<f64> =
-        work.system.residual.iter().zip(&work.mass.residual).map(|(new, old)| new - old).collect();
-    !(work.forces.ratio(&work.norms, &change, &state.a, &state.lambda, STRAINED) <= 1.0)
-}
-
-/// Takes these velocities, and the accelerations and multipliers that the equations of motion have there.
-fn at_index_one(
-    model: &Model,
-    state: &mut State,
-    v: Vec<f64>,
-    work: &mut Workspace,
-) -> Result<(), SolveError> {
-    let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
-    let zero = vec![0.0; model.velocities()];
-    let at = At { v: &v, a: &zero, ..state.at() };
-    solve_accelerations(model, &at, work, &mut a, &mut lambda)?;
-    (state.v, state.a, state.lambda) = (v, a, lambda);
-    Ok(())
-}
-
 fn inconsistent(
     model: &Model,
     what: &str,
@@ -386,7 +224,7 @@ fn project_positions(model: &Model, state: &mut State, work: &mut Workspace) -> 
 }
 
 /// Right-hand side that removes `G v + ∂g/∂t`.
-fn velocity_rhs(model: &Model, at: &At<'_>, work: &mut Workspace) -> Vec<f64> {
+pub(super) fn velocity_rhs(model: &Model, at: &At<'_>, work: &mut Workspace) -> Vec<f64> {
     let (nv, m) = (model.velocities(), model.multipliers());
     let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
     model.rates(at, &mut rate, &mut bias);
@@ -432,7 +270,7 @@ fn accelerations(
     solve_accelerations(model, &at, work, a, lambda)
 }
 
-fn solve_accelerations(
+pub(super) fn solve_accelerations(
     model: &Model,
     at: &At<'_>,
     work: &mut Workspace,

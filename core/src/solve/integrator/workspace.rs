@@ -332,7 +332,8 @@ impl Workspace {
         self.solve(model, Which::Iteration, rhs)
     }
 
-    /// Assembles the mass matrix `[M + stiff K, Gᵀ; G, 0]` and the residual at a state; with `factor` its factors too.
+    /// Assembles the mass matrix `[M + stiff K, Gᵀ; G, 0]` and the values of the constraints at a state; with `factor` its
+    /// factors too.
     pub(crate) fn assemble_mass(
         &mut self,
         model: &Model,
@@ -341,7 +342,7 @@ impl Workspace {
         stiff: f64,
         factor: bool,
     ) -> Result<(), SolveError> {
-        model.assemble(at, lambda, Some(Weights { q: stiff, v: 0.0, a: 1.0 }), &mut self.mass);
+        model.assemble_matrix(at, lambda, Weights { q: stiff, v: 0.0, a: 1.0 }, &mut self.mass);
         self.has_mass = stiff == 0.0;
         if let (true, Some(softening)) = (factor, &self.softening) {
             softening.apply(&mut self.mass.values);

@@ -87,6 +87,11 @@ impl<T: Scalar> Guard<T> {
         self.primary.name()
     }
 
+    /// Whether the next solution leaves the factors as they are: it needs no check, or the one before had it.
+    pub(crate) fn is_settled(&self) -> bool {
+        !self.unchecked
+    }
+
     /// Factors the matrix.
     pub fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
         self.factorizations += 1;

@@ -11,7 +11,7 @@ use super::push::{Pressed, Push, Sum};
 use ropewalk_core::error::{need, positive};
 use ropewalk_core::{
     Assembly, At, BuildError, Column, ContactSpan, Couples, Energy, Foresees, Pattern, Power, Relaxed,
-    Remembers, Shows, SpanLine, Term, V3, dot,
+    Remembers, Shows, SpanLine, Term, V3, Weights, dot,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -288,6 +288,9 @@ impl Term for LineContact {
     }
     fn symmetric(&self) -> bool {
         self.law.conservative() && self.pieces.all.iter().all(|p| matches!(p.span, SpanLine::Cubic { .. }))
+    }
+    fn has_tangent(&self, w: &Weights) -> bool {
+        w.q != 0.0 || w.v != 0.0
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         let tangent = out.wants_tangent().then(|| out.weights());

@@ -64,7 +64,8 @@ impl Stages {
         work.assemble_mass(model, &place(state, h, [q, v, rest]), free, 0.0, true)?;
         mass.copy_from_slice(&work.mass.values);
         model.rates(&place(state, h, [q, v, rest]), rate, bias);
-        e.copy_from_slice(&work.mass.residual[..nv]);
+        model.assemble(&place(state, h, [q, v, rest]), free, None, &mut work.system);
+        e.copy_from_slice(&work.system.residual[..nv]);
         if m > 0 {
             // the nearest velocities that the constraints allow
             work.product(s, mass, v);

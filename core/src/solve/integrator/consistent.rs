@@ -1,0 +1,153 @@
+//! Consistent velocities, accelerations and multipliers of a state in the midst of a motion: those for output.
+
+use super::start::{solve_accelerations, velocity_rhs};
+use super::workspace::{Which, Workspace};
+use crate::model::Model;
+use crate::model::state::{At, State};
+use crate::model::term::Weights;
+use crate::solve::linear::SolveError;
+
+/// What moving velocities onto the constraints may change of forces, in parts of those at work.
+const STRAINED: f64 = 1e-3;
+/// What moving velocities onto the constraints leaves of how far they were off.
+const MET: f64 = 1e-6;
+/// Most solutions for that: a Jacobian from nearby needs more than one where bodies turn.
+const MOST_MOVES: usize = 4;
+
+/// Replaces velocities, accelerations and multipliers by those for output: velocities moved onto the constraints, and what
+/// the index-1 system gives there. The integrator's own are noisier.
+///
+/// Velocities are moved in the metric of the mass unless that strains: what is next to a driven end would be strained at a
+/// rate of its own, and damping along a stiff cable makes a large force of that. Then it is the metric of the iteration
+/// matrix at this state, `M + γh C + βh² K`, in which it moves along.
+///
+/// # Errors
+/// A matrix is singular; the state is as it was.
+pub fn consistent(model: &Model, state: &mut State, work: &mut Workspace) -> Result<(), SolveError> {
+    let weights = work.factored;
+    if consistent_by_mass(model, state, work)? {
+        return Ok(());
+    }
+    consistent_by_iteration(model, state, work, weights.unwrap_or_default())
+}
+
+/// The same in the metric of the mass alone; `false` if that would change forces, and nothing is changed.
+pub(crate) fn consistent_by_mass(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+) -> Result<bool, SolveError> {
+    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+    let v = on_constraints(model, state, work, Which::Mass)?;
+    model.assemble(&state.at(), &state.lambda, None, &mut work.system);
+    if v != state.v {
+        let before = work.system.residual.clone();
+        model.assemble(&At { v: &v, ..state.at() }, &state.lambda, None, &mut work.system);
+        // without factors of a step this is a start, which meets the constraints already
+        if work.factored.is_some() && strains(state, &before, work) {
+            return Ok(false);
+        }
+    }
+    state.v = v;
+    accelerate(model, state, work).map(|()| true)
+}
+
+/// Replaces accelerations and multipliers by those that the equations of motion have at a state, by the factors of the mass
+/// matrix there and what is left with those of the state, which the workspace has.
+///
+/// # Errors
+/// A matrix is singular; the state is as it was.
+pub(crate) fn accelerate(model: &Model, state: &mut State, work: &mut Workspace) -> Result<(), SolveError> {
+    // forces and inertia are linear in accelerations and multipliers
+    let (nv, m) = (model.velocities(), model.multipliers());
+    let mut rhs = vec![0.0; nv + m];
+    let mut known = state.a.clone();
+    known.extend_from_slice(&state.lambda);
+    work.times_mass(model, &known, &mut rhs);
+    let (mut rate, mut bias) = (vec![0.0; m], vec![0.0; m]);
+    model.rates(&state.at(), &mut rate, &mut bias);
+    for (r, left) in rhs[..nv].iter_mut().zip(&work.system.residual) {
+        *r -= left;
+    }
+    for (r, b) in rhs[nv..].iter_mut().zip(&bias) {
+        *r = -b;
+    }
+    work.solve(model, Which::Mass, &mut rhs)?;
+    state.a.copy_from_slice(&rhs[..nv]);
+    state.lambda.copy_from_slice(&rhs[nv..]);
+    Ok(())
+}
+
+/// The same in the metric of the iteration matrix with these weights.
+pub(crate) fn consistent_by_iteration(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+    weights: Weights,
+) -> Result<(), SolveError> {
+    model.assemble(&state.at(), &state.lambda, Some(weights), &mut work.system);
+    work.factor(model, weights)?;
+    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+    let v = on_constraints(model, state, work, Which::Iteration)?;
+    let (mut a, mut lambda) = (vec![0.0; model.velocities()], vec![0.0; model.multipliers()]);
+    let zero = vec![0.0; model.velocities()];
+    let at = At { v: &v, a: &zero, ..state.at() };
+    solve_accelerations(model, &at, work, &mut a, &mut lambda)?;
+    (state.v, state.a, state.lambda) = (v, a, lambda);
+    Ok(())
+}
+
+/// Moves velocities onto the constraints in the metric of an iteration matrix from nearby, whose factors the workspace holds.
+///
+/// # Errors
+/// A matrix is singular.
+pub(crate) fn move_velocities(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+) -> Result<(), SolveError> {
+    let (nv, m) = (model.velocities(), model.multipliers());
+    let (mut rate, mut first) = (vec![0.0; m], f64::INFINITY);
+    for k in 0..MOST_MOVES {
+        model.constraint_rates(&state.at(), &mut work.system, &mut rate);
+        let scaled = rate.iter().zip(model.row_scale()).map(|(rate, scale)| (rate / scale).powi(2));
+        let off = scaled.sum::<f64>().sqrt();
+        if k == 0 {
+            first = off;
+        }
+        // as it stands at zero, and where there are no constraints
+        if off <= MET * first && (k > 0 || off == 0.0) {
+            break;
+        }
+        let mut x = vec![0.0; nv];
+        x.extend(rate.iter().map(|rate| -rate));
+        work.solve(model, Which::Iteration, &mut x)?;
+        state.v.iter_mut().zip(&x).for_each(|(v, x)| *v += x);
+    }
+    Ok(())
+}
+
+/// The velocities nearest to those of a state that the constraints allow, by the Jacobian in the mass matrix of this state.
+fn on_constraints(
+    model: &Model,
+    state: &State,
+    work: &mut Workspace,
+    metric: Which,
+) -> Result<Vec<f64>, SolveError> {
+    let mut v = state.v.clone();
+    if model.multipliers() == 0 {
+        return Ok(v);
+    }
+    let mut rhs = velocity_rhs(model, &At { v: &v, ..state.at() }, work);
+    work.solve(model, metric, &mut rhs)?;
+    for (v, d) in v.iter_mut().zip(&rhs) {
+        *v += d;
+    }
+    Ok(v)
+}
+
+/// Whether other velocities, with which the system was just assembled, change forces by more than a share of those at work.
+fn strains(state: &State, before: &[f64], work: &mut Workspace) -> bool {
+    let change: Vec<f64> = work.system.residual.iter().zip(before).map(|(new, old)| new - old).collect();
+    !(work.forces.ratio(&work.norms, &change, &state.a, &state.lambda, STRAINED) <= 1.0)
+}
