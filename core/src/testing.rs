@@ -69,6 +69,10 @@ pub fn check_tangent(term: &dyn Term, nodes: &[Node], at: &At<'_>, width: Width)
     let mut worst = 0.0_f64;
     for (kind, w) in [pick(1.0, 0.0, 0.0), pick(0.0, 1.0, 0.0), pick(0.0, 0.0, 1.0)].into_iter().enumerate() {
         let exact = dense(term, nodes, at, w, width).1;
+        if !term.has_tangent(&w) && exact.iter().flatten().any(|&x| x != 0.0) {
+            // nobody would ask for it
+            return f64::INFINITY;
+        }
         let moved = |j: usize, h: f64| {
             let add =
                 |x: &[f64]| x.iter().enumerate().map(|(i, x)| x + if i == j { h } else { 0.0 }).collect();

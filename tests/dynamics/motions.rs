@@ -303,3 +303,26 @@ fn what_feeds_is_struck_if_its_material_is() {
         assert!(struck.is_none_or(|w| w.contains("0.5 m/s") && w.contains("5 N")), "{warnings:?}");
     }
 }
+
+/// A chain whose damping makes a force of what the velocity of its driven end is moved by: its reaction is that of the motion, at
+/// the ends of steps too.
+#[test]
+fn reactions_of_driven_chains_are_as_exact_as_asked() {
+    let chain = include_str!("../../book/src/mooring.in/chain.toml").replace("60 s", "12 s");
+    let pull = |tolerance: f64, force: f64| {
+        let solver = format!(
+            "[solver]\nstepping = {{ controlled = {{ tolerance = {tolerance} }} }}\nforce_tolerance = {force}\n"
+        );
+        let text = chain.replace("[run]", &format!("{solver}[run]"));
+        let file = SceneFile::parse(&text, "chain", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let history = simulate(file.scene()).unwrap_or_else(|e| panic!("{e}"));
+        history.column("fairlead.magnitude").expect("fairlead").to_vec()
+    };
+    let (coarse, fine) = (pull(1e-5, 1e-4), pull(1e-6, 1e-5));
+    let largest = fine.iter().fold(0.0, |most: f64, pull| if *pull <= most { most } else { *pull });
+    let off = coarse.iter().zip(&fine).map(|(a, b)| (a - b).abs() / largest);
+    let off = off.fold(0.0, |worst: f64, off| if off <= worst { worst } else { off });
+    println!("{off:.1e} of the largest force");
+    // what the manual promises of tolerances
+    assert!(off < 3.0 * 1e-4, "{off:.1e} of the largest force at worst, 1e-4 asked for");
+}
