@@ -5,7 +5,7 @@ use crate::model::constraint::MOST_ROWS;
 use crate::model::node::{NodeKind, retract};
 use crate::model::state::{At, State};
 use crate::model::structure::Structure;
-use crate::model::term::{Assembly, Leap, Term, Weights};
+use crate::model::term::{Assembly, Leap, Weights};
 use crate::model::twist;
 use std::time::{Duration, Instant};
 
@@ -128,14 +128,13 @@ impl Model {
         weights: Option<Weights>,
         sys: &mut System,
     ) {
-        self.assemble_all(&self.structure, leap, at, lambda, weights, sys);
+        self.assemble_all(&self.structure, leap, at, lambda, weights, sys, false);
     }
 
     /// The iteration matrix with these weights, and the values of the constraints, without what is left of the equations of
     /// motion: terms that the matrix has nothing of aren't evaluated.
     pub(crate) fn assemble_matrix(&self, at: &At<'_>, lambda: &[f64], weights: Weights, sys: &mut System) {
-        let wanted = |term: &dyn Term| term.has_tangent(&weights);
-        self.assemble_terms(&self.structure, None, at, lambda, Some(weights), sys, wanted);
+        self.assemble_all(&self.structure, None, at, lambda, Some(weights), sys, true);
     }
 
     /// The structure with both triangles stored, for analyses whose matrix is unsymmetric though no term is.
@@ -152,7 +151,7 @@ impl Model {
         weights: Option<Weights>,
         sys: &mut System,
     ) {
-        self.assemble_all(structure, None, at, lambda, weights, sys);
+        self.assemble_all(structure, None, at, lambda, weights, sys, false);
     }
 
     /// Residual and tangent of the loads alone, without constraints.
@@ -202,6 +201,8 @@ impl Model {
         self.terms[k].add(at, &mut out);
     }
 
+    /// Evaluates all terms and the constraints; for a matrix `alone` only terms that it has a share of.
+    #[expect(clippy::too_many_arguments, reason = "all that an assembly depends on")]
     fn assemble_all(
         &self,
         structure: &Structure,
@@ -210,27 +211,14 @@ impl Model {
         lambda: &[f64],
         weights: Option<Weights>,
         sys: &mut System,
-    ) {
-        self.assemble_terms(structure, leap, at, lambda, weights, sys, |_| true);
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "all that an assembly depends on")]
-    #[inline]
-    fn assemble_terms(
-        &self,
-        structure: &Structure,
-        leap: Option<Leap<'_>>,
-        at: &At<'_>,
-        lambda: &[f64],
-        weights: Option<Weights>,
-        sys: &mut System,
-        wanted: impl Fn(&dyn Term) -> bool,
+        alone: bool,
     ) {
         self.clear(structure, weights.is_some(), sys);
         if let Some(p) = &mut sys.profile {
             p.resize(self.terms.len() + 1, (0, Duration::ZERO));
         }
-        for k in (0..self.terms.len()).filter(|&k| wanted(self.terms[k].as_ref())) {
+        let w = weights.unwrap_or_default();
+        for k in (0..self.terms.len()).filter(|&k| !alone || self.terms[k].has_tangent(&w)) {
             let begin = sys.profile.as_ref().map(|_| Instant::now());
             self.add_term(structure, k, leap, at, weights, sys);
             if let (Some(p), Some(begin)) = (&mut sys.profile, begin) {
