@@ -116,6 +116,15 @@ impl PointMass {
         })
     }
 
+    /// Where its velocity begins, if inertia in space is all that it has.
+    fn plain(&self) -> Option<usize> {
+        let dry = self.added_mass == 0.0 && self.drag_area == 0.0 && self.sea.is_none();
+        match self.held {
+            Held::Moves { v, .. } if dry => Some(v),
+            _ => None,
+        }
+    }
+
     /// The waves at its place.
     fn swell(&self, at: &At<'_>) -> Option<Swell<f64>> {
         self.sea.as_ref().map(|(sea, _)| sea.at(at.t, &self.held.x(at)))
@@ -163,6 +172,14 @@ impl Term for PointMass {
         !turns && !emerges && self.sea.is_none() && (self.current.is_uniform() || !drags)
     }
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+        if let Some(v) = self.plain() {
+            (v..v + 3).for_each(|i| out.add(i, self.mass * at.a[i]));
+            if out.wants_tangent() {
+                let mass = out.weights().a * self.mass;
+                out.add_block(0, 3, |i, j| if i == j { mass } else { 0.0 });
+            }
+            return;
+        }
         let swell = self.swell(at);
         let (v, speed, du, whole) = self.flow(at, swell.as_ref());
         let (share, by_z) = self.share(at, swell.as_ref());
@@ -219,6 +236,9 @@ impl Term for PointMass {
         Energy { kinetic: 0.5 * self.mass * dot(&v, &v), ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
+        if self.plain().is_some() {
+            return Power::default();
+        }
         let swell = self.swell(at);
         let (relative, speed, _, whole) = self.flow(at, swell.as_ref());
         let share = self.share(at, swell.as_ref()).0;

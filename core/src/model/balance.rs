@@ -23,10 +23,27 @@ impl Model {
 
     /// Power of all terms, and of the constraints that move with time: `λ · ∂g/∂t`.
     pub fn power(&self, at: &At<'_>, lambda: &[f64]) -> Power {
-        let mut p = Power::default();
+        let mut p = self.supplied(at, lambda);
         for t in &self.terms {
             p += t.power(at);
         }
+        p
+    }
+
+    /// Both of these, as every step of a run needs them.
+    pub fn balance(&self, at: &At<'_>, lambda: &[f64]) -> (Energy, Power) {
+        let (mut e, mut p) = (Energy::default(), self.supplied(at, lambda));
+        for t in &self.terms {
+            let (energy, power) = t.balance(at);
+            e += energy;
+            p += power;
+        }
+        (e, p)
+    }
+
+    /// What constraints that move with time bring in.
+    fn supplied(&self, at: &At<'_>, lambda: &[f64]) -> Power {
+        let mut p = Power::default();
         let holding = self.constraints.iter().enumerate().filter(|(c, _)| self.holds(*c, at.internal));
         for (c, constraint) in holding.filter(|(_, constraint)| !constraint.is_steady()) {
             let (mut rate, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);

@@ -124,6 +124,11 @@ pub trait Term: Send + Sync {
     fn power(&self, _at: &At<'_>) -> Power {
         Power::default()
     }
+    /// Both at once, as every step of a run asks for them: a term that looks for what touches overrides it, so that it looks
+    /// once.
+    fn balance(&self, at: &At<'_>) -> (Energy, Power) {
+        (self.energy(at), self.power(at))
+    }
     /// Whether its force has a kink in velocities that a step may leap over, such as dry friction between slip and stick:
     /// only then does [`Assembly::leap`] say anything.
     fn kinked(&self) -> bool {

@@ -363,9 +363,9 @@ impl Simulation {
     fn account(&mut self) {
         if self.keep_audit {
             let begin = self.work.clocks.start();
-            let power = self.model.power(&self.state.at(), &self.state.lambda);
+            let (energy, power) = self.model.balance(&self.state.at(), &self.state.lambda);
             let h = self.state.t - self.previous.t;
-            self.audit.add(h, self.model.energy(&self.state.at()), self.power, power);
+            self.audit.add(h, energy, self.power, power);
             self.power = power;
             self.work.clocks.stop(Phase::Audit, begin);
         }

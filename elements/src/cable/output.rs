@@ -38,11 +38,27 @@ fn strain_at(models: ChosenModels, e: &[f64; 12], l: f64, xi: f64) -> f64 {
     if points.len() >= 5 {
         return model.strain(&q, &Point::new(xi, 1.0)).eps();
     }
+    if let Some(at) = points.iter().find(|p| p.xi == xi) {
+        return model.strain(&q, at).eps();
+    }
     let lagrange = |k: usize| -> f64 {
         let others = points.iter().enumerate().filter(|(j, _)| *j != k);
         others.map(|(_, p)| (xi - p.xi) / (points[k].xi - p.xi)).product()
     };
     points.iter().enumerate().map(|(k, at)| lagrange(k) * model.strain(&q, at).eps()).sum()
+}
+
+/// Axial strain, in the model's own measure, and tension at `xi` [N]: of [`read`] what the shape alone tells.
+pub(super) fn stretch(
+    models: ChosenModels,
+    CableParams { l, ea, .. }: &CableParams,
+    q: &[f64; 12],
+    xi: f64,
+    rest: Option<&[f64; 12]>,
+) -> (f64, f64) {
+    let strain = strain_at(models, q, *l, xi);
+    let eps0 = rest.map_or(0.0, |e| strain_at(models, e, *l, xi));
+    (strain, ea * (strain - eps0) * models.longitudinal.lever(strain))
 }
 
 /// Curvature at `xi`, directly: interpolated magnitudes would be wrong around a change of sign.
@@ -62,19 +78,19 @@ pub fn read(
     xi: f64,
     rest: Option<&[f64; 12]>,
 ) -> Result<Reading, String> {
-    let (models, &CableParams { l, ea, ei, .. }) = (model.models()?, params);
+    let (models, &CableParams { l, ei, .. }) = (model.models()?, params);
     let s = hermite(xi, l);
     let at = |e: &[f64; 12]| std::array::from_fn(|c| (0..4).map(|i| s[i] * e[3 * i + c]).sum());
-    let strain_at = |e| strain_at(models, e, l, xi);
     let curvature_at = |e| curvature_at(models.transverse, e, l, xi);
-    let (strain, curvature) = (strain_at(q), curvature_at(q));
-    let (eps0, kappa0) = rest.map_or((0.0, 0.0), |e| (strain_at(e), curvature_at(e)));
+    let (strain, tension) = stretch(models, params, q, xi, rest);
+    let curvature = curvature_at(q);
+    let kappa0 = rest.map_or(0.0, curvature_at);
     Ok(Reading {
         position: at(q),
         velocity: at(v),
         slope: combine(&Point::new(xi, 1.0).phi, &natural(q, 1.0 / l)),
         strain,
-        tension: ea * (strain - eps0) * models.longitudinal.lever(strain),
+        tension,
         curvature,
         moment: ei * (curvature - kappa0),
     })

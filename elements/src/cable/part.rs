@@ -3,7 +3,7 @@
 use super::flow::{self, Grid, Transport, change, push};
 use super::layout::Layout;
 use super::longitudinal::Longitudinal;
-use super::output::{Reading, read};
+use super::output::{self, Reading, read};
 use super::section::Section;
 use super::shape::{hermite, hermite_slope, natural, second};
 use super::transmitted::{self, Unstressed};
@@ -182,19 +182,34 @@ impl CablePart {
 
     /// The tension in element `k` of length `l` at `xi` as its strain there has it [N].
     fn by_strain(&self, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<f64> {
-        let r = self.reading(k, l, xi, at)?;
-        Some(r.tension - self.layout.section(k).ea * (self.offset.0 + self.fading(k, xi, at.t)))
+        let models = self.model.models().ok()?;
+        let (strain, tension) =
+            output::stretch(models, &self.params(k, l), &self.dofs(k, at.q), xi, self.rest_of(k));
+        let tension = self.told_by(k, xi, strain, tension);
+        Some(tension - self.layout.section(k).ea * (self.offset.0 + self.fading(k, xi, at.t)))
+    }
+
+    fn params(&self, k: usize, l: f64) -> CableParams {
+        let s = self.layout.section(k);
+        CableParams { l, ea: s.ea, ei: s.ei.across, rho_a: s.mass }
+    }
+
+    fn rest_of(&self, k: usize) -> Option<&[f64; 12]> {
+        self.rest.as_ref().map(|r| &r[k])
+    }
+
+    /// The tension of element `k` where a table tells the force of a strain, or else as it is.
+    fn told_by(&self, k: usize, xi: f64, strain: f64, tension: f64) -> f64 {
+        let force = self.layout.force(k, xi, strain);
+        force.map_or(tension, |force| {
+            force * self.model.models().map_or(1.0, |m| m.longitudinal.lever(strain))
+        })
     }
 
     fn reading(&self, k: usize, l: f64, xi: f64, at: &At<'_>) -> Option<Reading> {
-        let s = self.layout.section(k);
-        let params = CableParams { l, ea: s.ea, ei: s.ei.across, rho_a: s.mass };
-        let rest = self.rest.as_ref().map(|r| &r[k]);
-        let mut r =
-            read(self.model, &params, &self.dofs(k, at.q), &self.velocities(k, at.v), xi, rest).ok()?;
-        if let Some(force) = self.layout.force(k, xi, r.strain) {
-            r.tension = force * self.model.models().map_or(1.0, |m| m.longitudinal.lever(r.strain));
-        }
+        let (q, v) = (self.dofs(k, at.q), self.velocities(k, at.v));
+        let mut r = read(self.model, &self.params(k, l), &q, &v, xi, self.rest_of(k)).ok()?;
+        r.tension = self.told_by(k, xi, r.strain, r.tension);
         if let Some(moment) = self.layout.moment(k, xi, r.curvature) {
             r.moment = moment;
         }

@@ -1,13 +1,13 @@
 //! How long a step may be that leaps over no contact.
 
 use super::group::{Ball, Group, Scratch, Span, What};
-use super::search::{Cubic, Search};
+use super::search::{Cubic, Look, Search};
 use super::seat::{Frame, Seat, minus, rotation};
 use super::shape::{Gap, Shape};
 use super::term::Contact;
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{cross, times, transposed_times};
-use ropewalk_core::{At, V3, dot};
+use ropewalk_core::{At, SpanLine, V3, dot};
 
 /// The part of the radius that a point may go on by in a step once it touches.
 const PRESS: f64 = 0.25;
@@ -23,6 +23,11 @@ fn size(x: &V3<f64>) -> f64 {
     dot(x, x).sqrt()
 }
 
+/// The middle of a cubic of these control points.
+fn middle([a, b, c, d]: &[Seen; 4]) -> V3<f64> {
+    std::array::from_fn(|i| 0.125 * (a.s[i] + 3.0 * (b.s[i] + c.s[i]) + d.s[i]))
+}
+
 /// When the room is used up by what approaches with `w` and gains `b`: `w t + b t²/2` reaches it.
 pub(super) fn time(room: f64, w: f64, b: f64) -> f64 {
     let (w, b) = (w.max(0.0), b.max(0.0));
@@ -31,14 +36,31 @@ pub(super) fn time(room: f64, w: f64, b: f64) -> f64 {
 
 impl Contact {
     /// The longest step from here in which this group can't get deeper than a part of its radius unseen [s].
-    pub(super) fn free(&self, group: &Group, frame: &Frame, at: &At<'_>) -> f64 {
+    /// What is longer than `enough` needn't be known.
+    pub(super) fn free(&self, group: &Group, frame: &Frame, at: &At<'_>, enough: f64) -> f64 {
         match &group.what {
             What::Ball(ball) => self.free_ball(ball, frame, at),
             What::Span(span) => match self.level().and_then(|level| level.free(span, at)) {
                 Some(free) => free,
-                None => self.free_span(span, frame, at),
+                None => self.free_span(span, frame, at, enough),
             },
         }
+    }
+
+    /// The control points of a piece.
+    fn hull(&self, span: &Span, frame: &Frame, at: &At<'_>) -> [Seen; 4] {
+        let (Seat::Ground, SpanLine::Cubic { q, v, l }) = (self.fixed.seat, &span.line) else {
+            return span.line.controls().map(|held| self.seen(&held, frame, at));
+        };
+        let third = l / 3.0;
+        let of = |x: &[f64], i: &[usize; 4]| -> [V3<f64>; 4] {
+            let [a, da, b, db] = i.map(|i| three(x, i));
+            let [start, end] =
+                [(a, da, third), (b, db, -third)].map(|(a, d, t)| std::array::from_fn(|i| a[i] + t * d[i]));
+            [a, start, end, b]
+        };
+        let (s, u, a) = (of(at.q, q), of(at.v, v), of(at.a, v));
+        std::array::from_fn(|k| Seen { s: s[k], u: u[k], a: a[k] })
     }
 
     fn seen(&self, held: &Held, frame: &Frame, at: &At<'_>) -> Seen {
@@ -85,24 +107,18 @@ impl Contact {
                 _ => false,
             })
         };
-        let mut scratch = Scratch::default();
+        let (mut scratch, mut places) = (Scratch::default(), Vec::new());
+        let (mut looked, mut near) = (Vec::new(), Vec::new());
         let mut gone = |group: &Group| match &group.what {
             What::Ball(ball) => through(&ball.held, ball.radius),
             What::Span(span) => {
-                let moved = |held: &Held| {
-                    let [a, b] = match self.fixed.seat {
-                        Seat::Ground => [held.x(before), held.x(after)],
-                        Seat::Body { .. } => place(held),
-                    };
-                    size(&minus(&a, &b))
-                };
-                let reach = span.line.controls().iter().map(moved).fold(0.0, f64::max);
-                // what was farther from the shape than anything has moved, its radius included, is still on its side
-                let curve = span.curve(&self.fixed, &frames[0], before);
-                if Search::new(&self.fixed.shape, &curve, span.radius).room() + span.radius > reach {
+                let [old, new] =
+                    [(&frames[0], before), (&frames[1], after)].map(|(f, at)| span.curve(&self.fixed, f, at));
+                if self.stays_outside(&old, &new, span.radius, (&mut looked, &mut near)) {
                     return false;
                 }
-                let mut places = vec![0.0, 0.25, 0.5, 0.75, 1.0];
+                places.clear();
+                places.extend([0.0, 0.25, 0.5, 0.75, 1.0]);
                 for (frame, at) in [(&frames[0], before), (&frames[1], after)] {
                     group.gather(&self.fixed, frame, at, &mut scratch);
                     places.extend(scratch.found.iter().map(|[a, b]| 0.5 * (a + b)));
@@ -120,6 +136,32 @@ impl Contact {
              soft for what hits it. How deep a hit goes falls with its root: make it stiffer, or the shape thicker",
             self.label
         ))
+    }
+
+    /// Whether the middle of a curve hasn't come into the shape between two places of it, for certain.
+    fn stays_outside(
+        &self,
+        old: &Cubic,
+        new: &Cubic,
+        radius: f64,
+        (pieces, near): (&mut Vec<[Look; 2]>, &mut Vec<[f64; 2]>),
+    ) -> bool {
+        let (shape, hulls) = (&self.fixed.shape, [old.controls(), new.controls()]);
+        // what is farther from it than anything has moved is still on its side
+        let reach = hulls[0].iter().zip(&hulls[1]).map(|(a, b)| size(&minus(a, b))).fold(0.0, f64::max);
+        if shape.convex() {
+            // beyond the plane on the nearest place of its surface there is nothing of it
+            let middle = old.at(0.5);
+            let Some(gap) = shape.at_least(&middle) else { return true };
+            let level = dot(&gap.normal, &middle) - gap.distance;
+            if hulls.as_flattened().iter().all(|p| dot(&gap.normal, p) > level) {
+                return true;
+            }
+            near.clear();
+            Search::new(shape, old, reach).find(pieces, near);
+            return near.is_empty();
+        }
+        Search::new(shape, old, radius).room() + radius > reach
     }
 
     /// The surface as seen from a point, at least as far away as told.
@@ -145,8 +187,8 @@ impl Contact {
 
     /// The curve lies in the hull of its control points, and beyond the plane on the surface nearest to one of its
     /// points, a convex shape ends.
-    fn free_span(&self, span: &Span, frame: &Frame, at: &At<'_>) -> f64 {
-        let all = span.line.controls().map(|held| self.seen(&held, frame, at));
+    fn free_span(&self, span: &Span, frame: &Frame, at: &At<'_>, enough: f64) -> f64 {
+        let all = self.hull(span, frame, at);
         let most = |of: fn(&Seen) -> &V3<f64>| all.iter().fold(0.0_f64, |m, p| m.max(size(of(p))));
         let press = PRESS * span.radius;
         if let Shape::Tube { .. } = self.fixed.shape {
@@ -162,7 +204,7 @@ impl Contact {
             let room = Search::new(&self.fixed.shape, &curve, span.radius).room();
             let (u, a) = (most(|p| &p.u), most(|p| &p.a));
             let anyhow = time(room.max(span.radius), u, a);
-            let nearer = self.facing(&self.fixed.place(frame, &span.line.held(0.5).x(at)));
+            let nearer = self.facing(&middle(&all));
             let Some(gap) = nearer else { return f64::INFINITY };
             // towards the side that it faces
             let towards = all.iter().map(|p| {
@@ -172,8 +214,7 @@ impl Contact {
             return towards.fold(anyhow, f64::min);
         }
         let mut longest = 0.0_f64;
-        for xi in [0.5, 0.0, 1.0] {
-            let s = self.fixed.place(frame, &span.line.held(xi).x(at));
+        for s in [middle(&all), all[0].s, all[3].s] {
             let Some(gap) = self.facing(&s) else { return f64::INFINITY };
             let n = &gap.normal;
             let level = dot(n, &s) - gap.distance;
@@ -182,7 +223,7 @@ impl Contact {
                 time(room.max(press), -dot(n, &p.u), -dot(n, &p.a))
             };
             longest = longest.max(all.iter().map(one).fold(f64::INFINITY, f64::min));
-            if longest == f64::INFINITY {
+            if longest >= enough {
                 break;
             }
         }

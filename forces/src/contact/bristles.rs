@@ -199,7 +199,7 @@ impl Contact {
     pub(super) fn each_with_bristles(
         &self,
         at: &At<'_>,
-        mut see: impl FnMut(&Touch),
+        mut see: impl FnMut(f64, &Touch),
         mut see_bristle: impl FnMut(&Hold, f64),
     ) {
         let rubs = self.law.friction.is_some() && !self.brakes(at.internal);
@@ -207,8 +207,8 @@ impl Contact {
         let level = self.level_in(at);
         for group in &self.groups {
             let mut cells = [Pressed::NONE; CELLS];
-            self.each_of(level.as_ref(), group, (&frame, at), &mut scratch, |_, cell, touch| {
-                see(touch);
+            self.each_of(level.as_ref(), group, (&frame, at), &mut scratch, |k, cell, touch| {
+                see(k, touch);
                 if rubs {
                     cells[cell].add(touch.normal, &touch.gap.normal);
                 }
@@ -217,7 +217,7 @@ impl Contact {
                 self.bristles_of(group, &mut cells, &frame, at, &mut see_bristle);
             }
         }
-        self.each_flowing(at, |touch| see(touch));
+        self.each_flowing_ball(at, |ball, touch| see(ball.k, touch));
     }
 
     /// Sees the bristles of a group, whose cells are pressed so.

@@ -6,6 +6,10 @@
 //! largest `|p''|`, to which a hollow of curvature `η` adds `η B²`. Hence on a piece of length `h` the function
 //! `δ + C ξ (h - ξ)/2` is concave: it lies above its chord and below its tangents. A piece that neither bound decides
 //! is halved.
+//!
+//! What lies around a drum has `|p''|` of the drum's own curvature, and yet its depth hardly changes. Where the surface is
+//! round, `δ'' = -n·p'' - p'·H p'` with the curvatures `H` of level surfaces is known where it is looked at, and it changes
+//! no faster than `|p'''| + 3 η B |p''| + 3 η² B² |δ'|`, where no curvature is larger than `η`.
 
 use super::shape::Shape;
 use ropewalk_core::{V3, dot};
@@ -27,6 +31,8 @@ pub(crate) struct Look {
     pub x: V3<f64>,
     pub depth: f64,
     pub slope: f64,
+    /// `δ''`, if it is known.
+    pub second: Option<f64>,
 }
 
 /// What is known of a piece.
@@ -70,9 +76,18 @@ impl Cubic {
     }
     /// The largest `|p''|`, which is at an end.
     pub fn bend(&self) -> f64 {
-        let start = blend([-6.0, -4.0, 6.0, -2.0], &self.0);
-        let end = blend([6.0, 2.0, -6.0, 4.0], &self.0);
+        let (start, end) = (self.second(0.0), self.second(1.0));
         dot(&start, &start).max(dot(&end, &end)).sqrt()
+    }
+    /// `|p'''|`, which is the same all along.
+    pub fn third(&self) -> f64 {
+        let third = blend([12.0, 6.0, -12.0, 6.0], &self.0);
+        dot(&third, &third).sqrt()
+    }
+    /// Its control points: it lies in their convex hull.
+    pub fn controls(&self) -> [V3<f64>; 4] {
+        let [a, da, b, db] = &self.0;
+        [*a, std::array::from_fn(|i| a[i] + da[i] / 3.0), std::array::from_fn(|i| b[i] - db[i] / 3.0), *b]
     }
 }
 
@@ -228,11 +243,12 @@ pub(crate) struct Search<'a> {
     pub radius: f64,
     speed: f64,
     bend: f64,
+    third: f64,
 }
 
 impl<'a> Search<'a> {
     pub fn new(shape: &'a Shape, curve: &'a Cubic, radius: f64) -> Self {
-        Search { shape, curve, radius, speed: curve.speed(), bend: 0.0 }
+        Search { shape, curve, radius, speed: curve.speed(), bend: 0.0, third: 0.0 }
     }
 
     /// The places that touch, from `ξ` to `ξ`, in order, put behind those in `found`. A curve that is farther away than
@@ -245,8 +261,12 @@ impl<'a> Search<'a> {
 
     /// The same of a curve that is known not to be.
     pub fn find_near(&mut self, pieces: &mut Vec<[Look; 2]>, found: &mut Vec<[f64; 2]>) {
-        self.bend = self.curve.bend();
+        self.measure();
         self.find_between([0.0, 1.0], pieces, found);
+    }
+
+    fn measure(&mut self) {
+        (self.bend, self.third) = (self.curve.bend(), self.curve.third());
     }
 
     /// A lower bound of the distance of the curve's surface from the shape [m].
@@ -256,7 +276,7 @@ impl<'a> Search<'a> {
         if far > 0.0 {
             return far;
         }
-        self.bend = self.curve.bend();
+        self.measure();
         match (self.look(0.0), self.look(1.0)) {
             (Some(a), Some(b)) => far.max(-self.bounds(&a, &b).0),
             _ => f64::INFINITY,
@@ -276,24 +296,36 @@ impl Depth for Search<'_> {
             // beyond the box of a surface with borders there is no inside
             (gap.distance, gap.normal) = (-gap.distance, gap.normal.map(|n| -n));
         }
+        let (slope, round) = (self.curve.slope(xi), self.shape.is_round());
         Some(Look {
             xi,
             x,
             depth: self.radius - gap.distance,
-            slope: -dot(&gap.normal, &self.curve.slope(xi)),
+            slope: -dot(&gap.normal, &slope),
+            second: round.then(|| -dot(&gap.normal, &self.curve.second(xi)) - dot(&slope, &gap.turn(&slope))),
         })
     }
 
     fn rise(&self, a: &Look, b: &Look) -> f64 {
-        let way = 0.5 * self.speed * (b.xi - a.xi);
+        let h = b.xi - a.xi;
+        let way = 0.5 * self.speed * h;
         let middle: V3<f64> = std::array::from_fn(|i| 0.5 * (a.x[i] + b.x[i]));
         // every point of the piece is within `way` of the middle of its chord
         let reach = (self.radius - 0.5 * (a.depth + b.depth)).abs() + way;
         let hollow = self.shape.hollow(&middle, way, reach);
-        if hollow == 0.0 || hollow.is_infinite() && way < DETAIL * self.radius {
-            return self.bend;
-        }
-        self.bend + hollow * self.speed * self.speed
+        let anyhow = if hollow == 0.0 || hollow.is_infinite() && way < DETAIL * self.radius {
+            self.bend
+        } else {
+            self.bend + hollow * self.speed * self.speed
+        };
+        let (Some(one), Some(other), Some(most)) = (a.second, b.second, self.shape.roundest(&middle, way))
+        else {
+            return anyhow;
+        };
+        let turn = most * self.speed;
+        let slope = a.slope.abs().min(b.slope.abs()) + (self.bend + turn * self.speed) * h;
+        let changes = self.third + 3.0 * turn * (self.bend + turn * slope.min(self.speed));
+        anyhow.min((one.max(other) + 0.5 * changes * h).max(0.0))
     }
 }
 

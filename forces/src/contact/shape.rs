@@ -160,6 +160,34 @@ impl Shape {
         }
     }
 
+    /// Whether it is round or flat all over but for edges, so that curvature tells how its distance changes.
+    pub(crate) fn is_round(&self) -> bool {
+        matches!(self, Shape::Plane | Shape::Ball { .. } | Shape::Cylinder { .. } | Shape::Tube { .. })
+    }
+
+    /// The largest curvature of its level surfaces within `way` of a point [1/m], if all that is seen from there is one and the
+    /// same ball, flank or plane.
+    pub(crate) fn roundest(&self, x: &V3<f64>, way: f64) -> Option<f64> {
+        let within = |rho: f64| (rho > way).then(|| 1.0 / (rho - way));
+        match self {
+            Shape::Plane => Some(0.0),
+            Shape::Ball { .. } => within(dot(x, x).sqrt()),
+            Shape::Cylinder { radius, half } | Shape::Tube { radius, half } => {
+                let rho = (x[0] * x[0] + x[1] * x[1]).sqrt();
+                let beyond = x[2].abs() - half + way;
+                let out = if let Shape::Tube { .. } = self { radius - rho } else { rho - radius };
+                // nowhere beyond the ends, nor nearer to one of them than to the flank
+                if beyond < (out - way).min(0.0) { within(rho) } else { None }
+            }
+            Shape::Cuboid { .. } | Shape::Mesh(_) | Shape::Heights(_) => None,
+        }
+    }
+
+    /// Whether it is solid and without hollows: any plane that touches it has all of it on one side.
+    pub(crate) fn convex(&self) -> bool {
+        !self.concave() && !matches!(self, Shape::Tube { .. })
+    }
+
     /// Points of the Gauss rule that integrates the contact with a piece of this length to what Newton's method and
     /// the balance of energy can tell: four are exact on a plane where the force is linear, more are for curved ones.
     pub(crate) fn points(&self, length: f64, linear: bool) -> usize {

@@ -322,11 +322,7 @@ impl Contact {
     }
 
     /// Sees all that touches of cables that feed.
-    pub(super) fn each_flowing(&self, at: &At<'_>, mut see: impl FnMut(&Touch)) {
-        self.each_flowing_ball(at, |_, touch| see(touch));
-    }
-
-    fn each_flowing_ball(&self, at: &At<'_>, mut see: impl FnMut(&Ball, &Touch)) {
+    pub(super) fn each_flowing_ball(&self, at: &At<'_>, mut see: impl FnMut(&Ball, &Touch)) {
         let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
         for flowing in &self.flowing {
             let now = flowing.now(at);
@@ -481,13 +477,20 @@ impl Term for Contact {
         Energy { potential, ..Energy::default() }
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let (mut pushed, mut rubbed) = (0.0, 0.0);
+        self.balance(at).1
+    }
+    fn balance(&self, at: &At<'_>) -> (Energy, Power) {
+        let (mut potential, mut pushed, mut rubbed) = (0.0, 0.0, 0.0);
         self.each_with_bristles(
             at,
-            |t| pushed += (t.normal - t.elastic) * t.rate,
+            |k, t| {
+                potential += self.law.stored(k, t.depth);
+                pushed += (t.normal - t.elastic) * t.rate;
+            },
             |hold, _| rubbed += hold.heat,
         );
-        Power { dissipated: pushed + rubbed, ..Power::default() }
+        let power = Power { dissipated: pushed + rubbed, ..Power::default() };
+        (Energy { potential, ..Energy::default() }, power)
     }
     fn kinked(&self) -> bool {
         self.law.friction.is_some()
@@ -523,12 +526,15 @@ impl Remembers for Contact {
 impl Foresees for Contact {
     fn step_limit(&self, at: &At<'_>) -> f64 {
         let frame = self.fixed.frame(at);
-        let fixed = self.groups.iter().map(|g| self.free(g, &frame, at));
-        let flowing = self.flowing.iter().map(|f| {
-            let now = f.now(at);
-            self.free(&now.group, &frame, &now.at(at))
-        });
-        fixed.chain(flowing).fold(f64::INFINITY, f64::min)
+        let mut least = f64::INFINITY;
+        for group in &self.groups {
+            least = least.min(self.free(group, &frame, at, least));
+        }
+        for flowing in &self.flowing {
+            let now = flowing.now(at);
+            least = least.min(self.free(&now.group, &frame, &now.at(at), least));
+        }
+        least
     }
     fn passes(&self, before: &At<'_>, after: &At<'_>) -> Option<String> {
         self.passed(before, after)

@@ -6,7 +6,7 @@ use ropewalk_core::rotation::{around, exp, from_bryant, matrix, times};
 use ropewalk_core::testing::{check_tangent, dense, difference};
 use ropewalk_core::{
     At, ContactPoint, ContactSpan, Foresees, Marker, Node, NodeId, NodeKind, Remembers, Shows, SpanLine,
-    Term, V3, Weights, Width,
+    Term, V3, Weights, Width, dot,
 };
 use ropewalk_forces::contact::{
     Contact, ContactLaw, Damping, Friction, Grip, Leaving, Mesh, Shape, Soup, Stiffness,
@@ -552,6 +552,122 @@ fn the_tangent_under_a_bar_is_exact_but_for_quadrature() {
     }
 }
 
+/// The length of a curve of length 1 that touches a shape on the ground is that of its samples: that length, and how often they
+/// change between touching and not.
+fn compare_with_samples(contact: &Contact, shape: &Shape, span: &ContactSpan, s: &Numbers) -> (f64, usize) {
+    let mut shown = Vec::new();
+    contact.observe(&s.at(), &mut shown);
+    let n = 4000;
+    let touches = |k: usize| {
+        let x = span.line.held((k as f64 + 0.5) / n as f64).x(&s.at());
+        shape.gap(&x, span.radius).is_some()
+    };
+    let inside: Vec<bool> = (0..n).map(touches).collect();
+    let length = inside.iter().filter(|i| **i).count() as f64 / n as f64;
+    let changes = inside.windows(2).filter(|w| w[0] != w[1]).count();
+    assert!(
+        (shown[6] - length).abs() <= (changes as f64 + 1.0) / n as f64 + 1e-6,
+        "{} instead of {length}: {shape:?}, radius {}, {:?}",
+        shown[6],
+        span.radius,
+        span.line.place(&s.at())
+    );
+    (length, changes)
+}
+
+/// Curves that follow the surface of what is round, nearly: their depth changes by next to nothing beside how they bend.
+#[test]
+fn what_lies_around_something_round_touches_where_samples_show() {
+    let mut r = Random(37);
+    let nodes = nodes();
+    let round = [
+        Shape::Ball { radius: 1.0 },
+        Shape::Cylinder { radius: 1.0, half: 0.4 },
+        Shape::Cylinder { radius: 1.0, half: f64::INFINITY },
+        Shape::Tube { radius: 1.0, half: 0.4 },
+        Shape::Tube { radius: 1.0, half: f64::INFINITY },
+    ];
+    let (mut whole, mut partly) = (0, 0);
+    for shape in round {
+        let out = if let Shape::Tube { .. } = shape { -1.0 } else { 1.0 };
+        for _ in 0..400 {
+            let mut s = Numbers::new(&mut r);
+            let (span, _) = spans(&mut r).swap_remove(0);
+            let [a, b] = [nodes[1].q, nodes[2].q];
+            // an arc that climbs a little, about as deep as a rope is on a drum
+            let [draw, tilt, off] = [r.vector(1.0), r.vector(0.3), r.vector(1.0)];
+            let (turn, radius, depth) = (1.2 * draw[0].abs(), 0.02 + 0.1 * draw[1].abs(), 1e-3 * draw[2]);
+            for (at, angle, off) in [(a, 0.0, off[0]), (b, turn, off[1])] {
+                let rho = 1.0 + out * (radius - depth * (1.0 + 0.5 * off));
+                let (sin, cos) = f64::sin_cos(angle);
+                s.q[at..at + 3].copy_from_slice(&[rho * cos, rho * sin, tilt[0] + tilt[1] * angle]);
+                let slope = [-rho * sin, rho * cos, tilt[1]];
+                (0..3).for_each(|i| s.q[at + 3 + i] = turn * slope[i] / 1.1);
+            }
+            let span = ContactSpan { radius, tips: [false; 2], length: 1.0, ..span };
+            let marker = Marker::Ground { point: [0.0; 3], axes: matrix(&from_bryant([0.0; 3])) };
+            let law = ContactLaw::default();
+            let contact =
+                Contact::new("c", &nodes, shape.clone(), &marker, (&[], &[span]), STIFF, law).unwrap();
+            let (length, changes) = compare_with_samples(&contact, &shape, &span, &s);
+            whole += usize::from(length == 1.0);
+            partly += usize::from(changes > 0);
+        }
+    }
+    assert!(whole > 300 && partly > 100, "{whole} {partly}");
+}
+
+/// What goes in on one side of a shape and out on the other in a step is told, and nothing is told of what stays outside.
+#[test]
+fn what_passes_through_a_shape_is_seen_and_nothing_else() {
+    let mut r = Random(41);
+    let nodes = nodes();
+    let (mut through, mut outside) = (0, 0);
+    for shape in shapes().into_iter().filter(|shape| !matches!(shape, Shape::Plane | Shape::Tube { .. })) {
+        for k in 0..400 {
+            let mut s = Numbers::new(&mut r);
+            let (span, _) = spans(&mut r).swap_remove(0);
+            let span = ContactSpan { radius: 0.05, tips: [false; 2], length: 1.0, ..span };
+            let [a, b] = [nodes[1].q, nodes[2].q];
+            for at in [a, a + 3, b, b + 3] {
+                s.q[at..at + 3].copy_from_slice(&r.vector(if at == a || at == b { 2.5 } else { 0.5 }));
+            }
+            // every other time it goes along rather than about
+            let way = r.vector(if k % 2 == 0 { 4.0 } else { 0.3 });
+            let mut after = s.q.clone();
+            for at in [a, b] {
+                (0..3).for_each(|i| after[at + i] += way[i]);
+            }
+            let (before, after) = (s.at(), At { q: &after, ..s.at() });
+            let marker = Marker::Ground { point: [0.0; 3], axes: matrix(&from_bryant([0.0; 3])) };
+            let law = ContactLaw::default();
+            let contact =
+                Contact::new("c", &nodes, shape.clone(), &marker, (&[], &[span]), STIFF, law).unwrap();
+            let told = contact.passes(&before, &after).is_some();
+            // the way of a point that is looked at by itself, in small steps
+            let sides = |xi: f64| {
+                let [x, y] = [&before, &after].map(|at| span.line.held(xi).x(at));
+                let on_way = |t: f64| std::array::from_fn(|i| x[i] + t * (y[i] - x[i]));
+                let seen = (0..=400).filter_map(|n| shape.gap(&on_way(f64::from(n) / 400.0), span.radius));
+                seen.map(|gap| gap.normal).collect::<Vec<V3<f64>>>()
+            };
+            let crosses = |xi: f64| match &sides(xi)[..] {
+                [first, .., last] => dot(first, last) < -0.05,
+                _ => false,
+            };
+            let near = |k: u32| !sides(f64::from(k) / 40.0).is_empty();
+            if [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().any(crosses) {
+                assert!(told, "{shape:?}: {:?} by {way:?}", span.line.place(&before));
+                through += 1;
+            } else if !(0..=40).any(near) {
+                assert!(!told, "{shape:?}: {:?} by {way:?}", span.line.place(&before));
+                outside += 1;
+            }
+        }
+    }
+    assert!(through > 50 && outside > 50, "{through} {outside}");
+}
+
 #[test]
 fn places_of_contact_are_those_that_samples_show() {
     let mut r = Random(29);
@@ -574,23 +690,7 @@ fn places_of_contact_are_those_that_samples_show() {
             let law = ContactLaw::default();
             let contact =
                 Contact::new("c", &nodes, shape.clone(), &marker, (&[], &[span]), STIFF, law).unwrap();
-            let mut shown = Vec::new();
-            contact.observe(&s.at(), &mut shown);
-            let n = 4000;
-            let inside: Vec<bool> = (0..n)
-                .map(|k| {
-                    let x = span.line.held((k as f64 + 0.5) / n as f64).x(&s.at());
-                    shape.gap(&x, radius).is_some()
-                })
-                .collect();
-            let length = inside.iter().filter(|i| **i).count() as f64 / n as f64;
-            let changes = inside.windows(2).filter(|w| w[0] != w[1]).count();
-            assert!(
-                (shown[6] - length).abs() <= (changes as f64 + 1.0) / n as f64 + 1e-6,
-                "{} instead of {length}: {shape:?}, radius {radius}, {:?}",
-                shown[6],
-                span.line.place(&s.at())
-            );
+            let (length, changes) = compare_with_samples(&contact, &shape, &span, &s);
             touching += usize::from(length > 0.0);
             several += usize::from(changes > 2);
         }
@@ -607,22 +707,25 @@ fn a_curve_that_flies_towards_a_shape_sees_it_in_time() {
     shapes.push(valley());
     let mut finite = 0;
     for shape in shapes {
-        for _ in 0..40 {
+        for k in 0..80 {
             let mut s = Numbers::new(&mut r);
-            let marker = Marker::Node {
-                node: NodeId(SEAT as u32),
-                point: [0.0; 3],
-                axes: matrix(&from_bryant([0.0; 3])),
+            let axes = matrix(&from_bryant([0.0; 3]));
+            let on_body = k % 2 == 0;
+            let marker = if on_body {
+                Marker::Node { node: NodeId(SEAT as u32), point: [0.0; 3], axes }
+            } else {
+                Marker::Ground { point: [0.0; 3], axes }
             };
             let (mut span, _) = spans(&mut r).swap_remove(0);
             (span.radius, span.tips) = (0.05, [false; 2]);
             let inside = matches!(shape, Shape::Tube { .. });
             let y = near(&shape, if inside { 0.7 } else { 2.0 }, &mut r);
-            let x = times(&s.axes(), &y);
-            let (seat, [a, b]) = (nodes[SEAT], [nodes[1].q, nodes[2].q]);
+            let (seat, [a, b]) = (nodes[SEAT].q, [nodes[1].q, nodes[2].q]);
+            let turned = times(&s.axes(), &y);
+            let x = if on_body { std::array::from_fn(|i| s.q[seat + i] + turned[i]) } else { y };
             let way = r.vector(if inside { 0.2 } else { 1.0 });
             for i in 0..3 {
-                s.q[a + i] = s.q[seat.q + i] + x[i] - 0.5 * way[i];
+                s.q[a + i] = x[i] - 0.5 * way[i];
                 s.q[b + i] = s.q[a + i] + way[i];
                 s.q[a + 3 + i] *= 0.2;
                 s.q[b + 3 + i] *= 0.2;

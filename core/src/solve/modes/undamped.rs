@@ -33,7 +33,7 @@ const STARTS: usize = 4;
 /// A shift `m` [1/s²] near the lowest eigenvalue that isn't zero: above zero, so that free parts don't make the matrix
 /// singular, and not far above the eigenvalues that are asked for. Leaves `K + m M` factored.
 pub(super) fn shift(p: &mut Pencil) -> Result<f64, ModesError> {
-    let (mut m, mut lowered) = (1e-6 * p.fastest, 0);
+    let (mut m, mut lowered) = (guess(p).ok().flatten().unwrap_or(1e-6 * p.fastest), 0);
     for _ in 0..12 {
         p.factor(0.0, m).map_err(ModesError::Solver)?;
         let lowest = lowest(p, m)?;
@@ -50,6 +50,26 @@ pub(super) fn shift(p: &mut Pencil) -> Result<f64, ModesError> {
     }
     p.factor(0.0, m).map_err(ModesError::Solver)?;
     Ok(m)
+}
+
+/// About the lowest eigenvalue, by inverse iteration on a single vector with hardly any shift; nothing where that finds what has
+/// next to none, such as free parts, or nothing that can be solved for.
+fn guess(p: &mut Pencil) -> Result<Option<f64>, SolveError> {
+    let m = 1e-12 * p.fastest;
+    let mut space = Arnoldi::default();
+    if !space.start(&mut Inverse(p, m))? {
+        return Ok(None);
+    }
+    let [mut x, _] = space.vector(&[vec![1.0], Vec::new()]);
+    let mut y = vec![0.0; x.len()];
+    for _ in 0..3 {
+        Inverse(p, m).apply(&x, &mut y)?;
+        let size = dot(&y, &y).sqrt();
+        x.iter_mut().zip(&y).for_each(|(x, y)| *x = y / size);
+    }
+    p.mass(&x, &mut y);
+    let k = (p.energy(&x).0 / dot(&x, &y)).abs();
+    Ok((k > 10.0 * m && k.is_finite()).then_some(k))
 }
 
 /// The lowest stiffness seen with the factored shift `m` that isn't zero beside it; infinite if there is none.

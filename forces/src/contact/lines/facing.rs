@@ -186,7 +186,7 @@ impl Depth for Facing<'_> {
             let own = self.other.cubic.slope(t);
             (0..3).for_each(|i| slope[i] -= w.rate * own[i]);
         }
-        Some(Look { xi, x, depth: self.thick - distance, slope: -dot(&normal, &slope) })
+        Some(Look { xi, x, depth: self.thick - distance, slope: -dot(&normal, &slope), second: None })
     }
 
     fn rise(&self, a: &Look, b: &Look) -> f64 {

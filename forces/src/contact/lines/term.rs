@@ -331,19 +331,21 @@ impl Term for LineContact {
         }
     }
     fn energy(&self, at: &At<'_>) -> Energy {
-        let mut potential = 0.0;
-        // the elastic force of a power of the depth, times the depth over the exponent and one
-        self.each(at, |push| potential += push.normal().1 * push.depth / (self.law.exponent + 1.0));
-        Energy { potential, ..Energy::default() }
+        self.balance(at).0
     }
     fn power(&self, at: &At<'_>) -> Power {
-        let mut dissipated = 0.0;
+        self.balance(at).1
+    }
+    fn balance(&self, at: &At<'_>) -> (Energy, Power) {
+        let (mut potential, mut dissipated) = (0.0, 0.0);
         self.each(at, |push| {
             let (force, elastic) = push.normal();
+            // the elastic force of a power of the depth, times the depth over the exponent and one
+            potential += elastic * push.depth / (self.law.exponent + 1.0);
             dissipated += (force - elastic) * push.rate;
         });
         self.each_bristle(at, |bristle, hold, _| dissipated += bristle.heat(hold));
-        Power { dissipated, ..Power::default() }
+        (Energy { potential, ..Energy::default() }, Power { dissipated, ..Power::default() })
     }
     fn kinked(&self) -> bool {
         self.rubs.is_some()
