@@ -236,6 +236,8 @@ pub trait Stations: Send + Sync {
     fn power(&self, laws: &Laws, at: &At<'_>) -> Power;
     /// The energy of all laws.
     fn energy(&self, laws: &Laws, at: &At<'_>) -> Energy;
+    /// Both at once.
+    fn balance(&self, laws: &Laws, at: &At<'_>) -> (Energy, Power);
     /// Applies all laws and adds what comes of it.
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>);
     /// Adds what comes of loads that were found elsewhere, one for each station in the order of [`Stations::each`].
@@ -258,6 +260,10 @@ impl Laws {
     /// Adds the laws of another list.
     pub fn append(&mut self, other: &Laws) {
         other.all.iter().for_each(|law| self.add(law.clone()));
+    }
+    /// Whether any of them stores energy: most store nothing.
+    fn store(&self) -> bool {
+        self.all.iter().any(|law| law.gives().couple)
     }
     fn add(&mut self, law: Arc<dyn ErasedLaw>) {
         self.all.push(law.clone());
@@ -308,6 +314,9 @@ impl Term for FieldTerm {
     }
     fn energy(&self, at: &At<'_>) -> Energy {
         self.stations.energy(&self.laws, at)
+    }
+    fn balance(&self, at: &At<'_>) -> (Energy, Power) {
+        self.stations.balance(&self.laws, at)
     }
     fn effects(&self) -> Vec<Box<dyn Term>> {
         let one = |law: &Arc<dyn ErasedLaw>| -> Box<dyn Term> {

@@ -20,6 +20,12 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     pub fn new() -> Self {
         StationPool { elements: Vec::new(), seats: Vec::new() }
     }
+    /// Adds up what is asked for.
+    fn work(&self, laws: &Laws, at: &At<'_>, power: Option<&mut Power>, energy: Option<&mut Energy>) {
+        EXCHANGE.with_borrow_mut(|exchange| {
+            run(Width::best(), WorkAll { pool: self, laws, at, power, energy, exchange });
+        });
+    }
     /// Adds an element on these nodes. `false` if their coordinates don't add up to `Q` and `N`.
     #[must_use]
     pub fn push(&mut self, nodes: &[Node], element: E, on: &[NodeId]) -> bool {
@@ -172,21 +178,19 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     }
     fn power(&self, laws: &Laws, at: &At<'_>) -> Power {
         let mut total = Power::default();
-        EXCHANGE.with_borrow_mut(|exchange| {
-            let power = Some(&mut total);
-            run(Width::best(), WorkAll { pool: self, laws, at, power, energy: None, exchange });
-        });
+        self.work(laws, at, Some(&mut total), None);
         total
     }
     fn energy(&self, laws: &Laws, at: &At<'_>) -> Energy {
         let mut total = Energy::default();
-        // most laws store nothing
-        if laws.all.iter().any(|law| law.gives().couple) {
-            EXCHANGE.with_borrow_mut(|exchange| {
-                let energy = Some(&mut total);
-                run(Width::best(), WorkAll { pool: self, laws, at, power: None, energy, exchange });
-            });
+        if laws.store() {
+            self.work(laws, at, None, Some(&mut total));
         }
         total
+    }
+    fn balance(&self, laws: &Laws, at: &At<'_>) -> (Energy, Power) {
+        let (mut energy, mut power) = (Energy::default(), Power::default());
+        self.work(laws, at, Some(&mut power), laws.store().then_some(&mut energy));
+        (energy, power)
     }
 }
