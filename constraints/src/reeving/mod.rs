@@ -10,6 +10,7 @@ mod at_rest;
 pub(crate) mod drum;
 mod events;
 mod flank;
+mod flank_spec;
 mod fleet;
 mod hold;
 mod inline;
@@ -23,6 +24,7 @@ mod spec;
 mod tangent;
 mod torsion;
 mod turns;
+mod twist;
 
 pub use arc::{Arc, End, Grip, Instant, Residual, Wheel, direction};
 pub use at_rest::Sliding;

@@ -7,7 +7,7 @@ use super::inline::{each, three, two};
 use super::local::{Local, from};
 use super::piece::Piece;
 use super::seat::{Seat, turned};
-use super::torsion::Twist;
+use super::twist::Twist;
 use num_dual::Dual64;
 use ropewalk_core::rotation::{along, cross, times, transposed_times};
 use ropewalk_core::{

@@ -155,11 +155,16 @@ impl Simulation {
                 break;
             }
             let pulls = (!(tension.most < least)).then_some(&tension);
-            let counts = || parts.iter().filter(|p| !(p.most < SMALL * all)).chain(pulls);
+            let moved = || parts.iter().filter(|p| !(p.most < SMALL * all));
+            let counts = || moved().chain(pulls);
             if counts().all(|p| p.is_forgotten(now - begun)) && k > 3 * KICK {
                 let positions = counts().fold(0.0, |m: f64, p| m.max(p.sum / p.most));
                 let forces = FORCES * self.tolerated() * tension.sum / first;
                 return Ok(Remembers::For(positions.max(forces)));
+            }
+            // what will have been remembered for so long makes no difference to the run
+            if moved().any(|p| !self.memory.would_help(p.sum / p.most)) {
+                break;
             }
             if k == most / 2 && counts().any(|p| !(p.last < LASTING * p.most)) {
                 return Ok(Remembers::Always);

@@ -67,6 +67,11 @@ impl Memory {
         self.forgets.map_or(moving, |memory| moving.min(SAFE * memory))
     }
 
+    /// Whether errors that are remembered for so long [s] would add up over less than the run.
+    pub fn would_help(&self, memory: f64) -> bool {
+        SAFE * memory < self.whole
+    }
+
     /// When the run is to end [s].
     pub fn end(&self) -> f64 {
         self.began + self.whole

@@ -17,6 +17,7 @@ mod welded;
 
 use super::local::Local;
 use super::sheave::{Groove, Sheave};
+use super::twist::Twist;
 pub(super) use roll::Rolls;
 use ropewalk_core::{
     Assembly, At, Column, Energy, Jet, MovingBoundary, Pattern, Power, Remembers, Residuals, Seeds, Shows,
@@ -70,34 +71,6 @@ fn leave_out(
             block[first + i][first + j] += by * p[c];
             block[first + j][first + i] -= by * p[c];
         }
-    }
-}
-
-/// The twist of one cable on a wheel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::reeving) struct Twist {
-    pub torsion: Torsional,
-    /// Twist at the start, and that less the angle by which the spins of both ends are labelled [rad].
-    pub laid: [f64; 2],
-    /// Place of the internal variables by how much both differ since at the last state [rad]. The second one counts whole turns: it
-    /// changes little where the cable is wrung, by however many turns.
-    pub memory: usize,
-}
-
-impl Twist {
-    /// Twist at the last state [rad].
-    pub fn last(&self, at: &At<'_>) -> f64 {
-        self.recalls(0, at.internal)
-    }
-
-    fn recalls(&self, which: usize, internal: &[f64]) -> f64 {
-        self.laid[which] + internal.get(self.memory + which).copied().unwrap_or(0.0)
-    }
-
-    /// Tension that it makes in a laid rope of this unstretched length [N], with the twist of the last state: friction is a step
-    /// behind where twist changes, by an error of first order in the step; an equilibrium is found anew until it fits.
-    pub fn pull(&self, length: f64, at: &At<'_>) -> f64 {
-        self.torsion.lay * (self.last(at) / length - self.torsion.free)
     }
 }
 
