@@ -4,7 +4,6 @@
 //! that what an element adds goes in rectangles (tiles) instead of entry by entry, and along a chain every row is
 //! one run of neighbours.
 
-use crate::algebra::lane::{LaneTask, Real, Width, run};
 use crate::algebra::scalar::Scalar;
 use crate::model::node::Node;
 use crate::model::order::{Order, Rows};
@@ -418,26 +417,30 @@ impl Structure {
     /// `y = A x` in elimination order.
     pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
-        // rows are short: more lanes would leave more of them over
-        run(Width::Four, Multiply { structure: self, values, x, y });
+        for block in &self.blocks {
+            match block.run {
+                Some(first) => {
+                    let (x, y) = (&x[..first + block.width()], &mut y[..first + block.width()]);
+                    self.multiply_run(block, first, values, x, y);
+                }
+                None => self.multiply_list(block, values, x, y),
+            }
+        }
     }
 
     /// The share of a block whose columns follow each other.
-    #[inline(always)]
-    fn multiply_run<R: Real>(&self, block: &Block, first: usize, values: &[f64], x: &[f64], y: &mut [f64]) {
-        let width = block.width();
-        let x = &x[..first + width];
-        let rows = values[block.base..].chunks_exact(width).take(block.size);
+    fn multiply_run(&self, block: &Block, first: usize, values: &[f64], x: &[f64], y: &mut [f64]) {
+        let rows = values[block.base..].chunks_exact(block.width()).take(block.size);
         for (i, row) in rows.enumerate() {
             let r = block.first + i;
             if self.symmetric {
-                let own = x[r];
-                let sum = row[i] * x[first + i];
-                let below = &mut y[first + i + 1..first + width];
-                let sum = sum + product_and_share::<R>(&row[i + 1..], &x[first + i + 1..], own, below);
-                y[r] += sum;
+                let (row, own) = (&row[i..], x[r]);
+                y[r] += sum_of_products(row, &x[first + i..]);
+                for (a, y) in row[1..].iter().zip(&mut y[first + i + 1..]) {
+                    *y += a * own;
+                }
             } else {
-                y[r] += product::<R>(row, &x[first..]);
+                y[r] += sum_of_products(row, &x[first..]);
             }
         }
     }
@@ -456,72 +459,19 @@ impl Structure {
     }
 }
 
-/// `y = A x`, with the registers of the processor that it runs on.
-struct Multiply<'a> {
-    structure: &'a Structure,
-    values: &'a [f64],
-    x: &'a [f64],
-    y: &'a mut [f64],
-}
-
-impl LaneTask for Multiply<'_> {
-    #[inline(always)]
-    fn go<R: Real>(self) {
-        let Multiply { structure, values, x, y } = self;
-        for block in &structure.blocks {
-            match block.run {
-                Some(first) => structure.multiply_run::<R>(block, first, values, x, y),
-                None => structure.multiply_list(block, values, x, y),
-            }
+/// `aᵀ x`, in four sums, none of which waits for another.
+#[inline(always)]
+pub(crate) fn sum_of_products(a: &[f64], x: &[f64]) -> f64 {
+    let x = &x[..a.len()];
+    let mut sums = [0.0; 4];
+    let (fours, of_x) = (a.chunks_exact(4), x.chunks_exact(4));
+    let rest: f64 = fours.remainder().iter().zip(of_x.remainder()).map(|(a, x)| a * x).sum();
+    for (a, x) in fours.zip(of_x) {
+        for i in 0..4 {
+            sums[i] += a[i] * x[i];
         }
     }
-}
-
-/// `aᵀ x`.
-#[inline(always)]
-fn product<R: Real>(a: &[f64], x: &[f64]) -> f64 {
-    let mut sum = R::zero();
-    let (of_a, of_x) = (a.chunks_exact(R::LANES), x[..a.len()].chunks_exact(R::LANES));
-    let mut rest = 0.0;
-    for (a, x) in of_a.remainder().iter().zip(of_x.remainder()) {
-        rest += a * x;
-    }
-    for (a, x) in of_a.zip(of_x) {
-        sum = R::read(a).fma(R::read(x), sum);
-    }
-    rest + total(sum)
-}
-
-/// The same, and in one go with it `y += own a`.
-#[inline(always)]
-fn product_and_share<R: Real>(a: &[f64], x: &[f64], own: f64, y: &mut [f64]) -> f64 {
-    let (mut sum, owns) = (R::zero(), R::of(own));
-    let (of_a, of_x) = (a.chunks_exact(R::LANES), x[..a.len()].chunks_exact(R::LANES));
-    let mut of_y = y[..a.len()].chunks_exact_mut(R::LANES);
-    let (rest_a, rest_x) = (of_a.remainder(), of_x.remainder());
-    for ((a, x), y) in of_a.zip(of_x).zip(&mut of_y) {
-        let a = R::read(a);
-        sum = a.fma(R::read(x), sum);
-        a.fma(owns, R::read(y)).write(y);
-    }
-    let mut rest = 0.0;
-    for ((a, x), y) in rest_a.iter().zip(rest_x).zip(of_y.into_remainder()) {
-        rest += a * x;
-        *y += own * a;
-    }
-    rest + total(sum)
-}
-
-/// The sum of all lanes.
-#[inline(always)]
-fn total<R: Real>(x: R) -> f64 {
-    let mut all = [0.0; 8];
-    x.write(&mut all);
-    let mut sum = 0.0;
-    for x in &all[..R::LANES] {
-        sum += x;
-    }
-    sum
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 #[cfg(test)]

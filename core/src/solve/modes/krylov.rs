@@ -262,19 +262,7 @@ fn norm(x: &[c64]) -> f64 {
     x.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt()
 }
 
-/// `aᵀ x`, in four sums, none of which waits for another.
-pub(super) fn dot(a: &[f64], x: &[f64]) -> f64 {
-    let x = &x[..a.len()];
-    let mut sums = [0.0; 4];
-    let (fours, of_x) = (a.chunks_exact(4), x.chunks_exact(4));
-    let rest: f64 = fours.remainder().iter().zip(of_x.remainder()).map(|(a, x)| a * x).sum();
-    for (a, x) in fours.zip(of_x) {
-        for i in 0..4 {
-            sums[i] += a[i] * x[i];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
-}
+pub(super) use crate::model::structure::sum_of_products as dot;
 
 #[cfg(test)]
 mod tests {
