@@ -552,6 +552,13 @@ fn the_tangent_under_a_bar_is_exact_but_for_quadrature() {
     }
 }
 
+/// A curve that may touch a shape at the origin.
+fn on_the_ground(shape: &Shape, span: ContactSpan) -> Contact {
+    let marker = Marker::Ground { point: [0.0; 3], axes: matrix(&from_bryant([0.0; 3])) };
+    let law = ContactLaw::default();
+    Contact::new("c", &nodes(), shape.clone(), &marker, (&[], &[span]), STIFF, law).unwrap()
+}
+
 /// The length of a curve of length 1 that touches a shape on the ground is that of its samples: that length, and how often they
 /// change between touching and not.
 fn compare_with_samples(contact: &Contact, shape: &Shape, span: &ContactSpan, s: &Numbers) -> (f64, usize) {
@@ -605,10 +612,7 @@ fn what_lies_around_something_round_touches_where_samples_show() {
                 (0..3).for_each(|i| s.q[at + 3 + i] = turn * slope[i] / 1.1);
             }
             let span = ContactSpan { radius, tips: [false; 2], length: 1.0, ..span };
-            let marker = Marker::Ground { point: [0.0; 3], axes: matrix(&from_bryant([0.0; 3])) };
-            let law = ContactLaw::default();
-            let contact =
-                Contact::new("c", &nodes, shape.clone(), &marker, (&[], &[span]), STIFF, law).unwrap();
+            let contact = on_the_ground(&shape, span);
             let (length, changes) = compare_with_samples(&contact, &shape, &span, &s);
             whole += usize::from(length == 1.0);
             partly += usize::from(changes > 0);
@@ -639,10 +643,7 @@ fn what_passes_through_a_shape_is_seen_and_nothing_else() {
                 (0..3).for_each(|i| after[at + i] += way[i]);
             }
             let (before, after) = (s.at(), At { q: &after, ..s.at() });
-            let marker = Marker::Ground { point: [0.0; 3], axes: matrix(&from_bryant([0.0; 3])) };
-            let law = ContactLaw::default();
-            let contact =
-                Contact::new("c", &nodes, shape.clone(), &marker, (&[], &[span]), STIFF, law).unwrap();
+            let contact = on_the_ground(&shape, span);
             let told = contact.passes(&before, &after).is_some();
             // the way of a point that is looked at by itself, in small steps
             let sides = |xi: f64| {
@@ -686,10 +687,7 @@ fn places_of_contact_are_those_that_samples_show() {
             }
             let radius = 0.02 + 0.3 * r.vector(1.0)[0].abs();
             let span = ContactSpan { radius, tips: [false; 2], length: 1.0, ..span };
-            let marker = Marker::Ground { point: [0.0; 3], axes: matrix(&from_bryant([0.0; 3])) };
-            let law = ContactLaw::default();
-            let contact =
-                Contact::new("c", &nodes, shape.clone(), &marker, (&[], &[span]), STIFF, law).unwrap();
+            let contact = on_the_ground(&shape, span);
             let (length, changes) = compare_with_samples(&contact, &shape, &span, &s);
             touching += usize::from(length > 0.0);
             several += usize::from(changes > 2);
