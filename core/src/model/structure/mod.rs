@@ -4,6 +4,8 @@
 //! that what an element adds goes in rectangles (tiles) instead of entry by entry, and along a chain every row is
 //! one run of neighbours.
 
+pub(crate) mod product;
+
 use crate::algebra::scalar::Scalar;
 use crate::model::node::Node;
 use crate::model::order::{Order, Rows};
@@ -413,65 +415,6 @@ impl Structure {
         }
         sum
     }
-
-    /// `y = A x` in elimination order.
-    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        for block in &self.blocks {
-            match block.run {
-                Some(first) => {
-                    let (x, y) = (&x[..first + block.width()], &mut y[..first + block.width()]);
-                    self.multiply_run(block, first, values, x, y);
-                }
-                None => self.multiply_list(block, values, x, y),
-            }
-        }
-    }
-
-    /// The share of a block whose columns follow each other.
-    fn multiply_run(&self, block: &Block, first: usize, values: &[f64], x: &[f64], y: &mut [f64]) {
-        let rows = values[block.base..].chunks_exact(block.width()).take(block.size);
-        for (i, row) in rows.enumerate() {
-            let r = block.first + i;
-            if self.symmetric {
-                let (row, own) = (&row[i..], x[r]);
-                y[r] += sum_of_products(row, &x[first + i..]);
-                for (a, y) in row[1..].iter().zip(&mut y[first + i + 1..]) {
-                    *y += a * own;
-                }
-            } else {
-                y[r] += sum_of_products(row, &x[first..]);
-            }
-        }
-    }
-
-    fn multiply_list(&self, block: &Block, values: &[f64], x: &[f64], y: &mut [f64]) {
-        for (r, columns, at) in (0..block.size).map(|i| self.row(block, i)) {
-            let values = &values[at];
-            let columns = || (0..values.len()).map(|k| columns.get(k));
-            y[r] += values.iter().zip(columns()).map(|(a, c)| a * x[c]).sum::<f64>();
-            if self.symmetric {
-                for (a, c) in values.iter().zip(columns()).skip(1) {
-                    y[c] += a * x[r];
-                }
-            }
-        }
-    }
-}
-
-/// `aᵀ x`, in four sums, none of which waits for another.
-#[inline(always)]
-pub(crate) fn sum_of_products(a: &[f64], x: &[f64]) -> f64 {
-    let x = &x[..a.len()];
-    let mut sums = [0.0; 4];
-    let (fours, of_x) = (a.chunks_exact(4), x.chunks_exact(4));
-    let rest: f64 = fours.remainder().iter().zip(of_x.remainder()).map(|(a, x)| a * x).sum();
-    for (a, x) in fours.zip(of_x) {
-        for i in 0..4 {
-            sums[i] += a[i] * x[i];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 #[cfg(test)]

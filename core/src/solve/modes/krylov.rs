@@ -5,7 +5,9 @@
 //! be added at any time. All vectors are kept and orthogonalised twice.
 
 use super::dense::{self, Eigenpair};
+use crate::algebra::lane::{LaneTask, Real, Width, run};
 use crate::algebra::noise::Noise;
+use crate::model::structure::product::{add, sum};
 use crate::solve::linear::SolveError;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side, c64};
@@ -32,6 +34,26 @@ pub(super) struct Arnoldi {
     largest: f64,
     noise: Noise,
     scratch: Vec<f64>,
+}
+
+/// Takes the basis out of a vector once, and adds how much of it there was.
+struct Removal<'a> {
+    basis: &'a [Vec<f64>],
+    /// The vector as it was, times the weight.
+    weighed: &'a [f64],
+    x: &'a mut [f64],
+    sum: &'a mut [f64],
+}
+
+impl LaneTask for Removal<'_> {
+    #[inline(always)]
+    fn go<R: Real>(self) {
+        for (v, all) in self.basis.iter().zip(self.sum) {
+            let part = sum::<R>(v, self.weighed);
+            *all += part;
+            add::<R>(v, -part, self.x);
+        }
+    }
 }
 
 /// An eigenvalue of the projection.
@@ -117,12 +139,8 @@ impl Arnoldi {
         let mut sum = vec![0.0; self.basis.len()];
         let mut before = self.size(op, x);
         for _ in 0..2 {
-            for (v, sum) in self.basis.iter().zip(&mut sum) {
-                // the scratch holds the weighed vector as it was
-                let part = dot(v, &self.scratch);
-                *sum += part;
-                x.iter_mut().zip(v).for_each(|(x, v)| *x -= part * v);
-            }
+            // the scratch holds the weighed vector as it was
+            run(Width::Four, Removal { basis: &self.basis, weighed: &self.scratch, x, sum: &mut sum });
             let left = self.size(op, x);
             let little = left < LITTLE * before;
             before = left;
@@ -262,7 +280,7 @@ fn norm(x: &[c64]) -> f64 {
     x.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt()
 }
 
-pub(super) use crate::model::structure::sum_of_products as dot;
+pub(super) use crate::model::structure::product::sum_of_products as dot;
 
 #[cfg(test)]
 mod tests {

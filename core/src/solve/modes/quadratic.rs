@@ -55,7 +55,8 @@ impl Operator for Inverse<'_> {
     }
 }
 
-const STARTS: usize = 4;
+/// Start vectors: of what occurs more often, those that are added find the rest.
+const STARTS: usize = 2;
 
 /// The `count` modes with the smallest `|λ|`, or all if there are fewer. `kinds` says of each unknown along which
 /// direction it moves.
@@ -74,7 +75,7 @@ pub(super) fn find(
     for _ in 0..STARTS {
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
     }
-    let (mut next_look, mut tried) = ((2 * count).min(60), None::<Vec<[f64; 2]>>);
+    let (mut next_look, mut tried) = ((4 * count).min(60), None::<Vec<[f64; 2]>>);
     // displacements and velocities of all motions; what a larger space holds is rounding
     let whole = 2 * op.p.motions;
     let all = loop {
@@ -95,7 +96,8 @@ pub(super) fn find(
             break all;
         }
         if good < count.min(all.len()) || all.len() < count {
-            next_look = space.turns() + (space.turns() / 5).max(8);
+            // a look costs as much as some dozens of turns, and a space that is a third too large little more
+            next_look = space.turns() + (space.turns() / 3).max(16);
             if space.turns() > 20 * count + 400 {
                 return Err(ModesError::NotFound { found: good, wanted: count });
             }
@@ -108,7 +110,7 @@ pub(super) fn find(
         }
         tried = Some(now);
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
-        next_look = space.turns() + 2 * STARTS;
+        next_look = space.turns() + 8;
     };
     let mut modes = collect(op.p, &all, &space, count, [sigma, weight.sqrt()])?;
     align(op.p, kinds, &mut modes, 1e-8);

@@ -139,6 +139,22 @@ impl Statics<'_> {
         values
     }
 
+    /// `K`, `C` and `M` for vectors without multipliers; constraints, which stand in all three, hold for positions, as corrections
+    /// of accelerations.
+    fn matrices(&self, c: &Coefficients, h: f64) -> [Vec<f64>; 3] {
+        let s = &self.structure;
+        let mut all = [&self.system, &self.damping, &self.mass].map(|m| m.values.clone());
+        for (r, columns, at) in s.rows() {
+            let constrains = |k: usize| s.is_multiplier[r] || s.is_multiplier[columns.get(k)];
+            for (_, p) in at.enumerate().filter(|(k, _)| constrains(*k)) {
+                all[0][p] /= c.beta * h * h;
+                all[1][p] = 0.0;
+                all[2][p] = 0.0;
+            }
+        }
+        all
+    }
+
     /// Velocities of a disturbance that holds everything, and respects the constraints.
     fn push(&self, solver: &mut Guard, values: &[f64]) -> Result<Vec<f64>, SolveError> {
         let s = &self.structure;
@@ -162,7 +178,7 @@ impl Statics<'_> {
         let mut v = self.push(&mut solver, &values)?;
 
         let (mut x, mut a, mut vd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        let mut y = vec![0.0; n];
+        let [stiffness, damping, mass] = self.matrices(&c, h);
         let (mut p, mut pv, mut pa, mut r) = (vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let size = |x: &[f64], v: &[f64]| {
             x.iter().zip(v).map(|(x, v)| x * x + time * time * v * v).sum::<f64>().sqrt()
@@ -176,17 +192,10 @@ impl Statics<'_> {
                 pa[i] = (c.alpha_m * a[i] - c.alpha_f * vd[i]) / (1.0 - c.alpha_f);
             }
             r.fill(0.0);
-            for (matrix, x) in [(&self.system, &p), (&self.damping, &pv), (&self.mass, &pa)] {
-                self.structure.multiply(&matrix.values, x, &mut y);
-                for i in 0..n {
-                    // the rows of constraints stand in every matrix; they hold for positions
-                    if !self.structure.is_multiplier[i] {
-                        r[i] -= y[i];
-                    } else if std::ptr::eq(matrix, &self.system) {
-                        r[i] = -y[i] / (c.beta * h * h);
-                    }
-                }
+            for (matrix, x) in [(&stiffness, &p), (&damping, &pv), (&mass, &pa)] {
+                self.structure.add_product(matrix, x, &mut r);
             }
+            r.iter_mut().for_each(|r| *r = -*r);
             solver.solve(&self.structure, &values, &mut r)?;
             zero_rows(&self.structure, &mut r);
             for i in 0..n {
