@@ -305,6 +305,11 @@ impl Model {
             || self.switches.released.get(&constraint).is_none_or(|&m| internal[m] == 0.0)
     }
 
+    /// Whether the Jacobian of the constraints is the same at all times: all are linear, and none can break.
+    pub(crate) fn keeps_constraints(&self) -> bool {
+        !self.mechanism && self.switches.released.is_empty()
+    }
+
     /// The state in which the scene starts: as given, not yet consistent.
     pub fn state(&self) -> State {
         State {

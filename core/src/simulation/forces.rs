@@ -147,7 +147,10 @@ impl Simulation {
     /// motion with those that it has.
     fn find_accelerations(&mut self, aside: &mut Workspace) -> Result<(), SolveError> {
         let (model, s) = (&*self.model, &mut self.scratch);
-        aside.assemble_mass(model, &s.at(), &s.lambda, 0.0, true)?;
+        // what is missing of the balance is little, and a mass that is a little off makes little of it
+        if !aside.take_inertia(model, &self.work)? {
+            aside.assemble_mass(model, &s.at(), &s.lambda, 0.0, true)?;
+        }
         accelerate(model, s, aside)
     }
 

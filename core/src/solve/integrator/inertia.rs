@@ -36,6 +36,11 @@ impl Inertia {
         self.served = 0;
     }
 
+    /// Its entries; none before the first step.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Lets the next step make it anew.
     pub fn outdate(&mut self) {
         self.served = self.serves;

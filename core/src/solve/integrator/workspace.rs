@@ -347,16 +347,36 @@ impl Workspace {
         if let (true, Some(softening)) = (factor, &self.softening) {
             softening.apply(&mut self.mass.values);
         }
-        // without added mass and with constraints that are linear it never changes
-        if factor && self.mass_factored != self.mass.values {
-            self.mass_factored.clear();
-            let begin = self.clocks.start();
-            self.mass_solver.factor(model.structure(), &self.mass.values)?;
-            self.clocks.stop(Phase::Factorisation, begin);
-            self.counts.factorizations += 1;
-            self.mass_factored.extend_from_slice(&self.mass.values);
+        if factor { self.factor_mass(model) } else { Ok(()) }
+    }
+
+    /// Factors the mass matrix as it stands, if it isn't the last that was factored: without added mass and with constraints
+    /// that are linear it never changes.
+    fn factor_mass(&mut self, model: &Model) -> Result<(), SolveError> {
+        if self.mass_factored == self.mass.values {
+            return Ok(());
         }
+        self.mass_factored.clear();
+        let begin = self.clocks.start();
+        self.mass_solver.factor(model.structure(), &self.mass.values)?;
+        self.clocks.stop(Phase::Factorisation, begin);
+        self.counts.factorizations += 1;
+        self.mass_factored.extend_from_slice(&self.mass.values);
         Ok(())
+    }
+
+    /// Takes the mass matrix by which another workspace estimates errors, nearly that of now, and its factors; whether there is
+    /// one that holds the constraints as they are now.
+    pub(crate) fn take_inertia(&mut self, model: &Model, of: &Workspace) -> Result<bool, SolveError> {
+        let values = of.inertia.values();
+        if values.is_empty() || self.softening.is_some() || !model.keeps_constraints() {
+            return Ok(false);
+        }
+        if self.mass.values != values {
+            self.mass.values.clear();
+            self.mass.values.extend_from_slice(values);
+        }
+        self.factor_mass(model).map(|()| true)
     }
 
     /// Sets `y` to the product of a matrix and a vector of velocities, in elimination order.
