@@ -357,7 +357,7 @@ def main() -> None:
         codes = {
             "Ropewalk": (
                 lambda: ropewalk(program, case, 160, fine),
-                [(f"{k} elements", lambda k=k: ropewalk(program, case, k)) for k in (10, 15, 20, 30, 40, 80)],
+                [(f"{k} elements", lambda k=k: ropewalk(program, case, k)) for k in (4, 6, 8, 10, 15, 20, 30, 40, 80)],
             ),
             "CableDyn": (
                 lambda: cabledyn(case, 4 * n, 0.01),

@@ -11,6 +11,7 @@
 
 mod cell;
 mod look;
+mod phases;
 mod sums;
 
 use crate::waves::{Component, Waves};

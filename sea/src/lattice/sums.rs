@@ -6,6 +6,7 @@
 //! look for it.
 
 use super::cell::{Corner, Top};
+use super::phases::{Phases, Row, Steps, filled};
 use crate::waves::{Component, Waves};
 use ropewalk_core::{LaneTask, Real, Width, run};
 use rustc_hash::FxHashMap;
@@ -21,26 +22,19 @@ const NEVER: i64 = i64::MIN;
 /// Waves of which less than this part of the largest is left count no more.
 const NOTHING: f64 = 1e-5;
 
-/// Numbers of each wave, side by side, from the longest to the shortest; filled up with noughts to as many as lanes take.
-type Row = Vec<f64>;
-
-/// Sines and cosines of the phase of each wave.
-type Phases = [Row; 2];
-
 /// All places that have been looked at.
 #[derive(Clone, Debug)]
 pub(super) struct Sums {
     all: Vec<Component>,
     depth: f64,
-    /// Width of the smallest cells [m], distance of instants [s].
+    /// Width of the smallest cells [m].
     size: f64,
-    time: f64,
     k: Row,
     omega: Row,
     a: Row,
     /// Phases that each line adds, and that each instant takes off: those of a corner are their differences.
-    lines: FxHashMap<i64, Phases>,
-    instants: FxHashMap<i64, Phases>,
+    lines: Steps,
+    instants: Steps,
     /// Of each height what is left of the waves there: the amplitudes of their velocities along them and upwards [m/s].
     heights: FxHashMap<i64, [Row; 2]>,
     tops: Slots<i64, 6>,
@@ -94,12 +88,14 @@ impl Sums {
         let row = |of: fn(&Component) -> f64| filled(all.iter().map(of).collect());
         Sums {
             size,
-            time,
             k: row(|c| c.k),
             omega: row(|c| c.omega),
             a: row(|c| c.a),
-            lines: FxHashMap::default(),
-            instants: FxHashMap::default(),
+            lines: Steps::new(
+                all.iter().map(|c| c.phase).collect(),
+                all.iter().map(|c| c.k * size).collect(),
+            ),
+            instants: Steps::new(vec![0.0; all.len()], all.iter().map(|c| c.omega * time).collect()),
             heights: FxHashMap::default(),
             tops: Slots::new(),
             corners: Slots::new(),
@@ -128,7 +124,7 @@ impl Sums {
             self.heights.clear();
         }
         if n != self.latest {
-            self.instants.retain(|instant, _| instant.abs_diff(n) <= KEPT as u64);
+            self.instants.retain(|instant| instant.abs_diff(n) <= KEPT as u64);
             self.latest = n;
         }
         self.generation
@@ -161,7 +157,7 @@ impl Sums {
             let i = self.tops.places[slot as usize];
             self.meet(i, n);
             let waves = [&self.k, &self.omega, &self.a].map(Vec::as_slice);
-            let (line, instant) = (&self.lines[&i], &self.instants[&n]);
+            let (line, instant) = (self.lines.at(i), self.instants.at(n));
             let sums = &mut self.tops.numbers[slot as usize][place];
             run(Width::best(), Tops { line, instant, waves, sums });
         }
@@ -186,7 +182,7 @@ impl Sums {
             let height = self.heights.entry(j);
             let left = height.or_insert_with(|| left(&self.all, j as f64 * self.size, self.depth));
             let waves = [&self.k, &self.omega].map(Vec::as_slice);
-            let (line, instant) = (&self.lines[&i], &self.instants[&n]);
+            let (line, instant) = (self.lines.at(i), self.instants.at(n));
             let sums = &mut self.corners.numbers[slot as usize][place];
             run(Width::best(), Corners { line, instant, left, waves, sums });
         }
@@ -195,19 +191,9 @@ impl Sums {
 
     /// Finds the phases of a line and of an instant.
     fn meet(&mut self, i: i64, n: i64) {
-        let (x, t) = (i as f64 * self.size, n as f64 * self.time);
-        let of = |phase: &dyn Fn(&Component) -> f64| -> Phases {
-            let (sin, cos) = self.all.iter().map(|c| phase(c).sin_cos()).unzip();
-            [filled(sin), filled(cos)]
-        };
-        self.lines.entry(i).or_insert_with(|| of(&|c| c.k * x + c.phase));
-        self.instants.entry(n).or_insert_with(|| of(&|c| c.omega * t));
+        self.lines.meet(i);
+        self.instants.meet(n);
     }
-}
-
-fn filled(mut row: Row) -> Row {
-    row.resize(row.len().next_multiple_of(8), 0.0);
-    row
 }
 
 /// What is left of the waves so far below still water [m], without the short ones that don't get there.
