@@ -20,7 +20,7 @@ pub use look::Stations;
 use sums::Sums;
 
 /// The smallest cells are this part of the shortest wave wide.
-const SIZE: f64 = 1.0 / 3.0;
+const SIZE: f64 = 1.0 / 2.5;
 /// Instants are this part of the shortest period apart.
 const TIME: f64 = 1.0 / 8.0;
 /// The largest cells are `2^COARSEST` times as wide as the smallest.
