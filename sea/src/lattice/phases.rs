@@ -1,6 +1,6 @@
 //! Sines and cosines of the phases of all waves along a row of equal steps: of lines side by side, or of instants.
 //!
-//! A sine costs as much as a dozen products. So those of few places are found, `A` steps apart, and of the steps between
+//! A sine costs as much as a dozen products. So those of few places are found, `APART` steps apart, and of the steps between
 //! them; all others are their products, the same whatever was asked for before.
 
 use rustc_hash::FxHashMap;
@@ -13,7 +13,7 @@ pub(super) type Row = Vec<f64>;
 pub(super) type Phases = [Row; 2];
 
 /// So many steps lie between places whose sines are found.
-const A: i64 = 16;
+const APART: i64 = 16;
 /// As many of these as are remembered.
 const MOST: usize = 512;
 
@@ -23,7 +23,7 @@ pub(super) struct Steps {
     first: Row,
     step: Row,
     known: FxHashMap<i64, Phases>,
-    /// Of every `A`th place, and of the steps from there.
+    /// Of each `APART`th place, and of the steps from there.
     coarse: FxHashMap<i64, Phases>,
     fine: FxHashMap<i64, Phases>,
 }
@@ -54,13 +54,13 @@ impl Steps {
         if self.coarse.len() > MOST {
             self.coarse.clear();
         }
-        let (far, near) = (i.div_euclid(A), i.rem_euclid(A));
+        let (far, near) = (i.div_euclid(APART), i.rem_euclid(APART));
         let found = |from: Option<&Row>, steps: i64| -> Phases {
             let phase = |c: usize| from.map_or(0.0, |first| first[c]) + self.step[c] * steps as f64;
             let (sin, cos) = (0..self.step.len()).map(|c| phase(c).sin_cos()).unzip();
             [filled(sin), filled(cos)]
         };
-        let [s, c] = &*self.coarse.entry(far).or_insert_with(|| found(Some(&self.first), far * A));
+        let [s, c] = &*self.coarse.entry(far).or_insert_with(|| found(Some(&self.first), far * APART));
         let [ds, dc] = &*self.fine.entry(near).or_insert_with(|| found(None, near));
         let pairs = || s.iter().zip(c).zip(ds.iter().zip(dc));
         let sin = pairs().map(|((s, c), (ds, dc))| s * dc + c * ds).collect();
@@ -74,6 +74,7 @@ impl Steps {
     }
 }
 
+/// A row filled up with noughts.
 pub(super) fn filled(mut row: Row) -> Row {
     row.resize(row.len().next_multiple_of(8), 0.0);
     row

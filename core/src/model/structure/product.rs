@@ -112,3 +112,38 @@ pub(crate) fn add<R: Real>(a: &[f64], x: f64, y: &mut [f64]) {
         *y += a * x;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::noise::Noise;
+
+    struct Both<'a> {
+        a: &'a [f64],
+        x: &'a [f64],
+        y: &'a mut [f64],
+        sum: &'a mut f64,
+    }
+
+    impl LaneTask for Both<'_> {
+        #[inline(always)]
+        fn go<R: Real>(self) {
+            *self.sum = sum::<R>(self.a, self.x);
+            add::<R>(self.a, self.x[0], self.y);
+        }
+    }
+
+    #[test]
+    fn lanes_change_nothing_to_the_last_bit() {
+        let mut noise = Noise::default();
+        for n in 1..40 {
+            let [a, x, y] = [(); 3].map(|()| (0..n).map(|_| noise.draw()).collect::<Vec<f64>>());
+            let [one, four] = [Width::One, Width::Four].map(|width| {
+                let (mut y, mut sum) = (y.clone(), f64::NAN);
+                run(width, Both { a: &a, x: &x, y: &mut y, sum: &mut sum });
+                (sum.to_bits(), y)
+            });
+            assert_eq!(one, four, "{n}");
+        }
+    }
+}
