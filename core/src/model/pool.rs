@@ -317,11 +317,10 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
     }
     /// Scatters what a batch computed; `first` is the clique of its first element.
     #[inline(always)]
-    pub fn scatter<R: Real>(
+    pub fn scatter<R: Real, const TANGENT: bool>(
         seats: &[Self],
         first: usize,
         share: &Share<R, N>,
-        tangent: bool,
         blocks: &mut Blocks<N>,
         out: &mut Assembly<'_>,
     ) {
@@ -341,7 +340,7 @@ impl<const Q: usize, const N: usize> Seat<Q, N> {
                 }
             }
         }
-        if !tangent {
+        if !TANGENT {
             return;
         }
         for i in 0..N {
@@ -396,8 +395,18 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
     const WIDE: bool = E::WIDE;
     #[inline(always)]
     fn go<R: Real>(self) {
+        if self.out.wants_tangent() && E::has_tangent(&self.out.weights()) {
+            self.add_all::<R, true>();
+        } else {
+            self.add_all::<R, false>();
+        }
+    }
+}
+
+impl<E: Element<Q, N>, const Q: usize, const N: usize> AddAll<'_, '_, '_, E, Q, N> {
+    #[inline(always)]
+    fn add_all<R: Real, const TANGENT: bool>(self) {
         let w = self.out.weights();
-        let tangent = self.out.wants_tangent() && E::has_tangent(&w);
         let mut blocks = Blocks::take(self.out);
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         let mut share = Share::zero();
@@ -407,15 +416,11 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for AddAll<'_, '
             if !E::SETS {
                 share.r = [R::zero(); N];
             }
-            if tangent {
-                if !E::SETS {
-                    share.k = [[R::zero(); N]; N];
-                }
-                E::add::<R, true>(&p, &x, &w, &mut share);
-            } else {
-                E::add::<R, false>(&p, &x, &w, &mut share);
+            if !E::SETS && TANGENT {
+                share.k = [[R::zero(); N]; N];
             }
-            Seat::scatter(seats, b * R::LANES, &share, tangent, &mut blocks, self.out);
+            E::add::<R, TANGENT>(&p, &x, &w, &mut share);
+            Seat::scatter::<R, TANGENT>(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
         blocks.give_back(self.out);
     }
@@ -452,6 +457,12 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> LaneTask for Sum<'_, E, Q
     }
 }
 
+impl<E: Element<Q, N>, const Q: usize, const N: usize> Pool<E, Q, N> {
+    fn sum(&self, at: &At<'_>, energy: Option<&mut Energy>, power: Option<&mut Power>) {
+        run(Width::best().enough_for(self.elements.len()), Sum { pool: self, at, energy, power });
+    }
+}
+
 impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
     fn label(&self) -> String {
         self.elements.first().map_or_else(String::new, E::label)
@@ -470,17 +481,17 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> Term for Pool<E, Q, N> {
     fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
         // the search for equilibrium isn't worth wide copies of what it relaxes
         let relaxes = at.relaxed.is_some_and(|r| r.how.relaxes());
-        let width = if relaxes { Width::One } else { out.width() };
+        let width = if relaxes { Width::One } else { out.width().enough_for(self.elements.len()) };
         run(width, AddAll { pool: self, at, out });
     }
     fn energy(&self, at: &At<'_>) -> Energy {
         let mut energy = Energy::default();
-        run(Width::best(), Sum { pool: self, at, energy: Some(&mut energy), power: None });
+        self.sum(at, Some(&mut energy), None);
         energy
     }
     fn power(&self, at: &At<'_>) -> Power {
         let mut power = Power::default();
-        run(Width::best(), Sum { pool: self, at, energy: None, power: Some(&mut power) });
+        self.sum(at, None, Some(&mut power));
         power
     }
 }

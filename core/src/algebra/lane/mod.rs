@@ -256,6 +256,17 @@ impl Width {
         }
     }
 
+    /// The width to work on so many elements with: no wider than takes them all at once.
+    ///
+    /// ```
+    /// use ropewalk_core::Width;
+    /// assert_eq!(Width::Eight.enough_for(3), Width::Four);
+    /// assert_eq!(Width::Eight.enough_for(20), Width::Eight);
+    /// ```
+    pub fn enough_for(self, count: usize) -> Self {
+        if self == Width::Eight && count <= Width::Four.lanes() { Width::Four } else { self }
+    }
+
     /// How many elements it evaluates at a time.
     pub fn lanes(self) -> usize {
         match self {

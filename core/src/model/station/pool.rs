@@ -22,9 +22,14 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     }
     /// Adds up what is asked for.
     fn work(&self, laws: &Laws, at: &At<'_>, power: Option<&mut Power>, energy: Option<&mut Energy>) {
+        let width = self.width(Width::best());
         EXCHANGE.with_borrow_mut(|exchange| {
-            run(Width::best(), WorkAll { pool: self, laws, at, power, energy, exchange });
+            run(width, WorkAll { pool: self, laws, at, width, power, energy, exchange });
         });
+    }
+    /// The width that is worth while for its elements.
+    fn width(&self, most: Width) -> Width {
+        most.enough_for(self.elements.len())
     }
     /// Adds an element on these nodes. `false` if their coordinates don't add up to `Q` and `N`.
     #[must_use]
@@ -59,6 +64,7 @@ struct SpreadAll<'a, 'b, 'c, E, const Q: usize, const N: usize, const S: usize> 
     pool: &'a StationPool<E, Q, N, S>,
     laws: &'a Laws,
     at: &'a At<'a>,
+    width: Width,
     out: &'b mut Assembly<'c>,
     exchange: &'b mut Exchange,
 }
@@ -68,8 +74,20 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
 {
     #[inline(always)]
     fn go<R: Real>(self) {
+        if self.out.wants_tangent() {
+            self.spread_all::<R, true>();
+        } else {
+            self.spread_all::<R, false>();
+        }
+    }
+}
+
+impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
+    SpreadAll<'_, '_, '_, E, Q, N, S>
+{
+    #[inline(always)]
+    fn spread_all<R: Real, const TANGENT: bool>(self) {
         let w = self.out.weights();
-        let (tangent, width) = (self.out.wants_tangent(), self.out.width());
         let mut blocks = Blocks::take(self.out);
         self.exchange.resize::<R>(S);
         let mut share = Share::zero();
@@ -80,15 +98,11 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
             (self.exchange.loaded, self.exchange.given) = (false, Gives::NOTHING);
             for law in &self.laws.loads {
-                law.load(width, self.at.t, tangent, self.exchange);
+                law.load(self.width, self.at.t, TANGENT, self.exchange);
             }
             let (gives, loads) = (self.exchange.given.with(&w), Loads::new(&self.exchange.loads));
-            if tangent {
-                E::spread::<R, true>(&p, &x, loads, gives, &w, &mut share);
-            } else {
-                E::spread::<R, false>(&p, &x, loads, gives, &w, &mut share);
-            }
-            Seat::scatter(seats, b * R::LANES, &share, tangent, &mut blocks, self.out);
+            E::spread::<R, TANGENT>(&p, &x, loads, gives, &w, &mut share);
+            Seat::scatter::<R, TANGENT>(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
         blocks.give_back(self.out);
     }
@@ -99,6 +113,7 @@ struct WorkAll<'a, E, const Q: usize, const N: usize, const S: usize> {
     pool: &'a StationPool<E, Q, N, S>,
     laws: &'a Laws,
     at: &'a At<'a>,
+    width: Width,
     power: Option<&'a mut Power>,
     energy: Option<&'a mut Energy>,
     exchange: &'a mut Exchange,
@@ -115,10 +130,10 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
             for law in &self.laws.all {
                 if let Some(total) = &mut self.power {
-                    **total += law.power(Width::best(), self.at.t, self.exchange, seats.len());
+                    **total += law.power(self.width, self.at.t, self.exchange, seats.len());
                 }
                 if let Some(total) = &mut self.energy {
-                    **total += law.energy(Width::best(), self.at.t, self.exchange, seats.len());
+                    **total += law.energy(self.width, self.at.t, self.exchange, seats.len());
                 }
             }
         }
@@ -154,7 +169,8 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>) {
         if !laws.all.is_empty() {
             EXCHANGE.with_borrow_mut(|exchange| {
-                run(out.width(), SpreadAll { pool: self, laws, at, out, exchange });
+                let width = self.width(out.width());
+                run(width, SpreadAll { pool: self, laws, at, width, out, exchange });
             });
         }
     }
@@ -169,10 +185,11 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             let x = Seat::gather::<f64>(seats, at);
             if tangent {
                 E::spread::<f64, true>(&p, &x, loads, gives, &w, &mut share);
+                Seat::scatter::<f64, true>(seats, e, &share, &mut blocks, out);
             } else {
                 E::spread::<f64, false>(&p, &x, loads, gives, &w, &mut share);
+                Seat::scatter::<f64, false>(seats, e, &share, &mut blocks, out);
             }
-            Seat::scatter(seats, e, &share, tangent, &mut blocks, out);
         }
         blocks.give_back(out);
     }
