@@ -33,14 +33,14 @@ fn swing(mass: f64, ea: f64, ei: f64, length: f64) -> String {
     )
 }
 
-/// The warning of a run, if there is one, and the energy that was missing then over the weight times the length.
+/// What a run says of its energy, if anything: a warning, or the error that ends it.
 fn watched(text: &str, options: &Options, duration: f64) -> (Option<String>, Simulation) {
     let file = SceneFile::parse(text, "swing", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
     let model = file.build().unwrap_or_else(|e| panic!("{e}"));
     let mut s = Simulation::new(model, options, duration).unwrap_or_else(|e| panic!("{e}"));
     let mut watch = Watch::default();
-    s.advance(duration, f64::INFINITY, &mut watch).unwrap_or_else(|e| panic!("{e}"));
-    (watch.said, s)
+    let ended = s.advance(duration, f64::INFINITY, &mut watch).err();
+    (watch.said.or(ended.map(|e| e.to_string())), s)
 }
 
 fn fixed(h: f64) -> Options {

@@ -17,7 +17,7 @@ use crate::model::structure::{Block, LARGEST, Structure};
 pub struct Chain<T = f64> {
     steps: Vec<Step>,
     symmetric: bool,
-    /// Rows of `U`, each as long as its front is wide.
+    /// Rows of `U`, zero up to the diagonal, each as long as its front is wide.
     upper: Vec<T>,
     /// Columns of `L`, stored like the rows of `U`; empty for symmetric matrices, where they are those rows times the
     /// reciprocal pivot.
@@ -66,6 +66,31 @@ enum Front {
 
 /// What the elimination of a block leaves for the next.
 type Carried<T> = [[T; LARGEST]; LARGEST];
+
+/// Runs for a step with the width of its front as a constant `W`, and with its sizes as constants (`KNOWN`) where they are
+/// common, for the compiler to unroll.
+macro_rules! unrolled {
+    ($step:expr, |$s:ident, $W:ident, $KNOWN:ident| $run:expr) => {{
+        let step: Step = $step;
+        macro_rules! with {
+            ($width:literal, $known:literal, $sized:expr) => {{
+                const $W: usize = $width;
+                const $KNOWN: bool = $known;
+                let $s: Step = $sized;
+                $run
+            }};
+        }
+        match (step.width, step.size, step.next, step.border) {
+            (Front::Cable, 6, 6, 0) => with!(12, true, Step { size: 6, next: 6, border: 0, ..step }),
+            (Front::Cable, 6, 0, 0) => with!(12, true, Step { size: 6, next: 0, border: 0, ..step }),
+            (Front::Twisted, 7, 7, 0) => with!(16, true, Step { size: 7, next: 7, border: 0, ..step }),
+            (Front::Cable, ..) => with!(12, false, step),
+            (Front::Twisted, ..) => with!(16, false, step),
+            (Front::Middle, ..) => with!(20, false, step),
+            (Front::Large, ..) => with!(32, false, step),
+        }
+    }};
+}
 
 impl Front {
     fn of(columns: usize) -> Self {
@@ -192,28 +217,8 @@ impl<T: Scalar> Chain<T> {
         self.negative = 0;
         self.growth.start();
         for k in 0..self.steps.len() {
-            let s = self.steps[k];
-            match (s.width, s.size, s.next, s.border) {
-                // the sizes as constants, for the compiler to unroll
-                (Front::Cable, 6, 6, 0) => {
-                    self.front::<12, FUSED>(
-                        &Step { size: 6, next: 6, border: 0, ..s },
-                        values,
-                        &mut carried,
-                    )?;
-                }
-                (Front::Twisted, 7, 7, 0) => {
-                    self.front::<16, FUSED>(
-                        &Step { size: 7, next: 7, border: 0, ..s },
-                        values,
-                        &mut carried,
-                    )?;
-                }
-                (Front::Cable, ..) => self.front::<12, FUSED>(&s, values, &mut carried)?,
-                (Front::Twisted, ..) => self.front::<16, FUSED>(&s, values, &mut carried)?,
-                (Front::Middle, ..) => self.front::<20, FUSED>(&s, values, &mut carried)?,
-                (Front::Large, ..) => self.front::<32, FUSED>(&s, values, &mut carried)?,
-            }
+            let step = self.steps[k];
+            unrolled!(step, |s, W, _KNOWN| self.front::<W, FUSED>(&s, values, &mut carried)?);
         }
         Ok(())
     }
@@ -325,33 +330,15 @@ impl<T: Scalar> Chain<T> {
 
     #[inline(always)]
     fn substitute<const FUSED: bool>(&self, x: &mut [T]) {
-        for s in &self.steps {
-            match (s.width, s.size, s.next, s.border) {
-                (Front::Cable, 6, 6, 0) => {
-                    self.forward::<12, FUSED>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
-                }
-                (Front::Twisted, 7, 7, 0) => {
-                    self.forward::<16, FUSED>(&Step { size: 7, next: 7, border: 0, ..*s }, x)
-                }
-                (Front::Cable, ..) => self.forward::<12, FUSED>(s, x),
-                (Front::Twisted, ..) => self.forward::<16, FUSED>(s, x),
-                (Front::Middle, ..) => self.forward::<20, FUSED>(s, x),
-                (Front::Large, ..) => self.forward::<32, FUSED>(s, x),
-            }
+        for step in &self.steps {
+            unrolled!(*step, |s, W, _KNOWN| self.forward::<W, FUSED>(&s, x));
         }
-        for s in self.steps.iter().rev() {
-            match (s.width, s.size, s.next, s.border) {
-                (Front::Cable, 6, 6, 0) => {
-                    self.backward::<12>(&Step { size: 6, next: 6, border: 0, ..*s }, x)
-                }
-                (Front::Twisted, 7, 7, 0) => {
-                    self.backward::<16>(&Step { size: 7, next: 7, border: 0, ..*s }, x)
-                }
-                (Front::Cable, ..) => self.backward::<12>(s, x),
-                (Front::Twisted, ..) => self.backward::<16>(s, x),
-                (Front::Middle, ..) => self.backward::<20>(s, x),
-                (Front::Large, ..) => self.backward::<32>(s, x),
-            }
+        for step in self.steps.iter().rev() {
+            unrolled!(*step, |s, W, KNOWN| if KNOWN {
+                self.backward_in_lanes::<W>(&s, x);
+            } else {
+                self.backward::<W>(&s, x);
+            });
         }
     }
 
@@ -360,22 +347,20 @@ impl<T: Scalar> Chain<T> {
         let ahead = s.size + s.next;
         let all = ahead + s.border;
         let mut y = [T::default(); W];
-        y[..ahead].copy_from_slice(&x[s.first..s.first + ahead]);
-        y[ahead..all].copy_from_slice(&x[self.first_shared..self.first_shared + s.border]);
+        y[..ahead].copy_from_slice(&x[s.first..][..ahead]);
+        y[ahead..all].copy_from_slice(&x[self.first_shared..][..s.border]);
+        let lower = if self.symmetric { &self.upper } else { &self.lower };
+        let (rows, inverse) = (&lower[s.factors..][..s.size * W], &self.inverse[s.first..][..s.size]);
         for p in 0..s.size {
-            let (row, scale) = if self.symmetric {
-                (&self.upper[s.factors + p * W..][..W], self.inverse[s.first + p])
-            } else {
-                (&self.lower[s.factors + p * W..][..W], T::from(1.0))
-            };
+            let row = &rows[p * W..][..W];
+            let c = if self.symmetric { y[p] * inverse[p] } else { y[p] };
             // zero up to the diagonal, so that whole rows may be subtracted
-            let c = y[p] * scale;
             for j in 0..W {
                 y[j] = y[j].minus::<FUSED>(c, row[j]);
             }
         }
-        x[s.first..s.first + ahead].copy_from_slice(&y[..ahead]);
-        x[self.first_shared..self.first_shared + s.border].copy_from_slice(&y[ahead..all]);
+        x[s.first..][..ahead].copy_from_slice(&y[..ahead]);
+        x[self.first_shared..][..s.border].copy_from_slice(&y[ahead..all]);
     }
 
     #[inline(always)]
@@ -398,5 +383,36 @@ impl<T: Scalar> Chain<T> {
             }
             x[p] = (x[p] - others - own) * self.inverse[s.first + p];
         }
+    }
+
+    /// [`Chain::backward`] with sizes that the compiler knows, and without shared unknowns. Nothing is fused: what cancels,
+    /// as across a straight column, has to vanish.
+    #[inline(always)]
+    fn backward_in_lanes<const W: usize>(&self, s: &Step, x: &mut [T]) {
+        let (size, ahead) = (s.size, s.size + s.next);
+        let (rows, inverse) = (&self.upper[s.factors..][..size * W], &self.inverse[s.first..][..size]);
+        let x = &mut x[s.first..][..ahead];
+        let (mut own, mut others) = ([T::default(); W], [T::default(); W]);
+        own[..size].copy_from_slice(&x[..size]);
+        others[size..ahead].copy_from_slice(&x[size..]);
+        for p in 0..size {
+            let row = &rows[p * W..][..W];
+            let mut sums = [T::default(); 4];
+            for first in (size / 4 * 4..ahead).step_by(4) {
+                for l in 0..4 {
+                    sums[l] += row[first + l] * others[first + l];
+                }
+            }
+            own[p] -= (sums[0] + sums[2]) + (sums[1] + sums[3]);
+        }
+        for p in (0..size).rev() {
+            let row = &rows[p * W..][..W];
+            // those that are known longest first
+            for j in (p + 1..size).rev() {
+                own[p] -= row[j] * own[j];
+            }
+            own[p] *= inverse[p];
+        }
+        x[..size].copy_from_slice(&own[..size]);
     }
 }

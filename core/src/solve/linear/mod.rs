@@ -128,7 +128,9 @@ impl<T: Scalar> Guard<T> {
     pub fn solve(&mut self, s: &Structure, values: &[T], x: &mut [T]) -> Result<(), SolveError> {
         if !self.unchecked {
             self.raw_solve(x);
-            return if x.iter().all(|v| Scalar::is_finite(*v)) { Ok(()) } else { Err(SolveError::NotFinite) };
+            // without branches, for all of them to be looked at side by side
+            let finite = x.iter().fold(true, |finite, v| finite & Scalar::is_finite(*v));
+            return if finite { Ok(()) } else { Err(SolveError::NotFinite) };
         }
         self.b.copy_from_slice(x);
         self.raw_solve(x);
