@@ -57,6 +57,9 @@ impl Operator for Inverse<'_> {
 
 /// Start vectors: of what occurs more often, those that are added find the rest.
 const STARTS: usize = 2;
+/// What is left of an approximation, in parts of it, that is no eigenvalue to be: where eigenvectors aren't orthogonal,
+/// the first few products of a start vector have values of their own.
+const ROUGH: f64 = 1e-3;
 
 /// The `count` modes with the smallest `|λ|`, or all if there are fewer. `kinds` says of each unknown along which
 /// direction it moves.
@@ -76,6 +79,8 @@ pub(super) fn find(
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
     }
     let (mut next_look, mut tried) = ((4 * count).min(60), None::<Vec<[f64; 2]>>);
+    // from here on a third start vector has come so far that none of the wanted is rough any more
+    let mut deep = usize::MAX;
     // displacements and velocities of all motions; what a larger space holds is rounding
     let whole = 2 * op.p.motions;
     let all = loop {
@@ -88,7 +93,8 @@ pub(super) fn find(
         }
         closed = closed && space.is_closed() || space.turns() >= whole;
         let mut all = space.ritz(false, 2 * count + 8).ok_or(ModesError::Eigen)?;
-        all.retain(|r| r.size() > 0.0);
+        let rough = if space.turns() >= deep { ROUGH } else { f64::INFINITY };
+        all.retain(|r| r.size() > 0.0 && r.residual <= rough * r.size());
         all.sort_by(|a, b| size(rate(a, sigma)).total_cmp(&size(rate(b, sigma))));
         let good = all.iter().take_while(|r| r.residual <= 1e-9 * r.size()).count();
         watch.look(good.min(count), count, space.turns())?;
@@ -108,6 +114,7 @@ pub(super) fn find(
         if tried.is_some_and(|old| same(&old, &now, sigma)) {
             break all;
         }
+        deep = deep.min(2 * space.turns());
         tried = Some(now);
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
         next_look = space.turns() + 8;
