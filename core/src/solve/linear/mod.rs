@@ -94,17 +94,18 @@ impl<T: Scalar> Guard<T> {
 
     /// Factors the matrix.
     pub fn factor(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
+        self.factor_as_it_is(s, values).or_else(|_| self.fall_back(s, values))
+    }
+
+    /// Factors the matrix without pivoting, for whom it is no use where that fails.
+    pub(crate) fn factor_as_it_is(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {
         self.factorizations += 1;
         self.unchecked = true;
         self.use_fallback = false;
-        match self.primary.factor(s, values) {
-            Ok(()) => {
-                // a NaN is no small growth
-                self.unchecked = !(self.primary.growth() <= HARMLESS);
-                Ok(())
-            }
-            Err(_) => self.fall_back(s, values),
-        }
+        self.primary.factor(s, values)?;
+        // a NaN is no small growth
+        self.unchecked = !(self.primary.growth() <= HARMLESS);
+        Ok(())
     }
 
     fn fall_back(&mut self, s: &Structure, values: &[T]) -> Result<(), SolveError> {

@@ -2,12 +2,11 @@
 
 use super::outcome::{Found, StaticsError};
 use super::problem::Statics;
-use super::tangent::Trial;
 use crate::algebra::lane::V3;
 use crate::algebra::noise::Noise;
 use crate::model::Model;
 use crate::model::node::retract;
-use crate::model::state::{At, Relaxation, State};
+use crate::model::state::{At, Relaxation, Relaxed, State};
 use crate::solve::times::Phase;
 
 /// Cosine between neighbouring chords below which a cable counts as folded.
@@ -137,17 +136,24 @@ impl Statics<'_> {
     /// One correction; whether it may be the last. The error says why there is none.
     fn correct(&mut self, state: &State, it: &mut Iterate, found: &mut Found) -> Result<bool, String> {
         it.how.smooth = it.last.is_some();
-        let mut trial = self.newton(state, &it.q, &it.lambda, it.last.as_deref(), it.how);
-        let far = |t: &Trial| self.position_size(&t.d) > 2.0 * self.model.length();
-        let wrong = |t: &Trial| it.careful && t.negative && self.options.stable;
-        let bad = trial.as_ref().map_or(true, |t| wrong(t) || far(t));
-        if bad {
-            found.floored += 1;
-            let how = Relaxation { floor: Some(it.floor), ..it.how };
-            trial = self.newton(state, &it.q, &it.lambda, it.last.as_deref(), how);
-            it.floor *= 0.8;
-        }
-        let mut d = trial.map_err(|e| e.to_string())?.d;
+        let mut relaxed = Relaxed { last: it.last.as_deref(), how: it.how };
+        let bare = if it.careful && self.options.stable {
+            self.newton_if_positive(state, &it.q, &it.lambda, relaxed)
+        } else {
+            self.newton(state, &it.q, &it.lambda, relaxed).ok()
+        };
+        let far = |d: &Vec<f64>| self.position_size(d) > 2.0 * self.model.length();
+        let bare = bare.filter(|d| !far(d));
+        let bad = bare.is_none();
+        let mut d = match bare {
+            Some(d) => d,
+            None => {
+                found.floored += 1;
+                relaxed.how.floor = Some(it.floor);
+                it.floor *= 0.8;
+                self.newton(state, &it.q, &it.lambda, relaxed).map_err(|e| e.to_string())?
+            }
+        };
         let multipliers = d.split_off(self.model.velocities());
         let size = self.size(&d);
         if !size.is_finite() {

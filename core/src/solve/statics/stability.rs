@@ -130,7 +130,7 @@ impl Statics<'_> {
         load: f64,
     ) -> Result<Judgement, SolveError> {
         let how = Relaxation::check(last.is_some(), load);
-        let correction = self.solve_at(there, &there.q, &there.lambda, Some(Relaxed { last, how }))?.d;
+        let correction = self.newton(there, &there.q, &there.lambda, Relaxed { last, how })?;
         Ok(Judgement { correction, residual: self.worst().1, ..Judgement::default() })
     }
 

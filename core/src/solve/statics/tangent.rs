@@ -12,42 +12,46 @@ use crate::model::twist::tangent;
 use crate::solve::linear::SolveError;
 use crate::solve::times::Phase;
 
-pub(super) struct Trial {
-    /// Correction of velocities (as increments) and multipliers.
-    pub d: Vec<f64>,
-    /// Whether there are more negative pivots than multipliers.
-    pub negative: bool,
-}
-
 impl Statics<'_> {
+    /// Assembles, factors and solves once: Newton's correction, velocities (as increments) and then multipliers.
     pub(super) fn newton(
         &mut self,
         state: &State,
         q: &[f64],
         lambda: &[f64],
-        last: Option<&[f64]>,
-        how: Relaxation,
-    ) -> Result<Trial, SolveError> {
-        self.solve_at(state, q, lambda, Some(Relaxed { last, how }))
+        relaxed: Relaxed<'_>,
+    ) -> Result<Vec<f64>, SolveError> {
+        self.assemble_to_solve(state, q, lambda, relaxed);
+        self.factor()?;
+        self.correction()
     }
 
-    /// Assembles, factors and solves once.
-    pub(super) fn solve_at(
+    /// The same where the tangent is positive: without what else one would cost.
+    pub(super) fn newton_if_positive(
         &mut self,
         state: &State,
         q: &[f64],
         lambda: &[f64],
-        relaxed: Option<Relaxed<'_>>,
-    ) -> Result<Trial, SolveError> {
-        self.assemble(state, q, lambda, relaxed, false);
+        relaxed: Relaxed<'_>,
+    ) -> Option<Vec<f64>> {
+        self.assemble_to_solve(state, q, lambda, relaxed);
+        let begin = self.clocks.start();
+        let factored = self.solver.factor_as_it_is(&self.structure, &self.system.values);
+        self.clocks.stop(Phase::Factorisation, begin);
+        factored.ok()?;
+        if self.solver.negative_pivots()? != self.held(state) {
+            return None;
+        }
+        self.correction().ok()
+    }
+
+    fn assemble_to_solve(&mut self, state: &State, q: &[f64], lambda: &[f64], relaxed: Relaxed<'_>) {
+        self.assemble(state, q, lambda, Some(relaxed), false);
         self.prepare();
         if !self.free.is_empty() {
             let w = self.weights();
             self.shift(&w, MARGIN);
         }
-        self.factor()?;
-        let negative = self.solver.negative_pivots().is_none_or(|n| n != self.held(state));
-        Ok(Trial { d: self.correction()?, negative })
     }
 
     /// Makes the assembled tangent fit for elimination without pivoting.
