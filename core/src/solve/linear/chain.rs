@@ -335,7 +335,7 @@ impl<T: Scalar> Chain<T> {
         }
         for step in self.steps.iter().rev() {
             unrolled!(*step, |s, W, KNOWN| if KNOWN {
-                self.backward_in_lanes::<W>(&s, x);
+                self.backward_unrolled::<W>(&s, x);
             } else {
                 self.backward::<W>(&s, x);
             });
@@ -365,54 +365,45 @@ impl<T: Scalar> Chain<T> {
 
     #[inline(always)]
     fn backward<const W: usize>(&self, s: &Step, x: &mut [T]) {
-        let ahead = s.size + s.next;
+        let (size, ahead) = (s.size, s.size + s.next);
+        let (rows, inverse) = (&self.upper[s.factors..][..size * W], &self.inverse[s.first..][..size]);
         let (before, shared) = x.split_at_mut(self.first_shared.max(s.first + ahead));
-        let x = &mut before[s.first..s.first + ahead];
-        for p in (0..s.size).rev() {
-            let row = &self.upper[s.factors + p * W..][..W];
+        let (own, next) = before[s.first..][..ahead].split_at_mut(size);
+        for p in (0..size).rev() {
+            let row = &rows[p * W..][..W];
             // the shares of others first: they don't wait for this block's solution
-            let (mut others, mut own) = (T::default(), T::default());
-            for j in s.size..ahead {
-                others += row[j] * x[j];
-            }
-            for j in 0..s.border {
-                others += row[ahead + j] * shared[j];
-            }
-            for j in p + 1..s.size {
-                own += row[j] * x[j];
-            }
-            x[p] = (x[p] - others - own) * self.inverse[s.first + p];
+            let others = add(T::default(), &row[size..ahead], next);
+            let others = add(others, &row[ahead..], &shared[..s.border]);
+            own[p] = (own[p] - others - add(T::default(), &row[p + 1..], &own[p + 1..])) * inverse[p];
         }
     }
 
     /// [`Chain::backward`] with sizes that the compiler knows, and without shared unknowns. Nothing is fused: what cancels,
     /// as across a straight column, has to vanish.
     #[inline(always)]
-    fn backward_in_lanes<const W: usize>(&self, s: &Step, x: &mut [T]) {
+    fn backward_unrolled<const W: usize>(&self, s: &Step, x: &mut [T]) {
         let (size, ahead) = (s.size, s.size + s.next);
         let (rows, inverse) = (&self.upper[s.factors..][..size * W], &self.inverse[s.first..][..size]);
         let x = &mut x[s.first..][..ahead];
-        let (mut own, mut others) = ([T::default(); W], [T::default(); W]);
-        own[..size].copy_from_slice(&x[..size]);
-        others[size..ahead].copy_from_slice(&x[size..]);
         for p in 0..size {
-            let row = &rows[p * W..][..W];
-            let mut sums = [T::default(); 4];
-            for first in (size / 4 * 4..ahead).step_by(4) {
-                for l in 0..4 {
-                    sums[l] += row[first + l] * others[first + l];
-                }
-            }
-            own[p] -= (sums[0] + sums[2]) + (sums[1] + sums[3]);
+            x[p] -= add(T::default(), &rows[p * W..][size..ahead], &x[size..]);
         }
         for p in (0..size).rev() {
-            let row = &rows[p * W..][..W];
             // those that are known longest first
             for j in (p + 1..size).rev() {
-                own[p] -= row[j] * own[j];
+                x[p] -= rows[p * W + j] * x[j];
             }
-            own[p] *= inverse[p];
+            x[p] *= inverse[p];
         }
-        x[..size].copy_from_slice(&own[..size]);
     }
+}
+
+/// `sum + Σ aⱼ bⱼ` over all of `b`, in order.
+#[inline(always)]
+fn add<T: Scalar>(mut sum: T, a: &[T], b: &[T]) -> T {
+    let a = &a[..b.len()];
+    for j in 0..b.len() {
+        sum += a[j] * b[j];
+    }
+    sum
 }
