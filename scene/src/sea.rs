@@ -94,6 +94,8 @@ const FEW: usize = 8;
 const PROBES: usize = 200;
 /// A station's pack keeps its slot while its first place stays in a cell of this size [m].
 const CELL: f64 = 16.0;
+/// Numbers about as large as this have no places for fractions.
+const WHOLE: f64 = (3_u64 << 51) as f64;
 /// How much finer than at first a table may become.
 const FINEST: f64 = 4.0;
 
@@ -408,17 +410,19 @@ fn looked_up<R: Real>(
     t: f64,
     [x, y, z]: &V3<R>,
 ) -> Swell<R> {
-    let mut flow = lattice.surface(t, [*x, *y], stations);
+    let now = lattice.instant(t);
+    let mut flow = lattice.surface(now, [*x, *y], stations);
     let (up, top) = (*z - R::of(level), flow.elevation);
-    lattice.within(t, [*x, *y, up.if_gt(top, top, up)], stations, &mut flow);
+    lattice.within(now, [*x, *y, up.if_gt(top, top, up)], stations, &mut flow);
     Swell::new(&flow, up.if_gt(top, R::of(1.0), R::zero()))
 }
 
 /// What tells stations apart: those of a body have other arc lengths, and bodies are elsewhere.
 #[inline(always)]
 fn key_of<R: Real>(at: &Station<R>) -> Key {
-    let [x, y] = [at.x[0], at.x[1]].map(|x| (x.lane(0) / CELL) as i64);
-    let place = (x.wrapping_mul(1 << 32) ^ y).cast_unsigned();
+    // what is added leaves the number of the cell in the last bits
+    let [x, y] = [at.x[0], at.x[1]].map(|x| (x.lane(0) / CELL + WHOLE).to_bits());
+    let place = x.rotate_left(32) ^ y;
     (at.s.lane(0).to_bits(), at.diameter.lane(0).to_bits(), place)
 }
 

@@ -34,7 +34,7 @@ mod waves;
 
 pub use dispersion::{group_velocity, wavenumber, wavenumber_on_current};
 pub use error::SeaError;
-pub use lattice::{Lattice, Stations};
+pub use lattice::{Instant, Lattice, Stations};
 pub use measured::measured;
 pub use random::SplitMix64;
 pub use response::{MOTIONS, Responses, VesselResponse};

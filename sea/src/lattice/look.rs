@@ -36,8 +36,8 @@ pub struct Stations {
 /// Numbers at the spots next to stations, at both instants about a time: values, and then their rates.
 #[derive(Clone, Debug)]
 struct Known<const CORNERS: usize, const N: usize> {
-    /// The first of the instants, and the time.
-    n: i64,
+    /// The number of the first of the instants, and the time.
+    n: f64,
     t: f64,
     /// Of what is known of slots.
     generation: u64,
@@ -57,7 +57,7 @@ impl<const CORNERS: usize, const N: usize> Known<CORNERS, N> {
         let nowhere = [[f64::NAN; LANES]; 2];
         let (slots, none) = ([[0; CORNERS]; LANES], [[0.0; LANES]; N]);
         Known {
-            n: 0,
+            n: f64::NAN,
             t: f64::NAN,
             generation: NEVER,
             spots: nowhere,
@@ -120,26 +120,31 @@ impl Default for Stations {
     }
 }
 
-/// An instant and how far it is from it to the next, in parts of their distance.
-#[derive(Clone, Copy)]
-struct Instant {
-    n: i64,
+/// A time and the instant before it.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant {
+    t: f64,
+    /// Its number, which is whole.
+    n: f64,
+    /// How far it is from it to the time, in parts of the distance to the next.
     late: f64,
 }
 
 impl Lattice {
     /// The motion of the water, as [`Waves::at`](crate::Waves::at) gives it, but for the pressure, which is left out.
     pub fn at(&mut self, [x, y, z]: [f64; 3], t: f64) -> Flow {
-        let mut stations = Stations::default();
-        let mut flow = self.surface(t, [x, y], &mut stations);
-        self.within(t, [x, y, z], &mut stations, &mut flow);
+        let (mut stations, now) = (Stations::default(), self.instant(t));
+        let mut flow = self.surface(now, [x, y], &mut stations);
+        self.within(now, [x, y, z], &mut stations, &mut flow);
         flow
     }
 
-    fn instant(&self, t: f64) -> Instant {
+    /// Where time `t` [s] is among the instants of the table.
+    #[inline(always)]
+    pub fn instant(&self, t: f64) -> Instant {
         let instant = t * self.per_time;
         let n = instant.floor();
-        Instant { n: n as i64, late: instant - n }
+        Instant { t, n, late: instant - n }
     }
 
     /// How far places are along the waves [m].
@@ -150,11 +155,11 @@ impl Lattice {
 
     /// The surface above places, of a flow of which nothing else is known.
     #[inline(always)]
-    pub fn surface<R: Real>(&mut self, t: f64, place: [R; 2], stations: &mut Stations) -> Flow<R> {
+    pub fn surface<R: Real>(&mut self, now: Instant, place: [R; 2], stations: &mut Stations) -> Flow<R> {
         if stations.lanes != R::LANES {
             *stations = Stations { lanes: R::LANES, ..Stations::default() };
         }
-        let Instant { n, late } = self.instant(t);
+        let Instant { t, n, late } = now;
         let along = self.along(place);
         let known = &stations.surface;
         let mut off = along - R::read(&known.places[0]);
@@ -187,12 +192,12 @@ impl Lattice {
     #[inline(always)]
     pub fn within<R: Real>(
         &mut self,
-        t: f64,
+        now: Instant,
         [x, y, z]: [R; 3],
         stations: &mut Stations,
         flow: &mut Flow<R>,
     ) {
-        let Instant { n, late } = self.instant(t);
+        let Instant { t, n, late } = now;
         let along = self.along([x, y]);
         let [up, by_z, by_eta] = self.waves.stretched(z, flow.elevation);
         let (depth, near) = (-up, R::read(&stations.near));
@@ -241,7 +246,7 @@ impl Lattice {
 struct MeetSurface<'a> {
     lattice: &'a mut Lattice,
     along: &'a Row,
-    n: i64,
+    n: f64,
     lanes: usize,
     known: &'a mut Known<2, 6>,
 }
@@ -251,7 +256,8 @@ impl LaneTask for MeetSurface<'_> {
     fn go<R: Real>(self) {
         let MeetSurface { lattice, along, n, lanes, known } = self;
         let Lattice { sums, edge, size, .. } = lattice;
-        let generation = sums.make_room(n);
+        let first = n as i64;
+        let generation = sums.make_room(first);
         let anew = known.generation != generation;
         for lane in 0..lanes {
             let next = (along[lane] / (*size / SPOTS as f64) + 0.5).floor();
@@ -266,12 +272,12 @@ impl LaneTask for MeetSurface<'_> {
                 }
                 (known.spots[0][lane], known.places[0][lane]) = (next, next * *size / SPOTS as f64);
             }
-            let stays = !moved && known.n + 1 == n;
+            let stays = !moved && known.n + 1.0 == n;
             if stays {
                 known.step(lane);
             }
             for instant in usize::from(stays)..2 {
-                let numbers = edge.spot(spot, sums.tops(known.slots[lane], n + instant as i64), *size);
+                let numbers = edge.spot(spot, sums.tops(known.slots[lane], first + instant as i64), *size);
                 known.rows[instant].iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = x);
             }
         }
@@ -284,7 +290,7 @@ struct Meet<'a> {
     lattice: &'a mut Lattice,
     along: &'a Row,
     depth: &'a Row,
-    n: i64,
+    n: f64,
     lanes: usize,
     stations: &'a mut Stations,
 }
@@ -294,7 +300,8 @@ impl LaneTask for Meet<'_> {
     fn go<R: Real>(self) {
         let Meet { lattice, along, depth, n, lanes, stations } = self;
         let Lattice { sums, cell, levels, size, bottom, waves, .. } = lattice;
-        let generation = sums.make_room(n);
+        let first = n as i64;
+        let generation = sums.make_room(first);
         let Stations { water: known, apart, near, from, to, .. } = stations;
         let anew = known.generation != generation;
         for lane in 0..lanes {
@@ -335,7 +342,7 @@ impl LaneTask for Meet<'_> {
                 from[lane] = if level == 0 { f64::NEG_INFINITY } else { levels[level] };
                 to[lane] = levels.get(level + 1).copied().unwrap_or(f64::INFINITY);
             }
-            let stays = !moved && known.n + 1 == n;
+            let stays = !moved && known.n + 1.0 == n;
             if stays {
                 known.step(lane);
             }
@@ -345,7 +352,7 @@ impl LaneTask for Meet<'_> {
                 let numbers: Spot = if still {
                     Spot::default()
                 } else {
-                    let corners = sums.corners(known.slots[lane], n + instant as i64);
+                    let corners = sums.corners(known.slots[lane], first + instant as i64);
                     cell.spot::<R>([across, down], corners, width)
                 };
                 let rows = &mut known.rows[instant];

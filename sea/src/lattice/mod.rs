@@ -16,7 +16,7 @@ mod sums;
 
 use crate::waves::{Component, Waves};
 use cell::{Cell, Edge};
-pub use look::Stations;
+pub use look::{Instant, Stations};
 use sums::Sums;
 
 /// The smallest cells are this part of the shortest wave wide.

@@ -157,8 +157,9 @@ fn stations_that_move_find_what_those_find_that_come_anew() {
         let t = 0.013 * f64::from(k) - 0.4 * f64::from(k % 7);
         let x = [10.0 + 3.0 * (0.3 * t).sin(), 0.2 * t, -20.0 + 19.0 * (0.7 * t).sin()];
         let anew = lattice.at(x, t);
-        let mut flow = lattice.surface(t, [x[0], x[1]], &mut known);
-        lattice.within(t, x, &mut known, &mut flow);
+        let now = lattice.instant(t);
+        let mut flow = lattice.surface(now, [x[0], x[1]], &mut known);
+        lattice.within(now, x, &mut known, &mut flow);
         assert_eq!(flow, anew, "{k}");
     }
 }

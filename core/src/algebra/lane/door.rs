@@ -8,7 +8,7 @@ use std::arch::x86_64::*;
 
 macro_rules! carrier {
     ($name:ident, $register:ty, $lanes:literal, $set:ident, $load:ident, $store:ident, $add:ident, $sub:ident,
-     $mul:ident, $div:ident, $fma:ident, $sqrt:ident, |$x:ident, $limit:ident, $yes:ident, $no:ident| $if_gt:expr,
+     $mul:ident, $div:ident, $fma:ident, $sqrt:ident, $andnot:ident, |$x:ident, $limit:ident, $yes:ident, $no:ident| $if_gt:expr,
      |$a:ident, $b:ident| $all_gt:expr, |$get:ident| $from_rows:expr, |$values:ident, $put:ident| $to_rows:expr) => {
         #[derive(Clone, Copy)]
         struct $name($register);
@@ -96,6 +96,11 @@ macro_rules! carrier {
                 $name(unsafe { $sqrt(self.0) })
             }
             #[inline(always)]
+            fn abs(self) -> Self {
+                // SAFETY: see the module
+                $name(unsafe { $andnot($set(-0.0), self.0) })
+            }
+            #[inline(always)]
             fn map(self, f: impl Fn(f64) -> f64) -> Self {
                 let x = self.numbers();
                 Self::each(|i| f(x[i]))
@@ -138,6 +143,7 @@ carrier!(
     _mm256_div_pd,
     _mm256_fmadd_pd,
     _mm256_sqrt_pd,
+    _mm256_andnot_pd,
     |x, limit, yes, no| _mm256_blendv_pd(no, yes, _mm256_cmp_pd::<_CMP_GT_OQ>(x, limit)),
     |x, limit| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(x, limit)) == 0xF,
     |get| {
@@ -165,6 +171,7 @@ carrier!(
     _mm512_div_pd,
     _mm512_fmadd_pd,
     _mm512_sqrt_pd,
+    _mm512_andnot_pd,
     |x, limit, yes, no| _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit), no, yes),
     |x, limit| _mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit) == 0xFF,
     |get| {
