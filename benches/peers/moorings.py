@@ -6,7 +6,7 @@ Each code runs on meshes of growing fineness. Its error is the root mean square 
 the same code gives on a much finer mesh with much shorter steps, within the times that count, in parts of the deviation of that:
 what is left of mesh and steps, with no share of what two codes take for physics. How far that refined solution is from the independent
 one in moorings.json is told beside it. CPU time is user time: of Ropewalk and CableDyn that of the whole process, of MoorDyn that of its
-steps alone, and in brackets that of its search for the first equilibrium.
+steps alone, and in brackets that of its search for the first equilibrium; of each the least of three runs.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import resource
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -344,6 +345,12 @@ def least(runs: list[tuple[float, float]], error: float) -> float | None:
     return best
 
 
+def quickest(run: Callable[[], tuple], times: int = 3) -> tuple:
+    """What a run gives, with the least of each of its times in some runs."""
+    first, *rest = [run() for _ in range(times)]
+    return first[0], *(min(same) for same in zip(first[1:], *(other[1:] for other in rest)))
+
+
 def main() -> None:
     program, wanted = sys.argv[1], sys.argv[2:]
     def within(tolerance: float) -> str:
@@ -360,7 +367,7 @@ def main() -> None:
         codes = {
             "Ropewalk": (
                 lambda: ropewalk(program, case, 160, fine),
-                [(f"{k} elements", lambda k=k: ropewalk(program, case, k)) for k in (4, 6, 8, 10, 15, 20, 30, 40, 80)]
+                [(f"{k} elements", lambda k=k: ropewalk(program, case, k)) for k in (4, 6, 8, 10, 15, 20, 30, 40, 55, 80)]
                 + [
                     (f"{k} elements, tolerance {e}", lambda k=k, e=e: ropewalk(program, case, k, within(e)))
                     for k, e in ((30, 3e-5), (40, 3e-5), (80, 1e-5))
@@ -393,7 +400,7 @@ def main() -> None:
             print(row, flush=True)
             for mesh, run in runs:
                 try:
-                    table, *times = run()
+                    table, *times = quickest(run)
                 except RuntimeError:
                     print(f"| {name} | {code} | {mesh} | its steps fail | | | |", flush=True)
                     continue
