@@ -190,6 +190,29 @@ fn bending_is_damped_in_proportion_to_the_frequency() {
     }
 }
 
+/// Beams side by side have each frequency as often as there are beams and planes, more often than a search has start vectors.
+#[test]
+fn damped_modes_of_several_beams_are_all_found() {
+    for beams in [2_u32, 3, 4, 6] {
+        let section = Section { bending_retardation_time: 2e-4, ..Section::new(1.0, 1e7, 1.0) };
+        let mut scene = Scene::new();
+        for k in 0..beams {
+            let (name, y) = (format!("beam-{k}"), f64::from(k));
+            let spec = CableSpec::straight(&name, [0.0, y, 0.0], [1.0, y, 0.0], 8, section.clone());
+            scene
+                .element(spec)
+                .constraint(SphericalSpec::pin(&format!("pin-{k}"), format!("{name}.start").as_str()))
+                .constraint(DirectionSpec::new(&format!("clamp-{k}"), format!("{name}.start").as_str()));
+        }
+        let each = 2 * beams as usize;
+        let found = find(&scene, 2 * each);
+        for (m, exact) in found.iter().zip([3.516_015, 22.034_492].map(|w| vec![w; each]).concat()) {
+            let own = m.omega / (1.0 - m.damping_ratio().powi(2)).sqrt();
+            close(&format!("one of {beams} beams"), own, exact, 1e-3);
+        }
+    }
+}
+
 fn find_all(scene: &Scene) -> Vec<Mode> {
     modes(scene, &ModesOptions::default()).unwrap_or_else(|e| panic!("{e}")).modes
 }

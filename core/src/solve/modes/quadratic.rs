@@ -79,8 +79,9 @@ pub(super) fn find(
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
     }
     let (mut next_look, mut tried) = ((4 * count).min(60), None::<Vec<[f64; 2]>>);
-    // from here on a third start vector has come so far that none of the wanted is rough any more
-    let mut deep = usize::MAX;
+    // turns at which all of the wanted were first there, and from which the latest start vector has come so far, two thirds
+    // of what the first ones took, that none of the wanted is rough any more
+    let (mut starts, mut first, mut deep) = (STARTS, None, usize::MAX);
     // displacements and velocities of all motions; what a larger space holds is rounding
     let whole = 2 * op.p.motions;
     let all = loop {
@@ -114,7 +115,9 @@ pub(super) fn find(
         if tried.is_some_and(|old| same(&old, &now, sigma)) {
             break all;
         }
-        deep = deep.min(2 * space.turns());
+        // they take turns
+        starts += 1;
+        deep = space.turns() + starts * *first.get_or_insert(space.turns()) / 3;
         tried = Some(now);
         closed |= !space.start(&mut op).map_err(ModesError::Solver)?;
         next_look = space.turns() + 8;
