@@ -70,7 +70,7 @@ pub struct Control {
     /// Radau IIA: multipliers of the stages of the last step.
     #[cfg_attr(feature = "serde", serde(default))]
     pub stage_lambda: [Vec<f64>; 3],
-    /// Radau IIA: estimated error of the last step over the tolerance.
+    /// Estimated error of the last step over the tolerance, as the next one was made for it.
     #[cfg_attr(feature = "serde", serde(default))]
     pub error: f64,
 }

@@ -30,11 +30,21 @@ const FAILED: [f64; 2] = [0.7, 0.5];
 /// The cap on the next steps after a failure, in parts of the step that failed.
 const CAP: f64 = 0.7;
 
+/// By how much longer a step is that leaps, and what its error may be then: it is one of many, and growth of the second
+/// order alone makes it 2.6 times larger.
+const LEAP: f64 = 1.6;
+const LEAPT: f64 = 4.0;
+
 /// The step-size controller of one step: its present size, and what was rejected before.
 pub(super) struct StepController<'a> {
     law: &'a StepLaw,
     least: f64,
+    /// Longest step that there is room for [s].
+    room: f64,
     controlled: bool,
+    /// Size of the try that a longer one stands for [s], and whether there was one.
+    short: Option<f64>,
+    leapt: bool,
     /// Size of the present try [s].
     pub h: f64,
     /// Size that the next step may have at least [s], where this one is cut and says nothing about it.
@@ -43,6 +53,8 @@ pub(super) struct StepController<'a> {
     pub limit: Limit,
     /// Tries that were rejected.
     pub rejected: u32,
+    /// Errors of the first and of the last try that were too large.
+    errors: Option<[f64; 2]>,
     /// Tries that failed otherwise than by their error.
     pub failures: u32,
 }
@@ -77,7 +89,40 @@ impl<'a> StepController<'a> {
             Stepping::Controlled { .. } if cap < next => Limit::Newton,
             Stepping::Controlled { .. } => control.limit,
         };
-        StepController { law, least: limits.least, controlled, h, kept, limit, rejected: 0, failures: 0 }
+        let (least, room) = (limits.least, h_max.min(limits.most));
+        StepController {
+            law,
+            least,
+            room,
+            controlled,
+            short: None,
+            leapt: false,
+            h,
+            kept,
+            limit,
+            rejected: 0,
+            errors: None,
+            failures: 0,
+        }
+    }
+
+    /// Largest error over the tolerance with which the present try is accepted.
+    pub fn allowed(&self) -> f64 {
+        if self.short.is_some() { LEAPT } else { 1.0 }
+    }
+
+    /// A longer step instead of one that failed, once: next to a singular position, where constraints hardly determine a
+    /// direction, every shorter one ends nearer to it. `false` if there is no room for it.
+    #[must_use]
+    pub fn leap(&mut self) -> bool {
+        let fits = LEAP * self.h <= self.room;
+        if self.leapt || !fits || !self.controlled {
+            return false;
+        }
+        self.rejected += 1;
+        (self.leapt, self.short) = (true, Some(self.h));
+        self.h *= LEAP;
+        true
     }
 
     /// A smaller step after one whose error was too large, which `by` says was that of positions or forces; `false` if none
@@ -86,8 +131,17 @@ impl<'a> StepController<'a> {
     pub fn too_large(&mut self, error: f64, iterations: u32, by: Limit) -> bool {
         self.rejected += 1;
         self.limit = by;
-        self.h *= (self.law.growth)(error, iterations).clamp(REJECTED[0], REJECTED[1]);
+        self.errors = Some([self.errors.map_or(error, |[first, _]| first), error]);
+        self.h = match self.short.take() {
+            Some(short) => FAILED[0] * short,
+            None => self.h * (self.law.growth)(error, iterations).clamp(REJECTED[0], REJECTED[1]),
+        };
         !(self.h < self.least)
+    }
+
+    /// Whether errors didn't fall although steps did: they are rounding.
+    pub fn is_rounding(&self) -> bool {
+        self.rejected > 2 && self.errors.is_some_and(|[first, last]| last >= first)
     }
 
     /// A smaller step after one that failed, which also caps the next steps; `false` if none is left.
@@ -96,11 +150,12 @@ impl<'a> StepController<'a> {
         self.rejected += 1;
         self.failures += 1;
         self.limit = Limit::Newton;
-        let smaller = self.h * if self.failures == 1 { FAILED[0] } else { FAILED[1] };
+        let h = self.short.take().unwrap_or(self.h);
+        let smaller = h * if self.failures == 1 { FAILED[0] } else { FAILED[1] };
         if smaller < self.least {
             return false;
         }
-        control.h_cap = CAP * self.h;
+        control.h_cap = CAP * h;
         self.h = smaller;
         true
     }
@@ -115,9 +170,7 @@ impl<'a> StepController<'a> {
                 _ => (control.h_next, control.limit) = (next, limit),
             }
         }
-        if self.law.trend.is_some() {
-            control.error = error;
-        }
+        control.error = error;
         control.h_cap = if control.h_cap > 0.0 { control.h_cap * self.law.recovery } else { 0.0 };
         control.h_last = self.h;
     }

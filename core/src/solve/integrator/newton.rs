@@ -24,6 +24,12 @@ const CAREFUL: u32 = 3;
 /// step that has only one.
 const TRUST: f64 = 0.1;
 
+/// Corrections that do no harm where nothing else is left, in parts of the tolerance: they make velocities wrong by a tenth
+/// of what the error of the run may be.
+const WANDERING: f64 = 100.0;
+/// Roundings of positions that constraints may be off by.
+const ROUNDINGS: f64 = 8.0;
+
 /// What an absolute stopping test says of an iteration.
 #[derive(Clone, Copy, PartialEq)]
 enum Test {
@@ -99,7 +105,7 @@ impl Newton<'_> {
         let (c, h, t) = (&self.scheme, self.h, &mut work.trial);
         let n = t.aux.len();
         let (old, new) = (&t.aux_old[..n], &t.aux[..n]);
-        let (v, a) = (&self.state.v[..n], &self.state.a[..n]);
+        let (v, a) = (&t.v_old.as_ref().unwrap_or(&self.state.v)[..n], &self.state.a[..n]);
         let (d, v_new, a_new) = (&mut t.d[..n], &mut t.v[..n], &mut t.a[..n]);
         let (d_old, d_new) = (h * h * (0.5 - c.beta), h * h * c.beta);
         let (g_old, g_new) = (h * (1.0 - c.gamma), h * c.gamma);
@@ -215,7 +221,7 @@ impl Newton<'_> {
             return Ok(None);
         }
         // at the floor of rounding the iteration wanders; far from it, it diverges
-        if noise && it.factors.fresh() {
+        if it.factors.fresh() && (noise || self.amplified(work, it)) {
             let rate = it.rate(iterations, !(it.convergence.force_left <= 1.0));
             return Ok(Some(Rate { eta: 1.0, theta: Some(1.0), ..rate }));
         }
@@ -223,6 +229,16 @@ impl Newton<'_> {
             Remedy::GoOn => Ok(None),
             _ => Err(Failure::newton("Newton's method diverges")),
         }
+    }
+
+    /// Whether all equations are met to rounding although corrections are larger than that: next to a singular position
+    /// constraints hardly determine a direction.
+    fn amplified(&self, work: &mut Workspace, it: &Iteration) -> bool {
+        !self.linear_constraints
+            && !it.approximate
+            && it.convergence.size <= WANDERING * self.tolerance
+            && it.convergence.force_left <= 1.0
+            && self.met_to(ROUNDINGS * self.model.rounding(), work)
     }
 
     /// Whether iteration `k` needs a new matrix even if it isn't slow.
@@ -364,8 +380,12 @@ impl Newton<'_> {
             return true;
         }
         // what is left of them shakes the multipliers by its square of the step
-        let (most, least) = (1e-10 * self.model.length(), 8.0 * self.model.rounding());
-        let limit = (10.0 * self.tolerance * self.model.length()).min(most).max(least);
+        let (most, least) = (1e-10 * self.model.length(), ROUNDINGS * self.model.rounding());
+        self.met_to((10.0 * self.tolerance * self.model.length()).min(most).max(least), work)
+    }
+
+    /// Whether the trial violates no constraint by more than this, in its own scale.
+    fn met_to(&self, limit: f64, work: &mut Workspace) -> bool {
         let mut g = std::mem::take(&mut work.trial.g);
         self.model.violations(&self.place(&work.trial), &mut work.system, &mut g);
         let fine = g.iter().zip(self.model.row_scale()).all(|(g, s)| g.abs() <= limit * s);

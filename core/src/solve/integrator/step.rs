@@ -1,5 +1,6 @@
 //! One step of a scheme: what it offers, what it costs and why it may fail.
 
+use super::controller::StepController;
 use super::options::{Limits, Options};
 use super::workspace::Workspace;
 use crate::error::BuildError;
@@ -193,7 +194,11 @@ pub(super) fn linear(model: &Model, t: f64, source: SolveError) -> StepError {
 }
 
 /// The error of a step would have to be smaller than the smallest step makes it.
-pub(super) fn too_strict(model: &Model, t: f64, h: f64, work: &Workspace) -> StepError {
-    let why = "the tolerance asks for a smaller step than `h_min`".into();
-    StepError::NoConvergence { t, h, why, equation: work.worst_equation(model) }
+pub(super) fn too_strict(model: &Model, t: f64, steps: &StepController<'_>, work: &Workspace) -> StepError {
+    let why = if steps.is_rounding() {
+        "rounding leaves more of an error than the tolerance allows, however short the step"
+    } else {
+        "the tolerance asks for a smaller step than `h_min`"
+    };
+    StepError::NoConvergence { t, h: steps.h, why: why.into(), equation: work.worst_equation(model) }
 }

@@ -93,6 +93,10 @@ pub(crate) struct Trial {
     pub a: Vec<f64>,
     pub aux: Vec<f64>,
     pub aux_old: Vec<f64>,
+    /// Velocities to start from, where they are not those of the state.
+    pub v_old: Option<Vec<f64>>,
+    /// What velocities have across the constraints, once the step has asked for it.
+    pub across: Vec<f64>,
     pub lambda: Vec<f64>,
     pub d: Vec<f64>,
     /// What positions are moved by beside their motion, to meet the constraints: of the stabilised form.
@@ -139,6 +143,8 @@ impl Workspace {
                 a: zero(),
                 aux: zero(),
                 aux_old: zero(),
+                v_old: None,
+                across: Vec::new(),
                 lambda: vec![0.0; model.multipliers()],
                 d: zero(),
                 shift: zero(),

@@ -3,10 +3,13 @@
 use super::stages::Stages;
 use super::tableau::{ERROR, GAMMA};
 use crate::model::Model;
-use crate::model::node::difference;
+use crate::model::node::{difference, retract};
 use crate::model::state::{At, State};
 use crate::solve::integrator::workspace::{Which, Workspace};
 use crate::solve::linear::SolveError;
+
+/// Roundings of positions that constraints may be off by.
+const ROUNDINGS: f64 = 8.0;
 
 impl Stages {
     /// Estimated errors of positions and velocities [1/s] relative to each part's length, of order 3 and without what the constraints and the
@@ -54,15 +57,19 @@ impl Stages {
     ) -> Result<(), SolveError> {
         let (nv, m) = (model.velocities(), model.multipliers());
         let s = model.structure();
+        self.has_mass = false;
+        let at = At { a: &self.rest, ..self.at(state, h, 2) };
+        work.assemble_mass(model, &at, &self.free, 0.0, true)?;
+        self.mass.copy_from_slice(&work.mass.values);
+        if model.is_mechanism() {
+            self.onto_constraints(model, state, work, h)?;
+        }
         let Stages { q, v, a, rest, free, real, d, e, rate, bias, mass, has_mass, .. } = self;
         let (q, v, a) = (&q[2], &mut v[2], &mut a[2]);
         // as a function: a closure would hold on to the first velocities
         fn place<'a>(state: &'a State, h: f64, [q, v, a]: [&'a [f64]; 3]) -> At<'a> {
             At { t: state.t + h, q, v, a, internal: &state.internal, relaxed: None }
         }
-        *has_mass = false;
-        work.assemble_mass(model, &place(state, h, [q, v, rest]), free, 0.0, true)?;
-        mass.copy_from_slice(&work.mass.values);
         model.rates(&place(state, h, [q, v, rest]), rate, bias);
         model.assemble(&place(state, h, [q, v, rest]), free, None, &mut work.system);
         e.copy_from_slice(&work.system.residual[..nv]);
@@ -104,6 +111,34 @@ impl Stages {
             *a += d;
         }
         if v.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(SolveError::NotFinite) }
+    }
+
+    /// Moves the last stage, whose mass matrix `work` holds, by the shortest way to where the constraints are met to
+    /// rounding. Next to a singular position what the iteration leaves of them is a far larger way, which the next step
+    /// would go in an instant.
+    fn onto_constraints(
+        &mut self,
+        model: &Model,
+        state: &State,
+        work: &mut Workspace,
+        h: f64,
+    ) -> Result<(), SolveError> {
+        let (nv, least) = (model.velocities(), ROUNDINGS * model.rounding());
+        let mut off = std::mem::take(&mut self.rate);
+        model.violations(&self.at(state, h, 2), &mut work.system, &mut off);
+        let met = off.iter().zip(model.row_scale()).all(|(g, scale)| g.abs() <= least * scale);
+        self.real[..nv].fill(0.0);
+        self.real[nv..].iter_mut().zip(&off).for_each(|(x, g)| *x = -g);
+        self.rate = off;
+        if met {
+            return Ok(());
+        }
+        work.solve(model, Which::Mass, &mut self.real)?;
+        for (z, d) in self.z[2].iter_mut().zip(&self.real) {
+            *z += d;
+        }
+        retract(model.nodes(), &state.q, &self.z[2], &mut self.q[2]);
+        Ok(())
     }
 
     /// Moves the state to the end of the step, and keeps its stages for the next.

@@ -164,7 +164,7 @@ impl Radau {
                 Ok((rate, error)) => {
                     work.counts.rejected += 1;
                     if !steps.too_large(error, rate.iterations, Limit::Position) {
-                        return Err(too_strict(model, state.t, steps.h, work));
+                        return Err(too_strict(model, state.t, &steps, work));
                     }
                 }
                 Err(failure) => {
