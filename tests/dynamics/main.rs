@@ -27,4 +27,5 @@ mod pendulums;
 mod radau;
 mod running;
 mod scales;
+mod singular;
 mod tolerance;

@@ -9,7 +9,7 @@ use crate::model::node::retract;
 use crate::model::state::State;
 use crate::model::term::Weights;
 use crate::solve::integrator::{
-    Workspace, accelerate, consistent_by_iteration, consistent_by_mass, move_velocities,
+    Workspace, accelerate, agree, consistent_by_iteration, consistent_by_mass, move_velocities,
 };
 use crate::solve::linear::SolveError;
 use crate::solve::times::Phase;
@@ -30,6 +30,9 @@ impl Simulation {
             return Ok(());
         }
         let weights = self.weights();
+        if self.work.softening.is_some() {
+            agree(&self.model, &mut self.scratch, &mut self.work)?;
+        }
         if consistent_by_mass(&self.model, &mut self.scratch, &mut self.work)? {
             return Ok(());
         }
@@ -147,6 +150,10 @@ impl Simulation {
     /// motion with those that it has.
     fn find_accelerations(&mut self, aside: &mut Workspace) -> Result<(), SolveError> {
         let (model, s) = (&*self.model, &mut self.scratch);
+        if aside.softening.is_some() {
+            agree(model, s, aside)?;
+            model.assemble(&s.at(), &s.lambda, None, &mut aside.system);
+        }
         // what is missing of the balance is little, and a mass that is a little off makes little of it
         if !aside.take_inertia(model, &self.work)? {
             aside.assemble_mass(model, &s.at(), &s.lambda, 0.0, true)?;

@@ -3,6 +3,7 @@
 use super::start::{solve_accelerations, velocity_rhs};
 use super::workspace::{Which, Workspace};
 use crate::model::Model;
+use crate::model::node::retract;
 use crate::model::state::{At, State};
 use crate::model::term::Weights;
 use crate::solve::linear::SolveError;
@@ -11,6 +12,8 @@ use crate::solve::linear::SolveError;
 const STRAINED: f64 = 1e-3;
 /// What moving velocities onto the constraints leaves of how far they were off.
 const MET: f64 = 1e-6;
+/// Roundings of positions that constraints may be off by.
+pub(super) const ROUNDINGS: f64 = 8.0;
 /// Most solutions for that: a Jacobian from nearby needs more than one where bodies turn.
 const MOST_MOVES: usize = 4;
 
@@ -50,6 +53,35 @@ pub(crate) fn consistent_by_mass(
     }
     state.v = v;
     accelerate(model, state, work).map(|()| true)
+}
+
+/// Moves positions and velocities onto the constraints, in the metric of the mass: redundant ones share forces out by what is
+/// left of how they agree, which a trillionth of the model's size spoils.
+///
+/// # Errors
+/// A matrix is singular.
+pub(crate) fn agree(model: &Model, state: &mut State, work: &mut Workspace) -> Result<(), SolveError> {
+    let (start, mut d) = (state.q.clone(), vec![0.0; model.velocities()]);
+    for _ in 0..MOST_MOVES {
+        work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
+        let Some(mut way) = way_back(model, &state.at(), work) else { break };
+        work.solve(model, Which::Mass, &mut way)?;
+        d.iter_mut().zip(&way).for_each(|(d, x)| *d += x);
+        retract(model.nodes(), &start, &d, &mut state.q);
+    }
+    state.v = on_constraints(model, state, work, Which::Mass)?;
+    Ok(())
+}
+
+/// Right-hand side that removes what the constraints are violated by, if that is more than rounding.
+pub(super) fn way_back(model: &Model, at: &At<'_>, work: &mut Workspace) -> Option<Vec<f64>> {
+    let nv = model.velocities();
+    let mut rhs = vec![0.0; model.structure().n];
+    model.violations(at, &mut work.system, &mut rhs[nv..]);
+    let least = ROUNDINGS * model.rounding();
+    let met = rhs[nv..].iter().zip(model.row_scale()).all(|(g, scale)| g.abs() <= least * scale);
+    rhs.iter_mut().for_each(|g| *g = -*g);
+    (!met).then_some(rhs)
 }
 
 /// Replaces accelerations and multipliers by those that the equations of motion have at a state, by the factors of the mass

@@ -4,6 +4,7 @@
 //! `δv̇ = (1-αm)/(1-αf) δa` the matrix is `[(1-αm)/(1-αf) M + γ h C + β h² K, Gᵀ; G, 0]`, whose condition doesn't
 //! grow as the step shrinks (Bottasso, Bauchau & Cardona 2007), and β = 0 is no special case.
 
+use super::consistent::ROUNDINGS;
 use super::convergence::{Convergence, Failure, Rate};
 use super::factors::{Factors, Remedy};
 use super::options::NewtonPolicy;
@@ -27,8 +28,6 @@ const TRUST: f64 = 0.1;
 /// Corrections that do no harm where nothing else is left, in parts of the tolerance: they make velocities wrong by a tenth
 /// of what the error of the run may be.
 const WANDERING: f64 = 100.0;
-/// Roundings of positions that constraints may be off by.
-const ROUNDINGS: f64 = 8.0;
 
 /// What an absolute stopping test says of an iteration.
 #[derive(Clone, Copy, PartialEq)]

@@ -5,11 +5,9 @@ use super::tableau::{ERROR, GAMMA};
 use crate::model::Model;
 use crate::model::node::{difference, retract};
 use crate::model::state::{At, State};
+use crate::solve::integrator::consistent::way_back;
 use crate::solve::integrator::workspace::{Which, Workspace};
 use crate::solve::linear::SolveError;
-
-/// Roundings of positions that constraints may be off by.
-const ROUNDINGS: f64 = 8.0;
 
 impl Stages {
     /// Estimated errors of positions and velocities [1/s] relative to each part's length, of order 3 and without what the constraints and the
@@ -123,18 +121,9 @@ impl Stages {
         work: &mut Workspace,
         h: f64,
     ) -> Result<(), SolveError> {
-        let (nv, least) = (model.velocities(), ROUNDINGS * model.rounding());
-        let mut off = std::mem::take(&mut self.rate);
-        model.violations(&self.at(state, h, 2), &mut work.system, &mut off);
-        let met = off.iter().zip(model.row_scale()).all(|(g, scale)| g.abs() <= least * scale);
-        self.real[..nv].fill(0.0);
-        self.real[nv..].iter_mut().zip(&off).for_each(|(x, g)| *x = -g);
-        self.rate = off;
-        if met {
-            return Ok(());
-        }
-        work.solve(model, Which::Mass, &mut self.real)?;
-        for (z, d) in self.z[2].iter_mut().zip(&self.real) {
+        let Some(mut way) = way_back(model, &self.at(state, h, 2), work) else { return Ok(()) };
+        work.solve(model, Which::Mass, &mut way)?;
+        for (z, d) in self.z[2].iter_mut().zip(&way) {
             *z += d;
         }
         retract(model.nodes(), &state.q, &self.z[2], &mut self.q[2]);
