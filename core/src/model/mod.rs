@@ -88,6 +88,8 @@ pub struct Model {
     rounding: f64,
     /// Whether some constraints are not linear.
     mechanism: bool,
+    /// Whether that is so of constraints that always hold, of parts that no material enters or leaves.
+    linkage: bool,
     width: Width,
     /// Whether no node has an orientation, so that `q ⊕ d` is `q + d`.
     flat: bool,
@@ -193,6 +195,8 @@ impl Model {
         let driven = constraints.iter().enumerate();
         let driven = driven.filter_map(|(c, own)| own.prescribes().map(|(q, v)| (c, q, v))).collect();
         let mechanism = constraints.iter().any(|c| !c.linear());
+        let feeds = parts.iter().any(|part| part.boundary(0).is_some() || part.boundary(1).is_some());
+        let linkage = mechanism && !feeds && start.internal.is_empty();
         Model {
             nodes,
             terms: terms.into_iter().map(Arc::from).collect(),
@@ -213,6 +217,7 @@ impl Model {
             cliques,
             length,
             mechanism,
+            linkage,
             rounding: 0.5 * f64::EPSILON * farthest,
             width: Width::best(),
             flat,
@@ -396,6 +401,12 @@ impl Model {
     /// Whether some constraints are not linear: then one iteration doesn't meet them.
     pub fn is_mechanism(&self) -> bool {
         self.mechanism
+    }
+
+    /// Whether that is so of constraints that always hold, of parts that no material enters or leaves: then what happens is
+    /// smooth, but for forces.
+    pub(crate) fn is_linkage(&self) -> bool {
+        self.linkage
     }
 
     /// Number of elements of the part that is divided most finely.

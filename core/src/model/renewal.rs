@@ -91,6 +91,7 @@ impl Model {
             length: self.length,
             rounding: self.rounding,
             mechanism: self.mechanism,
+            linkage: self.linkage,
             width: self.width,
             flat: self.flat,
             finest: self.finest,

@@ -37,8 +37,10 @@ const MANY: f64 = 10_000.0;
 /// What counts of the error of the step before. With none, that of a slider crank at 1e-4 was 0.35 to 3.9 times its
 /// tolerance, as rounding had it.
 const MEMORY: f64 = 0.8;
-/// Largest change of velocities across the constraints with the size of a step, in parts of the velocities.
+/// Largest change of velocities across the constraints with the size of a step, in parts of the velocities, and largest growth
+/// of a step that they are fitted to.
 const MOST_ACROSS: f64 = 1e-3;
+const MOST_FITTED: f64 = 1.5;
 /// What the error of a body counts for, and how much more for every radian that it turns within the horizon.
 const BODY: f64 = 2.4;
 const TURNING: f64 = 0.1;
@@ -111,17 +113,23 @@ impl Alpha {
     /// multipliers would ring for tens of steps.
     fn fit_velocities(&self, model: &Model, state: &State, work: &mut Workspace, h: f64) {
         let mut v = work.trial.v_old.take().unwrap_or_default();
-        let (ratio, nv) = (h / state.control.h_last, model.velocities());
-        if !model.is_mechanism() || self.stabilised(model) || !ratio.is_finite() || ratio == 1.0 {
+        let (c, nv) = (&state.control, model.velocities());
+        let (ratio, settled) = (h / c.h_last, c.h_before == c.h_last);
+        // what isn't that would only be made larger
+        let fits = ratio < 1.0 || ratio > 1.0 && ratio <= MOST_FITTED && settled;
+        if !fits || !model.is_linkage() || self.stabilised(model) {
             return;
         }
         if work.trial.across.is_empty() {
             work.trial.across = self.across(model, state, work).unwrap_or_else(|| vec![0.0; nv]);
         }
-        let across = &work.trial.across;
-        let more = ratio * ratio - 1.0;
+        let (across, more) = (&work.trial.across, ratio * ratio - 1.0);
         // next to a singular position it says nothing
-        if more.abs() * work.norms.relative(across) <= MOST_ACROSS * work.norms.relative(&state.v) {
+        let most = match self.options.stepping {
+            Stepping::Controlled { tolerance } => tolerance / self.horizon,
+            Stepping::Fixed { .. } => MOST_ACROSS * work.norms.relative(&state.v),
+        };
+        if more.abs() * work.norms.relative(across) <= most {
             v.clear();
             v.extend(state.v.iter().zip(across).map(|(v, d)| v + more * d));
             work.trial.v_old = Some(v);
@@ -437,7 +445,7 @@ fn jumps(state: &State, work: &Workspace) -> bool {
     last > 0.0 && last * norms.relative(&state.a) < 0.05 * before && change > 0.5 * before.max(after)
 }
 
-/// The error that the next step is made for: in a mechanism the estimate passes through zero where errors don't, as
+/// The error that the next step of a linkage is made for: the estimate passes through zero where errors don't, as
 /// accelerations ring after each change of the step, so that it counts as falling by a share at most.
 fn remembered(control: &Control, h: f64, error: f64) -> f64 {
     let ratio = h / control.h_last;
@@ -516,8 +524,7 @@ impl Integrator for Alpha {
                 Attempt::Done { rate, error, by } if error <= steps.allowed() => {
                     let rings = work.forces.ring(state.control.h_last);
                     self.accept(state, work, h, &rate);
-                    let kept =
-                        if model.is_mechanism() { remembered(&state.control, h, error) } else { error };
+                    let kept = if model.is_linkage() { remembered(&state.control, h, error) } else { error };
                     steps.accepted(&mut state.control, kept, rate.iterations, by);
                     let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
                     return Ok(StepReport { h, iterations, rejected, error, limit, rings });
@@ -557,7 +564,8 @@ impl Integrator for Alpha {
             if repeat {
                 continue;
             }
-            if model.is_mechanism() && steps.leap() {
+            // what comes and goes must not be leapt over
+            if model.is_linkage() && steps.leap() {
                 work.counts.rejected += 1;
                 work.factored = None;
                 (remedies.careful, remedies.gripping) = (false, false);

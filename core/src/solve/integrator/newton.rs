@@ -233,7 +233,7 @@ impl Newton<'_> {
     /// Whether all equations are met to rounding although corrections are larger than that: next to a singular position
     /// constraints hardly determine a direction.
     fn amplified(&self, work: &mut Workspace, it: &Iteration) -> bool {
-        !self.linear_constraints
+        work.softening.is_some()
             && !it.approximate
             && it.convergence.size <= WANDERING * self.tolerance
             && it.convergence.force_left <= 1.0
