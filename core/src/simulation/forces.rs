@@ -9,7 +9,8 @@ use crate::model::node::retract;
 use crate::model::state::State;
 use crate::model::term::Weights;
 use crate::solve::integrator::{
-    Workspace, accelerate, agree, consistent_by_iteration, consistent_by_mass, move_velocities,
+    Workspace, accelerate, agree, agree_in_velocity, consistent_by_iteration, consistent_by_mass,
+    move_velocities,
 };
 use crate::solve::linear::SolveError;
 use crate::solve::times::Phase;
@@ -152,6 +153,7 @@ impl Simulation {
         let (model, s) = (&*self.model, &mut self.scratch);
         if aside.softening.is_some() {
             agree(model, s, aside)?;
+            agree_in_velocity(model, s, aside)?;
             model.assemble(&s.at(), &s.lambda, None, &mut aside.system);
         }
         // what is missing of the balance is little, and a mass that is a little off makes little of it

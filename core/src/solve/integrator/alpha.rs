@@ -37,10 +37,9 @@ const MANY: f64 = 10_000.0;
 /// What counts of the error of the step before. With none, that of a slider crank at 1e-4 was 0.35 to 3.9 times its
 /// tolerance, as rounding had it.
 const MEMORY: f64 = 0.8;
-/// Largest change of velocities across the constraints with the size of a step, in parts of the velocities, and largest growth
-/// of a step that they are fitted to.
-const MOST_ACROSS: f64 = 1e-3;
-const MOST_FITTED: f64 = 1.5;
+/// Largest change of velocities across the constraints with the size of a step, in parts of what the tolerance allows for the
+/// horizon, and of velocities themselves where steps are fixed.
+const MOST_ACROSS: [f64; 2] = [10.0, 1e-3];
 /// What the error of a body counts for, and how much more for every radian that it turns within the horizon.
 const BODY: f64 = 2.4;
 const TURNING: f64 = 0.1;
@@ -113,10 +112,8 @@ impl Alpha {
     /// multipliers would ring for tens of steps.
     fn fit_velocities(&self, model: &Model, state: &State, work: &mut Workspace, h: f64) {
         let mut v = work.trial.v_old.take().unwrap_or_default();
-        let (c, nv) = (&state.control, model.velocities());
-        let (ratio, settled) = (h / c.h_last, c.h_before == c.h_last);
-        // what isn't that would only be made larger
-        let fits = ratio < 1.0 || ratio > 1.0 && ratio <= MOST_FITTED && settled;
+        let (ratio, nv) = (h / state.control.h_last, model.velocities());
+        let fits = ratio != 1.0 && ratio <= LAW.most[0];
         if !fits || !model.is_linkage() || self.stabilised(model) {
             return;
         }
@@ -124,10 +121,10 @@ impl Alpha {
             work.trial.across = self.across(model, state, work).unwrap_or_else(|| vec![0.0; nv]);
         }
         let (across, more) = (&work.trial.across, ratio * ratio - 1.0);
-        // next to a singular position it says nothing
+        // next to a singular position, or after a step that was cut, it is something else, and growth would multiply it
         let most = match self.options.stepping {
-            Stepping::Controlled { tolerance } => tolerance / self.horizon,
-            Stepping::Fixed { .. } => MOST_ACROSS * work.norms.relative(&state.v),
+            Stepping::Controlled { tolerance } => MOST_ACROSS[0] * tolerance / self.horizon,
+            Stepping::Fixed { .. } => MOST_ACROSS[1] * work.norms.relative(&state.v),
         };
         if more.abs() * work.norms.relative(across) <= most {
             v.clear();
@@ -521,7 +518,7 @@ impl Integrator for Alpha {
         loop {
             let h = steps.h;
             let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
-                Attempt::Done { rate, error, by } if error <= steps.allowed() => {
+                Attempt::Done { rate, error, by } if error <= steps.allowed(by) => {
                     let rings = work.forces.ring(state.control.h_last);
                     self.accept(state, work, h, &rate);
                     let kept = if model.is_linkage() { remembered(&state.control, h, error) } else { error };

@@ -55,8 +55,8 @@ pub(crate) fn consistent_by_mass(
     accelerate(model, state, work).map(|()| true)
 }
 
-/// Moves positions and velocities onto the constraints, in the metric of the mass: redundant ones share forces out by what is
-/// left of how they agree, which a trillionth of the model's size spoils.
+/// Moves positions onto the constraints, in the metric of the mass: redundant ones share forces out by what is left of how they
+/// agree, which a trillionth of the model's size spoils.
 ///
 /// # Errors
 /// A matrix is singular.
@@ -69,6 +69,18 @@ pub(crate) fn agree(model: &Model, state: &mut State, work: &mut Workspace) -> R
         d.iter_mut().zip(&way).for_each(|(d, x)| *d += x);
         retract(model.nodes(), &start, &d, &mut state.q);
     }
+    Ok(())
+}
+
+/// The same of velocities, by the factors of the mass matrix at this state.
+///
+/// # Errors
+/// A matrix is singular.
+pub(crate) fn agree_in_velocity(
+    model: &Model,
+    state: &mut State,
+    work: &mut Workspace,
+) -> Result<(), SolveError> {
     state.v = on_constraints(model, state, work, Which::Mass)?;
     Ok(())
 }

@@ -106,9 +106,9 @@ impl<'a> StepController<'a> {
         }
     }
 
-    /// Largest error over the tolerance with which the present try is accepted.
-    pub fn allowed(&self) -> f64 {
-        if self.short.is_some() { LEAPT } else { 1.0 }
+    /// Largest error over the tolerance with which the present try is accepted, if it is `by` positions or forces.
+    pub fn allowed(&self, by: Limit) -> f64 {
+        if self.short.is_some() && by == Limit::Position { LEAPT } else { 1.0 }
     }
 
     /// A longer step instead of one that failed, once: next to a singular position, where constraints hardly determine a

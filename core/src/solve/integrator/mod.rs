@@ -22,7 +22,7 @@ pub use crate::model::limit::Limit;
 pub use alpha::Alpha;
 pub use consistent::consistent;
 pub(crate) use consistent::{
-    accelerate, agree, consistent_by_iteration, consistent_by_mass, move_velocities,
+    accelerate, agree, agree_in_velocity, consistent_by_iteration, consistent_by_mass, move_velocities,
 };
 pub(crate) use norm::Speeds;
 pub use options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
