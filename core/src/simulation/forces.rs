@@ -155,9 +155,8 @@ impl Simulation {
             agree(model, s, aside)?;
             agree_in_velocity(model, s, aside)?;
             model.assemble(&s.at(), &s.lambda, None, &mut aside.system);
-        }
-        // what is missing of the balance is little, and a mass that is a little off makes little of it
-        if !aside.take_inertia(model, &self.work)? {
+        } else if !aside.take_inertia(model, &self.work)? {
+            // what is missing of the balance is little, and a mass that is a little off makes little of it
             aside.assemble_mass(model, &s.at(), &s.lambda, 0.0, true)?;
         }
         accelerate(model, s, aside)

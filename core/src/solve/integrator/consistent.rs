@@ -63,8 +63,8 @@ pub(crate) fn consistent_by_mass(
 pub(crate) fn agree(model: &Model, state: &mut State, work: &mut Workspace) -> Result<(), SolveError> {
     let (start, mut d) = (state.q.clone(), vec![0.0; model.velocities()]);
     for _ in 0..MOST_MOVES {
-        work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
         let Some(mut way) = way_back(model, &state.at(), work) else { break };
+        work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
         work.solve(model, Which::Mass, &mut way)?;
         d.iter_mut().zip(&way).for_each(|(d, x)| *d += x);
         retract(model.nodes(), &start, &d, &mut state.q);
@@ -72,7 +72,7 @@ pub(crate) fn agree(model: &Model, state: &mut State, work: &mut Workspace) -> R
     Ok(())
 }
 
-/// The same of velocities, by the factors of the mass matrix at this state.
+/// The same of velocities; the workspace then has the mass matrix of this state.
 ///
 /// # Errors
 /// A matrix is singular.
@@ -81,6 +81,7 @@ pub(crate) fn agree_in_velocity(
     state: &mut State,
     work: &mut Workspace,
 ) -> Result<(), SolveError> {
+    work.assemble_mass(model, &state.at(), &state.lambda, 0.0, true)?;
     state.v = on_constraints(model, state, work, Which::Mass)?;
     Ok(())
 }
