@@ -9,7 +9,7 @@ const GRAVITY: f64 = 9.81;
 /// Where it starts [rad], and how fast [rad/s].
 const START: [f64; 2] = [std::f64::consts::FRAC_PI_4, 4.0];
 
-/// Crank and rod of 1 m and 1 kg in a vertical plane. Gravity differs in the thirteenth digit: enough for rounding to go
+/// Crank and rod of 1 m and 1 kg in a plane, with a part of their weight across it. Gravity differs in the thirteenth digit: enough for rounding to go
 /// another way.
 fn crank(solver: &str, duration: f64, differently: u32) -> Result<History, Error> {
     let half = 0.5 * std::f64::consts::SQRT_2;
@@ -17,10 +17,10 @@ fn crank(solver: &str, duration: f64, differently: u32) -> Result<History, Error
     let g = GRAVITY * (1.0 + 1e-13 * f64::from(differently));
     let text = format!(
         r#"
-        gravity = [0, {}, 0]
+        gravity = [0, {}, -5]
         [run]
         duration = "{duration} s"
-        output = "0.05 s"
+        output = "0.01 s"
         [solver]
         {solver}
         [[elements]]
@@ -148,16 +148,24 @@ fn fine_steps_lead_across_a_singular_position() {
     }
 }
 
-/// Of forces that could be shared out in many ways those across the plane are the same for every tolerance.
+/// Of forces that could be shared out in many ways those across the plane are the same for every tolerance. Where positions agree
+/// only to 1e-12 m they differ by a tenth.
 #[test]
 fn redundant_constraints_share_forces_out_alike() {
-    let solver = |tolerance: f64| format!("stepping = {{ controlled = {{ tolerance = {tolerance} }} }}");
-    let runs =
-        [1e-3, 1e-5].map(|tolerance| crank(&solver(tolerance), 0.8, 0).unwrap_or_else(|e| panic!("{e}")));
-    let [coarse, fine] =
-        [0, 1].map(|k: usize| runs[k].column("hinge.fz").unwrap_or_else(|| panic!("no force")));
-    for (a, b) in coarse.iter().zip(fine) {
-        assert!((a - b).abs() <= 1e-3 * b.abs(), "{a} N and {b} N");
+    let across = |scheme: &str, tolerance: f64| {
+        let solver = format!("{scheme}stepping = {{ controlled = {{ tolerance = {tolerance} }} }}");
+        let run = crank(&solver, 0.85, 0).unwrap_or_else(|e| panic!("{solver}: {e}"));
+        run.column("hinge.fz").unwrap_or_else(|| panic!("no force")).to_vec()
+    };
+    let fine = across("scheme = \"radau-iia-5\"\n", 1e-6);
+    for tolerance in [1e-3, 3e-4, 1e-4, 1e-5] {
+        let most = across("", tolerance)
+            .iter()
+            .zip(&fine)
+            .map(|(a, b)| (a / b - 1.0).abs())
+            .fold(0.0, |most, off| if off <= most { most } else { off });
+        println!("{tolerance:e}: {most:.1e}");
+        assert!(most <= 2e-3, "{tolerance:e}: {most:e}");
     }
 }
 

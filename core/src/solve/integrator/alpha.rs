@@ -512,8 +512,6 @@ impl Integrator for Alpha {
         let mut steps = StepController::new(&LAW, self.options.stepping, self.limits, &state.control, h_max);
         let mut remedies = Remedies::default();
         work.trial.across.clear();
-        // step and error of the first try that was rejected for its error
-        let mut rejected = None;
         let mut renewed = false;
         loop {
             let h = steps.h;
@@ -531,7 +529,7 @@ impl Integrator for Alpha {
                     if !steps.too_large(error, rate.iterations, by) {
                         return Err(too_strict(model, state.t, &steps, work));
                     }
-                    let [first, largest] = *rejected.get_or_insert([h, error]);
+                    let [first, largest] = steps.first.unwrap_or([h, error]);
                     let stays = h <= SHRUNK * first && error > largest * (h / first).sqrt();
                     let driven =
                         model.is_mechanism() || !model.inputs().is_empty() && model.multipliers() > 0;

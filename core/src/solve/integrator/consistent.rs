@@ -12,10 +12,10 @@ use crate::solve::linear::SolveError;
 const STRAINED: f64 = 1e-3;
 /// What moving velocities onto the constraints leaves of how far they were off.
 const MET: f64 = 1e-6;
-/// Roundings of positions that constraints may be off by.
-pub(super) const ROUNDINGS: f64 = 8.0;
 /// Most solutions for that: a Jacobian from nearby needs more than one where bodies turn.
 const MOST_MOVES: usize = 4;
+/// Roundings of positions that constraints may be off by.
+pub(super) const ROUNDINGS: f64 = 8.0;
 
 /// Replaces velocities, accelerations and multipliers by those for output: velocities moved onto the constraints, and what
 /// the index-1 system gives there. The integrator's own are noisier.

@@ -53,8 +53,9 @@ pub(super) struct StepController<'a> {
     pub limit: Limit,
     /// Tries that were rejected.
     pub rejected: u32,
-    /// Errors of the first and of the last try that were too large.
-    errors: Option<[f64; 2]>,
+    /// Size [s] and error of the first try whose error was too large, and the error of the last.
+    pub first: Option<[f64; 2]>,
+    last: f64,
     /// Tries that failed otherwise than by their error.
     pub failures: u32,
 }
@@ -101,7 +102,8 @@ impl<'a> StepController<'a> {
             kept,
             limit,
             rejected: 0,
-            errors: None,
+            first: None,
+            last: 0.0,
             failures: 0,
         }
     }
@@ -131,7 +133,8 @@ impl<'a> StepController<'a> {
     pub fn too_large(&mut self, error: f64, iterations: u32, by: Limit) -> bool {
         self.rejected += 1;
         self.limit = by;
-        self.errors = Some([self.errors.map_or(error, |[first, _]| first), error]);
+        self.first.get_or_insert([self.h, error]);
+        self.last = error;
         self.h = match self.short.take() {
             Some(short) => FAILED[0] * short,
             None => self.h * (self.law.growth)(error, iterations).clamp(REJECTED[0], REJECTED[1]),
@@ -141,7 +144,7 @@ impl<'a> StepController<'a> {
 
     /// Whether errors didn't fall although steps did: they are rounding.
     pub fn is_rounding(&self) -> bool {
-        self.rejected > 2 && self.errors.is_some_and(|[first, last]| last >= first)
+        self.rejected > 2 && self.first.is_some_and(|[_, first]| self.last >= first)
     }
 
     /// A smaller step after one that failed, which also caps the next steps; `false` if none is left.
