@@ -1,6 +1,8 @@
 //! Motion of pendulums against references; orders, errors and energies.
 
 use crate::common::{data, models, number, pendulum, place, size};
+use ropewalk::scene::Format;
+use ropewalk::{History, SceneFile, simulate};
 use ropewalk_constraints::DistanceSpec;
 use ropewalk_core::integrator::{Options, Scheme, Stepping};
 use ropewalk_core::{End, Simulation};
@@ -159,5 +161,55 @@ fn eight_to_eight_thousand_elements_run_with_the_same_defaults() {
         assert!(s.state.is_finite() && tip[1] < 0.0);
         let counts = s.work.counts;
         assert!(5 * counts.rejected <= counts.steps && counts.fallbacks == 0, "{n}: {counts:?}");
+    }
+}
+
+/// A rod of 1 m that falls about a hinge so far from the origin [m].
+fn far_away(x: f64, tolerance: f64) -> History {
+    let text = format!(
+        r#"
+        gravity = [0, -9.81, 0]
+        [run]
+        duration = "2 s"
+        output = "0.05 s"
+        [solver]
+        stepping = {{ controlled = {{ tolerance = {tolerance} }} }}
+        [[elements]]
+        type = "rigid_body"
+        name = "rod"
+        position = [{x}, 0, 0]
+        mass = 1
+        inertia = [1e-4, 0.0833, 0.0833]
+        centre = [0.5, 0, 0]
+        points = {{ end = [1, 0, 0] }}
+        [[constraints]]
+        type = "revolute"
+        name = "hinge"
+        marker = "rod"
+        to = [{x}, 0, 0]
+        axis = [0, 0, 1]
+        [[forces]]
+        type = "gravity"
+        [[records]]
+        type = "position"
+        of = "rod.end"
+        "#
+    );
+    let file = SceneFile::parse(&text, "far", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+    simulate(&file.into_scene()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Far from the origin rounding moves what takes many steps by more than the tolerance: then the run says so.
+#[test]
+fn rounding_beyond_the_tolerance_is_told() {
+    let told = |h: &History| h.warnings.iter().any(|w| w.contains("rounding moves positions by"));
+    let heights = |h: &History| h.table.column("rod.end.y").expect("recorded").values.clone();
+    for (x, tolerance, beyond) in [(0.0, 1e-6, false), (1e4, 1e-4, false), (1e4, 1e-6, true)] {
+        let (run, exact) = (far_away(x, tolerance), far_away(0.0, 1e-7));
+        let off = heights(&run).into_iter().zip(heights(&exact)).map(|(a, b)| (a - b).abs());
+        let off = off.fold(0.0, |m: f64, d| if d > m || d.is_nan() { d } else { m }) / tolerance;
+        println!("{x} m, {tolerance:e}: {off:.2} tolerances, {:?}", run.warnings);
+        assert_eq!(told(&run), beyond, "{:?}", run.warnings);
+        assert_eq!(off > 3.0, beyond, "{off}");
     }
 }

@@ -4,7 +4,7 @@ use super::Simulation;
 use super::inputs::Controlling;
 use super::memory::Memory;
 use super::uneven::Uneven;
-use super::watch::Rung;
+use super::watch::{Rounded, Rung};
 use crate::model::Model;
 use crate::model::input::Course;
 use crate::model::remesh::Plan;
@@ -41,6 +41,8 @@ pub struct Checkpoint {
     created: Option<f64>,
     #[cfg_attr(feature = "serde", serde(default))]
     rung: Rung,
+    #[cfg_attr(feature = "serde", serde(default))]
+    rounded: Rounded,
     #[cfg_attr(feature = "serde", serde(default))]
     uneven: Uneven,
     keep_audit: bool,
@@ -103,6 +105,7 @@ impl Simulation {
             change: self.change.clone(),
             created: self.created,
             rung: self.rung,
+            rounded: self.rounded,
             uneven: self.uneven.clone(),
             keep_audit: self.keep_audit,
             softened: self.work.softening.is_some(),
@@ -159,6 +162,7 @@ impl Simulation {
             change: c.change,
             created: c.created,
             rung: c.rung,
+            rounded: c.rounded,
             uneven: c.uneven.clone(),
             keep_audit: c.keep_audit,
             power,

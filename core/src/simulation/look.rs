@@ -9,7 +9,7 @@
 use super::Simulation;
 use super::memory::Remembers;
 use super::uneven::Uneven;
-use super::watch::Rung;
+use super::watch::{Rounded, Rung};
 use crate::model::node::{Node, difference, retract};
 use crate::model::state::State;
 use crate::simulation::audit::Audit;
@@ -248,6 +248,7 @@ impl Simulation {
             ringing: 0.0,
             change: Vec::new(),
             rung: Rung::default(),
+            rounded: Rounded::default(),
             uneven: Uneven::default(),
             created: None,
             keep_audit: false,

@@ -38,7 +38,7 @@ use memory::Memory;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use uneven::Uneven;
-use watch::Rung;
+use watch::{Rounded, Rung};
 
 /// Sees every accepted step and every sample, read-only: recorders, progress bars.
 pub trait Observer {
@@ -134,6 +134,7 @@ pub struct Simulation {
     pub ringing: f64,
     change: Vec<f64>,
     rung: Rung,
+    rounded: Rounded,
     uneven: Uneven,
     /// When energy was first seen to have appeared from nowhere [s].
     created: Option<f64>,
@@ -199,6 +200,7 @@ impl Simulation {
             ringing: 0.0,
             change: Vec::new(),
             rung: Rung::default(),
+            rounded: Rounded::default(),
             uneven: Uneven::default(),
             created: None,
             keep_audit: true,
@@ -310,6 +312,7 @@ impl Simulation {
             let energy = self.watch_energy(end, observer);
             self.watch_steps(end, observer);
             self.watch_ringing(&report, end, observer);
+            self.watch_rounding(&report, end, observer);
             self.watch_ends(end, observer);
             self.measure_ringing();
             self.remember(&report);

@@ -35,6 +35,16 @@ pub(super) struct Rung {
     part: usize,
 }
 
+/// What rounding has done to velocities.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Rounded {
+    /// The sum of `1/h²` over all steps [1/s²].
+    square: f64,
+    /// Their time [s].
+    time: f64,
+}
+
 impl Simulation {
     /// Where constraints are solved as redundant they are met as well as they can be: checks that this is well enough.
     /// If not, the state is that before the step.
@@ -171,6 +181,30 @@ impl Simulation {
         ));
         // who advances bit by bit hears of it once
         self.rung = Rung::default();
+    }
+
+    /// Warns at the end of a run whose steps were so short that rounding has moved it by more than the tolerance. Constraints fix
+    /// positions to rounding `ε`, which makes `ε/h` of velocity; over a time `T` these add up like dice to `ε T √(Σ 1/h²)`.
+    pub(super) fn watch_rounding(&mut self, report: &StepReport, end: f64, observer: &mut dyn Observer) {
+        let Stepping::Controlled { tolerance } = self.integrator.options().stepping else { return };
+        if self.model.multipliers() == 0 {
+            return;
+        }
+        self.rounded.square += report.h.recip().powi(2);
+        self.rounded.time += report.h;
+        let Rounded { square, time } = self.rounded;
+        let over = time.min(self.integrator.horizon());
+        let off = self.work.norms.rounding() * over * (square * over / time).sqrt();
+        if self.state.t < end || off <= tolerance {
+            return;
+        }
+        observer.warn(&format!(
+            "{} steps are so many that rounding moves positions by {off:.0e} of the size of a part, about, which is more than \
+             the `tolerance` of {tolerance:e}. Take a larger one, or Radau IIA, which needs fewer steps",
+            self.work.counts.steps
+        ));
+        // who advances bit by bit hears of it once
+        self.rounded = Rounded::default();
     }
 
     /// Looks for energy that has appeared from nowhere: warns the first time that it is too much for an error of the

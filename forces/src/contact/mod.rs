@@ -19,6 +19,7 @@ mod law;
 pub(crate) mod level;
 mod lines;
 mod mesh;
+mod round;
 mod search;
 mod seat;
 mod shape;

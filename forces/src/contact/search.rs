@@ -10,6 +10,8 @@
 //! What lies around a drum has `|p''|` of the drum's own curvature, and yet its depth hardly changes. Where the surface is
 //! round, `δ'' = -n·p'' - p'·H p'` with the curvatures `H` of level surfaces is known where it is looked at, and it changes
 //! no faster than `|p'''| + 3 η B |p''| + 3 η² B² |δ'|`, where no curvature is larger than `η`.
+//!
+//! Beside balls and flanks the sign of the depth is that of a polynomial, and nothing of this is needed ([`super::round`]).
 
 use super::shape::Shape;
 use ropewalk_core::{V3, dot};
@@ -19,7 +21,7 @@ use ropewalk_core::{V3, dot};
 pub(crate) struct Cubic(pub [V3<f64>; 4]);
 
 /// Pieces shorter than this are taken for what their middle is.
-const SHORTEST: f64 = 1e-6;
+pub(super) const SHORTEST: f64 = 1e-6;
 /// Around hollows of any kind, such as the valleys of a mesh, what is smaller than this part of the radius isn't looked
 /// for: between two places that far apart the depth changes by a thousandth of it.
 pub(crate) const DETAIL: f64 = 0.125;
@@ -261,6 +263,9 @@ impl<'a> Search<'a> {
 
     /// The same of a curve that is known not to be.
     pub fn find_near(&mut self, pieces: &mut Vec<[Look; 2]>, found: &mut Vec<[f64; 2]>) {
+        if let Some(nearness) = self.shape.nearness(self.curve, self.radius) {
+            return nearness.positive(found);
+        }
         self.measure();
         self.find_between([0.0, 1.0], pieces, found);
     }

@@ -2,6 +2,8 @@
 
 use super::heights::Heights;
 use super::mesh::Mesh;
+use super::round::Sextic;
+use super::search::Cubic;
 use ropewalk_core::rotation::{around, cross};
 use ropewalk_core::{Surface, V3, dot};
 use std::sync::Arc;
@@ -180,6 +182,23 @@ impl Shape {
                 if beyond < (out - way).min(0.0) { within(rho) } else { None }
             }
             Shape::Cuboid { .. } | Shape::Mesh(_) | Shape::Heights(_) => None,
+        }
+    }
+
+    /// A polynomial that is above zero where a curve of this radius touches, if all of the curve is beside a ball or a flank.
+    pub(crate) fn nearness(&self, curve: &Cubic, radius: f64) -> Option<Sextic> {
+        let controls = curve.controls();
+        let beside = |half: f64| controls.iter().all(|p| p[2].abs() <= half);
+        match *self {
+            Shape::Ball { radius: r } => Some(Sextic::square(&controls, 3).less((r + radius).powi(2), -1.0)),
+            Shape::Cylinder { radius: r, half } if beside(half) => {
+                Some(Sextic::square(&controls, 2).less((r + radius).powi(2), -1.0))
+            }
+            // what is thicker than the hole touches everywhere
+            Shape::Tube { radius: r, half } if r > radius && beside(half) => {
+                Some(Sextic::square(&controls, 2).less((r - radius).powi(2), 1.0))
+            }
+            _ => None,
         }
     }
 

@@ -178,11 +178,15 @@ impl Statics<'_> {
         }
         let dt = to.t - from.t;
         let way = Way { end: to.t, span: self.span.max(dt.abs()), sign: dt.signum() };
-        for state in [from, to] {
-            let Ok(p) = self.point(state.clone(), None, way) else { return true };
+        // where the step before ended, its tangent is known
+        let known = self.tangent.take().filter(|p| p.state == *from);
+        let Some(start) = known.or_else(|| self.point(from.clone(), None, way).ok()) else { return true };
+        let Ok(end) = self.point(to.clone(), None, way) else { return true };
+        for p in [&start, &end] {
             // half of the trapezoidal rule
             moved.iter_mut().zip(&p.slope).for_each(|(m, s)| *m -= 0.5 * dt * s / p.rate);
         }
+        self.tangent = Some(end);
         let left = self.inner(&moved, &moved).sqrt();
         !(left <= UNEXPLAINED * size)
     }

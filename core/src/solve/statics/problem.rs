@@ -2,6 +2,7 @@
 
 use super::options::StaticsOptions;
 use super::outcome::{Critical, Judgement, Neutral};
+use super::path::Point;
 use crate::model::Model;
 use crate::model::assembly::System;
 use crate::model::motion::SteadyFrame;
@@ -42,6 +43,8 @@ pub struct Statics<'a> {
     pub(super) judged: Judgement,
     /// Critical loads met so far.
     pub(super) critical: Vec<Critical>,
+    /// The path at the end of the last step of the load whose ends were compared.
+    pub(super) tangent: Option<Point>,
     /// Longest stretch of time that was to be followed.
     pub(super) span: f64,
     /// Whether to give up, asked at every iteration.
@@ -96,6 +99,7 @@ impl<'a> Statics<'a> {
             doubt: None,
             judged: Judgement { potential: true, ..Judgement::default() },
             critical: Vec::new(),
+            tangent: None,
             span: 0.0,
             is_over: None,
         })
@@ -115,6 +119,7 @@ impl<'a> Statics<'a> {
         self.solver = Guard::new(&self.structure)?;
         self.softening = self.softening.take().map(|_| Softening::new(self.model, &self.structure));
         self.free.clear();
+        self.tangent = None;
         Ok(true)
     }
 
