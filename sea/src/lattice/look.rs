@@ -1,124 +1,14 @@
 //! The motion of the water at stations, over lanes.
 
 use super::cell::Spot;
+use super::stations::{Ends, Kept, Known, LANES, Row, Stations};
 use super::{Lattice, SPOTS};
 use crate::motion::Motion;
 use crate::waves::Flow;
 use ropewalk_core::{LaneTask, Real, Width, run};
 
-/// As many lanes as the widest carrier has.
-const LANES: usize = 8;
-
-type Row = [f64; LANES];
-
 /// Within this part of the distance of spots a station is surely next to its own; beyond, it is asked to the last bit.
 const NEAR: f64 = 0.5 * (1.0 - 1e-9);
-
-/// A generation of slots that never was.
-const NEVER: u64 = u64::MAX;
-
-/// What is known of the table around stations side by side: it stays the same until one of them gets to another spot, or the
-/// time to another instant.
-#[derive(Clone, Debug)]
-pub struct Stations {
-    /// How many there are: as many others know nothing of these.
-    lanes: usize,
-    surface: Known<2, 6>,
-    water: Known<4, 12>,
-    /// Spots of the cells in which they are are so far apart, and who is so near one is next to it [m].
-    apart: Row,
-    near: Row,
-    /// The depths between which such cells are [m].
-    from: Row,
-    to: Row,
-}
-
-/// Numbers at the spots next to stations, at both instants about a time: values, and then their rates.
-#[derive(Clone, Debug)]
-struct Known<const CORNERS: usize, const N: usize> {
-    /// The number of the first of the instants, and the time.
-    n: f64,
-    t: f64,
-    /// Of what is known of slots.
-    generation: u64,
-    /// Numbers of the spots along the waves and downwards, and where these are [m].
-    spots: [Row; 2],
-    places: [Row; 2],
-    /// Slots of the corners around them.
-    slots: [[u32; CORNERS]; LANES],
-    /// What is there at the instants, number by number, and at the time.
-    rows: [[Row; N]; 2],
-    now: [Row; N],
-}
-
-impl<const CORNERS: usize, const N: usize> Known<CORNERS, N> {
-    /// Of nothing.
-    fn nothing() -> Self {
-        let nowhere = [[f64::NAN; LANES]; 2];
-        let (slots, none) = ([[0; CORNERS]; LANES], [[0.0; LANES]; N]);
-        Known {
-            n: f64::NAN,
-            t: f64::NAN,
-            generation: NEVER,
-            spots: nowhere,
-            places: nowhere,
-            slots,
-            rows: [none; 2],
-            now: none,
-        }
-    }
-
-    /// Moves on to a time between the instants, which are `tau` apart [s].
-    #[inline(always)]
-    fn go_to<R: Real>(&mut self, t: f64, late: f64, tau: f64) {
-        if self.t == t {
-            return;
-        }
-        let ([a, da, b, db], [ra, rda, rb, rdb]) = (hermite(late), slopes(late));
-        let (value, rate) = ([a, tau * da, b, tau * db], [ra / tau, rda, rb / tau, rdb]);
-        let [first, second] = &self.rows;
-        for k in 0..N / 2 {
-            let rates = k + N / 2;
-            let ends =
-                [R::read(&first[k]), R::read(&first[rates]), R::read(&second[k]), R::read(&second[rates])];
-            blend(&value, &ends).write(&mut self.now[k]);
-            blend(&rate, &ends).write(&mut self.now[rates]);
-        }
-        self.t = t;
-    }
-
-    /// Some numbers at the time, from one on.
-    #[inline(always)]
-    fn read<R: Real, const M: usize>(&self, first: usize) -> [R; M] {
-        let mut out = [R::zero(); M];
-        for k in 0..M {
-            out[k] = R::read(&self.now[first + k]);
-        }
-        out
-    }
-
-    /// Of a lane that stays where it is while the next instant becomes the first.
-    fn step(&mut self, lane: usize) {
-        let [first, second] = &mut self.rows;
-        first.iter_mut().zip(second).for_each(|(first, second)| first[lane] = second[lane]);
-    }
-}
-
-impl Default for Stations {
-    /// Of nothing.
-    fn default() -> Self {
-        let nowhere = [f64::NAN; LANES];
-        Stations {
-            lanes: 0,
-            surface: Known::nothing(),
-            water: Known::nothing(),
-            apart: nowhere,
-            near: nowhere,
-            from: nowhere,
-            to: nowhere,
-        }
-    }
-}
 
 /// A time and the instant before it.
 #[derive(Clone, Copy, Debug)]
@@ -157,21 +47,22 @@ impl Lattice {
     #[inline(always)]
     pub fn surface<R: Real>(&mut self, now: Instant, place: [R; 2], stations: &mut Stations) -> Flow<R> {
         if stations.lanes != R::LANES {
-            *stations = Stations { lanes: R::LANES, ..Stations::default() };
+            *stations = Stations::of(R::LANES);
         }
         let Instant { t, n, late } = now;
         let along = self.along(place);
-        let known = &stations.surface;
+        let Stations { surface: known, kept, .. } = stations;
         let mut off = along - R::read(&known.places[0]);
         if known.n != n || !R::of(NEAR * self.size / SPOTS as f64).all_gt(off.abs()) {
             let mut x = [0.0; LANES];
             along.write(&mut x);
-            let known = &mut stations.surface;
-            run(Width::best(), MeetSurface { lattice: self, along: &x, n, lanes: R::LANES, known });
+            let ends = &mut kept.surface;
+            run(Width::best(), MeetSurface { lattice: self, along: &x, n, lanes: R::LANES, known, ends });
             off = along - R::read(&known.places[0]);
         }
-        let known = &mut stations.surface;
-        known.go_to::<R>(t, late, self.time);
+        if known.t != t {
+            known.go_to::<R>(&kept.surface.rows, t, late, self.time);
+        }
         let ([elevation, steep, bend], [rising, steepening, bending]) =
             (known.read::<R, 3>(0), known.read::<R, 3>(3));
         let half = R::of(0.5) * off;
@@ -215,8 +106,10 @@ impl Lattice {
             let known = &stations.water;
             off = [along - R::read(&known.places[0]), R::read(&known.places[1]) - depth];
         }
-        let known = &mut stations.water;
-        known.go_to::<R>(t, late, self.time);
+        let Stations { water: known, kept, .. } = stations;
+        if known.t != t {
+            known.go_to::<R>(&kept.water.rows, t, late, self.time);
+        }
         // f, its first and its second derivative, and their rates
         let (now, rates) = (
             [known.read::<R, 2>(0), known.read::<R, 2>(2), known.read::<R, 2>(4)],
@@ -248,40 +141,41 @@ struct MeetSurface<'a> {
     along: &'a Row,
     n: f64,
     lanes: usize,
-    known: &'a mut Known<2, 6>,
+    known: &'a mut Known<1, 6>,
+    ends: &'a mut Ends<2, 6>,
 }
 
 impl LaneTask for MeetSurface<'_> {
     #[inline(always)]
     fn go<R: Real>(self) {
-        let MeetSurface { lattice, along, n, lanes, known } = self;
+        let MeetSurface { lattice, along, n, lanes, known, ends } = self;
         let Lattice { sums, edge, size, .. } = lattice;
         let first = n as i64;
         let generation = sums.make_room(first);
-        let anew = known.generation != generation;
+        let anew = ends.generation != generation;
         for lane in 0..lanes {
             let next = (along[lane] / (*size / SPOTS as f64) + 0.5).floor();
-            let moved = anew || known.spots[0][lane] != next;
+            let moved = anew || ends.spots[0][lane] != next;
             if !moved && known.n == n {
                 continue;
             }
             let (i, spot) = cell_of(next);
             if moved {
-                if anew || cell_of(known.spots[0][lane]).0 != i {
-                    known.slots[lane] = [i, i + 1].map(|i| sums.line(i));
+                if anew || cell_of(ends.spots[0][lane]).0 != i {
+                    ends.slots[lane] = [i, i + 1].map(|i| sums.line(i));
                 }
-                (known.spots[0][lane], known.places[0][lane]) = (next, next * *size / SPOTS as f64);
+                (ends.spots[0][lane], known.places[0][lane]) = (next, next * *size / SPOTS as f64);
             }
             let stays = !moved && known.n + 1.0 == n;
             if stays {
-                known.step(lane);
+                ends.step(lane);
             }
             for instant in usize::from(stays)..2 {
-                let numbers = edge.spot(spot, sums.tops(known.slots[lane], first + instant as i64), *size);
-                known.rows[instant].iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = x);
+                let numbers = edge.spot(spot, sums.tops(ends.slots[lane], first + instant as i64), *size);
+                ends.rows[instant].iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = x);
             }
         }
-        (known.n, known.t, known.generation) = (n, f64::NAN, generation);
+        (known.n, known.t, ends.generation) = (n, f64::NAN, generation);
     }
 }
 
@@ -302,14 +196,15 @@ impl LaneTask for Meet<'_> {
         let Lattice { sums, cell, levels, size, bottom, waves, .. } = lattice;
         let first = n as i64;
         let generation = sums.make_room(first);
-        let Stations { water: known, apart, near, from, to, .. } = stations;
-        let anew = known.generation != generation;
+        let Stations { water: known, near, from, to, kept, .. } = stations;
+        let Kept { water: ends, apart, .. } = &mut **kept;
+        let anew = ends.generation != generation;
         for lane in 0..lanes {
             let level = levels.partition_point(|from| *from <= depth[lane]).max(1) - 1;
             let width = *size * f64::from(1_u32 << level);
             let spot = width / SPOTS as f64;
             let spots = [along[lane], depth[lane]].map(|x| (x / spot + 0.5).floor());
-            let old = known.spots.map(|row| row[lane]);
+            let old = ends.spots.map(|row| row[lane]);
             let other = anew || apart[lane] != spot;
             let moved = other || old != spots;
             if !moved && known.n == n {
@@ -325,7 +220,7 @@ impl LaneTask for Meet<'_> {
                     let step = 1 << level;
                     let (i, j) = (i.wrapping_mul(step), j.wrapping_mul(step));
                     let (right, below) = (i.wrapping_add(step), j.wrapping_add(step));
-                    known.slots[lane] = [
+                    ends.slots[lane] = [
                         sums.place(i, j),
                         sums.place(right, j),
                         sums.place(i, below),
@@ -334,7 +229,7 @@ impl LaneTask for Meet<'_> {
                 }
                 let places = [spots[0], spots[1].min(deepest)];
                 for k in 0..2 {
-                    (known.spots[k][lane], known.places[k][lane]) = (spots[k], places[k] * spot);
+                    (ends.spots[k][lane], known.places[k][lane]) = (spots[k], places[k] * spot);
                 }
             }
             if other {
@@ -344,7 +239,7 @@ impl LaneTask for Meet<'_> {
             }
             let stays = !moved && known.n + 1.0 == n;
             if stays {
-                known.step(lane);
+                ends.step(lane);
             }
             // nothing moves far down
             let still = spots[1] > deepest && waves.depth().is_infinite();
@@ -352,17 +247,17 @@ impl LaneTask for Meet<'_> {
                 let numbers: Spot = if still {
                     Spot::default()
                 } else {
-                    let corners = sums.corners(known.slots[lane], first + instant as i64);
+                    let corners = sums.corners(ends.slots[lane], first + instant as i64);
                     cell.spot::<R>([across, down], corners, width)
                 };
-                let rows = &mut known.rows[instant];
+                let rows = &mut ends.rows[instant];
                 for (k, [re, im, rate_re, rate_im]) in numbers.into_iter().enumerate() {
                     (rows[2 * k][lane], rows[2 * k + 1][lane]) = (re, im);
                     (rows[2 * k + 6][lane], rows[2 * k + 7][lane]) = (rate_re, rate_im);
                 }
             }
         }
-        (known.n, known.t, known.generation) = (n, f64::NAN, generation);
+        (known.n, known.t, ends.generation) = (n, f64::NAN, generation);
     }
 }
 
@@ -370,25 +265,6 @@ impl LaneTask for Meet<'_> {
 fn cell_of(spot: f64) -> (i64, usize) {
     let (spot, spots) = (spot as i64, SPOTS as i64);
     (spot.div_euclid(spots), spot.rem_euclid(spots) as usize)
-}
-
-/// A sum of what is at both ends.
-#[inline(always)]
-fn blend<R: Real>([w, dw, g, dg]: &[f64; 4], [x, dx, y, dy]: &[R; 4]) -> R {
-    R::of(*w).fma(*x, R::of(*dw).fma(*dx, R::of(*g).fma(*y, R::of(*dg) * *dy)))
-}
-
-/// Cubic Hermite polynomials on 0 … 1: value and derivative at the start, value and derivative at the end.
-fn hermite(x: f64) -> [f64; 4] {
-    let (x2, rest) = (x * x, 1.0 - x);
-    let s = x2 * (3.0 - 2.0 * x);
-    [1.0 - s, x * rest * rest, s, -x2 * rest]
-}
-
-/// Their derivatives.
-fn slopes(x: f64) -> [f64; 4] {
-    let s = 6.0 * x * (1.0 - x);
-    [-s, (1.0 - x) * (1.0 - 3.0 * x), s, x * (3.0 * x - 2.0)]
 }
 
 /// `f` so far from a spot, and its derivative, of which value, first and second derivative are known there.

@@ -12,11 +12,13 @@
 mod cell;
 mod look;
 mod phases;
+mod stations;
 mod sums;
 
 use crate::waves::{Component, Waves};
 use cell::{Cell, Edge};
-pub use look::{Instant, Stations};
+pub use look::Instant;
+pub use stations::Stations;
 use sums::Sums;
 
 /// The smallest cells are this part of the shortest wave wide.

@@ -1,15 +1,18 @@
 //! The motion of the water in waves, as drag, inertia and buoyancy ask for it.
 
-use crate::current::Current;
+mod memory;
+mod swell;
+
 use crate::waves::{Evaluation, WavesSpec};
-use ropewalk_core::{BuildError, LaneTask, Real, Station, V3, Width, dot, reach, run};
-use ropewalk_sea::{Flow, Lattice, SplitMix64, Stations, Waves};
-use rustc_hash::FxHashMap;
+use memory::{Found, Key, MOST, Memory, Places, key_of};
+use ropewalk_core::{BuildError, LaneTask, Real, Station, V3, Width, reach, run};
+use ropewalk_sea::{Lattice, SplitMix64, Stations, Waves};
 use std::f64::consts::TAU;
 use std::fmt;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Arc;
+pub use swell::Swell;
 
-/// Waves on the water of a scene, beside its [`Current`]: the two add up.
+/// Waves on the water of a scene, beside its [`Current`](crate::Current): the two add up.
 ///
 /// Many laws ask for the motion at the same stations, so that the latest answers are kept. What it answers depends on
 /// place and time alone.
@@ -18,199 +21,18 @@ pub struct Sea {
     /// Height of the surface without waves [m].
     level: f64,
     about: String,
-    /// Whether a table stands for them.
-    has_lattice: bool,
-    memory: Mutex<Memory>,
-}
-
-/// What was found lately, and the table that stands for many waves.
-struct Memory {
+    /// The table that stands for them, of which each thread fills its own.
     lattice: Option<Lattice>,
-    /// The slot of each pack: the same as the last time, if what asks has moved little.
-    slots: FxHashMap<Key, usize>,
-    keys: Vec<Key>,
-    /// The slot of who asked last.
-    last: usize,
-    packs: Vec<Found>,
-    /// What is known of the table at each of them.
-    stations: Vec<Stations>,
+    /// Tells its memories from those of others, and that there still is a sea.
+    alive: Arc<()>,
 }
 
-/// What packs are told apart by.
-type Key = (u64, u64, u64);
-
-impl Memory {
-    /// The slot of a pack.
-    #[inline(always)]
-    fn slot(&mut self, key: Key) -> usize {
-        // they mostly ask in the order in which they came
-        let next = if self.last + 1 < self.keys.len() { self.last + 1 } else { 0 };
-        self.last = if self.keys.get(next) == Some(&key) { next } else { self.slot_of(key) };
-        self.last
-    }
-
-    #[inline(never)]
-    fn slot_of(&mut self, key: Key) -> usize {
-        if let Some(&slot) = self.slots.get(&key) { slot } else { self.new_slot(key) }
-    }
-
-    fn new_slot(&mut self, key: Key) -> usize {
-        if self.packs.len() >= PACKS {
-            self.slots.clear();
-            self.keys.clear();
-            self.packs.clear();
-            self.stations.clear();
-        }
-        let slot = self.packs.len();
-        self.slots.insert(key, slot);
-        self.keys.push(key);
-        let nowhere = [[f64::NAN; MOST]; 3];
-        self.packs.push(Found { t: f64::NAN, lanes: 0, at: nowhere, rows: [[0.0; MOST]; ROWS] });
-        self.stations.push(Stations::default());
-        slot
-    }
-}
-
-/// The motion at places side by side, number by number over all of them: several laws ask for the same, one after the other.
-#[derive(Clone)]
-struct Found {
-    t: f64,
-    lanes: usize,
-    at: Places,
-    rows: [[f64; MOST]; ROWS],
-}
-
-type Places = [[f64; MOST]; 3];
-
-/// Most packs that are remembered.
-const PACKS: usize = 4096;
-/// As many lanes as the widest carrier has.
-const MOST: usize = 8;
-/// Numbers that tell the motion at a place, in the order of [`Swell`].
-const ROWS: usize = 43;
 /// Up to so many waves are summed up unless asked otherwise.
 const FEW: usize = 8;
 /// Places at which a table is compared with the sum.
 const PROBES: usize = 200;
-/// A station's pack keeps its slot while its first place stays in a cell of this size [m].
-const CELL: f64 = 16.0;
-/// Numbers about as large as this have no places for fractions.
-const WHOLE: f64 = (3_u64 << 51) as f64;
 /// How much finer than at first a table may become.
 const FINEST: f64 = 4.0;
-
-/// The motion of the water in waves at a place, over lanes. Above the surface it is that at the surface.
-#[derive(Clone, Copy, Debug)]
-pub struct Swell<R> {
-    /// Velocity [m/s].
-    pub u: V3<R>,
-    /// What it changes by with the place [1/s].
-    pub by_x: [V3<R>; 3],
-    /// What it changes by with time at a fixed place [m/s²].
-    pub by_t: V3<R>,
-    /// `∂u/∂t` in the water; other than `by_t` above the surface [m/s²].
-    pub rate: V3<R>,
-    /// `G_ij = ∂u_i/∂x_j` in the water; other than `by_x` above the surface [1/s].
-    pub gradient: [V3<R>; 3],
-    /// The acceleration that Morison's equation takes: `∂u/∂t` as one sees it who drifts with the current that carries the waves,
-    /// without what the stretching of the column adds [m/s²].
-    pub acceleration: V3<R>,
-    /// What it changes by with the place, and the rate nearly so [1/s²].
-    pub acceleration_by_x: [V3<R>; 3],
-    /// Elevation `η` of the surface above its level [m].
-    pub elevation: R,
-    /// `∂η/∂x` and `∂η/∂y`.
-    pub slope: [R; 2],
-    /// `∂η/∂t` [m/s].
-    pub rising: R,
-}
-
-impl<R: Real> Swell<R> {
-    /// Of a flow at places that are below the surface, or at it if they lie `above`: 1 if they do, else 0. There the motion follows
-    /// the surface, and doesn't change with height.
-    #[inline(always)]
-    fn new(flow: &Flow<R>, above: R) -> Self {
-        let Flow { velocity, rate, acceleration, gradient, acceleration_gradient, .. } = *flow;
-        let mut by_t = rate;
-        for i in 0..3 {
-            by_t[i] = (above * gradient[i][2]).fma(flow.rising, by_t[i]);
-        }
-        Swell {
-            u: velocity,
-            by_x: followed(gradient, flow.slope, above),
-            by_t,
-            rate,
-            gradient,
-            acceleration,
-            acceleration_by_x: followed(acceleration_gradient, flow.slope, above),
-            elevation: flow.elevation,
-            slope: flow.slope,
-            rising: flow.rising,
-        }
-    }
-
-    /// From the rows of a pack.
-    #[inline(always)]
-    fn read(rows: &[[f64; MOST]; ROWS]) -> Self {
-        Swell {
-            u: three(rows, 0),
-            by_x: nine(rows, 3),
-            by_t: three(rows, 12),
-            rate: three(rows, 15),
-            gradient: nine(rows, 18),
-            acceleration: three(rows, 27),
-            acceleration_by_x: nine(rows, 30),
-            elevation: R::read(&rows[39]),
-            slope: [R::read(&rows[40]), R::read(&rows[41])],
-            rising: R::read(&rows[42]),
-        }
-    }
-
-    /// Into the rows of a pack, from a lane on.
-    #[inline(always)]
-    fn write(&self, rows: &mut [[f64; MOST]; ROWS], lane: usize) {
-        let Swell { u, by_x, by_t, rate, gradient, acceleration, acceleration_by_x, slope, .. } = self;
-        for (first, vector) in [(0, u), (12, by_t), (15, rate), (27, acceleration)] {
-            for i in 0..3 {
-                vector[i].write(&mut rows[first + i][lane..]);
-            }
-        }
-        for (first, matrix) in [(3, by_x), (18, gradient), (30, acceleration_by_x)] {
-            for i in 0..9 {
-                matrix[i / 3][i % 3].write(&mut rows[first + i][lane..]);
-            }
-        }
-        for (i, x) in [self.elevation, slope[0], slope[1], self.rising].into_iter().enumerate() {
-            x.write(&mut rows[39 + i][lane..]);
-        }
-    }
-    /// How fast the surface rises where one moves with velocity `v`: `∂η/∂t + v·∇η` [m/s].
-    #[inline(always)]
-    pub fn rise(&self, v: &V3<R>) -> R {
-        self.slope[0].fma(v[0], self.slope[1].fma(v[1], self.rising))
-    }
-
-    /// Acceleration of the water along its path, `∂u/∂t + G u` with the velocity of waves and current at height `z` [m/s²];
-    /// and what it changes by with the place, but for the change of `G`.
-    #[inline(always)]
-    pub fn along_path(&self, current: &Current, z: R) -> (V3<R>, [V3<R>; 3]) {
-        let (mut u, du) = current.at(z);
-        for i in 0..3 {
-            u[i] += self.u[i];
-        }
-        let (mut a, mut by_x) = (self.rate, self.acceleration_by_x);
-        for i in 0..3 {
-            a[i] += dot(&self.gradient[i], &u);
-            for j in 0..3 {
-                for k in 0..3 {
-                    by_x[i][j] += self.gradient[i][k] * self.by_x[k][j];
-                }
-            }
-            by_x[i][2] += dot(&self.gradient[i], &du);
-        }
-        (a, by_x)
-    }
-}
 
 impl Sea {
     /// The sea of a spec: under gravity `g` [m/s²], with its surface at `level` [m] when it is still. `drift` is the velocity of
@@ -233,16 +55,7 @@ impl Sea {
             4.0 * waves.deviation(),
             spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
-        let has_lattice = lattice.is_some();
-        let memory = Memory {
-            lattice,
-            slots: FxHashMap::default(),
-            keys: Vec::new(),
-            last: 0,
-            packs: Vec::new(),
-            stations: Vec::new(),
-        };
-        Ok(Sea { waves, level, about, has_lattice, memory: Mutex::new(memory) })
+        Ok(Sea { waves, level, about, lattice, alive: Arc::new(()) })
     }
 
     /// The table that stands for many waves, if there is to be one, and how the sum is found in words.
@@ -318,14 +131,15 @@ impl Sea {
     /// The same for who asks once for all: it isn't kept.
     #[inline(always)]
     pub fn along_once<R: Real>(&self, t: f64, at: &Station<R>) -> Swell<R> {
-        if R::LANES > 1 && self.has_lattice {
-            let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-            let slot = memory.slot(key_of(at));
-            if let Memory { lattice: Some(lattice), stations, .. } = &mut *memory {
-                return looked_up(lattice, &mut stations[slot], self.level, t, &at.x);
-            }
+        if R::LANES == 1 || self.lattice.is_none() {
+            return self.along(t, at);
         }
-        self.along(t, at)
+        let mut memory = Memory::of(self);
+        let slot = memory.slot(key_of(at));
+        let Memory { lattice: Some(lattice), stations, .. } = &mut *memory else { return self.along(t, at) };
+        let swell = looked_up(lattice, &mut stations[slot], self.level, t, &at.x);
+        memory.keep();
+        swell
     }
 
     /// The motion at places from the slot of a key.
@@ -335,11 +149,9 @@ impl Sea {
         for i in 0..3 {
             x[i].write(&mut places[i]);
         }
-        let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut memory = Memory::of(self);
         let slot = memory.slot(key);
-        let found = &memory.packs[slot];
-        // what is no number is never found
-        if (found.t, found.lanes) != (t, R::LANES) || !same(&found.at, &places) {
+        if !memory.packs[slot].is(t, R::LANES, &places) {
             self.find(t, &places, R::LANES, slot, &mut memory);
         }
         let Found { at, rows, .. } = &memory.packs[slot];
@@ -354,6 +166,7 @@ impl Sea {
             }
             swell.elevation = sx.fma(off[0], sy.fma(off[1], swell.elevation));
         }
+        memory.keep();
         swell
     }
 
@@ -417,40 +230,6 @@ fn looked_up<R: Real>(
     Swell::new(&flow, up.if_gt(top, R::of(1.0), R::zero()))
 }
 
-/// What tells stations apart: those of a body have other arc lengths, and bodies are elsewhere.
-#[inline(always)]
-fn key_of<R: Real>(at: &Station<R>) -> Key {
-    // what is added leaves the number of the cell in the last bits
-    let [x, y] = [at.x[0], at.x[1]].map(|x| (x.lane(0) / CELL + WHOLE).to_bits());
-    let place = x.rotate_left(32) ^ y;
-    (at.s.lane(0).to_bits(), at.diameter.lane(0).to_bits(), place)
-}
-
-/// What changes from place to place, of what follows the surface and doesn't change with height where it lies `above`.
-#[inline(always)]
-fn followed<R: Real>(of: [V3<R>; 3], [sx, sy]: [R; 2], above: R) -> [V3<R>; 3] {
-    // most stations are under water
-    if R::of(0.5).all_gt(above) {
-        return of;
-    }
-    let (mut by_x, below) = (of, R::of(1.0) - above);
-    for row in &mut by_x {
-        let follows = above * row[2];
-        *row = [follows.fma(sx, row[0]), follows.fma(sy, row[1]), below * row[2]];
-    }
-    by_x
-}
-
-/// Three numbers from the rows of a pack, and nine.
-#[inline(always)]
-fn three<R: Real>(rows: &[[f64; MOST]; ROWS], row: usize) -> V3<R> {
-    [R::read(&rows[row]), R::read(&rows[row + 1]), R::read(&rows[row + 2])]
-}
-#[inline(always)]
-fn nine<R: Real>(rows: &[[f64; MOST]; ROWS], row: usize) -> [V3<R>; 3] {
-    [three(rows, row), three(rows, row + 3), three(rows, row + 6)]
-}
-
 /// A vector a little farther on.
 #[inline(always)]
 fn moved<R: Real>(by: &[V3<R>; 3], off: &V3<R>, mut x: V3<R>) -> V3<R> {
@@ -458,18 +237,6 @@ fn moved<R: Real>(by: &[V3<R>; 3], off: &V3<R>, mut x: V3<R>) -> V3<R> {
         x[i] = by[i][0].fma(off[0], by[i][1].fma(off[1], by[i][2].fma(off[2], x[i])));
     }
     x
-}
-
-/// Whether places are the same in all lanes, none of which is no number.
-#[inline(always)]
-fn same(a: &Places, b: &Places) -> bool {
-    let mut same = true;
-    for i in 0..3 {
-        for lane in 0..MOST {
-            same &= a[i][lane] == b[i][lane];
-        }
-    }
-    same
 }
 
 /// The largest difference of velocities between a table and the sum, in parts of their deviation at still water, at places
