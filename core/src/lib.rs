@@ -45,7 +45,7 @@ pub use model::solid::{Attitude, Solid, Surface};
 pub use model::span::{ContactSpan, SpanFlow, SpanLine};
 pub use model::state::{At, Control, Relaxation, Relaxed, State};
 pub use model::station::{
-    FieldTerm, Gives, Joined, Law, Laws, Load, LoadAt, Loads, Station, StationElement, StationPool, Stations,
+    FieldTerm, Gives, Joined, Law, Laws, Load, Station, StationElement, StationPool, Stations,
 };
 pub use model::structure::{Block, Columns, Structure};
 pub use model::term::{Assembly, Energy, Leap, Power, Term, Weights};

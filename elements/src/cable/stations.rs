@@ -2,7 +2,7 @@
 
 use super::quadrature::Gauss4;
 use super::shape::{combine, hermite, hermite_slope, natural};
-use ropewalk_core::{Batch, Gives, Loads, Local, Real, Share, Station, StationElement, V3, Weights};
+use ropewalk_core::{Batch, Gives, Load, Local, Real, Share, Station, StationElement, V3, Weights};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -80,7 +80,7 @@ impl StationElement<12, 12, 4> for CableStations {
     fn spread<R: Real, const TANGENT: bool>(
         p: &CableStations<R>,
         _: &Local<R, 12, 12>,
-        loads: Loads<'_>,
+        loads: &[Load<R>; 4],
         gives: Gives,
         w: &Weights,
         out: &mut Share<R, 12>,
@@ -94,15 +94,13 @@ impl StationElement<12, 12, 4> for CableStations {
         }
         let mut force = [[R::zero(); 3]; 4];
         for k in 0..4 {
-            let load = loads.at::<R>(k);
-            let f = load.f::<R>();
+            let Load { f, g, .. } = &loads[k];
             for i in 0..4 {
                 for c in 0..3 {
                     force[i][c] = s[k][i].fma(weight[k] * f[c], force[i][c]);
                 }
             }
             if gives.couple {
-                let g = load.g::<R>();
                 for i in 0..4 {
                     for c in 0..3 {
                         force[i][c] = d[k][i].fma(weight[k] * g[c], force[i][c]);
@@ -122,21 +120,21 @@ impl StationElement<12, 12, 4> for CableStations {
             for c in 0..3 {
                 let mut block = [[R::zero(); 4]; 4];
                 for k in 0..4 {
-                    let (load, mut by_x, mut by_slope) = (loads.at::<R>(k), R::zero(), R::zero());
+                    let (load, mut by_x, mut by_slope) = (&loads[k], R::zero(), R::zero());
                     if gives.x {
-                        by_x = wq * load.d_x::<R>(r)[c];
+                        by_x = wq * load.d_x[r][c];
                     }
                     if gives.v {
-                        by_x = wv.fma(load.d_v::<R>(r)[c], by_x);
+                        by_x = wv.fma(load.d_v[r][c], by_x);
                     }
                     if gives.a {
-                        by_x = wa.fma(load.d_a::<R>(r)[c], by_x);
+                        by_x = wa.fma(load.d_a[r][c], by_x);
                     }
                     if gives.slope {
-                        by_slope = weight[k] * wq * load.d_slope::<R>(r)[c];
+                        by_slope = weight[k] * wq * load.d_slope[r][c];
                     }
                     if couples {
-                        by_slope = (weight[k] * wv).fma(load.d_rate::<R>(r)[c], by_slope);
+                        by_slope = (weight[k] * wv).fma(load.d_rate[r][c], by_slope);
                     }
                     by_x = weight[k] * by_x;
                     for j in 0..4 {
@@ -146,8 +144,8 @@ impl StationElement<12, 12, 4> for CableStations {
                         }
                     }
                     if couples {
-                        let by_x = weight[k] * wq.fma(load.g_x::<R>(r)[c], wv * load.g_v::<R>(r)[c]);
-                        let by_slope = weight[k] * wq * load.g_slope::<R>(r)[c];
+                        let by_x = weight[k] * wq.fma(load.g_x[r][c], wv * load.g_v[r][c]);
+                        let by_slope = weight[k] * wq * load.g_slope[r][c];
                         for j in 0..4 {
                             let column = s[k][j].fma(by_x, d[k][j] * by_slope);
                             for i in 0..4 {

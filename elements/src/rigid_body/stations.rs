@@ -2,7 +2,7 @@
 
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Batch, Gives, Loads, Local, Real, Share, Station, StationElement, V3, Weights, dot, scaled,
+    Batch, Gives, Load, Local, Real, Share, Station, StationElement, V3, Weights, dot, scaled,
 };
 
 /// Places and weights of four Gauss points on `[0, 1]`, exact up to degree seven.
@@ -106,7 +106,7 @@ impl StationElement<7, 6, 4> for Hull {
     fn spread<R: Real, const TANGENT: bool>(
         p: &Hull<R>,
         x: &Local<R, 7, 6>,
-        loads: Loads<'_>,
+        loads: &[Load<R>; 4],
         gives: Gives,
         w: &Weights,
         out: &mut Share<R, 6>,
@@ -116,9 +116,9 @@ impl StationElement<7, 6, 4> for Hull {
         let (wq, wv, wa) = (R::of(w.q), R::of(w.v), R::of(w.a));
         *out = Share::zero();
         for k in 0..4 {
-            let (load, s) = (loads.at::<R>(k), p.arm(k));
+            let (load, s) = (&loads[k], p.arm(k));
             let weight = R::of(-GAUSS[k].1) * p.length;
-            let f = scaled(weight, &load.f());
+            let f = scaled(weight, &load.f);
             let own = transposed_times(&r, &f);
             let moment = cross(&s, &own);
             for i in 0..3 {
@@ -129,7 +129,7 @@ impl StationElement<7, 6, 4> for Hull {
             let axis = p.direction();
             let mut couple = [R::zero(); 3];
             if gives.couple {
-                couple = transposed_times(&r, &scaled(weight, &load.g()));
+                couple = transposed_times(&r, &scaled(weight, &load.g));
                 let moment = cross(&axis, &couple);
                 for i in 0..3 {
                     out.r[3 + i] += moment[i];
@@ -158,22 +158,22 @@ impl StationElement<7, 6, 4> for Hull {
                 let mut d = [R::zero(); 3];
                 for i in 0..3 {
                     if gives.x {
-                        d[i] += wq * dot(&load.d_x(i), &unit);
+                        d[i] += wq * dot(&load.d_x[i], &unit);
                     }
                     if gives.slope {
-                        d[i] += wq * dot(&load.d_slope(i), &by_slope);
+                        d[i] += wq * dot(&load.d_slope[i], &by_slope);
                     }
                     if gives.v {
-                        d[i] += wv * dot(&load.d_v(i), &unit) + wq * dot(&load.d_v(i), &v_by_q);
+                        d[i] += wv * dot(&load.d_v[i], &unit) + wq * dot(&load.d_v[i], &v_by_q);
                     }
                     if gives.a {
-                        d[i] += wa * dot(&load.d_a(i), &unit)
-                            + wv * dot(&load.d_a(i), &a_by_v)
-                            + wq * dot(&load.d_a(i), &a_by_q);
+                        d[i] += wa * dot(&load.d_a[i], &unit)
+                            + wv * dot(&load.d_a[i], &a_by_v)
+                            + wq * dot(&load.d_a[i], &a_by_q);
                     }
                     if gives.couple {
                         // the slope's rate by a velocity is what the slope is by a coordinate
-                        d[i] += wv * dot(&load.d_rate(i), &by_slope) + wq * dot(&load.d_rate(i), &rate_by_q);
+                        d[i] += wv * dot(&load.d_rate[i], &by_slope) + wq * dot(&load.d_rate[i], &rate_by_q);
                     }
                     d[i] = weight * d[i];
                 }
@@ -188,9 +188,9 @@ impl StationElement<7, 6, 4> for Hull {
                 if gives.couple {
                     let mut d = [R::zero(); 3];
                     for i in 0..3 {
-                        d[i] = wq * (dot(&load.g_x(i), &unit) + dot(&load.g_slope(i), &by_slope))
-                            + wv * dot(&load.g_v(i), &unit)
-                            + wq * dot(&load.g_v(i), &v_by_q);
+                        d[i] = wq * (dot(&load.g_x[i], &unit) + dot(&load.g_slope[i], &by_slope))
+                            + wv * dot(&load.g_v[i], &unit)
+                            + wq * dot(&load.g_v[i], &v_by_q);
                         d[i] = weight * d[i];
                     }
                     turn = sum(turn, cross(&axis, &sum(transposed_times(&r, &d), cross(&couple, &e))));

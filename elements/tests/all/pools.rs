@@ -1,7 +1,7 @@
 //! What comes on top of the elastic force: damping, stress-free shapes, stations, readings.
 
 use crate::common::*;
-use ropewalk_core::{Element, Gives, Load, Loads, Local, Share, Station, StationElement, Weights};
+use ropewalk_core::{Element, Gives, Load, Local, Share, Station, StationElement, Weights};
 use ropewalk_elements::cable::longitudinal::Longitudinal;
 use ropewalk_elements::cable::quadrature::{Gauss2, Gauss5, Lobatto3, Quadrature, Rule};
 use ropewalk_elements::cable::transverse::Transverse;
@@ -208,8 +208,7 @@ fn loaded(x: &Local<f64, 12, 12>, w: Weights) -> Share<f64, 12> {
     let p = CableStations { l: L, s0: 5.0, diameter: 0.1, area: 0.01 };
     let loads = stations(&p, x).map(|s| load(&s));
     let mut out = Share::zero();
-    let mut room = Vec::new();
-    CableStations::spread::<f64, true>(&p, x, Loads::of(&loads, &mut room), Gives::ALL, &w, &mut out);
+    CableStations::spread::<f64, true>(&p, x, &loads, Gives::ALL, &w, &mut out);
     out
 }
 
@@ -248,9 +247,7 @@ fn stations_weigh_the_element() {
     let mut one = Load::zero();
     one.f[2] = 1.0;
     let mut out = Share::zero();
-    let mut room = Vec::new();
-    let loads = Loads::of(&[one; 4], &mut room);
-    CableStations::spread::<f64, false>(&p, &x, loads, Gives::NOTHING, &Weights::default(), &mut out);
+    CableStations::spread::<f64, false>(&p, &x, &[one; 4], Gives::NOTHING, &Weights::default(), &mut out);
     for (k, s) in [0.5, L / 12.0, 0.5, -L / 12.0].into_iter().enumerate() {
         approx::assert_relative_eq!(out.r[3 * k + 2], -L * s, max_relative = 1e-14);
     }

@@ -6,7 +6,6 @@
 mod exchange;
 mod pool;
 
-pub use exchange::{LoadAt, Loads};
 pub use pool::StationPool;
 
 use crate::algebra::lane::{Real, V3, dot};
@@ -110,6 +109,19 @@ impl Gives {
         Gives { x: self.x && w.q != 0.0, slope: self.slope && w.q != 0.0, v: self.v && moves, ..self }
     }
 
+    /// Those that the other hasn't.
+    #[inline(always)]
+    #[must_use]
+    fn without(self, other: Gives) -> Gives {
+        Gives {
+            x: self.x && !other.x,
+            slope: self.slope && !other.slope,
+            v: self.v && !other.v,
+            a: self.a && !other.a,
+            couple: self.couple && !other.couple,
+        }
+    }
+
     /// Those that either has.
     #[inline(always)]
     #[must_use]
@@ -209,7 +221,7 @@ pub trait StationElement<const Q: usize, const N: usize, const S: usize>:
     fn spread<R: Real, const TANGENT: bool>(
         p: &Self::Lanes<R>,
         x: &Local<R, Q, N>,
-        loads: Loads<'_>,
+        loads: &[Load<R>; S],
         gives: Gives,
         w: &Weights,
         out: &mut Share<R, N>,

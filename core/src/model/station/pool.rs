@@ -1,7 +1,7 @@
 //! All stations of one part: evaluated over lanes, loaded by every law, and carried back to the nodes.
 
 use super::exchange::{EXCHANGE, Exchange, STATION};
-use super::{Gives, Laws, Load, Loads, Station, StationElement, Stations};
+use super::{Gives, Laws, Load, Station, StationElement, Stations};
 use crate::algebra::lane::{LaneTask, Real, Width, run};
 use crate::model::node::{Node, NodeId};
 use crate::model::pattern::Pattern;
@@ -100,8 +100,10 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             for law in &self.laws.loads {
                 law.load(self.width, self.at.t, TANGENT, self.exchange);
             }
-            let (gives, loads) = (self.exchange.given.with(&w), Loads::new(&self.exchange.loads));
-            E::spread::<R, TANGENT>(&p, &x, loads, gives, &w, &mut share);
+            let gives = self.exchange.given.with(&w);
+            if let Some(loads) = self.exchange.loads::<R>().first_chunk() {
+                E::spread::<R, TANGENT>(&p, &x, loads, gives, &w, &mut share);
+            }
             Seat::scatter::<R, TANGENT>(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
         blocks.give_back(self.out);
@@ -177,9 +179,8 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     fn spread(&self, loads: &[Load<f64>], gives: Gives, at: &At<'_>, out: &mut Assembly<'_>) {
         let (w, tangent) = (out.weights(), out.wants_tangent());
         let mut blocks = Blocks::take(out);
-        let (mut share, mut room) = (Share::zero(), Vec::new());
+        let mut share = Share::zero();
         for (e, (element, loads)) in self.elements.iter().zip(loads.as_chunks::<S>().0).enumerate() {
-            let loads = Loads::of(loads, &mut room);
             let seats = std::slice::from_ref(&self.seats[e]);
             let p = E::lanes::<f64>(&Batch(std::slice::from_ref(element)));
             let x = Seat::gather::<f64>(seats, at);

@@ -8,7 +8,7 @@ use super::transport::{Row, Transport, nodal, row_times};
 use crate::cable::quadrature::{Gauss4, Point};
 use crate::cable::shape::{hermite, hermite_slope};
 use crate::cable::stations::BEFORE;
-use ropewalk_core::{Batch, Dual, Gives, Loads, Local, Real, Share, Station, StationElement, V3, Weights};
+use ropewalk_core::{Batch, Dual, Gives, Load, Local, Real, Share, Station, StationElement, V3, Weights};
 
 /// The stations of one element of a flowing cable. Loads are per unstretched length and see the velocity of the
 /// material. The acceleration is that of the material where `slip` is zero; else that of the curve, taken at a fixed distance
@@ -133,7 +133,7 @@ macro_rules! stations {
             fn spread<R: Real, const TANGENT: bool>(
                 p: &FlowStations<$boundaries, R>,
                 x: &Local<R, $size, $size>,
-                loads: Loads<'_>,
+                loads: &[Load<R>; 4],
                 gives: Gives,
                 w: &Weights,
                 out: &mut Share<R, $size>,
@@ -147,8 +147,8 @@ macro_rules! stations {
                 let (p4, h4) = Transport::matrices(&g);
                 let (wq, wv, wa) = (R::of(w.q), R::of(w.v), R::of(w.a));
                 for (k, at) in Gauss4::POINTS.iter().enumerate() {
-                    let (load, place) = (loads.at::<R>(k), Place::new(at, &g, c, &e, &t));
-                    let (force, couple) = (load.f::<R>(), load.g::<R>());
+                    let (load, place) = (&loads[k], Place::new(at, &g, c, &e, &t));
+                    let (force, couple) = (load.f, load.g);
                     let weight = R::of(-at.w) * g.l;
                     for i in 0..4 {
                         for d in 0..3 {
@@ -177,22 +177,22 @@ macro_rules! stations {
                             for q in 0..3 {
                                 let mut sum = R::zero();
                                 if gives.x {
-                                    sum = (wq * s[j]).fma(load.d_x::<R>(r)[q], sum);
+                                    sum = (wq * s[j]).fma(load.d_x[r][q], sum);
                                 }
                                 if gives.slope {
-                                    sum = (wq * ds[j]).fma(load.d_slope::<R>(r)[q], sum);
+                                    sum = (wq * ds[j]).fma(load.d_slope[r][q], sum);
                                 }
                                 if gives.v {
-                                    sum = v.fma(load.d_v::<R>(r)[q], sum);
+                                    sum = v.fma(load.d_v[r][q], sum);
                                 }
                                 if gives.a {
-                                    sum = a.fma(load.d_a::<R>(r)[q], sum);
+                                    sum = a.fma(load.d_a[r][q], sum);
                                 }
                                 let mut couple = R::zero();
                                 if gives.couple {
-                                    sum = rate.fma(load.d_rate::<R>(r)[q], sum);
-                                    couple = (wq * s[j]).fma(load.g_x::<R>(r)[q], v * load.g_v::<R>(r)[q]);
-                                    couple = (wq * ds[j]).fma(load.g_slope::<R>(r)[q], couple);
+                                    sum = rate.fma(load.d_rate[r][q], sum);
+                                    couple = (wq * s[j]).fma(load.g_x[r][q], v * load.g_v[r][q]);
+                                    couple = (wq * ds[j]).fma(load.g_slope[r][q], couple);
                                 }
                                 for i in 0..4 {
                                     let k = &mut out.k[3 * i + r][3 * j + q];
@@ -215,40 +215,28 @@ macro_rules! stations {
                         let c = Dual::new(c, wv * p.slip[k]);
                         let t = Transport::new(&g, &e, &ed, &edd);
                         for (station, at) in Gauss4::POINTS.iter().enumerate() {
-                            let load = loads.at::<R>(station);
-                            let (force, own) = (load.f::<R>(), load.g::<R>());
+                            let load = &loads[station];
+                            let (force, own) = (load.f, load.g);
                             let place = Place::new(at, &g, c, &e, &t);
                             let mut d = [R::zero(); 3];
                             if gives.x {
-                                add_times(&[load.d_x(0), load.d_x(1), load.d_x(2)], &place.x, &mut d);
+                                add_times(&load.d_x, &place.x, &mut d);
                             }
                             if gives.slope {
-                                add_times(
-                                    &[load.d_slope(0), load.d_slope(1), load.d_slope(2)],
-                                    &place.slope,
-                                    &mut d,
-                                );
+                                add_times(&load.d_slope, &place.slope, &mut d);
                             }
                             if gives.v {
-                                add_times(&[load.d_v(0), load.d_v(1), load.d_v(2)], &place.v, &mut d);
+                                add_times(&load.d_v, &place.v, &mut d);
                             }
                             if gives.a {
-                                add_times(&[load.d_a(0), load.d_a(1), load.d_a(2)], &place.a, &mut d);
+                                add_times(&load.d_a, &place.a, &mut d);
                             }
                             let mut d_g = [R::zero(); 3];
                             if gives.couple {
-                                add_times(
-                                    &[load.d_rate(0), load.d_rate(1), load.d_rate(2)],
-                                    &place.slope_rate,
-                                    &mut d,
-                                );
-                                add_times(&[load.g_x(0), load.g_x(1), load.g_x(2)], &place.x, &mut d_g);
-                                add_times(
-                                    &[load.g_slope(0), load.g_slope(1), load.g_slope(2)],
-                                    &place.slope,
-                                    &mut d_g,
-                                );
-                                add_times(&[load.g_v(0), load.g_v(1), load.g_v(2)], &place.v, &mut d_g);
+                                add_times(&load.d_rate, &place.slope_rate, &mut d);
+                                add_times(&load.g_x, &place.x, &mut d_g);
+                                add_times(&load.g_slope, &place.slope, &mut d_g);
+                                add_times(&load.g_v, &place.v, &mut d_g);
                             }
                             for i in 0..4 {
                                 let weight = Dual::of(-at.w) * g.l;
