@@ -29,6 +29,7 @@ pub mod redundancy;
 pub mod relation;
 pub mod remesh;
 mod renewal;
+mod room;
 pub mod solid;
 pub mod span;
 pub mod state;

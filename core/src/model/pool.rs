@@ -3,6 +3,7 @@
 use crate::algebra::lane::{LaneTask, Real, Width, run};
 use crate::model::node::{Node, NodeId, NodeKind};
 use crate::model::pattern::Pattern;
+use crate::model::room;
 use crate::model::state::{At, Relaxation, Relaxed};
 use crate::model::term::{Assembly, Energy, Power, Term, Weights};
 use crate::model::twist::PREFIX;
@@ -409,7 +410,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> AddAll<'_, '_, '_, E, Q, 
         let w = self.out.weights();
         let mut blocks = Blocks::take(self.out);
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
-        let mut share = Share::zero();
+        let mut share = room::take(Share::zero);
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
             let x = Seat::gather::<R>(seats, self.at);
@@ -422,6 +423,7 @@ impl<E: Element<Q, N>, const Q: usize, const N: usize> AddAll<'_, '_, '_, E, Q, 
             E::add::<R, TANGENT>(&p, &x, &w, &mut share);
             Seat::scatter::<R, TANGENT>(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
+        room::give_back(share);
         blocks.give_back(self.out);
     }
 }

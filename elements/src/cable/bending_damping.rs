@@ -1,7 +1,7 @@
 //! Kelvin–Voigt damping of bending.
 
 use super::quadrature::{Point, Points, Quadrature};
-use super::reduced::{Reduced, add_product};
+use super::reduced::{Product, Reduced, add_products};
 use super::shape::{Natural, combine, natural, second};
 use super::transverse::lift;
 use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, V3, Weights, dot};
@@ -145,15 +145,16 @@ impl Element<12, 12> for BendingDamping {
             let [on_slope, on_second] = bend.forces();
             local.add_force(s, &lift(at, il, &on_slope, &on_second));
             if TANGENT {
-                for c in 0..3 {
-                    for which in 0..2 {
-                        let d = bend.towards(which, c, w).forces().map(|f| f.map(|x| x.eps));
-                        let mut unit = [[R::zero(); 3]; 2];
-                        unit[which][c] = R::of(1.0);
-                        let (column, row) = (lift(at, il, &d[0], &d[1]), lift(at, il, &unit[0], &unit[1]));
-                        add_product(s, &column, &row, il, out);
-                    }
+                let mut products = [None; 6];
+                for (k, product) in products.iter_mut().enumerate() {
+                    let (c, which) = (k / 2, k % 2);
+                    let d = bend.towards(which, c, w).forces().map(|f| f.map(|x| x.eps));
+                    let mut unit = [[R::zero(); 3]; 2];
+                    unit[which][c] = R::of(1.0);
+                    let (column, row) = (lift(at, il, &d[0], &d[1]), lift(at, il, &unit[0], &unit[1]));
+                    *product = Product::new(s, &column, &row, il);
                 }
+                add_products(&products, out);
             }
         }
         local.spread_force::<false>(il, out);

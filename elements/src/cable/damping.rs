@@ -6,8 +6,8 @@
 use super::bending_damping::BendingDamping;
 use super::longitudinal::{Longitudinal, Strain};
 use super::model::{CableModel, LongitudinalModel, Models, Sink, WithModels, with_models};
-use super::quadrature::{Quadrature, Rule};
-use super::reduced::{Reduced, add_product};
+use super::quadrature::{MOST, Quadrature, Rule};
+use super::reduced::{Product, Reduced, add_products};
 use super::shape::{Natural, natural};
 use super::transverse::Transverse;
 use ropewalk_core::{Batch, Element, Local, NodeId, Power, Real, Share, Weights};
@@ -61,6 +61,7 @@ fn blend<R: Real>(s: R, a: &Natural<R>, t: R, b: &Natural<R>) -> Natural<R> {
 
 impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
     type Lanes<R: Real> = AxialDampingLanes<L, Q, R>;
+    const SETS: bool = true;
 
     fn label(&self) -> String {
         format!("axial damping {} {}", self.model.label(), self.rule.label())
@@ -86,7 +87,8 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
         let il = R::of(1.0) / l;
         let (q, v) = (natural(&x.q, il), natural(&x.v, il));
         let mut local = Reduced::zero();
-        for at in model.points(rule) {
+        let mut products = [None; MOST];
+        for (at, product) in model.points(rule).iter().zip(&mut products) {
             let strain = model.strain(&q, at);
             let c = eta_ea * l * R::of(at.w);
             let force = c * strain.rate(&v);
@@ -94,13 +96,14 @@ impl<L: Longitudinal, Q: Quadrature> Element<12, 12> for AxialDamping<L, Q> {
             local.add_force(force, &gradient);
             if TANGENT {
                 let rate_by = blend(R::of(w.q), &strain.turn(&v), R::of(w.v), &gradient);
-                add_product(c, &gradient, &rate_by, il, out);
+                *product = Product::new(c, &gradient, &rate_by, il);
                 strain.add_hessian(R::of(w.q) * force, &mut local);
             }
         }
-        local.spread_force::<false>(il, out);
+        local.spread_force::<true>(il, out);
         if TANGENT {
-            local.spread_tangent::<false>(il, R::of(1.0), out);
+            local.spread_tangent::<true>(il, R::of(1.0), out);
+            add_products(&products, out);
         }
     }
     #[inline(always)]

@@ -141,11 +141,35 @@ fn put<const SET: bool, R: Real>(entry: &mut R, x: R) {
 /// Adds `s a bᵀ` of natural forces to the tangent on the dofs: for tangents without symmetry.
 #[inline(always)]
 pub fn add_product<R: Real>(s: R, a: &Natural<R>, b: &Natural<R>, il: R, out: &mut Share<R, 12>) {
-    let (a, b) = (on_dofs(a, il), on_dofs(b, il));
-    for i in 0..12 {
-        let sa = s * a[i];
-        for j in 0..12 {
-            out.k[i][j] = sa.fma(b[j], out.k[i][j]);
+    add_products(&[Product::new(s, a, b, il)], out);
+}
+
+/// `s a` and `b` on the dofs, of a product `s a bᵀ` of natural forces.
+#[derive(Clone, Copy)]
+pub struct Product<R>([R; 12], [R; 12]);
+
+impl<R: Real> Product<R> {
+    /// Some: lists that are filled as far as needed begin as none, which nothing has to be written for.
+    #[inline(always)]
+    pub fn new(s: R, a: &Natural<R>, b: &Natural<R>, il: R) -> Option<Self> {
+        let mut on = Product(on_dofs(a, il), on_dofs(b, il));
+        for a in &mut on.0 {
+            *a = s * *a;
         }
+        Some(on)
+    }
+}
+
+/// Adds products to the tangent, which passes once for all of them.
+#[inline(always)]
+pub fn add_products<R: Real>(products: &[Option<Product<R>>], out: &mut Share<R, 12>) {
+    for i in 0..12 {
+        let mut row = out.k[i];
+        for Product(a, b) in products.iter().flatten() {
+            for j in 0..12 {
+                row[j] = a[i].fma(b[j], row[j]);
+            }
+        }
+        out.k[i] = row;
     }
 }

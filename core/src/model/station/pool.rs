@@ -6,6 +6,7 @@ use crate::algebra::lane::{LaneTask, Real, Width, run};
 use crate::model::node::{Node, NodeId};
 use crate::model::pattern::Pattern;
 use crate::model::pool::{Batch, Blocks, Local, Seat, Share};
+use crate::model::room;
 use crate::model::state::At;
 use crate::model::term::{Assembly, Energy, Power};
 
@@ -90,7 +91,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         let w = self.out.weights();
         let mut blocks = Blocks::take(self.out);
         self.exchange.resize::<R>(S);
-        let mut share = Share::zero();
+        let mut share = room::take(Share::zero);
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
@@ -106,6 +107,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             }
             Seat::scatter::<R, TANGENT>(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
+        room::give_back(share);
         blocks.give_back(self.out);
     }
 }
