@@ -56,7 +56,8 @@ pub(super) fn find(
     let Some(runs) = all(runs, &wanted, watch)? else { return Ok(None) };
     let [own, solved, tight, solved_tight, solved_tighter] = &runs[..] else { return Ok(None) };
     let between = |a: &Run, b: &Run| change(records, a, b);
-    let by_newton = between(own, solved);
+    // tighter steps may leave more than the run's own
+    let by_newton = largest(&mut [between(own, solved), between(tight, solved_tight)].into_iter());
     let first = between(solved, solved_tight);
     let second = between(solved_tight, solved_tighter);
     let all = between(own, tight);

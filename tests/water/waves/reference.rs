@@ -320,3 +320,34 @@ fn seeds_make_the_seas_of_the_reference() {
     let sea = notes.scene().water.as_ref().and_then(|w| w.raised(notes.scene().gravity).ok().flatten());
     assert!(sea.is_some_and(|sea| sea.about().starts_with("waves: 200 of ")));
 }
+
+/// Seas that are asked by turns, and by several threads at once, answer as one that is alone.
+#[test]
+fn seas_do_not_get_in_each_others_way() {
+    let sea = |seed| {
+        let jonswap = Some(Jonswap { hs: 3.0, tp: 9.0, gamma: 3.3 });
+        let spec = WavesSpec { jonswap, seed, depth: Some(80.0), ..WavesSpec::default() };
+        Sea::new(&spec, 0.0, 9.81, [0.0; 3]).expect("a sea")
+    };
+    let ask = |sea: &Sea, k: u32| {
+        let k = f64::from(k);
+        let swell = sea.at(0.7 * k, &[3.0 * k, -k, -2.0 - 0.3 * k]);
+        [swell.u, swell.acceleration, [swell.elevation, swell.slope[0], swell.rising]]
+    };
+    let seeds = [1, 2, 3];
+    let alone = seeds.map(|seed| {
+        let sea = sea(seed);
+        (0..40).map(|k| ask(&sea, k)).collect::<Vec<_>>()
+    });
+    let seas = seeds.map(sea);
+    let by_turns = || {
+        for k in 0..40 {
+            for (sea, alone) in seas.iter().zip(&alone) {
+                assert_eq!(ask(sea, k), alone[k as usize]);
+            }
+        }
+    };
+    std::thread::scope(|scope| (0..3).for_each(|_| drop(scope.spawn(by_turns))));
+    by_turns();
+    assert_ne!(alone[0], alone[1]);
+}
