@@ -27,7 +27,7 @@ pub(super) type Key = (u64, u64, u64);
 thread_local! {
     /// Of the sea that was asked last, and of others.
     static LAST: Cell<Option<Box<Memory>>> = const { Cell::new(None) };
-    static OTHERS: Cell<Vec<Box<Memory>>> = const { Cell::new(Vec::new()) };
+    static OTHERS: Cell<Vec<Memory>> = const { Cell::new(Vec::new()) };
 }
 
 /// What was found lately, and the table that stands for many waves.
@@ -72,22 +72,20 @@ impl Memory {
     #[inline(never)]
     fn of_another(sea: &Sea, last: Option<Box<Self>>) -> Box<Self> {
         let mut others = OTHERS.take();
-        others.extend(last);
+        others.extend(last.map(|memory| *memory));
         others.retain(|memory| memory.of.strong_count() > 0);
         let own = others.iter().position(|memory| memory.of.as_ptr() == Arc::as_ptr(&sea.alive));
         let memory = own.map(|own| others.swap_remove(own));
         OTHERS.set(others);
-        memory.unwrap_or_else(|| {
-            Box::new(Memory {
-                of: Arc::downgrade(&sea.alive),
-                lattice: sea.lattice.clone(),
-                slots: FxHashMap::default(),
-                keys: Vec::new(),
-                last: 0,
-                packs: Vec::new(),
-                stations: Vec::new(),
-            })
-        })
+        Box::new(memory.unwrap_or_else(|| Memory {
+            of: Arc::downgrade(&sea.alive),
+            lattice: sea.lattice.clone(),
+            slots: FxHashMap::default(),
+            keys: Vec::new(),
+            last: 0,
+            packs: Vec::new(),
+            stations: Vec::new(),
+        }))
     }
 
     /// The slot of a pack.
