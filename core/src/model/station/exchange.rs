@@ -24,6 +24,7 @@ fn put<R: Real, const K: usize>(row: &mut [f64], i: usize, x: &[R; K]) {
         x[k].write(&mut row[(i + k) * R::LANES..]);
     }
 }
+
 impl<R: Real> Station<R> {
     #[inline(always)]
     pub(super) fn write(&self, row: &mut [f64]) {
@@ -53,12 +54,18 @@ impl<R: Real> Station<R> {
 }
 
 impl<R: Real> Load<R> {
-    /// Makes what laws are about to add to zero: what isn't given is never read.
+    /// Makes what laws are about to add to zero, derivatives with `TANGENT` alone: what isn't given is never read.
     #[inline(always)]
-    fn clear(&mut self, force: bool, gives: Gives) {
+    fn clear<const TANGENT: bool>(&mut self, force: bool, gives: Gives) {
         let none = [[R::zero(); 3]; 3];
         if force {
             self.f = none[0];
+        }
+        if gives.couple {
+            self.g = none[0];
+        }
+        if !TANGENT {
+            return;
         }
         if gives.x {
             self.d_x = none;
@@ -73,8 +80,7 @@ impl<R: Real> Load<R> {
             self.d_a = none;
         }
         if gives.couple {
-            (self.g, self.d_rate) = (none[0], none);
-            (self.g_x, self.g_slope, self.g_v) = (none, none, none);
+            (self.d_rate, self.g_x, self.g_slope, self.g_v) = (none, none, none, none);
         }
     }
 }
@@ -156,7 +162,7 @@ impl<L: Law> LoadAll<'_, L> {
         let gives = if TANGENT { all } else { Gives { couple: all.couple, ..Gives::NOTHING } };
         let (first, fresh) = (!*loaded, gives.without(*given));
         for (station, out) in stations.chunks_exact(STATION * R::LANES).zip(over::<R>(loads)) {
-            out.clear(first, fresh);
+            out.clear::<TANGENT>(first, fresh);
             law.load::<R, TANGENT>(self.t, &Station::read(station), out);
         }
         (*loaded, *given) = (true, given.and(gives));
@@ -221,8 +227,7 @@ impl<L: Law> LaneTask for PowerOf<'_, L> {
         let (mut sum, mut load) = (Power::<R>::zero(), Load::zero());
         for row in self.x.stations.chunks_exact(STATION * R::LANES) {
             let at = Station::read(row);
-            load.clear(true, Gives::NOTHING);
-            load.g = [R::zero(); 3];
+            load.clear::<false>(true, Gives { couple: true, ..Gives::NOTHING });
             self.law.load::<R, false>(self.t, &at, &mut load);
             let power = self.law.power(self.t, &at, &load);
             sum.dissipated = at.weight.fma(power.dissipated, sum.dissipated);
