@@ -7,12 +7,16 @@
 use super::search::{SHORTEST, passage};
 use ropewalk_core::V3;
 
-/// A polynomial over 0 … 1 by its Bernstein coefficients: it lies between the least and the largest of them.
+/// A polynomial over 0 … 1 by its Bernstein coefficients: it lies between the least and the largest of them. What is no larger
+/// than its noise has no sign: else all of what lies along a flank without being pressed would be halved to the last piece.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sextic([f64; 7]);
+pub(crate) struct Sextic {
+    coefficients: [f64; 7],
+    noise: f64,
+}
 
-/// How often what has more roots than one is halved.
-const HALVED: u32 = 48;
+/// Rounding of a coefficient, in parts of the squares that it is the difference of.
+const NOISE: f64 = 16.0 * f64::EPSILON;
 
 impl Sextic {
     /// The square of the distance of a cubic, which has these control points, from the origin; or from the axis z if only two
@@ -27,17 +31,18 @@ impl Sextic {
                 all[i + j] += m * n * product;
             }
         }
-        Sextic(std::array::from_fn(|k| all[k] / OF_SIX[k]))
+        Sextic { coefficients: std::array::from_fn(|k| all[k] / OF_SIX[k]), noise: 0.0 }
     }
 
     /// `factor` times it, less a number.
     pub fn less(&self, number: f64, factor: f64) -> Self {
-        Sextic(self.0.map(|c| factor * (c - number)))
+        let coefficients = self.coefficients.map(|c| factor * (c - number));
+        Sextic { coefficients, noise: NOISE * (factor * number).abs() }
     }
 
     /// Value and slope.
     fn at(&self, xi: f64) -> [f64; 2] {
-        let (mut c, rest) = (self.0, 1.0 - xi);
+        let (mut c, rest) = (self.coefficients, 1.0 - xi);
         for last in (1..6).rev() {
             for k in 0..=last {
                 c[k] = rest * c[k] + xi * c[k + 1];
@@ -48,7 +53,7 @@ impl Sextic {
 
     /// Its halves.
     fn halves(&self) -> [Self; 2] {
-        let (mut left, mut right) = (self.0, self.0);
+        let (mut left, mut right) = (self.coefficients, self.coefficients);
         for first in 1..7 {
             for k in (first..7).rev() {
                 left[k] = 0.5 * (left[k - 1] + left[k]);
@@ -57,42 +62,42 @@ impl Sextic {
                 right[k] = 0.5 * (right[k] + right[k + 1]);
             }
         }
-        [Sextic(left), Sextic(right)]
+        [left, right].map(|coefficients| Sextic { coefficients, ..*self })
     }
 
-    /// How often its coefficients change their sign.
-    fn changes(&self) -> usize {
-        let signs = self.0.iter().filter(|c| **c != 0.0).map(|c| *c > 0.0);
-        signs.clone().zip(signs.skip(1)).filter(|(a, b)| a != b).count()
+    /// Whether its coefficients are above zero, of those that have a sign.
+    fn signs(&self) -> impl DoubleEndedIterator<Item = bool> + Clone {
+        let noise = self.noise;
+        self.coefficients.into_iter().filter(move |c| c.abs() > noise).map(|c| c > 0.0)
     }
 
     /// The places where it is above zero, from `ξ` to `ξ`, in order, put behind those in `found`.
     pub fn positive(&self, found: &mut Vec<[f64; 2]>) {
         let first = found.len();
-        self.positive_in(0.0, 1.0, HALVED, first, found);
+        self.positive_in(0.0, 1.0, first, found);
     }
 
-    fn positive_in(&self, from: f64, h: f64, halvings: u32, first: usize, found: &mut Vec<[f64; 2]>) {
+    fn positive_in(&self, from: f64, h: f64, first: usize, found: &mut Vec<[f64; 2]>) {
         let to = from + h;
         let mut add = |a: f64, b: f64| match found[first..].last_mut() {
             // pieces that adjoin are one
             Some(last) if last[1] == a => last[1] = b,
             _ => found.push([a, b]),
         };
-        match self.changes() {
-            0 if self.0.iter().any(|c| *c > 0.0) => add(from, to),
+        let last = self.signs().next_back() == Some(true);
+        match self.signs().zip(self.signs().skip(1)).filter(|(a, b)| a != b).count() {
+            0 if last => add(from, to),
             0 => {}
             1 => {
-                let [a, .., b] = self.0;
-                let rises = self.0.iter().rfind(|c| **c != 0.0).is_some_and(|c| *c > 0.0);
+                let [a, .., b] = self.coefficients;
                 let guess = if a == b { 0.5 } else { a / (a - b) };
-                let root = from + h * passage(|xi| Some(self.at(xi)), [0.0, 1.0], guess, rises);
-                if rises { add(root, to) } else { add(from, root) }
+                let root = from + h * passage(|xi| Some(self.at(xi)), [0.0, 1.0], guess, last);
+                if last { add(root, to) } else { add(from, root) }
             }
-            _ if h > SHORTEST && halvings > 0 => {
+            _ if h > SHORTEST => {
                 let [left, right] = self.halves();
-                left.positive_in(from, 0.5 * h, halvings - 1, first, found);
-                right.positive_in(from + 0.5 * h, 0.5 * h, halvings - 1, first, found);
+                left.positive_in(from, 0.5 * h, first, found);
+                right.positive_in(from + 0.5 * h, 0.5 * h, first, found);
             }
             _ if self.at(0.5)[0] > 0.0 => add(from, to),
             _ => {}

@@ -621,6 +621,29 @@ fn what_lies_around_something_round_touches_where_samples_show() {
     assert!(whole > 300 && partly > 100, "{whole} {partly}");
 }
 
+/// A line along a flank that isn't pressed on it is off by rounding all along: it touches as a whole or not at all.
+#[test]
+fn what_lies_along_a_flank_is_no_dust_of_contacts() {
+    let nodes = nodes();
+    for shape in [Shape::Cylinder { radius: 0.3, half: 9.0 }, Shape::Tube { radius: 0.7, half: 9.0 }] {
+        let rho = if let Shape::Tube { .. } = shape { 0.6 } else { 0.4 };
+        for k in 0..200 {
+            let mut r = Random(43);
+            let mut s = Numbers::new(&mut r);
+            let (span, _) = spans(&mut r).swap_remove(0);
+            let (sin, cos) = (0.1 + 0.37 * f64::from(k)).sin_cos();
+            for (at, z) in [(nodes[1].q, 0.1), (nodes[2].q, 1.1)] {
+                s.q[at..at + 3].copy_from_slice(&[rho * cos, rho * sin, z]);
+                s.q[at + 3..at + 6].copy_from_slice(&[0.0, 0.0, 1.0]);
+            }
+            let span = ContactSpan { radius: 0.1, tips: [false; 2], length: 1.0, ..span };
+            let mut shown = Vec::new();
+            on_the_ground(&shape, span).observe(&s.at(), &mut shown);
+            assert!(shown[6] == 0.0 || shown[6] == 1.0, "{shape:?}, {k}: {}", shown[6]);
+        }
+    }
+}
+
 /// What goes in on one side of a shape and out on the other in a step is told, and nothing is told of what stays outside.
 #[test]
 fn what_passes_through_a_shape_is_seen_and_nothing_else() {

@@ -1,8 +1,8 @@
 //! Loads at which a path of equilibria loses its stability: they are located, and left for the stable path behind them.
 
 use super::naming::describe;
-use super::outcome::{Critical, CriticalKind, Found, StaticsError};
-use super::path::{Point, Way};
+use super::outcome::{Critical, CriticalKind, Found, Point, StaticsError};
+use super::path::Way;
 use super::problem::Statics;
 use crate::model::node::retract;
 use crate::model::state::State;

@@ -177,3 +177,14 @@ impl Judgement {
         self.potential && self.unstable == 0 && self.neutral.is_empty() && self.doubt.is_none()
     }
 }
+
+/// A point of a path of equilibria.
+#[derive(Clone)]
+pub(super) struct Point {
+    pub state: State,
+    /// Change of positions and multipliers, and of time, along the path.
+    pub slope: Vec<f64>,
+    pub rate: f64,
+    /// Directions that it is unstable in.
+    pub unstable: usize,
+}

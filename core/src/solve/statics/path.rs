@@ -8,7 +8,7 @@
 //!
 //! Riks (1979), Int. J. Solids Struct. 15, 529; Crisfield (1981), Comput. Struct. 13, 55.
 
-use super::outcome::{Found, StaticsError};
+use super::outcome::{Found, Point, StaticsError};
 use super::problem::Statics;
 use super::stability::MARGIN;
 use crate::model::node::{Node, NodeKind, difference, retract};
@@ -30,17 +30,6 @@ const STEPS: u32 = 5000;
 /// of it that they may leave unexplained.
 const FAR: f64 = 0.05;
 const UNEXPLAINED: f64 = 0.5;
-
-/// A point of the path.
-#[derive(Clone)]
-pub(super) struct Point {
-    pub state: State,
-    /// Change of positions and multipliers, and of time, along the path.
-    pub slope: Vec<f64>,
-    pub rate: f64,
-    /// Directions that it is unstable in.
-    pub unstable: usize,
-}
 
 /// The way that is to be gone.
 #[derive(Clone, Copy)]

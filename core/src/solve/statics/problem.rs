@@ -1,8 +1,7 @@
 //! The search for equilibria of one model: what it works on, and what it has found so far.
 
 use super::options::StaticsOptions;
-use super::outcome::{Critical, Judgement, Neutral};
-use super::path::Point;
+use super::outcome::{Critical, Judgement, Neutral, Point};
 use crate::model::Model;
 use crate::model::assembly::System;
 use crate::model::motion::SteadyFrame;
