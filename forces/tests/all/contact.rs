@@ -632,9 +632,11 @@ fn what_lies_along_a_flank_is_no_dust_of_contacts() {
             let mut s = Numbers::new(&mut r);
             let (span, _) = spans(&mut r).swap_remove(0);
             let (sin, cos) = (0.1 + 0.37 * f64::from(k)).sin_cos();
-            for (at, z) in [(nodes[1].q, 0.1), (nodes[2].q, 1.1)] {
+            // to and fro by rounding
+            for (at, z, off) in [(nodes[1].q, 0.1, 1.0), (nodes[2].q, 1.1, -1.0)] {
+                let (rho, lean) = (rho * (1.0 + 2.0 * off * f64::EPSILON), 8.0 * off * f64::EPSILON);
                 s.q[at..at + 3].copy_from_slice(&[rho * cos, rho * sin, z]);
-                s.q[at + 3..at + 6].copy_from_slice(&[0.0, 0.0, 1.0]);
+                s.q[at + 3..at + 6].copy_from_slice(&[lean * cos, lean * sin, 1.0]);
             }
             let span = ContactSpan { radius: 0.1, tips: [false; 2], length: 1.0, ..span };
             let mut shown = Vec::new();
